@@ -1,0 +1,106 @@
+// Blum: distance fields with the closest site at every node. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "blum/core/buffer.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
+
+namespace blum {
+
+/// How the sign of a field is asked for.
+enum class SignMode : std::uint8_t {
+  automatic,  ///< `normals` where the mesh is closed, consistently oriented and faces outwards, else `winding`
+  normals,    ///< angle-weighted pseudonormals (Baerentzen, Aanaes 2005); watertight, consistently oriented meshes
+  winding,    ///< generalized winding number (Jacobson 2013) above 1/2 is inside; any soup
+  none        ///< unsigned
+};
+
+/// How the sign of a field was found.
+enum class SignRule : std::uint8_t { none, normals, winding, label };
+
+/// What the site values of a field count.
+enum class SiteIds : std::uint8_t {
+  features,   ///< vertices, edges, faces, numbered as SiteTable says
+  triangles,  ///< the smallest triangle that the closest site lies on
+  voxels      ///< linear indices of voxels (fields of images)
+};
+
+[[nodiscard]] std::string_view to_string(SignMode mode);
+[[nodiscard]] std::string_view to_string(SignRule rule);
+[[nodiscard]] std::string_view to_string(SiteIds ids);
+
+struct FieldOptions {
+  /// How the sign is found; the distance is negative inside.
+  SignMode sign = SignMode::automatic;
+  /// Half-width of a narrow band, > 0, in mesh units. Beyond it nodes get +-band and no site. Unset: the full grid.
+  std::optional<double> band = {};
+  /// What the site values count: features or triangles.
+  SiteIds site_ids = SiteIds::features;
+};
+
+/// Wall-clock seconds of one phase of a computation.
+struct PhaseTime {
+  std::string phase;
+  double seconds = 0;
+};
+
+/// Distance and closest site at every node of a grid.
+struct Field {
+  GridSpec grid;
+  /// Distance in mesh units, negative inside when signed; +-band beyond the band. One per node, x fastest.
+  Buffer<float> distance;
+  /// Closest site; none() beyond the band. One per node, x fastest.
+  Buffer<SiteId> site;
+  SiteIds site_ids = SiteIds::features;
+  std::optional<double> band = {};  ///< half-width, mesh units
+  SignRule sign_rule = SignRule::none;
+  std::string sign_reason;  ///< one sentence: why this rule
+  std::vector<PhaseTime> phases;
+};
+
+/// Exact distance and closest site at every node of a grid.
+///
+/// @param mesh  any soup of triangles, segments and points (see MeshView); it must pass validate(mesh).
+/// @param grid  at most 2^40 nodes; must pass validate(grid).
+/// @return      with D the diagonal of the box around mesh and grid: distances within 1e-6 D of exact; sites whose own
+///              exact distance is within 1e-6 D of the smallest; signs right at nodes further than 1e-6 D from the
+///              surface. The same bytes for any number of threads.
+/// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, Cancelled.
+/// Cost: about O(nodes + sites log sites); 8 bytes per node. Method: docs/theory/fields.md (Sud 2006, ch. 2).
+[[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {},
+                                   const Context& context = {});
+
+/// Computes fields of a deforming mesh on one grid, frame after frame, and keeps its buffers between frames.
+/// Vertices may move and the topology may change at every frame; nothing is precomputed that outlives a frame except
+/// the edge list, which is reused while the connectivity stays the same.
+class FieldSolver {
+ public:
+  /// @throws InvalidGrid, InvalidOption, OutOfMemory.
+  explicit FieldSolver(const GridSpec& grid, const FieldOptions& options = {}, const Context& context = {});
+  FieldSolver(FieldSolver&&) noexcept;
+  FieldSolver& operator=(FieldSolver&&) noexcept;
+  ~FieldSolver();
+
+  /// The field of this frame's mesh; valid until the next call. Equal, byte for byte, to distance_field's.
+  /// @throws as distance_field; the solver stays usable.
+  const Field& compute(const MeshView& mesh);
+
+  /// Moves the last computed field out of the solver; the next frame gets new buffers.
+  [[nodiscard]] Field take();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace blum

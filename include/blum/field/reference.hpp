@@ -1,0 +1,44 @@
+// Blum: brute-force fields in double precision, for tests and for trust. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "blum/core/ids.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum::reference {
+
+/// Distance from a point to the closed triangle abc, which may be degenerate to a segment or a point.
+[[nodiscard]] double triangle_distance(const Vec3d& query, const Vec3d& a, const Vec3d& b, const Vec3d& c);
+
+/// Distance from a point to the closed segment ab, which may be degenerate to a point.
+[[nodiscard]] double segment_distance(const Vec3d& query, const Vec3d& a, const Vec3d& b);
+
+struct Nearest {
+  double distance = 0;
+  SiteId site;  ///< the smallest id among the sites whose distance equals the minimum
+};
+
+/// Looks at every site for every query: slow, obvious, in double. The mesh must outlive it.
+class BruteForce {
+ public:
+  explicit BruteForce(const MeshView& mesh);
+
+  [[nodiscard]] const SiteTable& sites() const { return sites_; }
+  /// Distance from a point to one site (its closure).
+  [[nodiscard]] double site_distance(SiteId id, const Vec3d& query) const;
+  /// Closest site among all that a triangle, segment or point names. Cost: O(sites).
+  [[nodiscard]] Nearest nearest(const Vec3d& query) const;
+
+ private:
+  MeshView mesh_;
+  SiteTable sites_;
+  std::vector<bool> named_;
+};
+
+/// Generalized winding number of the triangles around a point: the sum of all signed solid angles over 4 pi
+/// (van Oosterom, Strackee 1983). 1 inside a closed, outward-oriented surface; 0 outside. Cost: O(triangles).
+[[nodiscard]] double winding_number(const MeshView& mesh, const Vec3d& query);
+
+}  // namespace blum::reference

@@ -1,0 +1,66 @@
+// Blum: the sites of a mesh. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum {
+
+enum class SiteKind : std::uint8_t { vertex, edge, face };
+
+/// A vertex, an open edge or an open face of a mesh. `index` counts within the kind.
+struct Site {
+  SiteKind kind = SiteKind::vertex;
+  std::uint32_t index = 0;
+  [[nodiscard]] friend constexpr bool operator==(const Site&, const Site&) = default;
+};
+
+/// The sites of a mesh and their numbering, a function of the mesh's connectivity alone.
+///
+/// With V vertices, E distinct edges and F triangles, site ids are
+///   [0, V)          the vertices, in the mesh's order (also those that nothing names: they are never reported);
+///   [V, V+E)        the distinct edges of all triangles and segments, in rising order of (smaller, larger vertex);
+///   [V+E, V+E+F)    the triangles, in the mesh's order.
+/// An edge whose two ends are the same vertex is no edge. Edges are told apart by vertex index, not by position: weld
+/// a mesh first if its pieces should share edges.
+class SiteTable {
+ public:
+  SiteTable() = default;
+  /// Cost: O(V + F) time; 8 bytes per edge and 12 per triangle, and as much again while it is built.
+  /// @throws InvalidMesh when V + E + F exceeds max_id_count. The mesh must pass validate().
+  explicit SiteTable(const MeshView& mesh, const Context& context = {});
+
+  [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
+  [[nodiscard]] std::size_t edge_count() const { return edges_.size(); }
+  [[nodiscard]] std::size_t face_count() const { return triangles_.size(); }
+  [[nodiscard]] std::size_t size() const { return vertex_count_ + edges_.size() + triangles_.size(); }
+
+  [[nodiscard]] SiteId id(Site site) const;
+  /// The site of an id that is below size().
+  [[nodiscard]] Site site(SiteId id) const;
+  /// The one, two or three vertices of a site, padded with -1.
+  [[nodiscard]] std::array<std::int32_t, 3> vertices(SiteId id) const;
+
+  /// Vertex pairs of the edges, smaller vertex first, sorted.
+  [[nodiscard]] std::span<const Segment> edges() const { return edges_; }
+  /// Edge indices of each triangle: entry k is the edge between corners k and (k+1) % 3; none() for a zero-length pair.
+  [[nodiscard]] std::span<const std::array<EdgeId, 3>> triangle_edges() const { return triangle_edges_; }
+  /// The smallest triangle that a site lies on; none() where it lies on none (free segments and points).
+  [[nodiscard]] TriangleId triangle(SiteId id) const;
+
+ private:
+  std::size_t vertex_count_ = 0;
+  std::vector<Segment> edges_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::array<EdgeId, 3>> triangle_edges_;
+  std::vector<TriangleId> edge_triangle_;
+  std::vector<TriangleId> vertex_triangle_;
+};
+
+}  // namespace blum

@@ -1,0 +1,49 @@
+// Blum: triangle meshes and views of them. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+
+namespace blum {
+
+/// Vertex indices of a triangle, counter-clockwise seen from outside where the mesh bounds a solid.
+using Triangle = std::array<std::uint32_t, 3>;
+/// Vertex indices of a line segment.
+using Segment = std::array<std::uint32_t, 2>;
+
+/// Any set of triangles, segments and points over shared vertices, seen through spans: nothing is copied or owned.
+///
+/// Nothing is assumed of it: triangles may intersect, repeat, degenerate, leave holes. Vertices that no triangle,
+/// segment or point names are not part of the shape and are ignored everywhere.
+struct MeshView {
+  std::span<const Vec3d> vertices = {};
+  std::span<const Triangle> triangles = {};
+  std::span<const Segment> segments = {};
+  /// Vertices that are part of the shape by themselves (all of them, for a point cloud).
+  std::span<const std::uint32_t> points = {};
+};
+
+/// Owns what a MeshView shows.
+struct TriangleMesh {
+  std::vector<Vec3d> vertices = {};
+  std::vector<Triangle> triangles = {};
+  std::vector<Segment> segments = {};
+  std::vector<std::uint32_t> points = {};
+
+  [[nodiscard]] MeshView view() const { return {vertices, triangles, segments, points}; }
+  operator MeshView() const { return view(); }  // NOLINT(google-explicit-constructor): a mesh is its view
+};
+
+/// The box around all vertices that a triangle, segment or point names; empty where there are none.
+[[nodiscard]] Box3 bounds(const MeshView& mesh);
+
+/// Checks what every algorithm needs: at least one triangle, segment or point; indices in range; counts that fit ids;
+/// finite coordinates (of named vertices), of magnitude at most 1e150 so that squares stay finite.
+/// @throws InvalidMesh naming the first offender.
+void validate(const MeshView& mesh);
+
+}  // namespace blum

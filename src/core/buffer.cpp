@@ -1,0 +1,43 @@
+#include "blum/core/buffer.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+#include "blum/core/error.hpp"
+
+namespace blum::detail {
+namespace {
+
+constexpr std::size_t cache_line = 64;
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+
+}  // namespace
+
+void* allocate_aligned(std::size_t bytes) {
+  const std::size_t alignment = bytes >= 2 * huge_page ? huge_page : cache_line;
+  void* memory = nullptr;
+  if (bytes <= PTRDIFF_MAX - alignment) {
+    memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  }
+  if (memory == nullptr) {
+    throw OutOfMemory("cannot allocate " + std::to_string(bytes) +
+                      " bytes; use a coarser grid or a machine with more memory");
+  }
+#if defined(__linux__)
+  if (alignment == huge_page)
+    madvise(memory, bytes, MADV_HUGEPAGE);  // best effort: without it only page faults cost more
+#endif
+  return memory;
+}
+
+void free_aligned(void* memory, std::size_t /*bytes*/) noexcept {
+  std::free(memory);
+}
+
+}  // namespace blum::detail

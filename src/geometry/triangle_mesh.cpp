@@ -1,0 +1,62 @@
+#include "blum/geometry/triangle_mesh.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/core/ids.hpp"
+
+namespace blum {
+namespace {
+
+constexpr double coordinate_limit = 1e150;
+
+bool is_usable(const MeshView& mesh, std::uint32_t vertex) {
+  if (vertex >= mesh.vertices.size()) return false;
+  const Vec3d& p = mesh.vertices[vertex];
+  return std::abs(p.x) <= coordinate_limit && std::abs(p.y) <= coordinate_limit && std::abs(p.z) <= coordinate_limit;
+}
+
+[[noreturn]] void throw_unusable(const MeshView& mesh, std::uint32_t vertex, const char* what, std::size_t index) {
+  const std::string where = std::string(what) + " " + std::to_string(index) + " names vertex " + std::to_string(vertex);
+  if (vertex >= mesh.vertices.size()) {
+    throw InvalidMesh(where + ", but there are " + std::to_string(mesh.vertices.size()) + " vertices");
+  }
+  if (!is_finite(mesh.vertices[vertex])) throw InvalidMesh(where + ", which has a coordinate that is not finite");
+  throw InvalidMesh(where + ", which lies further than 1e150 from the origin");
+}
+
+/// Calls visit(vertex, kind of the thing that names it, its index) for every naming, in order.
+template <class Visit>
+void for_each_named(const MeshView& mesh, Visit visit) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) visit(v, "triangle", t);
+  }
+  for (std::size_t s = 0; s < mesh.segments.size(); ++s) {
+    for (const std::uint32_t v : mesh.segments[s]) visit(v, "segment", s);
+  }
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) visit(mesh.points[p], "point", p);
+}
+
+}  // namespace
+
+Box3 bounds(const MeshView& mesh) {
+  Box3 box;
+  for_each_named(mesh, [&](std::uint32_t v, const char*, std::size_t) { box.extend(mesh.vertices[v]); });
+  return box;
+}
+
+void validate(const MeshView& mesh) {
+  if (mesh.triangles.empty() && mesh.segments.empty() && mesh.points.empty()) {
+    throw InvalidMesh("the mesh has no triangle, segment or point");
+  }
+  if (mesh.vertices.size() > max_id_count || mesh.triangles.size() > max_id_count ||
+      mesh.segments.size() > max_id_count) {
+    throw InvalidMesh("the mesh has more than 2^31 - 1 vertices, triangles or segments");
+  }
+  for_each_named(mesh, [&](std::uint32_t v, const char* what, std::size_t index) {
+    if (!is_usable(mesh, v)) throw_unusable(mesh, v, what, index);
+  });
+}
+
+}  // namespace blum
