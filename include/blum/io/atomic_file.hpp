@@ -1,0 +1,61 @@
+// Blum: output files that are complete or not there at all. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace blum {
+
+/// Writes a file such that its name only ever shows the complete content.
+///
+/// The bytes go to a temporary file in the same directory, which commit() flushes to the disk and renames over the
+/// target; without commit() the temporary is removed and an existing target stays as it was. A replaced file keeps its
+/// permissions (and owner and group where the system allows it). A symbolic link stays a link: the file that it points
+/// to is replaced or made. A target that is not a regular file (/dev/null, /dev/stdout, a pipe) is written directly;
+/// nothing can be taken back there. A target that is a directory, or that may not be written, is refused at once.
+///
+/// Small writes are gathered in a buffer of 256 KiB. Not for use by several threads at once.
+class AtomicFile {
+ public:
+  /// @throws FileError when the file cannot be made there; the message holds the path and the system's reason.
+  explicit AtomicFile(std::filesystem::path path);
+  /// Removes the temporary file unless commit() succeeded; never throws.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  AtomicFile(AtomicFile&&) = delete;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+
+  /// Appends `size` bytes.
+  /// @throws FileError when the system refuses (disk full, for example), or when called after commit().
+  void write(const void* data, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+
+  /// Makes the file appear under its name, with everything that was written. May be called once.
+  /// @throws FileError when anything could not be written, now or before; the target is then as it was.
+  void commit();
+
+  /// The name that was asked for.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Bytes written so far, buffered ones included.
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+ private:
+  void open_target();
+  void open_temporary(bool replaces, unsigned mode, unsigned owner, unsigned group);
+  void flush();
+  void write_through(const char* data, std::size_t size);
+  void discard() noexcept;
+  [[noreturn]] void fail(std::string_view action, int error);
+
+  std::filesystem::path path_;
+  std::filesystem::path target_;     ///< path_ with links followed
+  std::filesystem::path temporary_;  ///< empty where the target is written directly
+  std::vector<char> buffer_;
+  std::size_t size_ = 0;
+  int descriptor_ = -1;
+};
+
+}  // namespace blum
