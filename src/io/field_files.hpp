@@ -1,0 +1,54 @@
+// Blum: the field formats, one by one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "blum/core/context.hpp"
+#include "blum/field/field.hpp"
+#include "blum/grid/voxel_image.hpp"
+#include "blum/io/field_io.hpp"
+#include "io/byte_source.hpp"
+#include "io/scalar_type.hpp"
+
+namespace blum::volume_io {
+
+/// The file of the site ids that go with OUT.nrrd: OUT.site.nrrd.
+[[nodiscard]] std::filesystem::path site_path(const std::filesystem::path& path);
+
+void write_field_nrrd(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
+                      const Context& context);
+void write_field_npz(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
+                     const Context& context);
+void write_field_vti(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
+                     const Context& context);
+
+/// @param path  where the source came from, to find the sites; empty: they are not looked for.
+[[nodiscard]] Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& path);
+[[nodiscard]] Field read_field_npz(const ByteSource& source);
+[[nodiscard]] Field read_field_vti(const ByteSource& source);
+
+/// The bytes of a field's arrays, in the machine's order.
+[[nodiscard]] inline std::span<const std::byte> distance_bytes(const Field& field) {
+  return std::as_bytes(field.distance.span());
+}
+[[nodiscard]] inline std::span<const std::byte> site_bytes(const Field& field) {
+  return std::as_bytes(field.site.span());
+}
+
+/// Copies `bytes.size()` bytes of values, in the machine's byte order, out of a file.
+using ReadValues = std::function<void(std::span<std::byte> bytes)>;
+
+/// Reads distances of any scalar type; float32 without a copy. The count must have been checked against the file.
+[[nodiscard]] Buffer<float> read_distances(ScalarType type, std::uint64_t count, const ReadValues& read);
+/// Reads site ids of any integer type; int32 without a copy. The count must have been checked against the file.
+/// @throws FormatError with `name` when a value is neither an index nor -1.
+[[nodiscard]] Buffer<SiteId> read_sites(ScalarType type, std::uint64_t count, const ReadValues& read,
+                                        const std::string& name);
+[[nodiscard]] Buffer<SiteId> to_sites(const VoxelImage::Values& values, const std::string& name);
+
+}  // namespace blum::volume_io

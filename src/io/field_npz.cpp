@@ -1,0 +1,205 @@
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "io/field_files.hpp"
+#include "io/field_metadata.hpp"
+#include "io/field_sink.hpp"
+#include "io/image_geometry.hpp"
+#include "io/npy.hpp"
+#include "io/zip_reader.hpp"
+#include "io/zip_writer.hpp"
+
+namespace blum::volume_io {
+namespace {
+
+using SiteVertices = std::vector<std::array<std::int32_t, 3>>;
+
+/// The vertices of every site, in the order of the field's site values.
+SiteVertices site_vertices(const Field& field, const FieldFileInfo& info) {
+  SiteVertices out;
+  if (field.site_ids == SiteIds::triangles) {
+    out.reserve(info.mesh->triangles.size());
+    for (const Triangle& t : info.mesh->triangles) {
+      out.push_back(
+          {static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]), static_cast<std::int32_t>(t[2])});
+    }
+    return out;
+  }
+  std::optional<SiteTable> own;
+  const SiteTable& sites = info.sites != nullptr ? *info.sites : own.emplace(*info.mesh);
+  out.reserve(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i) out.push_back(sites.vertices(SiteId(static_cast<std::uint32_t>(i))));
+  return out;
+}
+
+class NpzWriter {
+ public:
+  NpzWriter(AtomicFile& file, FieldSink& sink, const Context& context) : zip_(file, sink, context) {}
+
+  template <class T>
+  void add(const std::string& name, std::string_view dtype, const std::vector<std::uint64_t>& shape,
+           std::span<const T> values) {
+    const std::string header = npy_header(dtype, shape);
+    zip_.add(name + ".npy", std::as_bytes(std::span(header)), std::as_bytes(values));
+  }
+  void add_vector(const std::string& name, const Vec3d& v) {
+    const std::array<double, 3> values{v.x, v.y, v.z};
+    add(name, "f8", {3}, std::span<const double>(values));
+  }
+  /// A NumPy string of one entry: four bytes for each (ASCII) character.
+  void add_text(const std::string& name, const std::string& text) {
+    const std::vector<std::uint32_t> characters(text.begin(), text.end());
+    add(name, "U" + std::to_string(text.size()), {}, std::span<const std::uint32_t>(characters));
+  }
+  void finish() { zip_.finish(); }
+
+ private:
+  ZipWriter zip_;
+};
+
+void add_direction(NpzWriter& npz, const Mat3& direction) {
+  std::array<double, 9> rows{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) rows[3 * row + column] = direction.columns[column][row];
+  }
+  npz.add("direction", "f8", {3, 3}, std::span<const double>(rows));
+}
+
+/// The arrays of a .npz file that make up a field, as they are found.
+class NpzReader {
+ public:
+  explicit NpzReader(const ByteSource& source) : source_(source), zip_(source) {}
+
+  [[nodiscard]] bool has(const std::string& array) const { return zip_.find(array + ".npy") != nullptr; }
+
+  /// Reads one array; `use` gets the stream and the header.
+  template <class Use>
+  auto read(const std::string& array, Use use) {
+    const ZipEntry* entry = zip_.find(array + ".npy");
+    if (entry == nullptr) throw FormatError(source_.name() + ": there is no array '" + array + "' in it");
+    const auto stream = zip_.open(*entry);
+    const NpyHeader header = read_npy_header(*stream);
+    auto result = use(*stream, header);
+    stream->check_finished();
+    return result;
+  }
+
+  template <std::size_t n>
+  std::array<double, n> numbers(const std::string& array, const std::vector<std::uint64_t>& shape) {
+    return read(array, [&](ByteStream& stream, const NpyHeader& header) {
+      if (header.kind != NpyHeader::Kind::scalar || header.shape != shape) {
+        throw FormatError(stream.name() + ": it should be " + std::to_string(n) + " numbers");
+      }
+      std::array<double, n> out{};
+      std::visit(
+          [&](const auto& values) {
+            for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<double>(values[i]);
+          },
+          read_npy_values(stream, header));
+      return out;
+    });
+  }
+
+  std::string text(const std::string& array) {
+    return read(array, [&](ByteStream& stream, const NpyHeader& header) {
+      if (header.kind != NpyHeader::Kind::text || header.count(stream.name()) != 1) {
+        throw FormatError(stream.name() + ": it should be one string");
+      }
+      stream.check_left(std::uint64_t{4} * header.text_length, "the text");
+      std::vector<std::uint32_t> characters(header.text_length);
+      const auto bytes = std::as_writable_bytes(std::span(characters));
+      stream.read(bytes, "the text");
+      to_native(bytes, ScalarType::u32, header.order);
+      std::string out;
+      for (const std::uint32_t c : characters) {
+        if (c == 0) break;
+        if (c > 0x7F) throw FormatError(stream.name() + ": only ASCII text is understood");
+        out += static_cast<char>(static_cast<unsigned char>(c));
+      }
+      return out;
+    });
+  }
+
+ private:
+  const ByteSource& source_;
+  ZipReader zip_;
+};
+
+void read_geometry(NpzReader& npz, const std::string& name, GridSpec& grid) {
+  const auto vector = [&](const char* array, const Vec3d& fallback) {
+    if (!npz.has(array)) return fallback;
+    const auto v = npz.numbers<3>(array, {3});
+    return Vec3d{v[0], v[1], v[2]};
+  };
+  grid.origin = vector("origin", {});
+  const Vec3d spacing = vector("spacing", {1, 1, 1});
+  std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
+  if (npz.has("direction")) {
+    const auto rows = npz.numbers<9>("direction", {3, 3});
+    for (std::size_t c = 0; c < 3; ++c) axes[c] = {rows[c], rows[3 + c], rows[6 + c]};
+  }
+  set_frame(grid, axes, spacing, name);
+}
+
+}  // namespace
+
+void write_field_npz(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
+                     const Context& context) {
+  const bool has_mesh = info.mesh != nullptr && field.site_ids != SiteIds::voxels;
+  const SiteVertices corners = has_mesh ? site_vertices(field, info) : SiteVertices{};
+  AtomicFile file(path);
+  FieldSink sink(distance_bytes(field).size() + site_bytes(field).size() + 12 * corners.size() +
+                     (has_mesh ? 24 * info.mesh->vertices.size() : 0),
+                 context);
+  NpzWriter npz(file, sink, context);
+  const auto& n = field.grid.size;
+  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(n[2]), static_cast<std::uint64_t>(n[1]),
+                                         static_cast<std::uint64_t>(n[0])};
+  npz.add("distance", "f4", shape, field.distance.span());
+  if (!field.site.empty()) npz.add("site", "i4", shape, field.site.span());
+  npz.add_vector("origin", field.grid.origin);
+  npz.add_vector("spacing", field.grid.spacing);
+  add_direction(npz, field.grid.direction);
+  if (has_mesh) {
+    static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+    npz.add("vertices", "f8", {info.mesh->vertices.size(), 3}, info.mesh->vertices);
+    npz.add("site_vertices", "i4", {corners.size(), 3}, std::span(std::as_const(corners)));
+  }
+  npz.add_text("metadata", to_json(field_metadata(field, info)));
+  npz.finish();
+  file.commit();
+}
+
+Field read_field_npz(const ByteSource& source) {
+  NpzReader npz(source);
+  Field field;
+  field.distance = npz.read("distance", [&](ByteStream& stream, const NpyHeader& header) {
+    field.grid.size = npy_image_size(header, stream.name());
+    if (header.fortran) return to_float(read_npy_values(stream, header));
+    const std::uint64_t count = check_npy_values(stream, header);
+    return read_distances(header.type, count, [&](std::span<std::byte> out) { read_npy_raw(stream, header, out); });
+  });
+  if (npz.has("site")) {
+    field.site = npz.read("site", [&](ByteStream& stream, const NpyHeader& header) {
+      if (npy_image_size(header, stream.name()) != field.grid.size) {
+        throw FormatError(stream.name() + ": its shape is not that of 'distance'");
+      }
+      if (header.fortran) return to_sites(read_npy_values(stream, header), stream.name());
+      const std::uint64_t count = check_npy_values(stream, header);
+      return read_sites(
+          header.type, count, [&](std::span<std::byte> out) { read_npy_raw(stream, header, out); }, stream.name());
+    });
+  }
+  read_geometry(npz, source.name(), field.grid);
+  if (npz.has("metadata")) apply_metadata(from_json(npz.text("metadata"), source.name()), source.name(), field);
+  return field;
+}
+
+}  // namespace blum::volume_io

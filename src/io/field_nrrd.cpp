@@ -1,0 +1,84 @@
+#include <optional>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "io/field_files.hpp"
+#include "io/field_metadata.hpp"
+#include "io/field_sink.hpp"
+#include "io/image_geometry.hpp"
+#include "io/nrrd.hpp"
+
+namespace blum::volume_io {
+namespace {
+
+/// The key that says that a second file holds the sites: one left over from another run is not taken for it.
+constexpr const char* sites_key = "site_file";
+
+Buffer<float> nrrd_distances(const ByteSource& data, const NrrdHeader& header) {
+  check_nrrd_data_size(data, header);
+  return read_distances(header.type, header.grid.node_count(),
+                        [&](std::span<std::byte> out) { read_nrrd_data(data, header, out); });
+}
+
+Buffer<SiteId> nrrd_sites(const std::filesystem::path& path, const GridSpec& grid) {
+  const FileSource source(path);
+  const NrrdHeader header = read_nrrd_header(source);
+  if (header.grid.size != grid.size) {
+    throw FormatError(source.name() + ": it holds site ids for another grid than the distances beside it");
+  }
+  if (!header.data_file.empty()) throw FormatError(source.name() + ": its data are in another file");
+  check_nrrd_data_size(source, header);
+  return read_sites(
+      header.type, header.grid.node_count(), [&](std::span<std::byte> out) { read_nrrd_data(source, header, out); },
+      source.name());
+}
+
+}  // namespace
+
+std::filesystem::path site_path(const std::filesystem::path& path) {
+  std::filesystem::path out = path;
+  out.replace_extension();
+  out += ".site.nrrd";
+  return out;
+}
+
+void write_field_nrrd(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
+                      const Context& context) {
+  Metadata metadata = field_metadata(field, info);
+  AtomicFile distances(path);
+  std::optional<AtomicFile> sites;
+  FieldSink sink(distance_bytes(field).size() + site_bytes(field).size(), context);
+  if (!field.site.empty()) {
+    metadata.emplace_back(sites_key, site_path(path).filename().string());
+    sites.emplace(site_path(path));
+    sink.write(*sites, nrrd_header(ScalarType::i32, field.grid, metadata));
+    sink.write(*sites, site_bytes(field));
+  }
+  sink.write(distances, nrrd_header(ScalarType::f32, field.grid, metadata));
+  sink.write(distances, distance_bytes(field));
+  throw_if_cancelled(context);
+  if (sites) sites->commit();
+  distances.commit();
+}
+
+Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& path) {
+  const NrrdHeader header = read_nrrd_header(source);
+  Field field;
+  field.grid = header.grid;
+  if (header.data_file.empty()) {
+    field.distance = nrrd_distances(source, header);
+  } else if (path.empty()) {
+    throw FormatError(source.name() + ": its data are in another file, '" + header.data_file + "'");
+  } else {
+    field.distance = nrrd_distances(FileSource(nrrd_data_path(header, path)), header);
+  }
+  apply_metadata(header.key_values, source.name(), field);
+  if (!path.empty() && !find_value(header.key_values, sites_key).empty()) {
+    std::error_code error;
+    if (std::filesystem::exists(site_path(path), error)) field.site = nrrd_sites(site_path(path), field.grid);
+  }
+  return field;
+}
+
+}  // namespace blum::volume_io

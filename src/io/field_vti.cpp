@@ -1,0 +1,77 @@
+#include <array>
+#include <bit>
+#include <string>
+
+#include "blum/io/atomic_file.hpp"
+#include "io/field_files.hpp"
+#include "io/field_metadata.hpp"
+#include "io/field_sink.hpp"
+
+namespace blum::volume_io {
+namespace {
+
+std::string vector_text(const Vec3d& v) {
+  return exact_text(v.x) + " " + exact_text(v.y) + " " + exact_text(v.z);
+}
+
+/// Row after row.
+std::string matrix_text(const Mat3& m) {
+  std::string out;
+  for (std::size_t row = 0; row < 3; ++row) {
+    out += (row == 0 ? "" : " ") + vector_text({m.columns[0][row], m.columns[1][row], m.columns[2][row]});
+  }
+  return out;
+}
+
+std::string extent_text(const std::array<std::int64_t, 3>& size) {
+  return "0 " + std::to_string(size[0] - 1) + " 0 " + std::to_string(size[1] - 1) + " 0 " + std::to_string(size[2] - 1);
+}
+
+/// VTK writes strings as the numbers of their bytes, with a zero at the end.
+std::string string_array(const std::string& name, const std::string& text) {
+  std::string out = "      <DataArray type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"1\" format=\"ascii\">\n";
+  for (const char c : text) out += std::to_string(static_cast<unsigned char>(c)) + " ";
+  return out + "0\n      </DataArray>\n";
+}
+
+std::string appended_array(const char* type, const char* name, std::uint64_t offset) {
+  return std::string("        <DataArray type=\"") + type + "\" Name=\"" + name +
+         "\" NumberOfComponents=\"1\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+}
+
+std::string header_text(const Field& field, const FieldFileInfo& info) {
+  const std::string extent = extent_text(field.grid.size);
+  std::string out = "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"";
+  out += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
+  out += "\" header_type=\"UInt64\">\n  <ImageData WholeExtent=\"" + extent + "\" Origin=\"" +
+         vector_text(field.grid.origin) + "\" Spacing=\"" + vector_text(field.grid.spacing) + "\" Direction=\"" +
+         matrix_text(field.grid.direction) + "\">\n    <FieldData>\n" +
+         string_array("metadata", to_json(field_metadata(field, info))) + "    </FieldData>\n    <Piece Extent=\"" +
+         extent + "\">\n      <PointData Scalars=\"distance\">\n" + appended_array("Float32", "distance", 0);
+  if (!field.site.empty()) {
+    out += appended_array("Int32", "site", sizeof(std::uint64_t) + distance_bytes(field).size());
+  }
+  out += "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n_";
+  return out;
+}
+
+void write_array(FieldSink& sink, AtomicFile& file, std::span<const std::byte> bytes) {
+  const std::uint64_t size = bytes.size();
+  sink.write(file, std::as_bytes(std::span(&size, 1)));
+  sink.write(file, bytes);
+}
+
+}  // namespace
+
+void write_field_vti(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
+                     const Context& context) {
+  AtomicFile file(path);
+  FieldSink sink(distance_bytes(field).size() + site_bytes(field).size(), context);
+  sink.write(file, header_text(field, info));
+  write_array(sink, file, distance_bytes(field));
+  if (!field.site.empty()) write_array(sink, file, site_bytes(field));
+  sink.write(file, "\n  </AppendedData>\n</VTKFile>\n");
+  file.commit();
+}
+
+}  // namespace blum::volume_io
