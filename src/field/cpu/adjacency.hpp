@@ -1,0 +1,43 @@
+// Blum: what meets at each vertex and edge, and the order in which sites are stored. SPDX-License-Identifier:
+// Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/sites.hpp"
+
+namespace blum::cpu {
+
+inline constexpr std::uint32_t no_index = 0xffffffff;
+
+/// Connectivity that depends on the mesh's indices alone, so a deforming mesh keeps it.
+struct Adjacency {
+  /// Vertices that a triangle, segment or point names, rising.
+  std::vector<std::uint32_t> named_vertices;
+  /// Edges at vertex v: incident_edges[first_incident[v] .. first_incident[v + 1]).
+  std::vector<std::uint32_t> first_incident;
+  std::vector<std::uint32_t> incident_edges;
+  /// Up to two triangles of each edge (more are not needed for a valid bound); no_index where there is none.
+  std::vector<std::array<std::uint32_t, 2>> edge_faces;
+};
+
+void build_adjacency(const MeshView& mesh, const SiteTable& sites, const Context& context, Adjacency& out);
+
+/// Spatially coherent orders of the sites: named vertices along a Morton curve, edges and faces behind their first
+/// vertex on it. Ties keep the sites' own order.
+struct SiteOrder {
+  std::vector<std::uint32_t> vertices;
+  std::vector<std::uint32_t> edges;
+  std::vector<std::uint32_t> faces;
+};
+
+/// @param positions  one per vertex of the mesh, in the normalised frame ([-1, 1] on each axis where named).
+void order_sites(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
+                 std::span<const Vec3d> positions, const Context& context, SiteOrder& out);
+
+}  // namespace blum::cpu

@@ -1,0 +1,648 @@
+// The three passes of the distance transform, compiled once per instruction set.
+//
+// A column pass (y or z) asks, for each row r of a column, for the row s that minimises f(s) + w (r - s)^2, where f is
+// what the earlier passes found. The smallest minimiser s(r) never falls as r grows (the matrix is totally monotone:
+// Aggarwal, Klawe, Moran, Shor, Wilber 1987), so rows are solved coarse to fine, each only between the solutions of its
+// two neighbours: log2(n) + 2 candidates per row in all. Lanes are neighbouring columns; a row searches the union of
+// their ranges. Where neighbouring columns disagree too much for that, they are solved one by one.
+//
+// In a signed transform a voxel of the other kind in the column costs nothing by itself. The smallest minimiser then
+// never falls within each kind, and between rows of different kinds by at most one: between r1 < r2 there is an edge of
+// the kinds, e | e + 1, where s(r1) <= e + 1 and s(r2) >= e, since beyond the edge nothing is closer.
+#include "field/cpu/distance_transform_kernels.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "field/cpu/distance_transform_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace blum::detail::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::uint32_t no_site = 0xffffffffU;
+
+using RowTag = hn::CappedTag<std::int32_t, 16>;
+
+/// Bits of 16 voxels of a row.
+HWY_INLINE std::uint32_t group_bits(const std::uint64_t* words, std::size_t group) {
+  return static_cast<std::uint32_t>(words[group / 4] >> (16 * (group % 4))) & 0xffffU;
+}
+
+/// The closest target in a row lies left (last target up to x) or right (first target from x on). `no_left` and
+/// `no_right` look further away than any voxel in unsigned arithmetic, as rows are shorter than 2^31.
+constexpr std::uint32_t no_left = 0x80000000U;
+constexpr std::uint32_t no_right = 0xffffffffU;
+
+struct RowState {
+  std::uint32_t last_selected = no_left;
+  std::uint32_t last_other = no_left;
+};
+
+/// Position of the highest set bit of small positive integers (below 2^24), from the exponent of a float.
+template <class V>
+HWY_INLINE V highest_bit(V bits) {
+  const RowTag d;
+  const hn::RebindToFloat<RowTag> df;
+  return hn::Sub(hn::ShiftRight<23>(hn::BitCast(d, hn::ConvertTo(df, bits))), hn::Set(d, 127));
+}
+
+/// The closer of left and right, the left one when both are equally far.
+template <class V>
+HWY_INLINE V closer(V x, V left, V right) {
+  const RowTag d;
+  const hn::RebindToUnsigned<RowTag> du;
+  const auto to_left = hn::BitCast(du, hn::Sub(x, left));
+  const auto to_right = hn::BitCast(du, hn::Sub(right, x));
+  return hn::IfThenElse(hn::RebindMask(d, hn::Le(to_left, to_right)), left, right);
+}
+
+HWY_INLINE auto as_lanes(std::uint32_t value) {
+  return hn::Set(RowTag(), static_cast<std::int32_t>(value));
+}
+
+/// Writes the closest targets of `lanes` voxels, which may be fewer than a vector holds at the end of a row.
+template <class V>
+HWY_INLINE void store_lanes(V value, std::uint32_t* out, std::size_t lanes) {
+  const RowTag d;
+  if (lanes >= hn::Lanes(d)) {
+    hn::StoreU(value, d, reinterpret_cast<std::int32_t*>(out));
+  } else {
+    HWY_ALIGN std::int32_t buffer[16];
+    hn::Store(value, d, buffer);
+    for (std::size_t i = 0; i < lanes; ++i) out[i] = static_cast<std::uint32_t>(buffer[i]);
+  }
+}
+
+/// One group of 16 voxels that starts at x0; `bits` are the selected ones, `valid` those inside the row.
+template <bool kSigned>
+HWY_INLINE void transform_group(std::uint32_t bits, std::uint32_t valid, std::uint32_t x0, const RowState& state,
+                                std::uint32_t next_selected, std::uint32_t next_other, std::uint32_t* out,
+                                std::size_t lanes) {
+  const RowTag d;
+  const std::size_t step = hn::Lanes(d);
+  const bool all_same = bits == 0 || (kSigned && bits == valid);
+  for (std::size_t lane = 0; lane < lanes; lane += step) {
+    const auto x = hn::Iota(d, static_cast<std::int32_t>(x0 + lane));
+    auto left = as_lanes(kSigned && bits != 0 ? state.last_other : state.last_selected);
+    auto right = as_lanes(kSigned && bits != 0 ? next_other : next_selected);
+    if (!all_same) {
+      HWY_ALIGN std::int32_t lane_bits[16];
+      for (std::size_t i = 0; i < step; ++i) lane_bits[i] = std::int32_t{1} << (lane + i);
+      const auto own = hn::Load(d, lane_bits);
+      const auto below = hn::Sub(own, hn::Set(d, 1));
+      auto targets = as_lanes(bits);
+      if constexpr (kSigned) {
+        const auto selected = hn::Ne(hn::And(targets, own), hn::Zero(d));
+        targets = hn::IfThenElse(selected, as_lanes(~bits & valid), targets);
+        left = hn::IfThenElse(selected, as_lanes(state.last_other), as_lanes(state.last_selected));
+        right = hn::IfThenElse(selected, as_lanes(next_other), as_lanes(next_selected));
+      }
+      const auto up_to = hn::And(targets, hn::Or(below, own));
+      const auto from = hn::AndNot(below, targets);
+      const auto first = hn::And(from, hn::Neg(from));
+      const auto base = as_lanes(x0);
+      left = hn::IfThenElse(hn::Eq(up_to, hn::Zero(d)), left, hn::Add(base, highest_bit(up_to)));
+      right = hn::IfThenElse(hn::Eq(from, hn::Zero(d)), right, hn::Add(base, highest_bit(first)));
+    }
+    store_lanes(closer(x, left, right), out + lane, lanes - lane);
+  }
+}
+
+template <bool kSigned>
+void transform_row(const TransformPlan& plan, PassScratch& scratch, const std::uint64_t* words, std::uint32_t* out) {
+  constexpr std::size_t groups_between_checks = std::size_t{1} << 18U;
+  const std::size_t length = plan.size[0];
+  const std::size_t groups = (length + 15) / 16;
+  const std::uint32_t last_valid = 0xffffU >> (16 * groups - length);
+  std::uint32_t* next_selected = scratch.next_selected.data();
+  std::uint32_t* next_other = scratch.next_other.data();
+
+  std::uint32_t selected = no_right;
+  std::uint32_t other = no_right;
+  for (std::size_t group = groups; group-- > 0;) {
+    if (group % groups_between_checks == 0 && plan.context->cancel.stop_requested()) return;
+    const std::uint32_t bits = group_bits(words, group);
+    const std::uint32_t rest = ~bits & (group + 1 == groups ? last_valid : 0xffffU);
+    const auto x0 = static_cast<std::uint32_t>(16 * group);
+    next_selected[group] = selected;
+    next_other[group] = other;
+    if (bits != 0) selected = x0 + static_cast<std::uint32_t>(std::countr_zero(bits));
+    if (rest != 0) other = x0 + static_cast<std::uint32_t>(std::countr_zero(rest));
+  }
+  if (selected == no_right || (kSigned && other == no_right)) {
+    std::fill(out, out + length, no_site);
+    return;
+  }
+  RowState state;
+  for (std::size_t group = 0; group < groups; ++group) {
+    if (group % groups_between_checks == 0 && plan.context->cancel.stop_requested()) return;
+    const std::uint32_t bits = group_bits(words, group);
+    const std::uint32_t valid = group + 1 == groups ? last_valid : 0xffffU;
+    const std::uint32_t rest = ~bits & valid;
+    const auto x0 = static_cast<std::uint32_t>(16 * group);
+    transform_group<kSigned>(bits, valid, x0, state, next_selected[group], next_other[group], out + x0,
+                             std::min<std::size_t>(16, length - x0));
+    if (bits != 0) state.last_selected = x0 + static_cast<std::uint32_t>(std::bit_width(bits)) - 1;
+    if (rest != 0) state.last_other = x0 + static_cast<std::uint32_t>(std::bit_width(rest)) - 1;
+  }
+}
+
+void rows(const TransformPlan& plan, PassScratch& scratch, std::size_t begin, std::size_t end) {
+  for (std::size_t row = begin; row < end; ++row) {
+    const std::uint64_t* words = plan.mask + row * plan.mask_words_per_row;
+    std::uint32_t* out = plan.site + row * plan.size[0];
+    if (plan.is_signed) {
+      transform_row<true>(plan, scratch, words, out);
+    } else {
+      transform_row<false>(plan, scratch, words, out);
+    }
+  }
+}
+
+/// Arithmetic of squared distances, in int32 or double. In a column of mixed kinds the cost of a selected voxel is
+/// stored flipped: ~f or -f. Flipped again for a selected row, costs of the row's own kind are positive and those of
+/// the other kind negative.
+template <class T>
+struct Costs;
+
+template <>
+struct Costs<std::int32_t> {
+  static constexpr std::int32_t far = std::int32_t{1} << 30;  ///< no site; far + the square of an axis still fits
+  static const std::int32_t* table(const SquareTable& squares) { return squares.integers.data(); }
+  static std::int32_t* scratch(PassScratch& scratch) { return scratch.integer_costs.data(); }
+  template <class D, class VI>
+  static HWY_INLINE hn::Vec<D> from_int(D, VI value) {
+    return value;
+  }
+  template <class D, class V>
+  static HWY_INLINE V to_int(D, V value) {
+    return value;
+  }
+  template <class D, class V>
+  static HWY_INLINE V flip(D d, V cost) {
+    return hn::Xor(cost, hn::Set(d, -1));
+  }
+  /// What xor flips all other costs of this row with: everything where the row's own cost is flipped.
+  template <class D, class V>
+  static HWY_INLINE V flip_mask(D, V cost) {
+    return hn::ShiftRight<31>(cost);
+  }
+};
+
+template <>
+struct Costs<double> {
+  static constexpr double far = 1e300;
+  static const double* table(const SquareTable& squares) { return squares.doubles.data(); }
+  static double* scratch(PassScratch& scratch) { return scratch.double_costs.data(); }
+  template <class D, class VI>
+  static HWY_INLINE hn::Vec<D> from_int(D d, VI value) {
+    return hn::PromoteTo(d, value);
+  }
+  template <class D, class V>
+  static HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, D>> to_int(D, V value) {
+    return hn::DemoteTo(hn::Rebind<std::int32_t, D>(), value);
+  }
+  template <class D, class V>
+  static HWY_INLINE V flip(D, V cost) {
+    return hn::Neg(cost);
+  }
+  template <class D, class V>
+  static HWY_INLINE V flip_mask(D d, V cost) {
+    return hn::And(cost, hn::SignBit(d));
+  }
+};
+
+/// Neighbouring columns of one axis, as scratch memory holds them: lane l of row r at r * stride + l.
+struct Columns {
+  std::size_t length = 0;      ///< rows
+  std::size_t stride = 0;      ///< between rows in scratch
+  std::size_t first = 0;       ///< linear index of the voxel of row 0, lane 0
+  std::size_t row_stride = 0;  ///< between rows in the image
+  std::size_t x = 0;           ///< of lane 0
+  std::size_t y = 0;           ///< in the z pass
+  std::size_t lanes = 0;       ///< columns; the lanes of a vector beyond them repeat the last one
+  std::size_t mask_word = 0;   ///< where the mask's row of row 0 starts
+  std::size_t mask_stride = 0;
+  bool mixed = false;         ///< holds both kinds, in a signed transform
+  bool all_selected = false;  ///< holds only selected voxels, in a signed transform
+  std::size_t lowest_candidate = 0;
+  std::size_t highest_candidate = 0;
+};
+
+HWY_INLINE std::uint32_t column_bits(const TransformPlan& plan, const Columns& columns, std::size_t row) {
+  const std::uint64_t* words = plan.mask + columns.mask_word + row * columns.mask_stride;
+  return static_cast<std::uint32_t>(words[columns.x / 64] >> (columns.x % 64));
+}
+
+/// Finds out which kinds the columns hold.
+void classify(const TransformPlan& plan, Columns& columns) {
+  if (!plan.is_signed) return;
+  const std::uint32_t lanes = (std::uint32_t{1} << columns.lanes) - 1;
+  std::uint32_t any = 0;
+  std::uint32_t all = lanes;
+  for (std::size_t row = 0; row < columns.length; ++row) {
+    const std::uint32_t bits = column_bits(plan, columns, row);
+    any |= bits;
+    all &= bits;
+  }
+  any &= lanes;
+  columns.mixed = any != 0 && all != lanes;
+  columns.all_selected = all == lanes;
+}
+
+/// Copies what the pass before left in the columns into scratch, with the costs that it stands for, and finds the rows
+/// that can be closest.
+template <class D, bool kFinal, bool kMixed>
+void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& columns) {
+  using T = hn::TFromD<D>;
+  using Cost = Costs<T>;
+  using DI = hn::Rebind<std::int32_t, D>;
+  using DU = hn::Rebind<std::uint32_t, D>;
+  const D d;
+  const DI di;
+  const DU du;
+  const std::size_t width = hn::Lanes(d);
+  T* costs = Cost::scratch(scratch);
+  std::int32_t* partials = scratch.partial_sites.data();
+  HWY_ALIGN std::int32_t lane_x[16];
+  HWY_ALIGN std::int32_t lane_bits[16];
+  HWY_ALIGN std::int32_t buffer[16];
+  for (std::size_t lane = 0; lane < width; ++lane) {
+    const std::size_t inside = std::min(lane, columns.lanes - 1);
+    lane_x[lane] = static_cast<std::int32_t>(columns.x + inside);
+    lane_bits[lane] = std::int32_t{1} << inside;
+  }
+  const auto x = hn::Load(di, lane_x);
+  const auto own_bit = hn::Load(di, lane_bits);
+  const auto none = hn::Set(di, static_cast<std::int32_t>(no_site));
+  const auto x_mask = hn::Set(di, static_cast<std::int32_t>((std::uint32_t{1} << plan.x_bits) - 1));
+  const auto x_weight = hn::Set(d, static_cast<T>(plan.weight[0]));
+  const auto y_weight = hn::Set(d, static_cast<T>(plan.weight[1]));
+  const auto y = hn::Set(di, static_cast<std::int32_t>(columns.y));
+
+  std::size_t lowest = columns.length;
+  std::size_t highest = 0;
+  for (std::size_t row = 0; row < columns.length; ++row) {
+    const auto* in = reinterpret_cast<const std::int32_t*>(plan.site) + columns.first + row * columns.row_stride;
+    if (columns.lanes < width) {
+      for (std::size_t lane = 0; lane < width; ++lane) buffer[lane] = in[std::min(lane, columns.lanes - 1)];
+      in = buffer;
+    }
+    const auto partial = hn::LoadU(di, in);
+    const auto site_x = kFinal ? hn::And(partial, x_mask) : partial;
+    const auto dx = Cost::from_int(d, hn::Sub(x, site_x));
+    auto cost = hn::Mul(hn::Mul(dx, dx), x_weight);
+    if constexpr (kFinal) {
+      const auto site_y = hn::BitCast(di, hn::ShiftRightSame(hn::BitCast(du, partial), static_cast<int>(plan.x_bits)));
+      const auto dy = Cost::from_int(d, hn::Sub(y, site_y));
+      cost = hn::Add(cost, hn::Mul(hn::Mul(dy, dy), y_weight));
+    }
+    const auto is_none = hn::Eq(partial, none);
+    if (!hn::AllTrue(di, is_none)) {
+      lowest = std::min(lowest, row);
+      highest = row;
+    }
+    // Masks of int32 lanes widen to those of the costs as numbers: -1 or 0.
+    const auto zero = hn::Zero(d);
+    cost = hn::IfThenElse(hn::Ne(Cost::from_int(d, hn::VecFromMask(di, is_none)), zero), hn::Set(d, Cost::far), cost);
+    if constexpr (kMixed) {
+      const auto bits = hn::Set(di, static_cast<std::int32_t>(column_bits(plan, columns, row)));
+      const auto selected = hn::And(bits, own_bit);
+      cost = hn::IfThenElse(hn::Ne(Cost::from_int(d, selected), zero), Cost::flip(d, cost), cost);
+    }
+    hn::StoreU(cost, d, costs + row * columns.stride);
+    hn::StoreU(partial, di, partials + row * columns.stride);
+  }
+  columns.lowest_candidate = kMixed ? 0 : lowest;
+  columns.highest_candidate = kMixed ? columns.length - 1 : highest;
+}
+
+/// Solves the columns of one vector, from scratch to the image.
+template <class D, bool kFinal, bool kMixed>
+class Sweep {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using DI = hn::Rebind<std::int32_t, D>;
+  using VI = hn::Vec<DI>;
+  using DF = hn::Rebind<float, D>;
+  using Cost = Costs<T>;
+  static constexpr bool one_lane = HWY_MAX_LANES_D(D) == 1;
+
+ public:
+  /// @param lane  of the columns, that the vector starts at.
+  Sweep(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, const Columns& columns,
+        std::size_t lane)
+      : plan_(plan),
+        columns_(columns),
+        lane_(lane),
+        lanes_(std::min(columns.lanes - lane, hn::Lanes(D()))),
+        costs_(Cost::scratch(scratch) + lane),
+        partials_(scratch.partial_sites.data() + lane),
+        squares_(Cost::table(squares) + columns.length - 1),
+        lowest_(scratch.lowest.data()),
+        highest_(scratch.highest.data()) {}
+
+  /// Solves all rows; false when that takes more than about `budget` candidates, or the caller has cancelled.
+  bool run(std::size_t budget) {
+    constexpr std::size_t candidates_between_checks = std::size_t{1} << 22U;
+    const std::size_t n = columns_.length;
+    std::size_t spent = 0;
+    std::size_t next_check = std::min(budget, candidates_between_checks);
+    for (std::size_t step = std::bit_floor(n); step > 0; step /= 2) {
+      // Row p - 1 lies between rows p - step - 1 and p + step - 1, which are solved or outside.
+      for (std::size_t p = step; p <= n; p += 2 * step) {
+        std::size_t low = p == step ? columns_.lowest_candidate : static_cast<std::size_t>(lowest_[p - step - 1]);
+        std::size_t high = p + step > n ? columns_.highest_candidate : static_cast<std::size_t>(highest_[p + step - 1]);
+        if constexpr (kMixed) {
+          low = std::max<std::size_t>(low, 1) - 1;
+          high = std::min(high + 1, n - 1);
+        }
+        solve(p - 1, low, high, step > 1);
+        spent += high - low + 1;
+        if (spent > next_check) {
+          if (spent > budget || plan_.context->cancel.stop_requested()) return false;
+          next_check = std::min(budget, spent + candidates_between_checks);
+        }
+      }
+    }
+    return true;
+  }
+
+ private:
+  HWY_INLINE void solve(std::size_t row, std::size_t low, std::size_t high, bool keep_range) {
+    const D d;
+    const T* squares = squares_ - row;
+    const T* costs = costs_ + low * columns_.stride;
+    const V own_cost = hn::LoadU(d, costs_ + row * columns_.stride);
+    [[maybe_unused]] const V flip = Cost::flip_mask(d, own_cost);
+    const V one = hn::Set(d, T{1});
+    V candidate = hn::Set(d, static_cast<T>(low));
+    V closest = candidate;
+    V best = hn::Set(d, std::numeric_limits<T>::max());
+    for (std::size_t s = low; s <= high; ++s, costs += columns_.stride) {
+      V cost = hn::LoadU(d, costs);
+      if constexpr (kMixed) cost = hn::Max(hn::Xor(cost, flip), hn::Zero(d));
+      cost = hn::Add(cost, hn::Set(d, squares[s]));
+      closest = hn::IfThenElse(hn::Lt(cost, best), candidate, closest);
+      best = hn::Min(best, cost);
+      candidate = hn::Add(candidate, one);
+    }
+    const VI closest_row = Cost::to_int(d, closest);
+    if (keep_range) {
+      lowest_[row] = hn::GetLane(hn::MinOfLanes(DI(), closest_row));
+      highest_[row] = hn::GetLane(hn::MaxOfLanes(DI(), closest_row));
+    }
+    VI negative = hn::Set(DI(), columns_.all_selected ? -1 : 0);
+    VI partial = gather(partials_, 1, closest_row);
+    if constexpr (kMixed) {
+      negative = kind(Cost::to_int(d, hn::IfThenElse(hn::Lt(own_cost, hn::Zero(d)), hn::Set(d, T{-1}), hn::Zero(d))));
+      partial = replace_other_kind(partial, closest_row, negative);
+    }
+    if constexpr (kFinal) {
+      finish_z(row, best, closest_row, partial, negative);
+    } else {
+      finish_y(row, closest_row, partial);
+    }
+  }
+
+  /// All ones where a value is negative.
+  static HWY_INLINE VI kind(VI value) { return hn::ShiftRight<31>(value); }
+
+  /// words[(row * stride + lane) * step] with each lane's own row.
+  HWY_INLINE VI gather(const std::int32_t* words, std::size_t step, VI row) const {
+    const DI di;
+    const std::size_t stride = columns_.stride * step;
+    if constexpr (one_lane) {
+      return hn::Set(di, words[static_cast<std::size_t>(hn::GetLane(row)) * stride]);
+    } else {
+      const VI lane = hn::Mul(hn::Iota(di, 0), hn::Set(di, static_cast<std::int32_t>(step)));
+      return hn::GatherIndex(di, words, hn::Add(hn::Mul(row, hn::Set(di, static_cast<std::int32_t>(stride))), lane));
+    }
+  }
+
+  /// A closest row of the other kind is itself the site. The sign bit of a cost tells its kind.
+  HWY_INLINE VI replace_other_kind(VI partial, VI closest_row, VI negative) const {
+    const DI di;
+    constexpr std::size_t words = sizeof(T) / sizeof(std::int32_t);
+    constexpr std::size_t high_word = std::endian::native == std::endian::little ? words - 1 : 0;
+    const auto* signs = reinterpret_cast<const std::int32_t*>(costs_) + high_word;
+    const VI other = hn::Xor(kind(gather(signs, words, closest_row)), negative);
+    VI self = hn::Iota(di, static_cast<std::int32_t>(columns_.x + lane_));
+    if constexpr (kFinal) self = hn::Or(self, hn::Set(di, static_cast<std::int32_t>(columns_.y << plan_.x_bits)));
+    return hn::IfThenElse(hn::MaskFromVec(other), self, partial);
+  }
+
+  HWY_INLINE void finish_y(std::size_t row, VI closest_row, VI partial) const {
+    const DI di;
+    const VI packed = hn::Or(hn::ShiftLeftSame(closest_row, static_cast<int>(plan_.x_bits)), partial);
+    const VI none = hn::Set(di, static_cast<std::int32_t>(no_site));
+    auto* out = reinterpret_cast<std::int32_t*>(plan_.site) + columns_.first + lane_ + row * columns_.row_stride;
+    store(di, hn::IfThenElse(hn::Eq(partial, none), none, packed), out);
+  }
+
+  HWY_INLINE void finish_z(std::size_t row, V best, VI closest_row, VI partial, VI negative) const {
+    const DI di;
+    const DF df;
+    const hn::Rebind<std::uint32_t, D> du;
+    const VI x_mask = hn::Set(di, static_cast<std::int32_t>((std::uint32_t{1} << plan_.x_bits) - 1));
+    const VI x = hn::And(partial, x_mask);
+    const VI y = hn::BitCast(di, hn::ShiftRightSame(hn::BitCast(du, partial), static_cast<int>(plan_.x_bits)));
+    const VI size_x = hn::Set(di, static_cast<std::int32_t>(plan_.size[0]));
+    const VI size_y = hn::Set(di, static_cast<std::int32_t>(plan_.size[1]));
+    VI site = hn::Add(hn::Mul(hn::Add(hn::Mul(closest_row, size_y), y), size_x), x);
+    auto distance = root(best);
+    if (plan_.has_band) {
+      const auto band = hn::Set(df, plan_.band);
+      const auto beyond = hn::Gt(distance, band);
+      distance = hn::IfThenElse(beyond, band, distance);
+      site = hn::Or(site, hn::BitCast(di, hn::VecFromMask(df, beyond)));
+    }
+    distance = hn::Or(distance, hn::And(hn::BitCast(df, negative), hn::SignBit(df)));
+    const std::size_t out = columns_.first + lane_ + row * columns_.row_stride;
+    store(df, distance, plan_.distance + out);
+    store(di, site, reinterpret_cast<std::int32_t*>(plan_.site) + out);
+  }
+
+  /// Distances of squared distances.
+  HWY_INLINE hn::Vec<DF> root(V best) const {
+    const DF df;
+    if constexpr (std::is_same_v<T, double>) {
+      return hn::DemoteTo(df, hn::Mul(hn::Sqrt(best), hn::Set(D(), plan_.unit)));
+    } else {
+      if (plan_.exact_in_float) {
+        return hn::Mul(hn::Sqrt(hn::ConvertTo(df, best)), hn::Set(df, static_cast<float>(plan_.unit)));
+      }
+      return root_in_double(best);
+    }
+  }
+
+  HWY_INLINE hn::Vec<DF> root_in_double(V best) const {
+    const DF df;
+    HWY_ALIGN std::int32_t squared[16];
+    HWY_ALIGN float distance[16];
+    hn::Store(best, D(), squared);
+    const std::size_t width = hn::Lanes(D());
+    for (std::size_t i = 0; i < width; ++i) {
+      distance[i] = static_cast<float>(std::sqrt(static_cast<double>(squared[i])) * plan_.unit);
+    }
+    return hn::Load(df, distance);
+  }
+
+  template <class DT, class VT>
+  HWY_INLINE void store(DT dt, VT value, hn::TFromD<DT>* out) const {
+    if (lanes_ == hn::Lanes(dt)) {
+      hn::StoreU(value, dt, out);
+    } else {
+      HWY_ALIGN hn::TFromD<DT> buffer[16];
+      hn::Store(value, dt, buffer);
+      for (std::size_t lane = 0; lane < lanes_; ++lane) out[lane] = buffer[lane];
+    }
+  }
+
+  const TransformPlan& plan_;
+  const Columns& columns_;
+  std::size_t lane_;
+  std::size_t lanes_;
+  const T* costs_;
+  const std::int32_t* partials_;
+  const T* squares_;
+  std::int32_t* lowest_;
+  std::int32_t* highest_;
+};
+
+/// Solves columns that fill at most one vector: together, or one by one where that is cheaper.
+template <class D, bool kFinal, bool kMixed>
+void solve_columns(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, Columns& columns) {
+  load_columns<D, kFinal, kMixed>(plan, scratch, columns);
+  if (columns.lowest_candidate > columns.highest_candidate) return;  // no site in this plane: all is none already
+  const std::size_t lanes = columns.lanes;
+  const std::size_t one_column = columns.length * (static_cast<std::size_t>(std::bit_width(columns.length)) + 2);
+  if (Sweep<D, kFinal, kMixed>(plan, squares, scratch, columns, 0).run(lanes == 1 ? SIZE_MAX : lanes * one_column)) {
+    return;
+  }
+  using One = hn::CappedTag<hn::TFromD<D>, 1>;
+  for (std::size_t lane = 0; lane < lanes && !plan.context->cancel.stop_requested(); ++lane) {
+    Sweep<One, kFinal, kMixed>(plan, squares, scratch, columns, lane).run(SIZE_MAX);
+  }
+}
+
+template <class T, bool kFinal>
+void columns_of(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, Columns columns,
+                std::size_t x_end) {
+  using Wide = hn::CappedTag<T, 16>;
+  using One = hn::CappedTag<T, 1>;
+  // Offsets into scratch must fit 32 bits in the gathers, and few columns of great length should not be padded.
+  constexpr std::size_t longest_wide_column = std::size_t{1} << 24U;
+  const std::size_t width = columns.length <= longest_wide_column ? hn::Lanes(Wide()) : 1;
+  columns.stride = width;
+  for (; columns.x < x_end; columns.x += width, columns.first += width) {
+    columns.lanes = std::min(width, x_end - columns.x);
+    classify(plan, columns);
+    if (width == 1) {
+      columns.mixed ? solve_columns<One, kFinal, true>(plan, squares, scratch, columns)
+                    : solve_columns<One, kFinal, false>(plan, squares, scratch, columns);
+    } else {
+      columns.mixed ? solve_columns<Wide, kFinal, true>(plan, squares, scratch, columns)
+                    : solve_columns<Wide, kFinal, false>(plan, squares, scratch, columns);
+    }
+    if (plan.context->cancel.stop_requested()) return;
+  }
+}
+
+void columns_y(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, std::size_t z,
+               std::size_t x_begin, std::size_t x_end) {
+  Columns columns;
+  columns.length = plan.size[1];
+  columns.row_stride = plan.size[0];
+  columns.first = z * plan.size[1] * plan.size[0] + x_begin;
+  columns.x = x_begin;
+  columns.mask_word = z * plan.size[1] * plan.mask_words_per_row;
+  columns.mask_stride = plan.mask_words_per_row;
+  plan.integer ? columns_of<std::int32_t, false>(plan, squares, scratch, columns, x_end)
+               : columns_of<double, false>(plan, squares, scratch, columns, x_end);
+}
+
+void columns_z(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, std::size_t y,
+               std::size_t x_begin, std::size_t x_end) {
+  Columns columns;
+  columns.length = plan.size[2];
+  columns.row_stride = plan.size[1] * plan.size[0];
+  columns.first = y * plan.size[0] + x_begin;
+  columns.x = x_begin;
+  columns.y = y;
+  columns.mask_word = y * plan.mask_words_per_row;
+  columns.mask_stride = plan.size[1] * plan.mask_words_per_row;
+  plan.integer ? columns_of<std::int32_t, true>(plan, squares, scratch, columns, x_end)
+               : columns_of<double, true>(plan, squares, scratch, columns, x_end);
+}
+
+}  // namespace
+}  // namespace blum::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace blum::detail {
+namespace {
+HWY_EXPORT(rows);
+HWY_EXPORT(columns_y);
+HWY_EXPORT(columns_z);
+}  // namespace
+
+SquareTable::SquareTable(std::size_t length, double weight, bool integer) {
+  const std::size_t entries = 2 * length - 1;
+  if (integer) {
+    integers = Buffer<std::int32_t>(entries);
+  } else {
+    doubles = Buffer<double>(entries);
+  }
+  for (std::size_t i = 0; i < entries; ++i) {
+    const double offset = static_cast<double>(i) - static_cast<double>(length - 1);
+    const double square = weight * (offset * offset);
+    if (integer) {
+      integers[i] = static_cast<std::int32_t>(square);
+    } else {
+      doubles[i] = square;
+    }
+  }
+}
+
+PassScratch::PassScratch(std::size_t row_length, std::size_t column_length, bool integer)
+    : next_selected((row_length + 15) / 16),
+      next_other((row_length + 15) / 16),
+      partial_sites(16 * column_length),
+      lowest(column_length),
+      highest(column_length) {
+  if (integer) {
+    integer_costs = Buffer<std::int32_t>(16 * column_length);
+  } else {
+    double_costs = Buffer<double>(16 * column_length);
+  }
+}
+
+void transform_rows(const TransformPlan& plan, PassScratch& scratch, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(rows)(plan, scratch, begin, end);
+}
+
+void transform_columns_y(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, std::size_t z,
+                         std::size_t x_begin, std::size_t x_end) {
+  HWY_DYNAMIC_DISPATCH(columns_y)(plan, squares, scratch, z, x_begin, x_end);
+}
+
+void transform_columns_z(const TransformPlan& plan, const SquareTable& squares, PassScratch& scratch, std::size_t y,
+                         std::size_t x_begin, std::size_t x_end) {
+  HWY_DYNAMIC_DISPATCH(columns_z)(plan, squares, scratch, y, x_begin, x_end);
+}
+
+}  // namespace blum::detail
+#endif

@@ -1,0 +1,126 @@
+#include "field/cpu/engine.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "blum/core/parallel.hpp"
+#include "blum/geometry/pseudonormals.hpp"
+#include "field/phase_timer.hpp"
+
+namespace blum::cpu {
+namespace {
+
+template <class T>
+bool same_bytes(std::span<const T> a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+/// Unit vertex pseudonormals in the grid's axes.
+std::vector<Vec3f> vertex_sides(const MeshView& mesh, const SiteTable& sites, const NormalFrame& frame,
+                                const Context& context) {
+  const Pseudonormals normals(mesh, sites, context);
+  std::vector<Vec3f> sides(mesh.vertices.size());
+  parallel_for(context, sides.size(), 1 << 14, "", [&](const WorkRange& range) {
+    for (std::size_t v = range.begin; v < range.end; ++v) {
+      const Vec3d normal = frame.direction.transposed_times(normals.normal(SiteId(static_cast<std::uint32_t>(v))));
+      const double size = length(normal);
+      if (size > 0) {
+        sides[v] = {static_cast<float>(normal.x / size), static_cast<float>(normal.y / size),
+                    static_cast<float>(normal.z / size)};
+      }
+    }
+  });
+  return sides;
+}
+
+/// Cuts a grid into tiles of at most `size` nodes a side.
+struct Tiling {
+  std::array<std::int64_t, 3> grid;
+  std::int64_t size;
+  std::array<std::int64_t, 3> tiles{};
+
+  Tiling(const std::array<std::int64_t, 3>& grid_size, std::int64_t tile) : grid(grid_size), size(tile) {
+    for (std::size_t axis = 0; axis < 3; ++axis) tiles[axis] = (grid[axis] + size - 1) / size;
+  }
+  [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(tiles[0] * tiles[1] * tiles[2]); }
+  [[nodiscard]] NodeBox box(std::size_t index) const {
+    const auto i = static_cast<std::int64_t>(index);
+    const std::array<std::int64_t, 3> at{i % tiles[0], i / tiles[0] % tiles[1], i / (tiles[0] * tiles[1])};
+    NodeBox out;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out.first[axis] = at[axis] * size;
+      out.count[axis] = std::min(size, grid[axis] - out.first[axis]);
+    }
+    return out;
+  }
+};
+
+}  // namespace
+
+void Engine::set_mesh(const MeshView& mesh, const Context& context) {
+  mesh_ = mesh;
+  const bool is_same = has_mesh_ && last_vertex_count_ == mesh.vertices.size() &&
+                       same_bytes(mesh.triangles, last_triangles_) && same_bytes(mesh.segments, last_segments_) &&
+                       same_bytes(mesh.points, last_points_);
+  if (is_same) return;
+  has_mesh_ = false;
+  sites_ = SiteTable(mesh, context);
+  build_adjacency(mesh, sites_, context, adjacency_);
+  last_vertex_count_ = mesh.vertices.size();
+  last_triangles_.assign(mesh.triangles.begin(), mesh.triangles.end());
+  last_segments_.assign(mesh.segments.begin(), mesh.segments.end());
+  last_points_.assign(mesh.points.begin(), mesh.points.end());
+  has_mesh_ = true;
+}
+
+void Engine::build_records(const Request& request, const Context& context) {
+  frame_ = make_normal_frame(mesh_, request.grid);
+  positions_.resize(mesh_.vertices.size());
+  const auto& named = adjacency_.named_vertices;
+  parallel_for(context, named.size(), 1 << 14, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      positions_[named[k]] = frame_.to_normal(mesh_.vertices[named[k]]);
+    }
+  });
+  order_sites(mesh_, sites_, adjacency_, positions_, context, order_);
+  build_site_records(mesh_, sites_, adjacency_, positions_, order_, context, records_);
+  build_cluster_forest(records_, context, forest_);
+}
+
+std::vector<std::size_t> Engine::compute(const Request& request, const Context& context, Field& field) {
+  PhaseTimer timer(field.phases);
+  build_records(request, context);
+  FieldJob job;
+  job.sites = &records_;
+  job.forest = &forest_;
+  job.first_node = frame_.first_node;
+  job.spacing = frame_.spacing;
+  job.size = request.grid.size;
+  job.to_world = static_cast<float>(1 / frame_.scale);
+  if (request.band) {
+    job.band = static_cast<float>(*request.band * frame_.scale);
+    job.band_world = static_cast<float>(*request.band);
+  }
+  if (request.with_sides) job.vertex_sides = vertex_sides(mesh_, sites_, frame_, context);
+  job.distance = field.distance.data();
+  job.site = field.site.data();
+  timer.lap("sites and hierarchy");
+
+  const Tiling tiling(job.size, tile_size(job.size));
+  scratch_.resize(static_cast<std::size_t>(thread_count(context)));
+  for (TileScratch& scratch : scratch_) scratch.unsettled.clear();
+  parallel_for(context, tiling.count(), 1, "field", [&](const WorkRange& range) {
+    for (std::size_t tile = range.begin; tile < range.end; ++tile) {
+      compute_tile(job, tiling.box(tile), scratch_[static_cast<std::size_t>(range.worker)]);
+    }
+  });
+  std::vector<std::size_t> unsettled;
+  for (const TileScratch& scratch : scratch_) {
+    unsettled.insert(unsettled.end(), scratch.unsettled.begin(), scratch.unsettled.end());
+  }
+  std::sort(unsettled.begin(), unsettled.end());
+  timer.lap("field");
+  return unsettled;
+}
+
+}  // namespace blum::cpu

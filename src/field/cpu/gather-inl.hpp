@@ -1,0 +1,187 @@
+// Blum: finds the candidates of a tile in the hierarchies of boxes. SPDX-License-Identifier: Apache-2.0
+#if defined(BLUM_FIELD_CPU_GATHER_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef BLUM_FIELD_CPU_GATHER_INL
+#undef BLUM_FIELD_CPU_GATHER_INL
+#else
+#define BLUM_FIELD_CPU_GATHER_INL
+#endif
+
+#include <bit>
+
+#include "field/cpu/lanes-inl.hpp"
+#include "field/cpu/node_boxes.hpp"
+#include "field/cpu/record_geometry.hpp"
+#include "field/cpu/tile_scratch.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace blum::cpu {
+namespace HWY_NAMESPACE {
+
+/// Calls use(vector of loaded boxes' lane offset, lower corner, upper corner) for sixteen consecutive boxes.
+template <class Use>
+HWY_INLINE void for_each_box_vector(const BoxArrays& boxes, std::size_t first, Use use) {
+  for (std::size_t offset = 0; offset < cluster_size; offset += lanes) {
+    const auto load = [&](const Buffer<float>& side) { return hn::LoadU(d, side.data() + first + offset); };
+    use(offset, Vec{load(boxes.lower[0]), load(boxes.lower[1]), load(boxes.lower[2])},
+        Vec{load(boxes.upper[0]), load(boxes.upper[1]), load(boxes.upper[2])});
+  }
+}
+
+/// Keeps a box of surface unless p0 is closer than all of it to every point x of the tile: unless the minimum over x
+/// and over p in the box of |x - p|^2 - |x - p0|^2 is positive. It is separable; along an axis it is linear in x and
+/// convex in p, so it is found at an end of the tile with p as near to it as can be.
+struct TileTest {
+  Vec low, high, p0, low_p0, high_p0;
+  V tolerance;
+
+  TileTest(const CenteredBox& tile, const Vec3f& surface_point) {
+    const Vec3f half = tile.half + Vec3f{box_slack, box_slack, box_slack};
+    low = set(tile.center - half);
+    high = set(tile.center + half);
+    p0 = set(surface_point);
+    const Vec from_low = low - p0;
+    const Vec from_high = high - p0;
+    low_p0 = {square(from_low.x), square(from_low.y), square(from_low.z)};
+    high_p0 = {square(from_high.x), square(from_high.y), square(from_high.z)};
+    const float squared = squared_length(tile.center - surface_point);
+    tolerance = set(4e-6F * squared + 4e-6F * std::sqrt(squared) + 1e-11F);
+  }
+
+  static HWY_INLINE V axis(V at_low, V at_high, V low_to_p0, V high_to_p0, V lower, V upper) {
+    const V from_low = hn::Sub(at_low, hn::Min(hn::Max(at_low, lower), upper));
+    const V from_high = hn::Sub(at_high, hn::Min(hn::Max(at_high, lower), upper));
+    return hn::Min(hn::MulSub(from_low, from_low, low_to_p0), hn::MulSub(from_high, from_high, high_to_p0));
+  }
+
+  /// One bit per box of sixteen.
+  HWY_INLINE std::uint32_t keeps(const BoxArrays& boxes, std::size_t first) const {
+    std::uint32_t result = 0;
+    for_each_box_vector(boxes, first, [&](std::size_t offset, const Vec& lower, const Vec& upper) {
+      const V sum = hn::Add(hn::Add(axis(low.x, high.x, low_p0.x, high_p0.x, lower.x, upper.x),
+                                    axis(low.y, high.y, low_p0.y, high_p0.y, lower.y, upper.y)),
+                            axis(low.z, high.z, low_p0.z, high_p0.z, lower.z, upper.z));
+      result |= bits(hn::Le(sum, tolerance)) << offset;
+    });
+    return result;
+  }
+};
+
+HWY_INLINE std::uint32_t existing_boxes(std::size_t first, std::size_t count) {
+  return count - first >= cluster_size ? 0xffffU : (1U << (count - first)) - 1;
+}
+
+/// Depth-first search for the clusters that a tile must look at, in storage order.
+HWY_NOINLINE void find_clusters(const ClusterTree& tree, const BoxArrays& clusters, const TileTest& test,
+                                std::size_t level, std::size_t first, std::vector<std::uint32_t>& out) {
+  const BoxArrays& boxes = level == 0 ? clusters : tree.levels[level - 1];
+  std::uint32_t kept = test.keeps(boxes, first) & existing_boxes(first, boxes.count);
+  while (kept != 0) {
+    const std::size_t box = first + static_cast<std::size_t>(std::countr_zero(kept));
+    kept &= kept - 1;
+    if (level == 0) {
+      out.push_back(static_cast<std::uint32_t>(box));
+    } else {
+      find_clusters(tree, clusters, test, level - 1, box * cluster_size, out);
+    }
+  }
+}
+
+/// Nearest-first search for the closest record to a point.
+struct NearestSearch {
+  const SiteRecords& sites;
+  const ClusterForest& forest;
+  Vec3f query;
+  Witness best;
+
+  void visit_cluster(Kind kind, std::size_t cluster) {
+    const RecordSet& set_of_kind = sites.kinds[kind];
+    const std::size_t end = std::min((cluster + 1) * cluster_size, set_of_kind.count);
+    for (std::size_t at = cluster * cluster_size; at < end; ++at) {
+      const Record& record = set_of_kind.records[at];
+      Vec3f point;
+      if (record.id == dead_record || !closest_on_record(kind, record, query, point)) continue;
+      const float squared = squared_length(query - point);
+      if (squared < best.squared_distance) best = {point, kind, record, squared};
+    }
+  }
+
+  void visit(Kind kind, std::size_t level, std::size_t first) {
+    const ClusterTree& tree = forest.trees[kind];
+    const BoxArrays& boxes = level == 0 ? sites.kinds[kind].cluster_boxes : tree.levels[level - 1];
+    alignas(64) std::array<float, cluster_size> squared{};
+    const Vec q = set(query);
+    for_each_box_vector(boxes, first, [&](std::size_t offset, const Vec& lower, const Vec& upper) {
+      const auto gap = [](V at, V low, V high) { return hn::Sub(at, hn::Min(hn::Max(at, low), high)); };
+      const Vec to_box{gap(q.x, lower.x, upper.x), gap(q.y, lower.y, upper.y), gap(q.z, lower.z, upper.z)};
+      hn::StoreU(dot(to_box, to_box), d, squared.data() + offset);
+    });
+    std::array<std::uint8_t, cluster_size> order{};
+    std::size_t open = 0;
+    const std::size_t count = std::min(cluster_size, boxes.count - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!(squared[k] < best.squared_distance)) continue;
+      std::size_t at = open++;
+      for (; at > 0 && squared[order[at - 1]] > squared[k]; --at) order[at] = order[at - 1];
+      order[at] = static_cast<std::uint8_t>(k);
+    }
+    for (std::size_t k = 0; k < open; ++k) {
+      if (!(squared[order[k]] < best.squared_distance)) return;
+      if (level == 0) {
+        visit_cluster(kind, first + order[k]);
+      } else {
+        visit(kind, level - 1, (first + order[k]) * cluster_size);
+      }
+    }
+  }
+
+  void run() {
+    for (std::size_t kind = 0; kind < kind_count; ++kind) {
+      if (sites.kinds[kind].count > 0) visit(static_cast<Kind>(kind), forest.trees[kind].levels.size(), 0);
+    }
+  }
+};
+
+HWY_INLINE Witness nearest_record(const FieldJob& job, const Vec3f& query) {
+  NearestSearch search{*job.sites, *job.forest, query, {}};
+  search.run();
+  return search.best;
+}
+
+/// Finds the clusters of all kinds that matter to a tile; returns how many.
+HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const CenteredBox& tile, const Vec3f& p0,
+                                          TileScratch::Impl& scratch) {
+  const TileTest test(tile, p0);
+  std::size_t total = 0;
+  for (std::size_t kind = 0; kind < kind_count; ++kind) {
+    auto& clusters = scratch.clusters[kind];
+    clusters.clear();
+    const RecordSet& set_of_kind = job.sites->kinds[kind];
+    if (set_of_kind.count == 0) continue;
+    const ClusterTree& tree = job.forest->trees[kind];
+    find_clusters(tree, set_of_kind.cluster_boxes, test, tree.levels.size(), 0, clusters);
+    total += clusters.size();
+  }
+  return total;
+}
+
+/// Copies the live records of the found clusters, in rising order of site id.
+HWY_INLINE void gather_records(const FieldJob& job, TileScratch::Impl& scratch, Candidates& out) {
+  for (std::size_t kind = 0; kind < kind_count; ++kind) {
+    const Record* records = job.sites->kinds[kind].records.data();
+    scratch.order.clear();
+    for (const std::uint32_t cluster : scratch.clusters[kind]) {
+      for (std::size_t at = cluster * cluster_size; at < (cluster + std::size_t{1}) * cluster_size; ++at) {
+        if (records[at].id != dead_record) scratch.order.push_back({records[at].id, static_cast<std::uint32_t>(at)});
+      }
+    }
+    radix_sort(scratch.order, scratch.order_scratch);
+    out[kind].reset(scratch.order.size());
+    for (const KeyedIndex& item : scratch.order) out[kind].append(records[item.index]);
+    out[kind].finish();
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace blum::cpu
+HWY_AFTER_NAMESPACE();
+#endif

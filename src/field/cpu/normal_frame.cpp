@@ -1,0 +1,44 @@
+#include "field/cpu/normal_frame.hpp"
+
+#include <cmath>
+
+#include "blum/core/error.hpp"
+
+namespace blum::cpu {
+
+NormalFrame make_normal_frame(const MeshView& mesh, const GridSpec& grid) {
+  NormalFrame frame;
+  frame.direction = grid.direction;
+  const bool is_axis_aligned = grid.direction == Mat3{};
+  Box3 box;
+  const auto extend = [&](std::uint32_t v) {
+    box.extend(is_axis_aligned ? mesh.vertices[v] : grid.direction.transposed_times(mesh.vertices[v]));
+  };
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) extend(v);
+  }
+  for (const Segment& segment : mesh.segments) {
+    for (const std::uint32_t v : segment) extend(v);
+  }
+  for (const std::uint32_t v : mesh.points) extend(v);
+
+  const Vec3d first = grid.direction.transposed_times(grid.origin);
+  const Vec3d last = first + Vec3d{static_cast<double>(grid.size[0] - 1) * grid.spacing.x,
+                                   static_cast<double>(grid.size[1] - 1) * grid.spacing.y,
+                                   static_cast<double>(grid.size[2] - 1) * grid.spacing.z};
+  box.extend(first);
+  box.extend(last);
+  const double diagonal = box.diagonal();
+  if (!(diagonal < 1e37))
+    throw InvalidGrid("mesh and grid span more than 1e37, too far for 32-bit distances: scale them down");
+  int exponent = 0;
+  if (diagonal > 0) (void)std::frexp(diagonal, &exponent);
+  if (exponent < -900) throw InvalidGrid("mesh and grid span less than 1e-270: scale them up");
+  frame.scale = std::ldexp(1.0, -exponent);
+  frame.center = box.center();
+  frame.first_node = (first - frame.center) * frame.scale;
+  frame.spacing = grid.spacing * frame.scale;
+  return frame;
+}
+
+}  // namespace blum::cpu

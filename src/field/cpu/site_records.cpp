@@ -1,0 +1,351 @@
+#include "field/cpu/site_records.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "blum/core/parallel.hpp"
+
+namespace blum::cpu {
+namespace {
+
+constexpr std::size_t clusters_per_range = 64;
+/// Shorter or flatter than this, in a frame whose diagonal is about one, float32 cannot tell a site from its border.
+constexpr double negligible_length = 1e-12;
+constexpr double negligible_altitude = 1e-7;
+/// Above this, rounding of a face's barycentrics would reach beyond its corners (docs/theory/fields.md).
+constexpr double largest_condition = 4000;
+/// An in-face direction is trusted only if rounding in double cannot have turned it by more than about 1e-9.
+constexpr double smallest_relative_altitude = 1e-7;
+
+void store(Record& record, int column, const Vec3d& v) {
+  const auto at = static_cast<std::size_t>(column);
+  record.column[at] = static_cast<float>(v.x);
+  record.column[at + 1] = static_cast<float>(v.y);
+  record.column[at + 2] = static_cast<float>(v.z);
+}
+
+void store(Record& record, int column, double x) {
+  record.column[static_cast<std::size_t>(column)] = static_cast<float>(x);
+}
+
+/// Directions of the planes that bound a vertex's domain.
+class VertexCone {
+ public:
+  static constexpr std::size_t max_planes = 4;
+
+  /// More edges than this are left out, which only widens the domain.
+  static constexpr std::size_t max_directions = 16;
+
+  void add(const Vec3d& unit_direction) {
+    if (count_ < max_directions) directions_[count_++] = unit_direction;
+  }
+
+  /// Finds the cone's extreme rays; false if the cone {w : w . e <= 0 for all e} is provably just its apex.
+  bool find_facets() {
+    if (count_ < 3) {
+      chosen_count_ = count_;
+      for (std::size_t i = 0; i < count_; ++i) chosen_[i] = i;
+      return true;
+    }
+    std::array<bool, max_directions> is_facet{};
+    bool found_ray = false;
+    bool is_certain = true;
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t j = i + 1; j < count_; ++j) {
+        const Vec3d w = cross(directions_[i], directions_[j]);
+        const double squared = squared_length(w);
+        if (squared < 1e-14) {
+          is_certain = false;  // nearly parallel: their ray is lost in rounding
+          continue;
+        }
+        if (is_extreme_ray(w, i, j, std::sqrt(squared))) {
+          found_ray = true;
+          is_facet[i] = is_facet[j] = true;
+        }
+      }
+    }
+    if (!found_ray && is_certain) return false;
+    choose(is_facet, found_ray && is_certain);
+    return true;
+  }
+
+  [[nodiscard]] std::size_t chosen_count() const { return chosen_count_; }
+  [[nodiscard]] const Vec3d& chosen(std::size_t k) const { return directions_[chosen_[k]]; }
+
+ private:
+  /// Whether w or -w lies in the cone, up to rounding.
+  [[nodiscard]] bool is_extreme_ray(const Vec3d& w, std::size_t i, std::size_t j, double length_of_w) const {
+    const double tolerance = 1e-6 * length_of_w;
+    bool positive = true;
+    bool negative = true;
+    for (std::size_t k = 0; k < count_ && (positive || negative); ++k) {
+      if (k == i || k == j) continue;
+      const double side = dot(w, directions_[k]);
+      positive = positive && side <= tolerance;
+      negative = negative && side >= -tolerance;
+    }
+    return positive || negative;
+  }
+
+  /// Picks up to four directions, of the facets where they are known, each as far from the picked ones as can be.
+  void choose(const std::array<bool, max_directions>& is_facet, bool facets_only) {
+    std::array<double, max_directions> largest_cosine{};
+    std::array<bool, max_directions> is_open{};
+    for (std::size_t k = 0; k < count_; ++k) {
+      is_open[k] = is_facet[k] || !facets_only;
+      largest_cosine[k] = -2;
+    }
+    for (chosen_count_ = 0; chosen_count_ < max_planes; ++chosen_count_) {
+      std::size_t best = max_directions;
+      for (std::size_t k = 0; k < count_; ++k) {
+        if (is_open[k] && (best == max_directions || largest_cosine[k] < largest_cosine[best])) best = k;
+      }
+      if (best == max_directions) return;
+      is_open[best] = false;
+      chosen_[chosen_count_] = best;
+      for (std::size_t k = 0; k < count_; ++k) {
+        largest_cosine[k] = std::max(largest_cosine[k], dot(directions_[k], directions_[best]));
+      }
+    }
+  }
+
+  std::array<Vec3d, max_directions> directions_;
+  std::size_t count_ = 0;
+  std::array<std::size_t, max_planes> chosen_{};
+  std::size_t chosen_count_ = 0;
+};
+
+/// What the builders of all kinds share.
+struct Input {
+  const MeshView& mesh;
+  const SiteTable& sites;
+  const Adjacency& adjacency;
+  std::span<const Vec3d> positions;
+
+  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t triangle) const {
+    const Triangle& t = mesh.triangles[triangle];
+    return {positions[t[0]], positions[t[1]], positions[t[2]]};
+  }
+};
+
+/// Builds the record of one site and extends the box by it; returns false where the site can own no node.
+bool build_vertex(const Input& input, std::uint32_t vertex, Record& record, Box3& box) {
+  const Vec3d& p = input.positions[vertex];
+  VertexCone cone;
+  for (std::uint32_t k = input.adjacency.first_incident[vertex]; k < input.adjacency.first_incident[vertex + 1]; ++k) {
+    const Segment& edge = input.sites.edges()[input.adjacency.incident_edges[k]];
+    const Vec3d direction = input.positions[edge[0] == vertex ? edge[1] : edge[0]] - p;
+    const double length_of_edge = length(direction);
+    if (length_of_edge > negligible_length) cone.add(direction / length_of_edge);
+  }
+  if (!cone.find_facets()) return false;
+  store(record, VertexColumns::position, p);
+  for (std::size_t k = 0; k < cone.chosen_count(); ++k) {
+    store(record, VertexColumns::direction + 3 * static_cast<int>(k), cone.chosen(k));
+  }
+  record.id = vertex;
+  box.extend(p);
+  return true;
+}
+
+Vec3d any_perpendicular(const Vec3d& t) {
+  const Vec3d axis = std::abs(t.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d b = cross(t, axis);
+  return b / length(b);
+}
+
+/// Unit direction that leaves the edge (a, tangent) into a triangle, and the triangle's unit normal; false if the
+/// triangle is too flat to have one.
+bool in_face_direction(const Input& input, std::uint32_t triangle, const Segment& edge, const Vec3d& tangent,
+                       double length_of_edge, Vec3d& direction, Vec3d& normal) {
+  if (triangle == no_index) return false;
+  const Triangle& t = input.mesh.triangles[triangle];
+  std::uint32_t third = t[0];
+  for (const std::uint32_t v : t) {
+    if (v != edge[0] && v != edge[1]) third = v;
+  }
+  const Vec3d to_third = input.positions[third] - input.positions[edge[0]];
+  const Vec3d perpendicular = to_third - tangent * dot(to_third, tangent);
+  const double altitude = length(perpendicular);
+  if (!(altitude > smallest_relative_altitude * std::max(length(to_third), length_of_edge))) return false;
+  direction = perpendicular / altitude;
+  const auto corners = input.corners(triangle);
+  const Vec3d area_normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double area = length(area_normal);
+  if (!(area > 0)) return false;
+  normal = area_normal / area;
+  return true;
+}
+
+bool build_edge(const Input& input, std::uint32_t index, Record& record, Box3& box) {
+  const Segment& edge = input.sites.edges()[index];
+  const Vec3d& start = input.positions[edge[0]];
+  const Vec3d& end = input.positions[edge[1]];
+  const double length_of_edge = length(end - start);
+  if (!(length_of_edge > negligible_length)) return false;
+  const Vec3d tangent = (end - start) / length_of_edge;
+
+  Vec3d first;
+  Vec3d second;
+  Vec3d first_normal;
+  Vec3d second_normal;
+  const auto& faces = input.adjacency.edge_faces[index];
+  bool has_first = in_face_direction(input, faces[0], edge, tangent, length_of_edge, first, first_normal);
+  bool has_second = in_face_direction(input, faces[1], edge, tangent, length_of_edge, second, second_normal);
+  if (has_second && !has_first) {
+    std::swap(first, second);
+    std::swap(first_normal, second_normal);
+    std::swap(has_first, has_second);
+  }
+  if (!has_first) first = any_perpendicular(tangent);
+  const Vec3d n = cross(tangent, first);
+
+  store(record, EdgeColumns::midpoint, (start + end) * 0.5);
+  store(record, EdgeColumns::tangent, tangent);
+  store(record, EdgeColumns::half_length, 0.5 * length_of_edge);
+  store(record, EdgeColumns::binormal, first);
+  store(record, EdgeColumns::first_limit, has_first ? plane_slack : 1e30);
+  if (has_second) {
+    store(record, EdgeColumns::second_b, dot(second, first));
+    store(record, EdgeColumns::second_n, dot(second, n));
+    const Vec3d pseudonormal = first_normal + second_normal;
+    const double size = length(pseudonormal);
+    if (size > 1e-9) {
+      store(record, EdgeColumns::side_b, dot(pseudonormal, first) / size);
+      store(record, EdgeColumns::side_n, dot(pseudonormal, n) / size);
+    }
+  }
+  record.id = static_cast<std::uint32_t>(input.mesh.vertices.size()) + index;
+  box.extend(start);
+  box.extend(end);
+  return true;
+}
+
+/// A face's shape as its record needs it: corners with the anchor first, and how well-conditioned they are.
+struct FaceShape {
+  Vec3d anchor, to_u, to_v, normal;
+  double doubled_area = 0;
+  bool is_negligible = true;
+  bool is_sliver = false;
+};
+
+FaceShape shape_of_face(const std::array<Vec3d, 3>& corner) {
+  std::size_t opposite = 0;
+  double longest = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double side = length(corner[(k + 2) % 3] - corner[(k + 1) % 3]);
+    if (side > longest) {
+      longest = side;
+      opposite = k;
+    }
+  }
+  FaceShape shape;
+  shape.anchor = corner[opposite];
+  shape.to_u = corner[(opposite + 1) % 3] - shape.anchor;
+  shape.to_v = corner[(opposite + 2) % 3] - shape.anchor;
+  const Vec3d area_normal = cross(shape.to_u, shape.to_v);
+  shape.doubled_area = length(area_normal);
+  shape.is_negligible = !(shape.doubled_area > negligible_altitude * longest);
+  if (shape.is_negligible) return shape;
+  shape.normal = area_normal / shape.doubled_area;
+  // |grad u| |to_u| + |grad v| |to_v|, with |grad u| = |to_v| / doubled area and the other way round.
+  const double condition = 2 * length(shape.to_u) * length(shape.to_v) / shape.doubled_area;
+  shape.is_sliver = condition > largest_condition;
+  return shape;
+}
+
+bool build_face(const Input& input, std::uint32_t triangle, Record& record, Box3& box) {
+  const auto corners = input.corners(triangle);
+  const FaceShape shape = shape_of_face(corners);
+  if (shape.is_negligible || shape.is_sliver) return false;
+  store(record, FaceColumns::anchor, shape.anchor);
+  store(record, FaceColumns::normal, shape.normal);
+  store(record, FaceColumns::minus_u, cross(shape.normal, shape.to_v) / shape.doubled_area);
+  store(record, FaceColumns::minus_v, cross(shape.to_u, shape.normal) / shape.doubled_area);
+  record.id = static_cast<std::uint32_t>(input.mesh.vertices.size() + input.sites.edge_count()) + triangle;
+  for (const Vec3d& corner : corners) box.extend(corner);
+  return true;
+}
+
+bool build_sliver(const Input& input, std::uint32_t triangle, Record& record, Box3& box) {
+  const auto corners = input.corners(triangle);
+  for (std::size_t k = 0; k < 3; ++k) {
+    store(record, SliverColumns::corners + 3 * static_cast<int>(k), corners[k]);
+    box.extend(corners[k]);
+  }
+  record.id = static_cast<std::uint32_t>(input.mesh.vertices.size() + input.sites.edge_count()) + triangle;
+  return true;
+}
+
+void store_box(BoxArrays& boxes, std::size_t index, const Box3& box) {
+  constexpr float rounding = 2e-7F;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    boxes.lower[axis][index] = box.is_empty() ? far_away : static_cast<float>(box.lower[axis]) - rounding;
+    boxes.upper[axis][index] = box.is_empty() ? far_away : static_cast<float>(box.upper[axis]) + rounding;
+  }
+}
+
+template <class Build>
+void build_set(const Input& input, std::span<const std::uint32_t> order, const Context& context, RecordSet& set,
+               Build build) {
+  set.count = order.size();
+  const std::size_t clusters = (order.size() + cluster_size - 1) / cluster_size;
+  if (set.records.size() < clusters * cluster_size) set.records = Buffer<Record>(clusters * cluster_size);
+  set.cluster_boxes.resize(clusters);
+  parallel_for(context, clusters, clusters_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t cluster = range.begin; cluster < range.end; ++cluster) {
+      Box3 box;
+      for (std::size_t at = cluster * cluster_size; at < (cluster + 1) * cluster_size; ++at) {
+        Record record;
+        if (at >= order.size() || !build(input, order[at], record, box)) record.id = dead_record;
+        set.records[at] = record;
+      }
+      store_box(set.cluster_boxes, cluster, box);
+    }
+  });
+}
+
+/// Faces that need the sliver path, in storage order.
+std::vector<std::uint32_t> find_slivers(const Input& input, std::span<const std::uint32_t> order,
+                                        const Context& context) {
+  std::vector<std::uint8_t> is_sliver(order.size());
+  parallel_for(context, order.size(), clusters_per_range * cluster_size, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const FaceShape shape = shape_of_face(input.corners(order[k]));
+      is_sliver[k] = !shape.is_negligible && shape.is_sliver ? 1 : 0;
+    }
+  });
+  std::vector<std::uint32_t> slivers;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (is_sliver[k] != 0) slivers.push_back(order[k]);
+  }
+  return slivers;
+}
+
+}  // namespace
+
+void BoxArrays::resize(std::size_t new_count) {
+  // Whole vectors of boxes are read at a time, so the tail is padded with boxes around nothing.
+  const std::size_t padded = (new_count + cluster_size - 1) / cluster_size * cluster_size;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (auto* side : {&lower[axis], &upper[axis]}) {
+      if (side->size() < padded) *side = Buffer<float>(padded);
+      std::fill(side->begin() + static_cast<std::ptrdiff_t>(new_count),
+                side->begin() + static_cast<std::ptrdiff_t>(padded), far_away);
+    }
+  }
+  count = new_count;
+}
+
+void build_site_records(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
+                        std::span<const Vec3d> positions, const SiteOrder& order, const Context& context,
+                        SiteRecords& out) {
+  const Input input{mesh, sites, adjacency, positions};
+  build_set(input, order.vertices, context, out.kinds[vertex_kind], build_vertex);
+  build_set(input, order.edges, context, out.kinds[edge_kind], build_edge);
+  build_set(input, order.faces, context, out.kinds[face_kind], build_face);
+  build_set(input, find_slivers(input, order.faces, context), context, out.kinds[sliver_kind], build_sliver);
+}
+
+}  // namespace blum::cpu

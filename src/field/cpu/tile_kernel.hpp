@@ -1,0 +1,76 @@
+// Blum: computes one tile of a field. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "blum/core/buffer.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/core/vec3.hpp"
+#include "field/cpu/cluster_forest.hpp"
+#include "field/cpu/site_records.hpp"
+
+namespace blum::cpu {
+
+/// Everything that tiles read, and where they write. The same for all tiles of a field.
+struct FieldJob {
+  const SiteRecords* sites = nullptr;
+  const ClusterForest* forest = nullptr;
+  Vec3d first_node;                                     ///< normalised
+  Vec3d spacing;                                        ///< normalised
+  std::array<std::int64_t, 3> size{};                   ///< nodes
+  float band = std::numeric_limits<float>::infinity();  ///< half-width, normalised
+  float band_world = 0;                                 ///< half-width as it is written
+  float to_world = 1;                                   ///< mesh units per normalised unit, a power of two
+  /// Unit pseudonormals of all vertices; empty where the field gets no sign from them.
+  std::vector<Vec3f> vertex_sides;
+  float* distance = nullptr;
+  SiteId* site = nullptr;
+
+  [[nodiscard]] bool has_sides() const { return !vertex_sides.empty(); }
+};
+
+/// A box of nodes: the first one and how many along each axis.
+struct NodeBox {
+  std::array<std::int64_t, 3> first{};
+  std::array<std::int64_t, 3> count{};
+};
+
+/// Memory that a worker keeps from tile to tile, and what it found that the tile kernel leaves to exact queries.
+class TileScratch {
+ public:
+  TileScratch();
+  TileScratch(TileScratch&&) noexcept;
+  TileScratch& operator=(TileScratch&&) noexcept;
+  ~TileScratch();
+
+  struct Impl;
+  Impl& impl() { return *impl_; }
+
+  /// Linear indices of nodes that no site claimed, or whose side is too close to call in float32.
+  std::vector<std::size_t> unsettled;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Nodes along a side of the largest tiles: what one call of compute_tile should get.
+[[nodiscard]] int tile_size(const std::array<std::int64_t, 3>& grid_size);
+
+/// Computes distance, site and (with sides) sign of every node of a box whose sides are at most 64 and whose first node
+/// lies at multiples of 64 or 32.
+void compute_tile(const FieldJob& job, const NodeBox& tile, TileScratch& scratch);
+
+/// Instruction sets that this machine can run the kernel with, best first, by Highway's names (for example "AVX2").
+[[nodiscard]] std::vector<std::string> simd_targets();
+/// Makes the kernel use one of simd_targets() from now on; an empty name restores the best one. For tests and
+/// benchmarks.
+void use_simd_target(std::string_view name);
+
+}  // namespace blum::cpu
