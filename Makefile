@@ -1,0 +1,60 @@
+# Blum: the commands of everyday work. `make` lists them.
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+.PHONY: help setup build test demo format lint bench docs asan tsan fuzz configurations install clean
+
+PREFIX ?= /usr/local
+JOBS ?= $(shell nproc)
+DEMO_DIR ?= out/demo
+configure_options := $(if $(CI),-DBLUM_WERROR=ON)
+
+help: ## List the commands
+	@echo "Blum: exact distance fields and Voronoi diagrams of 3D shapes"
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## */\1\t/' | while IFS=$$'\t' read -r name text; do \
+	  printf '  make %-15s %s\n' "$$name" "$$text"; done
+
+setup: ## Install what the build needs (apt, as root or through sudo)
+	@tools/setup.sh
+
+build: setup ## Build the library and the tool: build/release/bin/blum
+	@tools/build.sh release $(configure_options)
+	@echo "make build: the tool is build/release/bin/blum"
+
+test: ## Install what the tests need, build, and run every test
+	@tools/test.sh
+
+demo: build ## Run the main job on a generated shape: a field and pictures in out/demo
+	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
+
+format: ## Bring the sources into the project's format (clang-format 19)
+	@tools/setup.sh --lint
+	@tools/format.sh
+
+lint: ## Check format, clang-tidy, shell scripts, layer rules, words and links
+	@tools/setup.sh --lint
+	@tools/lint.sh
+
+bench: ## Build and run the benchmarks, with their peers
+	@tools/bench.sh
+
+docs: ## Build the API pages and check the documents' links: build/docs/html/index.html
+	@tools/setup.sh --docs
+	@tools/docs.sh
+
+asan: ## Run the tests under AddressSanitizer and UndefinedBehaviorSanitizer
+	@tools/sanitize.sh asan
+
+tsan: ## Run the tests that use threads under ThreadSanitizer
+	@tools/sanitize.sh tsan
+
+fuzz: ## Run every fuzz target for a short while (FUZZ_SECONDS=15 each)
+	@tools/fuzz.sh
+
+configurations: ## Build every switched-off part, the scalar and the serial paths, and with clang
+	@tools/check_configurations.sh
+
+install: build ## Install the library and the tool under PREFIX (/usr/local)
+	cmake --install build/release --prefix $(PREFIX)
+
+clean: ## Remove everything that was built
+	rm -rf build out

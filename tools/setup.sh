@@ -1,0 +1,124 @@
+#!/usr/bin/env bash
+# Installs what Blum needs on Debian 12 (and its kin), or says what is missing.
+#   tools/setup.sh [--tests] [--bench] [--docs] [--lint] [--fuzz] [--all] [--check]
+# Without options: what the library and the command-line tool need. --check only looks, and installs nothing.
+# As root, or where sudo works, apt installs what is missing; anyone else gets the command to run, and exit status 1.
+# Running it again does nothing. BLUM_SETUP=skip in the environment: trust that everything is there.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+packages=(g++ cmake ninja-build libtbb-dev libhwy-dev zlib1g-dev libpng-dev libcli11-dev nlohmann-json3-dev)
+tests=(libgtest-dev python3 python3-venv ca-certificates)
+bench=(libbenchmark-dev libembree-dev libcgal-dev libopenvdb-dev python3 python3-venv ca-certificates)
+docs=(doxygen python3)
+lint=(clang-format-19 clang-tidy-19 shellcheck python3)
+fuzz=(clang-19 libclang-rt-19-dev)
+ci=(ccache)
+
+check_only=false
+python_environment=false
+for option in "$@"; do
+  case $option in
+    --tests) packages+=("${tests[@]}") python_environment=true ;;
+    --bench) packages+=("${bench[@]}") python_environment=true ;;
+    --docs) packages+=("${docs[@]}") ;;
+    --lint) packages+=("${lint[@]}") ;;
+    --fuzz) packages+=("${fuzz[@]}") ;;
+    --ci) packages+=("${ci[@]}") ;;
+    --all) packages+=("${tests[@]}" "${bench[@]}" "${docs[@]}" "${lint[@]}" "${fuzz[@]}") python_environment=true ;;
+    --check) check_only=true ;;
+    *)
+      echo "setup: unknown option $option; see the head of tools/setup.sh" >&2
+      exit 2
+      ;;
+  esac
+done
+
+say() { echo "setup: $*"; }
+
+if [[ ${BLUM_SETUP:-} == skip ]]; then
+  say "skipped (BLUM_SETUP=skip)"
+  exit 0
+fi
+
+missing_packages() {
+  local package
+  for package in $(printf '%s\n' "${packages[@]}" | sort -u); do
+    # shellcheck disable=SC2016  # ${...} is dpkg-query's, not the shell's
+    [[ $(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) == installed ]] || echo "$package"
+  done
+}
+
+if ! command -v dpkg-query >/dev/null; then
+  say "this system has no dpkg, so nothing can be checked or installed here. Blum is tested on Debian 12, where it needs:" >&2
+  printf '  %s\n' "${packages[@]}" >&2
+  say "install what corresponds to these, then run again with BLUM_SETUP=skip" >&2
+  exit 1
+fi
+
+# Runs a command as root; fails without a question where no one can answer it.
+as_root() {
+  if [[ $EUID -eq 0 ]]; then
+    env DEBIAN_FRONTEND=noninteractive "$@"
+  elif [[ -t 0 ]]; then
+    sudo env DEBIAN_FRONTEND=noninteractive "$@"
+  else
+    sudo -n env DEBIAN_FRONTEND=noninteractive "$@"
+  fi
+}
+
+can_install() {
+  [[ $EUID -eq 0 ]] || { command -v sudo >/dev/null && { [[ -t 0 ]] || sudo -n true 2>/dev/null; }; }
+}
+
+# Whether apt's lists, as they are, know every package.
+apt_knows() {
+  local package
+  for package in "$@"; do
+    apt-cache policy "$package" 2>/dev/null | grep -q 'Candidate: [^(]' || return 1
+  done
+}
+
+apt_install() {
+  as_root apt-get install -y -q --no-install-recommends "$@"
+}
+
+mapfile -t missing < <(missing_packages)
+if [[ ${#missing[@]} -gt 0 ]]; then
+  if $check_only || ! can_install; then
+    {
+      say "missing: ${missing[*]}"
+      say "run this as root, then try again:"
+      echo "  apt-get update && apt-get install -y --no-install-recommends ${missing[*]}"
+    } >&2
+    exit 1
+  fi
+  say "installing with apt: ${missing[*]}"
+  if ! apt_knows "${missing[@]}"; then as_root apt-get update -q; fi
+  if ! apt_install "${missing[@]}"; then
+    say "that failed; refreshing apt's lists and trying once more"
+    as_root apt-get update -q
+    apt_install "${missing[@]}"
+  fi
+  mapfile -t missing < <(missing_packages)
+  if [[ ${#missing[@]} -gt 0 ]]; then
+    say "still missing: ${missing[*]}" >&2
+    exit 1
+  fi
+fi
+
+requirements=tests/python/requirements.txt
+if $python_environment && [[ -f $requirements ]]; then
+  stamp=build/venv/requirements.sha256
+  if ! sha256sum --status -c "$stamp" 2>/dev/null; then
+    if $check_only; then
+      say "missing: the Python packages of $requirements in build/venv (run tools/setup.sh --tests)" >&2
+      exit 1
+    fi
+    say "installing the Python packages of $requirements into build/venv"
+    [[ -x build/venv/bin/pip ]] || python3 -m venv build/venv
+    build/venv/bin/pip install --quiet --disable-pip-version-check -r "$requirements"
+    sha256sum "$requirements" >"$stamp"
+  fi
+fi
+say "everything needed is there"

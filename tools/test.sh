@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# `make test`: sets up what is missing, builds, and runs every test: ctest, pytest, and a consumer of the installed
+# library. Closes with `N passed, N failed[, N skipped]`. With RESULTS set, adds to that folder and leaves the closing
+# line to the caller (.ci/run).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+tools/setup.sh --tests
+results=${RESULTS:-build/results/test}
+[[ -n ${RESULTS:-} ]] || rm -rf "$results"
+
+options=()
+[[ -n ${CI:-} ]] && options+=(-DBLUM_WERROR=ON)
+tools/results.py check "$results" build -- tools/build.sh release "${options[@]}"
+if [[ -f build/release/build.ninja ]]; then
+  tools/results.py check "$results" public-headers -- tools/build.sh release "${options[@]}" -- blum_header_check
+  tools/ctest.sh "$results" ctest build/release
+  if compgen -G 'tests/python/test_*.py' >/dev/null; then
+    echo "--- pytest: tests/python"
+    rm -f build/pytest.xml
+    BLUM=$PWD/build/release/bin/blum build/venv/bin/python -m pytest -q -ra -p no:cacheprovider \
+      --junitxml build/pytest.xml tests/python || true
+    tools/results.py junit "$results" pytest build/pytest.xml
+  fi
+  tools/results.py check "$results" install -- tests/install/run.sh build/release
+fi
+
+[[ -n ${RESULTS:-} ]] || tools/results.py summary "$results"
