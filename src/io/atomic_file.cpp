@@ -65,8 +65,9 @@ std::optional<std::filesystem::path> follow_links(std::filesystem::path path) {
 std::filesystem::path temporary_name(const std::filesystem::path& target, std::random_device& random) {
   char suffix[32];
   std::snprintf(suffix, sizeof(suffix), ".%08x%08x.tmp", random(), random());
-  const std::string name = target.filename().string();
-  return target.parent_path() / ("." + name.substr(0, 100) + suffix);
+  std::string name = ".";
+  name.append(target.filename().string(), 0, 100).append(suffix);
+  return target.parent_path() / name;
 }
 
 }  // namespace

@@ -1,0 +1,136 @@
+#include "blum/io/mesh_io.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <new>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "blum/core/error.hpp"
+#include "blum/geometry/weld.hpp"
+#include "io/mesh_builder.hpp"
+#include "io/whole_file.hpp"
+
+namespace blum {
+namespace {
+
+struct FormatName {
+  MeshFormat format;
+  std::string_view name;
+  std::string_view extension;
+};
+constexpr std::array<FormatName, 4> formats = {{{MeshFormat::obj, "OBJ", ".obj"},
+                                                {MeshFormat::off, "OFF", ".off"},
+                                                {MeshFormat::stl, "STL", ".stl"},
+                                                {MeshFormat::ply, "PLY", ".ply"}}};
+
+MeshFile parse(std::string_view content, MeshFormat format, std::string_view name) {
+  switch (format) {
+    case MeshFormat::obj:
+      return read_obj(content, name);
+    case MeshFormat::off:
+      return read_off(content, name);
+    case MeshFormat::stl:
+      return read_stl(content, name);
+    case MeshFormat::ply:
+      return read_ply(content, name);
+  }
+  throw InvalidOption("unknown mesh format");
+}
+
+void apply_weld(MeshFile& file, const MeshReadOptions& options) {
+  const bool wanted = options.weld.has_value() || file.info.format == MeshFormat::stl;
+  if (!wanted) return;
+  const std::size_t before = file.mesh.vertices.size();
+  file.mesh = weld(file.mesh, options.weld.value_or(0.0));
+  file.info.welded = true;
+  file.info.merged_vertices = before - file.mesh.vertices.size();
+}
+
+}  // namespace
+
+std::optional<MeshFormat> mesh_format(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const FormatName& entry : formats) {
+    if (extension == entry.extension) return entry.format;
+  }
+  return std::nullopt;
+}
+
+std::string_view to_string(MeshFormat format) {
+  return formats[static_cast<std::size_t>(format)].name;
+}
+
+MeshFile read_mesh_file(std::span<const std::byte> data, MeshFormat format, const MeshReadOptions& options,
+                        std::string_view name) {
+  try {
+    MeshFile file = parse({reinterpret_cast<const char*>(data.data()), data.size()}, format, name);
+    apply_weld(file, options);
+    return file;
+  } catch (const std::bad_alloc&) {
+    throw OutOfMemory("not enough memory to read '" + std::string(name) + "' of " + std::to_string(data.size()) +
+                      " bytes");
+  }
+}
+
+MeshFile read_mesh_file(const std::filesystem::path& path, const MeshReadOptions& options) {
+  const auto format = mesh_format(path);
+  if (!format) {
+    throw FileError("cannot tell the mesh format of '" + path.string() +
+                    "': its name must end in .obj, .off, .stl or .ply");
+  }
+  const FileBytes content = read_whole_file(path);
+  return read_mesh_file(content.span(), *format, options, path.string());
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
+  return read_mesh_file(path, options).mesh;
+}
+
+TriangleMesh read_mesh(std::span<const std::byte> data, MeshFormat format, const MeshReadOptions& options,
+                       std::string_view name) {
+  return read_mesh_file(data, format, options, name).mesh;
+}
+
+void MeshBuilder::add_face(std::span<const std::uint32_t> corners, std::size_t where) {
+  const std::size_t count = corners.size();
+  if (count == 3) return add_triangle({corners[0], corners[1], corners[2]}, where);
+  for (const std::uint32_t index : corners) note(index, where);
+  polygons_.push_back({mesh_.triangles.size(), corners_.size(), count});
+  corners_.insert(corners_.end(), corners.begin(), corners.end());
+  mesh_.triangles.resize(mesh_.triangles.size() + count - 2);
+  extra_triangles_ += count - 3;
+}
+
+std::optional<MeshBuilder::BadIndex> MeshBuilder::bad_index() const {
+  if (index_end_ <= mesh_.vertices.size()) return std::nullopt;
+  return BadIndex{static_cast<std::uint32_t>(index_end_ - 1), index_where_};
+}
+
+MeshFile MeshBuilder::finish(MeshFormat format, bool binary) {
+  MeshFile file;
+  file.info = {.format = format,
+               .binary = binary,
+               .vertices = mesh_.vertices.size(),
+               .faces = face_count(),
+               .polygons = polygons_.size()};
+  const std::span<Triangle> triangles = mesh_.triangles;
+  for (const Polygon& polygon : polygons_) {
+    const bool proper = cut_polygon(
+        mesh_.vertices, std::span<const std::uint32_t>(corners_).subspan(polygon.first_corner, polygon.corners),
+        triangles.subspan(polygon.first_triangle, polygon.corners - 2));
+    file.info.fan_polygons += proper ? 0 : 1;
+  }
+  if (mesh_.triangles.empty() && mesh_.segments.empty() && mesh_.points.empty()) {
+    mesh_.points.resize(mesh_.vertices.size());
+    std::iota(mesh_.points.begin(), mesh_.points.end(), 0U);
+  }
+  file.mesh = std::move(mesh_);
+  return file;
+}
+
+}  // namespace blum
