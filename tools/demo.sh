@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# `make demo`: the main job end to end, on a shape that Blum generates.
+#   tools/demo.sh BLUM_PROGRAM OUTPUT_FOLDER
+set -euo pipefail
+
+blum=$1
+out=$2
+mkdir -p "$out"
+
+step() {
+  echo "demo: $*"
+  "$@"
+}
+step "$blum" make torus-knot -o "$out/knot.ply"
+step "$blum" info "$out/knot.ply"
+step "$blum" field "$out/knot.ply" -o "$out/knot.nrrd" --resolution 128 --json "$out/knot.json"
+step "$blum" slice "$out/knot.nrrd" -o "$out/distance.png" --axis z --show distance
+step "$blum" slice "$out/knot.nrrd" -o "$out/sites.png" --axis z --show sites
+
+cat <<END
+
+demo: done. In $out:
+  knot.ply        the shape: a torus knot
+  knot.nrrd       its signed distance on a grid (3D Slicer, ParaView, SimpleITK, pynrrd open it)
+  knot.site.nrrd  the closest site at every node
+  knot.json       what was computed, and how fast
+  distance.png    a slice through the distance, with contour lines
+  sites.png       the same slice, one colour per Voronoi region
+END

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Runs the tests under sanitizers.
+#   tools/sanitize.sh asan|tsan
+# asan: AddressSanitizer and UndefinedBehaviorSanitizer, every test but those labelled slow.
+# tsan: ThreadSanitizer over std::thread, the tests of the layers that run threads.
+# With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+preset=$1
+tools/setup.sh --tests
+results=${RESULTS:-build/results/$preset}
+[[ -n ${RESULTS:-} ]] || rm -rf "$results"
+
+case $preset in
+  asan)
+    targets=()
+    selection=(--label-exclude slow)
+    # A failed allocation must reach Blum's own handling as it does without the sanitizer.
+    export ASAN_OPTIONS=allocator_may_return_null=1:detect_stack_use_after_return=1
+    export UBSAN_OPTIONS=print_stacktrace=1
+    ;;
+  tsan)
+    targets=(-- test_core test_field)
+    selection=(--label-exclude slow --tests-regex '^test_(core|field)\.')
+    export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
+    ;;
+  *)
+    echo "sanitize: asan or tsan, not $preset" >&2
+    exit 2
+    ;;
+esac
+
+tools/results.py check "$results" "$preset-build" -- tools/build.sh "$preset" -DBLUM_CLI=OFF "${targets[@]}"
+if [[ -f build/$preset/build.ninja ]]; then
+  tools/ctest.sh "$results" "$preset" "build/$preset" "${selection[@]}"
+fi
+[[ -n ${RESULTS:-} ]] || tools/results.py summary "$results"
