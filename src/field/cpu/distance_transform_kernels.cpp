@@ -64,7 +64,7 @@ HWY_INLINE V closer(V x, V left, V right) {
   const hn::RebindToUnsigned<RowTag> du;
   const auto to_left = hn::BitCast(du, hn::Sub(x, left));
   const auto to_right = hn::BitCast(du, hn::Sub(right, x));
-  return hn::IfThenElse(hn::RebindMask(d, hn::Le(to_left, to_right)), left, right);
+  return hn::IfThenElse(hn::RebindMask(d, hn::Lt(to_right, to_left)), right, left);
 }
 
 HWY_INLINE auto as_lanes(std::uint32_t value) {
@@ -337,7 +337,7 @@ class Sweep {
   using VI = hn::Vec<DI>;
   using DF = hn::Rebind<float, D>;
   using Cost = Costs<T>;
-  static constexpr bool one_lane = HWY_MAX_LANES_D(D) == 1;
+  static constexpr bool one_lane = hn::MaxLanes(D()) == 1;
 
  public:
   /// @param lane  of the columns, that the vector starts at.

@@ -1,0 +1,68 @@
+// Blum: exact Euclidean distance and feature transforms of voxel images. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/field/field.hpp"
+#include "blum/grid/voxel_image.hpp"
+
+namespace blum {
+
+/// Which voxels of an image are selected. Voxels that are not a number never are.
+struct LabelSelection {
+  enum class Rule : std::uint8_t {
+    nonzero,   ///< value != 0
+    label,     ///< value == label, compared exactly
+    threshold  ///< value >= threshold, compared exactly
+  };
+  Rule rule = Rule::nonzero;
+  std::int64_t label = 0;  ///< for Rule::label
+  double threshold = 0;    ///< for Rule::threshold, in image values; not NaN
+
+  [[nodiscard]] static constexpr LabelSelection of_label(std::int64_t value) { return {Rule::label, value, 0}; }
+  [[nodiscard]] static constexpr LabelSelection at_least(double value) { return {Rule::threshold, 0, value}; }
+};
+
+struct DistanceTransformOptions {
+  LabelSelection selection = {};
+  /// Signed: to the nearest voxel of the other kind, negative at selected voxels.
+  /// Unsigned: to the nearest selected voxel, 0 at selected voxels.
+  bool is_signed = true;
+  /// Half-width of a narrow band, > 0, in the units of the image's spacing. Voxels whose distance is larger get +-band
+  /// and no site. Unset: the full grid.
+  std::optional<double> band = {};
+};
+
+/// Exact Euclidean distance and closest voxel at every voxel of an image, from voxel centre to voxel centre, as
+/// scipy.ndimage.distance_transform_edt(mask, sampling=spacing, return_indices=True) defines them.
+///
+/// @param image  must pass validate(image).
+/// @return       a field on image.grid; site ids are linear indices of voxels (SiteIds::voxels); the sign rule is
+///               `label`, or `none` when unsigned. Distances have the units of the spacing. Where the squared spacings
+///               are small multiples of a common unit (all equal, say, or whole numbers), squared distances are exact
+///               integers, and distances are their correctly rounded roots times that unit; else they are computed in
+///               double. Among voxels at the same computed distance the smallest linear index wins. The same bytes for
+///               any number of threads.
+/// @throws InvalidImage (also when no voxel is selected, or, signed, when every voxel is), InvalidOption, OutOfMemory,
+/// Cancelled.
+/// Cost: about O(voxels log(side)), at worst another factor of two; 8 bytes per voxel for the result and 1/8 byte, plus
+/// a few MiB per thread, beside it.
+/// Method: one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012); instead of lower envelopes the passes
+/// along y and z use that the closest row moves monotonically along a column (Aggarwal 1987), many columns at a time.
+[[nodiscard]] Field distance_transform(const VoxelImage& image, const DistanceTransformOptions& options = {},
+                                       const Context& context = {});
+
+/// The transforms of several selections (labels, thresholds) of one image, in their order; each equals, byte for byte,
+/// distance_transform with that selection. options.selection is ignored. The image is checked once and working memory
+/// is shared; the results take 8 bytes per voxel and selection.
+/// @throws as distance_transform.
+[[nodiscard]] std::vector<Field> distance_transforms(const VoxelImage& image,
+                                                     std::span<const LabelSelection> selections,
+                                                     const DistanceTransformOptions& options = {},
+                                                     const Context& context = {});
+
+}  // namespace blum
