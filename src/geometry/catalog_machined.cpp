@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "blum/geometry/generators.hpp"
 #include "geometry/catalog_parts.hpp"
 
@@ -62,6 +60,92 @@ ShapeInfo bodies() {
           [](const ShapeParameters& p) -> Betti { return {{Values{p}.whole("count"), 0, 0}}; }};
 }
 
+ShapeInfo wedge() {
+  return {"wedge",
+          "a triangular prism with one sharp edge",
+          {{"angle", "between the faces that meet in the sharp edge, in degrees", 30, 1e-6, 179.999, false},
+           length_parameter("length", "of those faces", 1),
+           length_parameter("width", "of the sharp edge", 1)},
+          [](const ShapeParameters& p) {
+            const Values v{p};
+            return make_wedge({v.real("angle"), v.real("length"), v.real("width")});
+          },
+          always(1, 0, 0)};
+}
+
+ShapeInfo star() {
+  return {
+      "star",
+      "an extruded star",
+      {count_parameter("spikes", "number of spikes", 5, 2, 2000), length_parameter("outer_radius", "of the tips", 1),
+       length_parameter("inner_radius", "of the corners between, below outer_radius", 0.4),
+       length_parameter("thickness", "along z", 0.3)},
+      [](const ShapeParameters& p) {
+        const Values v{p};
+        return make_star({v.whole("spikes"), v.real("outer_radius"), v.real("inner_radius"), v.real("thickness")});
+      },
+      always(1, 0, 0)};
+}
+
+ShapeInfo plate() {
+  return {
+      "plate",
+      "a plate with a grid of round holes",
+      {count_parameter("holes_x", "holes along x", 3, 0, 3000), count_parameter("holes_y", "holes along y", 2, 0, 3000),
+       length_parameter("pitch", "between hole centres", 1), length_parameter("hole_radius", "below pitch / 2", 0.3),
+       length_parameter("thickness", "along z", 0.25),
+       count_parameter("hole_segments", "sides of each hole, a multiple of 4", 32, 4, 100000)},
+      [](const ShapeParameters& p) {
+        const Values v{p};
+        return make_plate({v.whole("holes_x"), v.whole("holes_y"), v.real("pitch"), v.real("hole_radius"),
+                           v.real("thickness"), v.whole("hole_segments")});
+      },
+      [](const ShapeParameters& p) -> Betti {
+        const Values v{p};
+        return {{1, std::int64_t{v.whole("holes_x")} * v.whole("holes_y"), 0}};
+      }};
+}
+
+ShapeInfo bracket() {
+  return {
+      "bracket",
+      "an L-shaped bracket with holes and ribs",
+      {length_parameter("length", "of the foot, along x", 3), length_parameter("height", "of the wall, along z", 3),
+       length_parameter("width", "along y", 3), length_parameter("thickness", "of foot and wall", 0.4),
+       count_parameter("holes", "holes in the foot, and as many in the wall", 2, 0, 10000),
+       length_parameter("hole_radius", "of each hole", 0.3),
+       count_parameter("ribs", "1: ribs between foot and wall; 0: none", 1, 0, 1),
+       count_parameter("hole_segments", "sides of each hole, a multiple of 4", 32, 4, 100000)},
+      [](const ShapeParameters& p) {
+        const Values v{p};
+        return make_bracket({v.real("length"), v.real("height"), v.real("width"), v.real("thickness"), v.whole("holes"),
+                             v.real("hole_radius"), v.whole("ribs") == 1, v.whole("hole_segments")});
+      },
+      [](const ShapeParameters& p) -> Betti { return {{1, 2 * Values{p}.whole("holes"), 0}}; }};
+}
+
+ShapeInfo gear() {
+  return {
+      "gear",
+      "a spur gear or drive wheel with a bore and round openings",
+      {count_parameter("teeth", "number of teeth", 20, 4, 2000), length_parameter("root_radius", "between teeth", 0.85),
+       length_parameter("tip_radius", "above root_radius", 1),
+       length_or_zero("bore_radius", "of the bore; 0: none", 0.2),
+       count_parameter("openings", "round holes between bore and teeth", 5, 0, 1000),
+       length_parameter("opening_radius", "of each opening", 0.13), length_parameter("thickness", "along z", 0.3),
+       count_parameter("hole_segments", "sides of each hole", 32, 3, 10000)},
+      [](const ShapeParameters& p) {
+        const Values v{p};
+        return make_gear({v.whole("teeth"), v.real("root_radius"), v.real("tip_radius"), v.real("bore_radius"),
+                          v.whole("openings"), v.real("opening_radius"), v.real("thickness"),
+                          v.whole("hole_segments")});
+      },
+      [](const ShapeParameters& p) -> Betti {
+        const Values v{p};
+        return {{1, v.whole("openings") + (v.real("bore_radius") > 0 ? 1 : 0), 0}};
+      }};
+}
+
 ShapeInfo menger() {
   return {"menger",
           "the Menger sponge",
@@ -97,7 +181,8 @@ ShapeInfo fan_part() {
 }  // namespace
 
 std::vector<ShapeInfo> machined_shapes() {
-  return {box(), void_cube(), nested_shells(), bodies(), menger(), fan_part()};
+  return {box(),       wedge(),         star(),   plate(),  bracket(), gear(),
+          void_cube(), nested_shells(), bodies(), menger(), fan_part()};
 }
 
 }  // namespace blum::detail
