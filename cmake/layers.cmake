@@ -25,6 +25,8 @@ function(blum_add_layer name)
                              PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_features(blum_${name} PUBLIC cxx_std_20)
   blum_set_warnings(blum_${name})
+  # Nothing reads errno or the floating-point flags; without them square roots and selections vectorise.
+  target_compile_options(blum_${name} PRIVATE "$<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-fno-math-errno;-fno-trapping-math>")
   foreach(layer IN LISTS lower)
     target_link_libraries(blum_${name} PUBLIC blum_${layer})
   endforeach()

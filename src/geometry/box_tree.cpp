@@ -1,0 +1,44 @@
+#include "geometry/box_tree.hpp"
+
+#include <algorithm>
+
+#include "blum/core/parallel.hpp"
+
+namespace blum {
+
+BLUM_LANE_LOOPS void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double x = std::max(std::max(block.lower[0][i] - query.x, query.x - block.upper[0][i]), 0.0);
+    const double y = std::max(std::max(block.lower[1][i] - query.y, query.y - block.upper[1][i]), 0.0);
+    const double z = std::max(std::max(block.lower[2][i] - query.z, query.z - block.upper[2][i]), 0.0);
+    out[i] = x * x + y * y + z * z;
+  }
+}
+
+BoxTree make_box_tree(std::span<const Box3> leaves, const Context& context) {
+  BoxTree tree;
+  std::vector<Box3> boxes(leaves.begin(), leaves.end());
+  while (!boxes.empty()) {
+    const std::size_t count = (boxes.size() + lanes - 1) / lanes;
+    std::vector<BoxBlock>& blocks = tree.levels.emplace_back(count);
+    std::vector<Box3> parents(count);
+    parallel_for(context, count, 4096, "", [&](const WorkRange& range) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          const std::size_t child = i * lanes + lane;
+          const Box3 box = child < boxes.size() ? boxes[child] : Box3{};
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            blocks[i].lower[axis][lane] = box.lower[axis];
+            blocks[i].upper[axis][lane] = box.upper[axis];
+          }
+          parents[i].extend(box);
+        }
+      }
+    });
+    if (count == 1) break;
+    boxes = std::move(parents);
+  }
+  return tree;
+}
+
+}  // namespace blum

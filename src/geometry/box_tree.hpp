@@ -1,0 +1,37 @@
+// Blum: trees of boxes with eight children per node. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "geometry/simd.hpp"
+
+namespace blum {
+
+/// Eight boxes, axis by axis. An empty box (+inf, -inf) is infinitely far from everything.
+struct alignas(64) BoxBlock {
+  double lower[3][lanes];
+  double upper[3][lanes];
+};
+
+/// Squared distances from a point to eight boxes; 0 inside.
+void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]);
+
+/// A complete tree over consecutive leaves: block i of level k holds the boxes of blocks (or leaves, for k = 0)
+/// 8 i ... 8 i + 7 of the level below. The last level has one block.
+struct BoxTree {
+  std::vector<std::vector<BoxBlock>> levels;
+
+  [[nodiscard]] bool is_empty() const { return levels.empty(); }
+  [[nodiscard]] int top() const { return static_cast<int>(levels.size()) - 1; }
+};
+
+/// @param leaves  one box per leaf.
+[[nodiscard]] BoxTree make_box_tree(std::span<const Box3> leaves, const Context& context);
+
+}  // namespace blum
