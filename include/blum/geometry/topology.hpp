@@ -26,7 +26,7 @@ struct Orientation {
   std::size_t nonmanifold_edges = 0;   ///< edges with more than two triangles
   std::size_t inconsistent_edges = 0;  ///< edges with two triangles that both traverse it in the same direction
   std::size_t components = 0;          ///< sets of triangles connected through shared edges
-  double signed_volume = 0;            ///< of all triangles, in cubic mesh units; the solid's where closed && oriented
+  double signed_volume = 0;            ///< of the solid, in cubic mesh units; 0 unless closed && oriented
 };
 
 /// Closedness and orientation alone, without the rest of topology(). Self-intersections are not looked for.

@@ -1,0 +1,267 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/orient2d.hpp"
+#include "geometry/shells.hpp"
+
+namespace blum::detail {
+namespace {
+
+constexpr std::size_t probes_per_shell = 4;
+
+/// A point of a shell that we look outwards from.
+struct Query {
+  Vec3d point;  ///< permuted: the ray goes along z
+  std::uint32_t shell = 0;
+};
+
+/// A triangle of one shell above a query of another one.
+struct Crossing {
+  std::uint32_t inner = 0;
+  std::uint32_t outer = 0;
+  std::int32_t direction = 0;  ///< 1 where the ray leaves through the triangle, -1 where it enters
+};
+
+/// Puts the axis of shortest extent last, keeping the handedness: rays along it meet the fewest shells.
+struct Frame {
+  std::size_t first = 0;
+  explicit Frame(const Vec3d& extent) {
+    std::size_t shortest = 0;
+    for (std::size_t axis = 1; axis < 3; ++axis) {
+      if (extent[axis] < extent[shortest]) shortest = axis;
+    }
+    first = (shortest + 1) % 3;
+  }
+  [[nodiscard]] Vec3d operator()(const Vec3d& p) const { return {p[first], p[(first + 1) % 3], p[(first + 2) % 3]}; }
+  [[nodiscard]] Box3 operator()(const Box3& b) const { return {(*this)(b.lower), (*this)(b.upper)}; }
+};
+
+/// Queries binned by x and y; within a bin sorted by z.
+class QueryGrid {
+ public:
+  QueryGrid(std::vector<Query> queries, const Box3& bounds) : queries_(std::move(queries)), bounds_(bounds) {
+    const double wanted = std::ceil(std::sqrt(static_cast<double>(queries_.size())));
+    side_ = static_cast<std::int64_t>(std::clamp(wanted, 1.0, 1024.0));
+    std::sort(queries_.begin(), queries_.end(), [&](const Query& a, const Query& b) {
+      const std::int64_t bin_a = bin(a.point);
+      const std::int64_t bin_b = bin(b.point);
+      if (bin_a != bin_b) return bin_a < bin_b;
+      return a.point.z != b.point.z ? a.point.z < b.point.z : a.shell < b.shell;
+    });
+    start_.assign(static_cast<std::size_t>(side_ * side_) + 1, 0);
+    for (const Query& q : queries_) ++start_[static_cast<std::size_t>(bin(q.point)) + 1];
+    for (std::size_t b = 0; b + 1 < start_.size(); ++b) start_[b + 1] += start_[b];
+  }
+
+  /// Calls visit(query) for those in bins that the x and y range of the first box touches, with z in the range of the
+  /// second; stops when it returns true.
+  template <class Visit>
+  bool visit_in(const Box3& columns, const Box3& heights, Visit visit) const {
+    const std::int64_t x1 = cell(columns.upper.x, 0);
+    const std::int64_t y1 = cell(columns.upper.y, 1);
+    for (std::int64_t y = cell(columns.lower.y, 1); y <= y1; ++y) {
+      for (std::int64_t x = cell(columns.lower.x, 0); x <= x1; ++x) {
+        const auto b = static_cast<std::size_t>(y * side_ + x);
+        const Query* end = queries_.data() + start_[b + 1];
+        const Query* query = queries_.data() + start_[b];
+        query = std::lower_bound(query, end, heights.lower.z, [](const Query& q, double z) { return q.point.z < z; });
+        for (; query != end && query->point.z <= heights.upper.z; ++query) {
+          if (visit(*query)) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] std::int64_t cell(double value, std::size_t axis) const {
+    const double extent = bounds_.upper[axis] - bounds_.lower[axis];
+    if (!(extent > 0)) return 0;
+    const double at = std::floor((value - bounds_.lower[axis]) / extent * static_cast<double>(side_));
+    return static_cast<std::int64_t>(std::clamp(at, 0.0, static_cast<double>(side_ - 1)));
+  }
+  [[nodiscard]] std::int64_t bin(const Vec3d& p) const { return cell(p.y, 1) * side_ + cell(p.x, 0); }
+
+  std::vector<Query> queries_;
+  Box3 bounds_;
+  std::int64_t side_ = 1;
+  std::vector<std::uint32_t> start_;
+};
+
+/// Winding number of a triangle's projection around a point's. The point counts as moved by infinitely little along +x
+/// and by infinitely less along +y: no point is on an edge then, and neighbouring triangles agree about every edge.
+int projected_winding(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
+  int winding = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d& a = corners[k];
+    const Vec3d& b = corners[k == 2 ? 0 : k + 1];
+    const bool rises = a.y <= p.y;
+    if (rises == (b.y <= p.y)) continue;
+    const Vec3d& lower = rises ? a : b;
+    const Vec3d& upper = rises ? b : a;
+    if (orient2d({lower.x, lower.y}, {upper.x, upper.y}, {p.x, p.y}) > 0) winding += rises ? 1 : -1;
+  }
+  return winding;
+}
+
+struct Height {
+  bool is_above = false;
+  bool is_certain = true;
+};
+
+/// Whether a triangle that turns counter-clockwise (winding 1) or clockwise (-1) from above lies above a point.
+Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, int winding) {
+  const Vec3d a = corners[0] - p;
+  const Vec3d b = corners[1] - p;
+  const Vec3d c = corners[2] - p;
+  const auto magnitude = [](const Vec3d& v) { return Vec3d{std::abs(v.x), std::abs(v.y), std::abs(v.z)}; };
+  const Vec3d ma = magnitude(a);
+  const Vec3d mb = magnitude(b);
+  const Vec3d mc = magnitude(c);
+  const double determinant = dot(a, cross(b, c));
+  const double permanent =
+      ma.x * (mb.y * mc.z + mb.z * mc.y) + ma.y * (mb.z * mc.x + mb.x * mc.z) + ma.z * (mb.x * mc.y + mb.y * mc.x);
+  return {determinant * winding > 0, std::abs(determinant) > 1e-15 * permanent};
+}
+
+class Nesting {
+ public:
+  Nesting(const MeshView& mesh, ShellSet& set, const Context& context)
+      : mesh_(mesh), set_(set), context_(context), bounds_(total_bounds(set)), frame_(bounds_.size()) {
+    bounds_ = frame_(bounds_);
+    collect_probes();
+  }
+
+  void run() {
+    std::vector<std::uint32_t> pending(set_.shells.size());
+    for (std::uint32_t s = 0; s < pending.size(); ++s) pending[s] = s;
+    for (std::size_t round = 0; round < probes_per_shell && !pending.empty(); ++round) {
+      pending = ask(pending, round, round + 1 == probes_per_shell);
+    }
+    set_depths();
+  }
+
+ private:
+  static Box3 total_bounds(const ShellSet& set) {
+    Box3 box;
+    for (const Shell& shell : set.shells) box.extend(shell.bounds);
+    return box;
+  }
+
+  /// Vertices of each shell: the corners of its first triangle and one of its last.
+  void collect_probes() {
+    probes_.resize(set_.shells.size());
+    std::vector<bool> is_seen(set_.shells.size(), false);
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const std::uint32_t shell = set_.of_triangle[t];
+      if (shell == no_component) continue;
+      const Triangle& corner = mesh_.triangles[t];
+      if (!is_seen[shell]) probes_[shell] = {corner[0], corner[1], corner[2], corner[0]};
+      is_seen[shell] = true;
+      probes_[shell][3] = corner[0];
+    }
+  }
+
+  /// Finds the crossings above one vertex of each of these shells. Returns those for which rounding left a doubt,
+  /// having kept none of their crossings, unless this is the last try.
+  std::vector<std::uint32_t> ask(const std::vector<std::uint32_t>& inner, std::size_t round, bool is_last) {
+    std::vector<Query> queries;
+    for (const std::uint32_t s : inner) queries.push_back({frame_(mesh_.vertices[probes_[s][round]]), s});
+    const QueryGrid grid(std::move(queries), bounds_);
+    const std::vector<bool> may_contain = find_candidates(grid);
+    std::vector<bool> is_doubtful(set_.shells.size(), false);
+    std::vector<Crossing> found;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (t % 65536 == 0) throw_if_cancelled(context_);
+      const std::uint32_t outer = set_.of_triangle[t];
+      if (outer == no_component || !may_contain[outer]) continue;
+      std::array<Vec3d, 3> corners;
+      Box3 box;
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = frame_(mesh_.vertices[mesh_.triangles[t][k]]);
+        box.extend(corners[k]);
+      }
+      Box3 heights = frame_(set_.shells[outer].bounds);
+      heights.upper.z = box.upper.z;
+      grid.visit_in(box, heights, [&](const Query& query) {
+        if (query.shell == outer || !is_within(frame_(set_.shells[outer].bounds), query.point)) return false;
+        const int winding = projected_winding(corners, query.point);
+        if (winding == 0) return false;
+        const Height height = compare_height(corners, query.point, winding);
+        if (!height.is_certain) is_doubtful[query.shell] = true;
+        if (height.is_above) found.push_back({query.shell, outer, winding});
+        return false;
+      });
+    }
+    std::vector<std::uint32_t> doubtful;
+    for (const std::uint32_t s : inner) {
+      if (!is_last && is_doubtful[s]) doubtful.push_back(s);
+    }
+    for (const Crossing& crossing : found) {
+      if (is_last || !is_doubtful[crossing.inner]) crossings_.push_back(crossing);
+    }
+    return doubtful;
+  }
+
+  static bool is_within(const Box3& box, const Vec3d& p) {
+    return box.lower.x <= p.x && p.x <= box.upper.x && box.lower.y <= p.y && p.y <= box.upper.y;
+  }
+
+  /// The shells whose box holds a query of another shell.
+  [[nodiscard]] std::vector<bool> find_candidates(const QueryGrid& grid) const {
+    std::vector<bool> result(set_.shells.size(), false);
+    for (std::uint32_t s = 0; s < result.size(); ++s) {
+      const Box3 box = frame_(set_.shells[s].bounds);
+      result[s] =
+          grid.visit_in(box, box, [&](const Query& query) { return query.shell != s && is_within(box, query.point); });
+    }
+    return result;
+  }
+
+  void set_depths() {
+    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
+      return a.inner != b.inner ? a.inner < b.inner : a.outer < b.outer;
+    });
+    std::vector<Crossing> containments;  // direction holds the winding number
+    for (const Crossing& crossing : crossings_) {
+      const bool is_same = !containments.empty() && containments.back().inner == crossing.inner &&
+                           containments.back().outer == crossing.outer;
+      if (is_same) {
+        containments.back().direction += crossing.direction;
+      } else {
+        containments.push_back(crossing);
+      }
+    }
+    for (const Crossing& c : containments) {
+      if (c.direction != 0) ++set_.shells[c.inner].depth;
+    }
+    for (const Crossing& c : containments) {
+      if (c.direction == 0) continue;
+      std::int64_t& parent = set_.shells[c.inner].parent;
+      const bool is_deeper =
+          parent < 0 || set_.shells[c.outer].depth > set_.shells[static_cast<std::size_t>(parent)].depth;
+      if (is_deeper) parent = c.outer;
+    }
+  }
+
+  const MeshView& mesh_;
+  ShellSet& set_;
+  const Context& context_;
+  Box3 bounds_;
+  Frame frame_;
+  std::vector<std::array<std::uint32_t, probes_per_shell>> probes_;
+  std::vector<Crossing> crossings_;
+};
+
+}  // namespace
+
+void nest_shells(const MeshView& mesh, ShellSet& set, const Context& context) {
+  if (set.shells.size() < 2) return;
+  Nesting(mesh, set, context).run();
+}
+
+}  // namespace blum::detail

@@ -1,0 +1,57 @@
+// Blum: components of a surface and how its closed ones lie in each other. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum::detail {
+
+inline constexpr std::uint32_t no_component = 0xffffffff;
+
+/// Whether a triangle names a vertex twice: such triangles bound nothing and are left out of all topology.
+[[nodiscard]] inline bool names_vertex_twice(const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// The triangles that use one edge.
+struct EdgeTally {
+  std::uint32_t count = 0;     ///< uses
+  std::int32_t balance = 0;    ///< uses from the smaller to the larger vertex, minus the others
+  std::uint32_t triangle = 0;  ///< one that uses it
+
+  [[nodiscard]] bool is_consistent() const { return count == 2 && balance == 0; }
+};
+[[nodiscard]] std::vector<EdgeTally> tally_edges(const MeshView& mesh, const SiteTable& sites);
+
+/// Sets of triangles connected through edges, by their smallest triangle.
+struct SurfaceComponents {
+  std::uint32_t count = 0;
+  std::vector<std::uint32_t> of_triangle;  ///< no_component for triangles that name a vertex twice
+  std::vector<std::uint8_t> is_closed;     ///< every edge has exactly two triangles
+  std::vector<std::uint8_t> is_shell;      ///< closed, and consistently oriented
+};
+[[nodiscard]] SurfaceComponents find_components(const MeshView& mesh, const SiteTable& sites,
+                                                std::span<const EdgeTally> edges);
+
+/// The closed, consistently oriented components, and which triangles form them.
+struct ShellSet {
+  std::vector<Shell> shells;
+  std::vector<std::uint32_t> of_triangle;  ///< shell of each triangle, or no_component
+};
+
+/// All but the Euler characteristic and genus of each shell.
+/// Cost: linear, plus for each shell the triangles above one of its vertices that belong to shells around that vertex.
+[[nodiscard]] ShellSet find_shells(const MeshView& mesh, const SurfaceComponents& components, const Context& context);
+
+/// Sets depth and parent: for a vertex of each shell, the winding numbers of the others around it, by counting the
+/// triangles that a ray from it crosses.
+void nest_shells(const MeshView& mesh, ShellSet& set, const Context& context);
+
+}  // namespace blum::detail
