@@ -5,15 +5,11 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-tools/setup.sh --tests --fuzz
-results=${RESULTS:-build/results/configurations}
-[[ -n ${RESULTS:-} ]] || rm -rf "$results"
-
 # One configuration: name, then CMake options. Builds everything, and runs ctest where there are tests.
 configuration() {
   local name=$1 folder=build/configurations/$1
   shift
-  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBLUM_WERROR=ON "$@" || return
+  cmake -S . -B "$folder" -G Ninja --no-warn-unused-cli -DCMAKE_BUILD_TYPE=Release -DBLUM_WERROR=ON "$@" || return
   cmake --build "$folder" --parallel "${JOBS:-$(nproc)}" || return
 }
 
@@ -40,6 +36,9 @@ with_tests() {
 
 case ${1:-} in
   '')
+    tools/setup.sh --tests --fuzz
+    results=${RESULTS:-build/results/configurations}
+    [[ -n ${RESULTS:-} ]] || rm -rf "$results"
     for name in compiler-alone compiler-alone-serial scalar serial clang; do
       tools/results.py check "$results" "configuration-$name" -- "$0" "$name"
     done

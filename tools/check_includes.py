@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""Checks who may include whom. Prints each line that breaks a rule, and exits with 1 where there is one.
+
+- A layer sees the public headers of lower layers and its own; its sources see their own internals besides.
+- io sees every layer; no layer sees io. Apps, examples and benchmarks see public headers and their own files only.
+- Public headers name nothing but the standard library and Blum.
+- One file starts threads (src/core/parallel.cpp); SIMD is in src/field/cpu and src/core/simd*; compression is in src/io.
+- field/cpu and field/cuda do not see each other.
+"""
+
+import pathlib
+import re
+import sys
+
+PROJECT = pathlib.Path(__file__).resolve().parent.parent
+LOWER = {
+    "core": set(),
+    "geometry": {"core"},
+    "grid": {"core", "geometry"},
+    "field": {"core", "geometry", "grid"},
+}
+for sibling in ("surface_map", "proximity", "voronoi"):
+    LOWER[sibling] = LOWER["field"] | {"field"}
+LOWER["medial_axis"] = LOWER["voronoi"] | {"voronoi"}
+LOWER["io"] = set(LOWER)
+
+STANDARD = re.compile(r"[a-z_]+")  # <vector>, <stop_token>: no dot, no slash
+SYSTEM = re.compile(r"(sys/\w+|unistd|fcntl|linux/\w+|sched)\.h")  # what the C++ standard library lacks; sources only
+STARTS_THREADS = {"thread", "future", "execution", "pthread.h", "omp.h"}
+INCLUDE = re.compile(r'^\s*#\s*include\s+(?:<([^>]+)>|"([^"]+)")')
+
+
+def layer_of(path: pathlib.PurePosixPath) -> str:
+    """The layer of include/blum/<layer>/... or src/<layer>/..."""
+    return path.parts[2] if path.parts[0] == "include" else path.parts[1]
+
+
+def third_party_rule(source: str, name: str) -> str | None:
+    """Why a source under src/ may not include <name>, a header outside of Blum; None where it may."""
+    if name in STARTS_THREADS or name.startswith("tbb/"):
+        # context.cpp asks for the number of cores.
+        allowed = source == "src/core/parallel.cpp" or (source == "src/core/context.cpp" and name == "thread")
+        return None if allowed else "only src/core/parallel.cpp starts threads"
+    if name.startswith("hwy/"):
+        allowed = source.startswith(("src/field/cpu/", "src/core/simd"))
+        return None if allowed else "SIMD belongs in src/field/cpu and src/core/simd*"
+    if name in ("zlib.h", "png.h"):
+        return None if source.startswith("src/io/") else "only src/io reads and writes compressed files"
+    if STANDARD.fullmatch(name) or SYSTEM.fullmatch(name):
+        return None
+    return "not a dependency of this layer"
+
+
+def blum_rule(source: pathlib.PurePosixPath, target: pathlib.PurePosixPath) -> str | None:
+    """Why `source` may not include the project's file `target`; None where it may."""
+    top = source.parts[0]
+    public = target.parts[0] == "include"
+    if top in ("apps", "examples", "bench", "python"):
+        return None if public or target.parts[0] == top else f"{top} sees public headers only"
+    if top == "tests":
+        return None
+    own = layer_of(source)
+    other = layer_of(target)
+    if not public and top == "include":
+        return "a public header sees public headers only"
+    if other != own and other not in LOWER.get(own, set()):
+        return f"{own} does not see {other}"
+    if not public and other != own:
+        return f"internals of {other} are its own"
+    back_ends = {source.parts[2:3], target.parts[2:3]}
+    if top == "src" and back_ends == {("cpu",), ("cuda",)}:
+        return "field/cpu and field/cuda do not see each other"
+    return None
+
+
+def resolve(source: pathlib.PurePosixPath, name: str) -> pathlib.PurePosixPath | None:
+    """The project's file that `name` stands for in `source`."""
+    places = [source.parent / name, pathlib.PurePosixPath("include") / name, pathlib.PurePosixPath("src") / name]
+    if source.parts[0] in ("tests", "bench"):
+        places.append(pathlib.PurePosixPath(source.parts[0]) / name)
+    if source.parts[0] == "apps":
+        places.append(pathlib.PurePosixPath(*source.parts[:2]) / name)
+    for place in places:
+        if (PROJECT / place).is_file():
+            return pathlib.PurePosixPath((PROJECT / place).resolve().relative_to(PROJECT).as_posix())
+    return None
+
+
+def check_line(source: pathlib.PurePosixPath, angled: str | None, quoted: str | None) -> str | None:
+    name = angled or quoted or ""
+    target = resolve(source, name) if quoted or name.startswith("blum/") else None
+    if target is not None:
+        return blum_rule(source, target)
+    if name.startswith("blum/"):
+        return "no such header"
+    if source.parts[0] == "include":
+        allowed = angled is not None and STANDARD.fullmatch(name) and name not in STARTS_THREADS
+        return None if allowed else "a public header names nothing but the standard library and Blum"
+    if source.parts[0] == "src":
+        return third_party_rule(source.as_posix(), name)
+    return None
+
+
+def main() -> int:
+    broken = 0
+    files = 0
+    for folder in ("include", "src", "apps", "examples", "bench", "tests"):
+        for path in sorted((PROJECT / folder).rglob("*")):
+            if path.suffix not in (".hpp", ".cpp", ".h", ".cu", ".cuh"):
+                continue
+            files += 1
+            source = pathlib.PurePosixPath(path.relative_to(PROJECT).as_posix())
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                match = INCLUDE.match(line)
+                reason = check_line(source, match[1], match[2]) if match else None
+                if reason:
+                    print(f"{source}:{number}: {match[1] or match[2]}: {reason}")
+                    broken += 1
+    print(f"check_includes: {files} files, {broken} includes that break a rule")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Checks the text of the project's files. Prints each place that breaks a rule, and exits with 1 where there is one.
+
+- No word that marks unfinished work, and no absolute path of some machine.
+- C++ and Python files have at most 600 lines; C++ headers open with what they are, their licence, and `#pragma once`.
+- No tabs (but in makefiles), no spaces at line ends, a line feed at the end.
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+PROJECT = pathlib.Path(__file__).resolve().parent.parent
+LONGEST = 600
+CODE = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".ts"}
+TEXT = CODE | {".txt", ".md", ".json", ".cff", ".in", ".yml", ".yaml", ".toml", ""}
+UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK|[Nn]ot implemented|[Ss]tub|[Pp]laceholder)\b")
+MACHINE_PATH = re.compile(r"(?<![\w.}/)<-])/(home|root|work|workspace|Users|mnt|scratch)/\w")
+
+
+def tracked_files() -> list[pathlib.Path]:
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    names = subprocess.run(command, cwd=PROJECT, check=True, capture_output=True, text=True).stdout.split("\0")
+    return [PROJECT / name for name in names if name and (PROJECT / name).is_file()]
+
+
+def line_problems(path: pathlib.Path, line: str) -> list[str]:
+    problems = []
+    if path.suffix in CODE and path != pathlib.Path(__file__).resolve() and UNFINISHED.search(line):
+        problems.append("marks unfinished work")
+    if MACHINE_PATH.search(line):
+        problems.append("names an absolute path of some machine")
+    if line != line.rstrip() and path.suffix != ".md":
+        problems.append("spaces at the end of the line")
+    if "\t" in line and path.name != "Makefile":
+        problems.append("a tab")
+    return problems
+
+
+def file_problems(path: pathlib.Path, text: str) -> list[str]:
+    problems = []
+    lines = text.split("\n")
+    if text and not text.endswith("\n"):
+        problems.append("no line feed at the end")
+    if path.suffix in {".cpp", ".hpp", ".py"} and len(lines) - 1 > LONGEST:
+        problems.append(f"{len(lines) - 1} lines; at most {LONGEST}")
+    if path.suffix == ".hpp":
+        if not re.match(r"// Blum: .*SPDX-License-Identifier: Apache-2\.0", " ".join(lines[:3]).replace(" // ", " ")):
+            problems.append("a header opens with `// Blum: <what it is>. SPDX-License-Identifier: Apache-2.0`")
+        if "-inl" not in path.name and "#pragma once" not in text:
+            problems.append("no #pragma once")
+    return problems
+
+
+def main() -> int:
+    broken = 0
+    files = 0
+    for path in tracked_files():
+        relative = path.relative_to(PROJECT)
+        inputs = ("tests/fuzz/corpus/", "tests/data/")  # hostile on purpose
+        if path.suffix not in TEXT or path.name == "LICENSE" or relative.as_posix().startswith(inputs):
+            continue
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
+        files += 1
+        found = [(0, problem) for problem in file_problems(path, text)]
+        for number, line in enumerate(text.split("\n"), 1):
+            found += [(number, problem) for problem in line_problems(path, line)]
+        for number, problem in found:
+            print(f"{relative}:{number}: {problem}" if number else f"{relative}: {problem}")
+        broken += len(found)
+    print(f"check_text: {files} files, {broken} problems")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# `make lint`: format, clang-tidy, shell scripts, layer rules, text rules and links, each counted as one check.
+#   tools/lint.sh [CHECK ...]   only these: format includes text links shell tidy
+# With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+# clang-tidy over the library, the tool and the examples; headers are checked where they are included.
+tidy() {
+  [[ -f build/release/compile_commands.json ]] || cmake --preset release >/dev/null
+  local files
+  mapfile -t files < <(python3 - <<'PYTHON'
+import json, pathlib
+here = pathlib.Path.cwd()
+commands = json.loads((here / "build/release/compile_commands.json").read_text())
+names = {pathlib.Path(command["file"]) for command in commands}
+print(*sorted(str(name.relative_to(here)) for name in names
+              if name.is_file() and any(name.is_relative_to(here / folder) for folder in ("src", "apps", "examples"))),
+      sep="\n")
+PYTHON
+  )
+  echo "clang-tidy: ${#files[@]} files"
+  printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "${JOBS:-$(nproc)}" clang-tidy-19 -p build/release --quiet \
+    --extra-arg=-Wno-unknown-warning-option 2>/dev/null
+}
+
+shell_scripts() {
+  mapfile -t files < <(git ls-files --cached --others --exclude-standard -- '*.sh' .ci/run)
+  shellcheck "${files[@]}"
+}
+
+run() {
+  case $1 in
+    format) tools/format.sh --check ;;
+    includes) tools/check_includes.py ;;
+    text) tools/check_text.py ;;
+    links) tools/check_links.py ;;
+    shell) shell_scripts ;;
+    tidy) tidy ;;
+    *)
+      echo "lint: unknown check $1" >&2
+      exit 2
+      ;;
+  esac
+}
+
+if [[ ${1:-} == --run ]]; then
+  run "$2"
+  exit
+fi
+results=${RESULTS:-build/results/lint}
+[[ -n ${RESULTS:-} ]] || rm -rf "$results"
+[[ $# -gt 0 ]] || set -- format includes text links shell tidy
+for name in "$@"; do
+  tools/results.py check "$results" "lint-$name" -- "$0" --run "$name"
+done
+[[ -n ${RESULTS:-} ]] || tools/results.py summary "$results"
