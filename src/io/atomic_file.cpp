@@ -162,16 +162,19 @@ void AtomicFile::write_through(const char* data, std::size_t size) {
   }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::finish() {
   if (descriptor_ < 0) throw FileError("cannot write '" + path_.string() + "': it is closed already");
   flush();
-  if (temporary_.empty()) {
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", errno);
-    return;
-  }
-  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail("write", errno);
+  if (!temporary_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) fail("write", errno);
   // Network file systems may report a full disk only here.
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", errno);
+  finished_ = true;
+}
+
+void AtomicFile::commit() {
+  if (!finished_) finish();
+  finished_ = false;
+  if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace", errno);
   temporary_.clear();
   // The file is there for every program from now on; that it also survives a power cut needs the directory on disk,

@@ -57,6 +57,8 @@ void write_field_nrrd(const std::filesystem::path& path, const Field& field, con
   }
   sink.write(distances, nrrd_header(ScalarType::f32, field.grid, metadata));
   sink.write(distances, distance_bytes(field));
+  distances.finish();
+  if (sites) sites->finish();
   throw_if_cancelled(context);
   if (sites) sites->commit();
   distances.commit();

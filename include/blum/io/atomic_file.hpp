@@ -33,6 +33,11 @@ class AtomicFile {
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
+  /// Brings everything that was written to the disk and closes it, so that commit() has no more to do than to rename:
+  /// for files that should appear together. May be called once, before commit(), which else does it.
+  /// @throws FileError as commit().
+  void finish();
+
   /// Makes the file appear under its name, with everything that was written. May be called once.
   /// @throws FileError when anything could not be written, now or before; the target is then as it was.
   void commit();
@@ -56,6 +61,7 @@ class AtomicFile {
   std::vector<char> buffer_;
   std::size_t size_ = 0;
   int descriptor_ = -1;
+  bool finished_ = false;  ///< by finish(), and not committed yet
 };
 
 }  // namespace blum
