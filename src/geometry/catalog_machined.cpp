@@ -170,7 +170,7 @@ ShapeInfo fan_part() {
   return {"fan_part",
           "a sector of a fan: curved and flat faces that meet in sharp edges, like a CAD model",
           {length_parameter("size", "of the whole", 1),
-           count_parameter("resolution", "parts of the smallest block; 9 gives about 13,000 triangles", 9, 1, 500)},
+           count_parameter("resolution", "parts of the smallest block; 8 gives 12,288 triangles", 8, 1, 500)},
           [](const ShapeParameters& p) {
             const Values v{p};
             return make_fan_part({v.real("size"), v.whole("resolution")});

@@ -180,7 +180,7 @@ TriangleMesh make_menger(const MengerOptions& options) {
 TriangleMesh make_fan_part(const FanPartOptions& options) {
   require_positive(options.size, "size");
   require_at_least(options.resolution, 1, "resolution");
-  require_triangle_count(160.0 * options.resolution * options.resolution);
+  require_triangle_count(192.0 * options.resolution * options.resolution);
   const int r = options.resolution;
   // Blocks: a hub, a foot plate and a blade with a step, in (radius, angle, height).
   Blocks blocks({4 * r, 6 * r, 3 * r});

@@ -37,6 +37,37 @@ bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& 
          (b_side == 0 && between(c, d, b));
 }
 
+/// @throws InvalidOption where two sides cross or touch other than in a common corner. Sides are swept by rising x.
+void require_simple(const Polygon& polygon) {
+  struct Side {
+    Point lower, upper;  // by (x, y)
+  };
+  std::vector<Side> sides;
+  for (std::size_t loop = 0; loop < polygon.loop_starts.size(); ++loop) {
+    for (std::uint32_t k = polygon.loop_starts[loop]; k < polygon.loop_end(loop); ++k) {
+      const Point& a = polygon.points[k];
+      const Point& b = polygon.points[k + 1 == polygon.loop_end(loop) ? polygon.loop_starts[loop] : k + 1];
+      sides.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::vector<Point> sorted = polygon.points;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+    throw InvalidOption("the polygon names a point twice; its outline and holes may not touch");
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.lower < b.lower; });
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    for (std::size_t k = i + 1; k < sides.size() && sides[k].lower[0] <= sides[i].upper[0]; ++k) {
+      const auto [low, high] = std::minmax(sides[i].lower[1], sides[i].upper[1]);
+      if (std::max(sides[k].lower[1], sides[k].upper[1]) < low) continue;
+      if (std::min(sides[k].lower[1], sides[k].upper[1]) > high) continue;
+      if (!segments_meet(sides[i].lower, sides[i].upper, sides[k].lower, sides[k].upper)) continue;
+      throw InvalidOption("the polygon crosses or touches itself near x = " + std::to_string(sides[k].lower[0]) +
+                          ", y = " + std::to_string(sides[k].lower[1]));
+    }
+  }
+}
+
 /// The outline with its holes joined to it by bridges: one loop of point indices, in which bridge ends come twice.
 class JoinedLoop {
  public:
@@ -103,7 +134,7 @@ class JoinedLoop {
       splice(at, hole);
       return;
     }
-    throw InvalidOption("the polygon cannot be triangulated: a hole lies outside the outline, or loops cross");
+    throw InvalidOption("the polygon cannot be triangulated: a hole lies outside the outline or in another hole");
   }
 
   /// Inserts: the hole's loop from its start back to its start, and the bridge's end once more.
@@ -201,6 +232,7 @@ std::uint32_t Polygon::loop_end(std::size_t loop) const {
 }
 
 std::vector<Triangle> triangulate(const Polygon& polygon) {
+  require_simple(polygon);
   const JoinedLoop joined(polygon);
   return EarCutter(polygon.points, joined.indices()).cut();
 }

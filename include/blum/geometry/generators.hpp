@@ -111,7 +111,7 @@ struct OrganicOptions {
   std::uint64_t seed = 1;
 };
 /// A star-shaped animal-like body (ears, paws, tail, rough skin), of the size and unrest of a scanned model; with
-/// holes, open as scans are.
+/// holes, open as scans are: vertices inside the holes stay, and nothing names them.
 [[nodiscard]] TriangleMesh make_organic(const OrganicOptions& options = {});
 
 // ---- Machined shapes (generators_cad.cpp, generators_blocks.cpp) ----
@@ -204,7 +204,7 @@ struct ExtrusionOptions {
 /// Extrudes a polygon with holes along z, from -thickness / 2 to thickness / 2.
 /// @param outline  simple polygon, at least three corners, in either direction.
 /// @param holes    simple polygons inside it that touch neither it nor each other, in either direction.
-/// @throws InvalidOption also where the polygon crosses itself badly enough to have no triangulation.
+/// @throws InvalidOption also where the outline or holes cross or touch.
 /// Cost: O(n^2) in the number of points, at most 20,000.
 [[nodiscard]] TriangleMesh make_extrusion(std::span<const Point2> outline, std::span<const std::vector<Point2>> holes,
                                           const ExtrusionOptions& options = {});
@@ -227,7 +227,7 @@ struct MengerOptions {
 
 struct FanPartOptions {
   double size = 1;     ///< of the whole, > 0
-  int resolution = 9;  ///< parts along the smallest block, >= 1; 9 gives about 13,000 triangles
+  int resolution = 8;  ///< parts along the smallest block, >= 1; 8 gives 12,288 triangles
 };
 /// A sector of a fan: curved and flat faces that meet in sharp edges, convex, concave and vanishing, as CAD models
 /// have.
@@ -270,7 +270,7 @@ struct PointsOptions {
 /// stays the same, up to rounding.  @param levels  0 to 12.
 [[nodiscard]] TriangleMesh make_subdivided(const MeshView& mesh, int levels = 1);
 
-/// Adds a copy of `other`, moved by `offset`, to `mesh`.
+/// Adds a copy of `other`, moved by `offset`, to `mesh`. It must not be a view of `mesh` itself.
 void append(TriangleMesh& mesh, const MeshView& other, const Vec3d& offset = {});
 
 /// Turns every triangle around: what faced outwards faces inwards.

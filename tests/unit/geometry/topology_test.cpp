@@ -1,0 +1,370 @@
+// Proves that topology() tells what a surface is: tiny meshes whose facts can be counted by hand, nested shells against
+// brute-force winding numbers, and speed that does not depend on the number of shells.
+#include "blum/geometry/topology.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <stop_token>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/random.hpp"
+#include "blum/field/reference.hpp"
+#include "blum/geometry/generators.hpp"
+
+namespace blum {
+namespace {
+
+using Betti = std::array<std::int64_t, 3>;
+
+TriangleMesh tetrahedron() {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  return mesh;
+}
+
+TriangleMesh cube(double size, bool inverted = false, const Vec3d& center = {}) {
+  TriangleMesh box = make_box({{size, size, size}, {1, 1, 1}});
+  for (Vec3d& p : box.vertices) p += center;
+  if (inverted) reverse_triangles(box);
+  return box;
+}
+
+TEST(Topology, Tetrahedron) {
+  const Topology t = topology(tetrahedron());
+  EXPECT_EQ(t.vertices, 4U);
+  EXPECT_EQ(t.edges, 6U);
+  EXPECT_EQ(t.triangles, 4U);
+  EXPECT_EQ(t.pieces, 1U);
+  EXPECT_EQ(t.surface_components, 1U);
+  EXPECT_EQ(t.closed_components, 1U);
+  EXPECT_EQ(t.euler_characteristic, 2);
+  EXPECT_TRUE(t.closed && t.oriented && t.manifold && t.faces_outwards);
+  ASSERT_EQ(t.shells.size(), 1U);
+  EXPECT_EQ(t.shells[0].genus, 0);
+  EXPECT_DOUBLE_EQ(t.shells[0].signed_volume, 1.0 / 6);
+  EXPECT_DOUBLE_EQ(t.area, 1.5 + std::sqrt(3.0) / 2);
+  EXPECT_DOUBLE_EQ(t.shells[0].area, t.area);
+  EXPECT_EQ(t.betti, (Betti{1, 0, 0}));
+}
+
+TEST(Topology, TwoTetrahedraThatShareAVertex) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices.insert(mesh.vertices.end(), {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}});
+  for (const Triangle& t : std::vector<Triangle>{{0, 4, 5}, {0, 6, 4}, {4, 6, 5}, {0, 5, 6}})
+    mesh.triangles.push_back(t);
+  const Topology t = topology(mesh);
+  EXPECT_TRUE(t.closed && t.oriented);
+  EXPECT_FALSE(t.manifold);
+  EXPECT_EQ(t.nonmanifold_vertices, 1U);
+  EXPECT_EQ(t.nonmanifold_edges, 0U);
+  EXPECT_EQ(t.pieces, 1U);
+  EXPECT_EQ(t.surface_components, 2U);
+  EXPECT_EQ(t.euler_characteristic, 3);
+  for (const Shell& shell : t.shells) EXPECT_EQ(shell.euler_characteristic, 2);
+  EXPECT_FALSE(t.betti.has_value());
+}
+
+TEST(Topology, TwoTetrahedraThatShareAnEdge) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices.insert(mesh.vertices.end(), {{0, -1, 0}, {0, 0, -1}});
+  for (const Triangle& t : std::vector<Triangle>{{0, 1, 4}, {0, 4, 5}, {1, 5, 4}, {0, 5, 1}})
+    mesh.triangles.push_back(t);
+  const Topology t = topology(mesh);
+  EXPECT_EQ(t.nonmanifold_edges, 1U);
+  EXPECT_EQ(t.nonmanifold_vertices, 2U);
+  EXPECT_EQ(t.surface_components, 1U);
+  EXPECT_EQ(t.closed_components, 0U);
+  EXPECT_FALSE(t.closed);
+  EXPECT_TRUE(t.shells.empty());
+  EXPECT_FALSE(t.betti.has_value());
+}
+
+TEST(Topology, OpenSquare) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const Topology t = topology(mesh);
+  EXPECT_EQ(t.boundary_edges, 4U);
+  EXPECT_EQ(t.boundary_loops, 1U);
+  EXPECT_EQ(t.euler_characteristic, 1);
+  EXPECT_TRUE(t.manifold && t.oriented && !t.closed && !t.faces_outwards);
+  EXPECT_EQ(t.inconsistent_edges, 0U);
+  EXPECT_DOUBLE_EQ(t.area, 1);
+  EXPECT_EQ(t.signed_volume, 0);
+  mesh.triangles[1] = {0, 3, 2};
+  const Topology turned = topology(mesh);
+  EXPECT_EQ(turned.inconsistent_edges, 1U);
+  EXPECT_EQ(turned.boundary_loops, 1U);
+  EXPECT_FALSE(turned.oriented);
+}
+
+TEST(Topology, MoebiusStripAndKleinBottle) {
+  // Quads around a ring; the last is glued on with a twist.
+  TriangleMesh strip;
+  for (std::uint32_t k = 0; k < 6; ++k) {
+    const double angle = 2 * 3.14159265358979 * k / 6;
+    const Vec3d out{std::cos(angle), std::sin(angle), 0};
+    const Vec3d side = out * (0.3 * std::cos(angle / 2)) + Vec3d{0, 0, 0.3 * std::sin(angle / 2)};
+    strip.vertices.push_back(out - side);
+    strip.vertices.push_back(out + side);
+    std::uint32_t a = 2 * k + 2;
+    std::uint32_t b = 2 * k + 3;
+    if (k == 5) {
+      a = 1;
+      b = 0;
+    }
+    strip.triangles.push_back({2 * k, a, 2 * k + 1});
+    strip.triangles.push_back({2 * k + 1, a, b});
+  }
+  const Topology t = topology(strip);
+  EXPECT_EQ(t.boundary_loops, 1U);
+  EXPECT_EQ(t.boundary_edges, 12U);
+  EXPECT_EQ(t.euler_characteristic, 0);
+  EXPECT_TRUE(t.manifold);
+  EXPECT_EQ(t.inconsistent_edges, 1U);
+  // A lattice with one pair of sides glued straight, the other one with a flip: closed, but has no outside.
+  TriangleMesh bottle;
+  const std::uint32_t n = 5;
+  for (std::uint32_t v = 0; v < n * n; ++v) bottle.vertices.push_back({v % n * 1.0, v / n * 1.0, v * v % 7 * 1.0});
+  const auto at = [&](std::uint32_t i, std::uint32_t j) { return (j % n) * n + (j < n ? i % n : (2 * n - i) % n); };
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      bottle.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      bottle.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  const Topology klein = topology(bottle);
+  EXPECT_TRUE(klein.closed);
+  EXPECT_FALSE(klein.oriented);
+  EXPECT_EQ(klein.euler_characteristic, 0);
+  EXPECT_EQ(klein.closed_components, 1U);
+  EXPECT_TRUE(klein.shells.empty());
+  EXPECT_FALSE(klein.betti.has_value());
+}
+
+TEST(Topology, InvertedBoxFacesInwards) {
+  const Topology t = topology(cube(2, true));
+  EXPECT_TRUE(t.closed && t.oriented && t.manifold);
+  EXPECT_FALSE(t.faces_outwards);
+  EXPECT_DOUBLE_EQ(t.signed_volume, -8);
+  EXPECT_FALSE(t.betti.has_value());
+  EXPECT_FALSE(orientation(cube(2, true), SiteTable(cube(2, true))).outward);
+}
+
+TEST(Topology, CubeInVoidInCube) {
+  TriangleMesh mesh = cube(1);
+  append(mesh, cube(3));
+  append(mesh, cube(2, true));
+  const Topology t = topology(mesh);
+  ASSERT_EQ(t.shells.size(), 3U);
+  EXPECT_EQ(t.shells[0].depth, 2U);
+  EXPECT_EQ(t.shells[0].parent, 2);
+  EXPECT_EQ(t.shells[1].depth, 0U);
+  EXPECT_EQ(t.shells[1].parent, -1);
+  EXPECT_EQ(t.shells[2].depth, 1U);
+  EXPECT_EQ(t.shells[2].parent, 1);
+  EXPECT_EQ(t.betti, (Betti{2, 0, 1}));
+  EXPECT_DOUBLE_EQ(t.signed_volume, 27 - 8 + 1);
+}
+
+TEST(Topology, WrongOrientationOfNestedShellsIsSeen) {
+  for (int wrong = 0; wrong < 8; ++wrong) {
+    TriangleMesh mesh = cube(3, (wrong & 1) != 0);
+    append(mesh, cube(2, (wrong & 2) == 0));
+    append(mesh, cube(1, (wrong & 4) != 0));
+    const Topology t = topology(mesh);
+    EXPECT_EQ(t.faces_outwards, wrong == 0) << wrong;
+    EXPECT_EQ(t.betti.has_value(), wrong == 0) << wrong;
+    EXPECT_EQ(orientation(mesh, SiteTable(mesh)).outward, wrong == 0) << wrong;
+    for (std::size_t s = 0; s < 3; ++s) {
+      EXPECT_EQ(t.shells[s].depth, s);
+      EXPECT_EQ(t.shells[s].faces_outwards, (wrong >> s & 1) == 0);
+    }
+  }
+}
+
+TEST(Topology, BoxesThatOverlapWithoutNesting) {
+  // A small cube in the hole of a torus: in its box, not in it. And beside a sphere, in its box' corner.
+  TriangleMesh mesh = make_torus({});
+  append(mesh, cube(0.5));
+  append(mesh, make_sphere({}), {10, 0, 0});
+  append(mesh, cube(0.1), {10.9, 0.9, 0.9});
+  const Topology t = topology(mesh);
+  for (const Shell& shell : t.shells) EXPECT_EQ(shell.depth, 0U);
+  EXPECT_EQ(t.betti, (Betti{4, 1, 0}));
+}
+
+TEST(Topology, DuplicateAndDegenerateTriangles) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.triangles.push_back({1, 0, 2});
+  mesh.triangles.push_back({2, 1, 0});
+  const Topology t = topology(mesh);
+  EXPECT_EQ(t.duplicate_triangles, 2U);
+  EXPECT_EQ(t.nonmanifold_edges, 3U);
+  EXPECT_FALSE(t.closed);
+
+  TriangleMesh degenerate = tetrahedron();
+  degenerate.triangles.push_back({0, 0, 1});
+  degenerate.triangles.push_back({2, 2, 2});
+  const Topology d = topology(degenerate);
+  EXPECT_EQ(d.degenerate_triangles, 2U);
+  EXPECT_EQ(d.duplicate_triangles, 0U);
+  EXPECT_TRUE(d.closed && d.manifold);  // they bound nothing
+  EXPECT_EQ(d.betti, (Betti{1, 0, 0}));
+}
+
+TEST(Topology, DegenerateMeansExactlyOnALine) {
+  const auto flat = [](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    TriangleMesh mesh;
+    mesh.vertices = {a, b, c};
+    mesh.triangles = {{0, 1, 2}};
+    return topology(mesh).degenerate_triangles == 1;
+  };
+  EXPECT_TRUE(flat({0, 0, 0}, {1, 2, 3}, {2, 4, 6}));
+  EXPECT_TRUE(flat({0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}, {0.7, 0.7, 0.7}));
+  EXPECT_TRUE(flat({1e6, 1e6 + 1, 0}, {1e6 + 3, 1e6 + 4, 0}, {1e6 + 8, 1e6 + 9, 0}));
+  EXPECT_TRUE(flat({1, 2, 3}, {1, 2, 3}, {4, 5, 6}));
+  EXPECT_FALSE(flat({0, 0, 0}, {1, 2, 3}, {2, 4, std::nextafter(6, 7)}));
+  EXPECT_FALSE(flat({0, 0, 0}, {1, 1, 0}, {0.5, std::nextafter(0.5, 1), 0}));
+  EXPECT_FALSE(flat({0, 0, 0}, {1e-100, 0, 0}, {0, 1e-100, 0}));
+  EXPECT_FALSE(flat({0, 0, 0}, {1e150, 0, 0}, {0, 1e150, 0}));
+}
+
+TEST(Topology, SegmentsPointsAndUnnamedVertices) {
+  TriangleMesh mesh;
+  mesh.vertices.assign(9, {});
+  for (std::size_t v = 0; v < 9; ++v) mesh.vertices[v].x = static_cast<double>(v);
+  mesh.segments = {{0, 1}, {1, 2}, {4, 5}};
+  mesh.points = {7, 7, 2};
+  const Topology t = topology(mesh);
+  EXPECT_EQ(t.vertices, 9U);
+  EXPECT_EQ(t.named_vertices, 6U);
+  EXPECT_EQ(t.pieces, 3U);
+  EXPECT_EQ(t.edges, 3U);
+  EXPECT_EQ(t.segments, 3U);
+  EXPECT_EQ(t.points, 3U);
+  EXPECT_EQ(t.surface_components, 0U);
+  EXPECT_FALSE(t.closed);
+  EXPECT_EQ(t.bounds.upper.x, 7);
+}
+
+TEST(Topology, AnySizeAndPlace) {
+  for (const double scale : {1e-90, 1e-9, 1.0, 1e9, 1e90}) {
+    for (const double shift : {0.0, 1e6}) {
+      TriangleMesh mesh = make_void_cube({});
+      for (Vec3d& p : mesh.vertices) p = (p + Vec3d{shift, -shift, shift}) * scale;
+      const Topology t = topology(mesh);
+      EXPECT_EQ(t.betti, (Betti{1, 0, 1})) << scale << " " << shift;
+      EXPECT_NEAR(t.signed_volume / (scale * scale * scale), 1 - 0.112, 0.002);
+    }
+  }
+}
+
+TEST(Topology, FlatShellFacesNowhere) {
+  TriangleMesh mesh;  // a sheet with two sides
+  mesh.vertices = {{0, 0, 0.3}, {1, 0, 0.7}, {0, 1, 0.1}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
+  const Topology t = topology(mesh);
+  EXPECT_TRUE(t.closed && t.oriented);
+  EXPECT_FALSE(t.faces_outwards);
+  EXPECT_EQ(t.duplicate_triangles, 1U);
+}
+
+/// Depth of each shell by winding numbers of all others around one of its vertices.
+std::vector<std::uint32_t> brute_force_depths(const std::vector<TriangleMesh>& shells) {
+  std::vector<std::uint32_t> depths;
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    std::uint32_t depth = 0;
+    for (std::size_t j = 0; j < shells.size(); ++j) {
+      const double winding = reference::winding_number(shells[j], shells[i].vertices[0]);
+      if (j != i && std::abs(winding) > 0.5) ++depth;
+    }
+    depths.push_back(depth);
+  }
+  return depths;
+}
+
+TEST(Topology, NestingAgreesWithWindingNumbers) {
+  // Shapes on a lattice, scaled and nested at random, on coordinates that make rays hit edges and vertices.
+  Random random(11);
+  std::uint32_t deepest = 0;
+  for (int run = 0; run < 30; ++run) {
+    std::vector<TriangleMesh> shells;
+    TriangleMesh all;
+    for (int place = 0; place < 12; ++place) {
+      const Vec3d center{4.0 * (place % 3), 4.0 * (place / 3 % 2), 4.0 * (place / 6)};
+      const std::uint64_t count = 1 + random.below(4);
+      const std::uint64_t kind = random.below(3);
+      for (std::uint64_t k = 0; k < count; ++k) {
+        const double size = 1.5 - 0.25 * static_cast<double>(k);
+        TriangleMesh shell = kind == 0   ? make_box({{2 * size, 2 * size, 2 * size}, {2, 2, 2}})
+                             : kind == 1 ? make_uv_sphere({size, 8, 4})
+                                         : make_torus({1.2, 0.5 * size, 24, 12});
+        for (Vec3d& p : shell.vertices) p += center;
+        if (random.below(2) == 1) reverse_triangles(shell);
+        append(all, shell);
+        shells.push_back(std::move(shell));
+      }
+    }
+    const auto expected = brute_force_depths(shells);
+    const Topology t = topology(all);
+    ASSERT_EQ(t.shells.size(), shells.size());
+    for (std::size_t s = 0; s < shells.size(); ++s) {
+      EXPECT_EQ(t.shells[s].depth, expected[s]) << run << " " << s;
+      deepest = std::max(deepest, expected[s]);
+      if (expected[s] == 0) {
+        EXPECT_EQ(t.shells[s].parent, -1);
+      } else {
+        EXPECT_EQ(t.shells[static_cast<std::size_t>(t.shells[s].parent)].depth + 1, expected[s]);
+      }
+    }
+  }
+  EXPECT_EQ(deepest, 3U);
+}
+
+TEST(Topology, ManyShellsInOne) {
+  // 8,000 bodies in the void of one large fine box: near-linear, or this would take minutes.
+  TriangleMesh mesh = make_box({{30, 30, 30}, {40, 40, 40}});
+  TriangleMesh hollow = make_box({{29, 29, 29}, {40, 40, 40}});
+  reverse_triangles(hollow);
+  append(mesh, hollow);
+  append(mesh, make_bodies({8000, 0.5, 1, 2}));
+  const Topology t = topology(mesh);
+  EXPECT_EQ(t.betti, (Betti{8001, 0, 1}));
+}
+
+TEST(Topology, RefusesInvalidMeshesAndCanBeCancelled) {
+  EXPECT_THROW(static_cast<void>(topology(TriangleMesh{})), InvalidMesh);
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_THROW(static_cast<void>(topology(tetrahedron(), Context{.cancel = source.get_token()})), Cancelled);
+}
+
+TEST(Orientation, CountsWhatIsWrong) {
+  TriangleMesh mesh = cube(1);
+  mesh.triangles.pop_back();
+  const Orientation open = orientation(mesh, SiteTable(mesh));
+  EXPECT_FALSE(open.closed);
+  EXPECT_TRUE(open.oriented);
+  EXPECT_FALSE(open.outward);
+  EXPECT_EQ(open.boundary_edges, 3U);
+  TriangleMesh turned = cube(1);
+  std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+  const Orientation twisted = orientation(turned, SiteTable(turned));
+  EXPECT_TRUE(twisted.closed);
+  EXPECT_FALSE(twisted.oriented);
+  EXPECT_EQ(twisted.inconsistent_edges, 3U);
+  TriangleMesh points;
+  points.vertices = {{0, 0, 0}};
+  points.points = {0};
+  EXPECT_FALSE(orientation(points, SiteTable(points)).closed);
+}
+
+}  // namespace
+}  // namespace blum
