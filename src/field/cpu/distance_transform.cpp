@@ -154,6 +154,8 @@ class PhaseClock {
 constexpr std::size_t largest_plane_per_task = std::size_t{1} << 20U;
 /// Voxels of a task: enough to hide its overhead, few enough to stop within milliseconds.
 constexpr std::size_t task_voxels = std::size_t{1} << 16U;
+/// In the z pass neighbouring tiles share pages and the memory's rows, so that tasks are larger.
+constexpr std::size_t depth_task_voxels = std::size_t{1} << 18U;
 
 void transform_planes(const TransformPlan& plan, Workspace& work, const Context& context) {
   const std::size_t rows = plan.size[1];
@@ -190,7 +192,7 @@ void transform_planes(const TransformPlan& plan, Workspace& work, const Context&
 
 void transform_depth(const TransformPlan& plan, Workspace& work, const Context& context) {
   const std::size_t tiles = (plan.size[0] + detail::tile_width - 1) / detail::tile_width;
-  const std::size_t grain = std::max<std::size_t>(1, task_voxels / (detail::tile_width * plan.size[2]));
+  const std::size_t grain = std::max<std::size_t>(1, depth_task_voxels / (detail::tile_width * plan.size[2]));
   parallel_for(context, tiles * plan.size[1], grain, "depth", [&](const WorkRange& range) {
     detail::PassScratch& scratch = work.scratch[static_cast<std::size_t>(range.worker)];
     for (std::size_t item = range.begin; item < range.end; ++item) {

@@ -19,6 +19,8 @@
 #include <limits>
 #include <type_traits>
 
+#include <hwy/cache_control.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "field/cpu/distance_transform_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -93,7 +95,7 @@ HWY_INLINE void transform_group(std::uint32_t bits, std::uint32_t valid, std::ui
   const std::size_t step = hn::Lanes(d);
   const bool all_same = bits == 0 || (kSigned && bits == valid);
   for (std::size_t lane = 0; lane < lanes; lane += step) {
-    const auto x = hn::Iota(d, static_cast<std::int32_t>(x0 + lane));
+    const auto x = hn::Add(as_lanes(x0 + static_cast<std::uint32_t>(lane)), hn::Iota(d, 0));
     auto left = as_lanes(kSigned && bits != 0 ? state.last_other : state.last_selected);
     auto right = as_lanes(kSigned && bits != 0 ? next_other : next_selected);
     if (!all_same) {
@@ -291,10 +293,13 @@ void load_columns(const TransformPlan& plan, PassScratch& scratch, Columns& colu
   const auto y_weight = hn::Set(d, static_cast<T>(plan.weight[1]));
   const auto y = hn::Set(di, static_cast<std::int32_t>(columns.y));
 
+  const bool next_columns = columns.x + 2 * width <= plan.size[0];
   std::size_t lowest = columns.length;
   std::size_t highest = 0;
   for (std::size_t row = 0; row < columns.length; ++row) {
     const auto* in = reinterpret_cast<const std::int32_t*>(plan.site) + columns.first + row * columns.row_stride;
+    // The rows of a column lie far apart, where the processor does not look ahead by itself.
+    if constexpr (kFinal) hwy::Prefetch(in + (next_columns ? width : 0));
     if (columns.lanes < width) {
       for (std::size_t lane = 0; lane < width; ++lane) buffer[lane] = in[std::min(lane, columns.lanes - 1)];
       in = buffer;
@@ -438,7 +443,7 @@ class Sweep {
     constexpr std::size_t high_word = std::endian::native == std::endian::little ? words - 1 : 0;
     const auto* signs = reinterpret_cast<const std::int32_t*>(costs_) + high_word;
     const VI other = hn::Xor(kind(gather(signs, words, closest_row)), negative);
-    VI self = hn::Iota(di, static_cast<std::int32_t>(columns_.x + lane_));
+    VI self = hn::Add(hn::Set(di, static_cast<std::int32_t>(columns_.x + lane_)), hn::Iota(di, 0));
     if constexpr (kFinal) self = hn::Or(self, hn::Set(di, static_cast<std::int32_t>(columns_.y << plan_.x_bits)));
     return hn::IfThenElse(hn::MaskFromVec(other), self, partial);
   }
@@ -502,7 +507,13 @@ class Sweep {
   template <class DT, class VT>
   HWY_INLINE void store(DT dt, VT value, hn::TFromD<DT>* out) const {
     if (lanes_ == hn::Lanes(dt)) {
-      hn::StoreU(value, dt, out);
+      // Whole cache lines of the result are not read again soon, and need not be read before they are written.
+      constexpr bool whole_line = kFinal && hn::MaxLanes(dt) * sizeof(*out) == 64;
+      if (whole_line && reinterpret_cast<std::uintptr_t>(out) % 64 == 0) {
+        hn::Stream(value, dt, out);
+      } else {
+        hn::StoreU(value, dt, out);
+      }
     } else {
       HWY_ALIGN hn::TFromD<DT> buffer[16];
       hn::Store(value, dt, buffer);
@@ -585,6 +596,7 @@ void columns_z(const TransformPlan& plan, const SquareTable& squares, PassScratc
   columns.mask_stride = plan.size[1] * plan.mask_words_per_row;
   plan.integer ? columns_of<std::int32_t, true>(plan, squares, scratch, columns, x_end)
                : columns_of<double, true>(plan, squares, scratch, columns, x_end);
+  hwy::FlushStream();  // streamed values become visible before other threads see this task as done
 }
 
 }  // namespace

@@ -8,10 +8,7 @@
 
 #include <bit>
 
-#include "field/cpu/lanes-inl.hpp"
-#include "field/cpu/node_boxes.hpp"
-#include "field/cpu/record_geometry.hpp"
-#include "field/cpu/tile_scratch.hpp"
+#include "field/cpu/halving-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
@@ -101,7 +98,7 @@ struct NearestSearch {
       Vec3f point;
       if (record.id == dead_record || !closest_on_record(kind, record, query, point)) continue;
       const float squared = squared_length(query - point);
-      if (squared < best.squared_distance) best = {point, kind, record, squared};
+      if (squared < best.squared_distance) best = {point, kind, &record, squared};
     }
   }
 
@@ -164,20 +161,51 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const CenteredBox
   return total;
 }
 
-/// Copies the live records of the found clusters, in rising order of site id.
-HWY_INLINE void gather_records(const FieldJob& job, TileScratch::Impl& scratch, Candidates& out) {
+/// Adds the records of the found clusters that may matter to the tile to the order to sort.
+template <Kind kind>
+HWY_NOINLINE void find_records(const BlockTest<1>& test, const Record* records,
+                               const std::vector<std::uint32_t>& clusters, std::vector<KeyedIndex>& out) {
+  ClosestAtCenters<1> closest;
+  for (const std::uint32_t cluster : clusters) {
+    for (std::size_t first = cluster * cluster_size; first < (cluster + std::size_t{1}) * cluster_size;
+         first += lanes) {
+      Columns columns;
+      load_columns(records + first, columns);
+      const M is_live = hn::RebindMask(d, hn::Ne(hn::BitCast(di, columns.column[15]), hn::Set(di, dead_record)));
+      const typename BlockOf<kind>::type block(columns, test.middle);
+      const M keep = hn::And(is_live, block.keeps(test.domination));
+      if (hn::AllFalse(d, keep)) continue;
+      V worst[1];
+      test.run(block, keep, hn::Zero(di), worst, closest);
+      for (std::uint32_t kept = bits(hn::And(keep, hn::Le(worst[0], hn::Zero(d)))); kept != 0; kept &= kept - 1) {
+        const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(kept));
+        out.push_back({records[at].id, static_cast<std::uint32_t>(at)});
+      }
+    }
+  }
+}
+
+/// Copies the records that may matter to a tile, in rising order of site id.
+HWY_INLINE void gather_records(const FieldJob& job, const CenteredBox& tile, const Vec3f& p0,
+                               TileScratch::Impl& scratch, Candidates& out) {
+  const BlockTest<1> test(tile, Dominators{{p0}, 1});
   for (std::size_t kind = 0; kind < kind_count; ++kind) {
     const Record* records = job.sites->kinds[kind].records.data();
+    const auto& clusters = scratch.clusters[kind];
     scratch.order.clear();
-    for (const std::uint32_t cluster : scratch.clusters[kind]) {
-      for (std::size_t at = cluster * cluster_size; at < (cluster + std::size_t{1}) * cluster_size; ++at) {
-        if (records[at].id != dead_record) scratch.order.push_back({records[at].id, static_cast<std::uint32_t>(at)});
+    if (kind == vertex_kind) find_records<vertex_kind>(test, records, clusters, scratch.order);
+    if (kind == edge_kind) find_records<edge_kind>(test, records, clusters, scratch.order);
+    if (kind == face_kind) find_records<face_kind>(test, records, clusters, scratch.order);
+    if (kind == sliver_kind) {
+      for (const std::uint32_t cluster : clusters) {
+        for (std::size_t at = cluster * cluster_size; at < (cluster + std::size_t{1}) * cluster_size; ++at) {
+          if (records[at].id != dead_record) scratch.order.push_back({records[at].id, static_cast<std::uint32_t>(at)});
+        }
       }
     }
     radix_sort(scratch.order, scratch.order_scratch);
     out[kind].reset(scratch.order.size());
     for (const KeyedIndex& item : scratch.order) out[kind].append(records[item.index]);
-    out[kind].finish();
   }
 }
 

@@ -17,34 +17,62 @@ HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 
+/// Surface points near a box: the closest to its centre first, then those of neighbouring boxes.
+struct Dominators {
+  static constexpr std::size_t most = 4;
+  std::array<Vec3f, most> point{};
+  std::size_t count = 1;
+};
+
 /// Drops what a known surface point p0 beats everywhere in the box center +- reach. With pi the projection of the
 /// centre on a site's flat, |x - p0|^2 < distance(x, flat)^2 for all x of the box when |c - pi|^2 > |c - p0|^2 + 2
 /// reach . |p0 - pi| + (largest squared offset along the flat).
-struct Dominator {
-  Vec center_to_p0;  // c - p0
+struct Domination {
+  struct Point {
+    Vec center_to_p0;  // c - p0
+    V limit;           // |c - p0|^2 and rounding
+  };
+  Point point[Dominators::most];
+  std::size_t count;
   Vec reach;
-  V limit;          // |c - p0|^2 and rounding
   V squared_reach;  // |reach|^2
 
-  Dominator(const Vec3f& center, const Vec3f& p0, const Vec3f& box_reach)
-      : center_to_p0(set(center - p0)), reach(set(box_reach)) {
-    const float squared = squared_length(center - p0);
-    limit = set(squared + 4e-6F * squared + 2e-6F * std::sqrt(squared) + 1e-12F);
-    squared_reach = set(squared_length(box_reach));
+  Domination(const Vec3f& center, const Dominators& dominators, const Vec3f& box_reach)
+      : count(dominators.count), reach(set(box_reach)), squared_reach(set(squared_length(box_reach))) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3f to_p0 = center - dominators.point[k];
+      const float squared = squared_length(to_p0);
+      point[k] = {set(to_p0), set(squared + 4e-6F * squared + 2e-6F * std::sqrt(squared) + 1e-12F)};
+    }
   }
 
   /// @param to_flat  c - pi, per lane.
   HWY_INLINE M keeps(const Vec& to_flat, V squared_distance, V along_flat) const {
-    const V spread = support(center_to_p0 - to_flat, reach);
-    return hn::Le(squared_distance, hn::Add(hn::MulAdd(spread, set(2.0F), limit), along_flat));
+    const V rest = hn::Sub(squared_distance, along_flat);
+    const auto kept_by = [&](const Point& p) {
+      return hn::Le(rest, hn::MulAdd(support(p.center_to_p0 - to_flat, reach), set(2.0F), p.limit));
+    };
+    M keep = kept_by(point[0]);
+    for (std::size_t k = 1; k < count; ++k) keep = hn::And(keep, kept_by(point[k]));
+    return keep;
   }
 };
 
-/// Values of an affine function at the eight children's centres.
+/// Values of an affine function at the centres of eight children, or of the box itself (boxes = 1).
+template <int boxes>
 struct ChildOffsets {
   Vec offset;
 
-  HWY_INLINE void values(V base, const Vec& gradient, V out[8]) const {
+  HWY_INLINE void values(V base, [[maybe_unused]] const Vec& gradient, V out[boxes]) const {
+    if constexpr (boxes == 1) {
+      out[0] = base;
+    } else {
+      eight_values(base, gradient, out);
+    }
+  }
+
+ private:
+  HWY_INLINE void eight_values(V base, const Vec& gradient, V out[8]) const {
     const V x = hn::Mul(gradient.x, offset.x);
     const V y = hn::Mul(gradient.y, offset.y);
     const V z = hn::Mul(gradient.z, offset.z);
@@ -59,12 +87,13 @@ struct ChildOffsets {
 };
 
 /// For each child, the closest site at its centre that has been seen so far.
+template <int boxes>
 struct ClosestAtCenters {
-  V squared[8];
-  VI index[8];
+  V squared[boxes];
+  VI index[boxes];
 
   ClosestAtCenters() {
-    for (int c = 0; c < 8; ++c) {
+    for (int c = 0; c < boxes; ++c) {
       squared[c] = set(hwy::HighestValue<float>());
       index[c] = hn::Zero(di);
     }
@@ -76,172 +105,237 @@ struct ClosestAtCenters {
   }
 };
 
-/// One block of candidates against the eight children: fills worst[c], positive where the site's domain misses the
-/// child, and offers distances at the children's centres.
+/// A block of vertices seen from a point m: what the tests and the leaves need of each.
+struct VertexBlock {
+  Vec to_site;       // m - p
+  Vec direction[4];  // of the domain's planes
+
+  VertexBlock(const Columns& columns, const Vec& m) : to_site(m - columns.vec(VertexColumns::position)) {
+    for (int k = 0; k < 4; ++k) direction[k] = columns.vec(VertexColumns::direction + 3 * k);
+  }
+  HWY_INLINE M keeps(const Domination& domination) const {
+    return domination.keeps(to_site, dot(to_site, to_site), hn::Zero(d));
+  }
+};
+
+/// A block of edges seen from a point m.
+struct EdgeBlock {
+  Vec t, b, n;
+  V along, across_b, across_n;  // components of m - midpoint
+  V half_length, second_b, second_n, first_limit, side_b, side_n;
+
+  EdgeBlock(const Columns& columns, const Vec& m)
+      : t(columns.vec(EdgeColumns::tangent)),
+        b(columns.vec(EdgeColumns::binormal)),
+        n(cross(t, b)),
+        half_length(columns.column[EdgeColumns::half_length]),
+        second_b(columns.column[EdgeColumns::second_b]),
+        second_n(columns.column[EdgeColumns::second_n]),
+        first_limit(columns.column[EdgeColumns::first_limit]),
+        side_b(columns.column[EdgeColumns::side_b]),
+        side_n(columns.column[EdgeColumns::side_n]) {
+    const Vec to_site = m - columns.vec(EdgeColumns::midpoint);
+    along = dot(to_site, t);
+    across_b = dot(to_site, b);
+    across_n = dot(to_site, n);
+  }
+  HWY_INLINE M keeps(const Domination& domination) const { return keeps(domination, across_b, across_n); }
+  HWY_INLINE M keeps(const Domination& domination, V at_b, V at_n) const {
+    const Vec to_flat = {hn::MulAdd(at_b, b.x, hn::Mul(at_n, n.x)), hn::MulAdd(at_b, b.y, hn::Mul(at_n, n.y)),
+                         hn::MulAdd(at_b, b.z, hn::Mul(at_n, n.z))};
+    const V squared = hn::MulAdd(at_b, at_b, square(at_n));
+    return domination.keeps(to_flat, squared, square(support(t, domination.reach)));
+  }
+};
+
+/// A block of faces seen from a point m.
+struct FaceBlock {
+  Vec n, gradient_u, gradient_v;
+  V height, minus_u, minus_v;  // at m
+
+  FaceBlock(const Columns& columns, const Vec& m)
+      : n(columns.vec(FaceColumns::normal)),
+        gradient_u(columns.vec(FaceColumns::minus_u)),
+        gradient_v(columns.vec(FaceColumns::minus_v)) {
+    const Vec to_site = m - columns.vec(FaceColumns::anchor);
+    height = dot(to_site, n);
+    minus_u = dot(to_site, gradient_u);
+    minus_v = dot(to_site, gradient_v);
+  }
+  HWY_INLINE M keeps(const Domination& domination) const {
+    const Vec to_flat = {hn::Mul(height, n.x), hn::Mul(height, n.y), hn::Mul(height, n.z)};
+    return domination.keeps(to_flat, square(height), domination.squared_reach);
+  }
+};
+
+/// Tests blocks of candidates against a box's eight children, or the box itself (boxes = 1): fills worst[c], positive
+/// where the site's domain misses the child, and offers distances at the children's centres.
+template <int boxes>
 struct BlockTest {
-  const Halving& halving;
-  Dominator dominator;
-  ChildOffsets offsets;
+  Domination domination;
+  ChildOffsets<boxes> offsets;
   Vec middle;
   Vec half;
 
-  BlockTest(const Halving& h, const Vec3f& p0)
-      : halving(h),
-        dominator(h.middle, p0, h.reach()),
-        offsets{set(h.offset)},
-        middle(set(h.middle)),
-        half(set(h.half)) {}
+  BlockTest(const Vec3f& center, const Vec3f& box_half, const Dominators& dominators)
+      : domination(center, dominators, box_half), offsets{set(Vec3f{})}, middle(set(center)), half(set(box_half)) {}
+  BlockTest(const Halving& h, const Dominators& dominators)
+      : domination(h.middle, dominators, h.reach()), offsets{set(h.offset)}, middle(set(h.middle)), half(set(h.half)) {}
+  BlockTest(const CenteredBox& box, const Dominators& dominators)
+      : BlockTest(box.center, box.half + Vec3f{box_slack, box_slack, box_slack}, dominators) {}
 
-  /// Adds the test |value - center| <= limit, or value <= limit, of an affine function at every child.
-  HWY_INLINE void bound(V base, const Vec& gradient, V limit, V worst[8]) const {
-    V value[8];
+  /// Adds the test value <= limit of an affine function at every child.
+  HWY_INLINE void bound(V base, const Vec& gradient, V limit, V worst[boxes]) const {
+    V value[boxes];
     offsets.values(hn::Sub(base, limit), gradient, value);
-    for (int c = 0; c < 8; ++c) worst[c] = hn::Max(worst[c], value[c]);
+    for (int c = 0; c < boxes; ++c) worst[c] = hn::Max(worst[c], value[c]);
   }
 
-  HWY_INLINE M vertex(const Columns& columns, M valid, VI index, V worst[8], ClosestAtCenters& closest) const {
-    const Vec to_site = middle - columns.vec(VertexColumns::position);
-    const M keep = hn::And(valid, dominator.keeps(to_site, dot(to_site, to_site), hn::Zero(d)));
-    for (int c = 0; c < 8; ++c) worst[c] = set(-1.0F);
-    for (int plane = 0; plane < 4; ++plane) {
-      const Vec e = columns.vec(VertexColumns::direction + 3 * plane);
-      bound(dot(to_site, e), e, hn::Add(support(e, half), set(plane_slack)), worst);
+  HWY_INLINE void run(const VertexBlock& block, M keep, VI index, V worst[boxes],
+                      ClosestAtCenters<boxes>& closest) const {
+    for (int c = 0; c < boxes; ++c) worst[c] = set(-1.0F);
+    for (const Vec& e : block.direction) {
+      bound(dot(block.to_site, e), e, hn::Add(support(e, half), set(plane_slack)), worst);
     }
-    const V x[2] = {square(hn::Sub(to_site.x, offsets.offset.x)), square(hn::Add(to_site.x, offsets.offset.x))};
-    const V y[2] = {square(hn::Sub(to_site.y, offsets.offset.y)), square(hn::Add(to_site.y, offsets.offset.y))};
-    const V z[2] = {square(hn::Sub(to_site.z, offsets.offset.z)), square(hn::Add(to_site.z, offsets.offset.z))};
-    for (int c = 0; c < 8; ++c) {
-      closest.offer(c, hn::Add(hn::Add(x[c & 1], y[(c >> 1) & 1]), z[c >> 2]), keep, index);
+    if constexpr (boxes == 8) {
+      const auto squares = [](V at, V offset, V out[2]) {
+        out[0] = square(hn::Sub(at, offset));
+        out[1] = square(hn::Add(at, offset));
+      };
+      V x[2];
+      V y[2];
+      V z[2];
+      squares(block.to_site.x, offsets.offset.x, x);
+      squares(block.to_site.y, offsets.offset.y, y);
+      squares(block.to_site.z, offsets.offset.z, z);
+      for (int c = 0; c < boxes; ++c) {
+        closest.offer(c, hn::Add(hn::Add(x[c & 1], y[(c >> 1) & 1]), z[c >> 2]), keep, index);
+      }
     }
-    return keep;
   }
 
-  HWY_INLINE M edge(const Columns& columns, M valid, VI index, V worst[8], ClosestAtCenters& closest) const {
-    const Vec to_site = middle - columns.vec(EdgeColumns::midpoint);
-    const Vec t = columns.vec(EdgeColumns::tangent);
-    const Vec b = columns.vec(EdgeColumns::binormal);
-    const Vec n = cross(t, b);
-    const V half_length = columns.column[EdgeColumns::half_length];
-    const V along = dot(to_site, t);
-    const V across_b = dot(to_site, b);
-    const V across_n = dot(to_site, n);
-    const Vec to_flat = {hn::MulAdd(across_b, b.x, hn::Mul(across_n, n.x)),
-                         hn::MulAdd(across_b, b.y, hn::Mul(across_n, n.y)),
-                         hn::MulAdd(across_b, b.z, hn::Mul(across_n, n.z))};
-    const V squared = hn::MulAdd(across_b, across_b, square(across_n));
-    const M keep = hn::And(valid, dominator.keeps(to_flat, squared, square(support(t, dominator.reach))));
-
+  HWY_INLINE void run(const EdgeBlock& block, M keep, VI index, V worst[boxes],
+                      ClosestAtCenters<boxes>& closest) const {
     // Ends: | along | <= half length + support.
-    V at_center[8];
-    offsets.values(along, t, at_center);
-    const V longest = hn::Add(support(t, half), half_length);
-    V excess[8];
-    for (int c = 0; c < 8; ++c) {
+    V at_center[boxes];
+    offsets.values(block.along, block.t, at_center);
+    const V longest = hn::Add(support(block.t, half), block.half_length);
+    V excess[boxes];
+    for (int c = 0; c < boxes; ++c) {
       const V distance_along = hn::Abs(at_center[c]);
       worst[c] = hn::Sub(distance_along, longest);
-      excess[c] = hn::Max(hn::Sub(distance_along, half_length), hn::Zero(d));
+      excess[c] = hn::Max(hn::Sub(distance_along, block.half_length), hn::Zero(d));
     }
     // Sides: the planes of both faces, and the sum of both, which cuts the corner that the box test leaves.
-    const V limit = columns.column[EdgeColumns::first_limit];
-    const V second_b = columns.column[EdgeColumns::second_b];
-    const V second_n = columns.column[EdgeColumns::second_n];
-    const Vec second = {hn::MulAdd(second_b, b.x, hn::Mul(second_n, n.x)),
-                        hn::MulAdd(second_b, b.y, hn::Mul(second_n, n.y)),
-                        hn::MulAdd(second_b, b.z, hn::Mul(second_n, n.z))};
-    const V across_second = hn::MulAdd(second_b, across_b, hn::Mul(second_n, across_n));
-    const Vec sum = b + second;
+    const Vec second = {hn::MulAdd(block.second_b, block.b.x, hn::Mul(block.second_n, block.n.x)),
+                        hn::MulAdd(block.second_b, block.b.y, hn::Mul(block.second_n, block.n.y)),
+                        hn::MulAdd(block.second_b, block.b.z, hn::Mul(block.second_n, block.n.z))};
+    const V across_second = hn::MulAdd(block.second_b, block.across_b, hn::Mul(block.second_n, block.across_n));
+    const Vec sum = block.b + second;
     const V slack = set(2 * plane_slack);
-    bound(across_b, b, hn::Add(support(b, half), limit), worst);
+    bound(block.across_b, block.b, hn::Add(support(block.b, half), block.first_limit), worst);
     bound(across_second, second, hn::Add(support(second, half), slack), worst);
-    bound(hn::Add(across_b, across_second), sum, hn::Add(support(sum, half), hn::Add(limit, slack)), worst);
-
-    V value_b[8];
-    V value_n[8];
-    offsets.values(across_b, b, value_b);
-    offsets.values(across_n, n, value_n);
-    for (int c = 0; c < 8; ++c) {
-      const V sum_of_squares =
-          hn::MulAdd(value_b[c], value_b[c], hn::MulAdd(value_n[c], value_n[c], square(excess[c])));
-      closest.offer(c, sum_of_squares, keep, index);
+    bound(hn::Add(block.across_b, across_second), sum, hn::Add(support(sum, half), hn::Add(block.first_limit, slack)),
+          worst);
+    if constexpr (boxes == 8) {
+      V value_b[boxes];
+      V value_n[boxes];
+      offsets.values(block.across_b, block.b, value_b);
+      offsets.values(block.across_n, block.n, value_n);
+      for (int c = 0; c < boxes; ++c) {
+        const V squared = hn::MulAdd(value_b[c], value_b[c], hn::MulAdd(value_n[c], value_n[c], square(excess[c])));
+        closest.offer(c, squared, keep, index);
+      }
     }
-    return keep;
   }
 
-  HWY_INLINE M face(const Columns& columns, M valid, VI index, V worst[8], ClosestAtCenters& closest) const {
-    const Vec to_site = middle - columns.vec(FaceColumns::anchor);
-    const Vec n = columns.vec(FaceColumns::normal);
-    const Vec gradient_u = columns.vec(FaceColumns::minus_u);
-    const Vec gradient_v = columns.vec(FaceColumns::minus_v);
-    const Vec gradient_w = gradient_u + gradient_v;
-    const V height = dot(to_site, n);
-    const Vec to_flat = {hn::Mul(height, n.x), hn::Mul(height, n.y), hn::Mul(height, n.z)};
-    const M keep = hn::And(valid, dominator.keeps(to_flat, square(height), dominator.squared_reach));
-
+  HWY_INLINE void run(const FaceBlock& block, M keep, VI index, V worst[boxes],
+                      ClosestAtCenters<boxes>& closest) const {
     // Each barycentric coordinate in [0, 1] up to the box's extent: |coordinate - 1/2| - extent <= 1/2.
-    const V minus_u = dot(to_site, gradient_u);
-    const V minus_v = dot(to_site, gradient_v);
     const V one_half = set(0.5F);
-    V outside[8];
-    V value[8];
+    V outside[boxes];
+    V value[boxes];
     const auto coordinate = [&](V centered_value, const Vec& gradient, bool is_first) {
       const V extent = support(gradient, half);
       offsets.values(centered_value, gradient, value);
-      for (int c = 0; c < 8; ++c) {
+      for (int c = 0; c < boxes; ++c) {
         const V off_center = hn::Sub(hn::Abs(value[c]), one_half);
         outside[c] = is_first ? off_center : hn::Max(outside[c], off_center);
         const V test = hn::Sub(off_center, extent);
         worst[c] = is_first ? test : hn::Max(worst[c], test);
       }
     };
-    coordinate(hn::Add(minus_u, one_half), gradient_u, true);
-    coordinate(hn::Add(minus_v, one_half), gradient_v, false);
-    coordinate(hn::Add(hn::Add(minus_u, minus_v), one_half), gradient_w, false);
-
-    offsets.values(height, n, value);
-    for (int c = 0; c < 8; ++c) {
-      closest.offer(c, square(value[c]), hn::And(keep, hn::Le(outside[c], hn::Zero(d))), index);
+    coordinate(hn::Add(block.minus_u, one_half), block.gradient_u, true);
+    coordinate(hn::Add(block.minus_v, one_half), block.gradient_v, false);
+    coordinate(hn::Add(hn::Add(block.minus_u, block.minus_v), one_half), block.gradient_u + block.gradient_v, false);
+    if constexpr (boxes == 8) {
+      offsets.values(block.height, block.n, value);
+      for (int c = 0; c < boxes; ++c) {
+        closest.offer(c, square(value[c]), hn::And(keep, hn::Le(outside[c], hn::Zero(d))), index);
+      }
     }
-    return keep;
   }
 };
 
-/// Copies the records of set lanes to the end of a list.
-HWY_INLINE void append_lanes(const Record* block, std::uint32_t lane_bits, RecordList& list) {
-  while (lane_bits != 0) {
-    list.append(block[std::countr_zero(lane_bits)]);
-    lane_bits &= lane_bits - 1;
+template <Kind kind>
+struct BlockOf;
+template <>
+struct BlockOf<vertex_kind> {
+  using type = VertexBlock;
+};
+template <>
+struct BlockOf<edge_kind> {
+  using type = EdgeBlock;
+};
+template <>
+struct BlockOf<face_kind> {
+  using type = FaceBlock;
+};
+
+/// Which lanes of a block of candidates exist.
+struct Lanes {
+  VI index;
+  M valid;
+
+  Lanes(std::size_t first, std::size_t count)
+      : index(hn::Add(hn::Set(di, static_cast<std::uint32_t>(first)), hn::Iota(di, 0))),
+        valid(hn::RebindMask(d, hn::Lt(index, hn::Set(di, static_cast<std::uint32_t>(count))))) {}
+};
+
+/// Tests all candidates of a kind against the eight children, and offers distances at their centres. `store` is called
+/// with each block that has a candidate left, for the leaves to read.
+template <Kind kind, class Store>
+HWY_INLINE void halve_kind(const BlockTest<8>& test, const RecordList& parent, ChildBits& out,
+                           ClosestAtCenters<8>& closest, Store store) {
+  const std::size_t count = parent.count();
+  out.reset((count + lanes - 1) / lanes);
+  for (std::size_t b = 0; b < out.blocks(); ++b) {
+    Columns columns;
+    load_columns(parent.data() + b * lanes, columns);
+    const typename BlockOf<kind>::type block(columns, test.middle);
+    const Lanes here(b * lanes, count);
+    const M keep = hn::And(here.valid, block.keeps(test.domination));
+    const std::uint32_t kept = bits(keep);
+    if (kept == 0) {
+      for (std::size_t c = 0; c < 8; ++c) out.child(c)[b] = 0;
+      continue;
+    }
+    V worst[8];
+    test.run(block, keep, hn::Or(here.index, hn::Set(di, static_cast<std::uint32_t>(kind) << 28)), worst, closest);
+    for (std::size_t c = 0; c < 8; ++c) {
+      out.child(c)[b] = static_cast<std::uint16_t>(kept & bits(hn::Le(worst[c], hn::Zero(d))));
+    }
+    store(b, block, columns.column[15]);
   }
 }
 
-template <Kind kind>
-HWY_NOINLINE void halve_kind(const BlockTest& test, const RecordList& parent, std::array<Candidates, 8>& children,
-                             ClosestAtCenters& closest) {
-  const auto count = static_cast<std::uint32_t>(parent.count());
-  const VI iota = hn::Iota(di, 0);
-  for (std::uint32_t first = 0; first < count; first += lanes) {
-    const Record* block = parent.data() + first;
-    Columns columns;
-    load_columns(block, columns);
-    const VI index = hn::Add(hn::Set(di, first), iota);
-    const M valid = hn::RebindMask(d, hn::Lt(index, hn::Set(di, count)));
-    const VI tagged = hn::Or(index, hn::Set(di, static_cast<std::uint32_t>(kind) << 28));
-    V worst[8];
-    M keep;
-    if constexpr (kind == vertex_kind) {
-      keep = test.vertex(columns, valid, tagged, worst, closest);
-    } else if constexpr (kind == edge_kind) {
-      keep = test.edge(columns, valid, tagged, worst, closest);
-    } else {
-      keep = test.face(columns, valid, tagged, worst, closest);
-    }
-    const std::uint32_t kept = bits(keep);
-    if (kept == 0) continue;
-    for (int c = 0; c < 8; ++c) {
-      if (!test.halving.exists[static_cast<std::size_t>(c)]) continue;
-      const std::uint32_t meets = kept & bits(hn::Le(worst[c], hn::Zero(d)));
-      append_lanes(block, meets, children[static_cast<std::size_t>(c)][kind]);
-    }
-  }
+/// Lists the candidates whose bit is set for a child.
+HWY_INLINE void list_child(const RecordList& parent, const ChildBits& child_bits, std::size_t child, RecordList& out) {
+  const std::uint16_t* words = child_bits.child(child);
+  std::size_t total = 0;
+  for (std::size_t b = 0; b < child_bits.blocks(); ++b) total += static_cast<std::size_t>(std::popcount(words[b]));
+  out.reset(total);
+  for (std::size_t b = 0; b < child_bits.blocks(); ++b) out.append(parent.data() + b * lanes, words[b]);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -52,96 +52,139 @@ struct LeafFace {
   enum { height = 0, minus_u = 4, minus_v = 8, id = 12, count };
 };
 
-HWY_INLINE void put(LeafColumns& out, int column, std::size_t at, V value, M mask) {
-  hn::StoreU(hn::Compress(value, mask), d, out.column(static_cast<std::size_t>(column)) + at);
-}
-HWY_INLINE void put_affine(LeafColumns& out, int column, std::size_t at, V value, const Vec& gradient, M mask) {
-  put(out, column, at, value, mask);
-  put(out, column + 1, at, gradient.x, mask);
-  put(out, column + 2, at, gradient.y, mask);
-  put(out, column + 3, at, gradient.z, mask);
-}
+/// Writes blocks of candidates, seen from the middle of a box of 8 x 8 x 8 nodes, for its leaves to read.
+struct LeafStore {
+  LeafColumns& out;
 
-HWY_INLINE M valid_lanes(std::size_t first, std::size_t count) {
-  const VI index = hn::Add(hn::Set(di, static_cast<std::uint32_t>(first)), hn::Iota(di, 0));
-  return hn::RebindMask(d, hn::Lt(index, hn::Set(di, static_cast<std::uint32_t>(count))));
-}
-
-/// Moves the candidates that p0 does not beat into leaf columns; returns how many there are.
-template <Kind kind>
-HWY_INLINE std::size_t prepare(const RecordList& list, const Vec& center, const Dominator& dominator,
-                               LeafColumns& out) {
-  constexpr int columns_of_kind = kind == vertex_kind ? static_cast<int>(LeafVertex::count)
-                                  : kind == edge_kind ? static_cast<int>(LeafEdge::count)
-                                                      : static_cast<int>(LeafFace::count);
-  out.reset(columns_of_kind, list.count());
-  std::size_t kept = 0;
-  for (std::size_t first = 0; first < list.count(); first += lanes) {
-    Columns columns;
-    load_columns(list.data() + first, columns);
-    const M valid = valid_lanes(first, list.count());
-    M keep;
-    if constexpr (kind == vertex_kind) {
-      const Vec to_site = center - columns.vec(VertexColumns::position);
-      keep = hn::And(valid, dominator.keeps(to_site, dot(to_site, to_site), hn::Zero(d)));
-      if (hn::AllFalse(d, keep)) continue;
-      put(out, LeafVertex::to_site, kept, to_site.x, keep);
-      put(out, LeafVertex::to_site + 1, kept, to_site.y, keep);
-      put(out, LeafVertex::to_site + 2, kept, to_site.z, keep);
-      for (int plane = 0; plane < 4; ++plane) {
-        const Vec e = columns.vec(VertexColumns::direction + 3 * plane);
-        put_affine(out, LeafVertex::planes + 4 * plane, kept, hn::Sub(dot(to_site, e), set(plane_slack)), e, keep);
-      }
-      put(out, LeafVertex::id, kept, columns.column[15], keep);
-    } else if constexpr (kind == edge_kind) {
-      const Vec to_site = center - columns.vec(EdgeColumns::midpoint);
-      const Vec t = columns.vec(EdgeColumns::tangent);
-      const Vec b = columns.vec(EdgeColumns::binormal);
-      const Vec n = cross(t, b);
-      const V across_b = dot(to_site, b);
-      const V across_n = dot(to_site, n);
-      const Vec to_flat = {hn::MulAdd(across_b, b.x, hn::Mul(across_n, n.x)),
-                           hn::MulAdd(across_b, b.y, hn::Mul(across_n, n.y)),
-                           hn::MulAdd(across_b, b.z, hn::Mul(across_n, n.z))};
-      const V squared = hn::MulAdd(across_b, across_b, square(across_n));
-      keep = hn::And(valid, dominator.keeps(to_flat, squared, square(support(t, dominator.reach))));
-      if (hn::AllFalse(d, keep)) continue;
-      put_affine(out, LeafEdge::across_b, kept, across_b, b, keep);
-      put_affine(out, LeafEdge::across_n, kept, across_n, n, keep);
-      put_affine(out, LeafEdge::along, kept, dot(to_site, t), t, keep);
-      put(out, LeafEdge::half_length, kept, columns.column[EdgeColumns::half_length], keep);
-      put(out, LeafEdge::second_b, kept, columns.column[EdgeColumns::second_b], keep);
-      put(out, LeafEdge::second_n, kept, columns.column[EdgeColumns::second_n], keep);
-      put(out, LeafEdge::first_limit, kept, columns.column[EdgeColumns::first_limit], keep);
-      put(out, LeafEdge::side_b, kept, columns.column[EdgeColumns::side_b], keep);
-      put(out, LeafEdge::side_n, kept, columns.column[EdgeColumns::side_n], keep);
-      put(out, LeafEdge::id, kept, columns.column[15], keep);
-    } else {
-      const Vec to_site = center - columns.vec(FaceColumns::anchor);
-      const Vec n = columns.vec(FaceColumns::normal);
-      const V height = dot(to_site, n);
-      const Vec to_flat = {hn::Mul(height, n.x), hn::Mul(height, n.y), hn::Mul(height, n.z)};
-      keep = hn::And(valid, dominator.keeps(to_flat, square(height), dominator.squared_reach));
-      if (hn::AllFalse(d, keep)) continue;
-      const Vec u = columns.vec(FaceColumns::minus_u);
-      const Vec v = columns.vec(FaceColumns::minus_v);
-      put_affine(out, LeafFace::height, kept, height, n, keep);
-      put_affine(out, LeafFace::minus_u, kept, dot(to_site, u), u, keep);
-      put_affine(out, LeafFace::minus_v, kept, dot(to_site, v), v, keep);
-      put(out, LeafFace::id, kept, columns.column[15], keep);
-    }
-    kept += hn::CountTrue(d, keep);
+  HWY_INLINE void put(int column, std::size_t b, V value) const {
+    hn::Store(value, d, out.column(static_cast<std::size_t>(column)) + b * lanes);
   }
-  return kept;
-}
+  HWY_INLINE void put(int column, std::size_t b, V value, const Vec& gradient) const {
+    put(column, b, value);
+    put(column + 1, b, gradient.x);
+    put(column + 2, b, gradient.y);
+    put(column + 3, b, gradient.z);
+  }
+  HWY_INLINE void operator()(std::size_t b, const VertexBlock& block, V id) const {
+    put(LeafVertex::to_site, b, block.to_site.x);
+    put(LeafVertex::to_site + 1, b, block.to_site.y);
+    put(LeafVertex::to_site + 2, b, block.to_site.z);
+    for (int k = 0; k < 4; ++k) {
+      const Vec& e = block.direction[k];
+      put(LeafVertex::planes + 4 * k, b, hn::Sub(dot(block.to_site, e), set(plane_slack)), e);
+    }
+    put(LeafVertex::id, b, id);
+  }
+  HWY_INLINE void operator()(std::size_t b, const EdgeBlock& block, V id) const {
+    put(LeafEdge::across_b, b, block.across_b, block.b);
+    put(LeafEdge::across_n, b, block.across_n, block.n);
+    put(LeafEdge::along, b, block.along, block.t);
+    put(LeafEdge::half_length, b, block.half_length);
+    put(LeafEdge::second_b, b, block.second_b);
+    put(LeafEdge::second_n, b, block.second_n);
+    put(LeafEdge::first_limit, b, block.first_limit);
+    put(LeafEdge::side_b, b, block.side_b);
+    put(LeafEdge::side_n, b, block.side_n);
+    put(LeafEdge::id, b, id);
+  }
+  HWY_INLINE void operator()(std::size_t b, const FaceBlock& block, V id) const {
+    put(LeafFace::height, b, block.height, block.n);
+    put(LeafFace::minus_u, b, block.minus_u, block.gradient_u);
+    put(LeafFace::minus_v, b, block.minus_v, block.gradient_v);
+    put(LeafFace::id, b, id);
+  }
+};
 
-/// Node positions relative to a leaf's centre, for one pass, and the running winners of that pass in registers.
+/// Which of a block's candidates a leaf's dominators leave. Everything is read at the leaf's centre, `offset` from the
+/// middle that the columns were written for.
+struct LeafDomination {
+  Domination domination;
+  Vec offset;
+
+  HWY_INLINE V at(const LeafColumns& in, int column, std::size_t b) const {
+    return hn::Load(d, in.column(static_cast<std::size_t>(column)) + b * lanes);
+  }
+  HWY_INLINE Vec vec(const LeafColumns& in, int column, std::size_t b) const {
+    return {at(in, column, b), at(in, column + 1, b), at(in, column + 2, b)};
+  }
+  template <Kind kind>
+  HWY_INLINE std::uint32_t keeps(const LeafColumns& in, std::size_t b) const {
+    if constexpr (kind == vertex_kind) {
+      const Vec to_site = vec(in, LeafVertex::to_site, b) + offset;
+      return bits(domination.keeps(to_site, dot(to_site, to_site), hn::Zero(d)));
+    } else if constexpr (kind == edge_kind) {
+      const Vec gradient_b = vec(in, LeafEdge::across_b + 1, b);
+      const Vec gradient_n = vec(in, LeafEdge::across_n + 1, b);
+      const V at_b = hn::Add(at(in, LeafEdge::across_b, b), dot(gradient_b, offset));
+      const V at_n = hn::Add(at(in, LeafEdge::across_n, b), dot(gradient_n, offset));
+      const Vec to_flat = {hn::MulAdd(at_b, gradient_b.x, hn::Mul(at_n, gradient_n.x)),
+                           hn::MulAdd(at_b, gradient_b.y, hn::Mul(at_n, gradient_n.y)),
+                           hn::MulAdd(at_b, gradient_b.z, hn::Mul(at_n, gradient_n.z))};
+      const V along_flat = square(support(vec(in, LeafEdge::along + 1, b), domination.reach));
+      return bits(domination.keeps(to_flat, hn::MulAdd(at_b, at_b, square(at_n)), along_flat));
+    } else {
+      const Vec n = vec(in, LeafFace::height + 1, b);
+      const V height = hn::Add(at(in, LeafFace::height, b), dot(n, offset));
+      const Vec to_flat = {hn::Mul(height, n.x), hn::Mul(height, n.y), hn::Mul(height, n.z)};
+      return bits(domination.keeps(to_flat, square(height), domination.squared_reach));
+    }
+  }
+};
+
+/// Positions of a leaf's nodes relative to the middle of its parent, for each pass.
+struct LeafPattern {
+  struct Pass {
+    V x[planar], y[planar], z[slabs];
+  };
+  Pass pass[passes];
+
+  LeafPattern() = default;
+  /// @param first_node  position of the first node, relative to the parent's middle.
+  LeafPattern(const Vec3d& first_node, const Vec3d& spacing) {
+    std::array<std::array<float, 4>, 3> at{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        at[axis][k] = static_cast<float>(first_node[axis] + static_cast<double>(k) * spacing[axis]);
+      }
+    }
+    for (std::size_t index = 0; index < passes; ++index) {
+      const std::size_t first = index * pass_nodes;
+      for (std::size_t p = 0; p < planar; ++p) {
+        alignas(64) std::array<float, 16> x{};
+        alignas(64) std::array<float, 16> y{};
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          const std::size_t node = first + p * lanes + lane;
+          x[lane] = at[0][node % 4];
+          y[lane] = at[1][node / 4 % 4];
+        }
+        pass[index].x[p] = hn::Load(d, x.data());
+        pass[index].y[p] = hn::Load(d, y.data());
+      }
+      for (std::size_t s = 0; s < slabs; ++s) pass[index].z[s] = set(at[2][(first + s * planar * lanes) / 16]);
+    }
+  }
+};
+
+/// The running winners of one pass, in registers.
 template <bool with_sides>
 struct LeafPass {
   V x[planar], y[planar], z[slabs];
   V squared[pass_vectors];
   V id[pass_vectors];
   V side[pass_vectors];
+
+  explicit LeafPass(const LeafPattern::Pass& pattern) {
+    for (std::size_t p = 0; p < planar; ++p) {
+      x[p] = pattern.x[p];
+      y[p] = pattern.y[p];
+    }
+    for (std::size_t s = 0; s < slabs; ++s) z[s] = pattern.z[s];
+    for (std::size_t k = 0; k < pass_vectors; ++k) {
+      squared[k] = set(hwy::HighestValue<float>());
+      id[k] = hn::BitCast(d, hn::Set(di, dead_record));
+      side[k] = hn::Zero(d);
+    }
+  }
 
   HWY_INLINE void affine(const LeafColumns& in, int column, std::size_t at, V out[pass_vectors]) const {
     const auto c = static_cast<std::size_t>(column);
@@ -237,33 +280,6 @@ struct LeafPass {
   }
 };
 
-/// Node offsets from a leaf's centre along each axis.
-struct LeafOffsets {
-  std::array<std::array<float, 4>, 3> at{};
-};
-
-template <bool with_sides>
-HWY_INLINE void start_pass(LeafPass<with_sides>& pass, std::size_t index, const LeafOffsets& offsets) {
-  alignas(64) std::array<float, 16> x{};
-  alignas(64) std::array<float, 16> y{};
-  const std::size_t first = index * pass_nodes;
-  for (std::size_t p = 0; p < planar; ++p) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t node = first + p * lanes + lane;
-      x[lane] = offsets.at[0][node % 4];
-      y[lane] = offsets.at[1][node / 4 % 4];
-    }
-    pass.x[p] = hn::Load(d, x.data());
-    pass.y[p] = hn::Load(d, y.data());
-  }
-  for (std::size_t s = 0; s < slabs; ++s) pass.z[s] = set(offsets.at[2][(first + s * planar * lanes) / 16]);
-  for (std::size_t k = 0; k < pass_vectors; ++k) {
-    pass.squared[k] = set(hwy::HighestValue<float>());
-    pass.id[k] = hn::BitCast(d, hn::Set(di, dead_record));
-    pass.side[k] = hn::Zero(d);
-  }
-}
-
 template <bool with_sides>
 HWY_INLINE void finish_pass(const LeafPass<with_sides>& pass, std::size_t index, LeafState& state) {
   for (std::size_t k = 0; k < pass_vectors; ++k) {
@@ -274,29 +290,41 @@ HWY_INLINE void finish_pass(const LeafPass<with_sides>& pass, std::size_t index,
   }
 }
 
-/// What evaluating a leaf reads.
+/// What a box of 8 x 8 x 8 nodes hands to its leaves: prepared candidates, and which matter to which leaf.
 struct LeafInput {
-  const Candidates& candidates;
-  Vec3f center;
-  Vec3f half;
-  Vec3f p0;
-  LeafOffsets offsets;
+  const std::array<LeafColumns, 3>& columns;
+  std::array<ChildBits, kind_count>& bits;
+  std::size_t child;
 };
 
+/// Clears the bits of candidates that the leaf's dominators beat.
+template <Kind kind>
+HWY_INLINE void dominate(const LeafInput& input, const LeafDomination& domination) {
+  std::uint16_t* words = input.bits[kind].child(input.child);
+  for (std::size_t b = 0; b < input.bits[kind].blocks(); ++b) {
+    if (words[b] != 0) words[b] = static_cast<std::uint16_t>(words[b] & domination.keeps<kind>(input.columns[kind], b));
+  }
+}
+
+/// Calls use(index) for every candidate of a kind, in order.
+template <Kind kind, class Use>
+HWY_INLINE void for_each_candidate(const LeafInput& input, Use use) {
+  const std::uint16_t* words = input.bits[kind].child(input.child);
+  for (std::size_t b = 0; b < input.bits[kind].blocks(); ++b) {
+    for (std::uint32_t word = words[b]; word != 0; word &= word - 1) {
+      use(b * lanes + static_cast<std::size_t>(std::countr_zero(word)));
+    }
+  }
+}
+
 template <bool with_sides>
-HWY_NOINLINE void evaluate_leaf(const FieldJob& job, const LeafInput& input, std::array<LeafColumns, 3>& columns,
+HWY_NOINLINE void evaluate_leaf(const FieldJob& job, const LeafInput& input, const LeafPattern& pattern,
                                 LeafState& state) {
-  const Vec center = set(input.center);
-  const Dominator dominator(input.center, input.p0, input.half);
-  const std::size_t vertices = prepare<vertex_kind>(input.candidates[vertex_kind], center, dominator, columns[0]);
-  const std::size_t edges = prepare<edge_kind>(input.candidates[edge_kind], center, dominator, columns[1]);
-  const std::size_t faces = prepare<face_kind>(input.candidates[face_kind], center, dominator, columns[2]);
   for (std::size_t index = 0; index < passes; ++index) {
-    LeafPass<with_sides> pass;
-    start_pass(pass, index, input.offsets);
-    for (std::size_t i = 0; i < vertices; ++i) pass.vertex(columns[0], i, job.vertex_sides);
-    for (std::size_t i = 0; i < edges; ++i) pass.edge(columns[1], i);
-    for (std::size_t i = 0; i < faces; ++i) pass.face(columns[2], i);
+    LeafPass<with_sides> pass(pattern.pass[index]);
+    for_each_candidate<vertex_kind>(input, [&](std::size_t i) { pass.vertex(input.columns[0], i, job.vertex_sides); });
+    for_each_candidate<edge_kind>(input, [&](std::size_t i) { pass.edge(input.columns[1], i); });
+    for_each_candidate<face_kind>(input, [&](std::size_t i) { pass.face(input.columns[2], i); });
     finish_pass(pass, index, state);
   }
 }

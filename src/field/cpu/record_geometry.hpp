@@ -28,7 +28,7 @@ inline Vec3f to_float(const Vec3d& v) {
 struct Witness {
   Vec3f point{};
   Kind kind = vertex_kind;
-  Record record{};
+  const Record* record = nullptr;
   float squared_distance = std::numeric_limits<float>::infinity();  ///< to the query that found it
 };
 
@@ -94,7 +94,7 @@ inline constexpr float clear_side = 0.01F;
 
 /// Which side of a closed mesh a query lies on, from its closest site: +1 outside, -1 inside, 0 too close to call.
 inline int side_of(const Witness& closest, const Vec3f& query, const std::vector<Vec3f>& vertex_sides) {
-  const Record& record = closest.record;
+  const Record& record = *closest.record;
   float side = 0;
   if (closest.kind == vertex_kind) {
     side = dot(query - vec_at(record, VertexColumns::position), vertex_sides[record.id]);

@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t most_clusters = 4000;
 constexpr std::int64_t smallest_tile = 16;
 constexpr std::int64_t leaf_size = 4;
+constexpr std::size_t fewest_worth_culling = 12;
+constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
 /// Distances at a box's centre are trusted to prove that no surface meets the box only beyond this margin.
 bool is_free_of_surface(float distance_at_center, const Vec3f& half) {
@@ -44,13 +46,23 @@ void for_each_row(const FieldJob& job, const NodeBox& box, Visit visit) {
 class TileWorker {
  public:
   TileWorker(const FieldJob& job, TileScratch& scratch)
-      : job_(job), scratch_(scratch.impl()), unsettled_(scratch.unsettled) {}
+      : job_(job),
+        scratch_(scratch.impl()),
+        unsettled_(scratch.unsettled),
+        needs_settling_(job.has_sides() || job.band < std::numeric_limits<float>::infinity()) {
+    for (std::size_t c = 0; c < 8; ++c) {
+      Vec3d first;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        first[axis] = job.spacing[axis] * (((c >> axis) & 1) != 0 ? 0.5 : -3.5);
+      full_patterns_[c] = LeafPattern(first, job.spacing);
+    }
+  }
 
   void tile(const NodeBox& box, std::int64_t size) {
     const CenteredBox place = centered(job_, box);
     const Witness nearest = nearest_record(job_, place.center);
     int side = 0;
-    if (settle(box, place.half, nearest, place.center, side)) return;
+    if (needs_settling_ && settle(box, place.half, nearest, place.center, side)) return;
     const std::size_t clusters = find_tile_clusters(job_, place, nearest.point, scratch_);
     if (clusters > most_clusters && size > smallest_tile) {
       const Halving parts = halve(job_, box, size);
@@ -59,8 +71,8 @@ class TileWorker {
       }
       return;
     }
-    gather_records(job_, scratch_, scratch_.gathered);
-    divide(box, size, scratch_.gathered, nearest.point, side, 0);
+    gather_records(job_, place, nearest.point, scratch_, scratch_.gathered);
+    divide(box, size, scratch_.gathered, Dominators{{nearest.point}, 1}, side, 0);
   }
 
  private:
@@ -79,104 +91,188 @@ class TileWorker {
     return true;
   }
 
-  void divide(const NodeBox& box, std::int64_t size, const Candidates& candidates, const Vec3f& p0, int side,
-              std::size_t level) {
-    const Halving parts = halve(job_, box, size);
-    const BlockTest test(parts, p0);
-    auto& children = scratch_.children[level];
-    for (Candidates& child : children) {
-      for (std::size_t kind = 0; kind < kind_count; ++kind) child[kind].reset(candidates[kind].count());
-    }
-    ClosestAtCenters closest;
-    halve_kind<vertex_kind>(test, candidates[vertex_kind], children, closest);
-    halve_kind<edge_kind>(test, candidates[edge_kind], children, closest);
-    halve_kind<face_kind>(test, candidates[face_kind], children, closest);
+  /// What is known of a child before its candidates are listed.
+  struct Child {
+    CenteredBox place;
+    Vec3f p0;
+    int side = 0;
+    bool is_open = false;  ///< exists, and is not settled yet
+  };
+
+  using Children = std::array<Child, 8>;
+
+  /// Where the children lie, their surface points, and which of them are settled.
+  Children meet_children(const Halving& parts, const Candidates& candidates, const ClosestAtCenters<8>& closest,
+                         const Vec3f& parent_p0, int side) {
+    Children children;
     for (std::size_t c = 0; c < 8; ++c) {
+      Child& child = children[c];
+      child.p0 = parent_p0;
       if (!parts.exists[c]) continue;
-      for (RecordList& list : children[c]) list.finish();
-      const CenteredBox place = centered(job_, parts.child[c]);
-      Witness witness = closest_candidate(candidates, closest, c, place.center);
-      add_slivers(candidates[sliver_kind], place, witness, children[c][sliver_kind]);
-      int child_side = side;
-      Vec3f child_p0 = p0;
-      if (std::isfinite(witness.squared_distance)) {
-        child_p0 = witness.point;
-        if (settle(parts.child[c], place.half, witness, place.center, child_side)) continue;
-      }
-      if (size / 2 > leaf_size) {
-        divide(parts.child[c], size / 2, children[c], child_p0, child_side, level + 1);
-      } else {
-        leaf(parts.child[c], place, children[c], child_p0, child_side);
+      child.place = centered(job_, parts.child[c]);
+      child.side = side;
+      child.is_open = true;
+      Witness witness = closest_candidate(candidates, closest, c, child.place.center);
+      offer_slivers(candidates[sliver_kind], child.place.center, witness);
+      if (!(witness.squared_distance < hwy::HighestValue<float>())) continue;
+      child.p0 = witness.point;
+      if (needs_settling_) {
+        child.is_open = !settle(parts.child[c], child.place.half, witness, child.place.center, child.side);
       }
     }
+    return children;
+  }
+
+  /// The points next door are the best at beating what lies beyond them.
+  static Dominators dominators_of(const Children& children, std::size_t c) {
+    return {{children[c].p0, children[c ^ 1].p0, children[c ^ 2].p0, children[c ^ 4].p0}, Dominators::most};
+  }
+
+  void divide(const NodeBox& box, std::int64_t size, const Candidates& candidates, const Dominators& dominators,
+              int side, std::size_t level) {
+    if (size == 2 * leaf_size) {
+      divide_into_leaves(box, candidates, dominators, side);
+      return;
+    }
+    const Halving parts = halve(job_, box, size);
+    const BlockTest<8> test(parts, dominators);
+    TileScratch::Impl::Level& here = scratch_.levels[level];
+    ClosestAtCenters<8> closest;
+    const auto ignore = [](auto&&...) {};
+    halve_kind<vertex_kind>(test, candidates[vertex_kind], here.bits[vertex_kind], closest, ignore);
+    halve_kind<edge_kind>(test, candidates[edge_kind], here.bits[edge_kind], closest, ignore);
+    halve_kind<face_kind>(test, candidates[face_kind], here.bits[face_kind], closest, ignore);
+    const Children children = meet_children(parts, candidates, closest, dominators.point[0], side);
+    for (std::size_t c = 0; c < 8; ++c) {
+      const Child& child = children[c];
+      if (!child.is_open) continue;
+      for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+        list_child(candidates[kind], here.bits[kind], c, here.child[kind]);
+      }
+      list_slivers(candidates[sliver_kind], child, here.child[sliver_kind]);
+      divide(parts.child[c], size / 2, here.child, dominators_of(children, c), child.side, level + 1);
+    }
+  }
+
+  void divide_into_leaves(const NodeBox& box, const Candidates& candidates, const Dominators& dominators, int side) {
+    const Halving parts = halve(job_, box, 2 * leaf_size);
+    const BlockTest<8> test(parts, dominators);
+    TileScratch::Impl::Level& here = scratch_.levels.back();
+    ClosestAtCenters<8> closest;
+    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+      scratch_.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
+    }
+    halve_kind<vertex_kind>(test, candidates[vertex_kind], here.bits[vertex_kind], closest,
+                            LeafStore{scratch_.leaf[0]});
+    halve_kind<edge_kind>(test, candidates[edge_kind], here.bits[edge_kind], closest, LeafStore{scratch_.leaf[1]});
+    halve_kind<face_kind>(test, candidates[face_kind], here.bits[face_kind], closest, LeafStore{scratch_.leaf[2]});
+    const Children children = meet_children(parts, candidates, closest, dominators.point[0], side);
+    const bool is_full = is_cube(box, 2 * leaf_size);
+    for (std::size_t c = 0; c < 8; ++c) {
+      const Child& child = children[c];
+      if (!child.is_open) continue;
+      const LeafInput input{scratch_.leaf, here.bits, c};
+      dominate_leaf(input, parts, child, dominators_of(children, c));
+      list_slivers(candidates[sliver_kind], child, here.child[sliver_kind]);
+      if (is_full) {
+        leaf(parts.child[c], input, here.child[sliver_kind], child.side, full_patterns_[c]);
+      } else {
+        leaf(parts.child[c], input, here.child[sliver_kind], child.side, pattern_of(parts.child[c], parts.middle));
+      }
+    }
+  }
+
+  static bool is_cube(const NodeBox& box, std::int64_t side) {
+    return box.count[0] == side && box.count[1] == side && box.count[2] == side;
+  }
+
+  [[nodiscard]] LeafPattern pattern_of(const NodeBox& leaf_box, const Vec3f& middle) const {
+    Vec3d first;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] =
+          job_.first_node[axis] + static_cast<double>(leaf_box.first[axis]) * job_.spacing[axis] - middle[axis];
+    }
+    return {first, job_.spacing};
+  }
+
+  /// Drops candidates that a leaf's dominators beat, where there are enough of them to pay for looking.
+  void dominate_leaf(const LeafInput& input, const Halving& parts, const Child& child,
+                     const Dominators& dominators) const {
+    std::size_t count = 0;
+    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+      const std::uint16_t* words = input.bits[kind].child(input.child);
+      for (std::size_t b = 0; b < input.bits[kind].blocks(); ++b)
+        count += static_cast<std::size_t>(std::popcount(words[b]));
+    }
+    if (count < fewest_worth_culling) return;
+    const Vec3f half = child.place.half + Vec3f{box_slack, box_slack, box_slack};
+    const LeafDomination domination{Domination(child.place.center, dominators, half),
+                                    set(child.place.center - parts.middle)};
+    dominate<vertex_kind>(input, domination);
+    dominate<edge_kind>(input, domination);
+    dominate<face_kind>(input, domination);
   }
 
   /// The closest site at a child's centre, among those that the lanes have seen.
-  static Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
+  static Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters<8>& closest, std::size_t child,
                                    const Vec3f& center) {
-    alignas(64) std::array<float, lanes> squared;
     alignas(64) std::array<std::uint32_t, lanes> index;
-    hn::Store(closest.squared[child], d, squared.data());
+    const float squared = hn::GetLane(hn::MinOfLanes(d, closest.squared[child]));
     hn::Store(closest.index[child], di, index.data());
-    std::size_t best = 0;
-    for (std::size_t lane = 1; lane < lanes; ++lane) {
-      if (squared[lane] < squared[best]) best = lane;
-    }
+    const auto best = static_cast<std::size_t>(std::countr_zero(bits(hn::Eq(closest.squared[child], set(squared)))));
     Witness witness;
-    if (squared[best] >= hwy::HighestValue<float>()) return witness;
+    if (squared >= hwy::HighestValue<float>()) return witness;
     witness.kind = static_cast<Kind>(index[best] >> 28);
-    witness.record = candidates[witness.kind][index[best] & 0x0fffffffU];
-    if (!closest_on_record(witness.kind, witness.record, center, witness.point)) {
+    witness.record = &candidates[witness.kind][index[best] & 0x0fffffffU];
+    if (!closest_on_record(witness.kind, *witness.record, center, witness.point)) {
       // Rounding put the centre just outside of the prism: the point over it still lies on the face's plane, within it.
-      const Vec3f normal = vec_at(witness.record, FaceColumns::normal);
-      witness.point = center - normal * dot(center - vec_at(witness.record, FaceColumns::anchor), normal);
+      const Vec3f normal = vec_at(*witness.record, FaceColumns::normal);
+      witness.point = center - normal * dot(center - vec_at(*witness.record, FaceColumns::anchor), normal);
     }
-    witness.squared_distance = squared[best];
+    witness.squared_distance = squared;
     return witness;
   }
 
-  /// Slivers are rare: they are tested one by one, by their boxes.
-  static void add_slivers(const RecordList& slivers, const CenteredBox& place, Witness& witness, RecordList& out) {
+  /// Slivers are rare: they are looked at one by one.
+  static void offer_slivers(const RecordList& slivers, const Vec3f& center, Witness& witness) {
     for (std::size_t k = 0; k < slivers.count(); ++k) {
-      const Vec3d center = to_double(place.center);
-      const Vec3d point = closest_on_sliver(slivers[k], center);
-      const auto squared = static_cast<float>(squared_length(center - point));
-      if (squared < witness.squared_distance) witness = {to_float(point), sliver_kind, slivers[k], squared};
+      const Vec3d query = to_double(center);
+      const Vec3d point = closest_on_sliver(slivers[k], query);
+      const auto squared = static_cast<float>(squared_length(query - point));
+      if (squared < witness.squared_distance) witness = {to_float(point), sliver_kind, &slivers[k], squared};
     }
-    const float reach = std::sqrt(witness.squared_distance) * 1.0001F + 2 * length(place.half) + 4 * box_slack;
-    for (std::size_t k = 0; k < slivers.count(); ++k) {
-      const Vec3d center = to_double(place.center);
-      if (length(center - closest_on_sliver(slivers[k], center)) <= reach) out.append(slivers[k]);
-    }
-    out.finish();
   }
 
-  void leaf(const NodeBox& box, const CenteredBox& place, const Candidates& candidates, const Vec3f& p0, int side) {
-    LeafInput input{candidates, place.center, place.half + Vec3f{box_slack, box_slack, box_slack}, p0, {}};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        const double steps = static_cast<double>(k) - 0.5 * static_cast<double>(box.count[axis] - 1);
-        input.offsets.at[axis][k] = static_cast<float>(steps * job_.spacing[axis]);
-      }
+  static void list_slivers(const RecordList& slivers, const Child& child, RecordList& out) {
+    out.reset(slivers.count());
+    const Vec3d center = to_double(child.place.center);
+    const double reach = length(child.p0 - child.place.center) * 1.0001 + 2 * length(child.place.half) + 4 * box_slack;
+    for (std::size_t k = 0; k < slivers.count(); ++k) {
+      if (length(center - closest_on_sliver(slivers[k], center)) <= reach) out.append(slivers[k]);
     }
+  }
+
+  void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, int side,
+            const LeafPattern& pattern) {
     LeafState state;
     const bool asks_sides = job_.has_sides() && side == 0;
     if (asks_sides) {
-      evaluate_leaf<true>(job_, input, scratch_.leaf, state);
+      evaluate_leaf<true>(job_, input, pattern, state);
     } else {
-      evaluate_leaf<false>(job_, input, scratch_.leaf, state);
+      evaluate_leaf<false>(job_, input, pattern, state);
     }
-    for (std::size_t k = 0; k < candidates[sliver_kind].count(); ++k) {
-      offer_sliver(candidates[sliver_kind][k], input, state, asks_sides);
-    }
+    for (std::size_t k = 0; k < slivers.count(); ++k) offer_sliver(slivers[k], box, state, asks_sides);
     write_leaf(box, state, side, asks_sides);
   }
 
-  static void offer_sliver(const Record& sliver, const LeafInput& input, LeafState& state, bool asks_sides) {
+  void offer_sliver(const Record& sliver, const NodeBox& box, LeafState& state, bool asks_sides) const {
     for (std::size_t node = 0; node < leaf_nodes; ++node) {
-      const Vec3f q = input.center + Vec3f{input.offsets.at[0][node % 4], input.offsets.at[1][node / 4 % 4],
-                                           input.offsets.at[2][node / 16]};
-      const Vec3d query = to_double(q);
+      const std::array<std::size_t, 3> at{node % 4, node / 4 % 4, node / 16};
+      Vec3d query;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        query[axis] = job_.first_node[axis] +
+                      job_.spacing[axis] * static_cast<double>(box.first[axis] + static_cast<std::int64_t>(at[axis]));
+      }
       const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
       if (squared > state.squared[node] || (squared == state.squared[node] && sliver.id >= state.id[node])) continue;
       state.squared[node] = squared;
@@ -210,7 +306,8 @@ class TileWorker {
         std::memcpy(static_cast<void*>(job_.site + node), state.id.data() + row, leaf_size * sizeof(SiteId));
       } else {
         std::memcpy(job_.distance + node, value.data() + row, static_cast<std::size_t>(box.count[0]) * sizeof(float));
-        std::memcpy(static_cast<void*>(job_.site + node), state.id.data() + row, static_cast<std::size_t>(box.count[0]) * sizeof(SiteId));
+        std::memcpy(static_cast<void*>(job_.site + node), state.id.data() + row,
+                    static_cast<std::size_t>(box.count[0]) * sizeof(SiteId));
       }
     });
     if (!hn::AllFalse(d, unclear)) report_unsettled(box, state, asks_sides);
@@ -238,6 +335,8 @@ class TileWorker {
   const FieldJob& job_;
   TileScratch::Impl& scratch_;
   std::vector<std::size_t>& unsettled_;
+  bool needs_settling_;
+  std::array<LeafPattern, 8> full_patterns_;
 };
 
 void compute_tile_here(const FieldJob& job, const NodeBox& tile, TileScratch& scratch) {

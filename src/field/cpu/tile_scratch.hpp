@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstring>
+#include <vector>
 
 #include "field/cpu/radix_sort.hpp"
 #include "field/cpu/tile_kernel.hpp"
@@ -10,19 +12,24 @@
 namespace blum::cpu {
 
 /// Records of one kind that may matter in a box, in rising order of site id (so that ties go to the smaller id).
-/// Readable up to a whole number of vectors past the end: the padding holds records that are nowhere.
+/// Whole vectors may be read past the end; what is there does not matter.
 class RecordList {
  public:
   static constexpr std::size_t padding = 16;
 
   /// Empties the list and makes room for `capacity` records.
   void reset(std::size_t capacity) {
-    if (records_.size() < capacity + padding) records_ = Buffer<Record>(capacity + capacity / 2 + padding);
+    if (records_.size() < capacity + padding) {
+      records_ = Buffer<Record>(capacity + capacity / 2 + 4 * padding);
+      std::memset(static_cast<void*>(records_.data()), 0, records_.span().size_bytes());
+    }
     count_ = 0;
   }
   void append(const Record& record) { records_[count_++] = record; }
-  /// Makes the padding readable; to be called once the list is complete.
-  void finish() { std::memset(static_cast<void*>(records_.data() + count_), 0, padding * sizeof(Record)); }
+  /// Appends block[b] for every set bit b.
+  void append(const Record* block, std::uint32_t lane_bits) {
+    for (; lane_bits != 0; lane_bits &= lane_bits - 1) append(block[std::countr_zero(lane_bits)]);
+  }
 
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] const Record* data() const { return records_.data(); }
@@ -35,6 +42,23 @@ class RecordList {
 
 /// Candidates of all kinds for one box.
 using Candidates = std::array<RecordList, kind_count>;
+
+/// For each of a box's eight children, one bit per candidate of the box: whether it may matter there. Bits are kept in
+/// one word per block of `lanes` candidates.
+class ChildBits {
+ public:
+  void reset(std::size_t blocks) {
+    if (words_.size() < 8 * blocks) words_.resize(8 * blocks);
+    stride_ = blocks;
+  }
+  [[nodiscard]] std::uint16_t* child(std::size_t c) { return words_.data() + c * stride_; }
+  [[nodiscard]] const std::uint16_t* child(std::size_t c) const { return words_.data() + c * stride_; }
+  [[nodiscard]] std::size_t blocks() const { return stride_; }
+
+ private:
+  std::vector<std::uint16_t> words_;
+  std::size_t stride_ = 0;
+};
 
 /// Prepared candidates of a leaf: structure of arrays, read lane by lane.
 class LeafColumns {
@@ -54,8 +78,12 @@ class LeafColumns {
 };
 
 struct TileScratch::Impl {
-  static constexpr std::size_t levels = 4;  // boxes of 64, 32, 16 and 8 nodes have children
-  std::array<std::array<Candidates, 8>, levels> children;
+  /// What one level of the recursion needs: which candidates go to which child, and the list of the child at hand.
+  struct Level {
+    std::array<ChildBits, kind_count> bits;
+    Candidates child;
+  };
+  std::array<Level, 4> levels;  // boxes of 64, 32 and 16 nodes, and last those of 8, have children
   Candidates gathered;
   std::array<std::vector<std::uint32_t>, kind_count> clusters;  // of the tile at hand
   std::vector<KeyedIndex> order, order_scratch;
