@@ -150,7 +150,7 @@ ShapeInfo organic() {
           "an animal-like body with rough skin, like a scanned model; with holes, an open surface",
           {length_parameter("radius", "typical radius", 1),
            frequency_parameter(59),
-           {"detail", "amplitude of the finest bumps, in radii", 0.015, 0, 0.05, false},
+           {"detail", "amplitude of the finest bumps, in radii", 0.006, 0, 0.05, false},
            count_parameter("holes", "holes in the surface", 0, 0, 12),
            seed_parameter()},
           [](const ShapeParameters& p) {

@@ -324,12 +324,12 @@ TriangleMesh make_organic(const OrganicOptions& options) {
   require_positive(options.radius, "radius");
   require(options.detail >= 0 && options.detail <= 0.05, "detail", "0 to 0.05", options.detail);
   require(options.holes >= 0 && options.holes <= 12, "holes", "0 to 12", options.holes);
-  if (options.holes > 0) require_at_least(options.frequency, 4, "frequency (with holes)");
+  if (options.holes > 0) require_at_least(options.frequency, 8, "frequency (with holes)");
   TriangleMesh mesh = detail::geodesic(options.frequency);
   const Skin skin(options.detail, options.seed);
-  // The twelve corners of the icosahedron come first, and are far apart from each other.
+  // The twelve corners of the icosahedron come first; they are `frequency` edges apart, so that holes do not meet.
   for (int hole = 0; hole < options.holes; ++hole) {
-    cut_hole(mesh, static_cast<std::uint32_t>(hole), 1 + (options.frequency / 16) * (hole % 3) / 2);
+    cut_hole(mesh, static_cast<std::uint32_t>(hole), 1 + options.frequency * (1 + hole % 3) / 12);
   }
   for (Vec3d& p : mesh.vertices) {
     double radius = 0.8 + skin.height(p);

@@ -1,9 +1,7 @@
 #include "blum/geometry/shape_catalog.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
-#include <utility>
+#include <string>
 
 #include "blum/core/error.hpp"
 #include "geometry/catalog_parts.hpp"
@@ -18,18 +16,6 @@ std::vector<ShapeInfo> make_catalog() {
   }
   std::sort(catalog.begin(), catalog.end(), [](const ShapeInfo& a, const ShapeInfo& b) { return a.name < b.name; });
   return catalog;
-}
-
-std::string list_parameters(const ShapeInfo& shape) {
-  std::ostringstream text;
-  text << "; '" << shape.name << "' takes";
-  const char* separator = " ";
-  for (const ShapeParameter& p : shape.parameters) {
-    text << separator << p.name << " (" << (p.integer ? "whole number, " : "") << p.minimum << " to " << p.maximum
-         << ", default " << p.default_value << ")";
-    separator = ", ";
-  }
-  return text.str();
 }
 
 }  // namespace
@@ -53,25 +39,7 @@ const ShapeInfo& find_shape(std::string_view name) {
 }
 
 ShapeParameters complete_parameters(const ShapeInfo& shape, const ShapeParameters& given) {
-  ShapeParameters complete;
-  for (const ShapeParameter& p : shape.parameters) complete[p.name] = p.default_value;
-  for (const auto& [name, value] : given) {
-    const auto found = std::find_if(shape.parameters.begin(), shape.parameters.end(),
-                                    [&name = name](const ShapeParameter& p) { return p.name == name; });
-    if (found == shape.parameters.end()) {
-      throw InvalidOption("there is no parameter '" + name + "'" + list_parameters(shape));
-    }
-    if (!(value >= found->minimum && value <= found->maximum)) {
-      std::ostringstream text;
-      text << "parameter '" << name << "' is " << value << ", out of its range" << list_parameters(shape);
-      throw InvalidOption(text.str());
-    }
-    if (found->integer && value != std::floor(value)) {
-      throw InvalidOption("parameter '" + name + "' must be a whole number" + list_parameters(shape));
-    }
-    complete[name] = value;
-  }
-  return complete;
+  return complete_parameters(shape.name, shape.parameters, given);
 }
 
 TriangleMesh make_shape(std::string_view name, const ShapeParameters& parameters) {

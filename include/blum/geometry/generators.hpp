@@ -106,8 +106,8 @@ struct SpoonOptions {
 struct OrganicOptions {
   double radius = 1;      ///< typical radius, > 0
   int frequency = 59;     ///< as for a sphere; 59 gives 69,620 triangles
-  double detail = 0.015;  ///< amplitude of the finest bumps, in radii, 0 to 0.05
-  int holes = 0;          ///< patches of triangles left out, 0 to 12: the surface is then open
+  double detail = 0.006;  ///< amplitude of the finest bumps, in radii, 0 to 0.05
+  int holes = 0;          ///< patches of triangles left out, 0 to 12: the surface is then open; needs frequency >= 8
   std::uint64_t seed = 1;
 };
 /// A star-shaped animal-like body (ears, paws, tail, rough skin), of the size and unrest of a scanned model; with

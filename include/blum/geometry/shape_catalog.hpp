@@ -4,28 +4,18 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "blum/core/parameters.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum {
 
-/// Values of parameters by name.
-using ShapeParameters = std::map<std::string, double>;
-
-/// A number that a shape can be asked for with.
-struct ShapeParameter {
-  std::string name;         ///< as on the command line, without dashes in front
-  std::string description;  ///< one line, with the unit
-  double default_value = 0;
-  double minimum = 0;  ///< inclusive
-  double maximum = 0;  ///< inclusive
-  bool integer = false;
-};
+using ShapeParameters = ParameterValues;
+using ShapeParameter = Parameter;
 
 /// A shape that Blum generates.
 struct ShapeInfo {

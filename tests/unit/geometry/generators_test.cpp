@@ -175,7 +175,7 @@ TEST(Generators, SizesAreAsStated) {
 
 TEST(Generators, HolesOfTheOrganicShapeAreItsBoundaryLoops) {
   for (const int holes : {1, 5, 12}) {
-    const Topology t = topology(make_organic({1, 59, 0.015, holes, 1}));
+    const Topology t = topology(make_organic({1, 59, 0.006, holes, 1}));
     EXPECT_EQ(t.boundary_loops, static_cast<std::size_t>(holes));
     EXPECT_TRUE(t.manifold && t.oriented && !t.closed);
     EXPECT_EQ(t.surface_components, 1U);
