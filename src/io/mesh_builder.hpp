@@ -77,9 +77,15 @@ class MeshBuilder {
 /// rule.
 /// @param corners    vertex indices, in range.
 /// @param triangles  receives them: corners.size() - 2 entries.
+/// @param work_left  steps that may be taken beyond polygon_work_per_corner for each corner; becomes what is left.
 /// @returns false when the triangles are a fan because no proper cut was found.
-bool cut_polygon(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners,
-                 std::span<Triangle> triangles);
+bool cut_polygon(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners, std::span<Triangle> triangles,
+                 std::int64_t& work_left);
+
+/// The steps (looks at a corner or a group of corners) that cutting may take: for each corner, and beyond that for a
+/// file, which takes about a second. Usual polygons need a few dozen a corner, whatever their size.
+inline constexpr std::int64_t polygon_work_per_corner = 500;
+inline constexpr std::int64_t polygon_work = 200'000'000;
 
 // The readers, one a format. The builder's indices are all in range in what they return.
 [[nodiscard]] MeshFile read_obj(std::string_view text, std::string_view name);

@@ -119,10 +119,11 @@ MeshFile MeshBuilder::finish(MeshFormat format, bool binary) {
                .faces = face_count(),
                .polygons = polygons_.size()};
   const std::span<Triangle> triangles = mesh_.triangles;
+  std::int64_t work_left = polygon_work;
   for (const Polygon& polygon : polygons_) {
     const bool proper = cut_polygon(
         mesh_.vertices, std::span<const std::uint32_t>(corners_).subspan(polygon.first_corner, polygon.corners),
-        triangles.subspan(polygon.first_triangle, polygon.corners - 2));
+        triangles.subspan(polygon.first_triangle, polygon.corners - 2), work_left);
     file.info.fan_polygons += proper ? 0 : 1;
   }
   if (mesh_.triangles.empty() && mesh_.segments.empty() && mesh_.points.empty()) {

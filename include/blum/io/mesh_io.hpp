@@ -56,8 +56,9 @@ struct MeshFile {
 /// A file with vertices and nothing else is a point cloud: every vertex is in `points`. Polygons are cut into
 /// triangles: strictly convex ones as a fan from their first corner, others by ear clipping as seen along the
 /// coordinate axis nearest to their mean normal, which is right for every simple planar polygon, also with holes joined
-/// to the outline by a bridge. One that crosses itself, has no area, or is too tangled for the allowed work (1,000
-/// tests per corner) is cut as a fan. Triangles that name a vertex twice stay as they are, unless welding is asked for.
+/// to the outline by a bridge. One that crosses itself, has no area, or is so tangled that it takes more than
+/// 500 steps a corner and 2e8 a file, is cut as a fan. Triangles that name a vertex twice stay as they are, unless
+/// welding is asked for.
 ///
 /// Cost: O(file size) time and memory; the whole file is held in memory while it is read.
 /// @throws FileError when the file cannot be read, or when its extension is not known.
