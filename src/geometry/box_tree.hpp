@@ -34,4 +34,7 @@ struct BoxTree {
 /// @param leaves  one box per leaf.
 [[nodiscard]] BoxTree make_box_tree(std::span<const Box3> leaves, const Context& context);
 
+/// Whether a box touches the box of a leaf. Allocates nothing.
+[[nodiscard]] bool may_touch(const BoxTree& tree, const Box3& box);
+
 }  // namespace blum

@@ -193,24 +193,8 @@ std::optional<NearestSite> Bvh::nearest(const Vec3d& query, double max_distance)
 
 bool Bvh::may_touch(const Box3& box) const {
   const Data& data = *data_;
-  if (data.tree.is_empty() || box.is_empty()) return false;
-  const Box3 scaled{box.lower * data.scale, box.upper * data.scale};
-  PendingStack stack;
-  stack.push({0.0, 0, data.tree.top()});
-  while (stack.size > 0) {
-    const Pending item = stack.pop();
-    if (item.level < 0) return true;
-    const BoxBlock& block = data.tree.levels[static_cast<std::size_t>(item.level)][item.block];
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      bool is_apart = false;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        is_apart =
-            is_apart || block.lower[axis][lane] > scaled.upper[axis] || block.upper[axis][lane] < scaled.lower[axis];
-      }
-      if (!is_apart) stack.push({0.0, static_cast<std::uint32_t>(item.block * lanes + lane), item.level - 1});
-    }
-  }
-  return false;
+  if (box.is_empty()) return false;
+  return blum::may_touch(data.tree, {box.lower * data.scale, box.upper * data.scale});
 }
 
 }  // namespace blum
