@@ -19,8 +19,10 @@ import nrrd
 import numpy
 import pytest
 import SimpleITK
-import vtk
-from vtk.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_FLOAT
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 FIELDS = ["field", "turned", "flat", "triangles", "voxels"]
@@ -137,7 +139,7 @@ def test_npz_opens_with_standard_unzip(samples):
 
 
 def read_vti(path):
-    reader = vtk.vtkXMLImageDataReader()
+    reader = vtkXMLImageDataReader()
     problems = []
     reader.AddObserver("ErrorEvent", lambda *_: problems.append("error"))
     reader.AddObserver("WarningEvent", lambda *_: problems.append("warning"))
@@ -380,15 +382,15 @@ def test_reads_fields_of_numpy(tmp_path, save, layout):
 
 
 def test_reads_fields_of_vtk(tmp_path):
-    image = vtk.vtkImageData()
+    image = vtkImageData()
     image.SetExtent(1, 5, 0, 3, -1, 1)
     image.SetSpacing(0.5, 0.75, 2)
     image.SetOrigin(1, -2, 3.5)
-    image.AllocateScalars(vtk.VTK_FLOAT, 1)
+    image.AllocateScalars(VTK_FLOAT, 1)
     array = vtk_to_numpy(image.GetPointData().GetScalars())
     array[:] = numpy.arange(60)
     image.GetPointData().GetScalars().SetName("distance")
-    writer = vtk.vtkXMLImageDataWriter()
+    writer = vtkXMLImageDataWriter()
     writer.SetFileName(str(tmp_path / "a.vti"))
     writer.SetInputData(image)
     writer.SetCompressorTypeToNone()
