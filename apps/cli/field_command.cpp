@@ -1,0 +1,407 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/field/distance_transform.hpp"
+#include "blum/field/field.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/io/field_io.hpp"
+#include "commands.hpp"
+#include "field_statistics.hpp"
+#include "files.hpp"
+#include "input_facts.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum field bunny.obj -o bunny.nrrd --resolution 256
+  blum field bunny.obj -o bunny.npz --band 3v --json summary.json
+  blum field part.stl -o part.vti --weld 1e-6 --sign winding
+  blum field part.ply -o cut.nrrd --bounds -1,-1,0,1,1,0      one layer: a 2D field
+  blum field scan.nii.gz -o organ.nrrd --label 1,3            organ-label1.nrrd and organ-label3.nrrd
+  blum field scan.nrrd -o bone.npz --threshold 300)";
+
+/// The command line as text; values are read in checked order by `resolve`.
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> resolution, spacing, bounds, padding, sign, band, site_ids, threshold, weld, threads;
+  std::vector<std::string> labels;
+  ReportOptions report;
+};
+
+struct Request {
+  fs::path input;
+  fs::path output;
+  int resolution = 256;
+  std::optional<double> spacing;
+  std::optional<Box3> bounds;
+  double padding = 0.1;
+  SignMode sign = SignMode::automatic;
+  std::optional<Band> band;
+  SiteIds site_ids = SiteIds::features;
+  std::vector<std::int64_t> labels;
+  std::optional<double> threshold;
+  std::optional<double> weld;
+  int threads = 0;
+  ReportOptions report;
+};
+
+template <class Value>
+Value parse_choice(const std::string& option, const std::string& text,
+                   const std::vector<std::pair<std::string, Value>>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    if (name == text) return value;
+    names.push_back(name);
+  }
+  throw UsageError(option + " '" + text + "': must be " + join_words(names, "or"));
+}
+
+void exclude(bool first, const char* first_name, bool second, const char* second_name, const char* reason) {
+  if (first && second) {
+    throw UsageError(std::string(first_name) + " and " + second_name + " cannot be used together: " + reason);
+  }
+}
+
+Request parse(const Arguments& a) {
+  Request r;
+  r.input = a.input;
+  r.output = a.output;
+  check_extension("--output", r.output, {".nrrd", ".npz", ".vti"});
+  if (r.input.empty()) throw UsageError("INPUT needs a file name");
+  exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
+  exclude(a.bounds.has_value(), "--bounds", a.padding.has_value(), "--padding", "the bounds are taken as they are");
+  exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
+  if (a.resolution) r.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 2, 65536));
+  if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
+  if (a.bounds) r.bounds = parse_bounds("--bounds", *a.bounds);
+  if (a.padding) r.padding = parse_non_negative("--padding", *a.padding);
+  if (a.sign) {
+    r.sign = parse_choice<SignMode>("--sign", *a.sign,
+                                    {{"auto", SignMode::automatic},
+                                     {"normals", SignMode::normals},
+                                     {"winding", SignMode::winding},
+                                     {"none", SignMode::none}});
+  }
+  if (a.band) r.band = parse_band("--band", *a.band);
+  if (a.site_ids) {
+    r.site_ids = parse_choice<SiteIds>("--site-ids", *a.site_ids,
+                                       {{"features", SiteIds::features}, {"triangles", SiteIds::triangles}});
+  }
+  r.labels = parse_labels("--label", a.labels);
+  if (a.threshold) r.threshold = parse_number("--threshold", *a.threshold);
+  r.weld = parse_weld(a.weld);
+  r.threads = parse_threads(a.threads);
+  r.report = a.report;
+  return r;
+}
+
+void refuse_given(const std::vector<std::pair<bool, const char*>>& given, const fs::path& input, const char* kind,
+                  const char* applies_to) {
+  for (const auto& [is_given, name] : given) {
+    if (is_given) {
+      throw UsageError(std::string(name) + " is for " + applies_to + ", and '" + input.string() + "' is " + kind);
+    }
+  }
+}
+
+void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
+  if (kind == InputKind::mesh) {
+    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, r.input, "a mesh",
+                 "images");
+    return;
+  }
+  refuse_given({{a.resolution.has_value(), "--resolution"},
+                {a.spacing.has_value(), "--spacing"},
+                {a.bounds.has_value(), "--bounds"},
+                {a.padding.has_value(), "--padding"},
+                {a.site_ids.has_value(), "--site-ids"},
+                {a.weld.has_value(), "--weld"},
+                {r.sign == SignMode::normals, "--sign normals"},
+                {r.sign == SignMode::winding, "--sign winding"}},
+               r.input, "an image", "meshes");
+}
+
+/// What a run gathers for its summary.
+struct Run {
+  Json input;
+  std::string input_text;
+  Json fields = Json::array();
+  std::vector<PhaseTime> phases;
+  double field_seconds = 0;
+  std::vector<fs::path> outputs;
+  TextTable table;
+  void time(const char* phase, double seconds) { phases.push_back({phase, seconds}); }
+};
+
+Json kind_json(const KindCount& count) {
+  return {{"nodes", count.nodes}, {"sites", count.sites}};
+}
+
+Json sites_json(const FieldStatistics& s, SiteIds ids) {
+  Json json = {{"count", to_string(ids)}, {"distinct", s.all.sites}, {"nodes_without", s.siteless_nodes}};
+  if (ids == SiteIds::features) {
+    json["vertices"] = kind_json(s.kinds[0]);
+    json["edges"] = kind_json(s.kinds[1]);
+    json["faces"] = kind_json(s.kinds[2]);
+  }
+  return json;
+}
+
+std::string sites_text(const FieldStatistics& s, SiteIds ids) {
+  if (ids == SiteIds::voxels) return count_text(s.all.sites) + " closest voxels";
+  if (ids == SiteIds::triangles) return count_text(s.all.sites) + " closest triangles";
+  const auto part = [&](std::size_t kind, const char* name) {
+    const double share =
+        s.all.nodes == 0 ? 0 : 100.0 * static_cast<double>(s.kinds[kind].nodes) / static_cast<double>(s.all.nodes);
+    return count_text(s.kinds[kind].sites) + " " + name + " (" + number_text(std::round(share * 10) / 10) + " %)";
+  };
+  return part(0, "vertices") + ", " + part(1, "edges") + ", " + part(2, "faces") + " of the nodes' closest";
+}
+
+/// `label` may be null.
+void add_field(Run& run, const Field& field, const FieldStatistics& s, const std::vector<fs::path>& files,
+               const std::int64_t* label) {
+  Json json;
+  if (label) json["label"] = *label;
+  Json names = Json::array();
+  for (const fs::path& file : files) {
+    names.push_back(file.string());
+    run.outputs.push_back(file);
+  }
+  json["files"] = names;
+  json["sign"] = {{"rule", to_string(field.sign_rule)}, {"reason", field.sign_reason}};
+  json["band"] = field.band ? Json(*field.band) : Json(nullptr);
+  json["distance"] = {{"minimum", s.minimum}, {"maximum", s.maximum}, {"inside_nodes", s.inside_nodes}};
+  json["sites"] = sites_json(s, field.site_ids);
+  run.fields.push_back(json);
+
+  if (label) run.table.add("label", std::to_string(*label));
+  run.table.add("sign",
+                std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
+  run.table.add("distance", number_text(s.minimum) + " to " + number_text(s.maximum) +
+                                (field.band ? ", in a band of +-" + number_text(*field.band) : ""));
+  run.table.add("sites", sites_text(s, field.site_ids));
+}
+
+void finish(const Request& request, Run& run, const GridSpec& grid, const Context& context) {
+  double total = 0;
+  Json seconds = Json::object();
+  std::string slow;
+  for (const PhaseTime& phase : run.phases) {
+    seconds[phase.phase] = (seconds.contains(phase.phase) ? seconds[phase.phase].get<double>() : 0.0) + phase.seconds;
+    total += phase.seconds;
+  }
+  for (const auto& [phase, time] : seconds.items()) {
+    slow += (slow.empty() ? " (" : ", ") + phase + " " + number_text(std::round(time.get<double>() * 1e3) / 1e3);
+  }
+  const double nodes = static_cast<double>(grid.node_count()) * static_cast<double>(run.fields.size());
+  const double rate = nodes / std::max(run.field_seconds, 1e-9);
+  Json outputs = Json::array();
+  for (const fs::path& file : run.outputs) outputs.push_back(file.string());
+  const Json json = {{"blum_version", BLUM_VERSION},
+                     {"command", "field"},
+                     {"input", run.input},
+                     {"grid", to_json(grid)},
+                     {"sign_asked", to_string(request.sign)},
+                     {"fields", run.fields},
+                     {"seconds", seconds},
+                     {"field_seconds", run.field_seconds},
+                     {"total_seconds", total},
+                     {"nodes_per_second", rate},
+                     {"peak_memory_bytes", peak_memory()},
+                     {"threads", thread_count(context)},
+                     {"thread_backend", thread_backend()},
+                     {"outputs", outputs}};
+  run.table.add("time", number_text(std::round(total * 1e3) / 1e3) + " s" + slow + (slow.empty() ? "" : ")"));
+  run.table.add("speed", number_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
+                             plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads") + ", " +
+                             bytes_text(static_cast<double>(peak_memory())) + " at most");
+  for (const fs::path& file : run.outputs) run.table.add("wrote", file.string());
+  report(request.report, json, run.input_text + run.table.text());
+}
+
+GridSpec make_grid(const Request& r, const Box3& box) {
+  if (r.bounds) return r.spacing ? grid_in_with_spacing(*r.bounds, *r.spacing) : grid_in(*r.bounds, r.resolution);
+  return r.spacing ? grid_around_with_spacing(box, *r.spacing, r.padding) : grid_around(box, r.resolution, r.padding);
+}
+
+void check_field_memory(const GridSpec& grid, std::size_t fields) {
+  check_memory(8.0 * static_cast<double>(grid.node_count()) * static_cast<double>(fields),
+               "a grid of " + size_text(grid) + " nodes", "use a coarser grid, or smaller bounds");
+}
+
+void add_grid_text(Run& run, const GridSpec& grid) {
+  run.table.add("grid",
+                size_text(grid) + " nodes, spacing " +
+                    (grid.spacing.x == grid.spacing.y && grid.spacing.y == grid.spacing.z ? number_text(grid.spacing.x)
+                                                                                          : vector_text(grid.spacing)) +
+                    ", origin " + vector_text(grid.origin));
+}
+
+void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) {
+  const Context context = make_context(r.threads, progress, interrupt);
+  check_outputs(
+      [&] {
+        std::vector<fs::path> files = field_files(r.output);
+        for (const fs::path& file : r.report.files()) files.push_back(file);
+        return files;
+      }(),
+      {r.input});
+  Run run;
+  Stopwatch watch;
+  MeshFile file;
+  {
+    const Unattended reading;
+    file = load_mesh(r.input, {r.weld});
+  }
+  run.time("read", watch.lap());
+  const MeshView mesh = file.mesh;
+  validate(mesh);
+  const SiteTable sites(mesh, context);
+  const Orientation facts = orientation(mesh, sites);
+  run.input = mesh_json(r.input, file, sites, facts);
+  run.input_text = mesh_text(r.input, file, sites, facts);
+  run.time("input facts", watch.lap());
+
+  const GridSpec grid = make_grid(r, bounds(mesh));
+  check_field_memory(grid, 1);
+  add_grid_text(run, grid);
+  FieldOptions options;
+  options.sign = r.sign;
+  options.site_ids = r.site_ids;
+  if (r.band) options.band = r.band->value * (r.band->voxels ? grid.spacing.x : 1.0);
+  static_cast<void>(watch.lap());
+  const Field field = distance_field(mesh, grid, options, context);
+  run.field_seconds = watch.lap();
+  run.phases.insert(run.phases.end(), field.phases.begin(), field.phases.end());
+  progress.clear();
+
+  const SiteTable* features = r.site_ids == SiteIds::features ? &sites : nullptr;
+  const FieldStatistics statistics = field_statistics(field, features, context);
+  run.time("statistics", watch.lap());
+  write_field(r.output, field, {&mesh, &sites, r.input.filename().string(), BLUM_VERSION}, context);
+  run.time("write", watch.lap());
+  progress.clear();
+  add_field(run, field, statistics, field_files(r.output), nullptr);
+  finish(r, run, grid, context);
+}
+
+std::vector<LabelSelection> selections_of(const Request& r) {
+  if (r.threshold) return {LabelSelection::at_least(*r.threshold)};
+  std::vector<LabelSelection> selections;
+  for (const std::int64_t label : r.labels) selections.push_back(LabelSelection::of_label(label));
+  if (selections.empty()) selections.emplace_back();
+  return selections;
+}
+
+void run_image(const Request& r, Progress& progress, const Interrupt& interrupt) {
+  const Context context = make_context(r.threads, progress, interrupt);
+  std::vector<fs::path> names;
+  if (r.labels.size() < 2) names.push_back(r.output);
+  if (r.labels.size() >= 2) {
+    for (const std::int64_t label : r.labels) names.push_back(with_label(r.output, label));
+  }
+  std::vector<fs::path> all = r.report.files();
+  for (const fs::path& name : names) {
+    for (const fs::path& file : field_files(name)) all.push_back(file);
+  }
+  check_outputs(all, {r.input});
+
+  Run run;
+  Stopwatch watch;
+  VoxelImage image;
+  {
+    const Unattended reading;
+    image = load_image(r.input);
+  }
+  run.time("read", watch.lap());
+  run.input = image_json(r.input, image);
+  run.input_text = image_text(r.input, image);
+  run.time("input facts", watch.lap());
+  const std::vector<LabelSelection> selections = selections_of(r);
+  check_field_memory(image.grid, selections.size());
+  add_grid_text(run, image.grid);
+  DistanceTransformOptions options;
+  options.is_signed = r.sign != SignMode::none;
+  const Vec3d step = image.grid.spacing;
+  if (r.band) options.band = r.band->value * (r.band->voxels ? std::max({step.x, step.y, step.z}) : 1.0);
+  static_cast<void>(watch.lap());
+  std::vector<Field> fields = distance_transforms(image, selections, options, context);
+  run.field_seconds = watch.lap();
+  progress.clear();
+  for (const Field& field : fields) run.phases.insert(run.phases.end(), field.phases.begin(), field.phases.end());
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    static_cast<void>(watch.lap());
+    const FieldStatistics statistics = field_statistics(fields[i], nullptr, context);
+    run.time("statistics", watch.lap());
+    write_field(names[i], fields[i], {nullptr, nullptr, r.input.filename().string(), BLUM_VERSION}, context);
+    run.time("write", watch.lap());
+    add_field(run, fields[i], statistics, field_files(names[i]), r.labels.empty() ? nullptr : &r.labels[i]);
+    fields[i] = {};
+  }
+  progress.clear();
+  finish(r, run, image.grid, context);
+}
+
+void run(const Arguments& arguments) {
+  const Request request = parse(arguments);
+  const InputKind kind = input_kind(request.input);
+  const bool vector_field_file = kind == InputKind::field && extension(request.input) != ".nrrd";
+  if (vector_field_file) {
+    throw FileError("'" + request.input.string() + "' is a field file; `blum field` reads meshes and images");
+  }
+  check_applicable(arguments, request, kind);
+  Progress progress(!request.report.quiet);
+  const Interrupt interrupt;
+  kind == InputKind::mesh ? run_mesh(request, progress, interrupt) : run_image(request, progress, interrupt);
+}
+
+}  // namespace
+
+void add_field_command(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("field", "Exact distance and closest site at every node of a grid");
+  command->add_option("INPUT", a->input, "Mesh (.obj .off .stl .ply) or image (.nrrd .nhdr .nii .nii.gz .npy .vol)")
+      ->required();
+  command->add_option("-o,--output", a->output, "Field file: .nrrd (and OUT.site.nrrd), .npz or .vti")
+      ->required()
+      ->type_name("FILE");
+  const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  text("--resolution", a->resolution, "N", "Mesh: nodes along the longest side of the grid (default 256)");
+  text("--spacing", a->spacing, "H", "Mesh: distance between nodes, instead of --resolution");
+  text("--bounds", a->bounds, "BOX", "Mesh: grid box x0,y0,z0,x1,y1,z1; a side of zero gives a 2D field");
+  text("--padding", a->padding, "F", "Mesh: room around the shape, as a part of its longest side (default 0.1)");
+  text("--sign", a->sign, "RULE", "auto, normals, winding or none (default auto); image: auto or none");
+  text("--band", a->band, "W", "Only distances up to W, in mesh units, or in grid steps as in 3v");
+  text("--site-ids", a->site_ids, "KIND", "Mesh: number sites as features or triangles (default features)");
+  command->add_option("--label", a->labels, "Image: the voxels of value L; several (1,3 or repeated) give a field each")
+      ->type_name("L")
+      ->allow_extra_args(false);
+  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
+      ->type_name("[TOL]");
+  text("--threads", a->threads, "T", "Number of threads (default: one per core)");
+  text("--json", a->report.json, "FILE", "Write a summary as JSON; - is standard output");
+  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,32 @@
+// Blum: what a field holds, in numbers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "blum/core/context.hpp"
+#include "blum/field/field.hpp"
+#include "blum/geometry/sites.hpp"
+
+namespace blum::cli {
+
+struct KindCount {
+  std::uint64_t nodes = 0;  ///< nodes whose closest site is of this kind
+  std::uint64_t sites = 0;  ///< distinct sites that are closest to some node
+};
+
+struct FieldStatistics {
+  float minimum = 0;
+  float maximum = 0;
+  std::uint64_t inside_nodes = 0;    ///< distance < 0
+  std::uint64_t siteless_nodes = 0;  ///< beyond the band
+  KindCount all;
+  std::array<KindCount, 3> kinds;  ///< by SiteKind; only where the field's sites are features and `sites` is given
+};
+
+/// @param sites  the mesh's sites, where the field's site values are features; else null.
+/// Cost: one pass over the field; a bit for each site.
+[[nodiscard]] FieldStatistics field_statistics(const Field& field, const SiteTable* sites, const Context& context);
+
+}  // namespace blum::cli

@@ -1,0 +1,91 @@
+#include "input_facts.hpp"
+
+#include <array>
+
+#include "files.hpp"
+
+namespace blum::cli {
+
+Json file_json(const std::filesystem::path& path, const MeshFile& file) {
+  return {{"path", path.string()},
+          {"kind", "mesh"},
+          {"format", to_string(file.info.format)},
+          {"binary", file.info.binary},
+          {"file_vertices", file.info.vertices},
+          {"file_faces", file.info.faces},
+          {"polygons", file.info.polygons},
+          {"fan_polygons", file.info.fan_polygons},
+          {"welded", file.info.welded},
+          {"merged_vertices", file.info.merged_vertices},
+          {"vertices", file.mesh.vertices.size()},
+          {"triangles", file.mesh.triangles.size()},
+          {"segments", file.mesh.segments.size()},
+          {"points", file.mesh.points.size()},
+          {"bounds", to_json(bounds(file.mesh))}};
+}
+
+std::string file_text(const MeshFile& file) {
+  std::string text = std::string(to_string(file.info.format)) + (file.info.binary ? " (binary)" : " (text)") + ", " +
+                     plural(file.info.vertices, "vertex", "vertices") + ", " + plural(file.info.faces, "face", "faces");
+  if (file.info.polygons > 0) text += ", " + count_text(file.info.polygons) + " of them with more than 3 corners";
+  if (file.info.fan_polygons > 0) text += ", " + count_text(file.info.fan_polygons) + " not simple";
+  if (file.info.welded) text += "; welding removed " + plural(file.info.merged_vertices, "vertex", "vertices");
+  return text;
+}
+
+Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
+               const Orientation& facts) {
+  Json json = file_json(path, file);
+  json["edges"] = sites.edge_count();
+  json["components"] = facts.components;
+  json["closed"] = facts.closed;
+  json["oriented"] = facts.oriented;
+  json["faces_outwards"] = facts.outward;
+  json["boundary_edges"] = facts.boundary_edges;
+  json["nonmanifold_edges"] = facts.nonmanifold_edges;
+  json["inconsistent_edges"] = facts.inconsistent_edges;
+  return json;
+}
+
+std::string mesh_text(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
+                      const Orientation& facts) {
+  TextTable table;
+  table.add("input", path.string() + ": " + file_text(file));
+  std::string mesh = plural(file.mesh.vertices.size(), "vertex", "vertices") + ", " +
+                     plural(sites.edge_count(), "edge", "edges") + ", " +
+                     plural(file.mesh.triangles.size(), "triangle", "triangles");
+  if (!file.mesh.segments.empty()) mesh += ", " + plural(file.mesh.segments.size(), "segment", "segments");
+  if (!file.mesh.points.empty()) mesh += ", " + plural(file.mesh.points.size(), "point", "points");
+  if (!file.mesh.triangles.empty()) {
+    mesh +=
+        "; " + plural(facts.components, "component", "components") + ", " + (facts.closed ? "closed" : "not closed");
+  }
+  table.add("mesh", mesh);
+  return table.text();
+}
+
+std::string type_name(const VoxelImage::Values& values) {
+  constexpr std::array<const char*, 10> names = {"uint8", "int8",   "uint16", "int16",   "uint32",
+                                                 "int32", "uint64", "int64",  "float32", "float64"};
+  static_assert(std::variant_size_v<VoxelImage::Values> == names.size());
+  return names.at(values.index());
+}
+
+Json image_json(const std::filesystem::path& path, const VoxelImage& image) {
+  Json json = {{"path", path.string()},
+               {"kind", "image"},
+               {"format", image_format_name(path)},
+               {"type", type_name(image.values)},
+               {"voxels", image.grid.node_count()}};
+  json["grid"] = to_json(image.grid);
+  json["bounds"] = to_json(bounds(image.grid));
+  return json;
+}
+
+std::string image_text(const std::filesystem::path& path, const VoxelImage& image) {
+  TextTable table;
+  table.add("input", path.string() + ": " + image_format_name(path) + " image of " + type_name(image.values));
+  return table.text();
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "commands.hpp"
+#include "options.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+constexpr int exit_failure = 1;
+constexpr int exit_usage = 2;
+
+constexpr const char* examples = R"(Examples:
+  blum make torus_knot -o knot.ply                 a shape to start from
+  blum info knot.ply                               what it is
+  blum field knot.ply -o knot.nrrd                 its exact signed distance field
+  blum slice knot.nrrd -o knot.png                 a picture of it
+  blum slice knot.nrrd -o cells.png --show sites   the Voronoi diagram
+
+`blum COMMAND --help` says more. Exit status: 0 done, 2 bad usage, 1 any other failure.
+Existing output files are only ever replaced by complete ones.)";
+
+int fail(const std::string& message, int status) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "blum: error: %s\n", message.c_str());
+  return status;
+}
+
+/// CLI11's own exits: help and version are no errors.
+int finish(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
+    std::string message = error.what();
+    while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
+    const auto used = app.get_subcommands();
+    const std::string command = used.empty() ? "blum" : "blum " + used.front()->get_name();
+    return fail(message + "; see `" + command + " --help`", exit_usage);
+  }
+  app.exit(error);  // prints the help or the version
+  std::fflush(stdout);
+  return 0;
+}
+
+void add_commands(CLI::App& app, std::vector<std::string>& arguments) {
+  app.set_version_flag("--version", "blum " BLUM_VERSION, "Print the version");
+  app.set_help_flag("-h,--help", "Print this help");
+  app.footer(examples);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  add_field_command(app);
+  add_slice_command(app);
+  add_make_command(app, arguments);
+  add_info_command(app);
+}
+
+int run(std::vector<std::string> arguments) {
+  CLI::App app{"Exact distance fields and Voronoi diagrams of meshes and voxel images", "blum"};
+  try {
+    add_commands(app, arguments);
+    prepare_weld(arguments);
+    if (arguments.empty()) arguments.emplace_back("--help");
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
+    app.parse(arguments);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return finish(app, error);
+  } catch (const UsageError& error) {
+    return fail(error.what(), exit_usage);
+  } catch (const InvalidOption& error) {
+    return fail(error.what(), exit_usage);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; use a coarser grid or a machine with more memory", exit_failure);
+  } catch (const std::exception& error) {
+    return fail(error.what(), exit_failure);
+  }
+}
+
+}  // namespace
+}  // namespace blum::cli
+
+int main(int count, char** values) {
+  try {
+    return blum::cli::run(std::vector<std::string>(values + std::min(count, 1), values + count));
+  } catch (...) {
+    std::fputs("blum: error: unexpected failure\n", stderr);
+    return 1;
+  }
+}

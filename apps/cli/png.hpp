@@ -1,0 +1,41 @@
+// Blum: pictures and PNG files. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace blum::cli {
+
+/// A colour in sRGB, each component in [0, 1].
+struct Color {
+  float r = 0, g = 0, b = 0;
+};
+[[nodiscard]] inline Color mix(const Color& a, const Color& b, float t) {
+  return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t};
+}
+
+/// Rows from the top, pixels from the left.
+class Picture {
+ public:
+  Picture(int width, int height, const Color& fill)
+      : width_(width),
+        height_(height),
+        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] Color& at(int x, int y) {
+    return pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  }
+  [[nodiscard]] const std::vector<Color>& pixels() const { return pixels_; }
+
+ private:
+  int width_;
+  int height_;
+  std::vector<Color> pixels_;
+};
+
+/// Writes a PNG of 8 bits a channel; the file appears complete or not at all. @throws FileError.
+void write_png(const std::filesystem::path& path, const Picture& picture);
+
+}  // namespace blum::cli

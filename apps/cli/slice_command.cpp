@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/io/field_io.hpp"
+#include "commands.hpp"
+#include "files.hpp"
+#include "options.hpp"
+#include "png.hpp"
+#include "progress.hpp"
+#include "slice_picture.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum slice bunny.nrrd -o middle.png
+  blum slice bunny.nrrd -o low.png --axis y --index 40
+  blum slice bunny.npz -o cells.png --show sites --scale 8)";
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> axis, index, show, scale;
+  bool quiet = false;
+};
+
+std::size_t parse_axis(const std::string& text) {
+  if (text == "x") return 0;
+  if (text == "y") return 1;
+  if (text == "z") return 2;
+  throw UsageError("--axis '" + text + "': must be x, y or z");
+}
+
+/// The axis with a single layer where there is exactly one such axis, else z.
+std::size_t default_axis(const GridSpec& grid) {
+  if (std::count(grid.size.begin(), grid.size.end(), 1) != 1) return 2;
+  return static_cast<std::size_t>(std::find(grid.size.begin(), grid.size.end(), 1) - grid.size.begin());
+}
+
+void run(const Arguments& a) {
+  const fs::path input = a.input;
+  const fs::path output = a.output;
+  if (input.empty()) throw UsageError("FIELD needs a file name");
+  check_extension("--output", output, {".png"});
+  const bool sites = a.show && *a.show == "sites";
+  if (a.show && !sites && *a.show != "distance") {
+    throw UsageError("--show '" + *a.show + "': must be distance or sites");
+  }
+  std::optional<std::size_t> axis;
+  if (a.axis) axis = parse_axis(*a.axis);
+  std::optional<std::int64_t> index;
+  if (a.index) index = parse_integer("--index", *a.index, 0, std::int64_t{1} << 40);
+  std::optional<double> scale;
+  if (a.scale) scale = parse_positive("--scale", *a.scale);
+  check_outputs({output}, field_files(input));
+
+  if (input_kind(input) == InputKind::mesh) {
+    throw FileError("'" + input.string() + "' is a mesh; make its field first, with `blum field`");
+  }
+  const Field field = read_field(input);
+  if (!axis) axis = default_axis(field.grid);
+  const std::int64_t layers = field.grid.size[*axis];
+  if (index && *index >= layers) {
+    throw UsageError("--index '" + *a.index + "': the field has the layers 0 to " + std::to_string(layers - 1));
+  }
+  if (sites && field.site.empty()) {
+    throw FileError("'" + input.string() + "' has no closest sites" +
+                    (extension(input) == ".nrrd"
+                         ? "; they are kept beside it, in '" + field_files(input).back().filename().string() + "'"
+                         : std::string()));
+  }
+  const Slice slice = take_slice(field, *axis, index.value_or(layers / 2));
+  const double pixels = scale.value_or(default_scale(slice));
+  const Picture picture = sites ? sites_picture(slice, pixels, {}) : distance_picture(slice, pixels, {});
+  {
+    const Interrupt finish_the_file;
+    write_png(output, picture);
+  }
+  if (!a.quiet) {
+    print("wrote " + output.string() + ": " + std::to_string(picture.width()) + " x " +
+          std::to_string(picture.height()) + " pixels, " + slice.place + "\n");
+  }
+}
+
+}  // namespace
+
+void add_slice_command(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("slice", "A picture of one layer of a field");
+  command->add_option("FIELD", a->input, "Field file: .nrrd, .npz or .vti")->required();
+  command->add_option("-o,--output", a->output, "Picture")->required()->type_name("PNG");
+  command->add_option("--axis", a->axis, "Axis that the layer is perpendicular to: x, y or z (default z)")
+      ->type_name("AXIS");
+  command->add_option("--index", a->index, "Number of the layer (default: the middle)")->type_name("K");
+  command->add_option("--show", a->show, "distance (with contour lines) or sites (Voronoi regions)")->type_name("WHAT");
+  command->add_option("--scale", a->scale, "Pixels for each grid step (default: 800 pixels or more in all)")
+      ->type_name("PIXELS");
+  command->add_flag("--quiet", a->quiet, "Say nothing but errors");
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

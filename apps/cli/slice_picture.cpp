@@ -1,0 +1,336 @@
+#include "slice_picture.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "colors.hpp"
+#include "slice_sampler.hpp"
+#include "summary.hpp"
+#include "text_raster.hpp"
+
+namespace blum::cli {
+namespace {
+
+constexpr double wanted_side = 800;
+constexpr double largest_side = 4096;
+constexpr double largest_area = 50e6;
+constexpr int margin = 20;
+constexpr double text_height = 11;
+constexpr int caption_height = 34;
+constexpr int bar_width = 20;
+
+/// Where the parts of a picture lie, in pixels.
+struct Layout {
+  int width = 0;  ///< of the slice
+  int height = 0;
+  double per_u = 1;  ///< pixels for each node step
+  double per_v = 1;
+  int canvas_width = 0;
+  int canvas_height = 0;
+  /// Node coordinates of the centre of a pixel of the slice.
+  [[nodiscard]] double u(int x) const { return (x + 0.5) / per_u - 0.5; }
+  [[nodiscard]] double v(int y) const { return (height - y - 0.5) / per_v - 0.5; }
+};
+
+Layout make_layout(const Slice& slice, double scale, int legend_width) {
+  const double finest = std::min(slice.u_step, slice.v_step);
+  Layout layout;
+  layout.per_u = scale * slice.u_step / finest;
+  layout.per_v = scale * slice.v_step / finest;
+  const double width = std::max(1.0, std::round(static_cast<double>(slice.width) * layout.per_u));
+  const double height = std::max(1.0, std::round(static_cast<double>(slice.height) * layout.per_v));
+  if (!(width * height <= largest_area) || width > 65000 || height > 65000) {
+    throw InvalidOption("the picture would have " + number_text(width) + " x " + number_text(height) +
+                        " pixels; use a smaller --scale (50 million pixels at most)");
+  }
+  layout.width = static_cast<int>(width);
+  layout.height = static_cast<int>(height);
+  layout.per_u = width / static_cast<double>(slice.width);
+  layout.per_v = height / static_cast<double>(slice.height);
+  layout.canvas_width = layout.width + 2 * margin + legend_width;
+  layout.canvas_height = std::max(layout.height, legend_width > 0 ? 160 : 1) + margin + caption_height;
+  return layout;
+}
+
+/// 1, 2 or 5 times a power of ten, such that about `wanted` steps fit into a range.
+double round_step(double range, double wanted) {
+  const double rough = range / wanted;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  const double lead = rough / power;
+  return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
+}
+
+/// Distances to colours and lines.
+class DistanceStyle {
+ public:
+  explicit DistanceStyle(const Slice& slice) : signed_(slice.is_signed), band_(slice.band) {
+    const double deepest = std::max(0.0, -slice.minimum);
+    const double farthest = std::max(0.0, slice.maximum);
+    const double largest = std::max({deepest, farthest, std::numeric_limits<double>::min()});
+    // Each side has its own scale, so that a thin solid in a wide grid shows; but not more than four times the other's.
+    outside_ = std::max(farthest, largest / 4);
+    inside_ = std::max(deepest, largest / 4);
+    const double range = slice.maximum - slice.minimum;
+    step_ = range > 0 && std::isfinite(range) ? round_step(range, 16) : 0;
+  }
+
+  [[nodiscard]] Color fill(double value) const {
+    if (beyond(value)) return nothing_color;
+    if (!signed_) return sequential_color(value / outside_);
+    return diverging_color(value < 0 ? value / inside_ : value / outside_);
+  }
+  [[nodiscard]] bool beyond(double value) const {
+    return !std::isfinite(value) || (band_ > 0 && std::abs(value) >= band_ * 0.9995);
+  }
+  [[nodiscard]] double step() const { return step_; }
+  [[nodiscard]] bool has_surface() const { return signed_; }
+
+  /// Draws the contours that pass a place over its colour; `slope` is the change of the value for each pixel.
+  [[nodiscard]] Color with_lines(Color color, double value, double slope) const {
+    if (step_ <= 0 || beyond(value)) return color;
+    slope = std::max(slope, step_ * 1e-3);
+    const double level = std::round(value / step_);
+    if (level != 0) {
+      const bool strong = std::fmod(std::abs(level), 5) == 0;
+      const double pixels = std::abs(value - level * step_) / slope;
+      const double cover = std::clamp((strong ? 0.75 : 0.5) + 0.5 - pixels, 0.0, 1.0);
+      // Lines that lie closer together than 3 pixels would only darken the picture.
+      const double room = std::clamp(step_ / slope / 3 - 1, 0.0, 1.0);
+      color = mix(color, ink_color, static_cast<float>(cover * room * (strong ? 0.55 : 0.28)));
+    }
+    return with_surface(color, value, slope);
+  }
+  [[nodiscard]] Color with_surface(const Color& color, double value, double slope) const {
+    if (!signed_ || slope <= 0) return color;
+    return mix(color, ink_color, static_cast<float>(std::clamp(1.8 - std::abs(value) / slope, 0.0, 1.0)));
+  }
+
+ private:
+  bool signed_;
+  double band_;
+  double outside_ = 1;
+  double inside_ = 1;
+  double step_ = 0;
+};
+
+double slope_per_pixel(const Sample& sample, const Layout& layout) {
+  return std::hypot(sample.slope_u / layout.per_u, sample.slope_v / layout.per_v);
+}
+
+void for_each_row(const Layout& layout, const Context& context, const std::function<void(int)>& row) {
+  parallel_for(context, static_cast<std::size_t>(layout.height), 16, "slice", [&](const WorkRange& range) {
+    for (std::size_t y = range.begin; y < range.end; ++y) row(static_cast<int>(y));
+  });
+}
+
+void draw_frame(Picture& picture, int x0, int y0, int width, int height) {
+  const auto shade = [&](int x, int y) { picture.at(x, y) = mix(picture.at(x, y), ink_color, 0.45F); };
+  for (int x = x0 - 1; x <= x0 + width; ++x) {
+    shade(x, y0 - 1);
+    shade(x, y0 + height);
+  }
+  for (int y = y0; y < y0 + height; ++y) {
+    shade(x0 - 1, y);
+    shade(x0 + width, y);
+  }
+}
+
+void draw_caption(Picture& picture, const std::string& text) {
+  double height = text_height;
+  while (height > 6 && text_width(text, height) > picture.width() - 2 * margin) height -= 0.5;
+  draw_text(picture, margin, picture.height() - 12, height, text, ink_color);
+}
+
+/// A level as text with as many decimals as the step has: "0.15".
+std::string level_text(double level, double step) {
+  const int decimals = static_cast<int>(std::max(0.0, std::ceil(-std::log10(step) - 1e-9)));
+  if (decimals > 5 || std::abs(level) >= 1e6) return level == 0 ? "0" : number_text(level);
+  char text[40];
+  const auto result =
+      std::to_chars(text, text + sizeof(text), level == 0 ? 0.0 : level, std::chars_format::fixed, decimals);
+  return {text, result.ptr};
+}
+
+/// The levels that get a number, at most about one for each 40 pixels.
+std::vector<double> labelled_levels(const Slice& slice, double step, int pixels) {
+  std::vector<double> levels;
+  if (step <= 0) return levels;
+  double shown = step;
+  const double range = slice.maximum - slice.minimum;
+  for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
+    shown = step * factor;
+    if (range / shown * 34 <= pixels) break;
+  }
+  for (double k = std::ceil(slice.minimum / shown); k * shown <= slice.maximum; ++k) levels.push_back(k * shown);
+  return levels;
+}
+
+int legend_space(const Slice& slice, const DistanceStyle& style, int pixels) {
+  double widest = text_width("distance", text_height) - bar_width - 10;
+  for (const double level : labelled_levels(slice, style.step(), pixels)) {
+    widest = std::max(widest, text_width(level_text(level, style.step()), text_height));
+  }
+  return bar_width + 10 + static_cast<int>(std::ceil(widest)) + margin;
+}
+
+void draw_legend(Picture& picture, const Slice& slice, const DistanceStyle& style, const Layout& layout) {
+  const int x0 = 2 * margin + layout.width;
+  const int y0 = margin + 24;
+  const int height = std::clamp(layout.height - 24, 100, 640);
+  draw_text(picture, x0, margin + text_height, text_height, "distance", ink_color);
+  const double range = slice.maximum - slice.minimum;
+  const double per_pixel = range / height;
+  for (int y = 0; y < height; ++y) {
+    const double value = slice.maximum - (y + 0.5) * per_pixel;
+    const Color color = style.with_lines(style.fill(value), value, per_pixel);
+    for (int x = 0; x < bar_width; ++x) picture.at(x0 + x, y0 + y) = color;
+  }
+  draw_frame(picture, x0, y0, bar_width, height);
+  for (const double level : labelled_levels(slice, style.step(), height)) {
+    const double y = y0 + (slice.maximum - level) / per_pixel;
+    for (int x = 0; x < 5; ++x) {
+      const int row = std::clamp(static_cast<int>(y), y0, y0 + height - 1);
+      picture.at(x0 + bar_width + 1 + x, row) = mix(paper_color, ink_color, 0.6F);
+    }
+    draw_text(picture, x0 + bar_width + 10, y + text_height / 2, text_height, level_text(level, style.step()),
+              ink_color);
+  }
+}
+
+/// How strongly the borders of a region are drawn: not at all where it covers a few pixels only.
+class RegionSizes {
+ public:
+  RegionSizes(const Slice& slice, double pixels_per_node) {
+    for (const SiteId id : slice.site) areas_[id.value] += pixels_per_node;
+  }
+  [[nodiscard]] std::size_t count() const { return areas_.size() - (areas_.contains(SiteId::none().value) ? 1 : 0); }
+  [[nodiscard]] double border_strength(SiteId a, SiteId b) const {
+    const double area = std::min(areas_.at(a.value), areas_.at(b.value));
+    return std::clamp((area - 40) / 300, 0.0, 1.0);
+  }
+
+ private:
+  std::unordered_map<std::uint32_t, double> areas_;
+};
+
+Color region_fill(SiteId id) {
+  return id.has_value() ? region_color(id.value) : nothing_color;
+}
+
+Color region_pixel(const Slice& slice, const RegionSizes& sizes, const Layout& layout, double u, double v) {
+  const RegionSample sample = region_at(slice, u, v);
+  const Color color = region_fill(sample.site);
+  if (sample.alone) return color;
+  const double pixels = sample.margin / 1.5 * std::min(layout.per_u, layout.per_v);
+  const double cover = std::clamp(1.1 - pixels, 0.0, 1.0);
+  if (cover <= 0) return color;
+  return mix(color, ink_color, static_cast<float>(cover * 0.6 * sizes.border_strength(sample.site, sample.rival)));
+}
+
+}  // namespace
+
+Slice take_slice(const Field& field, std::size_t axis, std::int64_t index) {
+  Slice slice;
+  slice.axis = axis;
+  slice.index = index;
+  slice.u_axis = axis == 0 ? 1 : 0;
+  slice.v_axis = axis == 2 ? 1 : 2;
+  slice.width = field.grid.size[slice.u_axis];
+  slice.height = field.grid.size[slice.v_axis];
+  slice.u_step = field.grid.spacing[slice.u_axis];
+  slice.v_step = field.grid.spacing[slice.v_axis];
+  slice.is_signed = field.sign_rule != SignRule::none;
+  slice.band = field.band.value_or(0);
+  slice.minimum = std::numeric_limits<double>::infinity();
+  slice.maximum = -std::numeric_limits<double>::infinity();
+  const bool has_sites = !field.site.empty();
+  std::array<std::int64_t, 3> node{};
+  node[axis] = index;
+  for (std::int64_t j = 0; j < slice.height; ++j) {
+    for (std::int64_t i = 0; i < slice.width; ++i) {
+      node[slice.u_axis] = i;
+      node[slice.v_axis] = j;
+      const std::size_t at = field.grid.index(node[0], node[1], node[2]);
+      slice.distance.push_back(field.distance[at]);
+      if (has_sites) slice.site.push_back(field.site[at]);
+      const double value = field.distance[at];
+      if (!std::isfinite(value)) continue;
+      slice.minimum = std::min(slice.minimum, value);
+      slice.maximum = std::max(slice.maximum, value);
+    }
+  }
+  if (slice.minimum > slice.maximum) slice.minimum = slice.maximum = 0;
+  if (slice.minimum < 0) slice.is_signed = true;  // files of others do not say
+  const char* const names[] = {"x", "y", "z"};
+  slice.place = "layer " + std::to_string(index) + " of 0 to " + std::to_string(field.grid.size[axis] - 1);
+  if (field.grid.direction == Mat3{}) {
+    const double place = field.grid.origin[axis] + static_cast<double>(index) * field.grid.spacing[axis];
+    slice.place = std::string(names[axis]) + " = " + number_text(place) + ", " + slice.place;
+  } else {
+    slice.place = std::string("axis ") + names[axis] + ", " + slice.place;
+  }
+  return slice;
+}
+
+double default_scale(const Slice& slice) {
+  const double finest = std::min(slice.u_step, slice.v_step);
+  const double longest =
+      std::max(static_cast<double>(slice.width) * slice.u_step, static_cast<double>(slice.height) * slice.v_step) /
+      finest;
+  return longest > largest_side ? largest_side / longest : std::ceil(wanted_side / longest);
+}
+
+Picture distance_picture(const Slice& slice, double scale, const Context& context) {
+  const DistanceStyle style(slice);
+  Layout layout = make_layout(slice, scale, 0);
+  const int legend = legend_space(slice, style, std::clamp(layout.height - 24, 100, 640));
+  layout = make_layout(slice, scale, legend);
+  Picture picture(layout.canvas_width, layout.canvas_height, paper_color);
+  const DistanceSampler sampler(slice);
+  for_each_row(layout, context, [&](int y) {
+    for (int x = 0; x < layout.width; ++x) {
+      const Sample sample = sampler.at(layout.u(x), layout.v(y));
+      Color color = style.fill(sample.value);
+      if (sample.continuous) color = style.with_lines(color, sample.value, slope_per_pixel(sample, layout));
+      picture.at(margin + x, margin + y) = color;
+    }
+  });
+  draw_frame(picture, margin, margin, layout.width, layout.height);
+  draw_legend(picture, slice, style, layout);
+  draw_caption(picture, slice.place + (style.step() > 0 ? ", contours every " + number_text(style.step()) : ""));
+  return picture;
+}
+
+Picture sites_picture(const Slice& slice, double scale, const Context& context) {
+  const Layout layout = make_layout(slice, scale, 0);
+  Picture picture(layout.canvas_width, layout.canvas_height, paper_color);
+  const RegionSizes sizes(slice, layout.per_u * layout.per_v);
+  const DistanceStyle style(slice);
+  const DistanceSampler sampler(slice);
+  for_each_row(layout, context, [&](int y) {
+    for (int x = 0; x < layout.width; ++x) {
+      const double u = layout.u(x);
+      const double v = layout.v(y);
+      const double du = 0.25 / layout.per_u;
+      const double dv = 0.25 / layout.per_v;
+      const Color top = mix(region_pixel(slice, sizes, layout, u - du, v + dv),
+                            region_pixel(slice, sizes, layout, u + du, v + dv), 0.5F);
+      const Color bottom = mix(region_pixel(slice, sizes, layout, u - du, v - dv),
+                               region_pixel(slice, sizes, layout, u + du, v - dv), 0.5F);
+      const Sample sample = sampler.at(u, v);
+      Color color = mix(top, bottom, 0.5F);
+      if (sample.continuous) color = style.with_surface(color, sample.value, slope_per_pixel(sample, layout));
+      picture.at(margin + x, margin + y) = color;
+    }
+  });
+  draw_frame(picture, margin, margin, layout.width, layout.height);
+  draw_caption(picture, slice.place + ", " + plural(sizes.count(), "region", "regions"));
+  return picture;
+}
+
+}  // namespace blum::cli

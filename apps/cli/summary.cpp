@@ -1,0 +1,119 @@
+#include "summary.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+
+#include "blum/core/error.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "options.hpp"
+
+namespace blum::cli {
+
+Json to_json(const Vec3d& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+Json to_json(const Box3& box) {
+  if (box.is_empty()) return nullptr;
+  return {{"lower", to_json(box.lower)}, {"upper", to_json(box.upper)}};
+}
+
+Json to_json(const GridSpec& grid) {
+  Json json = {{"origin", to_json(grid.origin)},
+               {"spacing", to_json(grid.spacing)},
+               {"size", Json::array({grid.size[0], grid.size[1], grid.size[2]})},
+               {"nodes", grid.node_count()}};
+  Json columns = Json::array();
+  for (const Vec3d& column : grid.direction.columns) columns.push_back(to_json(column));
+  json["direction"] = columns;
+  return json;
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
+  return {text.data(), result.ptr};
+}
+
+std::string count_text(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (std::size_t at = text.size(); at > 3;) {
+    at -= 3;
+    text.insert(at, ",");
+  }
+  return text;
+}
+
+std::string bytes_text(double bytes) {
+  constexpr std::array<std::string_view, 7> units = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+  std::size_t unit = 0;
+  while (bytes >= 1024 && unit + 1 < units.size()) {
+    bytes /= 1024;
+    ++unit;
+  }
+  std::array<char, 32> text{};
+  const auto result =
+      std::to_chars(text.data(), text.data() + text.size(), bytes, std::chars_format::fixed, unit == 0 ? 0 : 1);
+  return std::string(text.data(), result.ptr) + " " + std::string(units[unit]);
+}
+
+std::string vector_text(const Vec3d& v) {
+  return "(" + number_text(v.x) + ", " + number_text(v.y) + ", " + number_text(v.z) + ")";
+}
+
+std::string size_text(const GridSpec& grid) {
+  return std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " + std::to_string(grid.size[2]);
+}
+
+std::string plural(std::uint64_t count, std::string_view one, std::string_view many) {
+  return count_text(count) + " " + std::string(count == 1 ? one : many);
+}
+
+std::string TextTable::text() const {
+  std::size_t width = 0;
+  for (const auto& [label, content] : rows_) width = std::max(width, label.size());
+  std::string text;
+  for (const auto& [label, content] : rows_) {
+    text += label + std::string(width - label.size() + 2, ' ') + content + "\n";
+  }
+  return text;
+}
+
+std::uint64_t peak_memory() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::vector<std::filesystem::path> ReportOptions::files() const {
+  if (!json || json_to_stdout()) return {};
+  if (json->empty()) throw UsageError("--json needs a file name, or - for standard output");
+  return {*json};
+}
+
+void report(const ReportOptions& options, const Json& json, const std::string& text) {
+  if (options.json) {
+    // Names of files need not be valid UTF-8.
+    const std::string dump = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    if (options.json_to_stdout()) {
+      print(dump);
+    } else {
+      AtomicFile file(*options.json);
+      file.write(dump);
+      file.commit();
+    }
+  }
+  if (!options.quiet && !options.json_to_stdout()) print(text);
+}
+
+void print(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw FileError("standard output cannot be written");
+  }
+}
+
+}  // namespace blum::cli

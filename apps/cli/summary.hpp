@@ -1,0 +1,78 @@
+// Blum: what the commands say, as text and as JSON. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "blum/grid/grid_spec.hpp"
+
+namespace blum::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// Seconds since it was made or last asked.
+class Stopwatch {
+ public:
+  [[nodiscard]] double lap() {
+    const Clock::time_point now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+    return seconds;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+[[nodiscard]] Json to_json(const Vec3d& v);
+/// null where the box is empty.
+[[nodiscard]] Json to_json(const Box3& box);
+[[nodiscard]] Json to_json(const GridSpec& grid);
+
+/// Six significant digits: "0.0123457", "1.5e-07".
+[[nodiscard]] std::string number_text(double value);
+/// "1,234,567".
+[[nodiscard]] std::string count_text(std::uint64_t value);
+/// "1.5 GiB".
+[[nodiscard]] std::string bytes_text(double bytes);
+[[nodiscard]] std::string vector_text(const Vec3d& v);
+[[nodiscard]] std::string size_text(const GridSpec& grid);
+/// "1 edge", "2 edges".
+[[nodiscard]] std::string plural(std::uint64_t count, std::string_view one, std::string_view many);
+
+/// Lines of text in two columns, label and content.
+class TextTable {
+ public:
+  void add(std::string label, std::string content) { rows_.emplace_back(std::move(label), std::move(content)); }
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> rows_;
+};
+
+/// Peak memory of the process in bytes.
+[[nodiscard]] std::uint64_t peak_memory();
+
+/// Where a command's summary goes.
+struct ReportOptions {
+  std::optional<std::string> json;  ///< a file, or "-" for stdout
+  bool quiet = false;
+  [[nodiscard]] bool json_to_stdout() const { return json && *json == "-"; }
+  /// The JSON file among the outputs, for checks; empty or one path.
+  [[nodiscard]] std::vector<std::filesystem::path> files() const;
+};
+
+/// Writes the JSON where it was asked for, and the text to stdout unless quiet or JSON goes there.
+/// @throws FileError.
+void report(const ReportOptions& options, const Json& json, const std::string& text);
+
+/// @throws FileError when stdout does not take what is written to it.
+void print(std::string_view text);
+
+}  // namespace blum::cli
