@@ -14,6 +14,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/field/image_reference.hpp"
+#include "field/cpu/tile_kernel.hpp"
 
 namespace blum {
 namespace {
@@ -194,6 +195,40 @@ TEST(DistanceTransform, GivesTheSameBytesForAnyNumberOfThreads) {
         const Field one = distance_transform(image, {}, {.threads = 1});
         expect_same_bytes(one, distance_transform(image, {}, {.threads = 2}));
         expect_same_bytes(one, distance_transform(image, {}, {.threads = 7}));
+      }
+    }
+  }
+}
+
+TEST(DistanceTransform, EveryInstructionSetGivesTheSameField) {
+  for (const Vec3d spacing : {Vec3d{1, 1, 1}, {1, 1, 3}, {0.5, 0.7, 1.1}}) {
+    const VoxelImage random = random_image({45, 31, 38}, spacing, 0.01, 11);
+    const VoxelImage striped = shape_image(40, spacing, 3);  // neighbouring columns disagree: solved one by one
+    const std::array<Field, 2> best = {distance_transform(random), distance_transform(striped)};
+    for (const std::string& target : cpu::simd_targets()) {
+      SCOPED_TRACE(target);
+      cpu::use_simd_target(target);
+      expect_same_bytes(best[0], distance_transform(random));
+      expect_same_bytes(best[1], distance_transform(striped));
+      expect_brute_force(random, mask_of(random), distance_transform(random), spacing.x == 1.0, 97);
+    }
+    cpu::use_simd_target("");
+  }
+}
+
+/// Rows so far apart along x that columns are on their own, and sites at alternating ends: the closest rows of
+/// neighbouring columns are 599 apart everywhere, which makes the passes solve columns one by one.
+TEST(DistanceTransform, ColumnsThatDisagreeEqualBruteForce) {
+  for (const double spacing : {1000.0, 1000.3}) {
+    for (const Size size : {Size{32, 600, 2}, Size{32, 2, 600}}) {
+      VoxelImage image = random_image(size, {spacing, 1, 1}, 0, 0);
+      auto& values = std::get<std::vector<std::uint8_t>>(image.values);
+      for (std::int64_t i = 0; i < 32; ++i) {
+        values[i % 2 == 0 ? image.grid.index(i, 0, 0) : image.grid.index(i, size[1] - 1, size[2] - 1)] = 1;
+      }
+      for (const bool is_signed : {false, true}) {
+        expect_brute_force(image, mask_of(image), distance_transform(image, {.is_signed = is_signed}),
+                           spacing == 1000.0, 29);
       }
     }
   }
