@@ -30,6 +30,10 @@ inline double series(const MultipoleBlock& b, std::size_t i, double x, double y,
 // most (integral of |s|^3) / R^5 (4 - 3 t) / (1 - t)^2.
 BLUM_LANE_LOOPS void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolerance, FarSum& sum,
                                   OpenLanes& others) {
+  // Local arrays, which cannot overlap the block, so that the loop vectorises without checks.
+  alignas(64) double taken_angle[lanes];
+  alignas(64) double taken_error[lanes];
+  alignas(64) double open[lanes];
   for (std::size_t i = 0; i < lanes; ++i) {
     const double x = block.center[0][i] - query.x;
     const double y = block.center[1][i] - query.y;
@@ -41,12 +45,17 @@ BLUM_LANE_LOOPS void add_clusters(const MultipoleBlock& block, const Vec3d& quer
     const double safe_rest = std::max(rest, 1e-3);
     const double bound =
         block.cubed[i] * inverse_squared * inverse_squared * inverse * (1 + 3 * safe_rest) / (safe_rest * safe_rest);
-    // Too close, the series does not converge. Factors instead of branches, so that the loop vectorises.
+    // Too close, the series does not converge. Factors instead of branches, again for the vectoriser.
     const double penalty = std::max(1e-3 - rest, 0.0) * 1e300;
     const double taken = bound + penalty <= tolerance ? 1.0 : 0.0;
-    sum.solid_angle[i] += taken * value;
-    sum.error[i] += taken * bound;
-    others.open[i] = 1 - taken;
+    taken_angle[i] = taken * value;
+    taken_error[i] = taken * bound;
+    open[i] = 1 - taken;
+  }
+  for (std::size_t i = 0; i < lanes; ++i) {
+    sum.solid_angle[i] += taken_angle[i];
+    sum.error[i] += taken_error[i];
+    others.open[i] = open[i];
   }
 }
 
