@@ -2,7 +2,8 @@
 """Counts results of tests and checks, over several programs, and closes with one line.
 
   results.py check DIR NAME -- COMMAND...   run a command; it counts as one check, passed when it exits with 0
-  results.py junit DIR NAME FILE            count the tests of a JUnit file (ctest, pytest); no tests is a failure
+  results.py junit DIR NAME FILE [--complete]   count the tests of a JUnit file (ctest, pytest); no tests is a failure;
+                                            --complete: so is a test that was skipped, but for want of the data folder
   results.py fail DIR NAME REASON           count one failure
   results.py summary DIR                    list what failed and was skipped; last line `N passed, N failed[, N skipped]`
 
@@ -49,7 +50,7 @@ def check(folder: str, name: str, command: list[str]) -> None:
         record(folder, name, 0, [f"{name} (exit status {status})"], [], seconds)
 
 
-def junit(folder: str, name: str, file: str) -> None:
+def junit(folder: str, name: str, file: str, complete: bool) -> None:
     try:
         root = ElementTree.parse(file).getroot()
     except (OSError, ElementTree.ParseError) as error:
@@ -66,11 +67,13 @@ def junit(folder: str, name: str, file: str) -> None:
         if case.find("failure") is not None or case.find("error") is not None or case.get("status") == "fail":
             failed.append(label)
         elif skip is not None or case.get("status") in ("notrun", "disabled"):
-            text = (skip.get("message") or "" if skip is not None else "") + (case.findtext("system-out") or "")
+            text = (skip.get("message") or "" if skip is not None else "") + " " + (case.findtext("system-out") or "")
             if case.get("status") == "disabled" or "Unable to find executable" in text or "_NOT_BUILT" in label:
                 failed.append(f"{label} (did not run)")
             elif data_present() and WANTS_DATA.search(text):
                 failed.append(f"{label} (skipped for want of data, though the data folder is there)")
+            elif complete and not WANTS_DATA.search(text):
+                failed.append(f"{label} (skipped: {text.strip()})")
             else:
                 skipped.append(label)
         else:
@@ -105,7 +108,9 @@ def main(arguments: list[str]) -> int:
         case ["check", folder, name, "--", *command] if command:
             check(folder, name, command)
         case ["junit", folder, name, file]:
-            junit(folder, name, file)
+            junit(folder, name, file, complete=False)
+        case ["junit", folder, name, file, "--complete"]:
+            junit(folder, name, file, complete=True)
         case ["fail", folder, name, reason]:
             record(folder, name, 0, [f"{name}: {reason}"], [])
         case ["summary", folder]:

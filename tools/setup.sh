@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(g++ cmake ninja-build libtbb-dev libhwy-dev zlib1g-dev libpng-dev libcli11-dev nlohmann-json3-dev)
+packages=(make g++ cmake ninja-build libtbb-dev libhwy-dev zlib1g-dev libpng-dev libcli11-dev nlohmann-json3-dev)
 tests=(libgtest-dev python3 python3-venv ca-certificates)
 bench=(libbenchmark-dev libembree-dev libcgal-dev libopenvdb-dev python3 python3-venv ca-certificates)
 docs=(doxygen python3)
@@ -16,16 +16,19 @@ fuzz=(clang-19 libclang-rt-19-dev)
 ci=(ccache)
 
 check_only=false
-python_environment=false
+requirement_files=()
 for option in "$@"; do
   case $option in
-    --tests) packages+=("${tests[@]}") python_environment=true ;;
-    --bench) packages+=("${bench[@]}") python_environment=true ;;
+    --tests) packages+=("${tests[@]}") requirement_files+=(tests/python/requirements.txt) ;;
+    --bench) packages+=("${bench[@]}") requirement_files+=(bench/requirements.txt) ;;
     --docs) packages+=("${docs[@]}") ;;
     --lint) packages+=("${lint[@]}") ;;
     --fuzz) packages+=("${fuzz[@]}") ;;
     --ci) packages+=("${ci[@]}") ;;
-    --all) packages+=("${tests[@]}" "${bench[@]}" "${docs[@]}" "${lint[@]}" "${fuzz[@]}") python_environment=true ;;
+    --all)
+      packages+=("${tests[@]}" "${bench[@]}" "${docs[@]}" "${lint[@]}" "${fuzz[@]}")
+      requirement_files+=(tests/python/requirements.txt bench/requirements.txt)
+      ;;
     --check) check_only=true ;;
     *)
       echo "setup: unknown option $option; see the head of tools/setup.sh" >&2
@@ -107,18 +110,22 @@ if [[ ${#missing[@]} -gt 0 ]]; then
   fi
 fi
 
-requirements=tests/python/requirements.txt
-if $python_environment && [[ -f $requirements ]]; then
-  stamp=build/venv/requirements.sha256
-  if ! sha256sum --status -c "$stamp" 2>/dev/null; then
+requirements=()
+for file in "${requirement_files[@]}"; do
+  [[ -f $file ]] && requirements+=("$file")
+done
+if [[ ${#requirements[@]} -gt 0 ]]; then
+  for file in "${requirements[@]}"; do
+    stamp=build/venv/$(tr / - <<<"$file").sha256
+    sha256sum --status -c "$stamp" 2>/dev/null && continue
     if $check_only; then
-      say "missing: the Python packages of $requirements in build/venv (run tools/setup.sh --tests)" >&2
+      say "missing: the Python packages of $file in build/venv" >&2
       exit 1
     fi
-    say "installing the Python packages of $requirements into build/venv"
+    say "installing the Python packages of $file into build/venv"
     [[ -x build/venv/bin/pip ]] || python3 -m venv build/venv
-    build/venv/bin/pip install --quiet --disable-pip-version-check -r "$requirements"
-    sha256sum "$requirements" >"$stamp"
-  fi
+    build/venv/bin/pip install --quiet --disable-pip-version-check -r "$file"
+    sha256sum "$file" >"$stamp"
+  done
 fi
 say "everything needed is there"

@@ -18,9 +18,11 @@ if [[ -f build/release/build.ninja ]]; then
   if compgen -G 'tests/python/test_*.py' >/dev/null; then
     echo "--- pytest: tests/python"
     rm -f build/pytest.xml
-    BLUM=$PWD/build/release/bin/blum build/venv/bin/python -m pytest -q -ra -p no:cacheprovider \
+    bin=$PWD/build/release/bin
+    BLUM=$bin/blum BLUM_BIN_DIR=$bin BLUM_DISTANCE_TRANSFORM_SAMPLE=$bin/distance_transform_sample \
+      build/venv/bin/python -m pytest -q -ra -p no:cacheprovider \
       --junitxml build/pytest.xml tests/python || true
-    tools/results.py junit "$results" pytest build/pytest.xml
+    tools/results.py junit "$results" pytest build/pytest.xml --complete
   fi
   tools/results.py check "$results" install -- tests/install/run.sh build/release
 fi

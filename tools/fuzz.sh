@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# `make fuzz`: builds the libFuzzer targets with clang and runs each for FUZZ_SECONDS (15), from its corpus.
+# What a run finds grows in build/fuzz/corpus; an input that breaks a reader is kept in build/fuzz/findings.
+# With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+tools/setup.sh --fuzz
+results=${RESULTS:-build/results/fuzz}
+[[ -n ${RESULTS:-} ]] || rm -rf "$results"
+mkdir -p build/fuzz/findings
+
+run_target() {
+  local target=$1 grown=build/fuzz/corpus/$1 seeds=tests/fuzz/corpus/$1
+  mkdir -p "$grown"
+  local folders=("$grown")
+  [[ -d $seeds ]] && folders+=("$seeds")
+  # A header of a few bytes that makes a reader ask for much memory is a finding, too: hence the limits.
+  "build/fuzz/bin/$target" -max_total_time="${FUZZ_SECONDS:-15}" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 \
+    -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$target-" "${folders[@]}" >"build/fuzz/$target.log" 2>&1 ||
+    {
+      tail -n 60 "build/fuzz/$target.log"
+      return 1
+    }
+  grep -E 'number_of_executed_units|peak_rss_mb' "build/fuzz/$target.log" | sed "s/^stat::/$target: /"
+}
+export -f run_target
+
+tools/results.py check "$results" fuzz-build -- tools/build.sh fuzz
+for source in tests/fuzz/*.cpp; do
+  target=$(basename "$source" .cpp)
+  tools/results.py check "$results" "$target" -- bash -c "set -euo pipefail; run_target $target"
+done
+[[ -n ${RESULTS:-} ]] || tools/results.py summary "$results"
