@@ -230,7 +230,7 @@ TEST(MeshHostile, LongLinesAndManyErrorsCostNoMoreThanTheirLength) {
   std::string blanks = triangle;
   for (int i = 0; i < 1000000; ++i) blanks += "\\\n ";
   EXPECT_EQ(refusal(blanks, obj), "read");
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 5.0);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20.0);
 }
 
 }  // namespace
