@@ -128,7 +128,8 @@ class JoinedLoop {
       const Point& q = polygon_.points[loop_[at]];
       return (q[0] - start[0]) * (q[0] - start[0]) + (q[1] - start[1]) * (q[1] - start[1]);
     };
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return squared(a) < squared(b); });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return squared(a) != squared(b) ? squared(a) < squared(b) : a < b; });
     for (const std::size_t at : order) {
       if (!is_free(hole.start, loop_[at])) continue;
       splice(at, hole);

@@ -23,7 +23,8 @@ struct Polygon {
 
 /// Counter-clockwise triangles over the polygon's points, by cutting off ears; holes are first joined to the outline.
 /// Every edge of a loop is an edge of exactly one triangle, and no point is added.
-/// @throws InvalidOption where loops cross or touch, or a hole is not inside the outline. Cost: O(n^2) for n points, in practice.
+/// @throws InvalidOption where loops cross or touch, or a hole is not inside the outline. Cost: O(n^2) for n points, in
+/// practice.
 [[nodiscard]] std::vector<Triangle> triangulate(const Polygon& polygon);
 
 }  // namespace blum::detail
