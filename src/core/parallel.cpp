@@ -10,6 +10,7 @@
 #include "blum/core/error.hpp"
 
 #if defined(BLUM_THREADS_TBB)
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
@@ -23,7 +24,8 @@ namespace {
 /// Starts run(0) .. run(workers-1), as concurrently as the back end can, and waits for all of them.
 void run_workers(int workers, const std::function<void(int)>& run) {
 #if defined(BLUM_THREADS_TBB)
-  tbb::task_arena arena(workers);
+  // More slots than TBB has threads would only make it print a warning; idle workers' shares go to the others.
+  tbb::task_arena arena(std::min(workers, tbb::info::default_concurrency()));
   arena.execute([&] { tbb::parallel_for(0, workers, [&](int worker) { run(worker); }, tbb::simple_partitioner()); });
 #elif defined(BLUM_THREADS_STD)
   std::vector<std::jthread> threads;

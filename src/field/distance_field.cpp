@@ -1,4 +1,5 @@
 // Fields of meshes: decides the sign rule, runs the back end, settles what it leaves open.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -54,7 +55,21 @@ std::string describe_defects(const Orientation& facts) {
          " non-manifold edges and " + std::to_string(facts.inconsistent_edges) + " inconsistently oriented edges";
 }
 
-SignPlan plan_automatic_sign(const Orientation& facts) {
+/// Whether a triangle is too flat for its normal to mean anything. Such triangles close cracks in many CAD meshes, and
+/// leave their edges with a pseudonormal of one side only.
+bool has_flat_triangles(const MeshView& mesh) {
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+    const Vec3d u = mesh.vertices[t[1]] - mesh.vertices[t[0]];
+    const Vec3d v = mesh.vertices[t[2]] - mesh.vertices[t[0]];
+    const double longest = std::max({squared_length(u), squared_length(v), squared_length(u - v)});
+    return !(squared_length(cross(u, v)) > 1e-24 * longest * longest);
+  });
+}
+
+SignPlan plan_automatic_sign(const MeshView& mesh, const Orientation& facts) {
+  if (!mesh.segments.empty() || !mesh.points.empty()) {
+    return {SignRule::winding, "winding number above 1/2: the mesh has free segments or points, which have no sides"};
+  }
   if (!facts.closed || !facts.oriented) {
     return {SignRule::winding, "winding number above 1/2: the mesh has " + describe_defects(facts)};
   }
@@ -62,6 +77,9 @@ SignPlan plan_automatic_sign(const Orientation& facts) {
     return {SignRule::winding,
             "winding number above 1/2: the mesh is closed, but its shells do not all face away from the solid (flip an "
             "inverted mesh to get its inside)"};
+  }
+  if (has_flat_triangles(mesh)) {
+    return {SignRule::winding, "winding number above 1/2: the mesh is closed, but has triangles too flat for a normal"};
   }
   return {SignRule::normals, "pseudonormals: the mesh is closed, consistently oriented and faces outwards", true};
 }
@@ -76,6 +94,11 @@ SignPlan plan_sign(SignMode mode, const MeshView& mesh, const SiteTable& sites) 
   const Orientation facts = orientation(mesh, sites);
   const bool is_consistent = facts.closed && facts.oriented;
   if (mode == SignMode::normals) {
+    if (!mesh.segments.empty() || !mesh.points.empty()) {
+      throw InvalidMesh(
+          "signs by normals were asked for, but the mesh has free segments or points, which have no sides: "
+          "use winding");
+    }
     if (!is_consistent) {
       throw InvalidMesh("signs by normals need a closed, consistently oriented mesh; this one has " +
                         describe_defects(facts) + ": use winding, or weld or repair the mesh");
@@ -84,7 +107,7 @@ SignPlan plan_sign(SignMode mode, const MeshView& mesh, const SiteTable& sites) 
                                              : "pseudonormals, as asked for, of a mesh whose outer shells do not face "
                                                "outwards: flip it if the sign looks inverted"};
   }
-  return plan_automatic_sign(facts);
+  return plan_automatic_sign(mesh, facts);
 }
 
 /// Finishes nodes that float32 left open: exact distance and site, and the side by its pseudonormal.

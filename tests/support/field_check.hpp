@@ -1,4 +1,4 @@
-// What a field promises, checked node by node. Used by the field tests and the property tests.
+// Blum: what a field promises, checked node by node, for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <gtest/gtest.h>

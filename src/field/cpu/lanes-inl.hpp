@@ -59,6 +59,18 @@ HWY_INLINE V square(V a) {
   return hn::Mul(a, a);
 }
 
+/// yes where the sign bit of v is set, else no. Highway's own looks at the value on some targets, where -0 is no
+/// negative number and the bits of an id may be a NaN.
+HWY_INLINE V if_sign_bit(V v, V yes, V no) {
+#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  return hn::IfNegativeThenElse(v, yes, no);
+#else
+  constexpr hn::RebindToSigned<D> ds;
+  const auto mask = hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(ds, v)));
+  return hn::IfThenElse(hn::RebindMask(d, mask), yes, no);
+#endif
+}
+
 /// The columns of `lanes` consecutive records: one vector per column, one lane per record.
 struct Columns {
   V column[16];

@@ -200,9 +200,9 @@ struct LeafPass {
   /// Lets a candidate win the nodes where `inside` is negative and it is strictly closer.
   HWY_INLINE void offer(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
     const V wins = hn::And(inside, hn::Sub(candidate, squared[k]));
-    squared[k] = hn::IfNegativeThenElse(wins, candidate, squared[k]);
-    id[k] = hn::IfNegativeThenElse(wins, candidate_id, id[k]);
-    if constexpr (with_sides) side[k] = hn::IfNegativeThenElse(wins, candidate_side, side[k]);
+    squared[k] = if_sign_bit(wins, candidate, squared[k]);
+    id[k] = if_sign_bit(wins, candidate_id, id[k]);
+    if constexpr (with_sides) side[k] = if_sign_bit(wins, candidate_side, side[k]);
   }
 
   HWY_INLINE void vertex(const LeafColumns& in, std::size_t at, const std::vector<Vec3f>& vertex_sides) {

@@ -294,7 +294,7 @@ class TileWorker {
       if (asks_sides) {
         const V node_side = hn::Load(d, state.side.data() + node);
         unclear = hn::Or(unclear, hn::Lt(hn::Abs(node_side), hn::Mul(set(clear_side), distance)));
-        result = hn::IfNegativeThenElse(node_side, hn::Neg(result), result);
+        result = if_sign_bit(node_side, hn::Neg(result), result);
       }
       hn::Store(result, d, value.data() + node);
     }

@@ -1,0 +1,227 @@
+// Proves what distance_field promises beside exactness: the same bytes on any number of threads, agreement of all
+// instruction sets, bands, sign rules, the reusable solver, cancellation, and clear errors.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include "blum/core/error.hpp"
+#include "blum/field/field.hpp"
+#include "blum/geometry/generators.hpp"
+#include "field/cpu/tile_kernel.hpp"
+#include "support/field_check.hpp"
+
+namespace blum {
+namespace {
+
+GridSpec grid_for(const MeshView& mesh, int nodes) {
+  return grid_around(bounds(mesh), nodes, 0.1);
+}
+
+bool same_bytes(const Field& a, const Field& b) {
+  return a.distance.size() == b.distance.size() &&
+         std::memcmp(a.distance.data(), b.distance.data(), a.distance.span().size_bytes()) == 0 &&
+         std::memcmp(a.site.data(), b.site.data(), a.site.span().size_bytes()) == 0;
+}
+
+TriangleMesh inverted(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+/// A sphere without its top.
+TriangleMesh open_bowl() {
+  TriangleMesh mesh = make_sphere({});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) { return mesh.vertices[t[0]].z > 0.2; });
+  return mesh;
+}
+
+TEST(DistanceField, SameBytesOnAnyNumberOfThreads) {
+  const TriangleMesh mesh = make_torus_knot({});
+  for (const SignMode sign : {SignMode::none, SignMode::normals, SignMode::winding}) {
+    const GridSpec grid = grid_for(mesh, 100);
+    const Field one = distance_field(mesh, grid, {.sign = sign}, {.threads = 1});
+    for (const int threads : {2, 7}) {
+      EXPECT_TRUE(same_bytes(one, distance_field(mesh, grid, {.sign = sign}, {.threads = threads}))) << threads;
+    }
+  }
+}
+
+TEST(DistanceField, EveryInstructionSetKeepsThePromise) {
+  SoupOptions options;
+  options.triangles = 300;
+  options.awkward = 0.5;
+  const TriangleMesh soup = make_soup(options);
+  const TriangleMesh solid = make_gear({});
+  const std::vector<std::string> targets = cpu::simd_targets();
+  EXPECT_FALSE(targets.empty());
+  for (const std::string& target : targets) {
+    SCOPED_TRACE(target);
+    cpu::use_simd_target(target);
+    for (const TriangleMesh* mesh : {&soup, &solid}) {
+      const GridSpec grid = grid_for(*mesh, 40);
+      const Field field = distance_field(*mesh, grid, {.sign = mesh == &solid ? SignMode::normals : SignMode::none});
+      expect_promise(test::compare_with_bvh(field, *mesh, test::all_nodes(grid)));
+    }
+  }
+  cpu::use_simd_target("");
+}
+
+TEST(DistanceField, BandsEqualTheFullFieldWithinAndAreClampedBeyond) {
+  const TriangleMesh mesh = make_gear({});
+  const GridSpec grid = grid_for(mesh, 80);
+  for (const SignMode sign : {SignMode::none, SignMode::normals, SignMode::winding}) {
+    const Field full = distance_field(mesh, grid, {.sign = sign});
+    const double band = 3 * grid.spacing.x;
+    const Field banded = distance_field(mesh, grid, {.sign = sign, .band = band});
+    std::size_t beyond = 0;
+    for (std::size_t k = 0; k < full.distance.size(); ++k) {
+      const float limit = static_cast<float>(band);
+      ASSERT_EQ(std::signbit(full.distance[k]), std::signbit(banded.distance[k])) << k;
+      if (std::abs(full.distance[k]) <= limit) {
+        ASSERT_EQ(full.distance[k], banded.distance[k]) << k;
+        ASSERT_EQ(full.site[k], banded.site[k]) << k;
+      } else {
+        ASSERT_EQ(std::abs(banded.distance[k]), limit) << k;
+        ASSERT_FALSE(banded.site[k].has_value()) << k;
+        ++beyond;
+      }
+    }
+    EXPECT_GT(beyond, full.distance.size() / 10);
+    EXPECT_LT(beyond, full.distance.size());
+  }
+}
+
+TEST(DistanceField, AutomaticSignSaysWhichRuleAndWhy) {
+  const auto rule_of = [](const MeshView& mesh) {
+    const Field field = distance_field(mesh, grid_for(mesh, 24));
+    EXPECT_FALSE(field.sign_reason.empty());
+    return field.sign_rule;
+  };
+  EXPECT_EQ(rule_of(make_sphere({})), SignRule::normals);
+  EXPECT_EQ(rule_of(make_void_cube({})), SignRule::normals);
+  EXPECT_EQ(rule_of(open_bowl()), SignRule::winding);
+  EXPECT_EQ(rule_of(inverted(make_sphere({}))), SignRule::winding);
+  EXPECT_EQ(rule_of(make_points({})), SignRule::none);
+}
+
+TEST(DistanceField, AMeshThatCrossesItselfFallsBackToWinding) {
+  // Two overlapping boxes, each fine by itself: the pseudonormals inside the overlap point both ways.
+  TriangleMesh mesh = make_box({});
+  const TriangleMesh other = make_box({});
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Vec3d& v : other.vertices) mesh.vertices.push_back(v + Vec3d{0.4, 0.3, 0.2});
+  for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  const GridSpec grid = grid_for(mesh, 48);
+  const Field field = distance_field(mesh, grid);
+  EXPECT_EQ(field.sign_rule, SignRule::winding);
+  expect_promise(test::compare_with_brute_force(field, mesh, test::all_nodes(grid)));
+}
+
+TEST(DistanceField, OpenMeshesAreSignedNodeByNode) {
+  const TriangleMesh mesh = open_bowl();
+  const GridSpec grid = grid_for(mesh, 32);
+  const Field field = distance_field(mesh, grid, {.sign = SignMode::winding});
+  expect_promise(test::compare_with_brute_force(field, mesh, test::all_nodes(grid)));
+}
+
+TEST(DistanceField, InvertedMeshesHaveNoInsideByWindingAndTheirOutsideByNormals) {
+  const TriangleMesh mesh = inverted(make_sphere({}));
+  const GridSpec grid = grid_for(mesh, 24);
+  const Field winding = distance_field(mesh, grid, {.sign = SignMode::winding});
+  for (const float distance : winding.distance) ASSERT_GE(distance, 0.0F);
+  const Field normals = distance_field(mesh, grid, {.sign = SignMode::normals});
+  EXPECT_LT(normals.distance[0], 0.0F);
+}
+
+TEST(DistanceField, TriangleIdsNameATriangleAtTheDistance) {
+  const TriangleMesh mesh = make_torus({});
+  const GridSpec grid = grid_for(mesh, 32);
+  const Field field = distance_field(mesh, grid, {.site_ids = SiteIds::triangles});
+  EXPECT_EQ(field.site_ids, SiteIds::triangles);
+  for (std::size_t k = 0; k < field.site.size(); ++k) {
+    ASSERT_LT(field.site[k].value, mesh.triangles.size());
+    const Triangle& t = mesh.triangles[field.site[k].value];
+    const double distance = reference::triangle_distance(test::node_position(grid, k), mesh.vertices[t[0]],
+                                                         mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    ASSERT_NEAR(distance, std::abs(field.distance[k]), 1e-5);
+  }
+  EXPECT_THROW((void)distance_field(make_points({}), grid, {.site_ids = SiteIds::triangles}), InvalidOption);
+}
+
+TEST(FieldSolver, FollowsADeformingMeshAndChangesOfTopology) {
+  TriangleMesh mesh = make_torus({});
+  const GridSpec grid = grid_for(mesh, 40);
+  FieldSolver solver(grid, {.sign = SignMode::automatic});
+  for (int frame = 0; frame < 4; ++frame) {
+    for (Vec3d& v : mesh.vertices) v.z *= 1 + 0.1 * std::sin(v.x + frame);
+    if (frame == 2) mesh.triangles.resize(mesh.triangles.size() / 2);
+    if (frame == 3) mesh = make_sphere({});
+    EXPECT_TRUE(same_bytes(solver.compute(mesh), distance_field(mesh, grid))) << frame;
+  }
+  const Field taken = solver.take();
+  EXPECT_TRUE(same_bytes(taken, solver.compute(mesh)));
+}
+
+TEST(FieldSolver, StaysUsableAfterAnError) {
+  const TriangleMesh mesh = make_box({});
+  FieldSolver solver(grid_for(mesh, 16));
+  TriangleMesh broken = mesh;
+  broken.triangles[3][1] = 1000;
+  EXPECT_THROW((void)solver.compute(broken), InvalidMesh);
+  EXPECT_TRUE(same_bytes(solver.compute(mesh), distance_field(mesh, grid_for(mesh, 16))));
+}
+
+TEST(DistanceField, StopsSoonAfterItIsAsked) {
+  const TriangleMesh mesh = make_torus_knot({});
+  const GridSpec grid = grid_for(mesh, 400);
+  std::stop_source source;
+  auto asked = std::chrono::steady_clock::now();
+  std::jthread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    asked = std::chrono::steady_clock::now();
+    source.request_stop();
+  });
+  EXPECT_THROW((void)distance_field(mesh, grid, {.sign = SignMode::winding}, {.cancel = source.get_token()}),
+               Cancelled);
+  canceller.join();
+  const std::chrono::duration<double> delay = std::chrono::steady_clock::now() - asked;
+  EXPECT_LT(delay.count(), 5.0);  // 0.2 s is promised; a busy machine and sanitizers get more, a hang gets none
+}
+
+TEST(DistanceField, ReportsProgress) {
+  const TriangleMesh mesh = make_torus({});
+  double last = 0;
+  Context context;
+  context.progress = [&](double fraction, std::string_view phase) {
+    if (phase == "field") last = fraction;
+  };
+  (void)distance_field(mesh, grid_for(mesh, 100), {}, context);
+  EXPECT_EQ(last, 1.0);
+}
+
+TEST(DistanceField, RefusesWhatItCannotDo) {
+  const TriangleMesh box = make_box({});
+  const GridSpec grid = grid_for(box, 16);
+  EXPECT_THROW((void)distance_field(TriangleMesh{}, grid), InvalidMesh);
+  TriangleMesh broken = box;
+  broken.vertices[2].y = std::nan("");
+  EXPECT_THROW((void)distance_field(broken, grid), InvalidMesh);
+  EXPECT_THROW((void)distance_field(box, GridSpec{}), InvalidGrid);
+  GridSpec huge = grid;
+  huge.spacing = {1e38, 1e38, 1e38};
+  EXPECT_THROW((void)distance_field(box, huge), InvalidGrid);
+  huge = grid;
+  huge.size = {1 << 14, 1 << 13, 1 << 13};
+  EXPECT_THROW((void)distance_field(box, huge), OutOfMemory);
+  EXPECT_THROW((void)distance_field(box, grid, {.band = -1.0}), InvalidOption);
+  EXPECT_THROW((void)distance_field(box, grid, {.band = std::nan("")}), InvalidOption);
+  EXPECT_THROW((void)distance_field(box, grid, {.site_ids = SiteIds::voxels}), InvalidOption);
+  EXPECT_THROW((void)distance_field(box, grid, {}, {.threads = -3}), InvalidOption);
+  EXPECT_THROW((void)distance_field(open_bowl(), grid, {.sign = SignMode::normals}), InvalidMesh);
+  EXPECT_THROW((void)distance_field(make_points({}), grid, {.sign = SignMode::winding}), InvalidOption);
+}
+
+}  // namespace
+}  // namespace blum
