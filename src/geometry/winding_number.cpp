@@ -20,6 +20,9 @@ constexpr double far_away = 1e30;
 /// Clusters are accepted in is_inside() while each may be wrong by this much, as a winding number; then by less.
 constexpr double first_tolerance = 3e-2;
 
+/// |w - 1/2| hardly ever reaches this: larger changes are not worth a look.
+constexpr double side_limit = 1e3;
+
 struct Item {
   std::uint32_t block;
   std::int32_t level;  ///< -1 for a leaf
@@ -145,23 +148,26 @@ double WindingNumber::gradient_bound(const Box3& box) const {
   return data_->boundary.gradient_bound({box.lower * scale, box.upper * scale}) * scale;
 }
 
+std::optional<bool> WindingNumber::side(const Vec3d& query, double change) const {
+  if (!(change < side_limit)) return std::nullopt;
+  const std::optional<Vec3d> q = data_->scaled(query);
+  if (!q) return change < 0.5 ? std::optional(false) : std::nullopt;
+  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance *= 1.0 / 64) {
+    const Estimate w = data_->bounded(*q, tolerance);
+    const double margin = std::abs(w.value - 0.5);
+    if (margin > w.error + change) return w.value > 0.5;
+    if (margin + w.error < change) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
 std::optional<bool> WindingNumber::uniform_side(const Box3& box) const {
   if (box.is_empty()) return std::nullopt;
   const Data& data = *data_;
   if (data.tree.leaves.empty()) return false;
   const Box3 scaled{box.lower * data.tree.scale, box.upper * data.tree.scale};
   if (blum::may_touch(data.tree.boxes, scaled)) return std::nullopt;
-  const double change = data.boundary.gradient_bound(scaled) * scaled.diagonal() / 2;
-  if (!(change < 0.5 * 1e3)) return std::nullopt;
-  const std::optional<Vec3d> center = data.scaled(box.center());
-  if (!center) return false;
-  for (double tolerance = first_tolerance; tolerance > 1e-9; tolerance *= 1.0 / 64) {
-    const Estimate w = data.bounded(*center, tolerance);
-    const double margin = std::abs(w.value - 0.5);
-    if (margin > w.error + change) return w.value > 0.5;
-    if (margin + w.error < change) return std::nullopt;
-  }
-  return std::nullopt;
+  return side(box.center(), data.boundary.gradient_bound(scaled) * scaled.diagonal() / 2);
 }
 
 }  // namespace blum

@@ -52,6 +52,10 @@ class WindingNumber {
   /// w with an error bound of at most about max_error (at least 1e-12). Cost: grows slowly as max_error falls.
   [[nodiscard]] Estimate estimate(const Vec3d& query, double max_error) const;
 
+  /// Whether w > 1/2, where w differs from 1/2 by more than `change` (which an argument about its gradient gives);
+  /// nullopt where it may not. With change = 0 the same as is_inside(), up to nullopt where w is 1/2 to rounding.
+  [[nodiscard]] std::optional<bool> side(const Vec3d& query, double change) const;
+
   /// The side of a whole box: whether w > 1/2 at all of its points, or at none; nullopt where that cannot be shown, and
   /// where the box may touch a triangle. Conservative: an answer is always right.
   /// Method: away from the surface the gradient of w is the Biot-Savart field of the surface's boundary, so w cannot

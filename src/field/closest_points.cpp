@@ -1,0 +1,124 @@
+#include "blum/field/closest_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/pseudonormals.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/winding_number.hpp"
+#include "field/sign.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t queries_per_range = 512;
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+
+double checked_limit(const ClosestPointOptions& options) {
+  if (options.max_distance && !(*options.max_distance >= 0)) {
+    throw InvalidOption("max_distance is " + std::to_string(*options.max_distance) + "; it must be at least 0");
+  }
+  return options.max_distance.value_or(no_limit);
+}
+
+}  // namespace
+
+struct ClosestPointQuery::Data {
+  SiteTable sites;
+  Bvh bvh;
+  SignChoice sign;
+  double max_distance;
+  double longest = 0;           ///< side of the mesh's box
+  double coordinate_limit = 0;  ///< of queries, mesh units
+  std::optional<Pseudonormals> normals = {};
+  std::optional<WindingNumber> winding = {};
+
+  Data(const MeshView& mesh, const ClosestPointOptions& options, const Context& context)
+      : sites(mesh, context),
+        bvh(mesh, sites, context),
+        sign(choose_sign_rule(options.sign, mesh, sites)),
+        max_distance(checked_limit(options)) {
+    const Vec3d size = bvh.bounds().size();
+    longest = std::max({size.x, size.y, size.z});
+    coordinate_limit = longest > 0 ? std::min(longest, 1.0) * 1e140 : 1e140;
+    if (sign.rule == SignRule::normals) normals.emplace(mesh, sites, context);
+    if (sign.rule == SignRule::winding) winding.emplace(mesh, sites, context);
+  }
+
+  [[nodiscard]] bool is_inside(const Vec3d& query, const NearestSite& nearest) const {
+    if (nearest.distance == 0) return false;
+    if (normals) return normals->is_inside(query, nearest.point, nearest.site);
+    return winding && winding->is_inside(query);
+  }
+
+  /// An upper bound on the distance, where one is known, spares work; it does not change the result.
+  [[nodiscard]] ClosestPoint closest(const Vec3d& query, double upper_bound) const {
+    const std::optional<NearestSite> nearest = bvh.nearest(query, std::min(max_distance, upper_bound));
+    if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
+    const double distance = is_inside(query, *nearest) ? -nearest->distance : nearest->distance;
+    return {nearest->point, distance, nearest->site, sites.triangle(nearest->site)};
+  }
+
+  /// A bound, widened by more than rounding can have taken from it.
+  [[nodiscard]] double with_slack(double bound, const Vec3d& q) const {
+    return bound * (1 + 1e-9) + 1e-12 * (longest + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
+  }
+
+  [[nodiscard]] bool is_in_range(const Vec3d& q) const {
+    return std::abs(q.x) <= coordinate_limit && std::abs(q.y) <= coordinate_limit && std::abs(q.z) <= coordinate_limit;
+  }
+};
+
+ClosestPointQuery::ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options, const Context& context) {
+  validate(mesh);
+  (void)checked_limit(options);
+  data_ = std::make_unique<const Data>(mesh, options, context);
+}
+
+ClosestPointQuery::ClosestPointQuery(ClosestPointQuery&&) noexcept = default;
+ClosestPointQuery& ClosestPointQuery::operator=(ClosestPointQuery&&) noexcept = default;
+ClosestPointQuery::~ClosestPointQuery() = default;
+
+SignRule ClosestPointQuery::sign_rule() const {
+  return data_->sign.rule;
+}
+const std::string& ClosestPointQuery::sign_reason() const {
+  return data_->sign.reason;
+}
+
+ClosestPoint ClosestPointQuery::nearest(const Vec3d& query) const {
+  return data_->closest(query, no_limit);
+}
+
+std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> queries, const Context& context) const {
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    if (!data_->is_in_range(queries[i])) {
+      throw InvalidOption("query " + std::to_string(i) +
+                          (is_finite(queries[i]) ? " lies too far from the mesh (1e140 times its longest side)"
+                                                 : " has a coordinate that is not finite"));
+    }
+  }
+  std::vector<ClosestPoint> results(queries.size());
+  parallel_for(context, queries.size(), queries_per_range, "closest points", [&](const WorkRange& range) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      // Queries often come in order: the last answer bounds the next one by the triangle inequality.
+      const bool has_last = i > range.begin && results[i - 1].site.has_value();
+      const double step = has_last ? length(queries[i] - queries[i - 1]) : 0.0;
+      const double last = has_last ? std::abs(results[i - 1].distance) : no_limit;
+      results[i] = data_->closest(queries[i], data_->with_slack(last + step, queries[i]));
+    }
+  });
+  return results;
+}
+
+std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const Vec3d> queries,
+                                         const ClosestPointOptions& options, const Context& context) {
+  return ClosestPointQuery(mesh, options, context).nearest(queries, context);
+}
+
+}  // namespace blum
