@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -8,7 +9,11 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/core/parameters.hpp"
+#include "blum/geometry/generators.hpp"
 #include "blum/geometry/shape_catalog.hpp"
+#include "blum/grid/image_generators.hpp"
+#include "blum/io/image_io.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "commands.hpp"
 #include "files.hpp"
@@ -24,7 +29,9 @@ namespace fs = std::filesystem;
 constexpr const char* examples = R"(Examples:
   blum make --list                                 every shape with its parameters
   blum make torus --list                           those of one shape
-  blum make torus -o torus.obj --ring-radius 2 --tube-radius 0.5)";
+  blum make torus -o torus.obj --ring-radius 2 --tube-radius 0.5
+  blum make sphere -o rough.ply --noise 0.02
+  blum make ball -o ball.nrrd)";
 
 struct Arguments {
   std::string shape;
@@ -78,12 +85,42 @@ std::vector<std::pair<std::string, std::string>> take_parameters(std::vector<std
   return parameters;
 }
 
-const ShapeInfo& find(const std::string& given) {
+/// A shape of either catalog.
+struct Recipe {
+  std::string name;
+  std::string description;
+  std::vector<Parameter> parameters;
+  const ShapeInfo* mesh = nullptr;
+  const ImageInfo* image = nullptr;  ///< either this or the other is there
+};
+
+/// Every mesh can be had with noise: two parameters besides its own.
+constexpr const char* noise_name = "noise";
+constexpr const char* noise_seed_name = "noise_seed";
+std::vector<Parameter> noise_parameters() {
+  return {{noise_name, "moves each vertex at random by up to this much, in mesh units", 0, 0, 1e6, false},
+          {noise_seed_name, "number that the noise starts from", 1, 0, 1e9, true}};
+}
+
+std::vector<Recipe> recipes() {
+  std::vector<Recipe> all;
+  for (const ShapeInfo& shape : shape_catalog()) {
+    all.push_back({shape.name, shape.description, shape.parameters, &shape, nullptr});
+  }
+  for (const ImageInfo& image : image_catalog()) {
+    all.push_back({image.name, image.description, image.parameters, nullptr, &image});
+  }
+  std::sort(all.begin(), all.end(), [](const Recipe& a, const Recipe& b) { return a.name < b.name; });
+  return all;
+}
+
+/// Images may be named without the end of their names: `ball` for `ball_image`.
+Recipe find(const std::string& given) {
   const std::string name = plain_name(given);
   std::vector<std::string> names;
-  for (const ShapeInfo& shape : shape_catalog()) {
-    if (shape.name == name) return shape;
-    names.push_back(shape.name);
+  for (Recipe& recipe : recipes()) {
+    if (recipe.name == name || (recipe.image != nullptr && recipe.name == name + "_image")) return std::move(recipe);
+    names.push_back(recipe.name);
   }
   const std::vector<std::string> similar = similar_words(name, names);
   throw UsageError("there is no shape '" + given + "'" +
@@ -91,99 +128,149 @@ const ShapeInfo& find(const std::string& given) {
                    " (`blum make --list` lists all)");
 }
 
-ShapeParameters read_parameters(const ShapeInfo& shape, const Arguments& a) {
-  ShapeParameters values;
+double read_parameter(const Parameter& parameter, const std::string& given, const std::string& text) {
+  const double value = parse_number("--" + given, text);
+  if (value < parameter.minimum || value > parameter.maximum) {
+    throw UsageError("--" + given + " '" + text + "': must be between " + number_text(parameter.minimum) + " and " +
+                     number_text(parameter.maximum));
+  }
+  if (parameter.integer && value != std::trunc(value)) {
+    throw UsageError("--" + given + " '" + text + "': must be a whole number");
+  }
+  return value;
+}
+
+ParameterValues read_parameters(const Recipe& recipe, const Arguments& a) {
+  std::vector<Parameter> known = recipe.parameters;
+  if (recipe.mesh != nullptr) {
+    for (const Parameter& parameter : noise_parameters()) known.push_back(parameter);
+  }
   std::vector<std::string> names;
-  for (const ShapeParameter& parameter : shape.parameters) names.push_back(option_name(parameter.name));
+  for (const Parameter& parameter : known) names.push_back(option_name(parameter.name));
+  ParameterValues values;
   for (const auto& [given, text] : a.parameters) {
     const std::string name = plain_name(given);
-    const auto known = std::find_if(shape.parameters.begin(), shape.parameters.end(),
-                                    [&](const ShapeParameter& parameter) { return parameter.name == name; });
-    if (known == shape.parameters.end()) {
-      throw UsageError(shape.name + " has no parameter --" + given + "; it has " +
-                       (names.empty() ? "none" : join_words(names)));
+    const auto found = std::find_if(known.begin(), known.end(), [&](const Parameter& p) { return p.name == name; });
+    if (found == known.end()) {
+      throw UsageError(recipe.name + " has no parameter --" + given + "; it has " + join_words(names));
     }
-    const double value = parse_number("--" + given, text);
-    if (value < known->minimum || value > known->maximum) {
-      throw UsageError("--" + given + " '" + text + "': must be between " + number_text(known->minimum) + " and " +
-                       number_text(known->maximum));
+    if (!values.emplace(name, read_parameter(*found, given, text)).second) {
+      throw UsageError("--" + given + " is given twice");
     }
-    if (known->integer && value != std::trunc(value)) {
-      throw UsageError("--" + given + " '" + text + "': must be a whole number");
-    }
-    if (!values.emplace(name, value).second) throw UsageError("--" + given + " is given twice");
   }
   return values;
 }
 
 // ---- Listing ----
 
-Json shape_json(const ShapeInfo& shape) {
-  Json parameters = Json::array();
-  for (const ShapeParameter& p : shape.parameters) {
-    parameters.push_back({{"name", p.name},
-                          {"description", p.description},
-                          {"default", p.default_value},
-                          {"minimum", p.minimum},
-                          {"maximum", p.maximum},
-                          {"integer", p.integer}});
+Json parameters_json(const std::vector<Parameter>& parameters) {
+  Json json = Json::array();
+  for (const Parameter& p : parameters) {
+    json.push_back({{"name", p.name},
+                    {"description", p.description},
+                    {"default", p.default_value},
+                    {"minimum", p.minimum},
+                    {"maximum", p.maximum},
+                    {"integer", p.integer}});
   }
-  return {{"name", shape.name}, {"kind", "mesh"}, {"description", shape.description}, {"parameters", parameters}};
+  return json;
 }
 
-std::string shape_text(const ShapeInfo& shape) {
+std::string parameters_text(const std::vector<Parameter>& parameters) {
   TextTable table;
-  for (const ShapeParameter& p : shape.parameters) {
+  for (const Parameter& p : parameters) {
     table.add("    " + option_name(p.name) + " " + number_text(p.default_value),
               p.description + " (" + number_text(p.minimum) + " to " + number_text(p.maximum) +
                   (p.integer ? ", whole)" : ")"));
   }
-  return shape.name + ": " + shape.description + "\n" + table.text();
+  return table.text();
 }
 
 void list(const Arguments& a) {
   Json shapes = Json::array();
   std::string text;
-  for (const ShapeInfo& shape : shape_catalog()) {
-    if (!a.shape.empty() && &shape != &find(a.shape)) continue;
-    shapes.push_back(shape_json(shape));
-    text += (text.empty() ? "" : "\n") + shape_text(shape);
+  std::vector<Recipe> shown = recipes();
+  if (!a.shape.empty()) shown = {find(a.shape)};
+  for (const Recipe& recipe : shown) {
+    const char* kind = recipe.mesh != nullptr ? "mesh" : "image";
+    shapes.push_back({{"name", recipe.name},
+                      {"kind", kind},
+                      {"description", recipe.description},
+                      {"parameters", parameters_json(recipe.parameters)}});
+    text += recipe.name + " (" + kind + "): " + recipe.description + "\n" + parameters_text(recipe.parameters) + "\n";
   }
-  report(a.report, {{"blum_version", BLUM_VERSION}, {"shapes", shapes}}, text);
+  text += "every mesh\n" + parameters_text(noise_parameters());
+  report(a.report,
+         {{"blum_version", BLUM_VERSION}, {"shapes", shapes}, {"every_mesh", parameters_json(noise_parameters())}},
+         text);
 }
 
 // ---- Making ----
 
-void make(const Arguments& a) {
-  const ShapeInfo& shape = find(a.shape);
-  const ShapeParameters given = read_parameters(shape, a);
-  const ShapeParameters parameters = complete_parameters(shape, given);
-  const fs::path output = a.output;
-  check_extension("--output", output, {".obj", ".off", ".stl", ".ply"});
-  std::vector<fs::path> files = a.report.files();
-  files.push_back(output);
-  check_outputs(files, {});
+Json made_json(const Recipe& recipe, const ParameterValues& parameters, const fs::path& output,
+               const std::optional<std::array<std::int64_t, 3>>& betti) {
+  return {{"blum_version", BLUM_VERSION},
+          {"command", "make"},
+          {"shape", recipe.name},
+          {"kind", recipe.mesh != nullptr ? "mesh" : "image"},
+          {"parameters", Json(parameters)},
+          {"betti", betti ? Json(*betti) : Json(nullptr)},
+          {"outputs", Json::array({output.string()})}};
+}
 
-  const TriangleMesh mesh = make_shape(shape.name, parameters);
+void make_mesh(const Arguments& a, const Recipe& recipe, ParameterValues given) {
+  double noise = 0;
+  double seed = 1;
+  if (const auto at = given.find(noise_name); at != given.end()) noise = at->second;
+  if (const auto at = given.find(noise_seed_name); at != given.end()) seed = at->second;
+  given.erase(noise_name);
+  given.erase(noise_seed_name);
+  const ParameterValues parameters = complete_parameters(recipe.name, recipe.parameters, given);
+  TriangleMesh mesh = make_shape(recipe.name, parameters);
+  if (noise > 0) mesh = make_noisy(mesh, noise, static_cast<std::uint64_t>(seed));
   {
     const Interrupt finish_the_file;
-    write_mesh(output, mesh);
+    write_mesh(a.output, mesh);
   }
-  const std::optional<std::array<std::int64_t, 3>> betti = shape.betti(parameters);
-  Json json = {{"blum_version", BLUM_VERSION},
-               {"command", "make"},
-               {"shape", shape.name},
-               {"parameters", Json(parameters)},
-               {"vertices", mesh.vertices.size()},
-               {"triangles", mesh.triangles.size()},
-               {"segments", mesh.segments.size()},
-               {"points", mesh.points.size()},
-               {"bounds", to_json(bounds(mesh))},
-               {"betti", betti ? Json(*betti) : Json(nullptr)},
-               {"outputs", Json::array({output.string()})}};
+  Json json = made_json(recipe, parameters, a.output, recipe.mesh->betti(parameters));
+  json["noise"] = noise;
+  json["vertices"] = mesh.vertices.size();
+  json["triangles"] = mesh.triangles.size();
+  json["segments"] = mesh.segments.size();
+  json["points"] = mesh.points.size();
+  json["bounds"] = to_json(bounds(mesh));
   report(a.report, json,
-         "wrote " + output.string() + ": " + shape.name + ", " + plural(mesh.vertices.size(), "vertex", "vertices") +
-             ", " + plural(mesh.triangles.size(), "triangle", "triangles") + "\n");
+         "wrote " + a.output + ": " + recipe.name + ", " + plural(mesh.vertices.size(), "vertex", "vertices") + ", " +
+             plural(mesh.triangles.size(), "triangle", "triangles") + "\n");
+}
+
+void make_voxels(const Arguments& a, const Recipe& recipe, const ParameterValues& given) {
+  const ParameterValues parameters = complete_parameters(recipe.name, recipe.parameters, given);
+  const VoxelImage image = make_image(recipe.name, parameters);
+  {
+    const Interrupt finish_the_file;
+    write_image(a.output, image);
+  }
+  Json json = made_json(recipe, parameters, a.output, recipe.image->betti(parameters));
+  json["grid"] = to_json(image.grid);
+  report(a.report, json, "wrote " + a.output + ": " + recipe.name + ", " + size_text(image.grid) + " voxels\n");
+}
+
+void make(const Arguments& a) {
+  const Recipe recipe = find(a.shape);
+  const ParameterValues given = read_parameters(recipe, a);
+  const bool is_mesh = recipe.mesh != nullptr;
+  if (a.output.empty()) {
+    throw UsageError(std::string("--output is required; name ") +
+                     (is_mesh ? "an .obj, .off, .stl or .ply file" : "an .nrrd or .npy file"));
+  }
+  check_extension(
+      "--output", a.output,
+      is_mesh ? std::vector<std::string>{".obj", ".off", ".stl", ".ply"} : std::vector<std::string>{".nrrd", ".npy"});
+  std::vector<fs::path> files = a.report.files();
+  files.emplace_back(a.output);
+  check_outputs(files, {});
+  is_mesh ? make_mesh(a, recipe, given) : make_voxels(a, recipe, given);
 }
 
 void run(const Arguments& a) {
@@ -194,8 +281,6 @@ void run(const Arguments& a) {
     return list(a);
   }
   if (a.shape.empty()) throw UsageError("SHAPE is required; `blum make --list` lists all");
-  static_cast<void>(find(a.shape));
-  if (a.output.empty()) throw UsageError("--output is required; name a .obj, .off, .stl or .ply file");
   make(a);
 }
 
@@ -206,7 +291,8 @@ void add_make_command(CLI::App& app, std::vector<std::string>& arguments) {
   if (!arguments.empty() && arguments[0] == "make") a->parameters = take_parameters(arguments);
   CLI::App* command = app.add_subcommand("make", "Make a shape to test with or to start from");
   command->add_option("SHAPE", a->shape, "Name of a shape; its parameters are given as --name value");
-  command->add_option("-o,--output", a->output, "Mesh file: .obj, .off, .stl or .ply")->type_name("FILE");
+  command->add_option("-o,--output", a->output, "Mesh (.obj .off .stl .ply) or image (.nrrd .npy), as the shape is")
+      ->type_name("FILE");
   command->add_flag("--list", a->list, "List all shapes, or one, with parameters, defaults and ranges");
   command->add_option("--json", a->report.json, "Write what was made (or the list) as JSON; - is standard output")
       ->type_name("FILE");

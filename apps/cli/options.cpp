@@ -148,7 +148,7 @@ std::vector<std::string> similar_words(std::string_view word, const std::vector<
   for (const std::string& candidate : candidates) {
     const bool part = word.size() >= 3 && candidate.find(word) != std::string::npos;
     const std::size_t edits = part ? 1 : edit_distance(word, candidate);
-    if (edits <= std::max<std::size_t>(1, word.size() / 3)) found.emplace_back(edits, candidate);
+    if (edits <= (word.size() + 2) / 3) found.emplace_back(edits, candidate);
   }
   std::sort(found.begin(), found.end());
   std::vector<std::string> words;

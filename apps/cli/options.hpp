@@ -53,7 +53,7 @@ void prepare_weld(std::vector<std::string>& arguments);
 /// Threads: 0 (one per core) when unset.
 [[nodiscard]] int parse_threads(const std::optional<std::string>& text);
 
-/// The candidates that are closest to a misspelt word, best first: those within a third of its length in edits.
+/// The candidates that are closest to a misspelt word, best first: those within about a third of its length in edits.
 [[nodiscard]] std::vector<std::string> similar_words(std::string_view word, const std::vector<std::string>& candidates);
 
 /// "a, b and c"; "or" by `last`.

@@ -46,6 +46,11 @@ DistanceSampler::DistanceSampler(const Slice& slice)
 }
 
 double DistanceSampler::node(std::int64_t i, std::int64_t j) const {
+  // Beyond the border the values go on as straight lines, so that contours do.
+  if (i < 0) return 2 * node(0, j) - node(1, j);
+  if (i >= slice_.width) return 2 * node(slice_.width - 1, j) - node(std::max<std::int64_t>(slice_.width - 2, 0), j);
+  if (j < 0) return 2 * node(i, 0) - node(i, 1);
+  if (j >= slice_.height) return 2 * node(i, slice_.height - 1) - node(i, std::max<std::int64_t>(slice_.height - 2, 0));
   return static_cast<double>(slice_.distance[node_index(slice_, i, j)]);
 }
 
@@ -54,14 +59,14 @@ bool DistanceSampler::is_smooth(std::int64_t i, std::int64_t j) const {
 }
 
 Sample DistanceSampler::at(double u, double v) const {
-  u = std::clamp(u, 0.0, static_cast<double>(slice_.width - 1));
-  v = std::clamp(v, 0.0, static_cast<double>(slice_.height - 1));
-  const auto i = static_cast<std::int64_t>(u);
-  const auto j = static_cast<std::int64_t>(v);
+  const auto i = std::clamp<std::int64_t>(static_cast<std::int64_t>(u), 0, std::max<std::int64_t>(slice_.width - 2, 0));
+  const auto j =
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(v), 0, std::max<std::int64_t>(slice_.height - 2, 0));
   if (!is_smooth(i, j)) return {node(std::llround(u), std::llround(v)), 0, 0, false};
   const double s = u - static_cast<double>(i);
   const double t = v - static_cast<double>(j);
-  bool cubic = true;
+  // Cubic between nodes with a smooth neighbourhood; in the half step beyond the last nodes, straight on.
+  bool cubic = s >= 0 && s <= 1 && t >= 0 && t <= 1;
   for (std::int64_t dj = -1; dj <= 1; ++dj) {
     for (std::int64_t di = -1; di <= 1; ++di) cubic = cubic && is_smooth(i + di, j + dj);
   }
