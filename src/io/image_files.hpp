@@ -9,8 +9,9 @@
 
 namespace blum::volume_io {
 
-/// @param data  the .img file of a pair; null where the data must follow the header. Each may be gzip-compressed.
-[[nodiscard]] VoxelImage read_nifti(const ByteSource& header, const ByteSource* data);
+/// @param data_source  the .img file of a pair; null where the data must follow the header. Each may be
+/// gzip-compressed.
+[[nodiscard]] VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source);
 [[nodiscard]] VoxelImage read_vol(const ByteSource& source);
 
 /// The bytes of a source, decompressed where they begin as a gzip file does.
