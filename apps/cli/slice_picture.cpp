@@ -85,7 +85,7 @@ class DistanceStyle {
     return diverging_color(value < 0 ? value / inside_ : value / outside_);
   }
   [[nodiscard]] bool beyond(double value) const {
-    return !std::isfinite(value) || (band_ > 0 && std::abs(value) >= band_ * 0.9995);
+    return !std::isfinite(value) || (band_ > 0 && std::abs(value) >= band_ * (1 - 1e-6));
   }
   [[nodiscard]] double step() const { return step_; }
   [[nodiscard]] bool has_surface() const { return signed_; }
@@ -232,6 +232,36 @@ Color region_pixel(const Slice& slice, const RegionSizes& sizes, const Layout& l
   return mix(color, ink_color, static_cast<float>(cover * 0.6 * sizes.border_strength(sample.site, sample.rival)));
 }
 
+/// Nodes beyond the band all have its half-width. Those next to the band get what the nodes within lead to expect, so
+/// that the edge of the band is drawn where it is, not along the nodes.
+void continue_beyond_band(Slice& slice) {
+  const std::vector<float> given = slice.distance;
+  const auto limit = static_cast<float>(slice.band * (1 - 1e-6));
+  const auto at = [&](std::int64_t i, std::int64_t j) { return given[static_cast<std::size_t>(j * slice.width + i)]; };
+  const auto within = [&](std::int64_t i, std::int64_t j) {
+    return i >= 0 && j >= 0 && i < slice.width && j < slice.height && std::abs(at(i, j)) < limit;
+  };
+  for (std::int64_t j = 0; j < slice.height; ++j) {
+    for (std::int64_t i = 0; i < slice.width; ++i) {
+      if (within(i, j)) continue;
+      double sum = 0;
+      int count = 0;
+      for (std::int64_t dj = -1; dj <= 1; ++dj) {
+        for (std::int64_t di = -1; di <= 1; ++di) {
+          if (!within(i + di, j + dj) || !within(i + 2 * di, j + 2 * dj)) continue;
+          const double near = std::abs(at(i + di, j + dj));
+          sum += std::max(0.0, 2 * near - std::abs(at(i + 2 * di, j + 2 * dj)));
+          ++count;
+        }
+      }
+      if (count == 0) continue;
+      const double expected = std::max(slice.band, sum / count);
+      float& node = slice.distance[static_cast<std::size_t>(j * slice.width + i)];
+      node = static_cast<float>(std::copysign(expected, static_cast<double>(node)));
+    }
+  }
+}
+
 }  // namespace
 
 Slice take_slice(const Field& field, std::size_t axis, std::int64_t index) {
@@ -267,7 +297,9 @@ Slice take_slice(const Field& field, std::size_t axis, std::int64_t index) {
   if (slice.minimum > slice.maximum) slice.minimum = slice.maximum = 0;
   if (slice.minimum < 0) slice.is_signed = true;  // files of others do not say
   const char* const names[] = {"x", "y", "z"};
-  slice.place = "layer " + std::to_string(index) + " of 0 to " + std::to_string(field.grid.size[axis] - 1);
+  if (slice.band > 0) continue_beyond_band(slice);
+  const std::int64_t layers = field.grid.size[axis];
+  slice.place = layers == 1 ? "one layer" : "layer " + std::to_string(index) + " of 0 to " + std::to_string(layers - 1);
   if (field.grid.direction == Mat3{}) {
     const double place = field.grid.origin[axis] + static_cast<double>(index) * field.grid.spacing[axis];
     slice.place = std::string(names[axis]) + " = " + number_text(place) + ", " + slice.place;
