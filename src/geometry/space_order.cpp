@@ -2,80 +2,74 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <bit>
 
 #include "blum/core/parallel.hpp"
 
 namespace blum {
 namespace {
 
-constexpr unsigned bits_per_axis = 21;
 constexpr std::size_t grain = 8192;
+/// Runs of this many points are not cut any further.
+constexpr std::size_t leaf_size = 8;
+/// Ranges of at most this many points are cut to the end by one worker.
+constexpr std::size_t local_size = 4096;
 
-struct Keyed {
-  std::uint64_t key = 0;
+/// A point, in float32: rounding may put it on the wrong side of a cut, which does no harm.
+struct Entry {
+  std::array<float, 3> at{};
   std::uint32_t index = 0;
 };
 
-/// Spreads the low 21 bits of v to every third bit.
-std::uint64_t spread(std::uint64_t v) {
-  v = (v | v << 32) & 0x1f00000000ffffu;
-  v = (v | v << 16) & 0x1f0000ff0000ffu;
-  v = (v | v << 8) & 0x100f00f00f00f00fu;
-  v = (v | v << 4) & 0x10c30c30c30c30c3u;
-  return (v | v << 2) & 0x1249249249249249u;
+using Range = std::array<std::size_t, 2>;
+
+/// The smaller half of a range is on the right: the left one has a power of two.
+std::size_t cut_of(const Range& range) {
+  return range[0] + std::bit_ceil(range[1] - range[0]) / 2;
 }
 
-/// Skilling's transformation of cell coordinates to the transposed Hilbert index, here interleaved.
-std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
-  for (std::uint32_t bit = 1u << (bits_per_axis - 1); bit > 1; bit >>= 1) {
-    const std::uint32_t below = bit - 1;
-    for (std::uint32_t& coordinate : x) {
-      // Where the bit is set, invert the lower bits of x[0]; else exchange the lower bits of x[0] and x[i].
-      const std::uint32_t is_set = 0u - static_cast<std::uint32_t>((coordinate & bit) != 0);
-      const std::uint32_t exchanged = (x[0] ^ coordinate) & below & ~is_set;
-      x[0] ^= (below & is_set) | exchanged;
-      coordinate ^= exchanged;
+std::size_t longest_axis(const Entry* begin, const Entry* end) {
+  std::array<float, 3> lower = begin->at;
+  std::array<float, 3> upper = begin->at;
+  for (const Entry* entry = begin; entry != end; ++entry) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], entry->at[axis]);
+      upper[axis] = std::max(upper[axis], entry->at[axis]);
     }
   }
-  x[1] ^= x[0];
-  x[2] ^= x[1];
-  std::uint32_t parity = 0;
-  for (std::uint32_t bit = 1u << (bits_per_axis - 1); bit > 1; bit >>= 1) {
-    parity ^= (bit - 1) & (0u - static_cast<std::uint32_t>((x[2] & bit) != 0));
+  std::size_t best = 0;
+  for (std::size_t axis = 1; axis < 3; ++axis) {
+    if (upper[axis] - lower[axis] > upper[best] - lower[best]) best = axis;
   }
-  return spread(x[0] ^ parity) << 2 | spread(x[1] ^ parity) << 1 | spread(x[2] ^ parity);
+  return best;
 }
 
-/// Stable sort by key: six passes of eleven bits; passes in which all keys agree are skipped.
-void radix_sort(std::vector<Keyed>& items) {
-  constexpr unsigned digit = 11;
-  constexpr std::size_t buckets = std::size_t{1} << digit;
-  constexpr unsigned passes = 6;
-  std::vector<std::array<std::uint32_t, buckets>> counts(passes);
-  for (const Keyed& item : items) {
-    for (unsigned pass = 0; pass < passes; ++pass) ++counts[pass][(item.key >> (pass * digit)) & (buckets - 1)];
+void cut(std::vector<Entry>& entries, const Range& range) {
+  Entry* const begin = entries.data() + range[0];
+  Entry* const end = entries.data() + range[1];
+  const std::size_t axis = longest_axis(begin, end);
+  std::nth_element(begin, entries.data() + cut_of(range), end, [axis](const Entry& a, const Entry& b) {
+    return a.at[axis] < b.at[axis] || (a.at[axis] == b.at[axis] && a.index < b.index);
+  });
+}
+
+/// Cuts a range down to leaves.
+void cut_to_leaves(std::vector<Entry>& entries, const Range& range) {
+  if (range[1] - range[0] <= leaf_size) {
+    std::sort(entries.data() + range[0], entries.data() + range[1],
+              [](const Entry& a, const Entry& b) { return a.index < b.index; });
+    return;
   }
-  std::vector<Keyed> scratch(items.size());
-  for (unsigned pass = 0; pass < passes; ++pass) {
-    std::uint32_t start = 0;
-    bool all_agree = false;
-    for (std::uint32_t& count : counts[pass]) {
-      all_agree = all_agree || count == items.size();
-      start += std::exchange(count, start);
-    }
-    if (all_agree) continue;
-    for (const Keyed& item : items) scratch[counts[pass][(item.key >> (pass * digit)) & (buckets - 1)]++] = item;
-    items.swap(scratch);
-  }
+  cut(entries, range);
+  cut_to_leaves(entries, {range[0], cut_of(range)});
+  cut_to_leaves(entries, {cut_of(range), range[1]});
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> space_order(std::size_t count, const std::function<Vec3d(std::size_t)>& position,
                                        const Context& context) {
-  const std::size_t range_count = count == 0 ? 0 : (count - 1) / grain + 1;
-  std::vector<Box3> boxes(range_count);
+  std::vector<Box3> boxes(count == 0 ? 0 : (count - 1) / grain + 1);
   parallel_for(context, count, grain, "", [&](const WorkRange& range) {
     Box3 box;
     for (std::size_t i = range.begin; i < range.end; ++i) box.extend(position(i));
@@ -83,25 +77,37 @@ std::vector<std::uint32_t> space_order(std::size_t count, const std::function<Ve
   });
   Box3 bounds;
   for (const Box3& box : boxes) bounds.extend(box);
-
-  // One scale for all axes, so that cells are cubes.
-  constexpr double cells = static_cast<double>(1u << bits_per_axis);
   const Vec3d size = count == 0 ? Vec3d{} : bounds.size();
   const double longest = std::max({size.x, size.y, size.z});
-  const auto cell = [&](double offset) {
-    const double scaled = longest > 0 ? offset / longest * cells : 0.0;
-    return static_cast<std::uint32_t>(std::clamp(scaled, 0.0, cells - 1));
-  };
-  std::vector<Keyed> keyed(count);
+  std::vector<Entry> entries(count);
   parallel_for(context, count, grain, "", [&](const WorkRange& range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      const Vec3d offset = position(i) - bounds.lower;
-      keyed[i] = {hilbert_key({cell(offset.x), cell(offset.y), cell(offset.z)}), static_cast<std::uint32_t>(i)};
+      const Vec3d offset = longest > 0 ? (position(i) - bounds.lower) / longest : Vec3d{};
+      entries[i] = {{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)},
+                    static_cast<std::uint32_t>(i)};
     }
   });
-  radix_sort(keyed);
+
+  // Level by level while the ranges are long, then each range on its own.
+  std::vector<Range> ranges{{0, count}};
+  std::vector<Range> local;
+  while (!ranges.empty()) {
+    std::vector<Range> long_ranges;
+    for (const Range& range : ranges) (range[1] - range[0] > local_size ? long_ranges : local).push_back(range);
+    parallel_for(context, long_ranges.size(), 1, "", [&](const WorkRange& work) {
+      for (std::size_t i = work.begin; i < work.end; ++i) cut(entries, long_ranges[i]);
+    });
+    ranges.clear();
+    for (const Range& range : long_ranges) {
+      ranges.push_back({range[0], cut_of(range)});
+      ranges.push_back({cut_of(range), range[1]});
+    }
+  }
+  parallel_for(context, local.size(), 1, "", [&](const WorkRange& work) {
+    for (std::size_t i = work.begin; i < work.end; ++i) cut_to_leaves(entries, local[i]);
+  });
   std::vector<std::uint32_t> order(count);
-  std::transform(keyed.begin(), keyed.end(), order.begin(), [](const Keyed& item) { return item.index; });
+  std::transform(entries.begin(), entries.end(), order.begin(), [](const Entry& entry) { return entry.index; });
   return order;
 }
 

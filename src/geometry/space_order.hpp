@@ -11,12 +11,13 @@
 
 namespace blum {
 
-/// The order of points along a Hilbert curve (21 bits per axis) through their box: consecutive points form compact
-/// clusters, without the jumps of a Morton curve. Points of one cell keep their own order.
+/// An order of points in which every aligned run of 8, 64, 512, ... fills a compact box of its own: the points are cut
+/// at coordinates, across the longest side each time, at powers of two. (A space-filling curve jumps where it leaves
+/// a surface and meets it again elsewhere, so that runs along it span both places.)
 ///
-/// @param position  called once per index in [0, count), from several threads.
-/// @return          indices in curve order. count must be at most 2^32 - 1.
-/// Cost: O(count); about 0.1 us per point. Method: Skilling, "Programming the Hilbert curve", 2004.
+/// @param position  called once per index in [0, count), from several threads; finite.
+/// @return          indices; equal positions keep their own order. The same for any number of threads.
+/// Cost: O(count log count); about 0.15 us per point for 70,000 points.
 [[nodiscard]] std::vector<std::uint32_t> space_order(std::size_t count,
                                                      const std::function<Vec3d(std::size_t)>& position,
                                                      const Context& context);
