@@ -232,11 +232,13 @@ Color region_pixel(const Slice& slice, const RegionSizes& sizes, const Layout& l
   return mix(color, ink_color, static_cast<float>(cover * 0.6 * sizes.border_strength(sample.site, sample.rival)));
 }
 
-/// Nodes beyond the band all have its half-width. Those next to the band get what the nodes within lead to expect, so
-/// that the edge of the band is drawn where it is, not along the nodes.
+/// Nodes beyond the band all have its half-width. They get more here, and those next to the band what the nodes within
+/// it lead to expect, so that the edge of the band is drawn where it is, not along the nodes.
 void continue_beyond_band(Slice& slice) {
   const std::vector<float> given = slice.distance;
   const auto limit = static_cast<float>(slice.band * (1 - 1e-6));
+  // High enough that a smooth curve through it does not dip below the band again.
+  const double plateau = slice.band + 1.5 * std::min(slice.u_step, slice.v_step);
   const auto at = [&](std::int64_t i, std::int64_t j) { return given[static_cast<std::size_t>(j * slice.width + i)]; };
   const auto within = [&](std::int64_t i, std::int64_t j) {
     return i >= 0 && j >= 0 && i < slice.width && j < slice.height && std::abs(at(i, j)) < limit;
@@ -254,8 +256,7 @@ void continue_beyond_band(Slice& slice) {
           ++count;
         }
       }
-      if (count == 0) continue;
-      const double expected = std::max(slice.band, sum / count);
+      const double expected = count == 0 ? plateau : std::clamp(sum / count, slice.band, plateau);
       float& node = slice.distance[static_cast<std::size_t>(j * slice.width + i)];
       node = static_cast<float>(std::copysign(expected, static_cast<double>(node)));
     }
