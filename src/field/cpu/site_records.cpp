@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 #include "blum/core/parallel.hpp"
 
@@ -15,7 +15,7 @@ constexpr double negligible_length = 1e-12;
 constexpr double negligible_altitude = 1e-7;
 /// Above this, rounding of a face's barycentrics would reach beyond its corners (docs/theory/fields.md).
 constexpr double largest_condition = 4000;
-/// An in-face direction is trusted only if rounding in double cannot have turned it by more than about 1e-9.
+/// A normal is trusted only if rounding in double cannot have turned it by more than about 1e-9.
 constexpr double smallest_relative_altitude = 1e-7;
 
 void store(Record& record, int column, const Vec3d& v) {
@@ -38,7 +38,11 @@ class VertexCone {
   static constexpr std::size_t max_directions = 16;
 
   void add(const Vec3d& unit_direction) {
-    if (count_ < max_directions) directions_[count_++] = unit_direction;
+    if (count_ == max_directions) return;
+    x_[count_] = static_cast<float>(unit_direction.x);
+    y_[count_] = static_cast<float>(unit_direction.y);
+    z_[count_] = static_cast<float>(unit_direction.z);
+    ++count_;
   }
 
   /// Finds the cone's extreme rays; false if the cone {w : w . e <= 0 for all e} is provably just its apex.
@@ -48,18 +52,20 @@ class VertexCone {
       for (std::size_t i = 0; i < count_; ++i) chosen_[i] = i;
       return true;
     }
+    for (std::size_t k = count_; k < max_directions; ++k) {  // copies, so that whole vectors can be looked at
+      x_[k] = x_[0];
+      y_[k] = y_[0];
+      z_[k] = z_[0];
+    }
     std::array<bool, max_directions> is_facet{};
     bool found_ray = false;
     bool is_certain = true;
     for (std::size_t i = 0; i < count_; ++i) {
       for (std::size_t j = i + 1; j < count_; ++j) {
-        const Vec3d w = cross(directions_[i], directions_[j]);
-        const double squared = squared_length(w);
-        if (squared < 1e-14) {
+        const Vec3f w = cross(direction(i), direction(j));
+        if (squared_length(w) < 1e-8F) {
           is_certain = false;  // nearly parallel: their ray is lost in rounding
-          continue;
-        }
-        if (is_extreme_ray(w, i, j, std::sqrt(squared))) {
+        } else if (is_extreme_ray(w)) {
           found_ray = true;
           is_facet[i] = is_facet[j] = true;
         }
@@ -71,26 +77,31 @@ class VertexCone {
   }
 
   [[nodiscard]] std::size_t chosen_count() const { return chosen_count_; }
-  [[nodiscard]] const Vec3d& chosen(std::size_t k) const { return directions_[chosen_[k]]; }
+  [[nodiscard]] Vec3d chosen(std::size_t k) const {
+    const Vec3f e = direction(chosen_[k]);
+    return {e.x, e.y, e.z};
+  }
 
  private:
-  /// Whether w or -w lies in the cone, up to rounding.
-  [[nodiscard]] bool is_extreme_ray(const Vec3d& w, std::size_t i, std::size_t j, double length_of_w) const {
-    const double tolerance = 1e-6 * length_of_w;
-    bool positive = true;
-    bool negative = true;
-    for (std::size_t k = 0; k < count_ && (positive || negative); ++k) {
-      if (k == i || k == j) continue;
-      const double side = dot(w, directions_[k]);
-      positive = positive && side <= tolerance;
-      negative = negative && side >= -tolerance;
+  [[nodiscard]] Vec3f direction(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
+
+  /// Whether w or -w (no longer than one) lies in the cone, up to rounding; in doubt it does.
+  [[nodiscard]] bool is_extreme_ray(const Vec3f& w) const {
+    constexpr float tolerance = 2e-6F;
+    const std::size_t end = count_ <= 8 ? 8 : max_directions;
+    int beyond = 0;
+    int before = 0;
+    for (std::size_t k = 0; k < end; ++k) {
+      const float side = w.x * x_[k] + w.y * y_[k] + w.z * z_[k];
+      beyond |= static_cast<int>(side > tolerance);
+      before |= static_cast<int>(side < -tolerance);
     }
-    return positive || negative;
+    return beyond == 0 || before == 0;
   }
 
   /// Picks up to four directions, of the facets where they are known, each as far from the picked ones as can be.
   void choose(const std::array<bool, max_directions>& is_facet, bool facets_only) {
-    std::array<double, max_directions> largest_cosine{};
+    std::array<float, max_directions> largest_cosine{};
     std::array<bool, max_directions> is_open{};
     for (std::size_t k = 0; k < count_; ++k) {
       is_open[k] = is_facet[k] || !facets_only;
@@ -105,12 +116,12 @@ class VertexCone {
       is_open[best] = false;
       chosen_[chosen_count_] = best;
       for (std::size_t k = 0; k < count_; ++k) {
-        largest_cosine[k] = std::max(largest_cosine[k], dot(directions_[k], directions_[best]));
+        largest_cosine[k] = std::max(largest_cosine[k], dot(direction(k), direction(best)));
       }
     }
   }
 
-  std::array<Vec3d, max_directions> directions_;
+  alignas(64) std::array<float, max_directions> x_{}, y_{}, z_{};
   std::size_t count_ = 0;
   std::array<std::size_t, max_planes> chosen_{};
   std::size_t chosen_count_ = 0;
@@ -122,6 +133,8 @@ struct Input {
   const SiteTable& sites;
   const Adjacency& adjacency;
   std::span<const Vec3d> positions;
+  /// Unit normals; zero for triangles too flat to trust one.
+  std::span<const Vec3d> face_normals;
 
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t triangle) const {
     const Triangle& t = mesh.triangles[triangle];
@@ -155,26 +168,16 @@ Vec3d any_perpendicular(const Vec3d& t) {
   return b / length(b);
 }
 
-/// Unit direction that leaves the edge (a, tangent) into a triangle, and the triangle's unit normal; false if the
-/// triangle is too flat to have one.
+/// Unit direction that leaves an edge into one of its triangles; false if the triangle is too flat to have one.
 bool in_face_direction(const Input& input, std::uint32_t triangle, const Segment& edge, const Vec3d& tangent,
-                       double length_of_edge, Vec3d& direction, Vec3d& normal) {
+                       Vec3d& direction) {
   if (triangle == no_index) return false;
+  const Vec3d& normal = input.face_normals[triangle];
+  if (normal == Vec3d{}) return false;
   const Triangle& t = input.mesh.triangles[triangle];
-  std::uint32_t third = t[0];
-  for (const std::uint32_t v : t) {
-    if (v != edge[0] && v != edge[1]) third = v;
-  }
-  const Vec3d to_third = input.positions[third] - input.positions[edge[0]];
-  const Vec3d perpendicular = to_third - tangent * dot(to_third, tangent);
-  const double altitude = length(perpendicular);
-  if (!(altitude > smallest_relative_altitude * std::max(length(to_third), length_of_edge))) return false;
-  direction = perpendicular / altitude;
-  const auto corners = input.corners(triangle);
-  const Vec3d area_normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double area = length(area_normal);
-  if (!(area > 0)) return false;
-  normal = area_normal / area;
+  const bool is_forward = (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||
+                          (t[2] == edge[0] && t[0] == edge[1]);
+  direction = is_forward ? cross(normal, tangent) : cross(tangent, normal);
   return true;
 }
 
@@ -188,14 +191,11 @@ bool build_edge(const Input& input, std::uint32_t index, Record& record, Box3& b
 
   Vec3d first;
   Vec3d second;
-  Vec3d first_normal;
-  Vec3d second_normal;
   const auto& faces = input.adjacency.edge_faces[index];
-  bool has_first = in_face_direction(input, faces[0], edge, tangent, length_of_edge, first, first_normal);
-  bool has_second = in_face_direction(input, faces[1], edge, tangent, length_of_edge, second, second_normal);
+  bool has_first = in_face_direction(input, faces[0], edge, tangent, first);
+  bool has_second = in_face_direction(input, faces[1], edge, tangent, second);
   if (has_second && !has_first) {
     std::swap(first, second);
-    std::swap(first_normal, second_normal);
     std::swap(has_first, has_second);
   }
   if (!has_first) first = any_perpendicular(tangent);
@@ -209,7 +209,7 @@ bool build_edge(const Input& input, std::uint32_t index, Record& record, Box3& b
   if (has_second) {
     store(record, EdgeColumns::second_b, dot(second, first));
     store(record, EdgeColumns::second_n, dot(second, n));
-    const Vec3d pseudonormal = first_normal + second_normal;
+    const Vec3d pseudonormal = input.face_normals[faces[0]] + input.face_normals[faces[1]];
     const double size = length(pseudonormal);
     if (size > 1e-9) {
       store(record, EdgeColumns::side_b, dot(pseudonormal, first) / size);
@@ -228,32 +228,48 @@ struct FaceShape {
   double doubled_area = 0;
   bool is_negligible = true;
   bool is_sliver = false;
+  bool has_normal = false;
 };
 
 FaceShape shape_of_face(const std::array<Vec3d, 3>& corner) {
-  std::size_t opposite = 0;
-  double longest = -1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double side = length(corner[(k + 2) % 3] - corner[(k + 1) % 3]);
-    if (side > longest) {
-      longest = side;
-      opposite = k;
-    }
-  }
+  const std::array<double, 3> squared_side{squared_length(corner[2] - corner[1]), squared_length(corner[0] - corner[2]),
+                                           squared_length(corner[1] - corner[0])};
+  const auto opposite =
+      static_cast<std::size_t>(std::max_element(squared_side.begin(), squared_side.end()) - squared_side.begin());
   FaceShape shape;
   shape.anchor = corner[opposite];
   shape.to_u = corner[(opposite + 1) % 3] - shape.anchor;
   shape.to_v = corner[(opposite + 2) % 3] - shape.anchor;
   const Vec3d area_normal = cross(shape.to_u, shape.to_v);
-  shape.doubled_area = length(area_normal);
-  shape.is_negligible = !(shape.doubled_area > negligible_altitude * longest);
-  if (shape.is_negligible) return shape;
+  const double squared_longest = squared_side[opposite];
+  const double squared_area = squared_length(area_normal);
+  if (!(squared_area > 0)) return shape;
+  shape.doubled_area = std::sqrt(squared_area);
   shape.normal = area_normal / shape.doubled_area;
+  shape.has_normal = shape.doubled_area > smallest_relative_altitude * squared_longest;
+  shape.is_negligible = !(squared_area > negligible_altitude * negligible_altitude * squared_longest);
   // |grad u| |to_u| + |grad v| |to_v|, with |grad u| = |to_v| / doubled area and the other way round.
-  const double condition = 2 * length(shape.to_u) * length(shape.to_v) / shape.doubled_area;
-  shape.is_sliver = condition > largest_condition;
+  const double squared_sides = squared_side[(opposite + 1) % 3] * squared_side[(opposite + 2) % 3];
+  shape.is_sliver = 4 * squared_sides > largest_condition * largest_condition * squared_area;
   return shape;
 }
+
+/// What is computed once per triangle, before its edges ask for it.
+struct FaceFacts {
+  std::vector<Vec3d> normals;
+  std::vector<std::uint8_t> is_sliver;
+
+  FaceFacts(const Input& input, const Context& context)
+      : normals(input.mesh.triangles.size()), is_sliver(input.mesh.triangles.size()) {
+    parallel_for(context, normals.size(), clusters_per_range * cluster_size, "", [&](const WorkRange& range) {
+      for (std::size_t t = range.begin; t < range.end; ++t) {
+        const FaceShape shape = shape_of_face(input.corners(static_cast<std::uint32_t>(t)));
+        if (shape.has_normal) normals[t] = shape.normal;
+        is_sliver[t] = !shape.is_negligible && shape.is_sliver ? 1 : 0;
+      }
+    });
+  }
+};
 
 bool build_face(const Input& input, std::uint32_t triangle, Record& record, Box3& box) {
   const auto corners = input.corners(triangle);
@@ -306,23 +322,6 @@ void build_set(const Input& input, std::span<const std::uint32_t> order, const C
   });
 }
 
-/// Faces that need the sliver path, in storage order.
-std::vector<std::uint32_t> find_slivers(const Input& input, std::span<const std::uint32_t> order,
-                                        const Context& context) {
-  std::vector<std::uint8_t> is_sliver(order.size());
-  parallel_for(context, order.size(), clusters_per_range * cluster_size, "", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      const FaceShape shape = shape_of_face(input.corners(order[k]));
-      is_sliver[k] = !shape.is_negligible && shape.is_sliver ? 1 : 0;
-    }
-  });
-  std::vector<std::uint32_t> slivers;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    if (is_sliver[k] != 0) slivers.push_back(order[k]);
-  }
-  return slivers;
-}
-
 }  // namespace
 
 void BoxArrays::resize(std::size_t new_count) {
@@ -341,11 +340,16 @@ void BoxArrays::resize(std::size_t new_count) {
 void build_site_records(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                         std::span<const Vec3d> positions, const SiteOrder& order, const Context& context,
                         SiteRecords& out) {
-  const Input input{mesh, sites, adjacency, positions};
+  Input input{mesh, sites, adjacency, positions, {}};
+  const FaceFacts facts(input, context);
+  input.face_normals = facts.normals;
+  std::vector<std::uint32_t> slivers;
+  std::copy_if(order.faces.begin(), order.faces.end(), std::back_inserter(slivers),
+               [&](std::uint32_t t) { return facts.is_sliver[t] != 0; });
   build_set(input, order.vertices, context, out.kinds[vertex_kind], build_vertex);
   build_set(input, order.edges, context, out.kinds[edge_kind], build_edge);
   build_set(input, order.faces, context, out.kinds[face_kind], build_face);
-  build_set(input, find_slivers(input, order.faces, context), context, out.kinds[sliver_kind], build_sliver);
+  build_set(input, slivers, context, out.kinds[sliver_kind], build_sliver);
 }
 
 }  // namespace blum::cpu
