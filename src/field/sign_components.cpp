@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t blocks_per_range = 64;
 /// The winding number may change by this much over a block's part, and by this much over a component.
-constexpr double part_spread = 0.1;
-constexpr double component_spread = 0.3;
+constexpr double part_spread = 0.2;
+constexpr double component_spread = 0.4;
 /// Longer than any path within a block.
 constexpr std::size_t unlimited_steps = 511;
 

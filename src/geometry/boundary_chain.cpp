@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/simd.hpp"
 #include "geometry/space_order.hpp"
 
 namespace blum {
@@ -76,9 +77,10 @@ void weld_chain(const MeshView& mesh, std::vector<ChainEdge>& chain) {
 }
 
 struct Piece {
-  Box3 box;
-  double weight = 0;
-  double multiplicity = 0;
+  Vec3d from, to;
+  double multiplicity = 0;  ///< > 0; the direction is that of the surface's boundary
+
+  [[nodiscard]] Vec3d center() const { return (from + to) * 0.5; }
 };
 
 std::vector<Piece> cut_into_pieces(const MeshView& mesh, const std::vector<ChainEdge>& chain, double scale) {
@@ -88,95 +90,121 @@ std::vector<Piece> cut_into_pieces(const MeshView& mesh, const std::vector<Chain
     const Vec3d b = mesh.vertices[edge.to] * scale;
     const double whole = length(b - a);
     const int count = static_cast<int>(std::ceil(std::clamp(whole / piece_length, 1.0, 1000.0)));
-    const double multiplicity = static_cast<double>(std::abs(edge.multiplicity));
+    const double multiplicity = static_cast<double>(edge.multiplicity);
     Vec3d last = a;
     for (int i = 1; i <= count; ++i) {
       const Vec3d next = i == count ? b : a + (b - a) * (static_cast<double>(i) / count);
-      Piece& piece = pieces.emplace_back();
-      piece.box.extend(last);
-      piece.box.extend(next);
-      piece.weight = multiplicity * whole / count;
-      piece.multiplicity = multiplicity;
+      if (multiplicity > 0) {
+        pieces.push_back({last, next, multiplicity});
+      } else {
+        pieces.push_back({next, last, -multiplicity});
+      }
       last = next;
     }
   }
   return pieces;
 }
 
-/// Squared distances between a box and eight boxes.
-BLUM_LANE_LOOPS void squared_box_distances(const BoxBlock& block, const Box3& box, double (&out)[lanes]) {
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const double x = std::max(std::max(block.lower[0][i] - box.upper.x, box.lower.x - block.upper[0][i]), 0.0);
-    const double y = std::max(std::max(block.lower[1][i] - box.upper.y, box.lower.y - block.upper[1][i]), 0.0);
-    const double z = std::max(std::max(block.lower[2][i] - box.upper.z, box.lower.z - block.upper[2][i]), 0.0);
-    out[i] = x * x + y * y + z * z;
-  }
+/// Distance between two boxes.
+double box_distance(const Box3& a, const Box3& b) {
+  return length(max(max(a.lower - b.upper, b.lower - a.upper), Vec3d{}));
 }
 
 }  // namespace
+
+BoundaryChain::Cluster BoundaryChain::merge(const Cluster* children, std::size_t count) {
+  Cluster out;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.weight += children[i].weight;
+    out.vector += children[i].vector;
+    out.center += children[i].center * children[i].weight;
+    out.box.extend(children[i].box);
+  }
+  out.center = out.weight > 0 ? out.center / out.weight : out.box.center();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double shift = length(children[i].center - out.center);
+    out.moment += children[i].moment + shift * children[i].weight;
+    out.radius = std::max(out.radius, shift + children[i].radius);
+  }
+  return out;
+}
 
 BoundaryChain::BoundaryChain(const MeshView& mesh, const SiteTable& sites, double scale, const Context& context) {
   std::vector<ChainEdge> chain = net_edges(mesh, sites);
   if (chain.empty()) return;
   weld_chain(mesh, chain);
   const std::vector<Piece> pieces = cut_into_pieces(mesh, chain, scale);
-  const std::vector<std::uint32_t> order =
-      space_order(pieces.size(), [&](std::size_t i) { return pieces[i].box.center(); }, context);
-  std::vector<Box3> boxes;
-  std::vector<double> weights;
-  for (const std::uint32_t i : order) {
-    boxes.push_back(pieces[i].box);
-    weights.push_back(pieces[i].weight);
-    multiplicity_.push_back(pieces[i].multiplicity);
+  if (pieces.empty()) return;
+  std::vector<Cluster>& level = levels_.emplace_back();
+  for (const std::uint32_t i : space_order(pieces.size(), [&](std::size_t k) { return pieces[k].center(); }, context)) {
+    const Piece& piece = pieces[i];
+    const Vec3d along = piece.to - piece.from;
+    const double weight = length(along) * piece.multiplicity;
+    Cluster& cluster = level.emplace_back();
+    cluster = {piece.center(),
+               along * piece.multiplicity,
+               weight,
+               weight * length(along) / 4,
+               length(along) / 2 * (1 + 1e-12),
+               piece.multiplicity,
+               {}};
+    cluster.box.extend(piece.from);
+    cluster.box.extend(piece.to);
   }
-  tree_ = make_box_tree(boxes, context);
-  for (const auto& level : tree_.levels) {
-    auto& blocks = weights_.emplace_back(level.size());
-    std::vector<double> parents(level.size(), 0.0);
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      blocks[i / lanes][i % lanes] = weights[i];
-      parents[i / lanes] += weights[i];
+  while (levels_.back().size() > 1) {
+    const std::vector<Cluster>& below = levels_.back();
+    std::vector<Cluster> above;
+    for (std::size_t i = 0; i < below.size(); i += lanes) {
+      above.push_back(merge(&below[i], std::min(lanes, below.size() - i)));
     }
-    weights = std::move(parents);
+    levels_.push_back(std::move(above));
   }
 }
 
 double BoundaryChain::gradient_bound(const Box3& box) const {
-  if (tree_.is_empty()) return 0;
+  if (levels_.empty()) return 0;
   struct Item {
-    std::uint32_t block;
-    std::int32_t level;
+    std::uint32_t index;
+    std::uint32_t level;
   };
-  std::array<Item, 128> stack;
+  const Vec3d center = box.center();
+  const double half = box.diagonal() / 2;
+  std::array<Item, 128> stack;  // at most seven siblings wait on each of at most eleven levels
   std::size_t size = 0;
-  stack[size++] = {0, tree_.top()};
-  double sum = 0;
-  double squared[lanes];
+  stack[size++] = {0, static_cast<std::uint32_t>(levels_.size() - 1)};
+  Vec3d field;      // at the box's centre
+  double rest = 0;  // bound on what is missing from it
   while (size > 0) {
     const Item item = stack[--size];
-    const auto level = static_cast<std::size_t>(item.level);
-    const BoxBlock& block = tree_.levels[level][item.block];
-    const std::array<double, lanes>& weights = weights_[level][item.block];
-    squared_box_distances(block, box, squared);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (!(weights[lane] > 0)) continue;
-      const std::size_t child = item.block * lanes + lane;
-      if (level == 0) {
-        if (squared[lane] == 0) return HUGE_VAL;
-        sum += std::min(weights[lane] / squared[lane], 2 * multiplicity_[child] / std::sqrt(squared[lane]));
-        continue;
-      }
-      const Vec3d extent{block.upper[0][lane] - block.lower[0][lane], block.upper[1][lane] - block.lower[1][lane],
-                         block.upper[2][lane] - block.lower[2][lane]};
-      // A box seen from twice its size away overstates its pieces by a factor of 9/4 at most.
-      if (squared[lane] > 4 * squared_length(extent)) {
-        sum += weights[lane] / squared[lane];
-      } else {
+    const Cluster& cluster = levels_[item.level][item.index];
+    const Vec3d offset = cluster.center - center;
+    const double distance = length(offset);
+    const double least = distance - cluster.radius - half;  // between any point of the box and any of the cluster
+    const double missing = cluster.moment + half * cluster.weight;
+    const bool is_piece = item.level == 0;
+    // Opening a cluster reduces its own extent's part only, not that of the box.
+    const bool is_compact = least > 0 && (cluster.moment <= 0.05 * cluster.weight * least ||
+                                          cluster.moment <= 0.25 * half * cluster.weight);
+    if (!is_piece && !is_compact) {
+      const std::size_t end = std::min(std::size_t{item.index + 1} * lanes, levels_[item.level - 1].size());
+      for (std::size_t child = std::size_t{item.index} * lanes; child < end; ++child) {
         stack[size++] = {static_cast<std::uint32_t>(child), item.level - 1};
       }
+      continue;
+    }
+    const double apart = std::max(least, box_distance(box, cluster.box));
+    if (!(apart > 0)) return HUGE_VAL;
+    const double plain = is_piece ? std::min(cluster.weight / (apart * apart), 2 * cluster.multiplicity / apart)
+                                  : cluster.weight / (apart * apart);
+    const double bound = least > 0 ? 2 * missing / (least * least * least) : HUGE_VAL;
+    if (bound < plain) {
+      field += cross(cluster.vector, offset) / (distance * distance * distance);
+      rest += bound;
+    } else {
+      rest += plain;
     }
   }
-  return sum / (4 * std::numbers::pi);
+  return (length(field) + rest) * (1 + 1e-9) / (4 * std::numbers::pi);
 }
 
 }  // namespace blum
