@@ -62,7 +62,7 @@ struct alignas(64) SolidAngleSum {
 /// Adds eight triangles (van Oosterom and Strackee 1983).
 void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum);
 
-/// A complete tree with eight children per node: leaf i holds triangles 8 i ... 8 i + 7 of a Hilbert order; block i of
+/// A complete tree with eight children per node: leaf i holds triangles 8 i ... 8 i + 7 of a spatial order; block i of
 /// level 0 holds the clusters of leaves 8 i ... 8 i + 7, and so on up to one block.
 struct WindingTree {
   double scale = 1;  ///< coordinates are those of the mesh times this power of two, so that it is about 1 long

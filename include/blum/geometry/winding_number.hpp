@@ -25,7 +25,7 @@ class WindingNumber {
  public:
   /// @param mesh  must pass validate(mesh). Segments and points have no winding number and are left out.
   /// @throws InvalidMesh (more sites than ids), Cancelled.
-  /// Cost: O(n), about 10 ms for 70,000 triangles on two cores; 100 bytes per triangle.
+  /// Cost: O(n log n), about 12 ms for 70,000 triangles on two cores; 100 bytes per triangle.
   explicit WindingNumber(const MeshView& mesh, const Context& context = {});
   /// The same with the mesh's table of sites at hand.
   WindingNumber(const MeshView& mesh, const SiteTable& sites, const Context& context = {});
@@ -41,7 +41,8 @@ class WindingNumber {
   [[nodiscard]] double approximate(const Vec3d& query, double beta = 2) const;
 
   /// Whether w > 1/2, as the full sum decides it: the hierarchy is refined until its error bound excludes 1/2, and
-  /// where it never does (|w - 1/2| < 1e-9 or so) the full sum is taken. Cost: O(log n) on average, 0.2 to 0.5 us.
+  /// where it never does (|w - 1/2| < 1e-9 or so) the full sum is taken. Cost: O(log n) on average, about 1 us for
+  /// 70,000 triangles.
   [[nodiscard]] bool is_inside(const Vec3d& query) const;
 
   /// A value and a bound on its error.

@@ -1,0 +1,51 @@
+// Blum: meshes moved about, and places to ask them. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "blum/core/random.hpp"
+#include "blum/geometry/generators.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum::test {
+
+/// scale * mesh + offset.
+inline TriangleMesh moved(TriangleMesh mesh, double scale, const Vec3d& offset = {}) {
+  for (Vec3d& v : mesh.vertices) v = v * scale + offset;
+  return mesh;
+}
+
+/// Triangles of every awkward kind, with free segments and points among them.
+inline TriangleMesh awkward_soup(std::size_t triangles, std::uint64_t seed) {
+  TriangleMesh mesh = make_soup({.triangles = triangles, .awkward = 0.7, .seed = seed});
+  append(mesh, make_segments({.segments = triangles / 8 + 1, .seed = seed + 1}));
+  append(mesh, make_points({.points = triangles / 8 + 1, .seed = seed + 2}));
+  return mesh;
+}
+
+/// Random places around a shape: in its box and half its size beyond, and a few at its vertices and far away.
+inline std::vector<Vec3d> places_around(const MeshView& mesh, std::size_t count, std::uint64_t seed) {
+  const Box3 box = bounds(mesh);
+  const double size = box.diagonal() > 0 ? box.diagonal() : 1.0;
+  Random random(seed);
+  std::vector<Vec3d> places;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3d& vertex = mesh.vertices[mesh.triangles[random.below(mesh.triangles.size())][0]];
+    switch (i % 8) {
+      case 0:
+        places.push_back(vertex);
+        break;
+      case 1:
+        places.push_back(box.center() + random.in_ball() * (10 * size));
+        break;
+      case 2:
+        places.push_back(vertex + random.in_ball() * (1e-3 * size));
+        break;
+      default:
+        places.push_back(box.center() + random.in_ball() * size);
+    }
+  }
+  return places;
+}
+
+}  // namespace blum::test

@@ -1,0 +1,153 @@
+// Proves that closest_points() gives the exact closest point, site, triangle and sign at any points.
+#include "blum/field/closest_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/field/reference.hpp"
+#include "blum/geometry/generators.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+void expect_like_brute_force(const TriangleMesh& mesh, std::uint64_t seed, SignRule rule) {
+  const reference::BruteForce expected(mesh);
+  const std::vector<Vec3d> places = test::places_around(mesh, 300, seed);
+  const ClosestPointQuery query(mesh);
+  EXPECT_EQ(query.sign_rule(), rule) << query.sign_reason();
+  const std::vector<ClosestPoint> found = query.nearest(places);
+  ASSERT_EQ(found.size(), places.size());
+  const double extent = bounds(mesh).diagonal();
+  std::size_t negative = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const reference::Nearest truth = expected.nearest(places[i]);
+    EXPECT_NEAR(std::abs(found[i].distance), truth.distance, 1e-11 * extent);
+    EXPECT_NEAR(expected.site_distance(found[i].site, places[i]), truth.distance, 1e-11 * extent);
+    EXPECT_EQ(found[i].triangle, expected.sites().triangle(found[i].site));
+    EXPECT_NEAR(length(found[i].point - places[i]), truth.distance, 1e-11 * extent);
+    if (truth.distance < 1e-9 * extent || rule == SignRule::none) continue;
+    const double w = reference::winding_number(mesh, places[i]);
+    if (std::abs(w - 0.5) > 1e-9) {
+      EXPECT_EQ(found[i].distance < 0, w > 0.5);
+    }
+    negative += found[i].distance < 0 ? 1 : 0;
+  }
+  if (rule != SignRule::none) {
+    EXPECT_GT(negative, 0U);
+  }
+}
+
+TEST(ClosestPoints, AreThoseOfBruteForce) {
+  expect_like_brute_force(make_sphere({.frequency = 5}), 1, SignRule::normals);
+  expect_like_brute_force(make_star({}), 2, SignRule::normals);
+  expect_like_brute_force(make_organic({.frequency = 12, .holes = 3}), 3, SignRule::winding);
+  TriangleMesh with_wires = make_sphere({.frequency = 4});
+  append(with_wires, make_segments({.segments = 20, .size = 3}));
+  append(with_wires, make_points({.points = 20, .size = 3}));
+  expect_like_brute_force(with_wires, 4, SignRule::normals);
+}
+
+TEST(ClosestPoints, TellFeaturesApart) {
+  const TriangleMesh cube = make_box({});
+  const SiteTable sites(cube);
+  const Vec3d half = bounds(cube).upper;
+  const std::vector<Vec3d> places{
+      half * 2.0, {half.x + 1, half.y + 1, 0.1}, {half.x + 1, 0.1, 0.2}, {0.3 * half.x, 0, 0}};
+  const std::vector<ClosestPoint> found = closest_points(cube, places);
+  EXPECT_EQ(sites.site(found[0].site).kind, SiteKind::vertex);
+  EXPECT_EQ(sites.site(found[1].site).kind, SiteKind::edge);
+  EXPECT_EQ(sites.site(found[2].site).kind, SiteKind::face);
+  EXPECT_DOUBLE_EQ(found[0].distance, length(half));
+  EXPECT_DOUBLE_EQ(found[1].distance, std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(found[2].distance, 1);
+  EXPECT_DOUBLE_EQ(found[3].distance, -0.7 * half.x);
+}
+
+TEST(ClosestPoints, OfWiresAndPointsAreUnsigned) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {9, 9, 9}};
+  mesh.segments = {{1, 0}};
+  mesh.points = {2};
+  const std::vector<Vec3d> places{{0.5, 2, 0}, {-1, 0, 0}, {5, 1, 0}, {8, 8, 8}};
+  const ClosestPointQuery query(mesh);
+  EXPECT_EQ(query.sign_rule(), SignRule::none);
+  const std::vector<ClosestPoint> found = query.nearest(places);
+  EXPECT_EQ(found[0].site, SiteId(4));  // four vertices, then the edge
+  EXPECT_EQ(found[1].site, SiteId(0));
+  EXPECT_EQ(found[2].site, SiteId(2));
+  EXPECT_EQ(found[3].site, SiteId(2)) << "a vertex that nothing names must not be found";
+  EXPECT_FALSE(found[0].triangle.has_value());
+  EXPECT_EQ(found[0].distance, 2);
+  EXPECT_THROW((void)closest_points(mesh, places, {.sign = SignMode::winding}), InvalidOption);
+}
+
+TEST(ClosestPoints, HaveAReasonForTheirSign) {
+  TriangleMesh sphere = make_sphere({.frequency = 3});
+  EXPECT_EQ(ClosestPointQuery(sphere).sign_rule(), SignRule::normals);
+  reverse_triangles(sphere);
+  const ClosestPointQuery inverted(sphere);
+  EXPECT_EQ(inverted.sign_rule(), SignRule::winding);
+  EXPECT_NE(inverted.sign_reason().find("inside out"), std::string::npos) << inverted.sign_reason();
+  EXPECT_NE(inverted.sign_reason().find("flip"), std::string::npos);
+  EXPECT_GT(inverted.nearest(Vec3d{}).distance, 0);
+  sphere.triangles.pop_back();
+  EXPECT_THROW(ClosestPointQuery(sphere, {.sign = SignMode::normals}), InvalidMesh);
+  EXPECT_EQ(ClosestPointQuery(sphere, {.sign = SignMode::none}).sign_rule(), SignRule::none);
+}
+
+TEST(ClosestPoints, StopAtTheLargestDistance) {
+  const TriangleMesh sphere = make_sphere({.frequency = 4});
+  const std::vector<Vec3d> places{{1.05, 0, 0}, {3, 0, 0}};
+  const std::vector<ClosestPoint> found = closest_points(sphere, places, {.max_distance = 0.5});
+  EXPECT_TRUE(found[0].site.has_value());
+  EXPECT_FALSE(found[1].site.has_value());
+  EXPECT_EQ(found[1].distance, HUGE_VAL);
+  EXPECT_EQ(found[1].point, places[1]);
+  EXPECT_THROW((void)closest_points(sphere, places, {.max_distance = -1.0}), InvalidOption);
+  EXPECT_THROW((void)closest_points(sphere, places, {.max_distance = NAN}), InvalidOption);
+}
+
+TEST(ClosestPoints, NameTheQueryThatIsNotFinite) {
+  const TriangleMesh sphere = make_sphere({.frequency = 2});
+  std::vector<Vec3d> places(10);
+  places[7].y = NAN;
+  try {
+    (void)closest_points(sphere, places);
+    FAIL() << "accepted";
+  } catch (const InvalidOption& error) {
+    EXPECT_NE(std::string(error.what()).find("query 7"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW((void)closest_points(TriangleMesh{}, places), InvalidMesh);
+  EXPECT_TRUE(closest_points(sphere, {}).empty());
+}
+
+TEST(ClosestPoints, DependOnNeitherThreadsNorNeighbours) {
+  const TriangleMesh mesh = make_organic({.frequency = 16, .holes = 2});
+  std::vector<Vec3d> places = test::places_around(mesh, 1500, 6);
+  places.insert(places.begin() + 700, 20, places[3]);
+  const ClosestPointQuery query(mesh);
+  const std::vector<ClosestPoint> one = query.nearest(places, {.threads = 1});
+  const std::vector<ClosestPoint> four = query.nearest(places, {.threads = 4});
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const ClosestPoint alone = query.nearest(places[i]);
+    EXPECT_EQ(one[i].distance, four[i].distance);
+    EXPECT_EQ(one[i].site, four[i].site);
+    EXPECT_EQ(one[i].distance, alone.distance);
+    EXPECT_EQ(one[i].site, alone.site);
+  }
+}
+
+TEST(ClosestPoints, CanBeCancelled) {
+  std::stop_source stop;
+  stop.request_stop();
+  const std::vector<Vec3d> places(10);
+  EXPECT_THROW((void)closest_points(make_sphere({.frequency = 3}), places, {}, {.cancel = stop.get_token()}),
+               Cancelled);
+}
+
+}  // namespace
+}  // namespace blum

@@ -1,0 +1,162 @@
+// Proves that hierarchical winding numbers keep their error bounds and decide like the full sum over all triangles.
+#include "blum/geometry/winding_number.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "blum/field/reference.hpp"
+#include "blum/geometry/generators.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+/// A sphere without the part above z = height.
+TriangleMesh bowl(double height) {
+  TriangleMesh mesh = make_sphere({.frequency = 10});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return mesh.vertices[t[0]].z > height && mesh.vertices[t[1]].z > height && mesh.vertices[t[2]].z > height;
+  });
+  return mesh;
+}
+
+/// Each triangle with its own three vertices.
+TriangleMesh unwelded(const MeshView& mesh) {
+  TriangleMesh out;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    for (const std::uint32_t v : t) out.vertices.push_back(mesh.vertices[v]);
+    out.triangles.push_back({first, first + 1, first + 2});
+  }
+  return out;
+}
+
+void expect_like_brute_force(const TriangleMesh& mesh, std::uint64_t seed, std::size_t count = 300) {
+  const WindingNumber winding(mesh);
+  for (const Vec3d& q : test::places_around(mesh, count, seed)) {
+    // At vertices the sum jumps: any value is as good as another.
+    if (std::find(mesh.vertices.begin(), mesh.vertices.end(), q) != mesh.vertices.end()) continue;
+    const double truth = reference::winding_number(mesh, q);
+    EXPECT_NEAR(winding(q), truth, 1e-11);
+    for (const double allowed : {0.1, 1e-3, 1e-6, 1e-10}) {
+      const WindingNumber::Estimate w = winding.estimate(q, allowed);
+      EXPECT_LE(std::abs(w.value - truth), w.error + 1e-11);
+      EXPECT_LE(w.error, std::max(allowed, 2e-11));
+    }
+    if (std::abs(truth - 0.5) > 1e-9) {
+      EXPECT_EQ(winding.is_inside(q), truth > 0.5);
+      const std::optional<bool> side = winding.side(q, 0.01);
+      if (side) {
+        EXPECT_EQ(*side, truth > 0.5);
+      }
+      EXPECT_EQ(side.has_value(), std::abs(truth - 0.5) > 0.01) << truth;
+    }
+  }
+}
+
+TEST(WindingNumber, KeepsItsBoundsOnSoups) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    expect_like_brute_force(make_soup({.triangles = 40 * seed, .triangle_size = 0.5, .awkward = 0.6, .seed = seed}),
+                            seed);
+  }
+}
+
+TEST(WindingNumber, KeepsItsBoundsOnSurfaces) {
+  expect_like_brute_force(make_sphere({.frequency = 12}), 1);
+  expect_like_brute_force(make_star({}), 2);
+  expect_like_brute_force(bowl(0.0), 3);
+  expect_like_brute_force(bowl(0.7), 4);
+  expect_like_brute_force(make_organic({.frequency = 16, .holes = 3}), 5);
+  expect_like_brute_force(test::moved(bowl(0.3), 1e-9), 6);
+  expect_like_brute_force(test::moved(bowl(0.3), 1e9), 7);
+  expect_like_brute_force(test::moved(bowl(0.3), 1, {1e6, -1e6, 1e6}), 8);
+}
+
+TEST(WindingNumber, IsAccurateWithoutBoundsToo) {
+  const TriangleMesh mesh = make_organic({.frequency = 20, .holes = 2});
+  const WindingNumber winding(mesh);
+  double worst = 0;
+  double worst_at_4 = 0;
+  for (const Vec3d& q : test::places_around(mesh, 200, 9)) {
+    if (std::find(mesh.vertices.begin(), mesh.vertices.end(), q) != mesh.vertices.end()) continue;
+    worst = std::max(worst, std::abs(winding.approximate(q) - winding(q)));
+    worst_at_4 = std::max(worst_at_4, std::abs(winding.approximate(q, 4) - winding(q)));
+  }
+  EXPECT_LT(worst, 1e-2);
+  EXPECT_LT(worst_at_4, 1e-3);
+  EXPECT_GT(worst, worst_at_4);
+}
+
+TEST(WindingNumber, IsZeroWithoutTrianglesAndFarAway) {
+  const TriangleMesh points = make_points({.points = 10});
+  EXPECT_EQ(WindingNumber(points)({0, 0, 0}), 0);
+  EXPECT_FALSE(WindingNumber(points).is_inside({0, 0, 0}));
+  const WindingNumber sphere(make_sphere({.frequency = 3}));
+  EXPECT_FALSE(sphere.is_inside({1e200, 1e200, 1e200}));
+  EXPECT_NEAR(sphere({1e20, 0, 0}), 0, 1e-12);
+}
+
+TEST(WindingNumber, KnowsWhichSurfacesHaveNoBoundary) {
+  EXPECT_TRUE(WindingNumber(make_sphere({.frequency = 3})).is_piecewise_constant());
+  EXPECT_TRUE(WindingNumber(unwelded(make_sphere({.frequency = 3}))).is_piecewise_constant());
+  EXPECT_TRUE(WindingNumber(make_void_cube({})).is_piecewise_constant());
+  EXPECT_FALSE(WindingNumber(bowl(0.5)).is_piecewise_constant());
+  TriangleMesh turned = make_sphere({.frequency = 3});
+  std::swap(turned.triangles[7][0], turned.triangles[7][1]);
+  EXPECT_FALSE(WindingNumber(turned).is_piecewise_constant());
+}
+
+/// The bound holds for differences of w between points of boxes that are free of triangles.
+TEST(WindingNumber, BoundsItsGradient) {
+  for (const TriangleMesh& mesh : {bowl(0.2), make_soup({.triangles = 20, .seed = 4}), unwelded(bowl(0.6))}) {
+    const WindingNumber winding(mesh);
+    const reference::BruteForce distances(mesh);
+    Random random(3);
+    std::size_t tested = 0;
+    double tightest = HUGE_VAL;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3d center = bounds(mesh).center() + random.in_ball() * 2.0;
+      const double half = 0.05 * random.uniform();
+      if (distances.nearest(center).distance < 2 * half) continue;
+      const Vec3d corner{half, half, half};
+      const double bound = winding.gradient_bound({center - corner, center + corner});
+      const Vec3d a = center + (random.in_cube() * 2.0 - Vec3d{1, 1, 1}) * half;
+      const Vec3d b = center + (random.in_cube() * 2.0 - Vec3d{1, 1, 1}) * half;
+      const double change = std::abs(winding(a) - winding(b));
+      EXPECT_LE(change, bound * length(a - b) + 1e-11);
+      if (change > 1e-9) tightest = std::min(tightest, bound * length(a - b) / change);
+      ++tested;
+    }
+    EXPECT_GT(tested, 100U);
+    EXPECT_LT(tightest, 20) << "the bound is useless";
+  }
+  EXPECT_EQ(WindingNumber(make_sphere({.frequency = 4})).gradient_bound({{-1, -1, -1}, {1, 1, 1}}), 0);
+}
+
+TEST(WindingNumber, GivesTheSideOfBoxesOnlyWhereItIsTheSame) {
+  for (const TriangleMesh& mesh :
+       {bowl(0.0), bowl(0.8), make_soup({.triangles = 60, .triangle_size = 0.8, .seed = 2})}) {
+    const WindingNumber winding(mesh);
+    Random random(5);
+    std::size_t decided = 0;
+    for (int i = 0; i < 400; ++i) {
+      const Vec3d center = random.in_ball() * 1.5;
+      const double half = 0.3 * random.uniform();
+      const Box3 box{center - Vec3d{half, half, half}, center + Vec3d{half, half, half}};
+      const std::optional<bool> side = winding.uniform_side(box);
+      if (!side) continue;
+      ++decided;
+      for (int k = 0; k < 20; ++k) {
+        const Vec3d q = center + (random.in_cube() * 2.0 - Vec3d{1, 1, 1}) * half;
+        EXPECT_EQ(reference::winding_number(mesh, q) > 0.5, *side);
+      }
+    }
+    EXPECT_GT(decided, 10U);
+  }
+  // Across the mouth of half a sphere w passes 1/2: no box there has a side.
+  EXPECT_FALSE(WindingNumber(bowl(0.0)).uniform_side({{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.6}}));
+}
+
+}  // namespace
+}  // namespace blum
