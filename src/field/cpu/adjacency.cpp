@@ -94,7 +94,8 @@ void order_sites(const MeshView& mesh, const SiteTable& sites, const Adjacency& 
     }
   });
   radix_sort(keyed);
-  std::vector<std::uint32_t> rank(mesh.vertices.size(), 0);
+  std::vector<std::uint32_t>& rank = out.rank;
+  rank.assign(mesh.vertices.size(), 0);
   out.vertices.resize(named_count);
   for (std::uint32_t i = 0; i < named_count; ++i) {
     out.vertices[i] = keyed[i].index;

@@ -34,6 +34,8 @@ struct SiteOrder {
   std::vector<std::uint32_t> vertices;
   std::vector<std::uint32_t> edges;
   std::vector<std::uint32_t> faces;
+  /// Place of each vertex of the mesh in `vertices`; 0 where it is not named.
+  std::vector<std::uint32_t> rank;
 };
 
 /// @param positions  one per vertex of the mesh, in the normalised frame ([-1, 1] on each axis where named).

@@ -25,6 +25,8 @@ void bound_children(const BoxArrays& children, const Context& context, BoxArrays
         parents.lower[axis][parent] = lower;
         parents.upper[axis][parent] = std::max(lower, upper);
       }
+      parents.reach[parent] = *std::max_element(children.reach.begin() + static_cast<std::ptrdiff_t>(first),
+                                                children.reach.begin() + static_cast<std::ptrdiff_t>(last));
     }
   });
 }

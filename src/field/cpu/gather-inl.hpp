@@ -28,14 +28,14 @@ HWY_INLINE void for_each_box_vector(const BoxArrays& boxes, std::size_t first, U
 /// and over p in the box of |x - p|^2 - |x - p0|^2 is positive. It is separable; along an axis it is linear in x and
 /// convex in p, so it is found at an end of the tile with p as near to it as can be.
 struct TileTest {
-  Vec low, high, p0, low_p0, high_p0;
+  Vec low, high, low_p0, high_p0;
   V tolerance;
 
   TileTest(const CenteredBox& tile, const Vec3f& surface_point) {
     const Vec3f half = tile.half + Vec3f{box_slack, box_slack, box_slack};
     low = set(tile.center - half);
     high = set(tile.center + half);
-    p0 = set(surface_point);
+    const Vec p0 = set(surface_point);
     const Vec from_low = low - p0;
     const Vec from_high = high - p0;
     low_p0 = {square(from_low.x), square(from_low.y), square(from_low.z)};
@@ -57,7 +57,14 @@ struct TileTest {
       const V sum = hn::Add(hn::Add(axis(low.x, high.x, low_p0.x, high_p0.x, lower.x, upper.x),
                                     axis(low.y, high.y, low_p0.y, high_p0.y, lower.y, upper.y)),
                             axis(low.z, high.z, low_p0.z, high_p0.z, lower.z, upper.z));
-      result |= bits(hn::Le(sum, tolerance)) << offset;
+      const auto gap = [](V low_end, V high_end, V lower_end, V upper_end) {
+        return hn::Max(hn::Max(hn::Sub(low_end, upper_end), hn::Sub(lower_end, high_end)), hn::Zero(d));
+      };
+      const Vec apart{gap(low.x, high.x, lower.x, upper.x), gap(low.y, high.y, lower.y, upper.y),
+                      gap(low.z, high.z, lower.z, upper.z)};
+      const V reach = hn::LoadU(d, boxes.reach.data() + first + offset);
+      const M matters = hn::And(hn::Le(sum, tolerance), hn::Le(dot(apart, apart), hn::Mul(reach, reach)));
+      result |= bits(matters) << offset;
     });
     return result;
   }

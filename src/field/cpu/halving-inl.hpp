@@ -122,7 +122,7 @@ struct VertexBlock {
 struct EdgeBlock {
   Vec t, b, n;
   V along, across_b, across_n;  // components of m - midpoint
-  V half_length, second_b, second_n, first_limit, side_b, side_n;
+  V half_length, second_b, second_n, first_limit, side, reach;
 
   EdgeBlock(const Columns& columns, const Vec& m)
       : t(columns.vec(EdgeColumns::tangent)),
@@ -132,8 +132,8 @@ struct EdgeBlock {
         second_b(columns.column[EdgeColumns::second_b]),
         second_n(columns.column[EdgeColumns::second_n]),
         first_limit(columns.column[EdgeColumns::first_limit]),
-        side_b(columns.column[EdgeColumns::side_b]),
-        side_n(columns.column[EdgeColumns::side_n]) {
+        side(columns.column[EdgeColumns::side]),
+        reach(columns.column[EdgeColumns::reach]) {
     const Vec to_site = m - columns.vec(EdgeColumns::midpoint);
     along = dot(to_site, t);
     across_b = dot(to_site, b);
@@ -152,11 +152,14 @@ struct EdgeBlock {
 struct FaceBlock {
   Vec n, gradient_u, gradient_v;
   V height, minus_u, minus_v;  // at m
+  V reach_above, reach_below;
 
   FaceBlock(const Columns& columns, const Vec& m)
       : n(columns.vec(FaceColumns::normal)),
         gradient_u(columns.vec(FaceColumns::minus_u)),
-        gradient_v(columns.vec(FaceColumns::minus_v)) {
+        gradient_v(columns.vec(FaceColumns::minus_v)),
+        reach_above(columns.column[FaceColumns::reach_above]),
+        reach_below(columns.column[FaceColumns::reach_below]) {
     const Vec to_site = m - columns.vec(FaceColumns::anchor);
     height = dot(to_site, n);
     minus_u = dot(to_site, gradient_u);
@@ -235,8 +238,17 @@ struct BlockTest {
     const V slack = set(2 * plane_slack);
     bound(block.across_b, block.b, hn::Add(support(block.b, half), block.first_limit), worst);
     bound(across_second, second, hn::Add(support(second, half), slack), worst);
-    bound(hn::Add(block.across_b, across_second), sum, hn::Add(support(sum, half), hn::Add(block.first_limit, slack)),
-          worst);
+    // Against the sum's direction lies the middle of the wedge: going that way by more than the reach leaves the
+    // region.
+    const V sum_support = hn::Add(support(sum, half), slack);
+    const V forward = hn::Add(sum_support, block.first_limit);
+    const V backward = hn::MulAdd(block.reach, hn::Sqrt(dot(sum, sum)), sum_support);
+    V value[boxes];
+    offsets.values(hn::Add(block.across_b, across_second), sum, value);
+    for (int c = 0; c < boxes; ++c) {
+      const V outside = hn::Max(hn::Sub(value[c], forward), hn::Neg(hn::Add(value[c], backward)));
+      worst[c] = hn::Max(worst[c], outside);
+    }
     if constexpr (boxes == 8) {
       V value_b[boxes];
       V value_n[boxes];
@@ -268,8 +280,15 @@ struct BlockTest {
     coordinate(hn::Add(block.minus_u, one_half), block.gradient_u, true);
     coordinate(hn::Add(block.minus_v, one_half), block.gradient_v, false);
     coordinate(hn::Add(hn::Add(block.minus_u, block.minus_v), one_half), block.gradient_u + block.gradient_v, false);
+    offsets.values(block.height, block.n, value);
+    const V extent = support(block.n, half);
+    const V above = hn::Add(extent, block.reach_above);
+    const V below = hn::Add(extent, block.reach_below);
+    for (int c = 0; c < boxes; ++c) {
+      const V outside_reach = hn::Max(hn::Sub(value[c], above), hn::Neg(hn::Add(value[c], below)));
+      worst[c] = hn::Max(worst[c], outside_reach);
+    }
     if constexpr (boxes == 8) {
-      offsets.values(block.height, block.n, value);
       for (int c = 0; c < boxes; ++c) {
         closest.offer(c, square(value[c]), hn::And(keep, hn::Le(outside[c], hn::Zero(d))), index);
       }

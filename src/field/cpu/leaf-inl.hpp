@@ -83,8 +83,12 @@ struct LeafStore {
     put(LeafEdge::second_b, b, block.second_b);
     put(LeafEdge::second_n, b, block.second_n);
     put(LeafEdge::first_limit, b, block.first_limit);
-    put(LeafEdge::side_b, b, block.side_b);
-    put(LeafEdge::side_n, b, block.side_n);
+    // The pseudonormal is the sum of the faces' normals: with b and the second face's direction given in the frame of b
+    // and n, that is side * (second_n, 1 - second_b), of squared length 2 (1 - second_b).
+    const V rest = hn::Sub(set(1.0F), block.second_b);
+    const V scale = hn::Div(block.side, hn::Sqrt(hn::Max(hn::Add(rest, rest), set(1e-12F))));
+    put(LeafEdge::side_b, b, hn::Mul(scale, block.second_n));
+    put(LeafEdge::side_n, b, hn::Mul(scale, rest));
     put(LeafEdge::id, b, id);
   }
   HWY_INLINE void operator()(std::size_t b, const FaceBlock& block, V id) const {

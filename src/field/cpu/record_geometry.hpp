@@ -92,6 +92,17 @@ inline bool closest_on_record(Kind kind, const Record& record, const Vec3f& quer
 /// A side is called only if the pseudonormal is at least this far (as a cosine) from being perpendicular.
 inline constexpr float clear_side = 0.01F;
 
+/// Component of a vector along an edge's unit pseudonormal, the sum of its faces' normals. With the second face's
+/// direction given in the frame of b and n, that sum is side * (second_n b + (1 - second_b) n).
+inline float edge_side(const Record& record, const Vec3f& from_midpoint) {
+  const Vec3f binormal = vec_at(record, EdgeColumns::binormal);
+  const Vec3f normal = cross(vec_at(record, EdgeColumns::tangent), binormal);
+  const float rest = 1 - value_at(record, EdgeColumns::second_b);
+  const float scale = value_at(record, EdgeColumns::side) / std::sqrt(std::max(2 * rest, 1e-12F));
+  return scale *
+         (value_at(record, EdgeColumns::second_n) * dot(from_midpoint, binormal) + rest * dot(from_midpoint, normal));
+}
+
 /// Which side of a closed mesh a query lies on, from its closest site: +1 outside, -1 inside, 0 too close to call.
 inline int side_of(const Witness& closest, const Vec3f& query, const std::vector<Vec3f>& vertex_sides) {
   const Record& record = *closest.record;
@@ -102,9 +113,7 @@ inline int side_of(const Witness& closest, const Vec3f& query, const std::vector
     const Vec3f from_midpoint = query - vec_at(record, EdgeColumns::midpoint);
     const Vec3f tangent = vec_at(record, EdgeColumns::tangent);
     if (std::abs(dot(from_midpoint, tangent)) > value_at(record, EdgeColumns::half_length)) return 0;
-    const Vec3f binormal = vec_at(record, EdgeColumns::binormal);
-    side = value_at(record, EdgeColumns::side_b) * dot(from_midpoint, binormal) +
-           value_at(record, EdgeColumns::side_n) * dot(from_midpoint, cross(tangent, binormal));
+    side = edge_side(record, from_midpoint);
   } else if (closest.kind == face_kind) {
     side = dot(query - vec_at(record, FaceColumns::anchor), vec_at(record, FaceColumns::normal));
   }

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "blum/core/parallel.hpp"
+#include "field/cpu/reach.hpp"
 
 namespace blum::cpu {
 namespace {
@@ -142,8 +143,23 @@ struct Input {
   }
 };
 
-/// Builds the record of one site and extends the box by it; returns false where the site can own no node.
-bool build_vertex(const Input& input, std::uint32_t vertex, Record& record, Box3& box) {
+/// A cluster while it is built.
+struct ClusterBuild {
+  Box3 box;
+  ReachInput reach;
+
+  void set_corner(std::size_t lane, std::size_t which, const Vec3d& p) { set(reach.corner[which], lane, p); }
+  void set_direction(std::size_t lane, std::size_t which, const Vec3d& w) { set(reach.direction[which], lane, w); }
+
+ private:
+  static void set(SixteenVectors& v, std::size_t lane, const Vec3d& value) {
+    for (std::size_t axis = 0; axis < 3; ++axis) v[axis][lane] = static_cast<float>(value[axis]);
+  }
+};
+
+/// Builds the record of one site and adds it to its cluster; returns false where the site can own no node.
+bool build_vertex(const Input& input, std::uint32_t vertex, std::size_t /*lane*/, Record& record,
+                  ClusterBuild& cluster) {
   const Vec3d& p = input.positions[vertex];
   VertexCone cone;
   for (std::uint32_t k = input.adjacency.first_incident[vertex]; k < input.adjacency.first_incident[vertex + 1]; ++k) {
@@ -158,7 +174,7 @@ bool build_vertex(const Input& input, std::uint32_t vertex, Record& record, Box3
     store(record, VertexColumns::direction + 3 * static_cast<int>(k), cone.chosen(k));
   }
   record.id = vertex;
-  box.extend(p);
+  cluster.box.extend(p);
   return true;
 }
 
@@ -181,7 +197,21 @@ bool in_face_direction(const Input& input, std::uint32_t triangle, const Segment
   return true;
 }
 
-bool build_edge(const Input& input, std::uint32_t index, Record& record, Box3& box) {
+/// The directions between which an edge's domain lies: perpendicular to each of its faces, away from the other.
+/// A zero direction stands for a domain without such bounds, whose reach is unlimited.
+void set_edge_reach(bool has_both, const Vec3d& first, const Vec3d& second, const Vec3d& tangent, std::size_t lane,
+                    ClusterBuild& cluster) {
+  const Vec3d first_normal = has_both ? cross(tangent, first) : Vec3d{};
+  const Vec3d second_normal = has_both ? cross(tangent, second) : Vec3d{};
+  // Of the two perpendiculars of a face, the domain's border is the one that does not lead into the other face. Where
+  // the faces are nearly in one plane both may pass in rounding: then the domain may be a half-plane or more.
+  const double side = dot(first_normal, second);
+  const bool is_clear = has_both && std::abs(side) > 1e-5;
+  cluster.set_direction(lane, 0, !is_clear ? Vec3d{} : side < 0 ? first_normal : -first_normal);
+  cluster.set_direction(lane, 1, !is_clear ? Vec3d{} : dot(second_normal, first) < 0 ? second_normal : -second_normal);
+}
+
+bool build_edge(const Input& input, std::uint32_t index, std::size_t lane, Record& record, ClusterBuild& cluster) {
   const Segment& edge = input.sites.edges()[index];
   const Vec3d& start = input.positions[edge[0]];
   const Vec3d& end = input.positions[edge[1]];
@@ -209,16 +239,15 @@ bool build_edge(const Input& input, std::uint32_t index, Record& record, Box3& b
   if (has_second) {
     store(record, EdgeColumns::second_b, dot(second, first));
     store(record, EdgeColumns::second_n, dot(second, n));
-    const Vec3d pseudonormal = input.face_normals[faces[0]] + input.face_normals[faces[1]];
-    const double size = length(pseudonormal);
-    if (size > 1e-9) {
-      store(record, EdgeColumns::side_b, dot(pseudonormal, first) / size);
-      store(record, EdgeColumns::side_n, dot(pseudonormal, n) / size);
-    }
+    store(record, EdgeColumns::side, dot(input.face_normals[faces[0]], n) > 0 ? 1.0 : -1.0);
   }
   record.id = static_cast<std::uint32_t>(input.mesh.vertices.size()) + index;
-  box.extend(start);
-  box.extend(end);
+  cluster.box.extend(start);
+  cluster.box.extend(end);
+  set_edge_reach(has_first && has_second, first, second, tangent, lane, cluster);
+  cluster.set_corner(lane, 0, start);
+  cluster.set_corner(lane, 1, end);
+  cluster.set_corner(lane, 2, end);
   return true;
 }
 
@@ -271,7 +300,7 @@ struct FaceFacts {
   }
 };
 
-bool build_face(const Input& input, std::uint32_t triangle, Record& record, Box3& box) {
+bool build_face(const Input& input, std::uint32_t triangle, std::size_t lane, Record& record, ClusterBuild& cluster) {
   const auto corners = input.corners(triangle);
   const FaceShape shape = shape_of_face(corners);
   if (shape.is_negligible || shape.is_sliver) return false;
@@ -280,46 +309,96 @@ bool build_face(const Input& input, std::uint32_t triangle, Record& record, Box3
   store(record, FaceColumns::minus_u, cross(shape.normal, shape.to_v) / shape.doubled_area);
   store(record, FaceColumns::minus_v, cross(shape.to_u, shape.normal) / shape.doubled_area);
   record.id = static_cast<std::uint32_t>(input.mesh.vertices.size() + input.sites.edge_count()) + triangle;
-  for (const Vec3d& corner : corners) box.extend(corner);
+  for (std::size_t k = 0; k < 3; ++k) {
+    cluster.box.extend(corners[k]);
+    cluster.set_corner(lane, k, corners[k]);
+  }
+  cluster.set_direction(lane, 0, shape.normal);
+  cluster.set_direction(lane, 1, -shape.normal);
   return true;
 }
 
-bool build_sliver(const Input& input, std::uint32_t triangle, Record& record, Box3& box) {
+bool build_sliver(const Input& input, std::uint32_t triangle, std::size_t /*lane*/, Record& record,
+                  ClusterBuild& cluster) {
   const auto corners = input.corners(triangle);
   for (std::size_t k = 0; k < 3; ++k) {
     store(record, SliverColumns::corners + 3 * static_cast<int>(k), corners[k]);
-    box.extend(corners[k]);
+    cluster.box.extend(corners[k]);
   }
   record.id = static_cast<std::uint32_t>(input.mesh.vertices.size() + input.sites.edge_count()) + triangle;
   return true;
 }
 
-void store_box(BoxArrays& boxes, std::size_t index, const Box3& box) {
+void store_box(BoxArrays& boxes, std::size_t index, const Box3& box, float reach) {
   constexpr float rounding = 2e-7F;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     boxes.lower[axis][index] = box.is_empty() ? far_away : static_cast<float>(box.lower[axis]) - rounding;
     boxes.upper[axis][index] = box.is_empty() ? far_away : static_cast<float>(box.upper[axis]) + rounding;
   }
+  boxes.reach[index] = reach;
 }
 
-template <class Build>
-void build_set(const Input& input, std::span<const std::uint32_t> order, const Context& context, RecordSet& set,
-               Build build) {
+/// Writes the reaches of a cluster's records into them; returns the largest.
+template <Kind kind>
+float store_reaches(const ClusterBuild& cluster, const SurfacePoints& points, std::size_t rank,
+                    std::span<Record> records) {
+  if constexpr (kind != edge_kind && kind != face_kind) return far_away;
+  SixteenFloats first;
+  SixteenFloats second;
+  find_reaches(cluster.reach, points, rank, kind == edge_kind, first, second);
+  float largest = 0;
+  for (std::size_t lane = 0; lane < records.size(); ++lane) {
+    Record& record = records[lane];
+    if (record.id == dead_record) continue;
+    if constexpr (kind == edge_kind) {
+      record.column[EdgeColumns::reach] = first[lane];
+    } else {
+      record.column[FaceColumns::reach_above] = first[lane];
+      record.column[FaceColumns::reach_below] = second[lane];
+    }
+    largest = std::max({largest, first[lane], kind == edge_kind ? 0.0F : second[lane]});
+  }
+  return largest;
+}
+
+/// Builds all records of a kind.
+/// @param rank_of  callable: site index -> a place on the Morton curve near it.
+template <Kind kind, class Build, class RankOf>
+void build_set(const Input& input, std::span<const std::uint32_t> order, const SurfacePoints& points,
+               const Context& context, RecordSet& set, Build build, RankOf rank_of) {
   set.count = order.size();
   const std::size_t clusters = (order.size() + cluster_size - 1) / cluster_size;
   if (set.records.size() < clusters * cluster_size) set.records = Buffer<Record>(clusters * cluster_size);
   set.cluster_boxes.resize(clusters);
   parallel_for(context, clusters, clusters_per_range, "", [&](const WorkRange& range) {
-    for (std::size_t cluster = range.begin; cluster < range.end; ++cluster) {
-      Box3 box;
-      for (std::size_t at = cluster * cluster_size; at < (cluster + 1) * cluster_size; ++at) {
+    for (std::size_t index = range.begin; index < range.end; ++index) {
+      ClusterBuild cluster{};
+      const std::size_t first = index * cluster_size;
+      for (std::size_t lane = 0; lane < cluster_size; ++lane) {
         Record record;
-        if (at >= order.size() || !build(input, order[at], record, box)) record.id = dead_record;
+        const std::size_t at = first + lane;
+        if (at >= order.size() || !build(input, order[at], lane, record, cluster)) record.id = dead_record;
         set.records[at] = record;
       }
-      store_box(set.cluster_boxes, cluster, box);
+      const std::size_t middle = std::min(first + cluster_size / 2, order.size() - 1);
+      const float reach =
+          store_reaches<kind>(cluster, points, rank_of(order[middle]), {set.records.data() + first, cluster_size});
+      store_box(set.cluster_boxes, index, cluster.box, reach);
     }
   });
+}
+
+/// Vertex positions along the Morton curve.
+SurfacePoints surface_points(std::span<const Vec3d> positions, const SiteOrder& order, const Context& context) {
+  SurfacePoints points;
+  for (auto& coordinate : points.coordinate) coordinate.resize(order.vertices.size());
+  parallel_for(context, order.vertices.size(), clusters_per_range * cluster_size, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const Vec3d& p = positions[order.vertices[k]];
+      for (std::size_t axis = 0; axis < 3; ++axis) points.coordinate[axis][k] = static_cast<float>(p[axis]);
+    }
+  });
+  return points;
 }
 
 }  // namespace
@@ -334,6 +413,9 @@ void BoxArrays::resize(std::size_t new_count) {
                 side->begin() + static_cast<std::ptrdiff_t>(padded), far_away);
     }
   }
+  if (reach.size() < padded) reach = Buffer<float>(padded);
+  std::fill(reach.begin() + static_cast<std::ptrdiff_t>(new_count), reach.begin() + static_cast<std::ptrdiff_t>(padded),
+            0.0F);
   count = new_count;
 }
 
@@ -346,10 +428,17 @@ void build_site_records(const MeshView& mesh, const SiteTable& sites, const Adja
   std::vector<std::uint32_t> slivers;
   std::copy_if(order.faces.begin(), order.faces.end(), std::back_inserter(slivers),
                [&](std::uint32_t t) { return facts.is_sliver[t] != 0; });
-  build_set(input, order.vertices, context, out.kinds[vertex_kind], build_vertex);
-  build_set(input, order.edges, context, out.kinds[edge_kind], build_edge);
-  build_set(input, order.faces, context, out.kinds[face_kind], build_face);
-  build_set(input, slivers, context, out.kinds[sliver_kind], build_sliver);
+  const SurfacePoints points = surface_points(positions, order, context);
+  const auto build = [&]<Kind kind>(std::span<const std::uint32_t> sites_in_order, auto build_one, auto rank_of) {
+    build_set<kind>(input, sites_in_order, points, context, out.kinds[kind], build_one, rank_of);
+  };
+  const auto no_rank = [](std::uint32_t) { return std::size_t{0}; };
+  build.operator()<vertex_kind>(order.vertices, build_vertex, no_rank);
+  build.operator()<edge_kind>(order.edges, build_edge,
+                              [&](std::uint32_t e) -> std::size_t { return order.rank[sites.edges()[e][0]]; });
+  build.operator()<face_kind>(order.faces, build_face,
+                              [&](std::uint32_t t) -> std::size_t { return order.rank[mesh.triangles[t][0]]; });
+  build.operator()<sliver_kind>(slivers, build_sliver, no_rank);
 }
 
 }  // namespace blum::cpu

@@ -29,8 +29,9 @@ struct VertexColumns {
 
 /// Edge: midpoint m, unit direction t, half-length, and an orthonormal frame (t, b, n = t x b). b leaves the edge
 /// into its first face, whose half-space is (q - m) . b <= first_limit (+huge where there is no face); the second
-/// face's is second_b * [(q - m) . b] + second_n * [(q - m) . n] <= 0 (both 0 where there is none). The unit
-/// pseudonormal, for signs of closed meshes, is side_b * b + side_n * n.
+/// face's is second_b * [(q - m) . b] + second_n * [(q - m) . n] <= 0 (both 0 where there is none). side is +-1
+/// where both faces agree that their side of n points out of (or into) a closed solid, see edge_side(); else 0. The
+/// site is beaten everywhere further than reach from it.
 struct EdgeColumns {
   static constexpr int midpoint = 0;  // 3
   static constexpr int tangent = 3;   // 3
@@ -39,8 +40,8 @@ struct EdgeColumns {
   static constexpr int second_b = 10;
   static constexpr int second_n = 11;
   static constexpr int first_limit = 12;
-  static constexpr int side_b = 13;
-  static constexpr int side_n = 14;
+  static constexpr int side = 13;
+  static constexpr int reach = 14;
 };
 
 /// Face: anchor (the corner opposite the longest edge, so that slivers do not amplify errors), unit normal, and the
@@ -51,6 +52,8 @@ struct FaceColumns {
   static constexpr int normal = 3;   // 3
   static constexpr int minus_u = 6;  // 3
   static constexpr int minus_v = 9;  // 3
+  static constexpr int reach_above = 12;
+  static constexpr int reach_below = 13;
 };
 
 /// A face too flat for float32 barycentrics: its three corners. Evaluated as a closed triangle in double.
@@ -68,6 +71,7 @@ inline constexpr std::size_t cluster_size = 16;
 struct BoxArrays {
   std::array<Buffer<float>, 3> lower;
   std::array<Buffer<float>, 3> upper;
+  Buffer<float> reach;  ///< what lies in the box matters to nothing further away than this
   std::size_t count = 0;
 
   void resize(std::size_t new_count);
@@ -79,7 +83,7 @@ inline constexpr float far_away = 1e18F;
 struct RecordSet {
   Buffer<Record> records;
   std::size_t count = 0;
-  BoxArrays cluster_boxes;
+  BoxArrays cluster_boxes;  ///< with the largest reach of each cluster's sites
 };
 inline constexpr std::uint32_t dead_record = 0xffffffff;
 
