@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "blum/core/error.hpp"
@@ -15,9 +16,26 @@ std::string describe_defects(const Orientation& facts) {
          " non-manifold edges and " + std::to_string(facts.inconsistent_edges) + " inconsistently oriented edges";
 }
 
-SignChoice choose_automatically(const Orientation& facts) {
+/// Whether a triangle is too flat for its normal to mean anything. Such triangles close cracks in many CAD meshes, and
+/// leave their edges with a pseudonormal of one side only.
+bool has_flat_triangles(const MeshView& mesh) {
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+    const Vec3d u = mesh.vertices[t[1]] - mesh.vertices[t[0]];
+    const Vec3d v = mesh.vertices[t[2]] - mesh.vertices[t[0]];
+    const double longest = std::max({squared_length(u), squared_length(v), squared_length(u - v)});
+    return !(squared_length(cross(u, v)) > 1e-24 * longest * longest);
+  });
+}
+
+SignChoice choose_automatically(const MeshView& mesh, const Orientation& facts) {
   const std::string winding = "winding number above 1/2: the mesh ";
+  if (!mesh.segments.empty() || !mesh.points.empty()) {
+    return {SignRule::winding, winding + "has free segments or points, which have no sides"};
+  }
   if (!facts.closed || !facts.oriented) return {SignRule::winding, winding + "has " + describe_defects(facts)};
+  if (facts.outward && has_flat_triangles(mesh)) {
+    return {SignRule::winding, winding + "is closed, but has triangles too flat for a normal"};
+  }
   if (facts.outward) {
     return {SignRule::normals, "pseudonormals: the mesh is closed, consistently oriented and faces outwards", true};
   }
@@ -40,10 +58,14 @@ SignChoice choose_sign_rule(SignMode mode, const MeshView& mesh, const SiteTable
   }
   if (mode == SignMode::winding) return {SignRule::winding, "winding number above 1/2, as asked for"};
   const Orientation facts = orientation(mesh, sites);
-  if (mode == SignMode::automatic) return choose_automatically(facts);
+  if (mode == SignMode::automatic) return choose_automatically(mesh, facts);
   if (!facts.closed || !facts.oriented) {
     throw InvalidMesh("signs by normals need a closed, consistently oriented mesh; this one has " +
                       describe_defects(facts) + ": use winding, or weld or repair the mesh");
+  }
+  if (!mesh.segments.empty() || !mesh.points.empty()) {
+    throw InvalidMesh(
+        "signs by normals were asked for, but the mesh has free segments or points, which have no sides: use winding");
   }
   if (facts.outward) return {SignRule::normals, "pseudonormals, as asked for"};
   return {SignRule::normals,
