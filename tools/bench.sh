@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
-# `make bench`: builds every benchmark with its peers, runs it, and leaves its figures as JSON in out/bench.
-#   tools/bench.sh [PROGRAM ...]   only these, for example distance_transform_bench
-# Options for Google Benchmark go into BENCH_OPTIONS, for example BENCH_OPTIONS=--benchmark_filter=bunny.
+# `make bench`: builds every benchmark with its peers, runs it, and leaves its figures as JSON in out/bench, as tables
+# in docs/generated/performance.md and as plots in docs/pictures.
+#   tools/bench.sh [PROGRAM ...]   only these, for example field_bench, or image_peers; then no report is written
+# BENCH_OPTIONS: options for Google Benchmark, for example BENCH_OPTIONS=--benchmark_filter=bunny.
+# BLUM_BENCH_PEER_NODES=all: peers compute every node, also where that takes minutes (default: 2,200,000 nodes, spread
+# evenly, and scaled). BLUM_BENCH_RUNS: runs per case (default: 5 below 2 s, 3 below 20 s, else 1).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -13,14 +16,20 @@ mkdir -p "$out"
 programs=("$@")
 if [[ ${#programs[@]} -eq 0 ]]; then
   for source in bench/*_bench.cpp; do programs+=("$(basename "$source" .cpp)"); done
+  programs+=(image_peers)
 fi
 read -r -a options <<<"${BENCH_OPTIONS:-}"
+export BLUM_DISTANCE_TRANSFORM_SAMPLE="$PWD/build/bench/bin/distance_transform_sample"
 echo "bench: $(nproc) cores, load $(cut -d ' ' -f 1-3 /proc/loadavg), $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
 for program in "${programs[@]}"; do
   echo "--- bench: $program"
+  if [[ $program == image_peers ]]; then
+    build/venv/bin/python bench/peers/image_peers.py --json "$out/image_peers.json"
+    continue
+  fi
   "build/bench/bin/$program" --benchmark_out="$out/$program.json" --benchmark_out_format=json "${options[@]}"
 done
-if [[ -f bench/run.py && $# -eq 0 ]]; then
-  build/venv/bin/python bench/run.py
+if [[ $# -eq 0 ]]; then
+  build/venv/bin/python tools/bench_report.py "$out"
 fi
 echo "bench: figures in $out"

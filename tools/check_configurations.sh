@@ -48,7 +48,8 @@ case ${1:-} in
   compiler-alone-serial) compiler_alone compiler-alone-serial SERIAL ;;
   scalar) with_tests scalar -DBLUM_CLI=OFF -DBLUM_SIMD=OFF -DBLUM_THREADS=STD ;;
   serial) with_tests serial -DBLUM_CLI=OFF -DBLUM_THREADS=SERIAL ;;
-  clang) configuration clang -DCMAKE_CXX_COMPILER=clang++-19 ;;
+  # Without optimisation: this one is for clang's opinion of the code.
+  clang) configuration clang -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=clang++-19 ;;
   *)
     echo "configurations: unknown configuration $1" >&2
     exit 2

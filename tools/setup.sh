@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Blum needs on Debian 12 (and its kin), or says what is missing.
-#   tools/setup.sh [--tests] [--bench] [--docs] [--lint] [--fuzz] [--all] [--check]
+#   tools/setup.sh [--tests] [--bench] [--docs] [--lint] [--fuzz] [--ci] [--all] [--check]
 # Without options: what the library and the command-line tool need. --check only looks, and installs nothing.
 # As root, or where sudo works, apt installs what is missing; anyone else gets the command to run, and exit status 1.
 # Running it again does nothing. BLUM_SETUP=skip in the environment: trust that everything is there.
@@ -20,7 +20,10 @@ requirement_files=()
 for option in "$@"; do
   case $option in
     --tests) packages+=("${tests[@]}") requirement_files+=(tests/python/requirements.txt) ;;
-    --bench) packages+=("${bench[@]}") requirement_files+=(bench/requirements.txt) ;;
+    --bench)
+      packages+=("${bench[@]}")
+      requirement_files+=(tests/python/requirements.txt bench/requirements.txt)
+      ;;
     --docs) packages+=("${docs[@]}") ;;
     --lint) packages+=("${lint[@]}") ;;
     --fuzz) packages+=("${fuzz[@]}") ;;
