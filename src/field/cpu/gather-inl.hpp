@@ -30,11 +30,15 @@ HWY_INLINE void for_each_box_vector(const BoxArrays& boxes, std::size_t first, U
 struct TileTest {
   Vec low, high, low_p0, high_p0;
   V tolerance;
+  Vec center;
+  V radius;
 
   TileTest(const CenteredBox& tile, const Vec3f& surface_point) {
     const Vec3f half = tile.half + Vec3f{box_slack, box_slack, box_slack};
     low = set(tile.center - half);
     high = set(tile.center + half);
+    center = set(tile.center);
+    radius = set(length(half) * 1.0001F + 10 * box_slack);
     const Vec p0 = set(surface_point);
     const Vec from_low = low - p0;
     const Vec from_high = high - p0;
@@ -70,22 +74,47 @@ struct TileTest {
   }
 };
 
+/// Keeps a cluster unless the tile lies outside of every direction in which its sites can be closest: as spheres, the
+/// distance from the tile's centre to the cone is above the sum of both radii.
+HWY_INLINE std::uint32_t meets_cones(const TileTest& tile, const BoxArrays& boxes, const ConeArrays& cones,
+                                     std::size_t first) {
+  std::uint32_t result = 0;
+  for_each_box_vector(boxes, first, [&](std::size_t offset, const Vec& lower, const Vec& upper) {
+    const auto load = [&](const Buffer<float>& values) { return hn::LoadU(d, values.data() + first + offset); };
+    const V half = set(0.5F);
+    const Vec size = upper - lower;
+    const Vec sum = upper + lower;
+    const Vec from_cluster{hn::NegMulAdd(sum.x, half, tile.center.x), hn::NegMulAdd(sum.y, half, tile.center.y),
+                           hn::NegMulAdd(sum.z, half, tile.center.z)};
+    const V reach = hn::MulAdd(hn::Sqrt(dot(size, size)), half, tile.radius);
+    const Vec axis{load(cones.axis[0]), load(cones.axis[1]), load(cones.axis[2])};
+    const V along = dot(from_cluster, axis);
+    const Vec across{hn::NegMulAdd(along, axis.x, from_cluster.x), hn::NegMulAdd(along, axis.y, from_cluster.y),
+                     hn::NegMulAdd(along, axis.z, from_cluster.z)};
+    const V apart =
+        hn::NegMulAdd(hn::Abs(along), load(cones.sine), hn::Mul(hn::Sqrt(dot(across, across)), load(cones.cosine)));
+    result |= bits(hn::Le(apart, reach)) << offset;
+  });
+  return result;
+}
+
 HWY_INLINE std::uint32_t existing_boxes(std::size_t first, std::size_t count) {
   return count - first >= cluster_size ? 0xffffU : (1U << (count - first)) - 1;
 }
 
 /// Depth-first search for the clusters that a tile must look at, in storage order.
-HWY_NOINLINE void find_clusters(const ClusterTree& tree, const BoxArrays& clusters, const TileTest& test,
+HWY_NOINLINE void find_clusters(const ClusterTree& tree, const RecordSet& set_of_kind, const TileTest& test,
                                 std::size_t level, std::size_t first, std::vector<std::uint32_t>& out) {
-  const BoxArrays& boxes = level == 0 ? clusters : tree.levels[level - 1];
+  const BoxArrays& boxes = level == 0 ? set_of_kind.cluster_boxes : tree.levels[level - 1];
   std::uint32_t kept = test.keeps(boxes, first) & existing_boxes(first, boxes.count);
+  if (level == 0 && kept != 0) kept &= meets_cones(test, boxes, set_of_kind.cluster_cones, first);
   while (kept != 0) {
     const std::size_t box = first + static_cast<std::size_t>(std::countr_zero(kept));
     kept &= kept - 1;
     if (level == 0) {
       out.push_back(static_cast<std::uint32_t>(box));
     } else {
-      find_clusters(tree, clusters, test, level - 1, box * cluster_size, out);
+      find_clusters(tree, set_of_kind, test, level - 1, box * cluster_size, out);
     }
   }
 }
@@ -162,7 +191,7 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const CenteredBox
     const RecordSet& set_of_kind = job.sites->kinds[kind];
     if (set_of_kind.count == 0) continue;
     const ClusterTree& tree = job.forest->trees[kind];
-    find_clusters(tree, set_of_kind.cluster_boxes, test, tree.levels.size(), 0, clusters);
+    find_clusters(tree, set_of_kind, test, tree.levels.size(), 0, clusters);
     total += clusters.size();
   }
   return total;

@@ -5,7 +5,10 @@
 #include <iterator>
 
 #include "blum/core/parallel.hpp"
+#include "field/cpu/direction_cone.hpp"
 #include "field/cpu/reach.hpp"
+#include "field/cpu/record_geometry.hpp"
+#include "field/cpu/vertex_cone.hpp"
 
 namespace blum::cpu {
 namespace {
@@ -30,104 +33,6 @@ void store(Record& record, int column, double x) {
   record.column[static_cast<std::size_t>(column)] = static_cast<float>(x);
 }
 
-/// Directions of the planes that bound a vertex's domain.
-class VertexCone {
- public:
-  static constexpr std::size_t max_planes = 4;
-
-  /// More edges than this are left out, which only widens the domain.
-  static constexpr std::size_t max_directions = 16;
-
-  void add(const Vec3d& unit_direction) {
-    if (count_ == max_directions) return;
-    x_[count_] = static_cast<float>(unit_direction.x);
-    y_[count_] = static_cast<float>(unit_direction.y);
-    z_[count_] = static_cast<float>(unit_direction.z);
-    ++count_;
-  }
-
-  /// Finds the cone's extreme rays; false if the cone {w : w . e <= 0 for all e} is provably just its apex.
-  bool find_facets() {
-    if (count_ < 3) {
-      chosen_count_ = count_;
-      for (std::size_t i = 0; i < count_; ++i) chosen_[i] = i;
-      return true;
-    }
-    for (std::size_t k = count_; k < max_directions; ++k) {  // copies, so that whole vectors can be looked at
-      x_[k] = x_[0];
-      y_[k] = y_[0];
-      z_[k] = z_[0];
-    }
-    std::array<bool, max_directions> is_facet{};
-    bool found_ray = false;
-    bool is_certain = true;
-    for (std::size_t i = 0; i < count_; ++i) {
-      for (std::size_t j = i + 1; j < count_; ++j) {
-        const Vec3f w = cross(direction(i), direction(j));
-        if (squared_length(w) < 1e-8F) {
-          is_certain = false;  // nearly parallel: their ray is lost in rounding
-        } else if (is_extreme_ray(w)) {
-          found_ray = true;
-          is_facet[i] = is_facet[j] = true;
-        }
-      }
-    }
-    if (!found_ray && is_certain) return false;
-    choose(is_facet, found_ray && is_certain);
-    return true;
-  }
-
-  [[nodiscard]] std::size_t chosen_count() const { return chosen_count_; }
-  [[nodiscard]] Vec3d chosen(std::size_t k) const {
-    const Vec3f e = direction(chosen_[k]);
-    return {e.x, e.y, e.z};
-  }
-
- private:
-  [[nodiscard]] Vec3f direction(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
-
-  /// Whether w or -w (no longer than one) lies in the cone, up to rounding; in doubt it does.
-  [[nodiscard]] bool is_extreme_ray(const Vec3f& w) const {
-    constexpr float tolerance = 2e-6F;
-    const std::size_t end = count_ <= 8 ? 8 : max_directions;
-    int beyond = 0;
-    int before = 0;
-    for (std::size_t k = 0; k < end; ++k) {
-      const float side = w.x * x_[k] + w.y * y_[k] + w.z * z_[k];
-      beyond |= static_cast<int>(side > tolerance);
-      before |= static_cast<int>(side < -tolerance);
-    }
-    return beyond == 0 || before == 0;
-  }
-
-  /// Picks up to four directions, of the facets where they are known, each as far from the picked ones as can be.
-  void choose(const std::array<bool, max_directions>& is_facet, bool facets_only) {
-    std::array<float, max_directions> largest_cosine{};
-    std::array<bool, max_directions> is_open{};
-    for (std::size_t k = 0; k < count_; ++k) {
-      is_open[k] = is_facet[k] || !facets_only;
-      largest_cosine[k] = -2;
-    }
-    for (chosen_count_ = 0; chosen_count_ < max_planes; ++chosen_count_) {
-      std::size_t best = max_directions;
-      for (std::size_t k = 0; k < count_; ++k) {
-        if (is_open[k] && (best == max_directions || largest_cosine[k] < largest_cosine[best])) best = k;
-      }
-      if (best == max_directions) return;
-      is_open[best] = false;
-      chosen_[chosen_count_] = best;
-      for (std::size_t k = 0; k < count_; ++k) {
-        largest_cosine[k] = std::max(largest_cosine[k], dot(direction(k), direction(best)));
-      }
-    }
-  }
-
-  alignas(64) std::array<float, max_directions> x_{}, y_{}, z_{};
-  std::size_t count_ = 0;
-  std::array<std::size_t, max_planes> chosen_{};
-  std::size_t chosen_count_ = 0;
-};
-
 /// What the builders of all kinds share.
 struct Input {
   const MeshView& mesh;
@@ -147,6 +52,7 @@ struct Input {
 struct ClusterBuild {
   Box3 box;
   ReachInput reach;
+  DirectionCone directions;
 
   void set_corner(std::size_t lane, std::size_t which, const Vec3d& p) { set(reach.corner[which], lane, p); }
   void set_direction(std::size_t lane, std::size_t which, const Vec3d& w) { set(reach.direction[which], lane, w); }
@@ -175,6 +81,7 @@ bool build_vertex(const Input& input, std::uint32_t vertex, std::size_t /*lane*/
   }
   record.id = vertex;
   cluster.box.extend(p);
+  cluster.directions.add(cone.rays());
   return true;
 }
 
@@ -207,8 +114,17 @@ void set_edge_reach(bool has_both, const Vec3d& first, const Vec3d& second, cons
   // the faces are nearly in one plane both may pass in rounding: then the domain may be a half-plane or more.
   const double side = dot(first_normal, second);
   const bool is_clear = has_both && std::abs(side) > 1e-5;
-  cluster.set_direction(lane, 0, !is_clear ? Vec3d{} : side < 0 ? first_normal : -first_normal);
-  cluster.set_direction(lane, 1, !is_clear ? Vec3d{} : dot(second_normal, first) < 0 ? second_normal : -second_normal);
+  if (!is_clear) {
+    cluster.set_direction(lane, 0, {});
+    cluster.set_direction(lane, 1, {});
+    cluster.directions.add({});
+    return;
+  }
+  const std::array<Vec3d, 2> border{side < 0 ? first_normal : -first_normal,
+                                    dot(second_normal, first) < 0 ? second_normal : -second_normal};
+  cluster.set_direction(lane, 0, border[0]);
+  cluster.set_direction(lane, 1, border[1]);
+  cluster.directions.add(std::array{to_float(border[0]), to_float(border[1])});
 }
 
 bool build_edge(const Input& input, std::uint32_t index, std::size_t lane, Record& record, ClusterBuild& cluster) {
@@ -315,6 +231,7 @@ bool build_face(const Input& input, std::uint32_t triangle, std::size_t lane, Re
   }
   cluster.set_direction(lane, 0, shape.normal);
   cluster.set_direction(lane, 1, -shape.normal);
+  cluster.directions.add(std::array{to_float(shape.normal)});
   return true;
 }
 
@@ -336,6 +253,12 @@ void store_box(BoxArrays& boxes, std::size_t index, const Box3& box, float reach
     boxes.upper[axis][index] = box.is_empty() ? far_away : static_cast<float>(box.upper[axis]) + rounding;
   }
   boxes.reach[index] = reach;
+}
+
+void store_cone(ConeArrays& cones, std::size_t index, const DirectionCone::Result& cone) {
+  for (std::size_t axis = 0; axis < 3; ++axis) cones.axis[axis][index] = cone.axis[axis];
+  cones.cosine[index] = cone.cosine;
+  cones.sine[index] = cone.sine;
 }
 
 /// Writes the reaches of a cluster's records into them; returns the largest.
@@ -370,6 +293,7 @@ void build_set(const Input& input, std::span<const std::uint32_t> order, const S
   const std::size_t clusters = (order.size() + cluster_size - 1) / cluster_size;
   if (set.records.size() < clusters * cluster_size) set.records = Buffer<Record>(clusters * cluster_size);
   set.cluster_boxes.resize(clusters);
+  set.cluster_cones.resize(clusters);
   parallel_for(context, clusters, clusters_per_range, "", [&](const WorkRange& range) {
     for (std::size_t index = range.begin; index < range.end; ++index) {
       ClusterBuild cluster{};
@@ -384,6 +308,8 @@ void build_set(const Input& input, std::span<const std::uint32_t> order, const S
       const float reach =
           store_reaches<kind>(cluster, points, rank_of(order[middle]), {set.records.data() + first, cluster_size});
       store_box(set.cluster_boxes, index, cluster.box, reach);
+      if (kind == sliver_kind) cluster.directions.add({});
+      store_cone(set.cluster_cones, index, cluster.directions.finish());
     }
   });
 }
@@ -417,6 +343,13 @@ void BoxArrays::resize(std::size_t new_count) {
   std::fill(reach.begin() + static_cast<std::ptrdiff_t>(new_count), reach.begin() + static_cast<std::ptrdiff_t>(padded),
             0.0F);
   count = new_count;
+}
+
+void ConeArrays::resize(std::size_t count) {
+  const std::size_t padded = (count + cluster_size - 1) / cluster_size * cluster_size;
+  for (Buffer<float>* values : {&axis[0], &axis[1], &axis[2], &cosine, &sine}) {
+    if (values->size() < padded) *values = Buffer<float>(padded, 0.0F);
+  }
 }
 
 void build_site_records(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,

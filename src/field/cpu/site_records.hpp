@@ -78,11 +78,22 @@ struct BoxArrays {
 };
 inline constexpr float far_away = 1e18F;
 
+/// For each cluster, the double cone about an axis that holds every direction in which its sites can be closest. A sine
+/// of one and a cosine of zero make it the whole space.
+struct ConeArrays {
+  std::array<Buffer<float>, 3> axis;
+  Buffer<float> cosine;
+  Buffer<float> sine;
+
+  void resize(std::size_t count);
+};
+
 /// The records of one kind in a spatially coherent order, and a box around each cluster of consecutive records. Sites
 /// that can own no node keep their place, as records with id `dead_record`.
 struct RecordSet {
   Buffer<Record> records;
   std::size_t count = 0;
+  ConeArrays cluster_cones;
   BoxArrays cluster_boxes;  ///< with the largest reach of each cluster's sites
 };
 inline constexpr std::uint32_t dead_record = 0xffffffff;
