@@ -242,6 +242,7 @@ HWY_INLINE void gather_records(const FieldJob& job, const CenteredBox& tile, con
     radix_sort(scratch.order, scratch.order_scratch);
     out[kind].reset(scratch.order.size());
     for (const KeyedIndex& item : scratch.order) out[kind].append(records[item.index]);
+    out[kind].finish();
   }
 }
 

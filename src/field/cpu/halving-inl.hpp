@@ -355,6 +355,7 @@ HWY_INLINE void list_child(const RecordList& parent, const ChildBits& child_bits
   for (std::size_t b = 0; b < child_bits.blocks(); ++b) total += static_cast<std::size_t>(std::popcount(words[b]));
   out.reset(total);
   for (std::size_t b = 0; b < child_bits.blocks(); ++b) out.append(parent.data() + b * lanes, words[b]);
+  out.finish();
 }
 
 }  // namespace HWY_NAMESPACE

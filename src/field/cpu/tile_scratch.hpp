@@ -12,17 +12,14 @@
 namespace blum::cpu {
 
 /// Records of one kind that may matter in a box, in rising order of site id (so that ties go to the smaller id).
-/// Whole vectors may be read past the end; what is there does not matter.
+/// Once finished, whole vectors may be read past the end.
 class RecordList {
  public:
   static constexpr std::size_t padding = 16;
 
   /// Empties the list and makes room for `capacity` records.
   void reset(std::size_t capacity) {
-    if (records_.size() < capacity + padding) {
-      records_ = Buffer<Record>(capacity + capacity / 2 + 4 * padding);
-      std::memset(static_cast<void*>(records_.data()), 0, records_.span().size_bytes());
-    }
+    if (records_.size() < capacity + padding) records_ = Buffer<Record>(capacity + capacity / 2 + 4 * padding);
     count_ = 0;
   }
   void append(const Record& record) { records_[count_++] = record; }
@@ -30,6 +27,9 @@ class RecordList {
   void append(const Record* block, std::uint32_t lane_bits) {
     for (; lane_bits != 0; lane_bits &= lane_bits - 1) append(block[std::countr_zero(lane_bits)]);
   }
+
+  /// Makes the padding readable; to be called once the list is complete.
+  void finish() { std::memset(static_cast<void*>(records_.data() + count_), 0, padding * sizeof(Record)); }
 
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] const Record* data() const { return records_.data(); }
