@@ -104,6 +104,7 @@ std::vector<std::size_t> Engine::compute(const Request& request, const Context& 
   if (request.with_sides) job.vertex_sides = vertex_sides(mesh_, sites_, frame_, context);
   job.distance = field.distance.data();
   job.site = field.site.data();
+  job.cancel = context.cancel;
   timer.lap("sites and hierarchy");
 
   const Tiling tiling(job.size, tile_size(job.size));

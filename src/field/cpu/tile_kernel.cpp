@@ -59,6 +59,7 @@ class TileWorker {
   }
 
   void tile(const NodeBox& box, std::int64_t size) {
+    if (job_.cancel.stop_requested()) return;
     const CenteredBox place = centered(job_, box);
     const Witness nearest = nearest_record(job_, place.center);
     int side = 0;
@@ -134,6 +135,7 @@ class TileWorker {
       divide_into_leaves(box, candidates, dominators, side);
       return;
     }
+    if (job_.cancel.stop_requested()) return;
     const Halving parts = halve(job_, box, size);
     const BlockTest<8> test(parts, dominators);
     TileScratch::Impl::Level& here = scratch_.levels[level];

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,8 @@ struct FieldJob {
   std::vector<Vec3f> vertex_sides;
   float* distance = nullptr;
   SiteId* site = nullptr;
+  /// A tile that sees a request to stop leaves the rest of its nodes unwritten.
+  std::stop_token cancel;
 
   [[nodiscard]] bool has_sides() const { return !vertex_sides.empty(); }
 };
