@@ -12,9 +12,9 @@
 namespace blum {
 namespace {
 
-class RealMeshes : public testing::TestWithParam<std::string> {};
+class SlowRealMeshes : public testing::TestWithParam<std::string> {};
 
-TEST_P(RealMeshes, KeepThePromise) {
+TEST_P(SlowRealMeshes, KeepThePromise) {
   const std::string name = "meshes/" + GetParam();
   const auto file = test::data_file(name);
   if (!file) GTEST_SKIP() << test::no_data(name);
@@ -30,7 +30,7 @@ TEST_P(RealMeshes, KeepThePromise) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, RealMeshes,
+INSTANTIATE_TEST_SUITE_P(Data, SlowRealMeshes,
                          testing::Values("stanford-bunny.obj", "spot.obj", "fandisk.obj", "rocker-arm.obj",
                                          "3holes.off", "screwdriver.off", "eight.off", "ballcube.off",
                                          "plate_holes.STL", "torus.STL", "round.stl", "7_8ths_cube.stl", "abc5.stl",

@@ -32,9 +32,9 @@ void expect_exact(const MeshView& mesh, const GridSpec& grid, SignMode sign, std
   expect_promise(test::compare_with_brute_force(field, mesh, test::random_nodes(grid, brute_nodes)));
 }
 
-class CatalogFields : public testing::TestWithParam<std::string> {};
+class SlowCatalogFields : public testing::TestWithParam<std::string> {};
 
-TEST_P(CatalogFields, AreExactAtEveryNode) {
+TEST_P(SlowCatalogFields, AreExactAtEveryNode) {
   const TriangleMesh mesh = make_shape(GetParam());
   const ShapeInfo& shape = find_shape(GetParam());
   const bool is_solid = shape.betti(complete_parameters(shape, {})).has_value();
@@ -49,7 +49,7 @@ std::vector<std::string> catalog_names() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CatalogFields, testing::ValuesIn(catalog_names()), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(Shapes, SlowCatalogFields, testing::ValuesIn(catalog_names()), [](const auto& info) {
   std::string name = info.param;
   for (char& c : name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
