@@ -13,7 +13,7 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// A tile with more clusters than this is split, so that candidate lists stay in cache.
-constexpr std::size_t most_clusters = 4000;
+constexpr std::size_t most_clusters = 8000;
 constexpr std::int64_t smallest_tile = 16;
 constexpr std::int64_t leaf_size = 4;
 constexpr std::size_t fewest_worth_culling = 12;
