@@ -45,7 +45,7 @@ int main() try {
   try {
     (void)solver.compute(rest);
   } catch (const blum::Cancelled&) {
-    std::cout << "stopped; the solver could go on with a new frame\n";
+    std::cout << "stopped\n";
     return reports > 0 ? 0 : 1;
   }
   std::cerr << "not stopped\n";

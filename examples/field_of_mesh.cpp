@@ -1,4 +1,6 @@
 // Example: the signed distance field of a mesh, what its values mean, and how to keep it.
+#include <array>
+#include <cstdint>
 #include <iostream>
 
 #include "blum/core/error.hpp"
