@@ -23,7 +23,7 @@ case $preset in
   tsan)
     targets=(-- test_core test_field)
     selection=(--label-exclude slow --tests-regex '^test_(core|field)\.')
-    export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
+    export TSAN_OPTIONS=allocator_may_return_null=1:halt_on_error=1:second_deadlock_stack=1
     ;;
   *)
     echo "sanitize: asan or tsan, not $preset" >&2
