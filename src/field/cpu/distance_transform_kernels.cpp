@@ -299,6 +299,7 @@ class Sweep {
   /// A closest row of the other kind is itself the site. The sign bit of a cost tells its kind.
   HWY_INLINE VI replace_other_kind(VI partial, VI closest_row, VI negative) const {
     const DI di;
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be std::int32_t itself
     constexpr std::size_t words = sizeof(T) / sizeof(std::int32_t);
     constexpr std::size_t high_word = std::endian::native == std::endian::little ? words - 1 : 0;
     const auto* signs = reinterpret_cast<const std::int32_t*>(costs_) + high_word;

@@ -10,6 +10,9 @@
 namespace blum::cpu {
 namespace {
 
+/// Fields above 16 MB are not expected to stay in the caches.
+constexpr std::size_t fewest_streamed_nodes = std::size_t{1} << 21;
+
 template <class T>
 bool same_bytes(std::span<const T> a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
@@ -104,6 +107,7 @@ std::vector<std::size_t> Engine::compute(const Request& request, const Context& 
   if (request.with_sides) job.vertex_sides = vertex_sides(mesh_, sites_, frame_, context);
   job.distance = field.distance.data();
   job.site = field.site.data();
+  job.is_streamed = field.distance.size() > fewest_streamed_nodes;
   job.cancel = context.cancel;
   timer.lap("sites and hierarchy");
 

@@ -1,5 +1,7 @@
 #include "field/cpu/tile_kernel.hpp"
 
+#include "hwy/cache_control.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "field/cpu/tile_kernel.cpp"
 #include "hwy/foreach_target.h"
@@ -22,24 +24,6 @@ constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::c
 /// Distances at a box's centre are trusted to prove that no surface meets the box only beyond this margin.
 bool is_free_of_surface(float distance_at_center, const Vec3f& half) {
   return distance_at_center > length(half) * 1.0001F + box_slack;
-}
-
-void write_row(const FieldJob& job, std::size_t node, std::int64_t count, float distance, SiteId site) {
-  std::fill_n(job.distance + node, count, distance);
-  std::fill_n(job.site + node, count, site);
-}
-
-std::size_t node_index(const FieldJob& job, std::int64_t i, std::int64_t j, std::int64_t k) {
-  return static_cast<std::size_t>((k * job.size[1] + j) * job.size[0] + i);
-}
-
-template <class Visit>
-void for_each_row(const FieldJob& job, const NodeBox& box, Visit visit) {
-  for (std::int64_t k = 0; k < box.count[2]; ++k) {
-    for (std::int64_t j = 0; j < box.count[1]; ++j) {
-      visit(j, k, node_index(job, box.first[0], box.first[1] + j, box.first[2] + k));
-    }
-  }
 }
 
 /// Works on one tile: owns nothing, holds what the recursion passes along.
@@ -85,11 +69,58 @@ class TileWorker {
     if (side == 0 && job_.has_sides()) side = side_of(closest, center, job_.vertex_sides);
     const bool is_beyond_band = distance - length(half) * 1.0001F - box_slack > job_.band;
     if (!is_beyond_band || (side == 0 && job_.has_sides())) return false;
-    const float value = side < 0 ? -job_.band_world : job_.band_world;
-    for_each_row(job_, box, [&](std::int64_t, std::int64_t, std::size_t node) {
-      write_row(job_, node, box.count[0], value, SiteId::none());
-    });
+    fill(box, side < 0 ? -job_.band_world : job_.band_world);
     return true;
+  }
+
+  /// Gives a box of nodes beyond the band this distance and no site.
+  void fill(const NodeBox& box, float distance) {
+    if (is_buffered_) {
+      for_each_row(box, [&](std::size_t at, std::size_t) {
+        std::fill_n(scratch_.output.distance.data() + at, box.count[0], distance);
+        std::fill_n(scratch_.output.site.data() + at, box.count[0], SiteId::none().value);
+      });
+      return;
+    }
+    for_each_row(box, [&](std::size_t, std::size_t node) {
+      std::fill_n(job_.distance + node, box.count[0], distance);
+      std::fill_n(job_.site + node, box.count[0], SiteId::none());
+    });
+  }
+
+  /// Writes the buffered box to the field: as whole lines past the caches, where rows are whole aligned lines.
+  void flush(const NodeBox& box) {
+    constexpr std::size_t line = 64;
+    const bool is_streamed = job_.is_streamed && box.count[0] == BoxOutput::side;
+    for_each_row(box, [&](std::size_t at, std::size_t node) {
+      const float* distance = scratch_.output.distance.data() + at;
+      const std::uint32_t* site = scratch_.output.site.data() + at;
+      auto* site_out = reinterpret_cast<std::uint32_t*>(job_.site + node);
+      if (is_streamed && node * sizeof(float) % line == 0) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(BoxOutput::side); k += lanes) {
+          hn::Stream(hn::Load(d, distance + k), d, job_.distance + node + k);
+          hn::Stream(hn::Load(di, site + k), di, site_out + k);
+        }
+      } else {
+        std::memcpy(job_.distance + node, distance, static_cast<std::size_t>(box.count[0]) * sizeof(float));
+        std::memcpy(site_out, site, static_cast<std::size_t>(box.count[0]) * sizeof(std::uint32_t));
+      }
+    });
+  }
+
+  /// Calls visit(place in the output buffer, node index) for the first node of each row of a box.
+  template <class Visit>
+  void for_each_row(const NodeBox& box, Visit visit) const {
+    for (std::int64_t k = 0; k < box.count[2]; ++k) {
+      for (std::int64_t j = 0; j < box.count[1]; ++j) {
+        const std::int64_t x = box.first[0];
+        const std::int64_t y = box.first[1] + j;
+        const std::int64_t z = box.first[2] + k;
+        const std::int64_t mask = BoxOutput::side - 1;
+        visit(static_cast<std::size_t>((((z & mask) * BoxOutput::side) + (y & mask)) * BoxOutput::side + (x & mask)),
+              static_cast<std::size_t>((z * job_.size[1] + y) * job_.size[0] + x));
+      }
+    }
   }
 
   /// What is known of a child before its candidates are listed.
@@ -144,6 +175,7 @@ class TileWorker {
     halve_kind<vertex_kind>(test, candidates[vertex_kind], here.bits[vertex_kind], closest, ignore);
     halve_kind<edge_kind>(test, candidates[edge_kind], here.bits[edge_kind], closest, ignore);
     halve_kind<face_kind>(test, candidates[face_kind], here.bits[face_kind], closest, ignore);
+    is_buffered_ = size == BoxOutput::side;
     const Children children = meet_children(parts, candidates, closest, dominators.point[0], side);
     for (std::size_t c = 0; c < 8; ++c) {
       const Child& child = children[c];
@@ -154,6 +186,8 @@ class TileWorker {
       list_slivers(candidates[sliver_kind], child, here.child[sliver_kind]);
       divide(parts.child[c], size / 2, here.child, dominators_of(children, c), child.side, level + 1);
     }
+    if (is_buffered_) flush(box);
+    is_buffered_ = false;
   }
 
   void divide_into_leaves(const NodeBox& box, const Candidates& candidates, const Dominators& dominators, int side) {
@@ -301,17 +335,19 @@ class TileWorker {
       hn::Store(result, d, value.data() + node);
     }
     if (job_.band < std::numeric_limits<float>::max()) clamp_to_band(state, value);
-    for_each_row(job_, box, [&](std::int64_t j, std::int64_t k, std::size_t node) {
-      const auto row = static_cast<std::size_t>(4 * j + 16 * k);
-      if (box.count[0] == leaf_size) {
-        std::memcpy(job_.distance + node, value.data() + row, leaf_size * sizeof(float));
-        std::memcpy(static_cast<void*>(job_.site + node), state.id.data() + row, leaf_size * sizeof(SiteId));
-      } else {
-        std::memcpy(job_.distance + node, value.data() + row, static_cast<std::size_t>(box.count[0]) * sizeof(float));
-        std::memcpy(static_cast<void*>(job_.site + node), state.id.data() + row,
-                    static_cast<std::size_t>(box.count[0]) * sizeof(SiteId));
+    const float* values = value.data();
+    const std::uint32_t* ids = state.id.data();
+    for (std::int64_t k = 0; k < box.count[2]; ++k) {
+      for (std::int64_t j = 0; j < box.count[1]; ++j) {
+        const std::int64_t mask = BoxOutput::side - 1;
+        const auto at = static_cast<std::size_t>(
+            ((((box.first[2] + k) & mask) * BoxOutput::side) + ((box.first[1] + j) & mask)) * BoxOutput::side +
+            (box.first[0] & mask));
+        // Whole rows of four, also where the grid ends: the buffer has room, and flush() leaves the rest out.
+        std::memcpy(scratch_.output.distance.data() + at, values + 4 * j + 16 * k, leaf_size * sizeof(float));
+        std::memcpy(scratch_.output.site.data() + at, ids + 4 * j + 16 * k, leaf_size * sizeof(std::uint32_t));
       }
-    });
+    }
     if (!hn::AllFalse(d, unclear)) report_unsettled(box, state, asks_sides);
   }
 
@@ -324,12 +360,13 @@ class TileWorker {
   }
 
   void report_unsettled(const NodeBox& box, const LeafState& state, bool asks_sides) {
-    for_each_row(job_, box, [&](std::int64_t j, std::int64_t k, std::size_t node) {
-      for (std::int64_t i = 0; i < box.count[0]; ++i) {
-        const auto at = static_cast<std::size_t>(i + 4 * j + 16 * k);
+    for_each_row(box, [&](std::size_t place, std::size_t node) {
+      const std::size_t row = place / 16 % 4 * 4 + place / 256 % 4 * 16;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
+        const std::size_t at = row + i;
         const bool is_claimed = state.squared[at] < hwy::HighestValue<float>();
         const bool is_clear = !asks_sides || !(std::abs(state.side[at]) < clear_side * std::sqrt(state.squared[at]));
-        if (!is_claimed || !is_clear) unsettled_.push_back(node + static_cast<std::size_t>(i));
+        if (!is_claimed || !is_clear) unsettled_.push_back(node + i);
       }
     });
   }
@@ -338,11 +375,13 @@ class TileWorker {
   TileScratch::Impl& scratch_;
   std::vector<std::size_t>& unsettled_;
   bool needs_settling_;
+  bool is_buffered_ = false;  ///< results go to the output buffer of a box of 16^3 nodes
   std::array<LeafPattern, 8> full_patterns_;
 };
 
 void compute_tile_here(const FieldJob& job, const NodeBox& tile, TileScratch& scratch) {
   TileWorker(job, scratch).tile(tile, tile_size(job.size));
+  hwy::FlushStream();
 }
 
 }  // namespace

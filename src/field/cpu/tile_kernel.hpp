@@ -33,6 +33,8 @@ struct FieldJob {
   std::vector<Vec3f> vertex_sides;
   float* distance = nullptr;
   SiteId* site = nullptr;
+  /// Write past the caches: for fields that do not fit them.
+  bool is_streamed = false;
   /// A tile that sees a request to stop leaves the rest of its nodes unwritten.
   std::stop_token cancel;
 

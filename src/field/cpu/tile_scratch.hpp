@@ -77,7 +77,15 @@ class LeafColumns {
   std::size_t stride_ = 0;
 };
 
+/// Results of a box of up to 16^3 nodes, before they are written to the field as whole cache lines.
+struct BoxOutput {
+  static constexpr std::int64_t side = 16;
+  alignas(64) std::array<float, side * side * side> distance;
+  alignas(64) std::array<std::uint32_t, side * side * side> site;
+};
+
 struct TileScratch::Impl {
+  BoxOutput output;
   /// What one level of the recursion needs: which candidates go to which child, and the list of the child at hand.
   struct Level {
     std::array<ChildBits, kind_count> bits;
