@@ -201,7 +201,7 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const CenteredBox
 template <Kind kind>
 HWY_NOINLINE void find_records(const BlockTest<1>& test, const Record* records,
                                const std::vector<std::uint32_t>& clusters, std::vector<KeyedIndex>& out) {
-  ClosestAtCenters<1> closest;
+  NoClosest closest;
   for (const std::uint32_t cluster : clusters) {
     for (std::size_t first = cluster * cluster_size; first < (cluster + std::size_t{1}) * cluster_size;
          first += lanes) {

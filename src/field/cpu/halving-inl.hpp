@@ -87,13 +87,13 @@ struct ChildOffsets {
 };
 
 /// For each child, the closest site at its centre that has been seen so far.
-template <int boxes>
 struct ClosestAtCenters {
-  V squared[boxes];
-  VI index[boxes];
+  static constexpr bool is_asked = true;
+  V squared[8];
+  VI index[8];
 
   ClosestAtCenters() {
-    for (int c = 0; c < boxes; ++c) {
+    for (int c = 0; c < 8; ++c) {
       squared[c] = set(hwy::HighestValue<float>());
       index[c] = hn::Zero(di);
     }
@@ -103,6 +103,12 @@ struct ClosestAtCenters {
     squared[child] = hn::IfThenElse(closer, candidate, squared[child]);
     index[child] = hn::IfThenElse(hn::RebindMask(di, closer), candidate_index, index[child]);
   }
+};
+
+/// Stands in where nobody asks.
+struct NoClosest {
+  static constexpr bool is_asked = false;
+  HWY_INLINE void offer(int, V, M, VI) {}
 };
 
 /// A block of vertices seen from a point m: what the tests and the leaves need of each.
@@ -194,13 +200,14 @@ struct BlockTest {
     for (int c = 0; c < boxes; ++c) worst[c] = hn::Max(worst[c], value[c]);
   }
 
-  HWY_INLINE void run(const VertexBlock& block, M keep, VI index, V worst[boxes],
-                      ClosestAtCenters<boxes>& closest) const {
+  template <class Closest>
+  HWY_INLINE void run(const VertexBlock& block, [[maybe_unused]] M keep, [[maybe_unused]] VI index, V worst[boxes],
+                      [[maybe_unused]] Closest& closest) const {
     for (int c = 0; c < boxes; ++c) worst[c] = set(-1.0F);
     for (const Vec& e : block.direction) {
       bound(dot(block.to_site, e), e, hn::Add(support(e, half), set(plane_slack)), worst);
     }
-    if constexpr (boxes == 8) {
+    if constexpr (Closest::is_asked) {
       const auto squares = [](V at, V offset, V out[2]) {
         out[0] = square(hn::Sub(at, offset));
         out[1] = square(hn::Add(at, offset));
@@ -217,8 +224,9 @@ struct BlockTest {
     }
   }
 
-  HWY_INLINE void run(const EdgeBlock& block, M keep, VI index, V worst[boxes],
-                      ClosestAtCenters<boxes>& closest) const {
+  template <class Closest>
+  HWY_INLINE void run(const EdgeBlock& block, [[maybe_unused]] M keep, [[maybe_unused]] VI index, V worst[boxes],
+                      [[maybe_unused]] Closest& closest) const {
     // Ends: | along | <= half length + support.
     V at_center[boxes];
     offsets.values(block.along, block.t, at_center);
@@ -249,7 +257,7 @@ struct BlockTest {
       const V outside = hn::Max(hn::Sub(value[c], forward), hn::Neg(hn::Add(value[c], backward)));
       worst[c] = hn::Max(worst[c], outside);
     }
-    if constexpr (boxes == 8) {
+    if constexpr (Closest::is_asked) {
       V value_b[boxes];
       V value_n[boxes];
       offsets.values(block.across_b, block.b, value_b);
@@ -261,8 +269,9 @@ struct BlockTest {
     }
   }
 
-  HWY_INLINE void run(const FaceBlock& block, M keep, VI index, V worst[boxes],
-                      ClosestAtCenters<boxes>& closest) const {
+  template <class Closest>
+  HWY_INLINE void run(const FaceBlock& block, [[maybe_unused]] M keep, [[maybe_unused]] VI index, V worst[boxes],
+                      [[maybe_unused]] Closest& closest) const {
     // Each barycentric coordinate in [0, 1] up to the box's extent: |coordinate - 1/2| - extent <= 1/2.
     const V one_half = set(0.5F);
     V outside[boxes];
@@ -288,7 +297,7 @@ struct BlockTest {
       const V outside_reach = hn::Max(hn::Sub(value[c], above), hn::Neg(hn::Add(value[c], below)));
       worst[c] = hn::Max(worst[c], outside_reach);
     }
-    if constexpr (boxes == 8) {
+    if constexpr (Closest::is_asked) {
       for (int c = 0; c < boxes; ++c) {
         closest.offer(c, square(value[c]), hn::And(keep, hn::Le(outside[c], hn::Zero(d))), index);
       }
@@ -323,9 +332,9 @@ struct Lanes {
 
 /// Tests all candidates of a kind against the eight children, and offers distances at their centres. `store` is called
 /// with each block that has a candidate left, for the leaves to read.
-template <Kind kind, class Store>
-HWY_INLINE void halve_kind(const BlockTest<8>& test, const RecordList& parent, ChildBits& out,
-                           ClosestAtCenters<8>& closest, Store store) {
+template <Kind kind, class Closest, class Store>
+HWY_INLINE void halve_kind(const BlockTest<8>& test, const RecordList& parent, ChildBits& out, Closest& closest,
+                           Store store) {
   const std::size_t count = parent.count();
   out.reset((count + lanes - 1) / lanes);
   for (std::size_t b = 0; b < out.blocks(); ++b) {

@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t most_clusters = 8000;
 constexpr std::int64_t smallest_tile = 16;
 constexpr std::int64_t leaf_size = 4;
-constexpr std::size_t fewest_worth_culling = 12;
+constexpr std::size_t fewest_worth_culling = 12;         // candidates of a leaf
+constexpr std::size_t fewest_worth_culling_in_box = 64;  // candidates of a box of 8^3 nodes
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
 /// Distances at a box's centre are trusted to prove that no surface meets the box only beyond this margin.
@@ -134,7 +135,7 @@ class TileWorker {
   using Children = std::array<Child, 8>;
 
   /// Where the children lie, their surface points, and which of them are settled.
-  Children meet_children(const Halving& parts, const Candidates& candidates, const ClosestAtCenters<8>& closest,
+  Children meet_children(const Halving& parts, const Candidates& candidates, const ClosestAtCenters& closest,
                          const Vec3f& parent_p0, int side) {
     Children children;
     for (std::size_t c = 0; c < 8; ++c) {
@@ -170,7 +171,7 @@ class TileWorker {
     const Halving parts = halve(job_, box, size);
     const BlockTest<8> test(parts, dominators);
     TileScratch::Impl::Level& here = scratch_.levels[level];
-    ClosestAtCenters<8> closest;
+    ClosestAtCenters closest;
     const auto ignore = [](auto&&...) {};
     halve_kind<vertex_kind>(test, candidates[vertex_kind], here.bits[vertex_kind], closest, ignore);
     halve_kind<edge_kind>(test, candidates[edge_kind], here.bits[edge_kind], closest, ignore);
@@ -194,21 +195,30 @@ class TileWorker {
     const Halving parts = halve(job_, box, 2 * leaf_size);
     const BlockTest<8> test(parts, dominators);
     TileScratch::Impl::Level& here = scratch_.levels.back();
-    ClosestAtCenters<8> closest;
+    // With few candidates, evaluating them costs less than knowing the surface point that would beat some of them.
+    const std::size_t count =
+        candidates[vertex_kind].count() + candidates[edge_kind].count() + candidates[face_kind].count();
+    const bool is_worth_culling =
+        needs_settling_ || count > fewest_worth_culling_in_box || candidates[sliver_kind].count() > 0;
     for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
       scratch_.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
     }
-    halve_kind<vertex_kind>(test, candidates[vertex_kind], here.bits[vertex_kind], closest,
-                            LeafStore{scratch_.leaf[0]});
-    halve_kind<edge_kind>(test, candidates[edge_kind], here.bits[edge_kind], closest, LeafStore{scratch_.leaf[1]});
-    halve_kind<face_kind>(test, candidates[face_kind], here.bits[face_kind], closest, LeafStore{scratch_.leaf[2]});
-    const Children children = meet_children(parts, candidates, closest, dominators.point[0], side);
+    Children children;
+    if (is_worth_culling) {
+      ClosestAtCenters closest;
+      prepare_leaves(test, candidates, closest);
+      children = meet_children(parts, candidates, closest, dominators.point[0], side);
+    } else {
+      NoClosest closest;
+      prepare_leaves(test, candidates, closest);
+      for (std::size_t c = 0; c < 8; ++c) children[c].is_open = parts.exists[c];
+    }
     const bool is_full = is_cube(box, 2 * leaf_size);
     for (std::size_t c = 0; c < 8; ++c) {
       const Child& child = children[c];
       if (!child.is_open) continue;
       const LeafInput input{scratch_.leaf, here.bits, c};
-      dominate_leaf(input, parts, child, dominators_of(children, c));
+      if (is_worth_culling) dominate_leaf(input, parts, child, dominators_of(children, c));
       list_slivers(candidates[sliver_kind], child, here.child[sliver_kind]);
       if (is_full) {
         leaf(parts.child[c], input, here.child[sliver_kind], child.side, full_patterns_[c]);
@@ -216,6 +226,15 @@ class TileWorker {
         leaf(parts.child[c], input, here.child[sliver_kind], child.side, pattern_of(parts.child[c], parts.middle));
       }
     }
+  }
+
+  /// Tests the candidates of a box of 8^3 nodes against its leaves, and writes them out for these.
+  template <class Closest>
+  void prepare_leaves(const BlockTest<8>& test, const Candidates& candidates, Closest& closest) {
+    auto& bits_of = scratch_.levels.back().bits;
+    halve_kind<vertex_kind>(test, candidates[vertex_kind], bits_of[vertex_kind], closest, LeafStore{scratch_.leaf[0]});
+    halve_kind<edge_kind>(test, candidates[edge_kind], bits_of[edge_kind], closest, LeafStore{scratch_.leaf[1]});
+    halve_kind<face_kind>(test, candidates[face_kind], bits_of[face_kind], closest, LeafStore{scratch_.leaf[2]});
   }
 
   static bool is_cube(const NodeBox& box, std::int64_t side) {
@@ -250,7 +269,7 @@ class TileWorker {
   }
 
   /// The closest site at a child's centre, among those that the lanes have seen.
-  static Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters<8>& closest, std::size_t child,
+  static Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
                                    const Vec3f& center) {
     alignas(64) std::array<std::uint32_t, lanes> index;
     const float squared = hn::GetLane(hn::MinOfLanes(d, closest.squared[child]));
