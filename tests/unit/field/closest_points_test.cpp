@@ -48,7 +48,7 @@ TEST(ClosestPoints, AreThoseOfBruteForce) {
   TriangleMesh with_wires = make_sphere({.frequency = 4});
   append(with_wires, make_segments({.segments = 20, .size = 3}));
   append(with_wires, make_points({.points = 20, .size = 3}));
-  expect_like_brute_force(with_wires, 4, SignRule::normals);
+  expect_like_brute_force(with_wires, 4, SignRule::winding);  // wires have no sides
 }
 
 TEST(ClosestPoints, TellFeaturesApart) {
