@@ -138,7 +138,7 @@ std::string extension(const fs::path& path) {
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     return text;
   };
-  const std::string last = lower(path.extension().string());
+  std::string last = lower(path.extension().string());
   if (last != ".gz") return last;
   const std::string inner = lower(path.stem().extension().string());
   return inner == ".nii" || inner == ".hdr" || inner == ".img" ? inner + last : last;

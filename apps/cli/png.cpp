@@ -3,6 +3,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "blum/core/error.hpp"
@@ -12,7 +13,7 @@ namespace blum::cli {
 namespace {
 
 std::uint8_t byte_of(float component) {
-  return static_cast<std::uint8_t>(std::clamp(component, 0.0F, 1.0F) * 255.0F + 0.5F);
+  return static_cast<std::uint8_t>(std::lround(std::clamp(component, 0.0F, 1.0F) * 255.0F));
 }
 
 }  // namespace

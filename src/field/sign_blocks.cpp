@@ -77,6 +77,7 @@ std::size_t diagonal_neighbour(const NodeBlock& block, const StepLimits& limits,
         if (std::abs(dx) + std::abs(dy) + std::abs(dz) < 2) continue;
         const int nx = x + dx, ny = y + dy, nz = z + dz;
         if (((nx | ny | nz) & ~7) != 0) continue;
+        // NOLINTNEXTLINE(bugprone-misplaced-widening-cast): below 512
         const auto other = static_cast<std::size_t>(nx + 8 * ny + 64 * nz);
         if (!(block.distance[other] >= 0) || parts.path[parts.part[other]] == 0) continue;
         const double step = length(Vec3d{dx * limits.spacing.x, dy * limits.spacing.y, dz * limits.spacing.z});

@@ -58,7 +58,7 @@ class Components {
   void split_blocks(const Context& context);
   void collect_joins(std::size_t block, std::vector<Join>& out) const;
   void join_blocks(const Context& context);
-  void join(const Join& join);
+  void join(const Join& step);
   [[nodiscard]] std::uint32_t find(std::uint32_t component);
   [[nodiscard]] NodeBlock load(std::size_t block) const;
   [[nodiscard]] std::uint32_t component_at(std::size_t block, std::size_t place) const {

@@ -11,7 +11,6 @@
 namespace blum {
 namespace {
 
-using sign::BlockGrid;
 using sign::Components;
 
 constexpr std::size_t queries_per_range = 64;

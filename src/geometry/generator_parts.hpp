@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@
 
 namespace blum::detail {
 
-inline constexpr double pi = 3.14159265358979323846;
+inline constexpr double pi = std::numbers::pi;
 
 /// @throws InvalidOption "<what> must be <rule>, not <value>" unless `holds`.
 void require(bool holds, const char* what, const char* rule, double value);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "geometry/generator_parts.hpp"
 
@@ -13,7 +14,7 @@ constexpr std::array<Triangle, 20> icosahedron_faces = {{{0, 11, 5}, {0, 5, 1}, 
                                                          {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}}};
 
 std::array<Vec3d, 12> icosahedron_corners() {
-  const double g = (1 + std::sqrt(5.0)) / 2;
+  constexpr double g = std::numbers::phi;
   return {{{-1, g, 0},
            {1, g, 0},
            {-1, -g, 0},

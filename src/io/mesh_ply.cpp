@@ -33,7 +33,7 @@ class PlyReader {
  private:
   void read_element(const PlyElement& element) {
     if (element.properties.empty()) return;  // takes no bytes, however many there are said to be
-    const std::size_t least = source_.least_size(element);
+    const std::size_t least = std::max<std::size_t>(source_.least_size(element), 1);
     if (element.count > (source_.remaining() + 1) / least) {
       source_.fail("the header promises " + std::to_string(element.count) + " of element " + in_quotes(element.name) +
                    ", but the file is too short for them");
@@ -150,7 +150,7 @@ class PlyReader {
 
   /// The role of each property of an element.
   /// @throws FormatError when one of the roles is there twice or not at all, or is of the wrong kind.
-  std::vector<Role> roles_of(const PlyElement& element, std::vector<NamedRole> known, bool list) const {
+  std::vector<Role> roles_of(const PlyElement& element, const std::vector<NamedRole>& known, bool list) const {
     std::vector<Role> roles;
     for (const PlyProperty& property : element.properties) {
       Role role = Role::ignored;

@@ -84,8 +84,10 @@ class PointTree {
  public:
   PointTree() = default;
   PointTree(const std::vector<Point>& points, std::vector<std::uint32_t> members)
-      : points_(points.data()), members_(std::move(members)), leaf_of_(points.size(), none) {
-    leaves_ = std::bit_ceil(members_.size() / leaf_size + 1);
+      : points_(points.data()),
+        members_(std::move(members)),
+        leaf_of_(points.size(), none),
+        leaves_(std::bit_ceil(members_.size() / leaf_size + 1)) {
     nodes_.resize(2 * leaves_);
     build(1, 0, members_.size());
   }
