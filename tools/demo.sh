@@ -11,9 +11,9 @@ step() {
   echo "demo: $*"
   "$@"
 }
-step "$blum" make torus-knot -o "$out/knot.ply"
+step "$blum" make torus-knot -o "$out/knot.ply" --curve-segments 60 --tube-segments 8
 step "$blum" info "$out/knot.ply"
-step "$blum" field "$out/knot.ply" -o "$out/knot.nrrd" --resolution 128 --json "$out/knot.json"
+step "$blum" field "$out/knot.ply" -o "$out/knot.nrrd" --resolution 256 --json "$out/knot.json"
 step "$blum" slice "$out/knot.nrrd" -o "$out/distance.png" --axis z --show distance
 step "$blum" slice "$out/knot.nrrd" -o "$out/sites.png" --axis z --show sites
 

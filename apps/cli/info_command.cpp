@@ -105,7 +105,7 @@ std::string solid_text(const Topology& t) {
   if (!t.closed) return "no: the surface is not closed";
   if (!t.oriented) return "no: triangles are not consistently oriented";
   if (!t.manifold) return "no: the surface is not a manifold";
-  return "no: shells face the wrong way (turn their triangles round)";
+  return "no: shells face the wrong way, or cross each other";
 }
 
 std::string genus_text(const Topology& t) {

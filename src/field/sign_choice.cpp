@@ -45,7 +45,7 @@ SignChoice choose_automatically(const MeshView& mesh, const Orientation& facts) 
         winding + "is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles"};
   }
   return {SignRule::winding,
-          winding + "is closed, but its shells do not all face away from the solid: flip those that are inside out"};
+          winding + "is closed, but its shells cross each other or do not all face away from the solid"};
 }
 
 }  // namespace
