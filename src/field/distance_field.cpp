@@ -97,10 +97,9 @@ void FieldSolver::State::compute(const MeshView& mesh) {
   check_site_ids(mesh, options);
   throw_if_cancelled(context);
   const std::size_t nodes = field.grid.node_count();
-  if (field.distance.size() != nodes) {
-    field.distance = Buffer<float>(nodes);
-    field.site = Buffer<SiteId>(nodes);
-  }
+  // One by one: where memory runs out between the two, the next frame finds the first one there already.
+  if (field.distance.size() != nodes) field.distance = Buffer<float>(nodes);
+  if (field.site.size() != nodes) field.site = Buffer<SiteId>(nodes);
   field.band = options.band;
   field.site_ids = SiteIds::features;
   field.phases.clear();
