@@ -54,6 +54,9 @@ FileBytes read_whole_file(const std::filesystem::path& path) {
   struct stat info{};
   if (::fstat(file.number, &info) != 0) fail(path, errno);
   if (S_ISDIR(info.st_mode)) fail(path, EISDIR);
+  if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode)) {  // may never end
+    throw FileError("cannot read '" + path.string() + "': it is a device, not a file");
+  }
 
   // One byte more than the file should have shows in the first read whether it has ended; a pipe, or a file that grows
   // meanwhile, goes on into a buffer of twice the size.
