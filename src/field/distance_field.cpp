@@ -1,4 +1,5 @@
 // Fields of meshes: decides the sign rule, runs the back end, settles what it leaves open.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -106,7 +107,13 @@ void FieldSolver::State::compute(const MeshView& mesh) {
 
   PhaseTimer connectivity_timer(field.phases);
   engine.set_mesh(mesh, context);
-  const SignChoice choice = choose_sign_rule(options.sign, mesh, engine.sites());
+  SignChoice choice = choose_sign_rule(options.sign, mesh, engine.sites());
+  const Vec3d& spacing = field.grid.spacing;
+  if (choice.is_automatic_normals && options.band && *options.band < std::max({spacing.x, spacing.y, spacing.z})) {
+    choice = {
+        SignRule::winding,
+        "winding number above 1/2: in a band narrower than a grid step the signs of pseudonormals cannot be checked"};
+  }
   connectivity_timer.lap("connectivity");
   const bool with_sides = choice.rule == SignRule::normals;
   const std::vector<std::size_t> unsettled = engine.compute({field.grid, options.band, with_sides}, context, field);

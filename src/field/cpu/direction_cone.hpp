@@ -38,7 +38,7 @@ class DirectionCone {
   /// is at least `cosine`. A spherical cap of less than a half-sphere is convex, so a domain whose rays lie in one cap
   /// lies in it; rays on both sides of the axis would not do.
   [[nodiscard]] Result finish() const {
-    constexpr float margin = 1e-3F;
+    constexpr float margin = 2e-3F;
     const float size = length(axis_);
     if (!is_bounded_ || count_ == 0 || !(size > 1e-3F)) return {};
     const Vec3f axis = axis_ / size;

@@ -33,7 +33,9 @@ NormalFrame make_normal_frame(const MeshView& mesh, const GridSpec& grid) {
     throw InvalidGrid("mesh and grid span more than 1e37, too far for 32-bit distances: scale them down");
   int exponent = 0;
   if (diagonal > 0) (void)std::frexp(diagonal, &exponent);
-  if (exponent < -900) throw InvalidGrid("mesh and grid span less than 1e-270: scale them up");
+  if (diagonal > 0 && diagonal < 1e-36) {
+    throw InvalidGrid("mesh and grid span less than 1e-36, too little for 32-bit distances: scale them up");
+  }
   frame.scale = std::ldexp(1.0, -exponent);
   frame.center = box.center();
   frame.first_node = (first - frame.center) * frame.scale;

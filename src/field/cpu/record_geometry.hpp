@@ -91,6 +91,8 @@ inline bool closest_on_record(Kind kind, const Record& record, const Vec3f& quer
 
 /// A side is called only if the pseudonormal is at least this far (as a cosine) from being perpendicular.
 inline constexpr float clear_side = 0.01F;
+/// Nor is it called this close to the surface, in the normalised frame.
+inline constexpr float smallest_side = 1e-6F;
 
 /// Component of a vector along an edge's unit pseudonormal, the sum of its faces' normals. With the second face's
 /// direction given in the frame of b and n, that sum is side * (second_n b + (1 - second_b) n).
@@ -117,7 +119,7 @@ inline int side_of(const Witness& closest, const Vec3f& query, const std::vector
   } else if (closest.kind == face_kind) {
     side = dot(query - vec_at(record, FaceColumns::anchor), vec_at(record, FaceColumns::normal));
   }
-  if (std::abs(side) < clear_side * length(query - closest.point)) return 0;
+  if (std::abs(side) < std::max(clear_side * length(query - closest.point), smallest_side)) return 0;
   return side > 0 ? 1 : side < 0 ? -1 : 0;
 }
 

@@ -18,7 +18,7 @@ constexpr std::size_t clusters_per_range = 64;
 constexpr double negligible_length = 1e-12;
 constexpr double negligible_altitude = 1e-7;
 /// Above this, rounding of a face's barycentrics would reach beyond its corners (docs/theory/fields.md).
-constexpr double largest_condition = 4000;
+constexpr double largest_condition = 64;
 /// A normal is trusted only if rounding in double cannot have turned it by more than about 1e-9.
 constexpr double smallest_relative_altitude = 1e-7;
 
@@ -155,7 +155,9 @@ bool build_edge(const Input& input, std::uint32_t index, std::size_t lane, Recor
   if (has_second) {
     store(record, EdgeColumns::second_b, dot(second, first));
     store(record, EdgeColumns::second_n, dot(second, n));
-    store(record, EdgeColumns::side, dot(input.face_normals[faces[0]], n) > 0 ? 1.0 : -1.0);
+    // Between faces that nearly fold together float32 cannot tell the pseudonormal: left to exact queries.
+    const bool is_folded = 1 - dot(second, first) < 1e-5;
+    store(record, EdgeColumns::side, is_folded ? 0.0 : dot(input.face_normals[faces[0]], n) > 0 ? 1.0 : -1.0);
   }
   record.id = static_cast<std::uint32_t>(input.mesh.vertices.size()) + index;
   cluster.box.extend(start);

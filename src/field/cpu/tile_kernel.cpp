@@ -348,7 +348,8 @@ class TileWorker {
       unclear = hn::Or(unclear, hn::Ge(squared, nowhere));
       if (asks_sides) {
         const V node_side = hn::Load(d, state.side.data() + node);
-        unclear = hn::Or(unclear, hn::Lt(hn::Abs(node_side), hn::Mul(set(clear_side), distance)));
+        unclear = hn::Or(unclear,
+                         hn::Lt(hn::Abs(node_side), hn::Max(hn::Mul(set(clear_side), distance), set(smallest_side))));
         result = if_sign_bit(node_side, hn::Neg(result), result);
       }
       hn::Store(result, d, value.data() + node);
@@ -384,7 +385,8 @@ class TileWorker {
       for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
         const std::size_t at = row + i;
         const bool is_claimed = state.squared[at] < hwy::HighestValue<float>();
-        const bool is_clear = !asks_sides || !(std::abs(state.side[at]) < clear_side * std::sqrt(state.squared[at]));
+        const bool is_clear = !asks_sides || !(std::abs(state.side[at]) <
+                                               std::max(clear_side * std::sqrt(state.squared[at]), smallest_side));
         if (!is_claimed || !is_clear) unsettled_.push_back(node + i);
       }
     });
