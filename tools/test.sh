@@ -15,13 +15,13 @@ tools/results.py check "$results" build -- tools/build.sh release "${options[@]}
 if [[ -f build/release/build.ninja ]]; then
   tools/results.py check "$results" public-headers -- tools/build.sh release "${options[@]}" -- blum_header_check
   tools/ctest.sh "$results" ctest build/release
-  if compgen -G 'tests/python/test_*.py' >/dev/null; then
-    echo "--- pytest: tests/python"
+  if compgen -G 'tests/*/test_*.py' >/dev/null; then
+    echo "--- pytest: tests/python, tests/cli"
     rm -f build/pytest.xml
     bin=$PWD/build/release/bin
-    BLUM=$bin/blum BLUM_BIN_DIR=$bin BLUM_DISTANCE_TRANSFORM_SAMPLE=$bin/distance_transform_sample \
+    BLUM=$bin/blum BLUM_CLI=$bin/blum BLUM_BIN_DIR=$bin BLUM_DISTANCE_TRANSFORM_SAMPLE=$bin/distance_transform_sample \
       build/venv/bin/python -m pytest -q -ra -p no:cacheprovider \
-      --junitxml build/pytest.xml tests/python || true
+      --junitxml build/pytest.xml tests/python tests/cli || true
     tools/results.py junit "$results" pytest build/pytest.xml --complete
   fi
   tools/results.py check "$results" install -- tests/install/run.sh build/release
