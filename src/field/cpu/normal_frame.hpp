@@ -19,7 +19,6 @@ struct NormalFrame {
   [[nodiscard]] Vec3d to_normal(const Vec3d& world) const {
     return (direction.transposed_times(world) - center) * scale;
   }
-  [[nodiscard]] Vec3d to_world(const Vec3d& normal) const { return direction * (normal / scale + center); }
 };
 
 /// @throws InvalidGrid when the common box is so large that float32 distances would overflow.

@@ -124,6 +124,9 @@ class TileWorker {
     }
   }
 
+  /// Where in a leaf the row starts that has this place in the output buffer.
+  static std::size_t leaf_row(std::size_t place) { return place / 16 % 4 * 4 + place / 256 % 4 * 16; }
+
   /// What is known of a child before its candidates are listed.
   struct Child {
     CenteredBox place;
@@ -357,17 +360,12 @@ class TileWorker {
     if (job_.band < std::numeric_limits<float>::max()) clamp_to_band(state, value);
     const float* values = value.data();
     const std::uint32_t* ids = state.id.data();
-    for (std::int64_t k = 0; k < box.count[2]; ++k) {
-      for (std::int64_t j = 0; j < box.count[1]; ++j) {
-        const std::int64_t mask = BoxOutput::side - 1;
-        const auto at = static_cast<std::size_t>(
-            ((((box.first[2] + k) & mask) * BoxOutput::side) + ((box.first[1] + j) & mask)) * BoxOutput::side +
-            (box.first[0] & mask));
-        // Whole rows of four, also where the grid ends: the buffer has room, and flush() leaves the rest out.
-        std::memcpy(scratch_.output.distance.data() + at, values + 4 * j + 16 * k, leaf_size * sizeof(float));
-        std::memcpy(scratch_.output.site.data() + at, ids + 4 * j + 16 * k, leaf_size * sizeof(std::uint32_t));
-      }
-    }
+    for_each_row(box, [&](std::size_t place, std::size_t) {
+      const std::size_t row = leaf_row(place);
+      // Whole rows of four, also where the grid ends: the buffer has room, and flush() leaves the rest out.
+      std::memcpy(scratch_.output.distance.data() + place, values + row, leaf_size * sizeof(float));
+      std::memcpy(scratch_.output.site.data() + place, ids + row, leaf_size * sizeof(std::uint32_t));
+    });
     if (!hn::AllFalse(d, unclear)) report_unsettled(box, state, asks_sides);
   }
 
@@ -381,7 +379,7 @@ class TileWorker {
 
   void report_unsettled(const NodeBox& box, const LeafState& state, bool asks_sides) {
     for_each_row(box, [&](std::size_t place, std::size_t node) {
-      const std::size_t row = place / 16 % 4 * 4 + place / 256 % 4 * 16;
+      const std::size_t row = leaf_row(place);
       for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
         const std::size_t at = row + i;
         const bool is_claimed = state.squared[at] < hwy::HighestValue<float>();
