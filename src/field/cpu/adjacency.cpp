@@ -53,17 +53,17 @@ void build_adjacency(const MeshView& mesh, const SiteTable& sites, const Context
   }
   throw_if_cancelled(context);
 
-  out.first_incident.assign(vertex_count + 1, 0);
+  out.first_neighbour.assign(vertex_count + 1, 0);
   for (const Segment& edge : edges) {
-    ++out.first_incident[edge[0] + 1];
-    ++out.first_incident[edge[1] + 1];
+    ++out.first_neighbour[edge[0] + 1];
+    ++out.first_neighbour[edge[1] + 1];
   }
-  for (std::size_t v = 0; v < vertex_count; ++v) out.first_incident[v + 1] += out.first_incident[v];
-  out.incident_edges.resize(2 * edges.size());
-  std::vector<std::uint32_t> next(out.first_incident.begin(), out.first_incident.end() - 1);
-  for (std::uint32_t e = 0; e < edges.size(); ++e) {
-    out.incident_edges[next[edges[e][0]]++] = e;
-    out.incident_edges[next[edges[e][1]]++] = e;
+  for (std::size_t v = 0; v < vertex_count; ++v) out.first_neighbour[v + 1] += out.first_neighbour[v];
+  out.neighbours.resize(2 * edges.size());
+  std::vector<std::uint32_t> next(out.first_neighbour.begin(), out.first_neighbour.end() - 1);
+  for (const Segment& edge : edges) {
+    out.neighbours[next[edge[0]]++] = edge[1];
+    out.neighbours[next[edge[1]]++] = edge[0];
   }
   throw_if_cancelled(context);
 

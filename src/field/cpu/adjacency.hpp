@@ -19,9 +19,9 @@ inline constexpr std::uint32_t no_index = 0xffffffff;
 struct Adjacency {
   /// Vertices that a triangle, segment or point names, rising.
   std::vector<std::uint32_t> named_vertices;
-  /// Edges at vertex v: incident_edges[first_incident[v] .. first_incident[v + 1]).
-  std::vector<std::uint32_t> first_incident;
-  std::vector<std::uint32_t> incident_edges;
+  /// Other ends of the edges at vertex v: neighbours[first_neighbour[v] .. first_neighbour[v + 1]).
+  std::vector<std::uint32_t> first_neighbour;
+  std::vector<std::uint32_t> neighbours;
   /// Up to two triangles of each edge (more are not needed for a valid bound); no_index where there is none.
   std::vector<std::array<std::uint32_t, 2>> edge_faces;
 };

@@ -3,17 +3,55 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "blum/core/vec3.hpp"
 
 namespace blum::cpu {
 
-/// The cone {w : w . e <= 0 for all edge directions e of a vertex}: which of its planes bound it, and its extreme rays.
+/// Which directions of a vertex are kept as planes of its domain.
+struct ChosenPlanes {
+  static constexpr std::size_t most = 4;
+  std::array<std::size_t, most> index{};
+  std::size_t count = 0;
+
+  /// Picks up to four of the directions whose bit is set in `open`, each as far from the picked ones as can be.
+  /// @param direction  callable: index -> unit Vec3f.
+  template <class Direction>
+  void choose(std::uint32_t open, Direction direction) {
+    count = 0;
+    if (static_cast<std::size_t>(std::popcount(open)) <= most) {
+      for (; open != 0; open &= open - 1) index[count++] = static_cast<std::size_t>(std::countr_zero(open));
+      return;
+    }
+    std::array<float, 32> largest_cosine;
+    largest_cosine.fill(-2);
+    while (count < most) {
+      auto best = static_cast<std::size_t>(std::countr_zero(open));
+      for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(rest));
+        if (largest_cosine[k] < largest_cosine[best]) best = k;
+      }
+      open &= ~(1U << best);
+      index[count++] = best;
+      for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(rest));
+        largest_cosine[k] = std::max(largest_cosine[k], dot(direction(k), direction(best)));
+      }
+    }
+  }
+};
+
+/// The cone {w : w . e <= 0 for all edge directions e} of a vertex: which of its planes bound it, and its extreme rays.
 class VertexCone {
  public:
-  static constexpr std::size_t max_planes = 4;
+  /// Two directions whose cross product has a smaller squared length are taken to be parallel.
+  static constexpr float parallel = 1e-8F;
+  /// Rounding of w . e for the cross product w of two directions.
+  static constexpr float tolerance = 2e-6F;
   static constexpr std::size_t max_rays = 8;
   /// More edges than this are left out, which only widens the cone.
   static constexpr std::size_t max_directions = 16;
@@ -29,8 +67,7 @@ class VertexCone {
   /// Finds the cone's extreme rays; false if the cone {w : w . e <= 0 for all e} is provably just its apex.
   bool find_facets() {
     if (count_ < 3) {
-      chosen_count_ = count_;
-      for (std::size_t i = 0; i < count_; ++i) chosen_[i] = i;
+      choose(all());
       return true;
     }
     for (std::size_t k = count_; k < max_directions; ++k) {  // copies, so that whole vectors can be looked at
@@ -38,40 +75,35 @@ class VertexCone {
       y_[k] = y_[0];
       z_[k] = z_[0];
     }
-    std::array<bool, max_directions> is_facet{};
+    std::uint32_t facets = 0;
     bool is_certain = true;
     for (std::size_t i = 0; i < count_; ++i) {
       for (std::size_t j = i + 1; j < count_; ++j) {
         const Vec3f w = cross(direction(i), direction(j));
-        if (squared_length(w) < 1e-8F) {
+        if (squared_length(w) < parallel) {
           is_certain = false;  // nearly parallel: their ray is lost in rounding
         } else if (const int sign = extreme_ray(w); sign != 0) {
-          is_facet[i] = is_facet[j] = true;
+          facets |= (1U << i) | (1U << j);
           add_ray(w, sign);
         }
       }
     }
     if (ray_count_ == 0 && is_certain) return false;
     are_rays_known_ = is_certain && ray_count_ <= max_rays;
-    choose(is_facet, ray_count_ > 0 && is_certain);
+    choose(is_certain ? facets : all());
     return true;
   }
 
-  [[nodiscard]] std::size_t chosen_count() const { return chosen_count_; }
-  [[nodiscard]] Vec3d chosen(std::size_t k) const {
-    const Vec3f e = direction(chosen_[k]);
-    return {e.x, e.y, e.z};
-  }
+  /// Up to four directions whose planes hold the cone.
+  [[nodiscard]] const ChosenPlanes& planes() const { return chosen_; }
+  [[nodiscard]] Vec3f direction(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
 
   /// The unit extreme rays; empty where they are too many or not known for certain.
   [[nodiscard]] std::span<const Vec3f> rays() const { return {rays_.data(), are_rays_known_ ? ray_count_ : 0}; }
 
  private:
-  [[nodiscard]] Vec3f direction(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
-
   /// Bit 0: w (no longer than one) lies in the cone, up to rounding; bit 1: -w does. In doubt they do.
   [[nodiscard]] int extreme_ray(const Vec3f& w) const {
-    constexpr float tolerance = 2e-6F;
     const std::size_t end = count_ <= 8 ? 8 : max_directions;
     int beyond = 0;
     int before = 0;
@@ -89,32 +121,14 @@ class VertexCone {
     if ((sign & 2) != 0 && ++ray_count_ <= max_rays) rays_[ray_count_ - 1] = -unit;
   }
 
-  /// Picks up to four directions, of the facets where they are known, each as far from the picked ones as can be.
-  void choose(const std::array<bool, max_directions>& is_facet, bool facets_only) {
-    std::array<float, max_directions> largest_cosine{};
-    std::array<bool, max_directions> is_open{};
-    for (std::size_t k = 0; k < count_; ++k) {
-      is_open[k] = is_facet[k] || !facets_only;
-      largest_cosine[k] = -2;
-    }
-    for (chosen_count_ = 0; chosen_count_ < max_planes; ++chosen_count_) {
-      std::size_t best = max_directions;
-      for (std::size_t k = 0; k < count_; ++k) {
-        if (is_open[k] && (best == max_directions || largest_cosine[k] < largest_cosine[best])) best = k;
-      }
-      if (best == max_directions) return;
-      is_open[best] = false;
-      chosen_[chosen_count_] = best;
-      for (std::size_t k = 0; k < count_; ++k) {
-        largest_cosine[k] = std::max(largest_cosine[k], dot(direction(k), direction(best)));
-      }
-    }
+  [[nodiscard]] std::uint32_t all() const { return (1U << count_) - 1; }
+  void choose(std::uint32_t open) {
+    chosen_.choose(open, [this](std::size_t k) { return direction(k); });
   }
 
   alignas(64) std::array<float, max_directions> x_{}, y_{}, z_{};
   std::size_t count_ = 0;
-  std::array<std::size_t, max_planes> chosen_{};
-  std::size_t chosen_count_ = 0;
+  ChosenPlanes chosen_;
   std::array<Vec3f, max_rays> rays_{};
   std::size_t ray_count_ = 0;
   bool are_rays_known_ = false;
