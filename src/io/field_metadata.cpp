@@ -214,6 +214,7 @@ Metadata field_metadata(const Field& field, const FieldFileInfo& info) {
     pairs.emplace_back("edge_count", std::to_string(info.sites->edge_count()));
     pairs.emplace_back("face_count", std::to_string(info.sites->face_count()));
   }
+  if (!info.space.empty()) pairs.emplace_back("world_axes", info.space);
   pairs.emplace_back("values", "at nodes, x fastest");
   return pairs;
 }

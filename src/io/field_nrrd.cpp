@@ -14,6 +14,16 @@ namespace {
 
 /// The key that says that a second file holds the sites: one left over from another run is not taken for it.
 constexpr const char* sites_key = "site_file";
+/// The key that marks the file of the sites, and names that of the distances.
+constexpr const char* distances_key = "distance_file";
+
+/// @throws FormatError for the file of a field's sites, which looks like one of distances.
+void check_holds_distances(const NrrdHeader& header, const std::string& name) {
+  const std::string_view distances = find_value(header.key_values, distances_key);
+  if (distances.empty()) return;
+  throw FormatError(name + ": it holds the site ids of a field, not its distances; open the file of the distances, '" +
+                    std::string(distances) + "', which finds its sites by itself");
+}
 
 Buffer<float> nrrd_distances(const ByteSource& data, const NrrdHeader& header) {
   check_nrrd_data_size(data, header);
@@ -50,12 +60,14 @@ void write_field_nrrd(const std::filesystem::path& path, const Field& field, con
   std::optional<AtomicFile> sites;
   FieldSink sink(distance_bytes(field).size() + site_bytes(field).size(), context);
   if (!field.site.empty()) {
+    Metadata of_sites = metadata;
+    of_sites.emplace_back(distances_key, path.filename().string());
     metadata.emplace_back(sites_key, site_path(path).filename().string());
     sites.emplace(site_path(path));
-    sink.write(*sites, nrrd_header(ScalarType::i32, field.grid, metadata));
+    sink.write(*sites, nrrd_header(ScalarType::i32, field.grid, info.space, of_sites));
     sink.write(*sites, site_bytes(field));
   }
-  sink.write(distances, nrrd_header(ScalarType::f32, field.grid, metadata));
+  sink.write(distances, nrrd_header(ScalarType::f32, field.grid, info.space, metadata));
   sink.write(distances, distance_bytes(field));
   distances.finish();
   if (sites) sites->finish();
@@ -66,6 +78,7 @@ void write_field_nrrd(const std::filesystem::path& path, const Field& field, con
 
 Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& path) {
   const NrrdHeader header = read_nrrd_header(source);
+  check_holds_distances(header, source.name());
   Field field;
   field.grid = header.grid;
   if (header.data_file.empty()) {

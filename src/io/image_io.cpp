@@ -100,7 +100,7 @@ void write_image(const std::filesystem::path& path, const VoxelImage& image) {
   validate(image);
   std::string header;
   if (extension == ".nrrd") {
-    header = nrrd_header(type, image.grid, {});
+    header = nrrd_header(type, image.grid, image.space, {});
   } else if (extension == ".npy") {
     const auto& n = image.grid.size;
     header = npy_header(npy_dtype(type), {static_cast<std::uint64_t>(n[2]), static_cast<std::uint64_t>(n[1]),

@@ -270,6 +270,7 @@ VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source) {
   VoxelImage image;
   image.grid.size = image_size(header, name);
   read_frame(header, image.grid, name);
+  if (header.sform_code > 0 || header.qform_code > 0) image.space = "right-anterior-superior";
   const bool scales = std::isfinite(header.slope) && header.slope != 0 && (header.slope != 1 || header.intercept != 0);
   if (scales && !std::isfinite(header.intercept))
     throw FormatError(name + ": the intercept of the values is not finite");

@@ -40,6 +40,14 @@ const std::vector<TypeNames>& type_names() {
   return all;
 }
 
+/// Spaces of three dimensions: the full name and the abbreviation, which may be missing.
+constexpr std::array<std::array<std::string_view, 2>, 6> spaces{{{"right-anterior-superior", "ras"},
+                                                                 {"left-anterior-superior", "las"},
+                                                                 {"left-posterior-superior", "lps"},
+                                                                 {"scanner-xyz", ""},
+                                                                 {"3D-right-handed", ""},
+                                                                 {"3D-left-handed", ""}}};
+
 std::string vector_text(const Vec3d& v) {
   return "(" + exact_text(v.x) + "," + exact_text(v.y) + "," + exact_text(v.z) + ")";
 }
@@ -299,6 +307,7 @@ class HeaderParser {
     if (!directions_.empty()) {
       for (std::size_t i = 0; i < axes_.size(); ++i) steps[i] = to_vec3(*directions_[axes_[i]]);
       set_frame(header_.grid, steps, name_);
+      if (const std::string* text = find("space")) header_.space = nrrd_space(*text);
     } else {
       read_spacings();
     }
@@ -439,13 +448,22 @@ void read_text_values(ByteStream& stream, ScalarType type, std::span<std::byte> 
 
 }  // namespace
 
-std::string nrrd_header(ScalarType type, const GridSpec& grid, const Metadata& key_values) {
+std::string nrrd_space(std::string_view name) {
+  const std::string wanted = lower_case(trim(name));
+  for (const auto& [full, short_form] : spaces) {
+    if (wanted == lower_case(full) || (!short_form.empty() && wanted == short_form)) return std::string(full);
+  }
+  return {};
+}
+
+std::string nrrd_header(ScalarType type, const GridSpec& grid, const std::string& space, const Metadata& key_values) {
+  const std::string known = nrrd_space(space);
   const auto& n = grid.size;
   std::string out =
       "NRRD0005\n# Complete NRRD file format specification at http://teem.sourceforge.net/nrrd/format.html\n";
   out += "type: " + std::string(type_names()[static_cast<std::size_t>(type)].names[0]) + "\ndimension: 3\n";
-  out += "space dimension: 3\nsizes: " + std::to_string(n[0]) + " " + std::to_string(n[1]) + " " +
-         std::to_string(n[2]) + "\nspace directions:";
+  out += (known.empty() ? "space dimension: 3" : "space: " + known) + "\nsizes: " + std::to_string(n[0]) + " " +
+         std::to_string(n[1]) + " " + std::to_string(n[2]) + "\nspace directions:";
   for (std::size_t a = 0; a < 3; ++a) out += " " + vector_text(grid.direction.columns[a] * grid.spacing[a]);
   out += "\nkinds: domain domain domain\nendian: ";
   out += std::endian::native == std::endian::little ? "little" : "big";
@@ -493,6 +511,7 @@ VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path
   check_nrrd_data_size(data, header);
   VoxelImage image;
   image.grid = header.grid;
+  image.space = header.space;
   image.values = make_values(header.type, header.grid.node_count());
   read_nrrd_data(data, header, as_bytes(image.values));
   return image;

@@ -24,6 +24,7 @@ struct NrrdHeader {
   std::endian order = std::endian::little;
   NrrdEncoding encoding = NrrdEncoding::raw;
   GridSpec grid;
+  std::string space;             ///< as NRRD names it, with directions only; empty where it is not known
   std::string data_file;         ///< empty where the data follow the header
   std::uint64_t data_start = 0;  ///< where the header ends
   std::uint64_t line_skip = 0;
@@ -32,7 +33,13 @@ struct NrrdHeader {
 };
 
 /// The header of a file whose raw data follow in the machine's byte order, and the empty line after it.
-[[nodiscard]] std::string nrrd_header(ScalarType type, const GridSpec& grid, const Metadata& key_values);
+/// @param space  as VoxelImage::space; left out where NRRD does not know it.
+[[nodiscard]] std::string nrrd_header(ScalarType type, const GridSpec& grid, const std::string& space,
+                                      const Metadata& key_values);
+
+/// The full name that NRRD has for a space of three dimensions, given by that name or its abbreviation in any case;
+/// empty for others.
+[[nodiscard]] std::string nrrd_space(std::string_view name);
 
 /// @throws FormatError.
 [[nodiscard]] NrrdHeader read_nrrd_header(const ByteSource& source);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct VoxelImage {
                    std::vector<std::uint64_t>, std::vector<std::int64_t>, std::vector<float>, std::vector<double>>;
   GridSpec grid;
   Values values;  ///< grid.node_count() values
+  /// What the world axes are, as NRRD names it ("left-posterior-superior", "right-anterior-superior", "scanner-xyz",
+  /// ...); empty where the file does not say.
+  std::string space = {};
 };
 
 /// @throws InvalidImage unless the grid is valid, holds at most max_id_count voxels and values has one entry per voxel.

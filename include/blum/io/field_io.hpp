@@ -23,6 +23,9 @@ struct FieldFileInfo {
   std::string source = {};
   /// Blum's version.
   std::string version = {};
+  /// What the world axes are, as NRRD names it: VoxelImage::space of the image that the field was computed from. NRRD
+  /// files get it as their `space`, the other formats in their metadata; a name that NRRD does not know is left out.
+  std::string space = {};
 };
 
 /// Writes a field; the format goes by the extension. In all of them, distances are float32 in mesh units (negative
@@ -55,7 +58,7 @@ enum class FieldFormat : unsigned char { nrrd, npz, vti };
 /// `distance`, and .vti files with raw appended, uncompressed point data `distance`. Values become float32. What a file
 /// does not say stays at its default; without site values, Field::site is empty.
 /// @throws FileError when the file cannot be read; FormatError, naming the file and the reason, when its content is
-/// wrong; InvalidOption for another extension; OutOfMemory.
+/// wrong or the file holds the sites of a field (OUT.site.nrrd); InvalidOption for another extension; OutOfMemory.
 [[nodiscard]] Field read_field(const std::filesystem::path& path);
 
 /// The same from memory; `name` stands for the file in messages. For NRRD, sites are not read.

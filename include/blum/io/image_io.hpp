@@ -17,14 +17,15 @@ enum class ImageFormat : std::uint8_t { nrrd, nifti, npy, vol };
 /// spacing, origin and direction are the file's, in its own world axes and units. A 2D image becomes one layer.
 ///
 ///   .nrrd, .nhdr  NRRD 1 to 5: raw, gzip and text data, attached or in one other file, line and byte skip, either byte
-///                 order. "space directions" with "space origin", or else "spacings" with "axis mins"; a spacing or an
-///                 origin of NaN is not known and becomes 1 or 0. An axis without a direction ("none"), or whose kind
-///                 counts components (vector, colour, matrix), must have one entry and is left out; further axes of
-///                 one entry are left out beyond three. Other kinds are not looked at.
+///                 order. "space directions" with "space origin" and "space" (VoxelImage::space), or else "spacings"
+///                 with "axis mins"; a spacing or an origin of NaN is not known and becomes 1 or 0. An axis without a
+///                 direction ("none"), or whose kind counts components (vector, colour, matrix), must have one entry
+///                 and is left out; further axes of one entry are left out beyond three. Other kinds are not looked at.
 ///   .nii, .hdr with .img, each also with .gz
 ///                 NIfTI-1 and 2, either byte order. The sform where it is set and has no shear, else the qform, else
-///                 the spacings alone. Values with a scale (scl_slope, scl_inter) become double; a slope of 0 or NaN
-///                 is none. Dimensions beyond three must be 1.
+///                 the spacings alone; with either form the space is right-anterior-superior. Values with a scale
+///                 (scl_slope, scl_inter) become double; a slope of 0 or NaN is none. Dimensions beyond three must
+///                 be 1.
 ///   .npy          Arrays indexed [z, y, x], of one to three axes, in C or Fortran order, either byte order, bool as
 ///                 uint8. Spacing 1, origin 0.
 ///   .vol          Vol of DGtal and simplevol: a text header, then bytes (Version 2) or the same compressed by zlib
@@ -43,8 +44,8 @@ enum class ImageFormat : std::uint8_t { nrrd, nifti, npy, vol };
 [[nodiscard]] VoxelImage read_image(std::span<const std::byte> bytes, ImageFormat format,
                                     const std::string& name = "image");
 
-/// Writes an image as .nrrd (raw data; keeps the geometry) or .npy (values only), in the byte order of the machine. The
-/// file appears under its name only when it is complete.
+/// Writes an image as .nrrd (raw data; keeps geometry and space) or .npy (values only), in the byte order of the
+/// machine. The file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension; InvalidImage unless validate(image) passes; FileError.
 void write_image(const std::filesystem::path& path, const VoxelImage& image);
 

@@ -224,6 +224,30 @@ TEST(NrrdFields, SitesLieBesideTheDistances) {
   EXPECT_TRUE(read_field(folder / "a.b.nrrd").site.empty());
 }
 
+TEST(NrrdFields, TheFileOfSitesIsNotTakenForDistances) {
+  const TemporaryFolder folder;
+  write_field(folder / "a.nrrd", sample_field());
+  try {
+    (void)read_field(folder / "a.site.nrrd");
+    FAIL() << "the sites were read as distances";
+  } catch (const FormatError& error) {
+    EXPECT_PRED2(contains, std::string(error.what()), "'a.nrrd'");
+  }
+}
+
+TEST(NrrdFields, NameTheSpaceOfTheirImage) {
+  const TemporaryFolder folder;
+  write_field(folder / "a.nrrd", sample_field(), {.space = "right-anterior-superior"});
+  for (const char* name : {"a.nrrd", "a.site.nrrd"}) {
+    const std::string head = file_content(folder / name);
+    EXPECT_PRED2(contains, head, "\nspace: right-anterior-superior\n");
+    EXPECT_FALSE(contains(head, "space dimension"));
+  }
+  EXPECT_EQ(read_field(folder / "a.nrrd").grid, sample_field().grid);
+  write_field(folder / "b.nrrd", sample_field(), {.space = "on the moon"});
+  EXPECT_PRED2(contains, file_content(folder / "b.nrrd"), "\nspace dimension: 3\n");
+}
+
 TEST(NrrdFields, SitesThatCannotBeWrittenLeaveTheOldDistances) {
   const TemporaryFolder folder;
   put_in(folder, "a.nrrd", "old");

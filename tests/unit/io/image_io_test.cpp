@@ -143,15 +143,32 @@ TYPED_TEST(ImageOfType, WritesWhatItReads) {
   image.grid.direction.columns[1] = {0, 0, -1};
   image.grid.direction.columns[2] = {1, 0, 0};
   image.values = sample_values<TypeParam>();
+  image.space = "left-posterior-superior";
   write_image(folder / "a.nrrd", image);
   const VoxelImage nrrd = read_image(folder / "a.nrrd");
   EXPECT_EQ(nrrd.grid, image.grid);
+  EXPECT_EQ(nrrd.space, image.space);
   EXPECT_EQ(nrrd.values, image.values);
   write_image(folder / "a.npy", image);
   const VoxelImage npy = read_image(folder / "a.npy");
   EXPECT_EQ(npy.grid.size, image.grid.size);
   EXPECT_EQ(npy.grid.spacing, (Vec3d{1, 1, 1}));
   EXPECT_EQ(npy.values, image.values);
+}
+
+TEST(NrrdImages, KeepTheirSpace) {
+  const auto space_of = [](const std::string& fields) {
+    return read_text(nrrd_start + "type: uint8\nencoding: raw\n" + fields + "\n\n" + std::string(24, '\1'),
+                     ImageFormat::nrrd)
+        .space;
+  };
+  const std::string directions = "\nspace directions: (1,0,0) (0,1,0) (0,0,1)";
+  EXPECT_EQ(space_of("space: RAS" + directions), "right-anterior-superior");
+  EXPECT_EQ(space_of("space: Left-Posterior-Superior" + directions), "left-posterior-superior");
+  EXPECT_EQ(space_of("space: scanner-xyz" + directions), "scanner-xyz");
+  EXPECT_EQ(space_of("space: elsewhere" + directions), "");
+  EXPECT_EQ(space_of("space dimension: 3" + directions), "");
+  EXPECT_EQ(space_of("space: RAS\nspacings: 1 1 1"), "") << "axes without directions lie in no space";
 }
 
 GridSpec nrrd_grid(const std::string& fields) {
