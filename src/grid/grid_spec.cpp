@@ -1,6 +1,8 @@
 #include "blum/grid/grid_spec.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <string>
 
@@ -29,9 +31,16 @@ void check_resolution(int resolution) {
   }
 }
 
+/// The shortest text that reads back as this number; std::to_string would print 300 digits of 1e300.
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
+}
+
 Box3 padded(const Box3& box, double padding) {
   if (!(padding >= 0 && padding <= 1e6)) {
-    throw InvalidOption("padding is " + std::to_string(padding) +
+    throw InvalidOption("padding is " + number_text(padding) +
                         ", but must be 0 to 1e6 (a fraction of the longest side)");
   }
   const double pad = padding * longest_side(box);

@@ -51,6 +51,8 @@ void validate(const GridSpec& grid);
 /// A grid over exactly this box, without padding: `resolution` nodes along its longest side, the others centred as
 /// above. A side of length zero gives one layer. @throws InvalidGrid, InvalidOption.
 [[nodiscard]] GridSpec grid_in(const Box3& box, int resolution = 256);
+/// The same with the spacing given. A side that is no whole number of steps grows to the next one, centred: the grid
+/// reaches beyond the box by less than half a step at each end.
 [[nodiscard]] GridSpec grid_in_with_spacing(const Box3& box, double spacing);
 
 }  // namespace blum
