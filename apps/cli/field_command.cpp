@@ -144,6 +144,7 @@ struct Run {
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
   std::vector<fs::path> outputs;
+  std::vector<std::string> warnings;
   TextTable table;
   void time(const char* phase, double seconds) { phases.push_back({phase, seconds}); }
 };
@@ -198,6 +199,19 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   run.table.add("sites", sites_text(s, field.site_ids));
 }
 
+/// What deserves a look although the field was made as asked.
+std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& s, const Orientation& mesh) {
+  if (field.sign_rule == SignRule::none) return {};
+  if (mesh.closed && mesh.oriented && !mesh.outward) {
+    return {mesh.signed_volume < 0 ? "the mesh is inside out (its volume is negative), so signs are not those of a "
+                                     "solid: flip its triangles"
+                                   : "parts of the mesh face the wrong way or enclose nothing, so signs may not be "
+                                     "those of a solid; `blum info` says more of its shells"};
+  }
+  if (s.inside_nodes > 0) return {};
+  return {"no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"};
+}
+
 void finish(const Request& request, Run& run, const GridSpec& grid, const Context& context) {
   double total = 0;
   Json seconds = Json::object();
@@ -226,6 +240,7 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                      {"peak_memory_bytes", peak_memory()},
                      {"threads", thread_count(context)},
                      {"thread_backend", thread_backend()},
+                     {"warnings", run.warnings},
                      {"outputs", outputs}};
   run.table.add("time", number_text(std::round(total * 1e3) / 1e3) + " s" + slow + (slow.empty() ? "" : ")"));
   run.table.add("speed", number_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
@@ -233,6 +248,7 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                              bytes_text(static_cast<double>(peak_memory())) + " at most");
   for (const fs::path& file : run.outputs) run.table.add("wrote", file.string());
   report(request.report, json, run.input_text + run.table.text());
+  if (!request.report.quiet) warn(run.warnings);
 }
 
 GridSpec make_grid(const Request& r, const Box3& box) {
@@ -298,6 +314,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   run.time("write", watch.lap());
   progress.clear();
   add_field(run, field, statistics, field_files(r.output), nullptr);
+  run.warnings = warnings_of(field, statistics, facts);
   finish(r, run, grid, context);
 }
 
@@ -330,6 +347,9 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
     image = load_image(r.input);
   }
   run.time("read", watch.lap());
+  if (has_only_nan(image)) {
+    throw FileError("'" + r.input.string() + "': every voxel is NaN (not a number), so none can be selected");
+  }
   run.input = image_json(r.input, image);
   run.input_text = image_text(r.input, image);
   run.time("input facts", watch.lap());
@@ -349,7 +369,8 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
     static_cast<void>(watch.lap());
     const FieldStatistics statistics = field_statistics(fields[i], nullptr, context);
     run.time("statistics", watch.lap());
-    write_field(names[i], fields[i], {nullptr, nullptr, r.input.filename().string(), BLUM_VERSION}, context);
+    write_field(names[i], fields[i], {nullptr, nullptr, r.input.filename().string(), BLUM_VERSION, image.space},
+                context);
     run.time("write", watch.lap());
     add_field(run, fields[i], statistics, field_files(names[i]), r.labels.empty() ? nullptr : &r.labels[i]);
     fields[i] = {};
@@ -386,7 +407,8 @@ void add_field_command(CLI::App& app) {
   };
   text("--resolution", a->resolution, "N", "Mesh: nodes along the longest side of the grid (default 256)");
   text("--spacing", a->spacing, "H", "Mesh: distance between nodes, instead of --resolution");
-  text("--bounds", a->bounds, "BOX", "Mesh: grid box x0,y0,z0,x1,y1,z1; a side of zero gives a 2D field");
+  text("--bounds", a->bounds, "BOX",
+       "Mesh: grid box x0,y0,z0,x1,y1,z1, grown to whole steps; a side of zero gives a 2D field");
   text("--padding", a->padding, "F", "Mesh: room around the shape, as a part of its longest side (default 0.1)");
   text("--sign", a->sign, "RULE", "auto, normals, winding or none (default auto); image: auto or none");
   text("--band", a->band, "W", "Only distances up to W, in mesh units, or in grid steps as in 3v");

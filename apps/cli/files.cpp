@@ -82,6 +82,19 @@ bool is_field_header(std::string_view head) {
   return header.find("sign_rule:=") != std::string_view::npos;
 }
 
+/// Whether a NRRD header says that the values are floating-point numbers.
+bool holds_floats(std::string_view head) {
+  std::istringstream lines{std::string(head.substr(0, head.find("\n\n")))};
+  for (std::string line; std::getline(lines, line);) {
+    if (!starts_with(line, "type:")) continue;
+    std::istringstream rest(line.substr(5));
+    std::string type;
+    rest >> type;
+    return type == "float" || type == "double";
+  }
+  return false;
+}
+
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   fs::path whole = fs::weakly_canonical(path, error);
@@ -157,6 +170,15 @@ InputKind input_kind(const fs::path& path) {
   throw FileError("'" + path.string() +
                   "' is of no known kind; meshes are .obj, .off, .stl and .ply files, images .nrrd, .nhdr, .nii, "
                   ".nii.gz, .npy and .vol");
+}
+
+void check_may_be_field(const fs::path& path) {
+  const InputKind kind = input_kind(path);
+  if (kind == InputKind::field) return;
+  const bool distances_of_others = extension(path) == ".nrrd" && holds_floats(read_head(path));
+  if (kind == InputKind::image && distances_of_others) return;
+  throw FileError("'" + path.string() + "' is " + (kind == InputKind::mesh ? "a mesh" : "an image") +
+                  ", not a field; make its field first, with `blum field`");
 }
 
 MeshFile load_mesh(const fs::path& path, const MeshReadOptions& options) {

@@ -23,6 +23,11 @@ enum class InputKind { mesh, image, field };
 /// @throws FileError when the file cannot be opened, is a directory or is of no known kind.
 [[nodiscard]] InputKind input_kind(const std::filesystem::path& path);
 
+/// Refuses what cannot be a field: meshes, and images other than NRRD files of floating-point numbers, which may be
+/// distances that another program wrote.
+/// @throws FileError, also as input_kind.
+void check_may_be_field(const std::filesystem::path& path);
+
 /// Reads a mesh or an image, also one whose extension does not tell its format. @throws as read_mesh, read_image.
 [[nodiscard]] MeshFile load_mesh(const std::filesystem::path& path, const MeshReadOptions& options);
 [[nodiscard]] VoxelImage load_image(const std::filesystem::path& path);

@@ -1,6 +1,10 @@
 #include "input_facts.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <type_traits>
+#include <variant>
 
 #include "files.hpp"
 
@@ -64,6 +68,19 @@ std::string mesh_text(const std::filesystem::path& path, const MeshFile& file, c
   return table.text();
 }
 
+bool has_only_nan(const VoxelImage& image) {
+  return std::visit(
+      [](const auto& values) {
+        using Value = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_floating_point_v<Value>) {
+          return !values.empty() && std::all_of(values.begin(), values.end(), [](Value v) { return std::isnan(v); });
+        } else {
+          return false;
+        }
+      },
+      image.values);
+}
+
 std::string type_name(const VoxelImage::Values& values) {
   constexpr std::array<const char*, 10> names = {"uint8", "int8",   "uint16", "int16",   "uint32",
                                                  "int32", "uint64", "int64",  "float32", "float64"};
@@ -78,6 +95,7 @@ Json image_json(const std::filesystem::path& path, const VoxelImage& image) {
                {"type", type_name(image.values)},
                {"voxels", image.grid.node_count()}};
   json["grid"] = to_json(image.grid);
+  json["space"] = image.space.empty() ? Json(nullptr) : Json(image.space);
   json["bounds"] = to_json(bounds(image.grid));
   return json;
 }

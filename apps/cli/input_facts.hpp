@@ -28,7 +28,9 @@ namespace blum::cli {
 /// File, format, type and grid of an image.
 [[nodiscard]] Json image_json(const std::filesystem::path& path, const VoxelImage& image);
 [[nodiscard]] std::string image_text(const std::filesystem::path& path, const VoxelImage& image);
-/// "uint8", "float" and so on.
+/// Whether no voxel holds a number.
+[[nodiscard]] bool has_only_nan(const VoxelImage& image);
+/// "uint8", "float32" and so on.
 [[nodiscard]] std::string type_name(const VoxelImage::Values& values);
 
 }  // namespace blum::cli

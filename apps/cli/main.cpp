@@ -27,6 +27,29 @@ constexpr const char* examples = R"(Examples:
 `blum COMMAND --help` says more. Exit status: 0 done, 2 bad usage, 1 any other failure.
 Existing output files are only ever replaced by complete ones.)";
 
+/// A word of the command line that is neither an option nor a command, where a command is due.
+void check_command(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), arguments[0]) != names.end()) return;
+  throw UsageError("there is no command '" + arguments[0] + "'" + hint(similar_words(arguments[0], names)) +
+                   "; the commands are " + join_words(names));
+}
+
+/// What CLI11 could make nothing of, with a hint for a misspelt option; empty where there is nothing.
+std::string leftover_text(const CLI::App& command) {
+  const std::vector<std::string> left = command.remaining(true);
+  if (left.empty()) return {};
+  const std::string word = left.front().substr(0, left.front().find('='));
+  if (word.size() < 2 || word[0] != '-') return "'" + left.front() + "' was not expected";
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return "there is no option " + word + hint(similar_words(word, names));
+}
+
 int fail(const std::string& message, int status) {
   std::fflush(stdout);
   std::fprintf(stderr, "blum: error: %s\n", message.c_str());
@@ -40,6 +63,10 @@ int finish(const CLI::App& app, const CLI::ParseError& error) {
     while (!message.empty() && (message.back() == '\n' || message.back() == ' ')) message.pop_back();
     const auto used = app.get_subcommands();
     const std::string command = used.empty() ? "blum" : "blum " + used.front()->get_name();
+    // A misspelt option leaves what it should have set missing: the first is the cause, and is said first.
+    const std::string leftover = leftover_text(used.empty() ? app : *used.front());
+    const bool only_leftover = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+    if (!leftover.empty()) message = only_leftover ? leftover : leftover + "; also: " + message;
     return fail(message + "; see `" + command + " --help`", exit_usage);
   }
   app.exit(error);  // prints the help or the version
@@ -63,6 +90,7 @@ int run(std::vector<std::string> arguments) {
   CLI::App app{"Exact distance fields and Voronoi diagrams of meshes and voxel images", "blum"};
   try {
     add_commands(app, arguments);
+    check_command(app, arguments);
     prepare_weld(arguments);
     if (arguments.empty()) arguments.emplace_back("--help");
     std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back

@@ -123,9 +123,7 @@ Recipe find(const std::string& given) {
     names.push_back(recipe.name);
   }
   const std::vector<std::string> similar = similar_words(name, names);
-  throw UsageError("there is no shape '" + given + "'" +
-                   (similar.empty() ? "" : "; did you mean " + join_words(similar, "or") + "?") +
-                   " (`blum make --list` lists all)");
+  throw UsageError("there is no shape '" + given + "'" + hint(similar) + "; `blum make --list` lists all");
 }
 
 double read_parameter(const Parameter& parameter, const std::string& given, const std::string& text) {

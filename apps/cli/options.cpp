@@ -156,6 +156,10 @@ std::vector<std::string> similar_words(std::string_view word, const std::vector<
   return words;
 }
 
+std::string hint(const std::vector<std::string>& words) {
+  return words.empty() ? std::string() : " (did you mean " + join_words(words, "or") + "?)";
+}
+
 std::string join_words(const std::vector<std::string>& words, std::string_view last) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -56,6 +56,9 @@ void prepare_weld(std::vector<std::string>& arguments);
 /// The candidates that are closest to a misspelt word, best first: those within about a third of its length in edits.
 [[nodiscard]] std::vector<std::string> similar_words(std::string_view word, const std::vector<std::string>& candidates);
 
+/// " (did you mean a or b?)", or nothing where there are no words.
+[[nodiscard]] std::string hint(const std::vector<std::string>& words);
+
 /// "a, b and c"; "or" by `last`.
 [[nodiscard]] std::string join_words(const std::vector<std::string>& words, std::string_view last = "and");
 

@@ -62,9 +62,7 @@ void run(const Arguments& a) {
   if (a.scale) scale = parse_positive("--scale", *a.scale);
   check_outputs({output}, field_files(input));
 
-  if (input_kind(input) == InputKind::mesh) {
-    throw FileError("'" + input.string() + "' is a mesh; make its field first, with `blum field`");
-  }
+  check_may_be_field(input);
   const Field field = read_field(input);
   if (!axis) axis = default_axis(field.grid);
   const std::int64_t layers = field.grid.size[*axis];
@@ -95,7 +93,10 @@ void run(const Arguments& a) {
 void add_slice_command(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("slice", "A picture of one layer of a field");
-  command->add_option("FIELD", a->input, "Field file: .nrrd, .npz or .vti")->required();
+  command
+      ->add_option("FIELD", a->input,
+                   "Field file: .nrrd, .npz or .vti; also distances of other programs, .nrrd of floats")
+      ->required();
   command->add_option("-o,--output", a->output, "Picture")->required()->type_name("PNG");
   command->add_option("--axis", a->axis, "Axis that the layer is perpendicular to: x, y or z (default z)")
       ->type_name("AXIS");

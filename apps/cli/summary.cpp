@@ -110,6 +110,11 @@ void report(const ReportOptions& options, const Json& json, const std::string& t
   if (!options.quiet && !options.json_to_stdout()) print(text);
 }
 
+void warn(const std::vector<std::string>& warnings) {
+  std::fflush(stdout);
+  for (const std::string& warning : warnings) std::fprintf(stderr, "blum: warning: %s\n", warning.c_str());
+}
+
 void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
     throw FileError("standard output cannot be written");

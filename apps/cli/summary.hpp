@@ -72,6 +72,9 @@ struct ReportOptions {
 /// @throws FileError.
 void report(const ReportOptions& options, const Json& json, const std::string& text);
 
+/// Writes each as a line "blum: warning: ..." to stderr.
+void warn(const std::vector<std::string>& warnings);
+
 /// @throws FileError when stdout does not take what is written to it.
 void print(std::string_view text);
 

@@ -17,21 +17,23 @@ BLUM = os.environ.get("BLUM_CLI", "")
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
 
-def run(*arguments, status=0, timeout=60):
-    """Runs the tool and checks its exit status; stderr must be silent on success, and one message else."""
+def run(*arguments, status=0, timeout=60, warns=False):
+    """Runs the tool and checks its exit status; stderr must hold warnings where they are due and nothing else on
+    success, and one message else."""
     done = subprocess.run([BLUM, *map(str, arguments)], capture_output=True, timeout=timeout, check=False)
     out, err = done.stdout.decode(), done.stderr.decode()
     assert done.returncode == status, f"{arguments}: status {done.returncode}, expected {status}\n{out}\n{err}"
     if status == 0:
-        assert err == "", err
+        lines = err.splitlines()
+        assert bool(lines) == warns and all(line.startswith("blum: warning: ") for line in lines), err
     else:
         assert err.startswith("blum: error: "), err
         assert len(err.strip().splitlines()) <= 3, err
     return out, err
 
 
-def run_json(*arguments):
-    out, _ = run(*arguments, "--json", "-")
+def run_json(*arguments, warns=False):
+    out, _ = run(*arguments, "--json", "-", warns=warns)
     return json.loads(out)
 
 
@@ -297,8 +299,23 @@ def test_site_ids_and_sign(shapes, tmp_path):
 
 def test_an_open_mesh_takes_winding(shapes, tmp_path):
     (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    summary = run_json("field", tmp_path / "open.obj", "-o", tmp_path / "open.nrrd", "--resolution", 8)
+    summary = run_json("field", tmp_path / "open.obj", "-o", tmp_path / "open.nrrd", "--resolution", 8, warns=True)
     assert summary["fields"][0]["sign"]["rule"] == "winding" and not summary["input"]["closed"]
+
+
+def test_warnings_go_to_stderr(tmp_path):
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    inverted, sheet = tmp_path / "inverted.obj", tmp_path / "sheet.obj"
+    inverted.write_text(corners + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n")
+    sheet.write_text(corners + "f 1 2 3\n")
+    for mesh, words in [(inverted, "inside out"), (sheet, "no node is inside")]:
+        command = ["field", mesh, "-o", tmp_path / "out.nrrd", "--resolution", 8]
+        out, err = run(*command, warns=True)
+        assert words in err and "blum: warning" not in out
+        (warning,) = run_json(*command, warns=True)["warnings"]
+        assert words in warning
+        assert run(*command, "--quiet") == ("", "")
+        assert run_json(*command, "--sign", "none")["warnings"] == []
 
 
 def test_fields_of_images(shapes, tmp_path):
@@ -493,6 +510,37 @@ def test_a_grid_that_no_machine_holds_is_refused_at_once(shapes, tmp_path):
     start = time.monotonic()
     _, err = run("field", shapes / "sphere.ply", "-o", tmp_path / "out.nrrd", "--resolution", 10000, status=1)
     assert "memory" in err and time.monotonic() - start < 5 and not any(tmp_path.iterdir())
+
+
+def test_misspelt_commands_and_options_get_a_hint(shapes, tmp_path):
+    assert "did you mean field" in run("fild", shapes / "sphere.ply", status=2)[1]
+    assert "slice" in run("frobnicate", status=2)[1]
+    # The word that was not understood comes before what is missing because of it.
+    err = run("field", shapes / "sphere.ply", "--outptu", tmp_path / "out.nrrd", status=2)[1]
+    assert err.index("no option --outptu (did you mean --output?)") < err.index("required")
+    err = run("slice", shapes / "sphere.nrrd", "out.png", status=2)[1]
+    assert err.index("'out.png' was not expected") < err.index("required")
+
+
+def test_files_that_are_no_field_are_refused(shapes, tmp_path):
+    """The sites beside a field, images and meshes hold numbers that are no distances."""
+    out = tmp_path / "out.png"
+    for command in (["slice", shapes / "sphere.site.nrrd", "-o", out], ["info", shapes / "sphere.site.nrrd"]):
+        assert "'sphere.nrrd'" in run(*command, status=1)[1]
+    for name, kind in [("ball.nrrd", "an image"), ("balls.npy", "an image"), ("sphere.ply", "a mesh")]:
+        err = run("slice", shapes / name, "-o", out, status=1)[1]
+        assert f"is {kind}, not a field" in err and "`blum field`" in err
+    assert not out.exists()
+
+
+def test_an_image_of_nan_is_refused_as_such(tmp_path):
+    np.save(tmp_path / "nan.npy", np.full((2, 3, 4), np.nan))
+    assert "every voxel is NaN" in run("field", tmp_path / "nan.npy", "-o", tmp_path / "out.nrrd", status=1)[1]
+
+
+def test_numbers_in_messages_are_short(shapes, tmp_path):
+    err = run("field", shapes / "sphere.ply", "-o", tmp_path / "out.nrrd", "--padding", "1e300", status=2)[1]
+    assert "padding is 1e+300" in err
 
 
 def test_misspelt_shapes_get_a_hint():

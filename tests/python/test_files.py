@@ -417,3 +417,38 @@ def test_reads_gzip_of_the_standard_library(tmp_path):
     header = b"NRRD0004\ntype: float\ndimension: 3\nsizes: 5 4 3\nendian: little\nencoding: gzip\n\n"
     (tmp_path / "a.nrrd").write_bytes(header + gzip.compress(array.tobytes()))
     assert_same(Read(tmp_path / "a.nrrd", tmp_path).values, array)
+
+
+@pytest.mark.parametrize("name, space", [("a.nii.gz", "right-anterior-superior"), ("itk.nrrd", "left-posterior-superior"),
+                                         ("ras.nrrd", "right-anterior-superior"), ("none.nrrd", None)])
+def test_fields_lie_where_their_images_do(tmp_path, name, space):
+    """The world axes go along: a program that turns RAS into LPS puts field and image in the same place."""
+    labels = (array_of("uint8") % 3 == 0).astype(numpy.uint8)
+    affine = numpy.eye(4)
+    affine[:3, :3] = turned() * [0.5, 0.75, 2]
+    affine[:3, 3] = [1, -2, 3.5]
+    image = tmp_path / name
+    if name.endswith(".nii.gz"):
+        nibabel.save(nibabel.Nifti1Image(labels.T, affine), image)
+    elif name == "itk.nrrd":
+        written = SimpleITK.GetImageFromArray(labels)
+        written.SetSpacing([0.5, 0.75, 2])
+        written.SetDirection(turned().ravel())
+        written.SetOrigin([1, -2, 3.5])
+        SimpleITK.WriteImage(written, image)
+    else:
+        header = {"space directions": affine[:3, :3].T, "space origin": affine[:3, 3]}
+        header |= {"space": space} if space else {"space dimension": 3}
+        nrrd.write(str(image), labels.T, header)
+    tool = os.environ.get("BLUM") or str(PROJECT / "build" / "release" / "bin" / "blum")
+    subprocess.run([tool, "field", image, "-o", tmp_path / "field.nrrd", "--quiet"], check=True)
+    for file in ("field.nrrd", "field.site.nrrd"):
+        header = nrrd.read_header(str(tmp_path / file))
+        assert header.get("space") == space and ("space dimension" in header) == (space is None)
+        given, made = SimpleITK.ReadImage(image), SimpleITK.ReadImage(tmp_path / file)
+        for corner in [(0, 0, 0), (4, 0, 0), (0, 3, 0), (0, 0, 2)]:
+            numpy.testing.assert_allclose(made.TransformIndexToPhysicalPoint(corner),
+                                          given.TransformIndexToPhysicalPoint(corner), atol=1e-5)
+    subprocess.run([tool, "field", image, "-o", tmp_path / "field.npz", "--quiet"], check=True)
+    with numpy.load(tmp_path / "field.npz") as npz:
+        assert json.loads(str(npz["metadata"])).get("world_axes") == space
