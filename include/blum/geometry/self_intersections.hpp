@@ -1,0 +1,47 @@
+// Blum: where a mesh crosses itself. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum {
+
+/// Two triangles that have more in common than a corner or an edge.
+struct TrianglePair {
+  TriangleId first;  ///< the smaller one
+  TriangleId second;
+  /// Whether they cross: there are points inside both, and they lie in two planes. Else they touch: a corner or an edge
+  /// of one lies on the other, or they lie in one plane and overlap, as equal triangles do.
+  bool crosses = false;
+};
+
+struct SelfIntersections {
+  std::vector<TrianglePair> pairs;  ///< in rising order of (first, second)
+  std::size_t crossing = 0;         ///< how many of them cross
+  std::size_t touching = 0;         ///< how many only touch
+  bool complete = true;             ///< false where the search ended because there are more pairs than the limit
+};
+
+/// The pairs of triangles that cross or touch, besides the corners and edges that they share. Corners are shared where
+/// they have one index or one position (-0.0 equals 0.0), so that a mesh need not be welded.
+///
+/// The answer is exact for the coordinates as they are, where these are at least 1e-80 of the largest one, or 0: no
+/// tolerance is used, so parts that only nearly touch do not, and what is meant to touch may miss or cross by a
+/// rounding. Triangles without area, segments and points are left out. Where an edge lies exactly in another triangle,
+/// the two triangles at that edge touch that one, even if the surface crosses it there: a mesh is free of crossings for
+/// certain only where `pairs` is empty.
+///
+/// @param mesh   must pass validate(mesh).
+/// @param limit  the search ends when more pairs are found; `pairs` then holds this many of them, the same for any
+///               number of threads.
+/// @throws InvalidMesh, Cancelled.
+/// Cost: O(n log n) for n triangles and the pairs whose boxes touch; about 0.05 s for 70,000 triangles and
+/// 0.8 s for 1.6 million on two cores; 250 bytes per triangle.
+[[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limit = 100000,
+                                                        const Context& context = {});
+
+}  // namespace blum

@@ -1,0 +1,46 @@
+// Blum: sums of doubles without rounding. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace blum::detail {
+
+/// A number held as a sum of doubles that do not overlap, by rising magnitude (Shewchuk 1997). Exact as long as nothing
+/// overflows or falls below the normal range. `capacity`: of the numbers that are added, products counting twice and
+/// products of three four times.
+template <std::size_t capacity>
+class Expansion {
+ public:
+  void add(double value) {
+    // Knuth's two-sum, carried through all parts; those that vanish are dropped.
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const double sum = value + parts_[i];
+      const double from_parts = sum - value;
+      const double error = (value - (sum - from_parts)) + (parts_[i] - from_parts);
+      if (error != 0) parts_[kept++] = error;
+      value = sum;
+    }
+    if (value != 0) parts_[kept++] = value;
+    size_ = kept;
+  }
+  void add_product(double x, double y) {
+    const double product = x * y;
+    add(std::fma(x, y, -product));
+    add(product);
+  }
+  void add_product(double x, double y, double z) {
+    const double product = x * y;
+    add_product(std::fma(x, y, -product), z);
+    add_product(product, z);
+  }
+  [[nodiscard]] int sign() const { return size_ == 0 ? 0 : parts_[size_ - 1] > 0 ? 1 : -1; }
+
+ private:
+  std::array<double, capacity> parts_{};
+  std::size_t size_ = 0;
+};
+
+}  // namespace blum::detail

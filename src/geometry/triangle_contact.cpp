@@ -1,0 +1,178 @@
+#include "geometry/triangle_contact.hpp"
+
+#include <cstddef>
+#include <utility>
+
+#include "geometry/orient2d.hpp"
+#include "geometry/orient3d.hpp"
+
+namespace blum::detail {
+namespace {
+
+using Points = std::array<Vec3d, 3>;
+using Signs = std::array<int, 3>;
+
+/// Drops the coordinate that leaves a triangle an area, so that its plane can be looked at in 2D.
+class Projection {
+ public:
+  explicit Projection(const Points& triangle) {
+    for (axis_ = 0; axis_ < 2; ++axis_) {
+      if (turn(triangle[0], triangle[1], triangle[2]) != 0) return;
+    }
+  }
+  /// 1 or -1 where the corner at b turns left or right, up to a factor that is the same for all; 0 on one line.
+  [[nodiscard]] int turn(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
+    return orient2d(flat(a), flat(b), flat(c));
+  }
+  /// Whether x lies between the rays from v through p and q, on them included. v, p, q must not lie on one line.
+  [[nodiscard]] bool in_wedge(const Vec3d& v, const Vec3d& p, const Vec3d& q, const Vec3d& x) const {
+    const int way = turn(v, p, q);
+    return way * turn(v, p, x) >= 0 && way * turn(v, x, q) >= 0;
+  }
+
+ private:
+  [[nodiscard]] std::array<double, 2> flat(const Vec3d& p) const { return {p[(axis_ + 1) % 3], p[(axis_ + 2) % 3]}; }
+
+  std::size_t axis_ = 0;
+};
+
+Points rotated(const Points& p, std::size_t first) {
+  return {p[first], p[(first + 1) % 3], p[(first + 2) % 3]};
+}
+
+Signs sides(const Points& plane, const Points& points) {
+  return {orient3d(plane[0], plane[1], plane[2], points[0]), orient3d(plane[0], plane[1], plane[2], points[1]),
+          orient3d(plane[0], plane[1], plane[2], points[2])};
+}
+
+bool all_on_one_side(const Signs& s) {
+  return s[0] != 0 && s[0] == s[1] && s[0] == s[2];
+}
+
+bool all_in_plane(const Signs& s) {
+  return s[0] == 0 && s[1] == 0 && s[2] == 0;
+}
+
+bool on_both_sides(const Signs& s) {
+  return (s[0] > 0 || s[1] > 0 || s[2] > 0) && (s[0] < 0 || s[1] < 0 || s[2] < 0);
+}
+
+/// Triangles p, q, a and p, q, b with a common edge overlap where they are folded onto each other.
+Contact contact_over_edge(const Vec3d& p, const Vec3d& q, const Vec3d& a, const Vec3d& b) {
+  if (orient3d(p, q, a, b) != 0) return Contact::none;
+  const Projection plane({p, q, a});
+  return plane.turn(p, q, a) == plane.turn(p, q, b) ? Contact::touching : Contact::none;
+}
+
+/// Where the wedge of `a` passes through the plane of `b`, it does so along a ray from the common corner a[0] = b[0].
+/// @param side  of b's plane that a[1] and a[2] lie on: not both in it, and not both on one side.
+Contact contact_along_ray(const Points& a, const Points& b, int side_1, int side_2) {
+  if (side_1 == 0 || side_2 == 0) {
+    const Projection plane(b);
+    return plane.in_wedge(b[0], b[1], b[2], side_1 == 0 ? a[1] : a[2]) ? Contact::touching : Contact::none;
+  }
+  const Vec3d& above = side_1 > 0 ? a[1] : a[2];
+  const Vec3d& below = side_1 > 0 ? a[2] : a[1];
+  const int first = orient3d(above, below, b[0], b[1]);
+  const int second = orient3d(above, below, b[2], b[0]);
+  if (first > 0 || second > 0) return Contact::none;
+  return first < 0 && second < 0 ? Contact::crossing : Contact::touching;
+}
+
+/// Triangles with the common corner a[0] = b[0]: near it they are wedges, and being convex they share more than the
+/// corner just where the wedges do.
+Contact contact_over_corner(const Points& a, const Points& b) {
+  const int b1 = orient3d(a[0], a[1], a[2], b[1]);
+  const int b2 = orient3d(a[0], a[1], a[2], b[2]);
+  if (b1 != 0 && b1 == b2) return Contact::none;
+  if (b1 == 0 && b2 == 0) {
+    const Projection plane(a);
+    const bool meet = plane.in_wedge(a[0], a[1], a[2], b[1]) || plane.in_wedge(a[0], a[1], a[2], b[2]) ||
+                      plane.in_wedge(b[0], b[1], b[2], a[1]) || plane.in_wedge(b[0], b[1], b[2], a[2]);
+    return meet ? Contact::touching : Contact::none;
+  }
+  const int a1 = orient3d(b[0], b[1], b[2], a[1]);
+  const int a2 = orient3d(b[0], b[1], b[2], a[2]);
+  if (a1 != 0 && a1 == a2) return Contact::none;
+  const Contact found = contact_along_ray(a, b, a1, a2);
+  // Where one of b's edges lies in a's plane, the ray ends inside of a but on the border of b.
+  return found == Contact::crossing && (b1 == 0 || b2 == 0) ? Contact::touching : found;
+}
+
+/// Two convex polygons in one plane are apart where all of one lies beyond an edge of the other.
+bool is_beyond_an_edge(const Projection& plane, const Points& of, const Points& other) {
+  const int way = plane.turn(of[0], of[1], of[2]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto outside = [&](const Vec3d& p) { return way * plane.turn(of[k], of[(k + 1) % 3], p) < 0; };
+    if (outside(other[0]) && outside(other[1]) && outside(other[2])) return true;
+  }
+  return false;
+}
+
+/// The corner that has one closed side of a plane to itself, where the three are neither all in it nor all beside it.
+std::size_t lone_corner(const Signs& s) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (s[k] != 0 && s[k] * s[(k + 1) % 3] <= 0 && s[k] * s[(k + 2) % 3] <= 0) return k;
+  }
+  // One corner in the plane, the others on one side.
+  return s[0] == 0 ? 0 : s[1] == 0 ? 1 : 2;
+}
+
+Contact contact_of_strangers(const Points& a, const Points& b) {
+  const Signs b_sides = sides(a, b);
+  if (all_on_one_side(b_sides)) return Contact::none;
+  if (all_in_plane(b_sides)) {
+    const Projection plane(a);
+    return is_beyond_an_edge(plane, a, b) || is_beyond_an_edge(plane, b, a) ? Contact::none : Contact::touching;
+  }
+  const Signs a_sides = sides(b, a);
+  if (all_on_one_side(a_sides)) return Contact::none;
+
+  // Both meet the line that their planes share, in intervals between the two edges at the lone corner. Turned so that
+  // each lone corner is above the other's plane, two determinants compare the ends of the intervals.
+  const std::size_t a_lone = lone_corner(a_sides);
+  const std::size_t b_lone = lone_corner(b_sides);
+  Points p = rotated(a, a_lone);
+  Points q = rotated(b, b_lone);
+  const auto is_below = [](const Signs& s, std::size_t lone) {
+    return s[lone] < 0 || (s[lone] == 0 && s[(lone + 1) % 3] > 0);
+  };
+  const bool a_below = is_below(a_sides, a_lone);
+  const bool b_below = is_below(b_sides, b_lone);
+  if (a_below) std::swap(q[1], q[2]);
+  if (b_below) std::swap(p[1], p[2]);
+  const int first = orient3d(p[1], q[1], q[0], p[0]);
+  const int second = orient3d(p[0], q[2], q[0], p[2]);
+  if (first > 0 || second > 0) return Contact::none;
+  return first < 0 && second < 0 && on_both_sides(a_sides) && on_both_sides(b_sides) ? Contact::crossing
+                                                                                     : Contact::touching;
+}
+
+}  // namespace
+
+bool has_no_area(const std::array<Vec3d, 3>& p) {
+  return orient2d({p[0].x, p[0].y}, {p[1].x, p[1].y}, {p[2].x, p[2].y}) == 0 &&
+         orient2d({p[0].y, p[0].z}, {p[1].y, p[1].z}, {p[2].y, p[2].z}) == 0 &&
+         orient2d({p[0].z, p[0].x}, {p[1].z, p[1].x}, {p[2].z, p[2].x}) == 0;
+}
+
+Contact contact(const ContactTriangle& a, const ContactTriangle& b) {
+  std::size_t shared = 0;
+  std::size_t of_a = 0;  // sums of the shared corners' numbers, 0 to 2, which tell the one that is left
+  std::size_t of_b = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (a.corners[i] != b.corners[j]) continue;
+      ++shared;
+      of_a += i;
+      of_b += j;
+    }
+  }
+  if (shared == 0) return contact_of_strangers(a.points, b.points);
+  if (shared == 1) return contact_over_corner(rotated(a.points, of_a), rotated(b.points, of_b));
+  if (shared >= 3) return Contact::touching;
+  const Points p = rotated(a.points, 3 - of_a);
+  return contact_over_edge(p[1], p[2], p[0], b.points[3 - of_b]);
+}
+
+}  // namespace blum::detail
