@@ -12,6 +12,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
+#include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
@@ -33,6 +34,8 @@ constexpr const char* examples = R"(Examples:
   blum info scan.nii.gz --json - | jq .labels
   blum info bunny.nrrd                             a field that Blum wrote)";
 
+constexpr std::size_t contact_limit = 100000;   // looked for
+constexpr std::size_t pair_limit = 20;          // shown in JSON
 constexpr std::size_t label_limit = 20;         // shown
 constexpr std::size_t distinct_limit = 100000;  // counted; more values are no labels
 
@@ -118,7 +121,28 @@ std::string genus_text(const Topology& t) {
   return text;
 }
 
-std::string topology_text(const fs::path& path, const MeshFile& file, const Topology& t) {
+Json contacts_json(const SelfIntersections& contacts) {
+  Json pairs = Json::array();
+  for (std::size_t i = 0; i < std::min(pair_limit, contacts.pairs.size()); ++i) {
+    const TrianglePair& pair = contacts.pairs[i];
+    pairs.push_back({{"triangles", {pair.first.value, pair.second.value}}, {"crosses", pair.crosses}});
+  }
+  return {{"crossing", contacts.crossing},
+          {"touching", contacts.touching},
+          {"complete", contacts.complete},
+          {"pairs", pairs}};
+}
+
+std::string contacts_text(const SelfIntersections& contacts) {
+  if (contacts.pairs.empty()) return "none";
+  const std::string crossing = plural(contacts.crossing, "pair of triangles crosses", "pairs of triangles cross");
+  const std::string touching =
+      contacts.touching == 0 ? "" : ", " + plural(contacts.touching, "touches or overlaps", "touch or overlap");
+  return crossing + touching + (contacts.complete ? "" : ", and more: the search ended there");
+}
+
+std::string topology_text(const fs::path& path, const MeshFile& file, const Topology& t,
+                          const SelfIntersections& contacts) {
   TextTable table;
   table.add("file", path.string() + ": " + file_text(file));
   table.add("vertices", count_text(t.vertices) +
@@ -142,6 +166,7 @@ std::string topology_text(const fs::path& path, const MeshFile& file, const Topo
                                   plural(t.nonmanifold_vertices, "vertex", "vertices"));
     table.add("degenerate", plural(t.degenerate_triangles, "triangle", "triangles"));
     table.add("repeated", plural(t.duplicate_triangles, "triangle", "triangles"));
+    table.add("crossings", contacts_text(contacts));
     table.add("closed", yes_no(t.closed));
     table.add("oriented",
               t.oriented ? "yes"
@@ -156,11 +181,21 @@ std::string topology_text(const fs::path& path, const MeshFile& file, const Topo
 }
 
 void run_mesh(const Arguments& a, const std::optional<double>& weld) {
-  const MeshFile file = load_mesh(a.input, {weld});
-  const Topology facts = topology(file.mesh);
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(0, progress, interrupt);
+  MeshFile file;
+  {
+    const Unattended reading;
+    file = load_mesh(a.input, {weld});
+  }
+  const Topology facts = topology(file.mesh, context);
+  const SelfIntersections contacts = find_self_intersections(file.mesh, contact_limit, context);
+  progress.clear();
   Json json = file_json(a.input, file);
   json.update(topology_json(facts));
-  report(a.report, json, topology_text(a.input, file, facts));
+  json["self_intersections"] = contacts_json(contacts);
+  report(a.report, json, topology_text(a.input, file, facts, contacts));
 }
 
 // ---- Images ----
@@ -259,6 +294,7 @@ void run_image(const Arguments& a) {
   TextTable table;
   table.add("file", a.input + ": " + image_format_name(a.input) + " image of " + type_name(image.values));
   add_grid(table, image.grid);
+  if (!image.space.empty()) table.add("world axes", image.space);
   table.add("range", has_values ? number_text(facts.minimum) + " to " + number_text(facts.maximum) : "no numbers");
   table.add("not zero", plural(facts.nonzero, "voxel", "voxels"));
   if (facts.not_numbers > 0) table.add("not a number", plural(facts.not_numbers, "voxel", "voxels"));

@@ -169,6 +169,20 @@ def test_info_of_a_mesh(shapes):
     assert "1 tunnel, 0 voids" in text
 
 
+def test_info_counts_self_intersections(shapes, tmp_path):
+    assert run_json("info", shapes / "torus.obj")["self_intersections"] == {
+        "crossing": 0, "touching": 0, "complete": True, "pairs": []}
+    assert "crossings       none" in run("info", shapes / "torus.obj")[0]
+    mesh = tmp_path / "cross.obj"
+    # The second triangle passes through the first; the third stands on it with a corner.
+    mesh.write_text("v 0 0 0\nv 3 0 0\nv 0 3 0\nv 1 1 -1\nv 1 1 1\nv 5 5 1\nv 1 0.5 0\nv 1 0.25 3\nv 2 0.25 3\n"
+                    "f 1 2 3\nf 4 5 6\nf 7 8 9\n")
+    assert run_json("info", mesh)["self_intersections"] == {
+        "crossing": 1, "touching": 1, "complete": True,
+        "pairs": [{"triangles": [0, 1], "crosses": True}, {"triangles": [0, 2], "crosses": False}]}
+    assert "1 pair of triangles crosses, 1 touches or overlaps" in run("info", mesh)[0]
+
+
 def test_info_of_an_open_mesh_and_weld(tmp_path):
     corners = ["v 0 0 0", "v 1 0 0", "v 0 1 0", "v 1 0 1e-7", "v 1 1 0", "v 0 1 0", "f 1 2 3", "f 4 5 6"]
     mesh = tmp_path / "two.obj"

@@ -50,7 +50,7 @@ struct Shell {
 };
 
 /// Counts and facts of a mesh. Vertices are told apart by index, not position: weld a mesh first if its pieces should
-/// be connected. Self-intersections, and shells that cross each other, are not looked for.
+/// be connected. Self-intersections, and shells that cross each other, are not looked for: find_self_intersections().
 struct Topology {
   std::size_t vertices = 0;        ///< all vertices of the mesh
   std::size_t named_vertices = 0;  ///< those that a triangle, segment or point names
