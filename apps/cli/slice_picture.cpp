@@ -90,27 +90,32 @@ class DistanceStyle {
   [[nodiscard]] double step() const { return step_; }
   [[nodiscard]] bool has_surface() const { return signed_; }
 
-  /// Draws the contours that pass a place over its colour; `slope` is the change of the value for each pixel.
-  [[nodiscard]] Color with_lines(Color color, double value, double slope) const {
+  /// Draws the contours that pass a place over its colour, without the surface; `slope` is the change of the value for
+  /// each pixel.
+  [[nodiscard]] Color with_contours(const Color& color, double value, double slope) const {
     if (step_ <= 0 || beyond(value)) return color;
-    slope = std::max(slope, step_ * 1e-3);
     const double level = std::round(value / step_);
-    if (level != 0) {
-      const bool strong = std::fmod(std::abs(level), 5) == 0;
-      const double pixels = std::abs(value - level * step_) / slope;
-      const double cover = std::clamp((strong ? 0.75 : 0.5) + 0.5 - pixels, 0.0, 1.0);
-      // Lines that lie closer together than 3 pixels would only darken the picture.
-      const double room = std::clamp(step_ / slope / 3 - 1, 0.0, 1.0);
-      color = mix(color, ink_color, static_cast<float>(cover * room * (strong ? 0.55 : 0.28)));
-    }
-    return with_surface(color, value, slope);
+    if (level == 0 || slope <= 0) return color;
+    const bool strong = std::fmod(std::abs(level), 5) == 0;
+    const double pixels = std::abs(value - level * step_) / slope;
+    const double cover = std::clamp((strong ? 0.75 : 0.5) + 0.5 - pixels, 0.0, 1.0);
+    // Lines that lie closer together than 3 pixels would only darken the picture.
+    const double room = std::clamp(step_ / slope / 3 - 1, 0.0, 1.0);
+    return mix(color, ink_color, static_cast<float>(cover * room * steepness(slope) * (strong ? 0.55 : 0.28)));
   }
   [[nodiscard]] Color with_surface(const Color& color, double value, double slope) const {
     if (!signed_ || slope <= 0) return color;
-    return mix(color, ink_color, static_cast<float>(std::clamp(1.8 - std::abs(value) / slope, 0.0, 1.0)));
+    const double cover = std::clamp(1.8 - std::abs(value) / slope, 0.0, 1.0);
+    return mix(color, ink_color, static_cast<float>(cover * steepness(slope)));
   }
 
  private:
+  /// 0 on a plateau, 1 where the value changes. A plateau at a level is no line, and within it rounding draws what it
+  /// likes; its border is steep and gets a line.
+  [[nodiscard]] double steepness(double slope) const {
+    return step_ <= 0 ? 1 : std::clamp(slope / step_ * 500 - 0.25, 0.0, 1.0);
+  }
+
   bool signed_;
   double band_;
   double outside_ = 1;
@@ -187,7 +192,8 @@ void draw_legend(Picture& picture, const Slice& slice, const DistanceStyle& styl
   const double per_pixel = range / height;
   for (int y = 0; y < height; ++y) {
     const double value = slice.maximum - (y + 0.5) * per_pixel;
-    const Color color = style.with_lines(style.fill(value), value, per_pixel);
+    const Color lines = style.with_contours(style.fill(value), value, per_pixel);
+    const Color color = style.with_surface(lines, value, per_pixel);
     for (int x = 0; x < bar_width; ++x) picture.at(x0 + x, y0 + y) = color;
   }
   draw_frame(picture, x0, y0, bar_width, height);
@@ -329,7 +335,11 @@ Picture distance_picture(const Slice& slice, double scale, const Context& contex
     for (int x = 0; x < layout.width; ++x) {
       const Sample sample = sampler.at(layout.u(x), layout.v(y));
       Color color = style.fill(sample.value);
-      if (sample.continuous) color = style.with_lines(color, sample.value, slope_per_pixel(sample, layout));
+      if (sample.continuous && !style.beyond(sample.value)) {
+        const Sample smooth = sampler.smoothed(layout.u(x), layout.v(y));
+        color = style.with_contours(color, smooth.value, slope_per_pixel(smooth, layout));
+        color = style.with_surface(color, sample.value, slope_per_pixel(sample, layout));
+      }
       picture.at(margin + x, margin + y) = color;
     }
   });

@@ -13,15 +13,25 @@ std::size_t node_index(const Slice& slice, std::int64_t i, std::int64_t j) {
   return static_cast<std::size_t>(j * slice.width + i);
 }
 
-/// Catmull-Rom weights of the four nodes around a place t in [0, 1) between the middle two, and their derivatives.
-struct Cubic {
-  std::array<double, 4> weight;
-  std::array<double, 4> slope;
-  explicit Cubic(double t)
-      : weight{((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1, ((-1.5 * t + 2) * t + 0.5) * t,
-               (0.5 * t - 0.5) * t * t},
-        slope{(-1.5 * t + 2) * t - 0.5, (4.5 * t - 5) * t, (-4.5 * t + 4) * t + 0.5, (1.5 * t - 1) * t} {}
+/// Slope of a curve at a node between two steps: the harmonic mean keeps the curve between its nodes (van Leer 1974).
+double limited_slope(double before, double after) {
+  return before * after > 0 ? 2 * before * after / (before + after) : 0;
+}
+
+struct CurvePoint {
+  double value = 0;
+  double slope = 0;
 };
+
+/// A place t in [0, 1] between the middle two of four nodes, on a cubic curve that does not overshoot.
+CurvePoint on_curve(const std::array<double, 4>& nodes, double t) {
+  const double step = nodes[2] - nodes[1];
+  const double begin = limited_slope(nodes[1] - nodes[0], step);
+  const double end = limited_slope(step, nodes[3] - nodes[2]);
+  const double bend = begin + end - 2 * step;
+  const double lift = step - begin - bend;
+  return {nodes[1] + t * (begin + t * (lift + t * bend)), begin + t * (2 * lift + 3 * t * bend)};
+}
 
 std::array<double, 3> quadratic_weights(double t) {  // t in [-0.5, 0.5] from the middle node
   return {0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)};
@@ -58,40 +68,72 @@ bool DistanceSampler::is_smooth(std::int64_t i, std::int64_t j) const {
   return smooth_[node_index(slice_, i, j)];
 }
 
+DistanceSampler::Cell DistanceSampler::cell_at(double u, double v) const {
+  const auto nearest = [](double place, std::int64_t count) {
+    return std::clamp<std::int64_t>(static_cast<std::int64_t>(place), 0, std::max<std::int64_t>(count - 2, 0));
+  };
+  const std::int64_t i = nearest(u, slice_.width);
+  const std::int64_t j = nearest(v, slice_.height);
+  return {i, j, u - static_cast<double>(i), v - static_cast<double>(j)};
+}
+
+bool DistanceSampler::is_smooth_around(const Cell& cell) const {
+  // In the half step beyond the last nodes, curves go straight on.
+  bool smooth = cell.s >= 0 && cell.s <= 1 && cell.t >= 0 && cell.t <= 1;
+  for (std::int64_t dj = -1; dj <= 1; ++dj) {
+    for (std::int64_t di = -1; di <= 1; ++di) smooth = smooth && is_smooth(cell.i + di, cell.j + dj);
+  }
+  return smooth;
+}
+
+Sample DistanceSampler::bilinear(const Cell& cell) const {
+  const auto& [i, j, s, t] = cell;
+  const double a = node(i, j);
+  const double b = node(i + 1, j);
+  const double c = node(i, j + 1);
+  const double d = node(i + 1, j + 1);
+  return {(a * (1 - s) + b * s) * (1 - t) + (c * (1 - s) + d * s) * t, (b - a) * (1 - t) + (d - c) * t,
+          (c - a) * (1 - s) + (d - b) * s, true};
+}
+
 Sample DistanceSampler::at(double u, double v) const {
-  const auto i = std::clamp<std::int64_t>(static_cast<std::int64_t>(u), 0, std::max<std::int64_t>(slice_.width - 2, 0));
-  const auto j =
-      std::clamp<std::int64_t>(static_cast<std::int64_t>(v), 0, std::max<std::int64_t>(slice_.height - 2, 0));
-  if (!is_smooth(i, j)) return {node(std::llround(u), std::llround(v)), 0, 0, false};
+  const Cell cell = cell_at(u, v);
+  if (!is_smooth(cell.i, cell.j)) return {node(std::llround(u), std::llround(v)), 0, 0, false};
+  if (!is_smooth_around(cell)) return bilinear(cell);
+  std::array<double, 4> rows{};
+  std::array<double, 4> slopes{};
+  for (std::size_t y = 0; y < 4; ++y) {
+    std::array<double, 4> nodes{};
+    for (std::size_t x = 0; x < 4; ++x) {
+      nodes[x] = node(cell.i + static_cast<std::int64_t>(x) - 1, cell.j + static_cast<std::int64_t>(y) - 1);
+    }
+    const CurvePoint row = on_curve(nodes, cell.s);
+    rows[y] = row.value;
+    slopes[y] = row.slope;
+  }
+  const CurvePoint point = on_curve(rows, cell.t);
+  return {point.value, slopes[1] * (1 - cell.t) + slopes[2] * cell.t, point.slope, true};
+}
+
+Sample DistanceSampler::smoothed(double u, double v) const {
+  const Cell cell = cell_at(u, v);
+  if (!is_smooth(cell.i, cell.j) || !is_smooth_around(cell)) return at(u, v);
+  const std::int64_t i = std::llround(u);
+  const std::int64_t j = std::llround(v);
   const double s = u - static_cast<double>(i);
   const double t = v - static_cast<double>(j);
-  // Cubic between nodes with a smooth neighbourhood; in the half step beyond the last nodes, straight on.
-  bool cubic = s >= 0 && s <= 1 && t >= 0 && t <= 1;
-  for (std::int64_t dj = -1; dj <= 1; ++dj) {
-    for (std::int64_t di = -1; di <= 1; ++di) cubic = cubic && is_smooth(i + di, j + dj);
-  }
-  if (!cubic) {
-    const double a = node(i, j);
-    const double b = node(i + 1, j);
-    const double c = node(i, j + 1);
-    const double d = node(i + 1, j + 1);
-    return {(a * (1 - s) + b * s) * (1 - t) + (c * (1 - s) + d * s) * t, (b - a) * (1 - t) + (d - c) * t,
-            (c - a) * (1 - s) + (d - b) * s, true};
-  }
-  const Cubic cu(s);
-  const Cubic cv(t);
+  const std::array<double, 3> wu = quadratic_weights(s);
+  const std::array<double, 3> wv = quadratic_weights(t);
+  const std::array<double, 3> du{s - 0.5, -2 * s, s + 0.5};
+  const std::array<double, 3> dv{t - 0.5, -2 * t, t + 0.5};
   Sample sample;
-  for (std::size_t y = 0; y < 4; ++y) {
-    double row = 0;
-    double row_slope = 0;
-    for (std::size_t x = 0; x < 4; ++x) {
+  for (std::size_t y = 0; y < 3; ++y) {
+    for (std::size_t x = 0; x < 3; ++x) {
       const double value = node(i + static_cast<std::int64_t>(x) - 1, j + static_cast<std::int64_t>(y) - 1);
-      row += cu.weight[x] * value;
-      row_slope += cu.slope[x] * value;
+      sample.value += wu[x] * wv[y] * value;
+      sample.slope_u += du[x] * wv[y] * value;
+      sample.slope_v += wu[x] * dv[y] * value;
     }
-    sample.value += cv.weight[y] * row;
-    sample.slope_u += cv.weight[y] * row_slope;
-    sample.slope_v += cv.slope[y] * row;
   }
   return sample;
 }

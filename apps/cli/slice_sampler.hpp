@@ -15,13 +15,27 @@ struct Sample {
   bool continuous = true;  ///< false next to a jump of the sign (open meshes): no contours there
 };
 
-/// Distances at any place, in node coordinates: smooth (cubic) where the field is continuous.
+/// Distances at any place, in node coordinates, where the field is continuous: cubic curves through the nodes, or a
+/// spline near them.
 class DistanceSampler {
  public:
   explicit DistanceSampler(const Slice& slice);
+  /// Takes the nodes' values there, and stays between them: a cubic without overshoot, which would draw ears at the
+  /// corners of a surface.
   [[nodiscard]] Sample at(double u, double v) const;
+  /// A quadratic spline, which rounds ridges within a node step. Any curve through the nodes waves along a ridge that
+  /// is oblique to the grid, and contours of waves are worms.
+  [[nodiscard]] Sample smoothed(double u, double v) const;
 
  private:
+  /// The cell that a place lies in, the nearest one beyond the border.
+  struct Cell {
+    std::int64_t i, j;
+    double s, t;  ///< in [0, 1] within the cell
+  };
+  [[nodiscard]] Cell cell_at(double u, double v) const;
+  [[nodiscard]] bool is_smooth_around(const Cell& cell) const;
+  [[nodiscard]] Sample bilinear(const Cell& cell) const;
   [[nodiscard]] double node(std::int64_t i, std::int64_t j) const;
   [[nodiscard]] bool is_smooth(std::int64_t i, std::int64_t j) const;
 

@@ -388,6 +388,42 @@ def test_a_sites_picture_has_one_colour_for_each_region(tmp_path, shapes):
     assert np.abs(left[0].astype(int) - right[0].astype(int)).max() > 20
 
 
+def layer_picture(folder, values):
+    """Pixels of the slice of one layer [y, x] of distances, 10 pixels for each node."""
+    header = (f"NRRD0004\ntype: float\ndimension: 3\nsizes: {values.shape[1]} {values.shape[0]} 1\nencoding: raw\n"
+              "endian: little\nspacings: 1 1 1\n\n")
+    (folder / "layer.nrrd").write_bytes(header.encode() + values.astype("<f4").tobytes())
+    run("slice", folder / "layer.nrrd", "-o", folder / "layer.png", "--scale", "10")
+    height, width = 10 * values.shape[0], 10 * values.shape[1]
+    return read_png(folder / "layer.png")[2][20:20 + height, 20:20 + width].astype(int)  # margins of 20
+
+
+def test_a_plateau_at_a_contour_level_is_no_line(tmp_path):
+    y, x = np.mgrid[0:40, 0:40]
+    radius = np.hypot(x - 19.7, y - 19.3) / 10
+    # The plateau is the highest value either way, and so of one colour; 1 is a level and 0.99 is none.
+    at_level, beside = (layer_picture(tmp_path, np.minimum(radius, top))
+                        for top in (1.0, 0.99))
+    corner = (slice(0, 60), slice(0, 60))
+    assert np.ptp(at_level[corner].reshape(-1, 3), axis=0).max() == 0
+    assert np.array_equal(at_level[corner], beside[corner])
+    # Rounding of the plateau's values draws nothing either.
+    noise = np.where((x + y) % 2 == 0, 1, 1 + 1e-7)
+    assert np.ptp(layer_picture(tmp_path, np.minimum(radius, 1) * noise)[corner].reshape(-1, 3), axis=0).max() <= 1
+
+
+def test_ridges_have_no_worms(tmp_path):
+    """Along a ridge oblique to the grid, a contour is crossed once where the field passes its level."""
+    y, x = np.mgrid[0:40, 0:40]
+    across, along = (x - y + 0.3) / math.sqrt(2), (x + y) / math.sqrt(2)
+    pixels = layer_picture(tmp_path, 39.5 - np.abs(across) + 0.02 * along)
+    # The ridge runs from bottom left to top right, 0.3 nodes beside the diagonal of the picture.
+    columns = np.arange(30, 370)
+    ridge = pixels[394 - columns, columns].sum(axis=1)
+    rises = np.diff(ridge)
+    assert (rises > 12).sum() <= 3, "dark spots follow one another along the ridge"
+
+
 def test_pictures_of_every_axis_and_format(shapes, tmp_path):
     for axis in "xyz":
         run("slice", shapes / "sphere.npz", "-o", tmp_path / f"{axis}.png", "--axis", axis, "--index", 0)
