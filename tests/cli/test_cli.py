@@ -7,34 +7,14 @@ import signal
 import struct
 import subprocess
 import time
-import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-BLUM = os.environ.get("BLUM_CLI", "")
+from tool import BLUM, png_rows, run, run_json
+
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
-
-
-def run(*arguments, status=0, timeout=60, warns=False):
-    """Runs the tool and checks its exit status; stderr must hold warnings where they are due and nothing else on
-    success, and one message else."""
-    done = subprocess.run([BLUM, *map(str, arguments)], capture_output=True, timeout=timeout, check=False)
-    out, err = done.stdout.decode(), done.stderr.decode()
-    assert done.returncode == status, f"{arguments}: status {done.returncode}, expected {status}\n{out}\n{err}"
-    if status == 0:
-        lines = err.splitlines()
-        assert bool(lines) == warns and all(line.startswith("blum: warning: ") for line in lines), err
-    else:
-        assert err.startswith("blum: error: "), err
-        assert len(err.strip().splitlines()) <= 3, err
-    return out, err
-
-
-def run_json(*arguments, warns=False):
-    out, _ = run(*arguments, "--json", "-", warns=warns)
-    return json.loads(out)
 
 
 def read_nrrd(path):
@@ -52,66 +32,6 @@ def read_nrrd(path):
     sizes = [int(n) for n in fields["sizes"].split()]
     assert fields["encoding"] == "raw"
     return fields, array.reshape(sizes[::-1])
-
-
-def png_rows(path):
-    """Width, height and filtered rows of a PNG of 8-bit RGB, its checksums tested."""
-    data = Path(path).read_bytes()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    chunks, at = {}, 8
-    while at < len(data):
-        (size,) = struct.unpack(">I", data[at:at + 4])
-        name, body = data[at + 4:at + 8], data[at + 8:at + 8 + size]
-        assert zlib.crc32(name + body) == struct.unpack(">I", data[at + 8 + size:at + 12 + size])[0]
-        chunks[name] = chunks.get(name, b"") + body
-        at += 12 + size
-    width, height, depth, kind = struct.unpack(">IIBB", chunks[b"IHDR"][:10])
-    assert (depth, kind) == (8, 2) and b"IEND" in chunks
-    return width, height, np.frombuffer(zlib.decompress(chunks[b"IDAT"]), dtype=np.uint8).reshape(height, 1 + 3 * width)
-
-
-def read_png(path):
-    """Width, height and pixels [row, column, 3] of a PNG of 8-bit RGB."""
-    width, height, raw = png_rows(path)
-    rows, above = [], np.zeros(3 * width, dtype=np.int64)
-    for line in raw:
-        row = unfilter(int(line[0]), line[1:].astype(np.int64), above)
-        rows.append(row)
-        above = row
-    return width, height, np.array(rows, dtype=np.uint8).reshape(height, width, 3)
-
-
-def unfilter(kind, line, above):
-    if kind == 0:
-        return line
-    if kind == 2:
-        return (line + above) % 256
-    row = np.zeros_like(line)
-    for i, value in enumerate(line):
-        left = row[i - 3] if i >= 3 else 0
-        corner = above[i - 3] if i >= 3 else 0
-        if kind == 1:
-            guess = left
-        elif kind == 3:
-            guess = (left + above[i]) // 2
-        else:
-            estimate = left + above[i] - corner
-            guess = min((left, above[i], corner), key=lambda n, e=estimate: abs(e - n))
-        row[i] = (value + guess) % 256
-    return row
-
-
-@pytest.fixture(scope="module")
-def shapes(tmp_path_factory):
-    """A folder with a sphere, a torus, a ball image, labelled balls, and fields of the first."""
-    folder = tmp_path_factory.mktemp("shapes")
-    run("make", "sphere", "-o", folder / "sphere.ply", "--frequency", 6)
-    run("make", "torus", "-o", folder / "torus.obj", "--ring-segments", 24, "--tube_segments=12")
-    run("make", "ball", "-o", folder / "ball.nrrd", "--size", 24)
-    run("make", "balls", "-o", folder / "balls.npy", "--count", 3)
-    run("field", folder / "sphere.ply", "-o", folder / "sphere.nrrd", "--resolution", 24)
-    run("field", folder / "sphere.ply", "-o", folder / "sphere.npz", "--resolution", 24, "--band", "3v")
-    return folder
 
 
 # ---- The verbs ----
@@ -359,77 +279,6 @@ def test_content_tells_where_the_name_does_not(shapes, tmp_path):
     for name in ("sphere.ply", "torus.obj", "ball.nrrd", "balls.npy"):
         (tmp_path / "shape.dat").write_bytes((shapes / name).read_bytes())
         assert run_json("info", tmp_path / "shape.dat")["format"] == Path(name).suffix[1:].upper()
-
-
-# ---- Pictures ----
-
-
-def test_a_distance_picture_is_right_way_up(tmp_path, shapes):
-    # A field that grows with y alone: the inside (warm) must be at the bottom, the outside (blue) at the top.
-    ramp = np.broadcast_to(np.linspace(-1, 2, 40, dtype="<f4")[None, :, None], (2, 40, 40))
-    header = "NRRD0004\ntype: float\ndimension: 3\nsizes: 40 40 2\nencoding: raw\nendian: little\nspacings: 0.0769231 0.0769231 0.0769231\n\n"
-    (tmp_path / "ramp.nrrd").write_bytes(header.encode() + ramp.tobytes())
-    run("slice", tmp_path / "ramp.nrrd", "-o", tmp_path / "ramp.png", "--scale", "10")
-    width, height, pixels = read_png(tmp_path / "ramp.png")
-    assert width > 440 and height > 420
-    top, bottom = pixels[40, 200].astype(int), pixels[400, 200].astype(int)
-    assert top[2] > top[0] + 30 and bottom[0] > bottom[2] + 30
-
-
-def test_a_sites_picture_has_one_colour_for_each_region(tmp_path, shapes):
-    site = np.zeros((1, 8, 8), dtype="<i4")
-    site[:, :, 4:] = 7
-    distance = np.full((1, 8, 8), 1, dtype="<f4")
-    np.savez(tmp_path / "two.npz", distance=distance, site=site, origin=np.zeros(3), spacing=np.ones(3))
-    run("slice", tmp_path / "two.npz", "-o", tmp_path / "two.png", "--show", "sites", "--scale", "20")
-    _, _, pixels = read_png(tmp_path / "two.png")
-    left, right = pixels[30:170, 30:90].reshape(-1, 3), pixels[30:170, 110:170].reshape(-1, 3)
-    assert len(np.unique(left, axis=0)) == 1 and len(np.unique(right, axis=0)) == 1
-    assert np.abs(left[0].astype(int) - right[0].astype(int)).max() > 20
-
-
-def layer_picture(folder, values):
-    """Pixels of the slice of one layer [y, x] of distances, 10 pixels for each node."""
-    header = (f"NRRD0004\ntype: float\ndimension: 3\nsizes: {values.shape[1]} {values.shape[0]} 1\nencoding: raw\n"
-              "endian: little\nspacings: 1 1 1\n\n")
-    (folder / "layer.nrrd").write_bytes(header.encode() + values.astype("<f4").tobytes())
-    run("slice", folder / "layer.nrrd", "-o", folder / "layer.png", "--scale", "10")
-    height, width = 10 * values.shape[0], 10 * values.shape[1]
-    return read_png(folder / "layer.png")[2][20:20 + height, 20:20 + width].astype(int)  # margins of 20
-
-
-def test_a_plateau_at_a_contour_level_is_no_line(tmp_path):
-    y, x = np.mgrid[0:40, 0:40]
-    radius = np.hypot(x - 19.7, y - 19.3) / 10
-    # The plateau is the highest value either way, and so of one colour; 1 is a level and 0.99 is none.
-    at_level, beside = (layer_picture(tmp_path, np.minimum(radius, top))
-                        for top in (1.0, 0.99))
-    corner = (slice(0, 60), slice(0, 60))
-    assert np.ptp(at_level[corner].reshape(-1, 3), axis=0).max() == 0
-    assert np.array_equal(at_level[corner], beside[corner])
-    # Rounding of the plateau's values draws nothing either.
-    noise = np.where((x + y) % 2 == 0, 1, 1 + 1e-7)
-    assert np.ptp(layer_picture(tmp_path, np.minimum(radius, 1) * noise)[corner].reshape(-1, 3), axis=0).max() <= 1
-
-
-def test_ridges_have_no_worms(tmp_path):
-    """Along a ridge oblique to the grid, a contour is crossed once where the field passes its level."""
-    y, x = np.mgrid[0:40, 0:40]
-    across, along = (x - y + 0.3) / math.sqrt(2), (x + y) / math.sqrt(2)
-    pixels = layer_picture(tmp_path, 39.5 - np.abs(across) + 0.02 * along)
-    # The ridge runs from bottom left to top right, 0.3 nodes beside the diagonal of the picture.
-    columns = np.arange(30, 370)
-    ridge = pixels[394 - columns, columns].sum(axis=1)
-    rises = np.diff(ridge)
-    assert (rises > 12).sum() <= 3, "dark spots follow one another along the ridge"
-
-
-def test_pictures_of_every_axis_and_format(shapes, tmp_path):
-    for axis in "xyz":
-        run("slice", shapes / "sphere.npz", "-o", tmp_path / f"{axis}.png", "--axis", axis, "--index", 0)
-        run("slice", shapes / "sphere.nrrd", "-o", tmp_path / f"{axis}s.png", "--axis", axis, "--show", "sites")
-        width, height, _ = png_rows(tmp_path / f"{axis}.png")
-        assert width >= 800 and 800 <= height < 1000
 
 
 # ---- Failures ----
