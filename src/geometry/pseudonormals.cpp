@@ -35,6 +35,7 @@ Pseudonormals::Pseudonormals(const MeshView& mesh, const SiteTable& sites, const
   });
   // In the order of triangles, on one thread: the sums then have the same bits for any number of threads.
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (t % (std::size_t{1} << 16) == 0) throw_if_cancelled(context);
     const Vec3d& normal = normals_[face_base + t];
     for (std::size_t k = 0; k < 3; ++k) {
       normals_[mesh.triangles[t][k]] += normal * angles[t][k];

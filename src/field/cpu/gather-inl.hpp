@@ -199,10 +199,12 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const CenteredBox
 
 /// Adds the records of the found clusters that may matter to the tile to the order to sort.
 template <Kind kind>
-HWY_NOINLINE void find_records(const BlockTest<1>& test, const Record* records,
+HWY_NOINLINE void find_records(const BlockTest<1>& test, const FieldJob& job,
                                const std::vector<std::uint32_t>& clusters, std::vector<KeyedIndex>& out) {
+  const Record* records = job.sites->kinds[kind].records.data();
   NoClosest closest;
   for (const std::uint32_t cluster : clusters) {
+    if (job.cancel.stop_requested()) return;  // in the middle of a sphere all of its sites are looked at
     for (std::size_t first = cluster * cluster_size; first < (cluster + std::size_t{1}) * cluster_size;
          first += lanes) {
       Columns columns;
@@ -229,9 +231,9 @@ HWY_INLINE void gather_records(const FieldJob& job, const CenteredBox& tile, con
     const Record* records = job.sites->kinds[kind].records.data();
     const auto& clusters = scratch.clusters[kind];
     scratch.order.clear();
-    if (kind == vertex_kind) find_records<vertex_kind>(test, records, clusters, scratch.order);
-    if (kind == edge_kind) find_records<edge_kind>(test, records, clusters, scratch.order);
-    if (kind == face_kind) find_records<face_kind>(test, records, clusters, scratch.order);
+    if (kind == vertex_kind) find_records<vertex_kind>(test, job, clusters, scratch.order);
+    if (kind == edge_kind) find_records<edge_kind>(test, job, clusters, scratch.order);
+    if (kind == face_kind) find_records<face_kind>(test, job, clusters, scratch.order);
     if (kind == sliver_kind) {
       for (const std::uint32_t cluster : clusters) {
         for (std::size_t at = cluster * cluster_size; at < (cluster + std::size_t{1}) * cluster_size; ++at) {

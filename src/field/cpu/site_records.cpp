@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 
 #include "blum/core/parallel.hpp"
 #include "field/cpu/record_build.hpp"
@@ -50,6 +51,10 @@ float store_reaches(const ClusterBuild& cluster, const SurfacePoints& points, st
   return largest;
 }
 
+constexpr std::string_view phase_of(Kind kind) {
+  return kind == face_kind ? "faces" : kind == edge_kind ? "edges" : kind == vertex_kind ? "vertices" : "";
+}
+
 /// Builds all records of a kind.
 /// @param prefetch_sites  callable: up to sixteen sites that are built soon, and how soon.
 /// @param build    callable: up to sixteen sites, their records, their cluster.
@@ -66,7 +71,7 @@ void build_set(std::span<const std::uint32_t> order, const SurfacePoints& points
     const std::size_t first = std::min(cluster * cluster_size, order.size());
     return order.subspan(first, std::min(cluster_size, order.size() - first));
   };
-  parallel_for(context, clusters, clusters_per_range, "", [&](const WorkRange& range) {
+  parallel_for(context, clusters, clusters_per_range, phase_of(kind), [&](const WorkRange& range) {
     for (std::size_t index = range.begin; index < range.end; ++index) {
       prefetch_sites(sites_of(index + 8), Ahead::far);
       prefetch_sites(sites_of(index + 4), Ahead::near);
