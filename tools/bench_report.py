@@ -168,6 +168,10 @@ def goals(results):
                                   results.get(f"signed-band/{name}/512/openvdb"), "2x", "5x"))
     rows += [frame_row(results, "blum", ""), frame_row(results, "blum-signed", ", signed"),
              image_row(results), edt_row(results)]
+    for name in ("bunny/field", "bunny/field-winding", "noisy-1.6M/field", "noisy-1.6M/field-winding",
+                 "noisy-1.6M/closest-points", "image/512"):
+        case = results.get(f"cancel/{name}")
+        rows.append(plain_row(f"longest wait after cancelling, {name}", case, "worst_latency_ms", "ms", "200 ms", "-"))
     for name, mode in (("bunny", "none"), ("bunny", "winding"), ("noisy-1.6M", "none"), ("noisy-1.6M", "winding"),
                        ("image", "shell")):
         case = results.get(f"memory/{name}/512/{mode}")
