@@ -140,16 +140,12 @@ std::size_t count_duplicates(const MeshView& mesh, const SiteTable& sites, const
 void count_pieces(const MeshView& mesh, Topology& result) {
   UnionFind sets(mesh.vertices.size());
   std::vector<bool> is_named(mesh.vertices.size(), false);
+  for_each_named_vertex(mesh, [&](std::uint32_t v) { is_named[v] = true; });
   for (const Triangle& t : mesh.triangles) {
     sets.join(t[0], t[1]);
     sets.join(t[1], t[2]);
-    for (const std::uint32_t v : t) is_named[v] = true;
   }
-  for (const Segment& s : mesh.segments) {
-    sets.join(s[0], s[1]);
-    for (const std::uint32_t v : s) is_named[v] = true;
-  }
-  for (const std::uint32_t p : mesh.points) is_named[p] = true;
+  for (const Segment& s : mesh.segments) sets.join(s[0], s[1]);
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     if (!is_named[v]) continue;
     ++result.named_vertices;

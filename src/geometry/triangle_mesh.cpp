@@ -42,7 +42,7 @@ void for_each_named(const MeshView& mesh, Visit visit) {
 
 Box3 bounds(const MeshView& mesh) {
   Box3 box;
-  for_each_named(mesh, [&](std::uint32_t v, const char*, std::size_t) { box.extend(mesh.vertices[v]); });
+  for_each_named_vertex(mesh, [&](std::uint32_t v) { box.extend(mesh.vertices[v]); });
   return box;
 }
 

@@ -38,6 +38,19 @@ struct TriangleMesh {
   operator MeshView() const { return view(); }  // NOLINT(google-explicit-constructor): a mesh is its view
 };
 
+/// Calls visit(vertex) for each corner of each triangle, each end of each segment and each point, in this order: a
+/// vertex as often as it is named.
+template <class Visit>
+void for_each_named_vertex(const MeshView& mesh, Visit visit) {
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) visit(v);
+  }
+  for (const Segment& segment : mesh.segments) {
+    for (const std::uint32_t v : segment) visit(v);
+  }
+  for (const std::uint32_t v : mesh.points) visit(v);
+}
+
 /// The box around all vertices that a triangle, segment or point names; empty where there are none.
 [[nodiscard]] Box3 bounds(const MeshView& mesh);
 

@@ -40,13 +40,7 @@ void build_adjacency(const MeshView& mesh, const SiteTable& sites, const Context
   const std::size_t vertex_count = mesh.vertices.size();
   const auto edges = sites.edges();
   std::vector<std::uint8_t> is_named(vertex_count, 0);
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) is_named[v] = 1;
-  }
-  for (const Segment& segment : mesh.segments) {
-    for (const std::uint32_t v : segment) is_named[v] = 1;
-  }
-  for (const std::uint32_t v : mesh.points) is_named[v] = 1;
+  for_each_named_vertex(mesh, [&](std::uint32_t v) { is_named[v] = 1; });
   out.named_vertices.clear();
   for (std::uint32_t v = 0; v < vertex_count; ++v) {
     if (is_named[v] != 0) out.named_vertices.push_back(v);

@@ -11,16 +11,9 @@ NormalFrame make_normal_frame(const MeshView& mesh, const GridSpec& grid) {
   frame.direction = grid.direction;
   const bool is_axis_aligned = grid.direction == Mat3{};
   Box3 box;
-  const auto extend = [&](std::uint32_t v) {
+  for_each_named_vertex(mesh, [&](std::uint32_t v) {
     box.extend(is_axis_aligned ? mesh.vertices[v] : grid.direction.transposed_times(mesh.vertices[v]));
-  };
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) extend(v);
-  }
-  for (const Segment& segment : mesh.segments) {
-    for (const std::uint32_t v : segment) extend(v);
-  }
-  for (const std::uint32_t v : mesh.points) extend(v);
+  });
 
   const Vec3d first = grid.direction.transposed_times(grid.origin);
   const Vec3d last = first + Vec3d{static_cast<double>(grid.size[0] - 1) * grid.spacing.x,

@@ -31,13 +31,7 @@ double triangle_distance(const Vec3d& query, const Vec3d& a, const Vec3d& b, con
 }
 
 BruteForce::BruteForce(const MeshView& mesh) : mesh_(mesh), sites_(mesh), named_(mesh.vertices.size(), false) {
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) named_[v] = true;
-  }
-  for (const Segment& segment : mesh.segments) {
-    for (const std::uint32_t v : segment) named_[v] = true;
-  }
-  for (const std::uint32_t v : mesh.points) named_[v] = true;
+  for_each_named_vertex(mesh, [this](std::uint32_t v) { named_[v] = true; });
 }
 
 double BruteForce::site_distance(SiteId id, const Vec3d& query) const {
