@@ -12,7 +12,7 @@
 #include "field/cpu/engine.hpp"
 #include "field/phase_timer.hpp"
 #include "field/sign.hpp"
-#include "field/sign_agreement.hpp"
+#include "field/sign_scan.hpp"
 
 namespace blum {
 namespace {
@@ -72,6 +72,41 @@ void drop_signs(const Context& context, Field& field) {
   });
 }
 
+/// Signs an unsigned field by winding numbers: counted along rows where they are whole, else summed.
+void sign_by_winding(const MeshView& mesh, const SiteTable& sites, const Context& context, Field& field) {
+  if (is_balanced(mesh, sites)) {
+    if (const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, context)) {
+      scan->apply(field, 0, context);
+      return;
+    }
+  }
+  (void)apply_winding_sign(field, mesh, sites, context);
+}
+
+/// Compares the signs of pseudonormals with winding numbers, and takes those where they differ: where the mesh crosses
+/// itself, and where two sheets are so close together that float32 cannot tell which is the closer one.
+void check_normals(const MeshView& mesh, const SiteTable& sites, const SignChoice& choice, const Context& context,
+                   Field& field) {
+  constexpr double undecided = 2e-6;  // of the diagonal: this close to the surface either sign will do
+  const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, context);
+  if (scan && !(scan->apply(field, *choice.level, context) > undecided * common_diagonal(mesh, field.grid))) return;
+  if (!scan) {
+    if (*choice.level != 0) return;  // a heap that is inside out
+    drop_signs(context, field);
+    (void)apply_winding_sign(field, mesh, sites, context);
+  }
+  if (choice.is_automatic) {
+    field.sign_rule = SignRule::winding;
+    field.sign_reason =
+        "winding number above 1/2: the mesh is closed and oriented, but its pseudonormals mislead at some nodes (it "
+        "crosses itself, or has sheets too close together)";
+  } else {
+    field.sign_reason =
+        "pseudonormals, as asked for; and the winding number where they mislead (the mesh crosses itself, or has "
+        "sheets too close together)";
+  }
+}
+
 void show_triangles(const SiteTable& sites, const Context& context, Field& field) {
   parallel_for(context, field.site.size(), nodes_per_range, "", [&](const WorkRange& range) {
     for (std::size_t node = range.begin; node < range.end; ++node) {
@@ -107,13 +142,7 @@ void FieldSolver::State::compute(const MeshView& mesh) {
 
   PhaseTimer connectivity_timer(field.phases);
   engine.set_mesh(mesh, context);
-  SignChoice choice = choose_sign_rule(options.sign, mesh, engine.sites());
-  const Vec3d& spacing = field.grid.spacing;
-  if (choice.is_automatic_normals && options.band && *options.band < std::max({spacing.x, spacing.y, spacing.z})) {
-    choice = {
-        SignRule::winding,
-        "winding number above 1/2: in a band narrower than a grid step the signs of pseudonormals cannot be checked"};
-  }
+  const SignChoice choice = choose_sign_rule(options.sign, mesh, engine.sites());
   connectivity_timer.lap("connectivity");
   const bool with_sides = choice.rule == SignRule::normals;
   const std::vector<std::size_t> unsettled = engine.compute({field.grid, options.band, with_sides}, context, field);
@@ -121,16 +150,8 @@ void FieldSolver::State::compute(const MeshView& mesh) {
   settle_nodes(unsettled, mesh, engine.sites(), with_sides, context, field);
   field.sign_rule = choice.rule;
   field.sign_reason = choice.reason;
-  if (choice.rule == SignRule::winding) {
-    (void)apply_winding_sign(field, mesh, engine.sites(), context);
-  } else if (choice.is_automatic_normals && !signs_agree(field, common_diagonal(mesh, field.grid), context)) {
-    drop_signs(context, field);
-    (void)apply_winding_sign(field, mesh, engine.sites(), context);
-    field.sign_rule = SignRule::winding;
-    field.sign_reason =
-        "winding number above 1/2: the mesh is closed and oriented, but its pseudonormals disagree between "
-        "neighbouring nodes (it crosses itself)";
-  }
+  if (choice.rule == SignRule::winding) sign_by_winding(mesh, engine.sites(), context, field);
+  if (choice.level) check_normals(mesh, engine.sites(), choice, context, field);
   sign_timer.lap("sign");
   if (options.site_ids == SiteIds::triangles) show_triangles(engine.sites(), context, field);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "blum/core/context.hpp"
@@ -16,7 +17,9 @@ namespace blum {
 struct SignChoice {
   SignRule rule = SignRule::none;
   std::string reason;
-  bool is_automatic_normals = false;  ///< `automatic` took pseudonormals: on a grid their signs must also agree
+  bool is_automatic = false;  ///< `automatic` took the rule
+  /// With `normals`: nodes with a winding number above this should be inside; none where that is not known.
+  std::optional<int> level = {};
 };
 
 /// Takes `normals` for `automatic` where the mesh is closed, consistently oriented and its shells face away from the

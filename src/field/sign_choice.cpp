@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -28,29 +29,7 @@ bool has_flat_triangles(const MeshView& mesh) {
   });
 }
 
-/// Whether two faces fold together at an edge by less than a hundredth of a radian: far from such an edge, distances to
-/// both tie in float32, and the pseudonormal of one of them may tell the wrong side.
-bool has_knife_edges(const MeshView& mesh, const SiteTable& sites) {
-  constexpr double largest_cosine = -0.99995;
-  std::vector<Vec3d> first_normal(sites.edge_count());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle& triangle = mesh.triangles[t];
-    const Vec3d& corner = mesh.vertices[triangle[0]];
-    const Vec3d area = cross(mesh.vertices[triangle[1]] - corner, mesh.vertices[triangle[2]] - corner);
-    const double size = length(area);
-    if (!(size > 0)) continue;
-    const Vec3d normal = area / size;
-    for (const EdgeId edge : sites.triangle_edges()[t]) {
-      if (!edge.has_value()) continue;
-      Vec3d& first = first_normal[edge.value];
-      if (dot(first, normal) < largest_cosine) return true;
-      first = normal;
-    }
-  }
-  return false;
-}
-
-SignChoice choose_automatically(const MeshView& mesh, const SiteTable& sites, const Orientation& facts) {
+SignChoice choose_automatically(const MeshView& mesh, const Orientation& facts) {
   const std::string winding = "winding number above 1/2: the mesh ";
   if (!mesh.segments.empty() || !mesh.points.empty()) {
     return {SignRule::winding, winding + "has free segments or points, which have no sides"};
@@ -59,11 +38,8 @@ SignChoice choose_automatically(const MeshView& mesh, const SiteTable& sites, co
   if (facts.outward && has_flat_triangles(mesh)) {
     return {SignRule::winding, winding + "is closed, but has triangles too flat for a normal"};
   }
-  if (facts.outward && has_knife_edges(mesh, sites)) {
-    return {SignRule::winding, winding + "is closed, but folds to a knife edge, where pseudonormals are unsafe"};
-  }
   if (facts.outward) {
-    return {SignRule::normals, "pseudonormals: the mesh is closed, consistently oriented and faces outwards", true};
+    return {SignRule::normals, "pseudonormals: the mesh is closed, consistently oriented and faces outwards", true, 0};
   }
   if (facts.signed_volume < 0) {
     return {
@@ -72,6 +48,15 @@ SignChoice choose_automatically(const MeshView& mesh, const SiteTable& sites, co
   }
   return {SignRule::winding,
           winding + "is closed, but its shells cross each other or do not all face away from the solid"};
+}
+
+/// Whether the mesh would face outwards if all triangles were turned.
+bool faces_inwards(const MeshView& mesh) {
+  std::vector<Triangle> turned(mesh.triangles.begin(), mesh.triangles.end());
+  for (Triangle& t : turned) std::swap(t[0], t[1]);
+  MeshView view = mesh;
+  view.triangles = turned;
+  return orientation(view, SiteTable(view)).outward;
 }
 
 }  // namespace
@@ -84,7 +69,7 @@ SignChoice choose_sign_rule(SignMode mode, const MeshView& mesh, const SiteTable
   }
   if (mode == SignMode::winding) return {SignRule::winding, "winding number above 1/2, as asked for"};
   const Orientation facts = orientation(mesh, sites);
-  if (mode == SignMode::automatic) return choose_automatically(mesh, sites, facts);
+  if (mode == SignMode::automatic) return choose_automatically(mesh, facts);
   if (!facts.closed || !facts.oriented) {
     throw InvalidMesh("signs by normals need a closed, consistently oriented mesh; this one has " +
                       describe_defects(facts) + ": use winding, or weld or repair the mesh");
@@ -93,10 +78,13 @@ SignChoice choose_sign_rule(SignMode mode, const MeshView& mesh, const SiteTable
     throw InvalidMesh(
         "signs by normals were asked for, but the mesh has free segments or points, which have no sides: use winding");
   }
-  if (facts.outward) return {SignRule::normals, "pseudonormals, as asked for"};
-  return {SignRule::normals,
-          "pseudonormals, as asked for, of a mesh whose outer shells do not face outwards: flip it if the sign looks "
-          "inverted"};
+  if (facts.outward) return {SignRule::normals, "pseudonormals, as asked for", false, 0};
+  SignChoice choice{SignRule::normals,
+                    "pseudonormals, as asked for, of a mesh whose shells cross each other or do not all face away from "
+                    "the solid: flip it if the sign looks inverted"};
+  // Inside out, it has a winding number of -1 in the solid, and 0, which these signs call inside, around it.
+  if (faces_inwards(mesh)) choice.level = -1;
+  return choice;
 }
 
 }  // namespace blum

@@ -1,5 +1,6 @@
-// Proves that `auto` keeps the right sign where float32 pseudonormals would not: knife edges, and bands narrower than a
-// grid step; and that caps near the limit of float32 barycentrics keep the promise at their tips.
+// Proves that signs are right where float32 pseudonormals alone would not be: knife edges, thin plates, bands narrower
+// than a grid step, grids far away, shapes that cross; and that caps near the limit of float32 barycentrics keep the
+// promise at their tips.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,14 +12,95 @@
 namespace blum {
 namespace {
 
+void expect_right_signs(const TriangleMesh& mesh, const GridSpec& grid, std::optional<double> band = {}) {
+  const auto nodes = grid.node_count() < 1000 ? test::all_nodes(grid) : test::random_nodes(grid, 1000);
+  for (const SignMode mode : {SignMode::automatic, SignMode::normals, SignMode::winding}) {
+    const Field field = distance_field(mesh, grid, {.sign = mode, .band = band});
+    expect_promise(test::compare_with_brute_force(field, mesh, nodes));
+  }
+}
+
 TEST(FieldSigns, OfAKnifeEdgeAreRight) {
-  for (const double angle : {1e-4, 1e-3, 0.1}) {
+  for (const double angle : {1e-6, 1e-4, 1e-3, 0.1}) {
     const TriangleMesh mesh = make_wedge({.angle = angle, .length = 1, .width = 1});
     const GridSpec grid = grid_around(bounds(mesh), 33);
     for (const std::optional<double> band : {std::optional<double>(), std::optional<double>(0.3 * grid.spacing.x)}) {
-      const Field field = distance_field(mesh, grid, {.band = band});
-      EXPECT_EQ(field.sign_rule, SignRule::winding);
-      expect_promise(test::compare_with_brute_force(field, mesh, test::random_nodes(grid, 3000)));
+      expect_right_signs(mesh, grid, band);
+    }
+  }
+}
+
+/// float32 cannot tell which side of the plate is the closer one.
+TEST(FieldSigns, OfAThinPlateAreRight) {
+  for (const double thickness : {1e-4, 1e-6, 1e-7, 1e-8, 1e-10}) {
+    TriangleMesh mesh = make_box({.segments = {4, 4, 4}});
+    for (Vec3d& p : mesh.vertices) p = {p.x + 0.3 * p.y, p.y, thickness * p.z + 0.2 * p.x};
+    expect_right_signs(mesh, grid_around(bounds(mesh), 33));
+  }
+}
+
+/// Seen from so far away, all sides of the mesh are equally close.
+TEST(FieldSigns, FarFromASmallMeshAreRight) {
+  const TriangleMesh mesh = make_star({});
+  expect_right_signs(mesh, grid_in({{-1e8, -1e8, -1e8}, {1e8, 1e8, 1e8}}, 21));
+}
+
+/// A closed shell that faces outwards, bent into a ring of more than a turn, so that its ends cross.
+TriangleMesh overlapping_ring() {
+  TriangleMesh mesh = make_sphere({.frequency = 10});
+  for (Vec3d& p : mesh.vertices) {
+    const double angle = 3.8 * p.z;
+    const double radius = 1 + 0.4 * p.x;
+    p = {radius * std::cos(angle), radius * std::sin(angle), 0.1 * p.z - 0.4 * p.y};
+  }
+  return mesh;
+}
+
+/// Wrong pseudonormals whose nodes only the surface separates from right ones, and nodes without neighbours.
+TEST(FieldSigns, OfAShellThatCrossesItselfAreRightOnCoarseAndFlatGrids) {
+  const TriangleMesh mesh = overlapping_ring();
+  bool were_normals_wrong = false;
+  for (const std::int64_t n : {2, 3, 5, 9, 20}) {
+    for (const std::int64_t layers : {std::int64_t{1}, n}) {
+      GridSpec grid;
+      grid.size = {n, n, layers};
+      grid.origin = {-1.4, -0.6, 0};
+      grid.spacing = Vec3d{1.2, 1.2, 0.1} * (1.0 / static_cast<double>(n));
+      expect_right_signs(mesh, grid);
+      were_normals_wrong = were_normals_wrong || distance_field(mesh, grid).sign_rule == SignRule::winding;
+    }
+  }
+  EXPECT_TRUE(were_normals_wrong);
+  expect_right_signs(mesh, grid_in({{-1.0, 0.0, 0.0}, {-0.9998, 0.0002, 0.0002}}, 20));
+}
+
+/// A closed mesh with random corners: it crosses itself nearly everywhere.
+TriangleMesh crumpled(std::uint64_t seed) {
+  Random random(seed);
+  TriangleMesh mesh = seed % 2 == 0 ? make_box({}) : make_sphere({.frequency = 2});
+  for (Vec3d& v : mesh.vertices) v += random.in_ball() * (seed % 3 == 0 ? 0.6 : 0.3);
+  return mesh;
+}
+
+TEST(FieldSigns, OfCrumpledMeshesAreRightOnCoarseGrids) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const TriangleMesh mesh = crumpled(seed);
+    GridSpec grid = grid_around(bounds(mesh), 3 + static_cast<int>(seed % 6));
+    if (seed % 5 == 0) grid.size[seed % 3] = 1;
+    expect_promise(test::compare_with_brute_force(distance_field(mesh, grid), mesh, test::all_nodes(grid)));
+  }
+}
+
+/// Asked for explicitly, normals of a mesh that is inside out call the outside inside.
+TEST(FieldSigns, OfThinPlatesThatAreInsideOutFollowTheirNormals) {
+  for (const double thickness : {1e-7, 1e-9}) {  // no node inside
+    TriangleMesh mesh = make_box({.size = {1, 0.9, thickness}});
+    reverse_triangles(mesh);
+    const GridSpec grid = grid_in({{-0.7, -0.6, -0.5}, {0.7, 0.6, 0.5}}, 12);
+    const Field field = distance_field(mesh, grid, {.sign = SignMode::normals});
+    for (const float d : field.distance.span()) {
+      EXPECT_LT(d, 2e-6F);
     }
   }
 }

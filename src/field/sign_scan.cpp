@@ -1,0 +1,231 @@
+#include "field/sign_scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "blum/core/parallel.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t triangles_per_range = 2048;
+constexpr std::size_t vertices_per_range = 16384;
+constexpr std::size_t rows_per_range = 256;
+/// Crossings are counted together after this many of one thread.
+constexpr std::size_t counted_at_once = std::size_t{1} << 16;
+
+struct Crossing {
+  std::size_t slice;
+  std::uint64_t key;  ///< as in SignScan::crossings_
+};
+
+/// Whole numbers k of [0, size) with from <= k < to: the slices (or rows) that have one end at or below, one above.
+struct Cuts {
+  std::int64_t begin, end;
+
+  Cuts(double from, double to, std::int64_t size)
+      : begin(clamped(std::ceil(from), size)), end(clamped(std::ceil(to), size)) {}
+
+ private:
+  /// 0 where the value is not a number: absurdly small spacings overflow.
+  static std::int64_t clamped(double value, std::int64_t size) {
+    if (!(value > 0)) return 0;
+    return value < static_cast<double>(size) ? static_cast<std::int64_t>(value) : size;
+  }
+};
+
+/// A point of a slice.
+struct SlicePoint {
+  double x, y;
+};
+
+/// Positions in units of the grid's spacings, from node (0, 0, 0).
+class NodeFrame {
+ public:
+  explicit NodeFrame(const GridSpec& grid) : origin_(grid.origin) {
+    // The inverse proper, not the transpose: the direction is orthonormal to 1e-6 only.
+    const Vec3d* axis = grid.direction.columns;
+    const double determinant = dot(axis[0], cross(axis[1], axis[2]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      inverse_.columns[k] = cross(axis[(k + 1) % 3], axis[(k + 2) % 3]) / (determinant * grid.spacing[k]);
+    }
+    is_mirrored_ = determinant < 0;
+  }
+
+  [[nodiscard]] Vec3d position(const Vec3d& world) const { return inverse_.transposed_times(world - origin_); }
+  [[nodiscard]] bool is_mirrored() const { return is_mirrored_; }
+
+ private:
+  Vec3d origin_;
+  Mat3 inverse_;
+  bool is_mirrored_ = false;
+};
+
+/// Finds the crossings of triangles, given in units of nodes.
+class Scanner {
+ public:
+  Scanner(const std::array<std::int64_t, 3>& size, bool is_mirrored, std::vector<Crossing>& out)
+      : size_(size), is_mirrored_(is_mirrored), out_(out) {}
+
+  void scan(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    const Cuts slices(std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z}), size_[2]);
+    for (std::int64_t k = slices.begin; k < slices.end; ++k) {
+      const auto z = static_cast<double>(k);
+      const bool above_a = a.z > z, above_b = b.z > z, above_c = c.z > z;
+      // The corner that is alone on its side comes first.
+      if (above_b == above_c) cut(k, a, b, c, above_a);
+      if (above_c == above_a && above_b != above_a) cut(k, b, c, a, above_b);
+      if (above_a == above_b && above_c != above_a) cut(k, c, a, b, above_c);
+    }
+  }
+
+ private:
+  void cut(std::int64_t slice, const Vec3d& alone, const Vec3d& next, const Vec3d& last, bool is_above) {
+    const auto z = static_cast<double>(slice);
+    const SlicePoint p = is_above ? edge_point(next, alone, z) : edge_point(alone, next, z);
+    const SlicePoint q = is_above ? edge_point(last, alone, z) : edge_point(alone, last, z);
+    // With its corner alone above and q at larger y, the triangle faces along x, so that its rows leave the solid.
+    scan_rows(slice, p, q, (q.y > p.y) != (is_above != is_mirrored_));
+  }
+
+  /// Where an edge meets a slice. From its lower to its upper end, so that both of its triangles find the same point
+  /// (this file is compiled without contraction of multiplications and additions).
+  static SlicePoint edge_point(const Vec3d& lower, const Vec3d& upper, double z) {
+    const double t = (z - lower.z) / (upper.z - lower.z);
+    return {lower.x + t * (upper.x - lower.x), lower.y + t * (upper.y - lower.y)};
+  }
+
+  void scan_rows(std::int64_t slice, const SlicePoint& p, const SlicePoint& q, bool goes_in) {
+    const Cuts rows(std::min(p.y, q.y), std::max(p.y, q.y), size_[1]);
+    for (std::int64_t j = rows.begin; j < rows.end; ++j) {
+      const double t = (static_cast<double>(j) - p.y) / (q.y - p.y);
+      const double next = std::floor(p.x + t * (q.x - p.x)) + 1;
+      if (!(next < static_cast<double>(size_[0]))) continue;
+      const std::int64_t node = j * size_[0] + static_cast<std::int64_t>(std::max(next, 0.0));
+      out_.push_back({static_cast<std::size_t>(slice), 2 * static_cast<std::uint64_t>(node) + (goes_in ? 1U : 0U)});
+    }
+  }
+
+  std::array<std::int64_t, 3> size_;
+  bool is_mirrored_;
+  std::vector<Crossing>& out_;
+};
+
+/// Crossings of each stretch of triangles.
+using Found = std::vector<std::vector<Crossing>>;
+
+/// @return  nothing where there are more than `most`.
+std::optional<Found> find_crossings(const MeshView& mesh, const GridSpec& grid, std::size_t most,
+                                    const Context& context) {
+  const NodeFrame frame(grid);
+  std::vector<Vec3d> position(mesh.vertices.size());
+  parallel_for(context, position.size(), vertices_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t v = range.begin; v < range.end; ++v) position[v] = frame.position(mesh.vertices[v]);
+  });
+  const std::size_t count = mesh.triangles.size();
+  Found found((count + triangles_per_range - 1) / triangles_per_range);
+  std::atomic<std::size_t> total{0};
+  parallel_for(context, count, triangles_per_range, "", [&](const WorkRange& range) {
+    std::vector<Crossing>& out = found[range.begin / triangles_per_range];
+    Scanner scanner(grid.size, frame.is_mirrored(), out);
+    std::size_t counted = 0;
+    for (std::size_t t = range.begin; t < range.end && total <= most && !context.cancel.stop_requested(); ++t) {
+      const Triangle& triangle = mesh.triangles[t];
+      scanner.scan(position[triangle[0]], position[triangle[1]], position[triangle[2]]);
+      if (out.size() - counted < counted_at_once && t + 1 < range.end) continue;
+      total += out.size() - counted;
+      counted = out.size();
+    }
+  });
+  if (total > most) return std::nullopt;
+  return found;
+}
+
+/// Gives a run of nodes their side; returns the largest distance that had the other sign.
+float apply_side(float* distance, std::size_t count, bool is_inside) {
+  // Written for the vectoriser: nearly always there is nothing to change, or everything.
+  const float sign = is_inside ? 1.0F : -1.0F;
+  int wrong = 0;
+  for (std::size_t i = 0; i < count; ++i) wrong |= static_cast<int>(sign * distance[i] > 0);
+  if (wrong == 0) return 0;
+  float largest = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float value = sign * distance[i];
+    largest = value > largest ? value : largest;
+    distance[i] = value > 0 ? -distance[i] : distance[i];
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::optional<SignScan> SignScan::make(const MeshView& mesh, const GridSpec& grid, const Context& context) {
+  const std::size_t most = grid.node_count() / 4 + (std::size_t{1} << 20);
+  std::optional<Found> found = find_crossings(mesh, grid, most, context);
+  if (!found) return std::nullopt;
+  SignScan scan(grid);
+  for (const auto& part : *found) {
+    for (const Crossing& crossing : part) ++scan.slices_[crossing.slice];
+  }
+  std::size_t total = 0;
+  for (std::size_t& slice : scan.slices_) total += std::exchange(slice, total);
+  throw_if_cancelled(context);
+  scan.crossings_.resize(total);
+  std::vector<std::size_t> next = scan.slices_;
+  for (auto& part : *found) {
+    for (const Crossing& crossing : part) scan.crossings_[next[crossing.slice]++] = crossing.key;
+    part = {};
+  }
+  parallel_for(context, scan.slices_.size() - 1, 1, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      std::sort(scan.crossings_.begin() + static_cast<std::ptrdiff_t>(scan.slices_[k]),
+                scan.crossings_.begin() + static_cast<std::ptrdiff_t>(scan.slices_[k + 1]));
+    }
+  });
+  return scan;
+}
+
+float SignScan::apply(Field& field, int level, const Context& context) const {
+  const auto width = static_cast<std::size_t>(grid_.size[0]);
+  const auto rows_per_slice = static_cast<std::size_t>(grid_.size[1]);
+  const std::size_t rows = rows_per_slice * static_cast<std::size_t>(grid_.size[2]);
+  std::vector<float> largest((rows + rows_per_range - 1) / rows_per_range, 0.0F);
+  parallel_for(context, rows, rows_per_range, "", [&](const WorkRange& range) {
+    float worst = 0;
+    for (std::size_t row = range.begin; row < range.end; ++row) {
+      float* distance = field.distance.data() + row * width;
+      const std::size_t slice = row / rows_per_slice;
+      const std::size_t first = row % rows_per_slice * width;
+      const auto end = crossings_.begin() + static_cast<std::ptrdiff_t>(slices_[slice + 1]);
+      auto crossing =
+          std::lower_bound(crossings_.begin() + static_cast<std::ptrdiff_t>(slices_[slice]), end, 2 * first);
+      int winding = 0;
+      std::size_t node = 0;
+      for (; crossing != end && *crossing / 2 < first + width; ++crossing) {
+        const std::size_t next = *crossing / 2 - first;
+        worst = std::max(worst, apply_side(distance + node, next - node, winding > level));
+        winding += *crossing % 2 != 0 ? 1 : -1;
+        node = next;
+      }
+      worst = std::max(worst, apply_side(distance + node, width - node, winding > level));
+    }
+    largest[range.begin / rows_per_range] = worst;
+  });
+  return largest.empty() ? 0.0F : *std::max_element(largest.begin(), largest.end());
+}
+
+bool is_balanced(const MeshView& mesh, const SiteTable& sites) {
+  std::vector<std::int32_t> forward(sites.edge_count(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const EdgeId edge = sites.triangle_edges()[t][k];
+      if (edge.has_value()) forward[edge.value] += mesh.triangles[t][k] < mesh.triangles[t][(k + 1) % 3] ? 1 : -1;
+    }
+  }
+  return std::all_of(forward.begin(), forward.end(), [](std::int32_t count) { return count == 0; });
+}
+
+}  // namespace blum

@@ -1,0 +1,152 @@
+// Proves that winding numbers counted along the rows of a grid are those of the full sum, node by node, on any balanced
+// mesh: crossing, folded, flat, aligned with the nodes; and that nothing else is taken for balanced.
+#include "field/sign_scan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "blum/core/random.hpp"
+#include "blum/field/reference.hpp"
+#include "blum/geometry/generators.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+/// Compares all nodes further than 1e-12 of the diagonal from the surface; starts from random signs.
+void expect_true_signs(const MeshView& mesh, const GridSpec& grid) {
+  ASSERT_TRUE(is_balanced(mesh, SiteTable(mesh)));
+  const reference::BruteForce exact(mesh);
+  Box3 box = bounds(mesh);
+  box.extend(bounds(grid));
+  Field field;
+  field.grid = grid;
+  field.distance = Buffer<float>(grid.node_count(), 1.0F);
+  Random random(5);
+  for (float& d : field.distance.span()) d = random.uniform() < 0.5 ? -1.0F : 1.0F;
+  const std::optional<SignScan> scan = SignScan::make(mesh, grid, {.threads = 3});
+  ASSERT_TRUE(scan.has_value());
+  scan->apply(field, 0, {.threads = 2});
+  std::size_t wrong = 0;
+  std::size_t checked = 0;
+  for (std::int64_t z = 0; z < grid.size[2]; ++z) {
+    for (std::int64_t y = 0; y < grid.size[1]; ++y) {
+      for (std::int64_t x = 0; x < grid.size[0]; ++x) {
+        const Vec3d query = grid.position(x, y, z);
+        if (exact.nearest(query).distance < 1e-12 * box.diagonal()) continue;
+        ++checked;
+        wrong += (field.distance[grid.index(x, y, z)] < 0) != (reference::winding_number(mesh, query) > 0.5) ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(checked, grid.node_count() / 8);
+}
+
+/// Tetrahedra, some inside out, some flat, with corners anywhere or on a lattice.
+TriangleMesh tetrahedra(std::size_t count, bool on_lattice, std::uint64_t seed) {
+  Random random(seed);
+  TriangleMesh mesh;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    for (int corner = 0; corner < 4; ++corner) {
+      Vec3d p = random.in_cube() * 8;
+      if (on_lattice) p = {std::floor(p.x), std::floor(p.y), std::floor(p.z)};
+      mesh.vertices.push_back(p);
+    }
+    const std::uint32_t v = 4 * k;
+    mesh.triangles.insert(mesh.triangles.end(),
+                          {{v, v + 2, v + 1}, {v, v + 1, v + 3}, {v + 1, v + 2, v + 3}, {v, v + 3, v + 2}});
+  }
+  return mesh;
+}
+
+TEST(SignScan, IsRightOnClosedShapes) {
+  for (const TriangleMesh& mesh : {make_sphere({.frequency = 5}), make_star({}), make_void_cube({}), make_gear({}),
+                                   make_bodies({}), make_torus_knot({}), make_box({})}) {
+    expect_true_signs(mesh, grid_around(bounds(mesh), 24));
+  }
+}
+
+TEST(SignScan, IsRightWhereShapesCrossFoldAndLieOnTheNodes) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    for (const bool on_lattice : {false, true}) {
+      const TriangleMesh mesh = tetrahedra(1 + 2 * seed, on_lattice, seed);
+      GridSpec grid;
+      grid.size = {17, 19, 18};
+      grid.spacing = {0.5, 0.5, 0.5};
+      expect_true_signs(mesh, grid);
+    }
+  }
+}
+
+TEST(SignScan, IsRightOnThinTurnedAndMirroredGrids) {
+  const TriangleMesh mesh = tetrahedra(9, true, 3);
+  for (const double mirror : {1.0, -1.0}) {
+    for (const std::array<std::int64_t, 3> size :
+         {std::array<std::int64_t, 3>{40, 37, 1}, {1, 40, 9}, {33, 1, 8}, {1, 1, 60}, {1, 1, 1}, {17, 9, 16}}) {
+      GridSpec grid;
+      grid.size = size;
+      grid.spacing = {0.26, 0.28, 0.21};
+      grid.origin = {1.1, -0.9, 0.4};
+      grid.direction.columns[0] = {0.8, 0.6, 0};
+      grid.direction.columns[1] = {-0.6 * mirror, 0.8 * mirror, 0};
+      expect_true_signs(mesh, grid);
+    }
+  }
+}
+
+TEST(SignScan, IsRightFarFromTheOriginAndAtAnyScale) {
+  const TriangleMesh star = make_star({});
+  for (const double scale : {1e-9, 1e9}) {
+    const TriangleMesh mesh = test::moved(star, scale);
+    expect_true_signs(mesh, grid_around(bounds(mesh), 16));
+  }
+  const TriangleMesh far = test::moved(star, 1, {1e6, 1e6, -1e6});
+  expect_true_signs(far, grid_around(bounds(far), 16));
+  expect_true_signs(star, grid_in({{-1e7, -1e7, -1e7}, {1e7, 1e7, 1e7}}, 9));
+}
+
+TEST(SignScan, TellsTheLargestWrongDistance) {
+  const TriangleMesh mesh = make_box({});
+  Field field;
+  field.grid = grid_around(bounds(mesh), 9);
+  field.distance = Buffer<float>(field.grid.node_count(), 1.0F);
+  const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, {});
+  field.distance[field.grid.index(4, 4, 4)] = 3.0F;  // inside
+  EXPECT_EQ(scan->apply(field, 0, {}), 3.0F);
+  EXPECT_EQ(field.distance[field.grid.index(4, 4, 4)], -3.0F);
+  EXPECT_EQ(scan->apply(field, 0, {}), 0.0F);
+  field.distance[0] = -2.0F;  // outside
+  EXPECT_EQ(scan->apply(field, 0, {}), 2.0F);
+  EXPECT_EQ(field.distance[0], 2.0F);
+}
+
+TEST(SignScan, GivesUpOnHeapsOfOverlappingShapes) {
+  TriangleMesh heap;
+  for (int k = 0; k < 4000; ++k) append(heap, make_box({}));
+  const GridSpec grid = grid_around(bounds(heap), 40);
+  EXPECT_FALSE(SignScan::make(heap, grid, {}).has_value());
+}
+
+TEST(SignScan, BalanceIsOfEveryEdge) {
+  TriangleMesh mesh = make_sphere({.frequency = 3});
+  EXPECT_TRUE(is_balanced(mesh, SiteTable(mesh)));
+  mesh.triangles.push_back({2, 2, 5});  // no edge of positive length, or the same one there and back
+  EXPECT_TRUE(is_balanced(mesh, SiteTable(mesh)));
+  mesh.triangles.pop_back();
+  std::swap(mesh.triangles[4][0], mesh.triangles[4][1]);
+  EXPECT_FALSE(is_balanced(mesh, SiteTable(mesh)));
+  mesh.triangles.erase(mesh.triangles.begin() + 4);
+  EXPECT_FALSE(is_balanced(mesh, SiteTable(mesh)));
+  // Four triangles at an edge, two each way.
+  TriangleMesh touching = make_box({});
+  append(touching, make_box({}));
+  for (Triangle& t : touching.triangles) {
+    for (std::uint32_t& v : t) v %= 8;
+  }
+  EXPECT_TRUE(is_balanced(touching, SiteTable(touching)));
+}
+
+}  // namespace
+}  // namespace blum
