@@ -19,8 +19,10 @@ namespace blum {
 
 /// How the sign of a field is asked for.
 enum class SignMode : std::uint8_t {
-  automatic,  ///< `normals` where the mesh is closed, consistently oriented and faces outwards, else `winding`
-  normals,    ///< angle-weighted pseudonormals (Baerentzen, Aanaes 2005); watertight, consistently oriented meshes
+  automatic,  ///< `normals` where the mesh is closed, consistently oriented, faces outwards and they are right at every
+              ///< node; else `winding`
+  normals,    ///< angle-weighted pseudonormals (Baerentzen, Aanaes 2005); watertight, consistently oriented meshes;
+              ///< checked by winding numbers
   winding,    ///< generalized winding number (Jacobson 2013) above 1/2 is inside; any soup
   none        ///< unsigned
 };
@@ -73,8 +75,10 @@ struct Field {
 /// @param mesh  any soup of triangles, segments and points (see MeshView); it must pass validate(mesh).
 /// @param grid  at most 2^40 nodes; must pass validate(grid).
 /// @return      with D the diagonal of the box around mesh and grid: distances within 1e-6 D of exact; sites whose own
-///              exact distance is within 1e-6 D of the smallest; signs right at nodes further than 1e-6 D from the
-///              surface. The same bytes for any number of threads.
+///              exact distance is within 1e-6 D of the smallest; at nodes further than 1e-6 D from the surface, signs
+///              those of the winding number (of `normals`, those of the orientation: inverted for meshes that are
+///              inside out, and not defined where closed shells neither all face the solid nor all face away from it,
+///              or cross). The same bytes for any number of threads.
 /// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, Cancelled.
 /// Cost: about O(nodes + sites log sites); 8 bytes per node. Method: docs/theory/fields.md (Sud 2006, ch. 2).
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {},
