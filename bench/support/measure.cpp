@@ -49,7 +49,7 @@ Times median(std::vector<Times> runs) {
 
 int run_count(double seconds) {
   if (const char* asked = std::getenv("BLUM_BENCH_RUNS")) return std::max(1, std::atoi(asked));
-  return seconds > 20 ? 1 : seconds > 2 ? 3 : 5;
+  return seconds > 20 ? 1 : seconds > 2 ? 3 : seconds > 0.3 ? 5 : 25;
 }
 
 Times time_runs(const std::function<void()>& body) {

@@ -30,7 +30,8 @@ struct Times {
 /// Medians, of wall and of CPU seconds apart.
 [[nodiscard]] Times median(std::vector<Times> runs);
 
-/// How often to run what took `seconds` at first: once above 20 s, 3 times, or 5 below 2 s. BLUM_BENCH_RUNS in the
+/// How often to run what took `seconds` at first: once above 20 s, 3 times, 5 below 2 s, or 25 below 0.3 s
+/// (the first few still touch fresh memory). BLUM_BENCH_RUNS in the
 /// environment sets another number.
 [[nodiscard]] int run_count(double seconds);
 

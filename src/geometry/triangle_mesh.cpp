@@ -1,5 +1,6 @@
 #include "blum/geometry/triangle_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -11,9 +12,7 @@ namespace {
 
 constexpr double coordinate_limit = 1e150;
 
-bool is_usable(const MeshView& mesh, std::uint32_t vertex) {
-  if (vertex >= mesh.vertices.size()) return false;
-  const Vec3d& p = mesh.vertices[vertex];
+bool is_usable(const Vec3d& p) {
   return std::abs(p.x) <= coordinate_limit && std::abs(p.y) <= coordinate_limit && std::abs(p.z) <= coordinate_limit;
 }
 
@@ -54,8 +53,12 @@ void validate(const MeshView& mesh) {
       mesh.segments.size() > max_id_count) {
     throw InvalidMesh("the mesh has more than 2^31 - 1 vertices, triangles or segments");
   }
+  // Vertices are named several times each: only where one is unusable does it matter who names it.
+  std::uint32_t largest = 0;
+  for_each_named_vertex(mesh, [&](std::uint32_t v) { largest = std::max(largest, v); });
+  if (largest < mesh.vertices.size() && std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_usable)) return;
   for_each_named(mesh, [&](std::uint32_t v, const char* what, std::size_t index) {
-    if (!is_usable(mesh, v)) throw_unusable(mesh, v, what, index);
+    if (v >= mesh.vertices.size() || !is_usable(mesh.vertices[v])) throw_unusable(mesh, v, what, index);
   });
 }
 

@@ -77,7 +77,7 @@ void Engine::set_mesh(const MeshView& mesh, const Context& context) {
 }
 
 void Engine::build_records(const Request& request, const Context& context) {
-  frame_ = make_normal_frame(mesh_, request.grid);
+  frame_ = make_normal_frame(mesh_, adjacency_.named_vertices, request.grid);
   positions_.resize(mesh_.vertices.size());
   const auto& named = adjacency_.named_vertices;
   parallel_for(context, named.size(), 1 << 14, "", [&](const WorkRange& range) {

@@ -6,14 +6,14 @@
 
 namespace blum::cpu {
 
-NormalFrame make_normal_frame(const MeshView& mesh, const GridSpec& grid) {
+NormalFrame make_normal_frame(const MeshView& mesh, std::span<const std::uint32_t> named, const GridSpec& grid) {
   NormalFrame frame;
   frame.direction = grid.direction;
   const bool is_axis_aligned = grid.direction == Mat3{};
   Box3 box;
-  for_each_named_vertex(mesh, [&](std::uint32_t v) {
+  for (const std::uint32_t v : named) {
     box.extend(is_axis_aligned ? mesh.vertices[v] : grid.direction.transposed_times(mesh.vertices[v]));
-  });
+  }
 
   const Vec3d first = grid.direction.transposed_times(grid.origin);
   const Vec3d last = first + Vec3d{static_cast<double>(grid.size[0] - 1) * grid.spacing.x,
