@@ -34,13 +34,6 @@ void check_site_ids(const MeshView& mesh, const FieldOptions& options) {
   }
 }
 
-/// Diagonal of the box around mesh and grid, which the precision promise refers to.
-double common_diagonal(const MeshView& mesh, const GridSpec& grid) {
-  Box3 box = bounds(mesh);
-  box.extend(bounds(grid));
-  return box.diagonal();
-}
-
 /// Finishes nodes that float32 left open: exact distance and site, and the side by its pseudonormal.
 void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, const SiteTable& sites, bool with_sides,
                   const Context& context, Field& field) {
@@ -65,45 +58,46 @@ void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, c
   });
 }
 
-void drop_signs(const Context& context, Field& field) {
-  parallel_for(context, field.distance.size(), nodes_per_range, "", [&](const WorkRange& range) {
-    for (std::size_t node = range.begin; node < range.end; ++node)
-      field.distance[node] = std::abs(field.distance[node]);
-  });
-}
-
 /// Signs an unsigned field by winding numbers: counted along rows where they are whole, else summed.
 void sign_by_winding(const MeshView& mesh, const SiteTable& sites, const Context& context, Field& field) {
   if (is_balanced(mesh, sites)) {
     if (const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, context)) {
-      scan->apply(field, 0, context);
+      (void)scan->apply(field, 0, context);
       return;
     }
   }
   (void)apply_winding_sign(field, mesh, sites, context);
 }
 
-/// Compares the signs of pseudonormals with winding numbers, and takes those where they differ: where the mesh crosses
-/// itself, and where two sheets are so close together that float32 cannot tell which is the closer one.
-void check_normals(const MeshView& mesh, const SiteTable& sites, const SignChoice& choice, const Context& context,
-                   Field& field) {
-  constexpr double undecided = 2e-6;  // of the diagonal: this close to the surface either sign will do
-  const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, context);
-  if (scan && !(scan->apply(field, *choice.level, context) > undecided * common_diagonal(mesh, field.grid))) return;
-  if (!scan) {
-    if (*choice.level != 0) return;  // a heap that is inside out
-    drop_signs(context, field);
+void invert_signs(const Context& context, Field& field) {
+  parallel_for(context, field.distance.size(), nodes_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t node = range.begin; node < range.end; ++node) {
+      if (field.distance[node] != 0) field.distance[node] = -field.distance[node];
+    }
+  });
+}
+
+/// Signs an unsigned field of a closed mesh as its normals do. Its winding numbers tell the same sides, without being
+/// misled where the mesh crosses itself or where float32 cannot tell which of two sheets is the closer one.
+void sign_by_orientation(const MeshView& mesh, const SiteTable& sites, const SignChoice& choice, const Context& context,
+                         Field& field) {
+  bool is_simple = false;
+  if (const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, context)) {
+    is_simple = scan->apply(field, *choice.level, context);
+  } else if (*choice.level == 0) {
     (void)apply_winding_sign(field, mesh, sites, context);
+  } else {
+    std::vector<Triangle> turned(mesh.triangles.begin(), mesh.triangles.end());
+    for (Triangle& t : turned) std::swap(t[0], t[1]);
+    (void)apply_winding_sign(field, {mesh.vertices, turned, {}, {}}, sites, context);
+    invert_signs(context, field);
   }
+  if (is_simple) return;
   if (choice.is_automatic) {
     field.sign_rule = SignRule::winding;
-    field.sign_reason =
-        "winding number above 1/2: the mesh is closed and oriented, but its pseudonormals mislead at some nodes (it "
-        "crosses itself, or has sheets too close together)";
+    field.sign_reason = "winding number above 1/2: the mesh is closed and oriented, but it crosses itself";
   } else {
-    field.sign_reason =
-        "pseudonormals, as asked for; and the winding number where they mislead (the mesh crosses itself, or has "
-        "sheets too close together)";
+    field.sign_reason += "; the mesh crosses itself: inside is what lies in any of the overlapping parts";
   }
 }
 
@@ -144,14 +138,14 @@ void FieldSolver::State::compute(const MeshView& mesh) {
   engine.set_mesh(mesh, context);
   const SignChoice choice = choose_sign_rule(options.sign, mesh, engine.sites());
   connectivity_timer.lap("connectivity");
-  const bool with_sides = choice.rule == SignRule::normals;
+  const bool with_sides = choice.rule == SignRule::normals && !choice.level;
   const std::vector<std::size_t> unsettled = engine.compute({field.grid, options.band, with_sides}, context, field);
   PhaseTimer sign_timer(field.phases);
   settle_nodes(unsettled, mesh, engine.sites(), with_sides, context, field);
   field.sign_rule = choice.rule;
   field.sign_reason = choice.reason;
   if (choice.rule == SignRule::winding) sign_by_winding(mesh, engine.sites(), context, field);
-  if (choice.level) check_normals(mesh, engine.sites(), choice, context, field);
+  if (choice.level) sign_by_orientation(mesh, engine.sites(), choice, context, field);
   sign_timer.lap("sign");
   if (options.site_ids == SiteIds::triangles) show_triangles(engine.sites(), context, field);
 }

@@ -18,7 +18,7 @@ struct SignChoice {
   SignRule rule = SignRule::none;
   std::string reason;
   bool is_automatic = false;  ///< `automatic` took the rule
-  /// With `normals`: nodes with a winding number above this should be inside; none where that is not known.
+  /// With `normals`: nodes with a winding number above this are inside; none where only pseudonormals tell.
   std::optional<int> level = {};
 };
 

@@ -39,7 +39,7 @@ SignChoice choose_automatically(const MeshView& mesh, const Orientation& facts) 
     return {SignRule::winding, winding + "is closed, but has triangles too flat for a normal"};
   }
   if (facts.outward) {
-    return {SignRule::normals, "pseudonormals: the mesh is closed, consistently oriented and faces outwards", true, 0};
+    return {SignRule::normals, "the mesh is closed, consistently oriented and faces outwards", true, 0};
   }
   if (facts.signed_volume < 0) {
     return {
@@ -78,9 +78,9 @@ SignChoice choose_sign_rule(SignMode mode, const MeshView& mesh, const SiteTable
     throw InvalidMesh(
         "signs by normals were asked for, but the mesh has free segments or points, which have no sides: use winding");
   }
-  if (facts.outward) return {SignRule::normals, "pseudonormals, as asked for", false, 0};
+  if (facts.outward) return {SignRule::normals, "orientation, as asked for", false, 0};
   SignChoice choice{SignRule::normals,
-                    "pseudonormals, as asked for, of a mesh whose shells cross each other or do not all face away from "
+                    "orientation, as asked for, of a mesh whose shells cross each other or do not all face away from "
                     "the solid: flip it if the sign looks inverted"};
   // Inside out, it has a winding number of -1 in the solid, and 0, which these signs call inside, around it.
   if (faces_inwards(mesh)) choice.level = -1;

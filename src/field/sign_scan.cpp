@@ -144,20 +144,9 @@ std::optional<Found> find_crossings(const MeshView& mesh, const GridSpec& grid, 
   return found;
 }
 
-/// Gives a run of nodes their side; returns the largest distance that had the other sign.
-float apply_side(float* distance, std::size_t count, bool is_inside) {
-  // Written for the vectoriser: nearly always there is nothing to change, or everything.
-  const float sign = is_inside ? 1.0F : -1.0F;
-  int wrong = 0;
-  for (std::size_t i = 0; i < count; ++i) wrong |= static_cast<int>(sign * distance[i] > 0);
-  if (wrong == 0) return 0;
-  float largest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float value = sign * distance[i];
-    largest = value > largest ? value : largest;
-    distance[i] = value > 0 ? -distance[i] : distance[i];
-  }
-  return largest;
+/// Negates what is not zero.
+void negate(float* distance, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) distance[i] = distance[i] > 0 ? -distance[i] : distance[i];
 }
 
 }  // namespace
@@ -188,13 +177,12 @@ std::optional<SignScan> SignScan::make(const MeshView& mesh, const GridSpec& gri
   return scan;
 }
 
-float SignScan::apply(Field& field, int level, const Context& context) const {
+bool SignScan::apply(Field& field, int level, const Context& context) const {
   const auto width = static_cast<std::size_t>(grid_.size[0]);
   const auto rows_per_slice = static_cast<std::size_t>(grid_.size[1]);
   const std::size_t rows = rows_per_slice * static_cast<std::size_t>(grid_.size[2]);
-  std::vector<float> largest((rows + rows_per_range - 1) / rows_per_range, 0.0F);
+  std::atomic<bool> is_simple{true};
   parallel_for(context, rows, rows_per_range, "", [&](const WorkRange& range) {
-    float worst = 0;
     for (std::size_t row = range.begin; row < range.end; ++row) {
       float* distance = field.distance.data() + row * width;
       const std::size_t slice = row / rows_per_slice;
@@ -203,18 +191,22 @@ float SignScan::apply(Field& field, int level, const Context& context) const {
       auto crossing =
           std::lower_bound(crossings_.begin() + static_cast<std::ptrdiff_t>(slices_[slice]), end, 2 * first);
       int winding = 0;
+      const auto settle = [&](std::size_t node, std::size_t next) {
+        if (node == next) return;
+        if (winding > level) negate(distance + node, next - node);
+        if (winding != level && winding != level + 1) is_simple.store(false, std::memory_order_relaxed);
+      };
       std::size_t node = 0;
       for (; crossing != end && *crossing / 2 < first + width; ++crossing) {
         const std::size_t next = *crossing / 2 - first;
-        worst = std::max(worst, apply_side(distance + node, next - node, winding > level));
+        settle(node, next);
         winding += *crossing % 2 != 0 ? 1 : -1;
         node = next;
       }
-      worst = std::max(worst, apply_side(distance + node, width - node, winding > level));
+      settle(node, width);
     }
-    largest[range.begin / rows_per_range] = worst;
   });
-  return largest.empty() ? 0.0F : *std::max_element(largest.begin(), largest.end());
+  return is_simple;
 }
 
 bool is_balanced(const MeshView& mesh, const SiteTable& sites) {

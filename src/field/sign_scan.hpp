@@ -32,13 +32,14 @@ class SignScan {
   /// surface.
   [[nodiscard]] static std::optional<SignScan> make(const MeshView& mesh, const GridSpec& grid, const Context& context);
 
-  /// Makes the distances of nodes inside negative and those of others positive.
-  /// @param field  of this grid, with or without signs. Zeros stay as they are.
+  /// Negates the distances of nodes inside.
+  /// @param field  of this grid, unsigned. Zeros stay as they are.
   /// @param level  nodes with a winding number above it are inside: 0, or -1 to follow the normals of meshes that are
   ///               inside out.
-  /// @return       the largest distance that had the other sign; 0 where there was none.
-  /// Cost: one pass over the distances; those of right sign are only read.
-  float apply(Field& field, int level, const Context& context) const;
+  /// @return       whether every node has the winding number `level` or `level` + 1, as those of a mesh that does not
+  ///               cross itself have.
+  /// Cost: one pass over the distances inside.
+  bool apply(Field& field, int level, const Context& context) const;
 
  private:
   explicit SignScan(const GridSpec& grid) : grid_(grid), slices_(static_cast<std::size_t>(grid.size[2]) + 1) {}

@@ -105,6 +105,18 @@ TEST(FieldSigns, OfThinPlatesThatAreInsideOutFollowTheirNormals) {
   }
 }
 
+/// So many crossings that they are not counted one by one.
+TEST(FieldSigns, OfHeapsOfCoincidentBoxesAreRightEitherWayRound) {
+  TriangleMesh mesh;
+  for (int k = 0; k < 1500; ++k) append(mesh, make_box({}));
+  const GridSpec grid = grid_in({{-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8}}, 33);
+  const std::size_t inside = grid.index(16, 16, 16);
+  EXPECT_LT(distance_field(mesh, grid).distance[inside], 0);
+  EXPECT_GT(distance_field(mesh, grid).distance[0], 0);
+  reverse_triangles(mesh);
+  EXPECT_GT(distance_field(mesh, grid, {.sign = SignMode::normals}).distance[inside], 0);
+}
+
 TEST(FieldDistances, AtTheTipsOfCapsKeepThePromise) {
   for (const double height : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4}) {
     TriangleMesh mesh;

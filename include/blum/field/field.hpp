@@ -19,12 +19,13 @@ namespace blum {
 
 /// How the sign of a field is asked for.
 enum class SignMode : std::uint8_t {
-  automatic,  ///< `normals` where the mesh is closed, consistently oriented, faces outwards and they are right at every
-              ///< node; else `winding`
-  normals,    ///< angle-weighted pseudonormals (Baerentzen, Aanaes 2005); watertight, consistently oriented meshes;
-              ///< checked by winding numbers
-  winding,    ///< generalized winding number (Jacobson 2013) above 1/2 is inside; any soup
-  none        ///< unsigned
+  automatic,  ///< `normals` where the mesh is closed, consistently oriented and faces outwards, and no node shows that
+              ///< it crosses itself; else `winding`
+  normals,  ///< the side that the orientation of a closed, consistently oriented mesh tells. Exact: crossings are
+            ///< counted along the grid's rows. Angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide only where
+            ///< shells cross or face different ways
+  winding,  ///< generalized winding number (Jacobson 2013) above 1/2 is inside; any soup
+  none      ///< unsigned
 };
 
 /// How the sign of a field was found.

@@ -14,7 +14,7 @@
 namespace blum {
 namespace {
 
-/// Compares all nodes further than 1e-12 of the diagonal from the surface; starts from random signs.
+/// Compares all nodes further than 1e-12 of the diagonal from the surface.
 void expect_true_signs(const MeshView& mesh, const GridSpec& grid) {
   ASSERT_TRUE(is_balanced(mesh, SiteTable(mesh)));
   const reference::BruteForce exact(mesh);
@@ -23,8 +23,6 @@ void expect_true_signs(const MeshView& mesh, const GridSpec& grid) {
   Field field;
   field.grid = grid;
   field.distance = Buffer<float>(grid.node_count(), 1.0F);
-  Random random(5);
-  for (float& d : field.distance.span()) d = random.uniform() < 0.5 ? -1.0F : 1.0F;
   const std::optional<SignScan> scan = SignScan::make(mesh, grid, {.threads = 3});
   ASSERT_TRUE(scan.has_value());
   scan->apply(field, 0, {.threads = 2});
@@ -107,19 +105,26 @@ TEST(SignScan, IsRightFarFromTheOriginAndAtAnyScale) {
   expect_true_signs(star, grid_in({{-1e7, -1e7, -1e7}, {1e7, 1e7, 1e7}}, 9));
 }
 
-TEST(SignScan, TellsTheLargestWrongDistance) {
-  const TriangleMesh mesh = make_box({});
+bool is_simple(const TriangleMesh& mesh, int level = 0) {
   Field field;
   field.grid = grid_around(bounds(mesh), 9);
-  field.distance = Buffer<float>(field.grid.node_count(), 1.0F);
-  const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, {});
-  field.distance[field.grid.index(4, 4, 4)] = 3.0F;  // inside
-  EXPECT_EQ(scan->apply(field, 0, {}), 3.0F);
-  EXPECT_EQ(field.distance[field.grid.index(4, 4, 4)], -3.0F);
-  EXPECT_EQ(scan->apply(field, 0, {}), 0.0F);
-  field.distance[0] = -2.0F;  // outside
-  EXPECT_EQ(scan->apply(field, 0, {}), 2.0F);
-  EXPECT_EQ(field.distance[0], 2.0F);
+  field.distance = Buffer<float>(field.grid.node_count(), 0.0F);
+  const bool simple = SignScan::make(mesh, field.grid, {})->apply(field, level, {});
+  for (const float d : field.distance.span()) EXPECT_FALSE(std::signbit(d));  // zeros have no side
+  return simple;
+}
+
+TEST(SignScan, TellsWhetherShapesOverlap) {
+  TriangleMesh mesh = make_box({});
+  EXPECT_TRUE(is_simple(mesh));
+  append(mesh, make_box({}), {1.5, 0, 0});
+  EXPECT_TRUE(is_simple(mesh));
+  append(mesh, make_box({}), {1, 0, 0});
+  EXPECT_FALSE(is_simple(mesh));
+  TriangleMesh inverted = make_box({});
+  reverse_triangles(inverted);
+  EXPECT_FALSE(is_simple(inverted));
+  EXPECT_TRUE(is_simple(inverted, -1));
 }
 
 TEST(SignScan, GivesUpOnHeapsOfOverlappingShapes) {
