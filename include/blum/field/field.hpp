@@ -21,7 +21,7 @@ namespace blum {
 enum class SignMode : std::uint8_t {
   automatic,  ///< `normals` where the mesh is closed, consistently oriented and faces outwards, and no node shows that
               ///< it crosses itself; else `winding`
-  normals,  ///< the side that the orientation of a closed, consistently oriented mesh tells. Exact: crossings are
+  normals,    ///< the side that the orientation of a closed, consistently oriented mesh tells. Exact: crossings are
             ///< counted along the grid's rows. Angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide only where
             ///< shells cross or face different ways
   winding,  ///< generalized winding number (Jacobson 2013) above 1/2 is inside; any soup
