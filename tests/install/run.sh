@@ -16,7 +16,7 @@ for program in "$consumer"/consumer_*; do "$program"; done
 mkdir "$build/install_test/nonsense"
 echo 'cmake_minimum_required(VERSION 3.25)
 project(nonsense LANGUAGES CXX)
-find_package(blum REQUIRED COMPONENTS field nonsense)' >"$build/install_test/nonsense/CMakeLists.txt"
+find_package(blum REQUIRED COMPONENTS core nonsense)' >"$build/install_test/nonsense/CMakeLists.txt"
 if answer=$(cmake -S "$build/install_test/nonsense" -B "$build/install_test/nonsense/build" -G Ninja \
   -DCMAKE_PREFIX_PATH="$prefix" 2>&1) || [[ $answer != *"no component nonsense"* ]]; then
   echo "install: an unknown component was not refused by its name: $answer" >&2
