@@ -23,7 +23,8 @@ build: setup ## Build the library and the tool: build/release/bin/blum
 test: ## Install what the tests need, build, and run every test
 	@tools/test.sh
 
-demo: build ## Run the main job on a generated shape: a field and pictures in out/demo
+demo: setup ## Build the tool and run the main job on a generated shape: a field and pictures in out/demo
+	@tools/build.sh release $(configure_options) -- blum
 	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
 
 format: ## Bring the sources into the project's format (clang-format 19)

@@ -95,7 +95,9 @@ bool looks_like_number(std::string_view text) {
 
 Band parse_band(std::string_view name, std::string_view text) {
   if (!text.empty() && (text.back() == 'v' || text.back() == 'V')) {
-    return {parse_positive(name, text.substr(0, text.size() - 1)), true};
+    const std::string_view voxels = text.substr(0, text.size() - 1);
+    if (!looks_like_number(voxels)) refuse(name, text, "is not a number of voxels, such as 3v");
+    return {parse_positive(name, voxels), true};
   }
   return {parse_positive(name, text), false};
 }

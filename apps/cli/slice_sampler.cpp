@@ -13,26 +13,6 @@ std::size_t node_index(const Slice& slice, std::int64_t i, std::int64_t j) {
   return static_cast<std::size_t>(j * slice.width + i);
 }
 
-/// Slope of a curve at a node between two steps: the harmonic mean keeps the curve between its nodes (van Leer 1974).
-double limited_slope(double before, double after) {
-  return before * after > 0 ? 2 * before * after / (before + after) : 0;
-}
-
-struct CurvePoint {
-  double value = 0;
-  double slope = 0;
-};
-
-/// A place t in [0, 1] between the middle two of four nodes, on a cubic curve that does not overshoot.
-CurvePoint on_curve(const std::array<double, 4>& nodes, double t) {
-  const double step = nodes[2] - nodes[1];
-  const double begin = limited_slope(nodes[1] - nodes[0], step);
-  const double end = limited_slope(step, nodes[3] - nodes[2]);
-  const double bend = begin + end - 2 * step;
-  const double lift = step - begin - bend;
-  return {nodes[1] + t * (begin + t * (lift + t * bend)), begin + t * (2 * lift + 3 * t * bend)};
-}
-
 std::array<double, 3> quadratic_weights(double t) {  // t in [-0.5, 0.5] from the middle node
   return {0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)};
 }
@@ -99,20 +79,7 @@ Sample DistanceSampler::bilinear(const Cell& cell) const {
 Sample DistanceSampler::at(double u, double v) const {
   const Cell cell = cell_at(u, v);
   if (!is_smooth(cell.i, cell.j)) return {node(std::llround(u), std::llround(v)), 0, 0, false};
-  if (!is_smooth_around(cell)) return bilinear(cell);
-  std::array<double, 4> rows{};
-  std::array<double, 4> slopes{};
-  for (std::size_t y = 0; y < 4; ++y) {
-    std::array<double, 4> nodes{};
-    for (std::size_t x = 0; x < 4; ++x) {
-      nodes[x] = node(cell.i + static_cast<std::int64_t>(x) - 1, cell.j + static_cast<std::int64_t>(y) - 1);
-    }
-    const CurvePoint row = on_curve(nodes, cell.s);
-    rows[y] = row.value;
-    slopes[y] = row.slope;
-  }
-  const CurvePoint point = on_curve(rows, cell.t);
-  return {point.value, slopes[1] * (1 - cell.t) + slopes[2] * cell.t, point.slope, true};
+  return bilinear(cell);
 }
 
 Sample DistanceSampler::smoothed(double u, double v) const {

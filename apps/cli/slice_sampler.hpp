@@ -15,13 +15,13 @@ struct Sample {
   bool continuous = true;  ///< false next to a jump of the sign (open meshes): no contours there
 };
 
-/// Distances at any place, in node coordinates, where the field is continuous: cubic curves through the nodes, or a
-/// spline near them.
+/// Distances at any place, in node coordinates, where the field is continuous: linear between the nodes, or a spline
+/// near them.
 class DistanceSampler {
  public:
   explicit DistanceSampler(const Slice& slice);
-  /// Takes the nodes' values there, and stays between them: a cubic without overshoot, which would draw ears at the
-  /// corners of a surface.
+  /// Takes the nodes' values there, and is bilinear between them: smoother curves draw ears at the corners of a
+  /// surface.
   [[nodiscard]] Sample at(double u, double v) const;
   /// A quadratic spline, which rounds ridges within a node step. Any curve through the nodes waves along a ridge that
   /// is oblique to the grid, and contours of waves are worms.

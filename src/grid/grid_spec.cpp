@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/core/number_text.hpp"
 
 namespace blum {
 namespace {
@@ -29,13 +29,6 @@ void check_resolution(int resolution) {
   if (resolution < 2 || resolution > 65536) {
     throw InvalidOption("resolution is " + std::to_string(resolution) + ", but must be 2 to 65536 nodes");
   }
-}
-
-/// The shortest text that reads back as this number; std::to_string would print 300 digits of 1e300.
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), result.ptr};
 }
 
 Box3 padded(const Box3& box, double padding) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/field/field.hpp"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
 #include "blum/grid/voxel_image.hpp"
 
@@ -47,7 +48,8 @@ struct DistanceTransformOptions {
 ///               integers, and distances are their correctly rounded roots times that unit; else they are computed in
 ///               double. Among voxels at the same computed distance the smallest linear index wins. The same bytes for
 ///               any number of threads.
-/// @throws InvalidImage (also when no voxel is selected, or, signed, when every voxel is), InvalidOption, OutOfMemory,
+/// @throws InvalidImage (also when no voxel is selected, or, signed, when every voxel is; and when the image spans less
+/// than 1e-36 or more than 1e37, which 32-bit distances do not hold), InvalidOption, OutOfMemory,
 /// Cancelled.
 /// Cost: about O(voxels log(side)), at worst another factor of two; 8 bytes per voxel for the result and 1/8 byte, plus
 /// a few MiB per thread, beside it.

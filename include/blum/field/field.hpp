@@ -11,6 +11,7 @@
 
 #include "blum/core/buffer.hpp"
 #include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "blum/core/error.hpp"
 #include "blum/core/vec3.hpp"
 
 namespace blum {

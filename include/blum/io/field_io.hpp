@@ -7,6 +7,7 @@
 #include <string>
 
 #include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "blum/core/error.hpp"
 #include "blum/grid/voxel_image.hpp"
 
 namespace blum {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "blum/core/error.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum {

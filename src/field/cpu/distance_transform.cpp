@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "blum/core/error.hpp"
+#include "blum/core/number_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "field/cpu/distance_transform_kernels.hpp"
 #include "field/cpu/distance_transform_mask.hpp"
@@ -97,6 +98,17 @@ void choose_arithmetic(TransformPlan& plan, const double (&spacing)[3], int used
   plan.unit = scale;
 }
 
+/// Beyond this, float32 would hold infinities, or nothing but zeros.
+void check_extent(const GridSpec& grid) {
+  double longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    longest = std::max(longest, grid.spacing[axis] * static_cast<double>(grid.size[axis]));
+  }
+  if (longest >= 1e-36 && longest < 1e37) return;
+  throw InvalidImage("the image spans " + number_text(longest) +
+                     " units, but 32-bit distances hold 1e-36 to 1e37: give its spacing in other units");
+}
+
 TransformPlan make_plan(const GridSpec& grid, const DistanceTransformOptions& options, const Context& context) {
   TransformPlan plan;
   double spacing[3] = {1, 1, 1};
@@ -107,12 +119,13 @@ TransformPlan make_plan(const GridSpec& grid, const DistanceTransformOptions& op
     spacing[used] = grid.spacing[axis];
     ++used;
   }
+  check_extent(grid);
   choose_arithmetic(plan, spacing, std::max(used, 1));
   plan.is_signed = options.is_signed;
   plan.x_bits = static_cast<unsigned>(std::bit_width(plan.size[0] - 1));
   if (options.band) {
     const double band = *options.band;
-    if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + std::to_string(band));
+    if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + number_text(band));
     plan.has_band = band < static_cast<double>(std::numeric_limits<float>::max());
     if (plan.has_band) {
       plan.band = static_cast<float>(band);
@@ -210,7 +223,7 @@ std::string describe(const LabelSelection& selection) {
     case LabelSelection::Rule::label:
       return "equals label " + std::to_string(selection.label);
     case LabelSelection::Rule::threshold:
-      return "reaches the threshold " + std::to_string(selection.threshold);
+      return "reaches the threshold " + number_text(selection.threshold);
   }
   return "is selected";
 }

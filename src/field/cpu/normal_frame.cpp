@@ -1,5 +1,6 @@
 #include "field/cpu/normal_frame.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "blum/core/error.hpp"
@@ -26,7 +27,8 @@ NormalFrame make_normal_frame(const MeshView& mesh, std::span<const std::uint32_
     throw InvalidGrid("mesh and grid span more than 1e37, too far for 32-bit distances: scale them down");
   int exponent = 0;
   if (diagonal > 0) (void)std::frexp(diagonal, &exponent);
-  if (diagonal > 0 && diagonal < 1e-36) {
+  const Vec3d size = box.size();  // the diagonal's squares may underflow
+  if (std::max({size.x, size.y, size.z}) > 0 && diagonal < 1e-36) {
     throw InvalidGrid("mesh and grid span less than 1e-36, too little for 32-bit distances: scale them up");
   }
   frame.scale = std::ldexp(1.0, -exponent);

@@ -223,5 +223,16 @@ TEST(DistanceField, RefusesWhatItCannotDo) {
   EXPECT_THROW((void)distance_field(make_points({}), grid, {.sign = SignMode::winding}), InvalidOption);
 }
 
+TEST(DistanceField, RefusesExtentsThatFloat32CannotHold) {
+  for (const double scale : {1e-38, 1e-165, 1e-300, 1e40, 1e145}) {
+    TriangleMesh mesh = make_box({});
+    for (Vec3d& p : mesh.vertices) p *= scale;
+    GridSpec grid;
+    grid.size = {3, 3, 3};
+    grid.spacing = Vec3d{0.5, 0.5, 0.5} * scale;
+    EXPECT_THROW((void)distance_field(mesh, grid), InvalidGrid) << scale;
+  }
+}
+
 }  // namespace
 }  // namespace blum

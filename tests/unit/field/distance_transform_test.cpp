@@ -123,7 +123,7 @@ TEST(DistanceTransform, EqualsBruteForceWithinRoundingForAnySpacing) {
                               {0.1, 0.1, 0.1},
                               {1, 1e-3, 3.14159},
                               {0.488281, 0.488281, 1.25},
-                              {1e-200, 1.7e-200, 1e-200}}) {
+                              {1e-30, 1.7e-30, 1e-30}}) {
     for (const Size& size : sizes) {
       for (const double density : {0.01, 0.5, 0.97}) {
         const VoxelImage image = random_image(size, spacing, density, ++seed);
@@ -392,6 +392,14 @@ TEST(DistanceTransform, StopsWhenAskedAndReportsProgress) {
   };
   (void)distance_transform(image, {}, {.threads = 2, .progress = record});
   EXPECT_EQ(phases, (std::vector<std::string>{"select voxels", "rows and columns", "depth"}));
+}
+
+TEST(DistanceTransform, RefusesExtentsThatFloat32CannotHold) {
+  for (const Vec3d& spacing : {Vec3d{1e200, 1e200, 1e200}, Vec3d{1, 1, 1e37}, Vec3d{1e-200, 1e-200, 1e-200}}) {
+    VoxelImage image{.grid = {.spacing = spacing, .size = {4, 4, 4}}, .values = std::vector<std::uint8_t>(64)};
+    std::get<std::vector<std::uint8_t>>(image.values)[21] = 1;
+    EXPECT_THROW((void)distance_transform(image), InvalidImage) << spacing.x << ' ' << spacing.y << ' ' << spacing.z;
+  }
 }
 
 }  // namespace
