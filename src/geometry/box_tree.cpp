@@ -54,12 +54,10 @@ bool may_touch(const BoxTree& tree, const Box3& box) {
     const Item item = stack[--size];
     if (item.level < 0) return true;
     const BoxBlock& block = tree.levels[static_cast<std::size_t>(item.level)][item.block];
+    const unsigned bits = touching(block, box);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      bool is_apart = false;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        is_apart = is_apart || block.lower[axis][lane] > box.upper[axis] || block.upper[axis][lane] < box.lower[axis];
-      }
-      if (!is_apart) stack[size++] = {static_cast<std::uint32_t>(item.block * lanes + lane), item.level - 1};
+      if ((bits >> lane & 1U) == 0) continue;
+      stack[size++] = {static_cast<std::uint32_t>(item.block * lanes + lane), item.level - 1};
     }
   }
   return false;

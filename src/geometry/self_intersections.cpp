@@ -115,19 +115,6 @@ class Search {
     return whole;
   }
 
-  /// A bit for each box of a block that touches this box.
-  static unsigned touching(const BoxBlock& block, const Box3& box) {
-    unsigned bits = 0;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      bool apart = false;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        apart |= block.lower[axis][lane] > box.upper[axis] || block.upper[axis][lane] < box.lower[axis];
-      }
-      bits |= apart ? 0U : 1U << lane;
-    }
-    return bits;
-  }
-
   /// Calls visit(i) for the triangles from a leaf on whose boxes touch this one, until it returns false.
   template <class Visit>
   void for_each_near(const Box3& box, std::size_t first_leaf, const Visit& visit) const {

@@ -1,12 +1,11 @@
 #include "blum/grid/grid_spec.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
 #include "blum/core/error.hpp"
-#include "blum/core/number_text.hpp"
+#include "blum/core/exact_text.hpp"
 
 namespace blum {
 namespace {
@@ -33,7 +32,7 @@ void check_resolution(int resolution) {
 
 Box3 padded(const Box3& box, double padding) {
   if (!(padding >= 0 && padding <= 1e6)) {
-    throw InvalidOption("padding is " + number_text(padding) +
+    throw InvalidOption("padding is " + exact_text(padding) +
                         ", but must be 0 to 1e6 (a fraction of the longest side)");
   }
   const double pad = padding * longest_side(box);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 
 namespace blum::volume_io {
 namespace {
@@ -185,12 +186,6 @@ Enum from_text(std::string_view text, const std::array<Enum, n>& all, std::strin
 }
 
 }  // namespace
-
-std::string exact_text(double value) {
-  std::array<char, 32> text{};
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
-  return {text.data(), result.ptr};
-}
 
 Metadata field_metadata(const Field& field, const FieldFileInfo& info) {
   Metadata pairs;

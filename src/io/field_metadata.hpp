@@ -30,7 +30,4 @@ void apply_metadata(const Metadata& metadata, const std::string& name, Field& fi
 /// Reads back what to_json writes. @throws FormatError with `name` for anything else.
 [[nodiscard]] Metadata from_json(std::string_view json, const std::string& name);
 
-/// The shortest text that reads back as exactly this number.
-[[nodiscard]] std::string exact_text(double value);
-
 }  // namespace blum::volume_io

@@ -2,6 +2,7 @@
 #include <bit>
 #include <string>
 
+#include "blum/core/exact_text.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "io/field_files.hpp"
 #include "io/field_metadata.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 #include "io/field_metadata.hpp"
 
 namespace blum::volume_io {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/core/ids.hpp"
 #include "io/image_geometry.hpp"
 #include "io/text_scan.hpp"

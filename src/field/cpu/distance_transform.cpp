@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "blum/core/error.hpp"
-#include "blum/core/number_text.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "field/cpu/distance_transform_kernels.hpp"
 #include "field/cpu/distance_transform_mask.hpp"
@@ -105,7 +105,7 @@ void check_extent(const GridSpec& grid) {
     longest = std::max(longest, grid.spacing[axis] * static_cast<double>(grid.size[axis]));
   }
   if (longest >= 1e-36 && longest < 1e37) return;
-  throw InvalidImage("the image spans " + number_text(longest) +
+  throw InvalidImage("the image spans " + exact_text(longest) +
                      " units, but 32-bit distances hold 1e-36 to 1e37: give its spacing in other units");
 }
 
@@ -125,7 +125,7 @@ TransformPlan make_plan(const GridSpec& grid, const DistanceTransformOptions& op
   plan.x_bits = static_cast<unsigned>(std::bit_width(plan.size[0] - 1));
   if (options.band) {
     const double band = *options.band;
-    if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + number_text(band));
+    if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + exact_text(band));
     plan.has_band = band < static_cast<double>(std::numeric_limits<float>::max());
     if (plan.has_band) {
       plan.band = static_cast<float>(band);
@@ -223,7 +223,7 @@ std::string describe(const LabelSelection& selection) {
     case LabelSelection::Rule::label:
       return "equals label " + std::to_string(selection.label);
     case LabelSelection::Rule::threshold:
-      return "reaches the threshold " + number_text(selection.threshold);
+      return "reaches the threshold " + exact_text(selection.threshold);
   }
   return "is selected";
 }

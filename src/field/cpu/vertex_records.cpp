@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <bit>
-
 #include "field/cpu/record_build.hpp"
 #include "field/cpu/vertex_cone.hpp"
 #include "field/cpu/vertex_fans.hpp"
