@@ -315,6 +315,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   progress.clear();
   add_field(run, field, statistics, field_files(r.output), nullptr);
   run.warnings = warnings_of(field, statistics, facts);
+  if (is_welded_away(file)) run.warnings.push_back(welded_away_text(file));
   finish(r, run, grid, context);
 }
 

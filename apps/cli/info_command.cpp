@@ -195,6 +195,7 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
   Json json = file_json(a.input, file);
   json.update(topology_json(facts));
   json["self_intersections"] = contacts_json(contacts);
+  if (is_welded_away(file) && !a.report.quiet) warn({welded_away_text(file)});
   report(a.report, json, topology_text(a.input, file, facts, contacts));
 }
 

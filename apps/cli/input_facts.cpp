@@ -37,6 +37,15 @@ std::string file_text(const MeshFile& file) {
   return text;
 }
 
+bool is_welded_away(const MeshFile& file) {
+  return file.info.welded && file.info.faces > 0 && file.mesh.triangles.empty();
+}
+
+std::string welded_away_text(const MeshFile& file) {
+  return "welding left no triangle of " + plural(file.info.faces, "face", "faces") +
+         ": give --weld a tolerance below " + "the mesh's edges";
+}
+
 Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
                const Orientation& facts) {
   Json json = file_json(path, file);

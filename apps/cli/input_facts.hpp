@@ -19,6 +19,10 @@ namespace blum::cli {
 [[nodiscard]] Json file_json(const std::filesystem::path& path, const MeshFile& file);
 [[nodiscard]] std::string file_text(const MeshFile& file);
 
+/// Whether welding left nothing of a mesh's faces, and what to say then.
+[[nodiscard]] bool is_welded_away(const MeshFile& file);
+[[nodiscard]] std::string welded_away_text(const MeshFile& file);
+
 /// The same with the cheap facts of its surface.
 [[nodiscard]] Json mesh_json(const std::filesystem::path& path, const MeshFile& file, const SiteTable& sites,
                              const Orientation& facts);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -23,12 +24,13 @@ namespace fs = std::filesystem;
 constexpr const char* examples = R"(Examples:
   blum slice bunny.nrrd -o middle.png
   blum slice bunny.nrrd -o low.png --axis y --index 40
+  blum slice bunny.nrrd -o cut.png --axis x --position 0.25
   blum slice bunny.npz -o cells.png --show sites --scale 8)";
 
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> axis, index, show, scale;
+  std::optional<std::string> axis, index, position, show, scale;
   bool quiet = false;
 };
 
@@ -45,6 +47,20 @@ std::size_t default_axis(const GridSpec& grid) {
   return static_cast<std::size_t>(std::find(grid.size.begin(), grid.size.end(), 1) - grid.size.begin());
 }
 
+/// The layer nearest to a place along an axis.
+std::int64_t layer_at(const GridSpec& grid, std::size_t axis, double position) {
+  if (!(grid.direction == Mat3{})) {
+    throw UsageError("--position needs a field along the axes, and this one is turned: name its layer by --index");
+  }
+  const double first = grid.origin[axis];
+  const double last = first + static_cast<double>(grid.size[axis] - 1) * grid.spacing[axis];
+  const double layer = std::round((position - first) / grid.spacing[axis]);
+  if (!(layer >= 0 && layer < static_cast<double>(grid.size[axis]))) {
+    throw UsageError("--position: the field's layers lie from " + number_text(first) + " to " + number_text(last));
+  }
+  return static_cast<std::int64_t>(layer);
+}
+
 void run(const Arguments& a) {
   const fs::path input = a.input;
   const fs::path output = a.output;
@@ -58,6 +74,9 @@ void run(const Arguments& a) {
   if (a.axis) axis = parse_axis(*a.axis);
   std::optional<std::int64_t> index;
   if (a.index) index = parse_integer("--index", *a.index, 0, std::int64_t{1} << 40);
+  std::optional<double> position;
+  if (a.position) position = parse_number("--position", *a.position);
+  if (index && position) throw UsageError("--index and --position both name the layer: give one");
   std::optional<double> scale;
   if (a.scale) scale = parse_positive("--scale", *a.scale);
   check_outputs({output}, field_files(input));
@@ -69,6 +88,7 @@ void run(const Arguments& a) {
   if (index && *index >= layers) {
     throw UsageError("--index '" + *a.index + "': the field has the layers 0 to " + std::to_string(layers - 1));
   }
+  if (position) index = layer_at(field.grid, *axis, *position);
   if (sites && field.site.empty()) {
     throw FileError("'" + input.string() + "' has no closest sites" +
                     (extension(input) == ".nrrd"
@@ -101,6 +121,8 @@ void add_slice_command(CLI::App& app) {
   command->add_option("--axis", a->axis, "Axis that the layer is perpendicular to: x, y or z (default z)")
       ->type_name("AXIS");
   command->add_option("--index", a->index, "Number of the layer (default: the middle)")->type_name("K");
+  command->add_option("--position", a->position, "The layer nearest to this place along the axis, in mesh units")
+      ->type_name("P");
   command->add_option("--show", a->show, "distance (with contour lines) or sites (Voronoi regions)")->type_name("WHAT");
   command->add_option("--scale", a->scale, "Pixels for each grid step (default: 800 pixels or more in all)")
       ->type_name("PIXELS");

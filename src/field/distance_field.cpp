@@ -87,8 +87,7 @@ void sign_by_orientation(const MeshView& mesh, const SiteTable& sites, const Sig
   } else if (*choice.level == 0) {
     (void)apply_winding_sign(field, mesh, sites, context);
   } else {
-    std::vector<Triangle> turned(mesh.triangles.begin(), mesh.triangles.end());
-    for (Triangle& t : turned) std::swap(t[0], t[1]);
+    const std::vector<Triangle> turned = turned_triangles(mesh.triangles);
     (void)apply_winding_sign(field, {mesh.vertices, turned, {}, {}}, sites, context);
     invert_signs(context, field);
   }

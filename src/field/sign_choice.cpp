@@ -52,8 +52,7 @@ SignChoice choose_automatically(const MeshView& mesh, const Orientation& facts) 
 
 /// Whether the mesh would face outwards if all triangles were turned.
 bool faces_inwards(const MeshView& mesh) {
-  std::vector<Triangle> turned(mesh.triangles.begin(), mesh.triangles.end());
-  for (Triangle& t : turned) std::swap(t[0], t[1]);
+  const std::vector<Triangle> turned = turned_triangles(mesh.triangles);
   MeshView view = mesh;
   view.triangles = turned;
   return orientation(view, SiteTable(view)).outward;

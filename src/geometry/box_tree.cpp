@@ -42,25 +42,12 @@ BoxTree make_box_tree(std::span<const Box3> leaves, const Context& context) {
 }
 
 bool may_touch(const BoxTree& tree, const Box3& box) {
-  if (tree.is_empty()) return false;
-  struct Item {
-    std::uint32_t block;
-    std::int32_t level;  ///< -1 for a leaf
-  };
-  std::array<Item, 128> stack;  // at most seven siblings wait on each of at most eleven levels
-  std::size_t size = 0;
-  stack[size++] = {0, tree.top()};
-  while (size > 0) {
-    const Item item = stack[--size];
-    if (item.level < 0) return true;
-    const BoxBlock& block = tree.levels[static_cast<std::size_t>(item.level)][item.block];
-    const unsigned bits = touching(block, box);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if ((bits >> lane & 1U) == 0) continue;
-      stack[size++] = {static_cast<std::uint32_t>(item.block * lanes + lane), item.level - 1};
-    }
-  }
-  return false;
+  bool touches = false;
+  for_each_touching(tree, box, 0, [&](std::size_t) {
+    touches = true;
+    return false;
+  });
+  return touches;
 }
 
 }  // namespace blum

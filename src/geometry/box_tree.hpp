@@ -47,6 +47,36 @@ struct BoxTree {
 /// @param leaves  one box per leaf.
 [[nodiscard]] BoxTree make_box_tree(std::span<const Box3> leaves, const Context& context);
 
+/// Calls visit(leaf) for the leaves whose boxes touch this one, until it returns false. Allocates nothing.
+/// @param first_leaf  leaves before this one are left out, as far as whole blocks of them are.
+template <class Visit>
+void for_each_touching(const BoxTree& tree, const Box3& box, std::size_t first_leaf, const Visit& visit) {
+  if (tree.is_empty()) return;
+  struct Item {
+    std::uint32_t block;
+    std::int32_t level;  ///< -1 for a leaf
+  };
+  std::array<Item, 128> stack;  // at most seven siblings wait on each of at most eleven levels
+  std::size_t size = 0;
+  stack[size++] = {0, tree.top()};
+  while (size > 0) {
+    const Item item = stack[--size];
+    if (item.level < 0) {
+      if (!visit(static_cast<std::size_t>(item.block))) return;
+      continue;
+    }
+    const BoxBlock& block = tree.levels[static_cast<std::size_t>(item.level)][item.block];
+    const unsigned bits = touching(block, box);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if ((bits >> lane & 1U) == 0) continue;
+      const std::size_t child = item.block * lanes + lane;
+      // A child of level k covers 8^k leaves.
+      const std::size_t end = (child + 1) << (3 * static_cast<unsigned>(item.level));
+      if (end > first_leaf) stack[size++] = {static_cast<std::uint32_t>(child), item.level - 1};
+    }
+  }
+}
+
 /// Whether a box touches the box of a leaf. Allocates nothing.
 [[nodiscard]] bool may_touch(const BoxTree& tree, const Box3& box);
 

@@ -118,31 +118,13 @@ class Search {
   /// Calls visit(i) for the triangles from a leaf on whose boxes touch this one, until it returns false.
   template <class Visit>
   void for_each_near(const Box3& box, std::size_t first_leaf, const Visit& visit) const {
-    struct Item {
-      std::uint32_t block;
-      std::int32_t level;  ///< -1 for a leaf
-    };
-    std::array<Item, 128> stack;  // at most seven siblings wait on each of at most eleven levels
-    std::size_t size = 0;
-    stack[size++] = {0, tree_.top()};
-    while (size > 0) {
-      const Item item = stack[--size];
-      const bool is_leaf = item.level < 0;
-      const BoxBlock& block =
-          is_leaf ? leaves_[item.block] : tree_.levels[static_cast<std::size_t>(item.level)][item.block];
-      const unsigned bits = touching(block, box);
+    for_each_touching(tree_, box, first_leaf, [&](std::size_t leaf) {
+      const unsigned bits = touching(leaves_[leaf], box);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        if ((bits >> lane & 1U) == 0) continue;
-        const std::size_t child = item.block * lanes + lane;
-        if (is_leaf) {
-          if (!visit(child)) return;
-          continue;
-        }
-        // A child of level k covers 8^k leaves.
-        const std::size_t end = (child + 1) << (3 * static_cast<unsigned>(item.level));
-        if (end > first_leaf) stack[size++] = {static_cast<std::uint32_t>(child), item.level - 1};
+        if ((bits >> lane & 1U) != 0 && !visit(leaf * lanes + lane)) return false;
       }
-    }
+      return true;
+    });
   }
 
   void test(std::size_t i, std::size_t other, std::vector<TrianglePair>& out) const {

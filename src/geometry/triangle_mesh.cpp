@@ -39,6 +39,12 @@ void for_each_named(const MeshView& mesh, Visit visit) {
 
 }  // namespace
 
+std::vector<Triangle> turned_triangles(std::span<const Triangle> triangles) {
+  std::vector<Triangle> turned(triangles.begin(), triangles.end());
+  for (Triangle& t : turned) std::swap(t[0], t[1]);
+  return turned;
+}
+
 Box3 bounds(const MeshView& mesh) {
   Box3 box;
   for_each_named_vertex(mesh, [&](std::uint32_t v) { box.extend(mesh.vertices[v]); });

@@ -189,6 +189,20 @@ def test_band_in_units_and_in_voxels(shapes, tmp_path):
     assert np.all(site[within] >= 0) and np.allclose(distance[within], full[within], atol=1e-6)
 
 
+def test_a_slice_by_position_is_that_of_the_nearest_layer(shapes, tmp_path):
+    grid = run_json("info", shapes / "sphere.nrrd")["grid"]
+    place = grid["origin"][0] + 7.4 * grid["spacing"][0]
+    run("slice", shapes / "sphere.nrrd", "-o", tmp_path / "a.png", "--axis", "x", "--position", place)
+    run("slice", shapes / "sphere.nrrd", "-o", tmp_path / "b.png", "--axis", "x", "--index", "7")
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_welding_everything_away_is_warned_of(shapes, tmp_path):
+    err = run("field", shapes / "sphere.ply", "-o", tmp_path / "w.nrrd", "--resolution", 8, "--sign", "none",
+              "--bounds", "-1,-1,-1,1,1,1", "--weld", "1e9", warns=True)[1]
+    assert "welding left no triangle" in err
+
+
 def test_a_flat_box_gives_a_2d_field_and_picture(shapes, tmp_path):
     summary = run_json("field", shapes / "sphere.ply", "-o", tmp_path / "cut.nrrd", "--bounds",
                        "-1.5,0.25,-2,1.5,0.25,2", "--spacing", "0.1")
@@ -334,6 +348,9 @@ USAGE = [
     ["slice", "sphere.nrrd", "-o", "out.png", "--axis", "w"],
     ["slice", "sphere.nrrd", "-o", "out.png", "--index", "24"],
     ["slice", "sphere.nrrd", "-o", "out.png", "--index", "-1"],
+    ["slice", "sphere.nrrd", "-o", "out.png", "--position", "9"],
+    ["slice", "sphere.nrrd", "-o", "out.png", "--position", "nan"],
+    ["slice", "sphere.nrrd", "-o", "out.png", "--position", "0", "--index", "3"],
     ["slice", "sphere.nrrd", "-o", "out.png", "--show", "nothing"],
     ["slice", "sphere.nrrd", "-o", "out.png", "--scale", "0"],
     ["slice", "sphere.nrrd", "-o", "out.png", "--scale", "1e9"],

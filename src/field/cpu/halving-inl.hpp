@@ -357,6 +357,15 @@ HWY_INLINE void halve_kind(const BlockTest<8>& test, const RecordList& parent, C
   }
 }
 
+/// halve_kind for vertices, edges and faces. `store_of(kind)` makes each kind's store.
+template <class Closest, class StoreOf>
+HWY_INLINE void halve_kinds(const BlockTest<8>& test, const Candidates& parent, std::array<ChildBits, kind_count>& out,
+                            Closest& closest, StoreOf store_of) {
+  halve_kind<vertex_kind>(test, parent[vertex_kind], out[vertex_kind], closest, store_of(vertex_kind));
+  halve_kind<edge_kind>(test, parent[edge_kind], out[edge_kind], closest, store_of(edge_kind));
+  halve_kind<face_kind>(test, parent[face_kind], out[face_kind], closest, store_of(face_kind));
+}
+
 /// Lists the candidates whose bit is set for a child.
 HWY_INLINE void list_child(const RecordList& parent, const ChildBits& child_bits, std::size_t child, RecordList& out) {
   const std::uint16_t* words = child_bits.child(child);

@@ -175,10 +175,7 @@ class TileWorker {
     const BlockTest<8> test(parts, dominators);
     TileScratch::Impl::Level& here = scratch_.levels[level];
     ClosestAtCenters closest;
-    const auto ignore = [](auto&&...) {};
-    halve_kind<vertex_kind>(test, candidates[vertex_kind], here.bits[vertex_kind], closest, ignore);
-    halve_kind<edge_kind>(test, candidates[edge_kind], here.bits[edge_kind], closest, ignore);
-    halve_kind<face_kind>(test, candidates[face_kind], here.bits[face_kind], closest, ignore);
+    halve_kinds(test, candidates, here.bits, closest, [](std::size_t) { return [](auto&&...) {}; });
     is_buffered_ = size == BoxOutput::side;
     const Children children = meet_children(parts, candidates, closest, dominators.point[0], side);
     for (std::size_t c = 0; c < 8; ++c) {
@@ -234,10 +231,8 @@ class TileWorker {
   /// Tests the candidates of a box of 8^3 nodes against its leaves, and writes them out for these.
   template <class Closest>
   void prepare_leaves(const BlockTest<8>& test, const Candidates& candidates, Closest& closest) {
-    auto& bits_of = scratch_.levels.back().bits;
-    halve_kind<vertex_kind>(test, candidates[vertex_kind], bits_of[vertex_kind], closest, LeafStore{scratch_.leaf[0]});
-    halve_kind<edge_kind>(test, candidates[edge_kind], bits_of[edge_kind], closest, LeafStore{scratch_.leaf[1]});
-    halve_kind<face_kind>(test, candidates[face_kind], bits_of[face_kind], closest, LeafStore{scratch_.leaf[2]});
+    halve_kinds(test, candidates, scratch_.levels.back().bits, closest,
+                [&](std::size_t kind) { return LeafStore{scratch_.leaf[kind]}; });
   }
 
   static bool is_cube(const NodeBox& box, std::int64_t side) {

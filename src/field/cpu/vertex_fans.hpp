@@ -12,7 +12,7 @@ namespace blum::cpu {
 struct alignas(64) VertexFans {
   static constexpr std::size_t most = 8;
   /// From the vertex along its edges, of any length but zero. Those beyond a lane's count repeat its first.
-  std::array<SixteenVectors, most> along;
+  std::array<SixteenVectors, most> along{};
   std::array<std::uint32_t, cluster_size> count{};
 };
 
