@@ -170,6 +170,14 @@ constexpr std::size_t task_voxels = std::size_t{1} << 16U;
 /// In the z pass neighbouring tiles share pages and the memory's rows, so that tasks are larger.
 constexpr std::size_t depth_task_voxels = std::size_t{1} << 18U;
 
+/// Writes to each page of some rows of distances, which nothing has written yet. The depth pass would: but a column of
+/// it crosses a page in every layer, so the first few tasks would wait for all of the memory, deaf to cancel.
+void touch_distances(const TransformPlan& plan, std::size_t first_row, std::size_t last_row) {
+  constexpr std::size_t page = 4096 / sizeof(float);
+  const std::size_t end = last_row * plan.size[0];
+  for (std::size_t i = first_row * plan.size[0]; i < end; i += page) plan.distance[i] = 0;
+}
+
 void transform_planes(const TransformPlan& plan, Workspace& work, const Context& context) {
   const std::size_t rows = plan.size[1];
   const std::size_t plane = plan.size[0] * rows;
@@ -183,6 +191,7 @@ void transform_planes(const TransformPlan& plan, Workspace& work, const Context&
     const std::size_t grain = std::max<std::size_t>(1, task_voxels / plane);
     parallel_for(context, plan.size[2], grain, "rows and columns", [&](const WorkRange& range) {
       detail::PassScratch& scratch = work.scratch[static_cast<std::size_t>(range.worker)];
+      touch_distances(plan, range.begin * rows, range.end * rows);
       for (std::size_t z = range.begin; z < range.end; ++z) {
         detail::transform_rows(plan, scratch, z * rows, (z + 1) * rows);
         if (rows == 1) continue;  // nothing to do along y: a partial site of y = 0 is its x
@@ -193,6 +202,7 @@ void transform_planes(const TransformPlan& plan, Workspace& work, const Context&
   }
   const std::size_t grain = std::max<std::size_t>(1, task_voxels / plan.size[0]);
   parallel_for(context, rows * plan.size[2], grain, "rows", [&](const WorkRange& range) {
+    touch_distances(plan, range.begin, range.end);
     detail::transform_rows(plan, work.scratch[static_cast<std::size_t>(range.worker)], range.begin, range.end);
   });
   if (rows == 1) return;
