@@ -209,6 +209,10 @@ std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& 
                                      "those of a solid; `blum info` says more of its shells"};
   }
   if (s.inside_nodes > 0) return {};
+  if (mesh.inconsistent_edges > 0) {
+    return {"no node is inside: " + plural(mesh.inconsistent_edges, "edge lies", "edges lie") +
+            " between triangles that face different ways, so that their winding numbers cancel; orient the mesh first"};
+  }
   return {"no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"};
 }
 

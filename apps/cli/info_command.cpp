@@ -79,9 +79,9 @@ Json topology_json(const Topology& t) {
                {"closed", t.closed},
                {"oriented", t.oriented},
                {"manifold", t.manifold},
-               {"faces_outwards", t.faces_outwards},
+               {"faces_outwards", t.closed && t.oriented ? Json(t.faces_outwards) : Json(nullptr)},
                {"area", t.area},
-               {"signed_volume", t.signed_volume},
+               {"signed_volume", t.closed && t.oriented ? Json(t.signed_volume) : Json(nullptr)},
                {"euler_characteristic", t.euler_characteristic}};
   Json shells = Json::array();
   std::int64_t genus = 0;
@@ -91,12 +91,17 @@ Json topology_json(const Topology& t) {
   }
   const bool whole = t.closed && t.oriented;
   json["genus"] = whole ? Json(genus) : Json(nullptr);
-  json["betti"] = t.betti ? Json(*t.betti) : Json(nullptr);
   json["shells"] = shells;
   return json;
 }
 
-std::string solid_text(const Topology& t) {
+/// The Betti numbers of the solid; null where the surface bounds none, as far as is known.
+Json betti_json(const Topology& t, const SelfIntersections& contacts) {
+  return t.betti && contacts.crossing == 0 ? Json(*t.betti) : Json(nullptr);
+}
+
+std::string solid_text(const Topology& t, const SelfIntersections& contacts) {
+  if (t.betti && contacts.crossing > 0) return "no: triangles cross each other, so parts may overlap";
   if (t.betti) {
     const auto& [components, tunnels, voids] = *t.betti;
     return "yes: " + plural(static_cast<std::uint64_t>(components), "part", "parts") + ", " +
@@ -105,10 +110,12 @@ std::string solid_text(const Topology& t) {
            std::to_string(components) + ", " + std::to_string(tunnels) + ", " + std::to_string(voids) + ")";
   }
   if (t.triangles == 0) return "no: it has no triangles";
+  if (t.boundary_edges > 0) return "no: the surface has a boundary";
+  if (t.nonmanifold_edges > 0) return "no: edges have more than two triangles";
   if (!t.closed) return "no: the surface is not closed";
   if (!t.oriented) return "no: triangles are not consistently oriented";
   if (!t.manifold) return "no: the surface is not a manifold";
-  return "no: shells face the wrong way, or cross each other";
+  return "no: shells face the wrong way";
 }
 
 std::string genus_text(const Topology& t) {
@@ -176,7 +183,7 @@ std::string topology_text(const fs::path& path, const MeshFile& file, const Topo
     table.add("Euler number", std::to_string(t.euler_characteristic));
     if (!t.shells.empty()) table.add("genus", genus_text(t));
   }
-  table.add("solid", solid_text(t));
+  table.add("solid", solid_text(t, contacts));
   return table.text();
 }
 
@@ -194,6 +201,7 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
   progress.clear();
   Json json = file_json(a.input, file);
   json.update(topology_json(facts));
+  json["betti"] = betti_json(facts, contacts);
   json["self_intersections"] = contacts_json(contacts);
   if (is_welded_away(file) && !a.report.quiet) warn({welded_away_text(file)});
   report(a.report, json, topology_text(a.input, file, facts, contacts));

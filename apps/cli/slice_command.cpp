@@ -47,14 +47,14 @@ std::size_t default_axis(const GridSpec& grid) {
   return static_cast<std::size_t>(std::find(grid.size.begin(), grid.size.end(), 1) - grid.size.begin());
 }
 
-/// The layer nearest to a place along an axis.
+/// The layer nearest to a place along an axis of the world that the grid's axis runs along, in either direction.
 std::int64_t layer_at(const GridSpec& grid, std::size_t axis, double position) {
-  if (!(grid.direction == Mat3{})) {
-    throw UsageError("--position needs a field along the axes, and this one is turned: name its layer by --index");
-  }
+  const std::optional<double> along = along_world(grid, axis);
+  if (!along)
+    throw UsageError("--position needs layers across an axis of the world, and these are oblique: use --index");
   const double first = grid.origin[axis];
-  const double last = first + static_cast<double>(grid.size[axis] - 1) * grid.spacing[axis];
-  const double layer = std::round((position - first) / grid.spacing[axis]);
+  const double last = first + *along * static_cast<double>(grid.size[axis] - 1) * grid.spacing[axis];
+  const double layer = std::round((position - first) / (*along * grid.spacing[axis]));
   if (!(layer >= 0 && layer < static_cast<double>(grid.size[axis]))) {
     throw UsageError("--position: the field's layers lie from " + number_text(first) + " to " + number_text(last));
   }

@@ -127,6 +127,17 @@ double slope_per_pixel(const Sample& sample, const Layout& layout) {
   return std::hypot(sample.slope_u / layout.per_u, sample.slope_v / layout.per_v);
 }
 
+/// Whether the distance really vanishes where its slope says. Beside a kink it may turn first, and a line there would
+/// be a stroke that belongs to nothing.
+bool reaches_surface(const DistanceSampler& sampler, const Layout& layout, double u, double v, const Sample& sample) {
+  const double squared = sample.slope_u * sample.slope_u + sample.slope_v * sample.slope_v;
+  if (!(squared > 0)) return false;
+  const double step = 1.1 * sample.value / squared;
+  const Sample there = sampler.at(u - step * sample.slope_u, v - step * sample.slope_v);
+  const double slack = 0.1 * slope_per_pixel(sample, layout);
+  return std::abs(there.value) < 0.5 * std::abs(sample.value) + slack || (there.value > 0) != (sample.value > 0);
+}
+
 void for_each_row(const Layout& layout, const Context& context, const std::function<void(int)>& row) {
   parallel_for(context, static_cast<std::size_t>(layout.height), 16, "slice", [&](const WorkRange& range) {
     for (std::size_t y = range.begin; y < range.end; ++y) row(static_cast<int>(y));
@@ -271,6 +282,12 @@ void continue_beyond_band(Slice& slice) {
 
 }  // namespace
 
+std::optional<double> along_world(const GridSpec& grid, std::size_t axis) {
+  const double along = grid.direction.columns[axis][axis];
+  if (std::abs(along) != 1) return std::nullopt;
+  return along;
+}
+
 Slice take_slice(const Field& field, std::size_t axis, std::int64_t index) {
   Slice slice;
   slice.axis = axis;
@@ -307,8 +324,8 @@ Slice take_slice(const Field& field, std::size_t axis, std::int64_t index) {
   if (slice.band > 0) continue_beyond_band(slice);
   const std::int64_t layers = field.grid.size[axis];
   slice.place = layers == 1 ? "one layer" : "layer " + std::to_string(index) + " of 0 to " + std::to_string(layers - 1);
-  if (field.grid.direction == Mat3{}) {
-    const double place = field.grid.origin[axis] + static_cast<double>(index) * field.grid.spacing[axis];
+  if (const std::optional<double> along = along_world(field.grid, axis)) {
+    const double place = field.grid.origin[axis] + *along * static_cast<double>(index) * field.grid.spacing[axis];
     slice.place = std::string(names[axis]) + " = " + number_text(place) + ", " + slice.place;
   } else {
     slice.place = std::string("axis ") + names[axis] + ", " + slice.place;
@@ -338,7 +355,9 @@ Picture distance_picture(const Slice& slice, double scale, const Context& contex
       if (sample.continuous && !style.beyond(sample.value)) {
         const Sample smooth = sampler.smoothed(layout.u(x), layout.v(y));
         color = style.with_contours(color, smooth.value, slope_per_pixel(smooth, layout));
-        color = style.with_surface(color, sample.value, slope_per_pixel(sample, layout));
+        if (reaches_surface(sampler, layout, layout.u(x), layout.v(y), sample)) {
+          color = style.with_surface(color, sample.value, slope_per_pixel(sample, layout));
+        }
       }
       picture.at(margin + x, margin + y) = color;
     }
@@ -367,7 +386,8 @@ Picture sites_picture(const Slice& slice, double scale, const Context& context) 
                                region_pixel(slice, sizes, layout, u + du, v - dv), 0.5F);
       const Sample sample = sampler.at(u, v);
       Color color = mix(top, bottom, 0.5F);
-      if (sample.continuous) color = style.with_surface(color, sample.value, slope_per_pixel(sample, layout));
+      if (sample.continuous && reaches_surface(sampler, layout, u, v, sample))
+        color = style.with_surface(color, sample.value, slope_per_pixel(sample, layout));
       picture.at(margin + x, margin + y) = color;
     }
   });

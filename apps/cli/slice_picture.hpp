@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct Slice {
   double maximum = 0;
   std::string place;  ///< "z = 0.25, layer 12 of 0 to 63"
 };
+
+/// 1 or -1 where an axis of a grid runs along the world's axis of the same name, or against it.
+[[nodiscard]] std::optional<double> along_world(const GridSpec& grid, std::size_t axis);
 
 /// @param index  within the field's grid.
 [[nodiscard]] Slice take_slice(const Field& field, std::size_t axis, std::int64_t index);
