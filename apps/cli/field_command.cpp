@@ -199,6 +199,15 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   run.table.add("sites", sites_text(s, field.site_ids));
 }
 
+/// The largest spacing along which an image has neighbours.
+double coarsest_step(const GridSpec& grid) {
+  double step = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.size[axis] > 1) step = std::max(step, grid.spacing[axis]);
+  }
+  return step > 0 ? step : grid.spacing.x;
+}
+
 /// What deserves a look although the field was made as asked.
 std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& s, const Orientation& mesh) {
   if (field.sign_rule == SignRule::none) return {};
@@ -363,8 +372,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
   add_grid_text(run, image.grid);
   DistanceTransformOptions options;
   options.is_signed = r.sign != SignMode::none;
-  const Vec3d step = image.grid.spacing;
-  if (r.band) options.band = r.band->value * (r.band->voxels ? std::max({step.x, step.y, step.z}) : 1.0);
+  if (r.band) options.band = r.band->value * (r.band->voxels ? coarsest_step(image.grid) : 1.0);
   static_cast<void>(watch.lap());
   std::vector<Field> fields = distance_transforms(image, selections, options, context);
   run.field_seconds = watch.lap();

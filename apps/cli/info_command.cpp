@@ -101,7 +101,8 @@ Json betti_json(const Topology& t, const SelfIntersections& contacts) {
 }
 
 std::string solid_text(const Topology& t, const SelfIntersections& contacts) {
-  if (t.betti && contacts.crossing > 0) return "no: triangles cross each other, so parts may overlap";
+  const bool crosses = t.closed && t.oriented && contacts.crossing > 0;
+  if (crosses) return "no: triangles cross each other, so parts may overlap";
   if (t.betti) {
     const auto& [components, tunnels, voids] = *t.betti;
     return "yes: " + plural(static_cast<std::uint64_t>(components), "part", "parts") + ", " +

@@ -9,6 +9,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/pseudonormals.hpp"
+#include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/winding_number.hpp"
 #include "field/sign.hpp"
@@ -37,6 +38,7 @@ struct ClosestPointQuery::Data {
   double coordinate_limit = 0;  ///< of queries, mesh units
   std::optional<Pseudonormals> normals = {};
   std::optional<WindingNumber> winding = {};
+  bool is_turned = false;  ///< the winding number is that of the mesh turned inside out
 
   Data(const MeshView& mesh, const ClosestPointOptions& options, const Context& context)
       : sites(mesh, context),
@@ -46,14 +48,46 @@ struct ClosestPointQuery::Data {
     const Vec3d size = bvh.bounds().size();
     longest = std::max({size.x, size.y, size.z});
     coordinate_limit = longest > 0 ? std::min(longest, 1.0) * 1e140 : 1e140;
-    if (sign.rule == SignRule::normals) normals.emplace(mesh, sites, context);
-    if (sign.rule == SignRule::winding) winding.emplace(mesh, sites, context);
+    if (sign.rule == SignRule::normals && sign.level && !find_self_intersections(mesh, 0, context).complete) {
+      sign_by_level(mesh, context);
+    } else if (sign.rule == SignRule::normals) {
+      normals.emplace(mesh, sites, context);
+    } else if (sign.rule == SignRule::winding) {
+      winding.emplace(mesh, sites, context);
+    }
+  }
+
+  /// Where parts of the surface touch or cross, the closest of them may lie within another one, and its normal tells
+  /// nothing.
+  void sign_by_level(const MeshView& mesh, const Context& context) {
+    is_turned = *sign.level < 0;
+    if (is_turned) {
+      const std::vector<Triangle> turned = turned_triangles(mesh.triangles);
+      const MeshView view{mesh.vertices, turned, {}, {}};
+      winding.emplace(view, SiteTable(view, context), context);
+    } else {
+      winding.emplace(mesh, sites, context);
+    }
+    if (sign.is_automatic) {
+      sign.rule = SignRule::winding;
+      sign.reason = "winding number above 1/2: the mesh is closed and oriented, but it touches or crosses itself";
+    } else {
+      sign.reason += "; the mesh touches or crosses itself: inside is what lies in any of its parts";
+    }
+  }
+
+  [[nodiscard]] bool is_beyond_bounds(const Vec3d& q) const {
+    const Box3& box = bvh.bounds();
+    return q.x < box.lower.x || q.y < box.lower.y || q.z < box.lower.z || q.x > box.upper.x || q.y > box.upper.y ||
+           q.z > box.upper.z;
   }
 
   [[nodiscard]] bool is_inside(const Vec3d& query, const NearestSite& nearest) const {
     if (nearest.distance == 0) return false;
-    if (normals) return normals->is_inside(query, nearest.point, nearest.site);
-    return winding && winding->is_inside(query);
+    // Of far sites rounding may name any, and the normal of the wrong one looks away.
+    if (sign.level && is_beyond_bounds(query)) return *sign.level < 0;
+    if (winding) return winding->is_inside(query) != is_turned;
+    return normals && normals->is_inside(query, nearest.point, nearest.site);
   }
 
   /// An upper bound on the distance, where one is known, spares work; it does not change the result.

@@ -11,16 +11,19 @@
 namespace blum::detail {
 namespace {
 
-constexpr std::size_t probes_per_shell = 4;
+/// A shell that touches others is looked at from many of its points, of which one lies on none of them.
+constexpr std::size_t most_probes_per_shell = 8192;
 
 /// A point of a shell that we look outwards from.
 struct Query {
   Vec3d point;  ///< permuted: the ray goes along z
   std::uint32_t shell = 0;
+  std::uint32_t probe = 0;  ///< counts all queries of a round
 };
 
 /// A triangle of one shell above a query of another one.
 struct Crossing {
+  std::uint32_t probe = 0;
   std::uint32_t inner = 0;
   std::uint32_t outer = 0;
   std::int32_t direction = 0;  ///< 1 where the ray leaves through the triangle, -1 where it enters
@@ -50,7 +53,7 @@ class QueryGrid {
       const std::int64_t bin_a = bin(a.point);
       const std::int64_t bin_b = bin(b.point);
       if (bin_a != bin_b) return bin_a < bin_b;
-      return a.point.z != b.point.z ? a.point.z < b.point.z : a.shell < b.shell;
+      return a.point.z != b.point.z ? a.point.z < b.point.z : a.probe < b.probe;
     });
     start_.assign(static_cast<std::size_t>(side_ * side_) + 1, 0);
     for (const Query& q : queries_) ++start_[static_cast<std::size_t>(bin(q.point)) + 1];
@@ -133,15 +136,11 @@ class Nesting {
   Nesting(const MeshView& mesh, ShellSet& set, const Context& context)
       : mesh_(mesh), set_(set), context_(context), bounds_(total_bounds(set)), frame_(bounds_.size()) {
     bounds_ = frame_(bounds_);
-    collect_probes();
   }
 
   void run() {
-    std::vector<std::uint32_t> pending(set_.shells.size());
-    for (std::uint32_t s = 0; s < pending.size(); ++s) pending[s] = s;
-    for (std::size_t round = 0; round < probes_per_shell && !pending.empty(); ++round) {
-      pending = ask(pending, round, round + 1 == probes_per_shell);
-    }
+    const std::vector<std::uint32_t> doubtful = ask(first_vertices(), false);
+    if (!doubtful.empty()) (void)ask(many_points(doubtful), true);
     set_depths();
   }
 
@@ -152,28 +151,47 @@ class Nesting {
     return box;
   }
 
-  /// Vertices of each shell: the corners of its first triangle and one of its last.
-  void collect_probes() {
-    probes_.resize(set_.shells.size());
+  /// One vertex of each shell.
+  [[nodiscard]] std::vector<Query> first_vertices() const {
+    std::vector<Query> queries;
     std::vector<bool> is_seen(set_.shells.size(), false);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const std::uint32_t shell = set_.of_triangle[t];
-      if (shell == no_component) continue;
-      const Triangle& corner = mesh_.triangles[t];
-      if (!is_seen[shell]) probes_[shell] = {corner[0], corner[1], corner[2], corner[0]};
+      if (shell == no_component || is_seen[shell]) continue;
       is_seen[shell] = true;
-      probes_[shell][3] = corner[0];
+      add_query(mesh_.vertices[mesh_.triangles[t][0]], shell, queries);
     }
+    return queries;
   }
 
-  /// Finds the crossings above one vertex of each of these shells. Returns those for which rounding left a doubt,
-  /// having kept none of their crossings, unless this is the last try.
-  std::vector<std::uint32_t> ask(const std::vector<std::uint32_t>& inner, std::size_t round, bool is_last) {
+  /// A corner and the middle of many triangles of these shells, spread evenly.
+  [[nodiscard]] std::vector<Query> many_points(const std::vector<std::uint32_t>& shells) const {
+    std::vector<std::size_t> step(set_.shells.size(), 0);
+    for (const std::uint32_t s : shells) step[s] = set_.shells[s].triangles / (most_probes_per_shell / 2) + 1;
+    std::vector<std::size_t> seen(set_.shells.size(), 0);
     std::vector<Query> queries;
-    for (const std::uint32_t s : inner) queries.push_back({frame_(mesh_.vertices[probes_[s][round]]), s});
-    const QueryGrid grid(std::move(queries), bounds_);
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const std::uint32_t shell = set_.of_triangle[t];
+      if (shell == no_component || step[shell] == 0 || seen[shell]++ % step[shell] != 0) continue;
+      const Triangle& corner = mesh_.triangles[t];
+      const Vec3d a = mesh_.vertices[corner[0]];
+      add_query(a, shell, queries);
+      add_query(a + ((mesh_.vertices[corner[1]] - a) + (mesh_.vertices[corner[2]] - a)) * (1.0 / 3), shell, queries);
+    }
+    return queries;
+  }
+
+  void add_query(const Vec3d& point, std::uint32_t shell, std::vector<Query>& queries) const {
+    queries.push_back({frame_(point), shell, static_cast<std::uint32_t>(queries.size())});
+  }
+
+  /// Finds the crossings above points of shells, and keeps those of each shell's first point of which there is no doubt
+  /// that it lies on no other shell. Returns the shells that have none, and no crossings then, unless this is the last
+  /// try.
+  std::vector<std::uint32_t> ask(const std::vector<Query>& queries, bool is_last) {
+    const QueryGrid grid(queries, bounds_);
     const std::vector<bool> may_contain = find_candidates(grid);
-    std::vector<bool> is_doubtful(set_.shells.size(), false);
+    std::vector<bool> is_doubtful(queries.size(), false);
     std::vector<Crossing> found;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (t % 65536 == 0) throw_if_cancelled(context_);
@@ -190,19 +208,35 @@ class Nesting {
       grid.visit_in(box, heights, [&](const Query& query) {
         if (query.shell == outer || !is_within(frame_(set_.shells[outer].bounds), query.point)) return false;
         const int winding = projected_winding(corners, query.point);
-        if (winding == 0) return false;
+        const bool is_beside = is_within(box, query.point) && query.point.z >= box.lower.z;
+        if (winding == 0 && !is_beside) return false;
         const Height height = compare_height(corners, query.point, winding);
-        if (!height.is_certain) is_doubtful[query.shell] = true;
-        if (height.is_above) found.push_back({query.shell, outer, winding});
+        // A point on an upright wall has no winding number in the projection, but must not count as beyond the wall.
+        if (!height.is_certain) is_doubtful[query.probe] = true;
+        if (winding != 0 && height.is_above) found.push_back({query.probe, query.shell, outer, winding});
         return false;
       });
     }
+    return keep_certain(queries, is_doubtful, found, is_last);
+  }
+
+  std::vector<std::uint32_t> keep_certain(const std::vector<Query>& queries, const std::vector<bool>& is_doubtful,
+                                          const std::vector<Crossing>& found, bool is_last) {
+    constexpr std::uint32_t none = 0xffffffffU;
+    std::vector<std::uint32_t> first(set_.shells.size(), none);
+    std::vector<std::uint32_t> chosen(set_.shells.size(), none);
+    for (const Query& query : queries) {
+      if (first[query.shell] == none) first[query.shell] = query.probe;
+      if (chosen[query.shell] == none && !is_doubtful[query.probe]) chosen[query.shell] = query.probe;
+    }
     std::vector<std::uint32_t> doubtful;
-    for (const std::uint32_t s : inner) {
-      if (!is_last && is_doubtful[s]) doubtful.push_back(s);
+    for (std::uint32_t s = 0; s < first.size(); ++s) {
+      if (first[s] == none || chosen[s] != none) continue;
+      doubtful.push_back(s);
+      if (is_last) chosen[s] = first[s];
     }
     for (const Crossing& crossing : found) {
-      if (is_last || !is_doubtful[crossing.inner]) crossings_.push_back(crossing);
+      if (chosen[crossing.inner] == crossing.probe) crossings_.push_back(crossing);
     }
     return doubtful;
   }
@@ -253,7 +287,6 @@ class Nesting {
   const Context& context_;
   Box3 bounds_;
   Frame frame_;
-  std::vector<std::array<std::uint32_t, probes_per_shell>> probes_;
   std::vector<Crossing> crossings_;
 };
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/core/ids.hpp"
 #include "io/image_files.hpp"
 #include "io/image_geometry.hpp"
@@ -157,7 +158,7 @@ std::array<std::int64_t, 3> image_size(const NiftiHeader& header, const std::str
   for (std::size_t d = 1; d <= static_cast<std::size_t>(header.dim[0]); ++d) {
     if (d <= 3) {
       size[d - 1] = header.dim[d];
-    } else if (header.dim[d] > 1) {
+    } else if (header.dim[d] != 1 && header.dim[d] != 0) {  // some writers leave 0
       throw FormatError(name + ": it has " + std::to_string(header.dim[d]) + " images along dimension " +
                         std::to_string(d) + "; extract one of them first");
     }
@@ -243,12 +244,12 @@ VoxelImage::Values scaled(const VoxelImage::Values& values, double slope, double
 std::uint64_t gap(const NiftiHeader& header, const std::string& name) {
   // Some writers leave the offset at 0 where the data follow the header and its four bytes of extension flags.
   const bool unset = !header.detached && header.data_offset == 0;
-  const double offset = unset ? static_cast<double>(header.size + 4) : header.data_offset;
-  const double least = header.detached ? 0.0 : static_cast<double>(header.size);
+  const double least = header.detached ? 0.0 : static_cast<double>(header.size + 4);
+  const double offset = unset ? least : header.data_offset;
   if (!(offset >= least && offset <= 1e15) || offset != std::floor(offset)) {
-    throw FormatError(name + ": the data cannot begin at byte " + std::to_string(offset));
+    throw FormatError(name + ": the data cannot begin at byte " + exact_text(offset));
   }
-  return static_cast<std::uint64_t>(offset - least);
+  return static_cast<std::uint64_t>(offset) - (header.detached ? 0 : header.size);
 }
 
 }  // namespace

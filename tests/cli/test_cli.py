@@ -89,6 +89,21 @@ def test_info_of_a_mesh(shapes):
     assert "1 tunnel, 0 voids" in text
 
 
+def test_info_of_parts_that_cross_knows_no_solid(tmp_path):
+    run("make", "box", "-o", tmp_path / "box.obj")
+    lines = (tmp_path / "box.obj").read_text().splitlines()
+    corners = [line.split()[1:] for line in lines if line.startswith("v ")]
+    faces = [line.split()[1:] for line in lines if line.startswith("f ")]
+    n, step = len(corners), 0.3
+    moved = [" ".join(["v"] + [str(float(c) + step) for c in corner]) for corner in corners]
+    shifted = ["f " + " ".join(str(int(v.split("/")[0]) + n) for v in face) for face in faces]
+    (tmp_path / "two.obj").write_text("\n".join(lines + moved + shifted) + "\n")
+    facts = run_json("info", tmp_path / "two.obj")
+    assert facts["self_intersections"]["crossing"] > 0 and facts["betti"] is None
+    assert "solid           no: triangles cross each other" in run("info", tmp_path / "two.obj")[0]
+    assert run_json("info", tmp_path / "box.obj")["betti"] == [1, 0, 0]
+
+
 def test_info_counts_self_intersections(shapes, tmp_path):
     assert run_json("info", shapes / "torus.obj")["self_intersections"] == {
         "crossing": 0, "touching": 0, "complete": True, "pairs": []}

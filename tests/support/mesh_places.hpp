@@ -1,6 +1,7 @@
 // Blum: meshes moved about, and places to ask them. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "blum/core/random.hpp"
@@ -46,6 +47,20 @@ inline std::vector<Vec3d> places_around(const MeshView& mesh, std::size_t count,
     }
   }
   return places;
+}
+
+/// A box from corner to corner; turned inside out where asked, and its triangles starting at another one.
+inline TriangleMesh box_between(const Vec3d& lower, const Vec3d& upper, bool is_turned = false, int first = 0) {
+  TriangleMesh mesh = make_box({});
+  const Box3 box = bounds(mesh);
+  for (Vec3d& v : mesh.vertices) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      v[a] = lower[a] + (v[a] - box.lower[a]) / (box.upper[a] - box.lower[a]) * (upper[a] - lower[a]);
+    }
+  }
+  if (is_turned) mesh.triangles = turned_triangles(mesh.triangles);
+  std::rotate(mesh.triangles.begin(), mesh.triangles.begin() + first, mesh.triangles.end());
+  return mesh;
 }
 
 }  // namespace blum::test

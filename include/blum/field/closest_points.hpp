@@ -17,8 +17,8 @@
 namespace blum {
 
 struct ClosestPointOptions {
-  /// How the sign is found, as for fields: `automatic` takes `normals` where the mesh is closed, consistently oriented
-  /// and faces outwards, else `winding`. `none` is cheapest.
+  /// How the sign is found, as for fields: `automatic` takes `normals` where the mesh is closed, consistently oriented,
+  /// faces outwards, and no two of its triangles touch or cross but neighbours; else `winding`. `none` is cheapest.
   SignMode sign = SignMode::automatic;
   /// Nothing further than this is looked for; >= 0, in mesh units. Unset: no limit.
   std::optional<double> max_distance = {};
@@ -36,7 +36,8 @@ struct ClosestPoint {
 class ClosestPointQuery {
  public:
   /// @throws InvalidMesh, InvalidOption, Cancelled.
-  /// Cost: O(n log n), about 30 ms for 70,000 triangles on two cores, and more where winding numbers are needed.
+  /// Cost: O(n log n), about 80 ms for 70,000 triangles on two cores, 30 ms unsigned, and more where winding
+  /// numbers are needed.
   explicit ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options = {},
                              const Context& context = {});
   ClosestPointQuery(ClosestPointQuery&&) noexcept;
@@ -44,10 +45,11 @@ class ClosestPointQuery {
   ~ClosestPointQuery();
 
   /// One query. May be called from many threads at once; allocates nothing.
-  /// @param query  finite, within 1e140 times the mesh's longest side (else the result has no site).
+  /// @param query  finite, within 1e140 times the mesh's longest side, or 1e140 where that is longer than 1 (else the
+  ///               result has no site).
   /// @return       a distance within about 1e-15 of exact, relative to the extent of mesh and query together. Of
-  /// several
-  ///               sites at the same distance the one with the smallest id. A query on the surface is not inside.
+  ///               several sites at the same computed distance the one with the smallest id. A query on the surface is
+  ///               not inside.
   [[nodiscard]] ClosestPoint nearest(const Vec3d& query) const;
 
   /// Many queries, threaded. The same results as nearest(), for any number of threads.

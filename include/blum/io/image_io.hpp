@@ -25,8 +25,8 @@ enum class ImageFormat : std::uint8_t { nrrd, nifti, npy, vol };
 ///   .nii, .hdr with .img, each also with .gz
 ///                 NIfTI-1 and 2, either byte order. The sform where it is set and has no shear, else the qform, else
 ///                 the spacings alone; with either form the space is right-anterior-superior. Values with a scale
-///                 (scl_slope, scl_inter) become double; a slope of 0 or NaN is none. Dimensions beyond three must
-///                 be 1.
+///                 (scl_slope, scl_inter) become double; a slope of 0, NaN or infinity is none. Dimensions beyond three
+///                 must be 1.
 ///   .npy          Arrays indexed [z, y, x], of one to three axes, in C or Fortran order, either byte order, bool as
 ///                 uint8. Spacing 1, origin 0.
 ///   .vol          Vol of DGtal and simplevol: a text header, then bytes (Version 2) or the same compressed by zlib

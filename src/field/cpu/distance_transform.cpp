@@ -102,8 +102,10 @@ void choose_arithmetic(TransformPlan& plan, const double (&spacing)[3], int used
 void check_extent(const GridSpec& grid) {
   double longest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.size[axis] == 1) continue;
     longest = std::max(longest, grid.spacing[axis] * static_cast<double>(grid.size[axis]));
   }
+  if (longest == 0) return;  // a single voxel
   if (longest >= 1e-36 && longest < 1e37) return;
   throw InvalidImage("the image spans " + exact_text(longest) +
                      " units, but 32-bit distances hold 1e-36 to 1e37: give its spacing in other units");
@@ -128,8 +130,7 @@ TransformPlan make_plan(const GridSpec& grid, const DistanceTransformOptions& op
     if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + exact_text(band));
     plan.has_band = band < static_cast<double>(std::numeric_limits<float>::max());
     if (plan.has_band) {
-      plan.band = static_cast<float>(band);
-      if (static_cast<double>(plan.band) > band) plan.band = std::nextafter(plan.band, 0.0F);
+      plan.band = static_cast<float>(band);  // as distances are rounded, so that one equal to it stays within
     }
   }
   plan.context = &context;

@@ -51,6 +51,44 @@ TEST(ClosestPoints, AreThoseOfBruteForce) {
   expect_like_brute_force(with_wires, 4, SignRule::winding);  // wires have no sides
 }
 
+TEST(ClosestPoints, SignsOfPartsThatTouchOrCross) {
+  TriangleMesh beside = test::box_between({0, 0, 0}, {1, 1, 1});
+  append(beside, test::box_between({1, 0, 0}, {2, 1, 1}));
+  EXPECT_NEAR(closest_points(beside, std::vector<Vec3d>{{1.1, 0.5, 0.5}})[0].distance, -0.1, 1e-12);
+  expect_like_brute_force(beside, 5, SignRule::winding);
+
+  TriangleMesh crossing = test::box_between({0, 2, 2}, {6, 4, 4});
+  append(crossing, test::box_between({2, 0, 2.5}, {4, 6, 3.5}));
+  const std::vector<Vec3d> inside_one{{1.9, 3, 3}};
+  EXPECT_LT(closest_points(crossing, inside_one)[0].distance, 0);
+  EXPECT_LT(closest_points(crossing, inside_one, {.sign = SignMode::normals})[0].distance, 0);
+
+  TriangleMesh hollow = test::box_between({0, 1, 1}, {2, 3, 3}, true);  // its void touches the wall from within
+  append(hollow, test::box_between({0, 0, 0}, {4, 4, 4}));
+  EXPECT_EQ(closest_points(hollow, std::vector<Vec3d>{{-5, 2, 2}})[0].distance, 5);
+  EXPECT_EQ(closest_points(hollow, std::vector<Vec3d>{{1, 2, 2}})[0].distance, 1);
+}
+
+TEST(ClosestPoints, InsideOutMeshesThatTouchThemselvesAreInsideOutEverywhere) {
+  TriangleMesh beside = test::box_between({0, 0, 0}, {1, 1, 1}, true);
+  append(beside, test::box_between({1, 0, 0}, {2, 1, 1}, true));
+  const std::vector<Vec3d> places{{1.1, 0.5, 0.5}, {3, 0.5, 0.5}, {0.5, 1.2, 0.5}};
+  const std::vector<ClosestPoint> found = closest_points(beside, places, {.sign = SignMode::normals});
+  EXPECT_NEAR(found[0].distance, 0.1, 1e-12);
+  EXPECT_NEAR(found[1].distance, -1, 1e-12);
+  EXPECT_NEAR(found[2].distance, -0.2, 1e-12);
+}
+
+TEST(ClosestPoints, FarPlacesAreOutside) {
+  const TriangleMesh cube = make_box({});
+  for (const SignMode mode : {SignMode::automatic, SignMode::normals, SignMode::winding}) {
+    for (const double far : {1e3, 1e15, 1e16, 1e17, 1e18, 1e100}) {
+      const ClosestPoint found = closest_points(cube, std::vector<Vec3d>{{far, 0, 0}}, {.sign = mode})[0];
+      EXPECT_NEAR(found.distance, far, 0.5 + 1e-9 * far) << "at " << far;
+    }
+  }
+}
+
 TEST(ClosestPoints, TellFeaturesApart) {
   const TriangleMesh cube = make_box({});
   const SiteTable sites(cube);

@@ -239,6 +239,30 @@ TEST(DistanceTransform, LargePlanesEqualBruteForce) {
   expect_brute_force(image, mask_of(image), distance_transform(image), true, 30011);
 }
 
+TEST(DistanceTransform, DistancesOfExactlyTheBandAreWithinIt) {
+  for (const double step : {1.0, 0.7, 0.1, 0.3, 1.0 / 3, 1e-3, 123.4}) {
+    for (const int steps : {1, 2, 3}) {
+      VoxelImage image;
+      image.grid.size = {9, 1, 1};
+      image.grid.spacing = {step, 5 * step, step};
+      image.values = std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0};
+      const Field field = distance_transform(image, {.band = steps * step});
+      for (int i = 0; i < 9; ++i) {
+        EXPECT_EQ(field.site[static_cast<std::size_t>(i)].has_value(), std::abs(i - 4) <= steps)
+            << "voxel " << i << ", band of " << steps << " steps of " << step;
+      }
+    }
+  }
+}
+
+TEST(DistanceTransform, LayersWithoutNeighboursMayHaveAnySpacing) {
+  VoxelImage image;
+  image.grid.size = {3, 1, 1};
+  image.grid.spacing = {1, 1e38, 1e-40};
+  image.values = std::vector<std::uint8_t>{1, 0, 0};
+  EXPECT_EQ(distance_transform(image).distance[2], 2.0F);
+}
+
 TEST(DistanceTransform, BandClipsDistancesAndSites) {
   const VoxelImage image = random_image({40, 30, 20}, {1, 1, 1}, 0.001, 7);
   const Field full = distance_transform(image);

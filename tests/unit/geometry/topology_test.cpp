@@ -15,6 +15,7 @@
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
 #include "blum/geometry/generators.hpp"
+#include "support/mesh_places.hpp"
 
 namespace blum {
 namespace {
@@ -274,6 +275,42 @@ TEST(Topology, FlatShellFacesNowhere) {
   EXPECT_TRUE(t.closed && t.oriented);
   EXPECT_FALSE(t.faces_outwards);
   EXPECT_EQ(t.duplicate_triangles, 1U);
+}
+
+/// Walls that two shells share must not count as outside, whichever vertices are looked at first.
+TEST(Topology, VoidsThatTouchTheWallFromWithinAreVoids) {
+  const Vec3d lower{0, 0, 0};
+  const Vec3d upper{4, 4, 4};
+  int tried = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool is_at_upper : {false, true}) {
+      for (const bool is_full : {false, true}) {  // over the whole wall: each of the void's vertices touches
+        for (int first = 0; first < 12; ++first) {
+          Vec3d from = is_full ? lower : Vec3d{1, 1, 1};
+          Vec3d to = is_full ? upper : Vec3d{3, 3, 3};
+          from[axis] = is_at_upper ? 2 : 0;
+          to[axis] = is_at_upper ? 4 : 2;
+          TriangleMesh mesh = test::box_between(from, to, true, first);
+          append(mesh, test::box_between(lower, upper));
+          const Topology t = topology(mesh);
+          ASSERT_EQ(t.shells.size(), 2U);
+          EXPECT_EQ(t.shells[0].depth, 1U) << "axis " << axis << ", first triangle " << first;
+          EXPECT_EQ(t.shells[1].depth, 0U);
+          EXPECT_TRUE(t.faces_outwards);
+          // Beside each other from without, they are two parts.
+          Vec3d shift;
+          shift[axis] = is_at_upper ? 2 : -2;
+          TriangleMesh parts = test::box_between(from + shift, to + shift, false, first);
+          append(parts, test::box_between(lower, upper));
+          const Topology apart = topology(parts);
+          EXPECT_EQ(apart.shells[0].depth, 0U);
+          EXPECT_EQ(apart.shells[1].depth, 0U);
+          ++tried;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(tried, 144);
 }
 
 /// Depth of each shell by winding numbers of all others around one of its vertices.

@@ -103,6 +103,7 @@ std::vector<Hostile> hostile_others() {
        "cut short"},
       {"checksum", nifti, damaged, "damaged"},
       {"offset in the header", nifti, Nifti(2).set<float>(108, 100.0F).bytes + data24, "cannot begin"},
+      {"offset in the extension flags", nifti, Nifti(2).set<float>(108, 348.0F).bytes + data24, "byte 348"},
       {"offset NaN", nifti, Nifti(2).set<float>(108, std::numeric_limits<float>::quiet_NaN()).bytes + data24,
        "cannot begin"},
       {"offset beyond the end", nifti, Nifti(2).set<float>(108, 1e9F).bytes + data24, "cut short"},
