@@ -1,0 +1,63 @@
+// Blum: sets of voxels. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace blum {
+
+/// A set of voxels of a box, one bit each; voxels beyond the box are not in it. Rows run along x, and are padded to
+/// whole words with at least one bit that is always zero.
+class VoxelSet {
+ public:
+  VoxelSet() = default;
+  /// The empty set. @param size  voxels along x, y, z, each >= 0.
+  explicit VoxelSet(const std::array<std::int64_t, 3>& size)
+      : size_(size),
+        words_per_row_(static_cast<std::size_t>(size[0] / 64 + 1)),
+        words_(words_per_row_ * static_cast<std::size_t>(size[1] * size[2]), 0) {}
+
+  [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
+  [[nodiscard]] std::size_t words_per_row() const { return words_per_row_; }
+
+  /// Whether a voxel is in the set; any indices.
+  [[nodiscard]] bool contains(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    if (i < 0 || j < 0 || k < 0 || i >= size_[0] || j >= size_[1] || k >= size_[2]) return false;
+    return (words_[word(i, j, k)] >> (i % 64) & 1U) != 0;
+  }
+  /// The voxel must lie in the box.
+  void insert(std::int64_t i, std::int64_t j, std::int64_t k) { words_[word(i, j, k)] |= std::uint64_t{1} << (i % 64); }
+  void erase(std::int64_t i, std::int64_t j, std::int64_t k) {
+    words_[word(i, j, k)] &= ~(std::uint64_t{1} << (i % 64));
+  }
+
+  /// Bit i % 64 of word i / 64 is voxel (i, j, k). Bits beyond the box must stay zero.
+  [[nodiscard]] std::span<std::uint64_t> row(std::int64_t j, std::int64_t k) {
+    return {words_.data() + word(0, j, k), words_per_row_};
+  }
+  [[nodiscard]] std::span<const std::uint64_t> row(std::int64_t j, std::int64_t k) const {
+    return {words_.data() + word(0, j, k), words_per_row_};
+  }
+
+  [[nodiscard]] std::size_t count() const {
+    std::size_t total = 0;
+    for (const std::uint64_t w : words_) total += static_cast<std::size_t>(std::popcount(w));
+    return total;
+  }
+  [[nodiscard]] friend bool operator==(const VoxelSet&, const VoxelSet&) = default;
+
+ private:
+  [[nodiscard]] std::size_t word(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    return static_cast<std::size_t>(k * size_[1] + j) * words_per_row_ + static_cast<std::size_t>(i / 64);
+  }
+
+  std::array<std::int64_t, 3> size_{0, 0, 0};
+  std::size_t words_per_row_ = 0;
+  std::vector<std::uint64_t> words_;
+};
+
+}  // namespace blum

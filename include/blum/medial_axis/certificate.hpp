@@ -1,0 +1,80 @@
+// Blum: whether a medial axis is what it claims to be. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/voxel_set.hpp"
+#include "blum/medial_axis/medial_axis.hpp"
+#include "blum/medial_axis/medial_complex.hpp"
+
+namespace blum {
+
+/// A complex as a file tells it: corners of edges and triangles, nothing more.
+struct ComplexView {
+  std::size_t vertex_count = 0;
+  std::span<const std::array<std::uint32_t, 2>> edges;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Betti numbers over Z/2 of the complex of the vertices, the edges, the triangles and their edges, by reduction of
+/// boundary matrices. Edges and triangles that are named twice count once.
+/// @throws InvalidOption for a corner that is no vertex, or an edge or triangle that names one twice; Cancelled.
+/// Cost: near-linear for surfaces that meet along few seams.
+[[nodiscard]] BettiNumbers homology(const ComplexView& complex, const Context& context = {});
+
+/// How far the vertices of an axis are from what they claim.
+struct GeometryCheck {
+  std::size_t vertices = 0;          ///< looked at
+  double radius_error = 0;           ///< largest |radius - exact distance to the surface|, mesh units
+  double footprint_off_surface = 0;  ///< largest distance of a footprint from the surface, mesh units
+  double footprint_error = 0;        ///< largest |distance to a footprint - radius|, mesh units
+  double tolerance = 0;              ///< 1e-6 of the diagonal of the solid's box, mesh units
+  bool holds = false;                ///< none is above the tolerance
+};
+
+/// How much of a solid the balls around the vertices of an axis fill.
+struct BallUnionCheck {
+  /// How far the surface of the solid is from the union of the balls at most, over samples at most `step` apart.
+  double solid_to_balls = 0;
+  double mean_solid_to_balls = 0;  ///< the same, its mean over the samples
+  /// How far the balls reach out of the solid at most: largest radius - exact distance; 0 for exact radii.
+  double balls_beyond_solid = 0;
+  /// How far points of the surface of the union are from the surface of the solid at most, over samples of each ball.
+  double balls_to_surface = 0;
+  double step = 0;  ///< mesh units
+};
+
+struct Certificate {
+  SolidRule against = SolidRule::polyhedron;
+  BettiNumbers solid{};  ///< from its boundary, or its voxels
+  BettiNumbers axis{};   ///< of the complex, by homology()
+  bool topology_holds = false;
+  GeometryCheck geometry;
+  BallUnionCheck balls;
+  std::vector<std::string> mismatches;  ///< one sentence each; empty where all holds
+
+  [[nodiscard]] bool holds() const { return mismatches.empty(); }
+};
+
+/// Checks an axis against the closed, oriented, manifold mesh whose solid it is said to have. Nothing of the
+/// construction is used: Betti numbers come from the homology of the surface and the nesting of its components by
+/// counting crossings of rays; distances from a search of its own.
+/// @param has_geometry  whether radii and footprints are known; where they are not, only the topology is checked.
+/// @throws InvalidMesh, InvalidOption, Cancelled.
+[[nodiscard]] Certificate certify(const MedialComplex& axis, const MeshView& mesh, bool has_geometry = true,
+                                  const Context& context = {});
+
+/// The same against voxels whose closed union is the solid: of an image, with distances to their faces; or of a mesh
+/// that is no polyhedron (SolidRule::winding), with distances to that mesh.
+/// @param grid  of the voxels' centres.  @param surface  the mesh; nullptr for an image.
+[[nodiscard]] Certificate certify(const MedialComplex& axis, const VoxelSet& voxels, const GridSpec& grid,
+                                  const MeshView* surface, bool has_geometry = true, const Context& context = {});
+
+}  // namespace blum

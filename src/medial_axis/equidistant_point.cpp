@@ -1,0 +1,88 @@
+#include "medial_axis/equidistant_point.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace blum {
+namespace {
+
+/// Of the strongest direction's square.
+constexpr double weakest = 0.01;
+
+struct Symmetric {
+  double a[3][3] = {};
+};
+
+/// Eigenvectors as columns of v, eigenvalues on the diagonal of m, by Jacobi rotations.
+void diagonalise(Symmetric& m, Symmetric& v) {
+  for (int i = 0; i < 3; ++i) v.a[i][i] = 1;
+  for (int sweep = 0; sweep < 8; ++sweep) {
+    for (int p = 0; p < 2; ++p) {
+      for (int q = p + 1; q < 3; ++q) {
+        if (std::abs(m.a[p][q]) < 1e-300) continue;
+        const double theta = (m.a[q][q] - m.a[p][p]) / (2 * m.a[p][q]);
+        const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+        const double c = 1 / std::sqrt(t * t + 1);
+        const double s = t * c;
+        for (int k = 0; k < 3; ++k) {
+          const double kp = m.a[k][p];
+          const double kq = m.a[k][q];
+          m.a[k][p] = c * kp - s * kq;
+          m.a[k][q] = s * kp + c * kq;
+        }
+        for (int k = 0; k < 3; ++k) {
+          const double pk = m.a[p][k];
+          const double qk = m.a[q][k];
+          m.a[p][k] = c * pk - s * qk;
+          m.a[q][k] = s * pk + c * qk;
+          const double vp = v.a[k][p];
+          const double vq = v.a[k][q];
+          v.a[k][p] = c * vp - s * vq;
+          v.a[k][q] = s * vp + c * vq;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<Vec3d> equidistant_point(std::span<const Vec3d> points, const Vec3d& start, int rank) {
+  Vec3d mean;
+  double mean_square = 0;
+  for (const Vec3d& p : points) {
+    mean += p - start;
+    mean_square += squared_length(p - start);
+  }
+  const double n = static_cast<double>(points.size());
+  mean *= 1 / n;
+  mean_square /= n;
+  // |x - p|^2 is the same for all p: 2 (p - mean) . x = |p|^2 - mean |p|^2.
+  Symmetric normal;
+  std::array<double, 3> right{};
+  for (const Vec3d& p : points) {
+    const Vec3d row = (p - start - mean) * 2.0;
+    const double value = squared_length(p - start) - mean_square;
+    for (std::size_t i = 0; i < 3; ++i) {
+      right[i] += row[i] * value;
+      for (std::size_t j = 0; j < 3; ++j) normal.a[i][j] += row[i] * row[j];
+    }
+  }
+  Symmetric vectors;
+  diagonalise(normal, vectors);
+  std::array<int, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return normal.a[a][a] > normal.a[b][b]; });
+  const double strongest = normal.a[order[0]][order[0]];
+  Vec3d moved;
+  for (int k = 0; k < rank; ++k) {
+    const int i = order[static_cast<std::size_t>(k)];
+    const double strength = normal.a[i][i];
+    if (!(strength > weakest * strongest)) return std::nullopt;
+    const Vec3d direction{vectors.a[0][i], vectors.a[1][i], vectors.a[2][i]};
+    moved += direction * ((direction.x * right[0] + direction.y * right[1] + direction.z * right[2]) / strength);
+  }
+  return start + moved;
+}
+
+}  // namespace blum

@@ -1,0 +1,89 @@
+#include "medial_axis/surface_walk.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace blum {
+namespace {
+
+constexpr int most_steps = 64;
+
+Footprint closest_on_edge(const Vec3d& query, const Vec3d& a, const Vec3d& b, unsigned bit_a, unsigned bit_b) {
+  const Vec3d along = b - a;
+  const double squared = squared_length(along);
+  const double t = squared > 0 ? dot(query - a, along) / squared : 0;
+  if (!(t > 0)) return {a, 0, bit_a};
+  if (t >= 1) return {b, 0, bit_b};
+  return {a + along * t, 0, bit_a | bit_b};
+}
+
+Footprint closest_on_triangle(const Vec3d& query, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d normal = cross(b - a, c - a);
+  const double squared = squared_length(normal);
+  if (squared > 0 && dot(cross(b - a, query - a), normal) > 0 && dot(cross(c - b, query - b), normal) > 0 &&
+      dot(cross(a - c, query - c), normal) > 0) {
+    return {query - normal * (dot(query - a, normal) / squared), 0, 7};
+  }
+  Footprint best = closest_on_edge(query, a, b, 1, 2);
+  for (const Footprint& other : {closest_on_edge(query, b, c, 2, 4), closest_on_edge(query, c, a, 4, 1)}) {
+    if (squared_length(query - other.point) < squared_length(query - best.point)) best = other;
+  }
+  return best;
+}
+
+}  // namespace
+
+SurfaceWalk::SurfaceWalk(const MeshView& mesh)
+    : mesh_(mesh), first_(mesh.vertices.size() + 1, 0), triangles_(3 * mesh.triangles.size()) {
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) ++first_[v + 1];
+  }
+  for (std::size_t v = 0; v + 1 < first_.size(); ++v) first_[v + 1] += first_[v];
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) triangles_[next[v]++] = t;
+  }
+}
+
+SiteId site_of(const Footprint& foot, const SiteTable& sites, const MeshView& mesh) {
+  if (foot.corners == 7) return sites.id({SiteKind::face, foot.triangle});
+  const auto corner = static_cast<std::size_t>(std::countr_zero(foot.corners));
+  if (std::popcount(foot.corners) == 1) return sites.id({SiteKind::vertex, mesh.triangles[foot.triangle][corner]});
+  // Edge k of a triangle lies between its corners k and k + 1: bits 011, 110, 101.
+  const std::size_t edge = foot.corners == 5 ? 2 : corner;
+  const EdgeId id = sites.triangle_edges()[foot.triangle][edge];
+  return id.has_value() ? sites.id({SiteKind::edge, id.value}) : sites.id({SiteKind::face, foot.triangle});
+}
+
+Footprint SurfaceWalk::closest_on(std::uint32_t triangle, const Vec3d& query) const {
+  const Triangle& t = mesh_.triangles[triangle];
+  Footprint foot = closest_on_triangle(query, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+  foot.triangle = triangle;
+  return foot;
+}
+
+Footprint SurfaceWalk::follow(const Footprint& start, const Vec3d& query, double reach) const {
+  Footprint best = closest_on(start.triangle, query);
+  for (int step = 0; step < most_steps; ++step) {
+    Footprint better = best;
+    double better_squared = squared_length(query - best.point) * (1 - 1e-12);
+    for (unsigned rest = best.corners == 7 ? 0 : best.corners; rest != 0; rest &= rest - 1) {
+      const std::uint32_t v = mesh_.triangles[best.triangle][static_cast<std::size_t>(std::countr_zero(rest))];
+      for (std::uint32_t at = first_[v]; at < first_[v + 1]; ++at) {
+        if (triangles_[at] == best.triangle) continue;
+        const Footprint other = closest_on(triangles_[at], query);
+        const double other_squared = squared_length(query - other.point);
+        if (other_squared >= better_squared) continue;
+        better = other;
+        better_squared = other_squared;
+      }
+    }
+    if (better.triangle == best.triangle) break;
+    if (squared_length(better.point - start.point) > reach * reach) break;
+    best = better;
+  }
+  return best;
+}
+
+}  // namespace blum
