@@ -1,4 +1,8 @@
 #include <algorithm>
+#include <functional>
+#include <queue>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -10,9 +14,29 @@ namespace {
 using Edge = std::array<std::uint32_t, 2>;
 using Face = std::array<std::uint32_t, 3>;
 
+/// Sorts cells whose corners rise, and drops copies: by their first corner in one pass, then each of these parts, so
+/// that a caller who wants to stop need not wait for all.
+template <class Cell>
+std::vector<Cell> sorted(const std::vector<Cell>& cells, std::size_t vertex_count, const Context& context) {
+  std::vector<std::size_t> begin(vertex_count + 1, 0);
+  for (const Cell& cell : cells) ++begin[cell[0] + 1];
+  for (std::size_t v = 0; v < vertex_count; ++v) begin[v + 1] += begin[v];
+  throw_if_cancelled(context);
+  std::vector<Cell> out(cells.size());
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (const Cell& cell : cells) out[next[cell[0]]++] = cell;
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    if (v % 65536 == 0) throw_if_cancelled(context);
+    std::sort(out.begin() + static_cast<std::ptrdiff_t>(begin[v]),
+              out.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]));
+  }
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
 template <std::size_t n>
 std::vector<std::array<std::uint32_t, n>> sorted_cells(std::span<const std::array<std::uint32_t, n>> cells,
-                                                       std::size_t vertex_count) {
+                                                       std::size_t vertex_count, const Context& context) {
   std::vector<std::array<std::uint32_t, n>> out(cells.begin(), cells.end());
   for (auto& cell : out) {
     std::sort(cell.begin(), cell.end());
@@ -24,21 +48,18 @@ std::vector<std::array<std::uint32_t, n>> sorted_cells(std::span<const std::arra
       throw InvalidOption("an edge or triangle of a complex names vertex " + std::to_string(cell[0]) + " twice");
     }
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+  return sorted(out, vertex_count, context);
 }
 
 /// All edges: those that are named, and those of triangles.
-std::vector<Edge> all_edges(std::vector<Edge> edges, const std::vector<Face>& faces) {
+std::vector<Edge> all_edges(std::vector<Edge> edges, const std::vector<Face>& faces, std::size_t vertex_count,
+                            const Context& context) {
   for (const Face& f : faces) {
     edges.push_back({f[0], f[1]});
     edges.push_back({f[0], f[2]});
     edges.push_back({f[1], f[2]});
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
+  return sorted(edges, vertex_count, context);
 }
 
 /// Rank of the map from edges to vertices: vertices less components.
@@ -60,105 +81,143 @@ std::size_t vertex_rank(std::size_t vertex_count, const std::vector<Edge>& edges
   return joins;
 }
 
-/// Columns of the boundary matrix of the triangles, edges as rows, reduced from left to right by the lowest entry.
+/// The boundary matrix of the triangles, edges as rows, and its rank.
+///
+/// A triangle with an edge that no other triangle has is paired with that edge and removed, over and over. Where none
+/// has one (the surface is closed) a triangle is set aside, and it goes on. Each paired edge is no edge of triangles
+/// removed later: paired columns are independent, and only those set aside need elimination, edges that were paired
+/// first coming first.
 class BoundaryMatrix {
  public:
-  BoundaryMatrix(const std::vector<Face>& faces, const std::vector<Edge>& edges) : pivot_(edges.size(), none) {
-    columns_.reserve(faces.size());
+  BoundaryMatrix(const std::vector<Face>& faces, const std::vector<Edge>& edges, const Context& context)
+      : context_(context), key_(edges.size(), none) {
     const auto row = [&](std::uint32_t a, std::uint32_t b) {
       return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), Edge{a, b}) - edges.begin());
     };
+    rows_.reserve(faces.size());
     for (const Face& f : faces) {
-      std::vector<std::uint32_t> column{row(f[0], f[1]), row(f[0], f[2]), row(f[1], f[2])};
-      std::sort(column.begin(), column.end());
-      columns_.push_back(std::move(column));
+      if (rows_.size() % 65536 == 0) throw_if_cancelled(context);
+      rows_.push_back({row(f[0], f[1]), row(f[0], f[2]), row(f[1], f[2])});
     }
   }
 
-  std::size_t rank(const Context& context) {
-    std::size_t rank = 0;
-    std::vector<std::uint32_t> sum;
-    for (std::uint32_t c = 0; c < columns_.size(); ++c) {
-      if (c % 1024 == 0) throw_if_cancelled(context);
-      std::vector<std::uint32_t>& column = columns_[c];
-      while (!column.empty() && pivot_[column.back()] != none) {
-        const std::vector<std::uint32_t>& other = columns_[pivot_[column.back()]];
-        sum.clear();
-        std::set_symmetric_difference(column.begin(), column.end(), other.begin(), other.end(),
-                                      std::back_inserter(sum));
-        column.swap(sum);
-      }
-      if (column.empty()) continue;
-      pivot_[column.back()] = c;
-      ++rank;
-    }
-    return rank;
+  std::size_t rank() {
+    const std::vector<std::uint32_t> set_aside = pair_up();
+    for (const std::uint32_t face : set_aside) add_rest(rest_of(face));
+    return paired_.size() + rests_.size();
   }
 
  private:
   static constexpr std::uint32_t none = 0xffffffffU;
-  std::vector<std::vector<std::uint32_t>> columns_;
-  std::vector<std::uint32_t> pivot_;  ///< per row, the column whose lowest entry it is
-};
 
-/// Removes triangles with an edge that no other triangle has, and that edge, as long as there are any: the ranks of
-/// what is left tell those of the whole, one for one.
-std::size_t peel(std::vector<Face>& faces, const std::vector<Edge>& edges, const Context& context) {
-  const auto row = [&](std::uint32_t a, std::uint32_t b) {
-    return static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), Edge{a, b}) - edges.begin());
-  };
-  std::vector<std::array<std::size_t, 3>> rows;
-  rows.reserve(faces.size());
-  std::vector<std::uint32_t> count(edges.size(), 0);
-  std::vector<std::uint64_t> sum(edges.size(), 0);  // of the triangles at an edge: the last one is the sum
-  for (std::uint64_t f = 0; f < faces.size(); ++f) {
-    rows.push_back({row(faces[f][0], faces[f][1]), row(faces[f][0], faces[f][2]), row(faces[f][1], faces[f][2])});
-    for (const std::size_t e : rows.back()) {
-      ++count[e];
-      sum[e] += f;
+  /// Fills paired_ and key_; returns the triangles set aside.
+  std::vector<std::uint32_t> pair_up() {
+    std::vector<std::uint32_t> count(key_.size(), 0);
+    std::vector<std::uint64_t> sum(key_.size(), 0);  // of the triangles at an edge: the last one is the sum
+    for (std::uint32_t f = 0; f < rows_.size(); ++f) {
+      for (const std::uint32_t e : rows_[f]) {
+        ++count[e];
+        sum[e] += f;
+      }
+    }
+    std::vector<std::uint32_t> free;
+    for (std::uint32_t e = 0; e < count.size(); ++e) {
+      if (count[e] == 1) free.push_back(e);
+    }
+    std::vector<bool> is_gone(rows_.size(), false);
+    const auto remove = [&](std::uint32_t f) {
+      is_gone[f] = true;
+      for (const std::uint32_t e : rows_[f]) {
+        --count[e];
+        sum[e] -= f;
+        if (count[e] == 1) free.push_back(e);
+      }
+    };
+    std::vector<std::uint32_t> set_aside;
+    for (std::uint32_t f = 0; f < rows_.size(); ++f) {
+      throw_now_and_then();
+      while (!free.empty()) {
+        const std::uint32_t e = free.back();
+        free.pop_back();
+        if (count[e] != 1) continue;
+        const auto face = static_cast<std::uint32_t>(sum[e]);
+        key_[e] = static_cast<std::uint32_t>(paired_.size());
+        paired_.push_back(face);
+        remove(face);
+        throw_now_and_then();
+      }
+      if (is_gone[f]) continue;
+      set_aside.push_back(f);
+      remove(f);
+    }
+    return set_aside;
+  }
+
+  /// The column of a triangle that was set aside, freed of all paired edges: the edges that remain, rising.
+  std::vector<std::uint32_t> rest_of(std::uint32_t face) {
+    using Entry = std::pair<std::uint32_t, std::uint32_t>;  // when the edge was paired, and the edge
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> column;
+    const auto add = [&](std::uint32_t f) {
+      for (const std::uint32_t e : rows_[f]) column.push({key_[e], e});
+    };
+    add(face);
+    std::vector<std::uint32_t> rest;
+    while (!column.empty()) {
+      throw_now_and_then();
+      const auto [key, edge] = column.top();
+      column.pop();
+      if (!column.empty() && column.top().second == edge) {
+        column.pop();  // twice is not at all
+      } else if (key == none) {
+        rest.push_back(edge);
+      } else {
+        column.push({key, edge});
+        add(paired_[key]);
+      }
+    }
+    return rest;
+  }
+
+  /// Reduces a column by those before it, and keeps it if anything is left.
+  void add_rest(std::vector<std::uint32_t> column) {
+    std::vector<std::uint32_t> sum;
+    while (!column.empty()) {
+      throw_now_and_then();
+      const auto [other, is_new] = rests_.try_emplace(column.front());
+      if (is_new) {
+        other->second.swap(column);
+        return;
+      }
+      sum.clear();
+      std::set_symmetric_difference(column.begin(), column.end(), other->second.begin(), other->second.end(),
+                                    std::back_inserter(sum));
+      column.swap(sum);
     }
   }
-  throw_if_cancelled(context);
-  std::vector<std::size_t> free;
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (count[e] == 1) free.push_back(e);
+
+  void throw_now_and_then() {
+    if (++steps_ % 16384 == 0) throw_if_cancelled(context_);
   }
-  std::vector<bool> is_gone(faces.size(), false);
-  std::size_t removed = 0;
-  while (!free.empty()) {
-    const std::size_t e = free.back();
-    free.pop_back();
-    if (count[e] != 1) continue;
-    const auto f = static_cast<std::size_t>(sum[e]);
-    is_gone[f] = true;
-    ++removed;
-    for (const std::size_t other : rows[f]) {
-      --count[other];
-      sum[other] -= f;
-      if (count[other] == 1) free.push_back(other);
-    }
-  }
-  std::vector<Face> rest;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    if (!is_gone[f]) rest.push_back(faces[f]);
-  }
-  faces.swap(rest);
-  return removed;
-}
+
+  const Context& context_;
+  std::size_t steps_ = 0;
+  std::vector<std::array<std::uint32_t, 3>> rows_;                       ///< the edges of each triangle
+  std::vector<std::uint32_t> key_;                                       ///< of each edge: its place in paired_
+  std::vector<std::uint32_t> paired_;                                    ///< triangles, in order of removal
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> rests_;  ///< by their first edge
+};
 
 }  // namespace
 
 BettiNumbers homology(const ComplexView& complex, const Context& context) {
-  std::vector<Face> faces = sorted_cells<3>(complex.triangles, complex.vertex_count);
-  const std::vector<Edge> edges = all_edges(sorted_cells<2>(complex.edges, complex.vertex_count), faces);
-  throw_if_cancelled(context);
-  const std::size_t face_count = faces.size();
+  const std::vector<Face> faces = sorted_cells<3>(complex.triangles, complex.vertex_count, context);
+  const std::vector<Edge> edges =
+      all_edges(sorted_cells<2>(complex.edges, complex.vertex_count, context), faces, complex.vertex_count, context);
   const std::size_t rank_1 = vertex_rank(complex.vertex_count, edges);
-  std::size_t rank_2 = peel(faces, edges, context);
-  rank_2 += BoundaryMatrix(faces, edges).rank(context);
+  const std::size_t rank_2 = BoundaryMatrix(faces, edges, context).rank();
   const auto number = [](std::size_t n) { return static_cast<std::int64_t>(n); };
   return {number(complex.vertex_count - rank_1), number(edges.size()) - number(rank_1) - number(rank_2),
-          number(face_count - rank_2)};
+          number(faces.size() - rank_2)};
 }
 
 }  // namespace blum
