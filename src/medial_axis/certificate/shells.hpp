@@ -1,0 +1,41 @@
+// Blum: the shells of a closed mesh and how they nest, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/medial_axis/certificate.hpp"
+#include "medial_axis/certificate/triangle_search.hpp"
+
+namespace blum::verifier {
+
+/// A connected part of the surface.
+struct ClosedShell {
+  std::int64_t genus = 0;
+  double volume = 0;        ///< that it encloses, > 0, whichever way it faces
+  std::uint32_t depth = 0;  ///< how many shells it lies in: at even depth it bounds a body, at odd depth a void
+  std::uint32_t body = 0;   ///< counts the shells at even depth; a void belongs to the body around it
+};
+
+struct ClosedShells {
+  std::vector<ClosedShell> shells;
+  std::vector<std::uint32_t> of_triangle;  ///< no_group for triangles that name a vertex twice: they bound nothing
+  std::uint32_t bodies = 0;
+};
+
+/// Cuts a mesh into its shells. Which of them lies in which is not yet known.
+/// @throws InvalidMesh unless every edge has two triangles that traverse it in opposite directions, and every vertex
+/// one fan of triangles; Cancelled.
+[[nodiscard]] ClosedShells find_shells(const MeshView& mesh, const Context& context);
+
+/// Finds depths and bodies from lines through each shell. Shells may touch, but not cross.
+/// @param search  the triangles with their shells as groups.
+/// @throws InvalidMesh where a shell encloses nothing, or just what another one does; Cancelled.
+void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& search, const Context& context);
+
+/// Of the solid that nested shells bound.
+[[nodiscard]] BettiNumbers betti_numbers(const ClosedShells& shells);
+
+}  // namespace blum::verifier

@@ -1,0 +1,69 @@
+// Blum: what the verifier asks a solid. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/voxel_set.hpp"
+#include "blum/medial_axis/certificate.hpp"
+
+namespace blum::verifier {
+
+/// Where a point lies.
+struct Place {
+  std::uint32_t body = 0;  ///< that it lies in, or outside of all of them, the closest one
+  double distance = 0;     ///< from the surface of that body
+  double outside_by = 0;   ///< distance from the solid; 0 inside
+};
+
+/// A point of the surface, and how much of the surface it stands for.
+struct Sample {
+  Vec3d point;
+  double area = 0;
+};
+
+struct Samples {
+  std::vector<Sample> list;
+  double step = 0;  ///< each point of the surface is at most this far from a sample
+};
+
+/// A solid and its surface. All of it may be asked from many threads at once.
+class Solid {
+ public:
+  Solid() = default;
+  Solid(const Solid&) = delete;
+  Solid& operator=(const Solid&) = delete;
+  virtual ~Solid() = default;
+
+  [[nodiscard]] virtual double diagonal() const = 0;  ///< of its box
+  [[nodiscard]] virtual Place locate(const Vec3d& p) const = 0;
+  /// Exact distance of a point from the surface of a body.
+  [[nodiscard]] virtual double distance(const Vec3d& p, std::uint32_t body) const = 0;
+  /// Points of the surface, close enough together for `step` unless they would be too many. @throws Cancelled.
+  [[nodiscard]] virtual Samples samples(double step, const Context& context) const = 0;
+};
+
+/// No more samples than this are taken, unless there are more triangles.
+inline constexpr std::size_t most_samples = 1'000'000;
+
+/// A solid, and its Betti numbers.
+struct KnownSolid {
+  std::unique_ptr<Solid> solid;
+  BettiNumbers betti{};
+};
+
+/// What closed shells bound. @throws InvalidMesh, Cancelled. The mesh must outlive the solid.
+[[nodiscard]] KnownSolid solid_of_mesh(const MeshView& mesh, const Context& context);
+
+/// Closed voxels. @param surface  distances are to its triangles; nullptr: to the voxels' faces.
+/// @throws InvalidMesh where the surface has no triangles, Cancelled. The voxels and the mesh must outlive the solid.
+[[nodiscard]] KnownSolid solid_of_voxels(const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
+                                         const Context& context);
+
+}  // namespace blum::verifier

@@ -1,0 +1,83 @@
+// Blum: distances to the faces of voxels, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/voxel_set.hpp"
+#include "medial_axis/certificate/box_tree.hpp"
+
+namespace blum::verifier {
+
+/// The squares, edges or corners of voxels that lie between those in a set and those that are not.
+class VoxelSurface {
+ public:
+  /// The lower face of a voxel along an axis; the voxel may lie just beyond the box.
+  struct Face {
+    std::array<std::int64_t, 3> voxel{0, 0, 0};
+    std::size_t axis = 0;
+  };
+
+  /// The voxels must outlive it. @throws Cancelled.
+  VoxelSurface(const VoxelSet& voxels, const GridSpec& grid, const Context& context);
+
+  /// Exact distance from a point of the world to the closest face; HUGE_VAL where there is none.
+  [[nodiscard]] double distance(const Vec3d& p) const;
+  /// Whether a point lies in a voxel of the set; where voxels meet, in one of them.
+  [[nodiscard]] bool contains(const Vec3d& p) const;
+
+  /// The number of bricks of 4 x 4 x 4 voxels that have faces.
+  [[nodiscard]] std::size_t brick_count() const { return bricks_.size(); }
+  /// Calls use(face) for the faces of a brick.
+  template <class Use>
+  void for_each_face(std::size_t brick, const Use& use) const;
+
+  /// The rectangle of a face: along the axes of the grid, from its first node.
+  [[nodiscard]] Box3 rectangle(const Face& face) const;
+  [[nodiscard]] const GridSpec& grid() const { return grid_; }
+  /// The box around the faces, along the axes of the grid.
+  [[nodiscard]] const Box3& box() const { return box_; }
+
+ private:
+  using Brick = std::array<std::int32_t, 3>;  ///< in bricks
+  /// Voxels of a brick and those just before it: bit x of [y + 5 z] is voxel x - 1, y - 1, z - 1.
+  using Window = std::array<std::uint8_t, 25>;
+
+  [[nodiscard]] Window window(const Brick& brick) const;
+  [[nodiscard]] std::uint8_t five_bits(std::int64_t i, std::int64_t j, std::int64_t k) const;
+  void find_bricks(std::int32_t layer, std::vector<Brick>& found) const;
+  [[nodiscard]] Vec3d local(const Vec3d& p) const { return grid_.direction.transposed_times(p - grid_.origin); }
+
+  const VoxelSet& voxels_;
+  GridSpec grid_;
+  std::vector<Brick> bricks_;  ///< in the tree's order
+  BoxTree tree_;
+  Box3 box_;
+};
+
+template <class Use>
+void VoxelSurface::for_each_face(std::size_t brick, const Use& use) const {
+  const Window in = window(bricks_[brick]);
+  const auto is_in = [&](std::size_t x, std::size_t y, std::size_t z) { return (in[y + 5 * z] >> x & 1U) != 0; };
+  for (std::size_t z = 1; z < 5; ++z) {
+    for (std::size_t y = 1; y < 5; ++y) {
+      for (std::size_t x = 1; x < 5; ++x) {
+        const bool here = is_in(x, y, z);
+        const std::array<bool, 3> before{is_in(x - 1, y, z), is_in(x, y - 1, z), is_in(x, y, z - 1)};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          if (before[axis] == here) continue;
+          const Brick& at = bricks_[brick];
+          use(Face{{4 * std::int64_t{at[0]} + static_cast<std::int64_t>(x) - 1,
+                    4 * std::int64_t{at[1]} + static_cast<std::int64_t>(y) - 1,
+                    4 * std::int64_t{at[2]} + static_cast<std::int64_t>(z) - 1},
+                   axis});
+        }
+      }
+    }
+  }
+}
+
+}  // namespace blum::verifier
