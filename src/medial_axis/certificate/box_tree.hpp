@@ -34,6 +34,7 @@ class BoxTree {
 
   /// The things, those of one leaf beside each other.
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
+  [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes_.size()); }
   [[nodiscard]] const Node& node(std::uint32_t index) const { return nodes_[index]; }
 
   /// For each node the largest of the values of its things, given in the order of order().

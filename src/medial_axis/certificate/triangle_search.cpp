@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "blum/core/random.hpp"
 
@@ -118,13 +119,51 @@ TriangleSearch::TriangleSearch(const MeshView& mesh, std::span<const std::uint32
     triangles_.push_back(t);
     groups_.push_back(groups.empty() ? 0 : groups[t]);
   }
+  make_flat_boxes(context);
+}
+
+void TriangleSearch::make_flat_boxes(const Context& context) {
+  constexpr std::size_t most_triangles = 64;
+  flat_boxes_.resize(tree_.node_count());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> range(tree_.node_count());  // of places; those below a node
+  for (std::uint32_t n = tree_.node_count(); n-- > 0;) {                           // children come after their parents
+    if (n % 16384 == 0) throw_if_cancelled(context);
+    const BoxTree::Node& node = tree_.node(n);
+    range[n] = node.count > 0 ? std::pair(node.first, node.first + node.count)
+                              : std::pair(range[node.first].first, range[node.first + 1].second);
+    const auto [begin, end] = range[n];
+    if (end - begin <= most_triangles) flat_boxes_[n] = flat_box({corners_.data() + begin, end - begin});
+  }
+}
+
+TriangleSearch::FlatBox TriangleSearch::flat_box(std::span<const Corners> triangles) {
+  FlatBox flat;
+  flat.origin = triangles[0][0];
+  Vec3d normal;
+  for (const auto& [a, b, c] : triangles) normal += cross(b - a, c - a);
+  const Vec3d across = cross(normal, triangles[0][1] - triangles[0][0]);
+  if (length(normal) > 0 && length(across) > 0) {
+    flat.axes.columns[0] = normal / length(normal);
+    flat.axes.columns[1] = across / length(across);
+    flat.axes.columns[2] = cross(flat.axes.columns[0], flat.axes.columns[1]);
+  }
+  for (const Corners& corners : triangles) {
+    for (const Vec3d& v : corners) flat.box.extend(flat.axes.transposed_times(v - flat.origin));
+  }
+  return flat;
+}
+
+double TriangleSearch::bound(const Vec3d& p, std::uint32_t node) const {
+  const FlatBox& flat = flat_boxes_[node];
+  if (flat.box.is_empty()) return squared_distance(p, tree_.node(node).box);
+  return squared_distance(flat.axes.transposed_times(p - flat.origin), flat.box);
 }
 
 TriangleSearch::Nearest TriangleSearch::nearest(const Vec3d& p, std::uint32_t group) const {
   double best = HUGE_VAL;
   std::uint32_t triangle = 0;
   tree_.search(
-      best, [&](std::uint32_t n) { return squared_distance(p, tree_.node(n).box); },
+      best, [&](std::uint32_t n) { return bound(p, n); },
       [&](std::uint32_t place) {
         if (group != no_group && groups_[place] != group) return best;
         const double squared = squared_distance(p, corners_[place]);

@@ -53,7 +53,19 @@ class TriangleSearch {
 
  private:
   using Corners = std::array<Vec3d, 3>;
+
+  /// A box along the mean normal of some triangles: flat where they are, so that far queries reach few of them.
+  struct FlatBox {
+    Vec3d origin;
+    Mat3 axes;
+    Box3 box;  ///< from the origin, along the axes; empty where there are too many triangles for it
+  };
+  void make_flat_boxes(const Context& context);
+  [[nodiscard]] static FlatBox flat_box(std::span<const Corners> triangles);
+  [[nodiscard]] double bound(const Vec3d& p, std::uint32_t node) const;
+
   BoxTree tree_;
+  std::vector<FlatBox> flat_boxes_;       ///< of each node of the tree
   std::vector<Corners> corners_;          ///< in the tree's order
   std::vector<std::uint32_t> triangles_;  ///< of the mesh, in the tree's order
   std::vector<std::uint32_t> groups_;     ///< in the tree's order

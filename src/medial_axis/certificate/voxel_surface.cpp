@@ -31,7 +31,11 @@ VoxelSurface::VoxelSurface(const VoxelSet& voxels, const GridSpec& grid, const C
   tree_ = BoxTree(boxes, context);
   std::vector<Brick> ordered;
   ordered.reserve(kept);
-  for (const std::uint32_t place : tree_.order()) ordered.push_back(bricks_[place]);
+  boxes_.reserve(kept);
+  for (const std::uint32_t place : tree_.order()) {
+    ordered.push_back(bricks_[place]);
+    boxes_.push_back(boxes[place]);
+  }
   bricks_.swap(ordered);
   if (!bricks_.empty()) box_ = tree_.node(0).box;
 }
@@ -86,6 +90,7 @@ double VoxelSurface::distance(const Vec3d& p) const {
   tree_.search(
       best, [&](std::uint32_t n) { return squared_distance(q, tree_.node(n).box); },
       [&](std::uint32_t brick) {
+        if (!(squared_distance(q, boxes_[brick]) < best)) return best;
         for_each_face(brick, [&](const Face& face) { best = std::min(best, squared_distance(q, rectangle(face))); });
         return best;
       });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -54,6 +55,7 @@ class VoxelSurface {
   const VoxelSet& voxels_;
   GridSpec grid_;
   std::vector<Brick> bricks_;  ///< in the tree's order
+  std::vector<Box3> boxes_;    ///< around the faces of each
   BoxTree tree_;
   Box3 box_;
 };
@@ -61,16 +63,14 @@ class VoxelSurface {
 template <class Use>
 void VoxelSurface::for_each_face(std::size_t brick, const Use& use) const {
   const Window in = window(bricks_[brick]);
-  const auto is_in = [&](std::size_t x, std::size_t y, std::size_t z) { return (in[y + 5 * z] >> x & 1U) != 0; };
+  const Brick& at = bricks_[brick];
   for (std::size_t z = 1; z < 5; ++z) {
     for (std::size_t y = 1; y < 5; ++y) {
-      for (std::size_t x = 1; x < 5; ++x) {
-        const bool here = is_in(x, y, z);
-        const std::array<bool, 3> before{is_in(x - 1, y, z), is_in(x, y - 1, z), is_in(x, y, z - 1)};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          if (before[axis] == here) continue;
-          const Brick& at = bricks_[brick];
-          use(Face{{4 * std::int64_t{at[0]} + static_cast<std::int64_t>(x) - 1,
+      const unsigned row = in[y + 5 * z];
+      const std::array<unsigned, 3> before{row << 1U, in[y - 1 + 5 * z], in[y + 5 * (z - 1)]};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (unsigned differ = (row ^ before[axis]) & 0x1eU; differ != 0; differ &= differ - 1) {
+          use(Face{{4 * std::int64_t{at[0]} + std::countr_zero(differ) - 1,
                     4 * std::int64_t{at[1]} + static_cast<std::int64_t>(y) - 1,
                     4 * std::int64_t{at[2]} + static_cast<std::int64_t>(z) - 1},
                    axis});
