@@ -264,7 +264,7 @@ void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& sear
     throw_if_cancelled(context);
     ClosedShell& own = shells.shells[s];
     const Stretch stretch = prober.probe(s, lists[s]);
-    if (!(stretch.length > 0)) {
+    if (!(stretch.length > 1e-13 * search.bounds().diagonal())) {
       throw InvalidMesh("the shell of triangle " + std::to_string(lists[s].front()) + " encloses nothing");
     }
     own.depth = 0;

@@ -1,0 +1,517 @@
+// Proves that a certificate holds for axes made by hand whose solid is known, that everything false in an axis is found
+// and named, and that the Betti numbers of solids are those known of them, and those that topology() finds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <numbers>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/random.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/generators.hpp"
+#include "blum/geometry/shape_catalog.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/medial_axis/certificate.hpp"
+#include "support/data.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+using test::box_between;
+
+/// The Betti numbers that a certificate finds for a solid.
+BettiNumbers solid_of(const MeshView& mesh) {
+  return certify({}, mesh, false).solid;
+}
+
+/// Turns some of the shells of a mesh around.
+TriangleMesh some_shells_turned(TriangleMesh mesh, std::uint64_t seed) {
+  Random random(seed);
+  // Parts that share no vertex are turned as a whole, so the mesh stays consistently oriented.
+  std::vector<std::uint32_t> part(mesh.vertices.size());
+  for (std::uint32_t v = 0; v < part.size(); ++v) part[v] = v;
+  const auto root = [&](std::uint32_t v) {
+    while (part[v] != v) v = part[v] = part[part[v]];
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    part[root(t[1])] = root(t[0]);
+    part[root(t[2])] = root(t[0]);
+  }
+  std::vector<bool> is_turned(mesh.vertices.size());
+  for (std::size_t v = 0; v < is_turned.size(); ++v) is_turned[v] = random.uniform() < 0.5;
+  for (Triangle& t : mesh.triangles) {
+    if (is_turned[root(t[0])]) std::swap(t[1], t[2]);
+  }
+  return mesh;
+}
+
+TEST(SolidBetti, CatalogueShapesHaveTheirNumbersWhicheverWayTheyFace) {
+  int shapes = 0;
+  for (const ShapeInfo& shape : shape_catalog()) {
+    const ShapeParameters parameters = complete_parameters(shape, {});
+    const auto known = shape.betti(parameters);
+    if (!known) continue;
+    const TriangleMesh mesh = shape.make(parameters);
+    EXPECT_EQ(topology(mesh).betti, known) << shape.name;
+    EXPECT_EQ(solid_of(mesh), *known) << shape.name;
+    EXPECT_EQ(solid_of(some_shells_turned(mesh, 5)), *known) << shape.name << ", turned";
+    ++shapes;
+  }
+  EXPECT_GT(shapes, 15);
+}
+
+TEST(SolidBetti, ManyShellsInEachOther) {
+  EXPECT_EQ(solid_of(make_nested_shells({.shells = 60, .frequency = 2})), (BettiNumbers{30, 0, 30}));
+  EXPECT_EQ(solid_of(some_shells_turned(make_bodies({.count = 1000}), 1)), (BettiNumbers{1000, 0, 0}));
+  TriangleMesh mesh = make_torus({});
+  append(mesh, make_torus({.tube_radius = 0.2}));
+  append(mesh, make_torus({.tube_radius = 0.1}));
+  append(mesh, make_box({{0.2, 0.2, 0.2}, {1, 1, 1}}));  // in the hole of the ring, and so in none of its shells
+  EXPECT_EQ(solid_of(mesh), (BettiNumbers{3, 3, 1}));
+}
+
+TEST(SolidBetti, ShellsThatTouch) {
+  // Stacked, beside each other, corner on corner: bodies stay apart.
+  TriangleMesh stacked = box_between({0, 0, 0}, {1, 1, 1});
+  append(stacked, box_between({0, 0, 1}, {1, 1, 2}));
+  append(stacked, box_between({1, 0, 0}, {2, 1, 1}));
+  append(stacked, box_between({2, 1, 1}, {3, 2, 2}));
+  EXPECT_EQ(solid_of(stacked), (BettiNumbers{4, 0, 0}));
+  // A void that reaches the walls from within, and one that touches them in a face and an edge.
+  TriangleMesh hollow = box_between({0, 0, 0}, {2, 2, 2});
+  append(hollow, box_between({0, 0.5, 0.5}, {1, 1, 1}, true));
+  append(hollow, box_between({1, 0, 1}, {1.5, 0.5, 2}, true));
+  EXPECT_EQ(solid_of(hollow), (BettiNumbers{1, 0, 2}));
+  // A body in the void that touches it from within.
+  append(hollow, box_between({0, 0.5, 0.5}, {0.5, 0.75, 1}));
+  EXPECT_EQ(solid_of(hollow), (BettiNumbers{2, 0, 2}));
+  EXPECT_EQ(solid_of(some_shells_turned(hollow, 2)), (BettiNumbers{2, 0, 2}));
+}
+
+TEST(SolidBetti, RealMeshes) {
+  for (const char* name : {"spot.obj", "fandisk.obj", "rocker-arm.obj", "3holes.off", "eight.off", "ballcube.off",
+                           "plate_holes.STL", "torus.STL", "round.stl", "abc5.stl"}) {
+    const auto file = test::data_file(std::string("meshes/") + name);
+    if (!file) GTEST_SKIP() << test::no_data(std::string("meshes/") + name);
+    const TriangleMesh mesh = read_mesh(*file, {.weld = 0});
+    EXPECT_EQ(topology(mesh).betti, solid_of(mesh)) << name;
+  }
+}
+
+/// The message with which a mesh is refused.
+std::string refusal(const MeshView& mesh) {
+  try {
+    (void)certify({}, mesh, false);
+  } catch (const InvalidMesh& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(SolidBetti, RefusesWhatBoundsNoSolid) {
+  const auto says = [](const MeshView& mesh, const std::string& words) {
+    const std::string message = refusal(mesh);
+    EXPECT_NE(message.find(words), std::string::npos) << words << " in: " << message;
+  };
+  TriangleMesh open = make_box({});
+  open.triangles.pop_back();
+  says(open, "not closed and manifold");
+  TriangleMesh turned = make_box({});
+  std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+  says(turned, "not consistently oriented");
+  TriangleMesh doubled = make_box({});
+  doubled.triangles.insert(doubled.triangles.end(), doubled.triangles.begin(), doubled.triangles.end());
+  says(doubled, "4 triangles instead of two");
+  TriangleMesh pair = box_between({0, 0, 0}, {1, 1, 1});
+  append(pair, box_between({1, 1, 1}, {2, 2, 2}));
+  const auto first = std::find(pair.vertices.begin(), pair.vertices.end(), Vec3d{1, 1, 1}) - pair.vertices.begin();
+  for (Triangle& t : pair.triangles) {
+    for (std::uint32_t& v : t) {
+      if (pair.vertices[v] == Vec3d{1, 1, 1}) v = static_cast<std::uint32_t>(first);
+    }
+  }
+  says(pair, "meet in vertex " + std::to_string(first));
+  TriangleMesh flat;
+  flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  flat.triangles = {{0, 1, 2}, {0, 2, 1}};
+  says(flat, "encloses nothing");
+  TriangleMesh twice = make_box({});
+  append(twice, make_box({}));
+  says(twice, "same volume at the same place");
+  TriangleMesh points = make_points({});
+  says(points, "bounds nothing");
+  TriangleMesh degenerate = make_box({});
+  degenerate.triangles.push_back({0, 0, 1});
+  EXPECT_EQ(refusal(degenerate), "");
+}
+
+/// A vertex whose radius and footprint are what the library's own hierarchy tells.
+MedialVertex vertex_at(const Bvh& bvh, const Vec3d& p) {
+  const NearestSite nearest = *bvh.nearest(p);
+  return {p, nearest.distance, {nearest.point, nearest.point}, {nearest.site, nearest.site}};
+}
+
+/// An axis of one ball.
+MedialComplex ball_axis(const MeshView& mesh, const Vec3d& p) {
+  MedialComplex axis;
+  axis.vertices = {vertex_at(Bvh(mesh, SiteTable(mesh)), p)};
+  return axis;
+}
+
+/// The centre line of a torus of the default sizes, closed.
+MedialComplex torus_axis(const MeshView& mesh, std::uint32_t parts = 96) {
+  const Bvh bvh(mesh, SiteTable(mesh));
+  MedialComplex axis;
+  for (std::uint32_t k = 0; k < parts; ++k) {
+    const double angle = 2 * std::numbers::pi * k / parts;
+    axis.vertices.push_back(vertex_at(bvh, {std::cos(angle), std::sin(angle), 0}));
+    axis.edges.push_back({{k, (k + 1) % parts}});
+  }
+  return axis;
+}
+
+/// What a certificate complains of, in one line.
+std::string complaints(const Certificate& certificate) {
+  std::string all;
+  for (const std::string& one : certificate.mismatches) all += one + "\n";
+  return all;
+}
+
+TEST(Certificate, HoldsForTheCentresOfABallAndABox) {
+  const TriangleMesh ball = make_sphere({.radius = 2});
+  const Certificate c = certify(ball_axis(ball, {}), ball);
+  EXPECT_TRUE(c.holds()) << complaints(c);
+  EXPECT_TRUE(c.topology_holds && c.geometry.holds);
+  EXPECT_EQ(c.against, SolidRule::polyhedron);
+  EXPECT_EQ(c.solid, (BettiNumbers{1, 0, 0}));
+  EXPECT_EQ(c.axis, c.solid);
+  EXPECT_EQ(c.geometry.vertices, 1U);
+  // Vertices lie on the sphere, the triangles a little within.
+  const double radius = Bvh(ball, SiteTable(ball)).nearest({})->distance;
+  EXPECT_NEAR(c.balls.solid_to_balls, 2 - radius, 1e-12);
+  EXPECT_GT(c.balls.mean_solid_to_balls, 0);
+  EXPECT_LT(c.balls.mean_solid_to_balls, 2 - radius);
+  EXPECT_LE(c.balls.balls_to_surface, 2 - radius);
+  EXPECT_NEAR(c.balls.balls_beyond_solid, 0, 1e-14);
+  EXPECT_GT(c.balls.step, 0);
+
+  const TriangleMesh box = make_box({});
+  const Certificate b = certify(ball_axis(box, {}), box);
+  EXPECT_TRUE(b.holds()) << complaints(b);
+  EXPECT_NEAR(b.balls.solid_to_balls, std::sqrt(0.75) - 0.5, 1e-12) << "corners";
+  EXPECT_NEAR(b.balls.mean_solid_to_balls, 0.1403, 2e-3)
+      << "mean distance on a unit square from its middle, 1/2 above it";
+  EXPECT_NEAR(b.balls.balls_to_surface, 0.5 - 0.5 / std::sqrt(3.0), 0.05) << "near the diagonals";
+}
+
+TEST(Certificate, HoldsForTheCentreLineOfATorus) {
+  const TriangleMesh torus = make_torus({});
+  for (const std::uint32_t parts : {96U, 500U}) {
+    const MedialComplex axis = torus_axis(torus, parts);
+    const Certificate c = certify(axis, torus);
+    EXPECT_TRUE(c.holds()) << complaints(c);
+    EXPECT_EQ(c.solid, (BettiNumbers{1, 1, 0}));
+    const double half_edge = std::sin(std::numbers::pi / parts);
+    EXPECT_GT(c.balls.step, half_edge * (1 - 1e-9));
+    EXPECT_LT(c.balls.step, half_edge * 1.26) << "a million samples are not quite enough for the finer one";
+    EXPECT_LT(c.balls.solid_to_balls, 0.01);
+    EXPECT_LT(c.balls.balls_to_surface, 0.01);
+  }
+}
+
+TEST(Certificate, SeveralBodiesAndVoids) {
+  // Two boxes that touch in a face, and in the second one a void that touches its wall, with a body in it.
+  TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
+  append(mesh, box_between({1, 0, 0}, {4, 3, 3}));
+  append(mesh, box_between({1, 1, 1}, {2, 2, 2}, true));
+  append(mesh, box_between({1.25, 1.25, 1.25}, {1.75, 1.75, 1.75}));
+  const Bvh bvh(mesh, SiteTable(mesh));
+  MedialComplex axis;
+  for (const Vec3d& p : {Vec3d{0.5, 0.5, 0.5}, Vec3d{2.75, 1.5, 1.5}, Vec3d{1.5, 1.5, 1.5}}) {
+    axis.vertices.push_back(vertex_at(bvh, p));
+  }
+  Certificate c = certify(axis, mesh);
+  EXPECT_EQ(c.solid, (BettiNumbers{3, 0, 1}));
+  EXPECT_TRUE(c.geometry.holds);
+  EXPECT_EQ(complaints(c), "the solid has 1 void, the axis 0\n");
+  // In the void is outside.
+  axis.vertices[2] = vertex_at(bvh, {1.1, 1.5, 1.5});
+  c = certify(axis, mesh);
+  EXPECT_EQ(c.geometry.outside, 1U);
+  EXPECT_NEAR(c.geometry.outside_by, 0.1, 1e-12);
+  EXPECT_NE(complaints(c).find("of the 3 vertices of the axis 1 lie outside"), std::string::npos) << complaints(c);
+  EXPECT_NEAR(c.balls.balls_beyond_solid, 0.2, 1e-12);
+}
+
+/// A torus' axis that was tampered with.
+class FalsifiedAxis : public testing::Test {
+ protected:
+  TriangleMesh torus = make_torus({});
+  MedialComplex axis = torus_axis(torus);
+
+  void expect(const std::vector<std::string>& words) {
+    for (const int threads : {1, 2, 7}) {
+      const Certificate c = certify(axis, torus, true, {.threads = threads});
+      EXPECT_FALSE(c.holds());
+      ASSERT_EQ(c.mismatches.size(), words.size()) << complaints(c);
+      for (std::size_t k = 0; k < words.size(); ++k) {
+        EXPECT_NE(c.mismatches[k].find(words[k]), std::string::npos) << words[k] << " in: " << c.mismatches[k];
+      }
+    }
+  }
+};
+
+TEST_F(FalsifiedAxis, MissingEdge) {
+  axis.edges.pop_back();
+  expect({"the solid has 1 tunnel, the axis 0"});
+}
+
+TEST_F(FalsifiedAxis, ExtraVertex) {
+  axis.vertices.push_back(axis.vertices.front());
+  expect({"the solid has 1 component, the axis 2"});
+}
+
+TEST_F(FalsifiedAxis, ExtraLoop) {
+  axis.edges.push_back({{0, 5}});
+  axis.edges.push_back({{0, 7}});
+  expect({"the solid has 1 tunnel, the axis 3"});
+}
+
+TEST_F(FalsifiedAxis, ExtraSphere) {
+  axis.triangles = {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 2, 3}}, {{1, 2, 3}}};
+  expect({"the solid has 0 voids, the axis 1"});
+}
+
+TEST_F(FalsifiedAxis, WrongRadius) {
+  axis.vertices[17].radius += 1e-5;
+  expect({"a radius differs", "the distance to a footprint differs"});
+  EXPECT_NEAR(certify(axis, torus).balls.balls_beyond_solid, 1e-5, 1e-10);
+  EXPECT_NEAR(certify(axis, torus).geometry.radius_error, 1e-5, 1e-10);
+  axis.vertices[17].radius -= 2e-5;
+  expect({"a radius differs", "the distance to a footprint differs"});
+}
+
+TEST_F(FalsifiedAxis, RadiusWithinTolerance) {
+  axis.vertices[17].radius += 1e-7;
+  EXPECT_TRUE(certify(axis, torus).holds());
+}
+
+TEST_F(FalsifiedAxis, SmallerBall) {
+  // Everything agrees with itself, but there is no surface where the footprints are.
+  for (Vec3d& foot : axis.vertices[40].footprints) foot = (foot + axis.vertices[40].position) * 0.5;
+  axis.vertices[40].radius *= 0.5;
+  expect({"a radius differs", "a footprint lies off the surface by"});
+}
+
+TEST_F(FalsifiedAxis, FootprintOffTheSurface) {
+  MedialVertex& vertex = axis.vertices[3];
+  const Vec3d off = vertex.footprints[1] - vertex.position;
+  // As far as the radius says, but in a direction in which the surface is further.
+  Vec3d other = cross(off, vertex.position);
+  other = other * (vertex.radius / length(other)) + off * 0.2;
+  vertex.footprints[1] = vertex.position + other * (vertex.radius / length(other));
+  expect({"a footprint lies off the surface by"});
+}
+
+TEST_F(FalsifiedAxis, FootprintElsewhereOnTheSurface) {
+  axis.vertices[3].footprints[0] = axis.vertices[50].footprints[0];
+  expect({"the distance to a footprint differs"});
+}
+
+TEST_F(FalsifiedAxis, VertexOutside) {
+  axis.vertices[10] = vertex_at(Bvh(torus, SiteTable(torus)), axis.vertices[10].position * 1.5);
+  expect({"of the 96 vertices of the axis 1 lie outside"});
+}
+
+TEST_F(FalsifiedAxis, NoNumbers) {
+  axis.vertices[1].radius = std::numeric_limits<double>::quiet_NaN();
+  axis.vertices[2].position.x = std::numeric_limits<double>::infinity();
+  axis.vertices[3].footprints[1].z = -std::numeric_limits<double>::infinity();
+  expect({"of the 96 vertices of the axis 3 have a coordinate"});
+}
+
+TEST_F(FalsifiedAxis, NoAxisAtAll) {
+  axis = {};
+  expect({"1 component, the axis 0", "1 tunnel, the axis 0"});
+  EXPECT_NEAR(certify(axis, torus).balls.solid_to_balls, bounds(torus).diagonal(), 1e-12);
+}
+
+TEST_F(FalsifiedAxis, MissingBallsAreMeasured) {
+  const Certificate whole = certify(axis, torus);
+  // Half of the ring without balls: topology is all that is wrong, and the other half is 2 away.
+  axis.vertices.resize(48);
+  axis.edges.resize(47);
+  const Certificate half = certify(axis, torus);
+  EXPECT_EQ(complaints(half), "the solid has 1 tunnel, the axis 0\n");
+  EXPECT_GT(half.balls.solid_to_balls, 1);
+  EXPECT_GT(half.balls.mean_solid_to_balls, 10 * whole.balls.mean_solid_to_balls + 0.1);
+}
+
+TEST_F(FalsifiedAxis, NoVertexOfThatNumber) {
+  axis.edges.push_back({{0, 96}});
+  EXPECT_THROW((void)certify(axis, torus), InvalidOption);
+}
+
+TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
+  for (MedialVertex& vertex : axis.vertices) vertex.radius = 0;
+  const Certificate c = certify(axis, torus, false);
+  EXPECT_TRUE(c.holds()) << complaints(c);
+  EXPECT_EQ(c.geometry.vertices, 0U);
+  EXPECT_FALSE(c.geometry.holds);
+}
+
+TEST(Certificate, TheSameForAnyNumberOfThreads) {
+  const TriangleMesh torus = make_torus({});
+  const MedialComplex axis = torus_axis(torus, 700);
+  const Certificate one = certify(axis, torus, true, {.threads = 1});
+  for (const int threads : {2, 7}) {
+    const Certificate other = certify(axis, torus, true, {.threads = threads});
+    EXPECT_EQ(one.balls.mean_solid_to_balls, other.balls.mean_solid_to_balls);
+    EXPECT_EQ(one.balls.solid_to_balls, other.balls.solid_to_balls);
+    EXPECT_EQ(one.balls.balls_to_surface, other.balls.balls_to_surface);
+    EXPECT_EQ(one.geometry.radius_error, other.geometry.radius_error);
+    EXPECT_EQ(one.geometry.footprint_error, other.geometry.footprint_error);
+  }
+}
+
+TEST(Certificate, CancelStopsIt) {
+  const TriangleMesh torus = make_torus({});
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_THROW((void)certify(torus_axis(torus), torus, true, {.cancel = source.get_token()}), Cancelled);
+  EXPECT_THROW((void)certify({}, VoxelSet({3, 3, 3}), {{}, {1, 1, 1}, {3, 3, 3}, {}}, nullptr, true,
+                             {.cancel = source.get_token()}),
+               Cancelled);
+}
+
+// ---- Voxels ----
+
+/// A square ring of voxels 3 x 3 wide, in a turned grid, and its axis through the middles of voxels.
+struct VoxelRing {
+  VoxelSet voxels{{11, 11, 5}};
+  GridSpec grid{{5, 6, 7}, {1, 1, 1.5}, {11, 11, 5}, {}};
+  MedialComplex axis;
+
+  VoxelRing() {
+    grid.direction.columns[0] = {0, 0.6, 0.8};
+    grid.direction.columns[1] = {0, -0.8, 0.6};
+    grid.direction.columns[2] = {1, 0, 0};
+    for (std::int64_t k = 1; k < 4; ++k) {
+      for (std::int64_t j = 1; j < 10; ++j) {
+        for (std::int64_t i = 1; i < 10; ++i) {
+          if (i < 4 || i > 6 || j < 4 || j > 6) voxels.insert(i, j, k);
+        }
+      }
+    }
+    // Around the ring, from voxel (2, 2, 2) on; all are 1.5 from a side wall.
+    std::array<std::int64_t, 2> at{2, 2};
+    for (const auto& [di, dj] : {std::array{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+      for (int step = 0; step < 6; ++step) {
+        add(at[0], at[1]);
+        at[0] += di;
+        at[1] += dj;
+      }
+    }
+  }
+
+  void add(std::int64_t i, std::int64_t j) {
+    const auto count = static_cast<std::uint32_t>(axis.vertices.size());
+    const Vec3d p = grid.position(i, j, 2);
+    const bool is_upright = i == 2 || i == 8;  // the outer wall is across
+    const double side = is_upright ? (i == 2 ? -1.5 : 1.5) : (j == 2 ? -1.5 : 1.5);
+    const Vec3d foot = p + grid.direction.columns[is_upright ? 0 : 1] * side;
+    axis.vertices.push_back({p, 1.5, {foot, foot}, {}});
+    axis.edges.push_back({{count, (count + 1) % 24}});
+  }
+};
+
+TEST(VoxelCertificate, HoldsForTheMiddleOfARing) {
+  const VoxelRing ring;
+  const Certificate c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
+  EXPECT_TRUE(c.holds()) << complaints(c);
+  EXPECT_EQ(c.against, SolidRule::voxels);
+  EXPECT_EQ(c.solid, (BettiNumbers{1, 1, 0}));
+  EXPECT_NEAR(c.geometry.tolerance, 1e-6 * std::sqrt(81 + 81 + 4.5 * 4.5), 1e-9);
+  EXPECT_GT(c.balls.solid_to_balls, 0.5) << "corners";
+  EXPECT_LT(c.balls.solid_to_balls, std::sqrt(1.5 * 1.5 + 1.5 * 1.5 + 2.25 * 2.25) - 1.5);
+  EXPECT_NEAR(c.balls.balls_beyond_solid, 0, 1e-12);
+}
+
+TEST(VoxelCertificate, FindsWhatIsFalse) {
+  VoxelRing ring;
+  ring.axis.vertices[4].radius = 2.25;
+  Certificate c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
+  EXPECT_EQ(c.mismatches.size(), 2U) << complaints(c);
+  EXPECT_NEAR(c.geometry.radius_error, 0.75, 1e-12);
+  EXPECT_NEAR(c.balls.balls_beyond_solid, 0.75, 1e-12);
+  ring = {};
+  ring.voxels.erase(5, 2, 1);
+  ring.voxels.erase(5, 2, 2);
+  ring.voxels.erase(5, 2, 3);
+  c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
+  EXPECT_EQ(c.geometry.outside, 1U) << complaints(c);
+  EXPECT_NEAR(c.geometry.outside_by, 0.5, 1e-12);
+  EXPECT_NE(complaints(c).find("the solid has 2 tunnels, the axis 1"), std::string::npos) << complaints(c);
+  ring = {};
+  ring.voxels.erase(8, 8, 2);
+  c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
+  EXPECT_NE(complaints(c).find("the solid has 1 void, the axis 0"), std::string::npos) << complaints(c);
+  ring.grid.size[0] = 12;
+  EXPECT_THROW((void)certify(ring.axis, ring.voxels, ring.grid, nullptr), InvalidOption);
+}
+
+TEST(VoxelCertificate, VoxelsOfAnOpenMeshAreMeasuredAgainstTheMesh) {
+  // A box that lacks a triangle, and voxels that fill most of it.
+  TriangleMesh mesh = box_between({0, 0, 0}, {4, 4, 4});
+  mesh.triangles.pop_back();
+  VoxelSet voxels({4, 4, 4});
+  for (std::int64_t n = 0; n < 64; ++n) voxels.insert(n % 4, n / 4 % 4, n / 16);
+  const GridSpec grid{{0.5, 0.5, 0.5}, {1, 1, 1}, {4, 4, 4}, {}};
+  const MeshView view = mesh;
+  MedialComplex axis = ball_axis(mesh, {2, 2, 2});
+  Certificate c = certify(axis, voxels, grid, &view);
+  EXPECT_TRUE(c.holds()) << complaints(c);
+  EXPECT_EQ(c.against, SolidRule::winding);
+  EXPECT_EQ(c.solid, (BettiNumbers{1, 0, 0}));
+  axis = ball_axis(mesh, {2, 2, 9});
+  c = certify(axis, voxels, grid, &view);
+  EXPECT_EQ(c.geometry.outside, 1U) << complaints(c);
+  EXPECT_EQ(c.mismatches.size(), 1U) << complaints(c);
+  TriangleMesh points = make_points({});
+  const MeshView no_surface = points;
+  EXPECT_THROW((void)certify(axis, voxels, grid, &no_surface), InvalidMesh);
+}
+
+TEST(CertificateSlow, ALargeAxis) {
+  // Half of the way from the surface of a ball inwards: not its axis, but as many vertices as one may have.
+  const TriangleMesh ball = make_sphere({.frequency = 70});
+  const Bvh bvh(ball, SiteTable(ball));
+  const TriangleMesh inner = make_sphere({.radius = 0.5, .frequency = 70});
+  MedialComplex axis;
+  for (const Vec3d& p : inner.vertices) axis.vertices.push_back(vertex_at(bvh, p));
+  for (const Triangle& t : inner.triangles) axis.triangles.push_back({t});
+  const auto start = std::chrono::steady_clock::now();
+  const auto log = [&](double fraction, std::string_view phase) {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (fraction == 0 || fraction == 1) std::cout << phase << " " << fraction << ": " << seconds.count() << " s\n";
+  };
+  const Certificate c = certify(axis, ball, true, {.threads = 1, .progress = log});
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  std::cout << axis.vertices.size() << " vertices, " << ball.triangles.size() << " triangles: " << seconds.count()
+            << " s, step " << c.balls.step << "\n";
+  EXPECT_EQ(complaints(c), "the solid has 0 voids, the axis 1\n");
+}
+
+}  // namespace
+}  // namespace blum
