@@ -158,7 +158,7 @@ class BoundaryMatrix {
     using Entry = std::pair<std::uint32_t, std::uint32_t>;  // when the edge was paired, and the edge
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> column;
     const auto add = [&](std::uint32_t f) {
-      for (const std::uint32_t e : rows_[f]) column.push({key_[e], e});
+      for (const std::uint32_t e : rows_[f]) column.emplace(key_[e], e);
     };
     add(face);
     std::vector<std::uint32_t> rest;
@@ -171,7 +171,7 @@ class BoundaryMatrix {
       } else if (key == none) {
         rest.push_back(edge);
       } else {
-        column.push({key, edge});
+        column.emplace(key, edge);
         add(paired_[key]);
       }
     }

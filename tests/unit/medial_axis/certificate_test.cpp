@@ -99,6 +99,38 @@ TEST(SolidBetti, ShellsThatTouch) {
   EXPECT_EQ(solid_of(some_shells_turned(hollow, 2)), (BettiNumbers{2, 0, 2}));
 }
 
+/// Cuts a box into parts along random planes, puts shells into some of them that fill their part or nearly so, and goes
+/// on in these: shells touch their neighbours and those around them in whole faces. Counts shells by depth.
+void add_nested_boxes(const Vec3d& lower, const Vec3d& upper, int depth, Random& random, TriangleMesh& mesh,
+                      BettiNumbers& betti) {
+  append(mesh, box_between(lower, upper, random.uniform() < 0.5));
+  ++betti[depth % 2 == 0 ? 0 : 2];
+  if (depth == 4) return;
+  const Vec3d cut = lower + (upper - lower) * random.uniform(0.3, 0.7);
+  for (std::size_t part = 0; part < 8; ++part) {
+    if (random.uniform() < 0.6) continue;
+    Vec3d from = lower;
+    Vec3d to = upper;
+    for (std::size_t a = 0; a < 3; ++a) ((part >> a & 1U) == 0 ? to : from)[a] = cut[a];
+    if (random.uniform() < 0.5) from += (to - from) * 0.125;
+    add_nested_boxes(from, to, depth + 1, random, mesh, betti);
+  }
+}
+
+TEST(SolidBetti, RandomBoxesInBoxes) {
+  Random random(21);
+  std::size_t most = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    TriangleMesh mesh;
+    BettiNumbers expected{0, 0, 0};
+    add_nested_boxes({0, 0, 0}, {4, 4, 4}, 0, random, mesh, expected);
+    most = std::max(most, mesh.triangles.size() / 12);
+    ASSERT_EQ(solid_of(mesh), expected) << "trial " << trial;
+    ASSERT_EQ(solid_of(test::moved(mesh, 1e-3, {-7000, 3, 1})), expected) << "trial " << trial << ", far away";
+  }
+  EXPECT_GT(most, 50U) << "shells";
+}
+
 TEST(SolidBetti, RealMeshes) {
   for (const char* name : {"spot.obj", "fandisk.obj", "rocker-arm.obj", "3holes.off", "eight.off", "ballcube.off",
                            "plate_holes.STL", "torus.STL", "round.stl", "abc5.stl"}) {
@@ -373,7 +405,7 @@ TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
 
 TEST(Certificate, TheSameForAnyNumberOfThreads) {
   const TriangleMesh torus = make_torus({});
-  const MedialComplex axis = torus_axis(torus, 700);
+  const MedialComplex axis = torus_axis(torus, 300);
   const Certificate one = certify(axis, torus, true, {.threads = 1});
   for (const int threads : {2, 7}) {
     const Certificate other = certify(axis, torus, true, {.threads = threads});
