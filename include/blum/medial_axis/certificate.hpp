@@ -89,7 +89,8 @@ struct Certificate {
 /// The same against voxels whose closed union is the solid: of an image, with distances to their faces; or of a mesh
 /// that is no polyhedron (SolidRule::winding), with distances to that mesh.
 /// @param grid  of the voxels' centres.  @param surface  the mesh; nullptr for an image.
-/// @throws InvalidGrid, InvalidOption also for a grid of another size than the voxels, InvalidMesh, Cancelled.
+/// @throws InvalidGrid, InvalidMesh, InvalidOption (also for a grid of another size than the voxels, and where there
+/// are no voxels), Cancelled.
 [[nodiscard]] Certificate certify(const MedialComplex& axis, const VoxelSet& voxels, const GridSpec& grid,
                                   const MeshView* surface, bool has_geometry = true, const Context& context = {});
 

@@ -245,33 +245,89 @@ BallUnionCheck check_balls(const MedialComplex& axis, const Solid& solid, const 
 
 // ---- All of it ----
 
-Certificate certify_against(const MedialComplex& axis, const verifier::KnownSolid& known, SolidRule rule,
+/// Solids of any size are looked at as if they were about 1 large, for the fourth powers of lengths to be numbers. The
+/// factor is a power of two, which changes no digit, and 1 unless the size is extreme.
+double factor_for(double size) {
+  constexpr int extreme = 100;
+  const int exponent = size > 0 && std::isfinite(size) ? std::ilogb(size) : 0;
+  return std::abs(exponent) < extreme ? 1 : std::ldexp(1.0, -exponent);
+}
+
+MedialComplex scaled(MedialComplex axis, double factor) {
+  for (MedialVertex& vertex : axis.vertices) {
+    vertex.position *= factor;
+    vertex.radius *= factor;
+    for (Vec3d& foot : vertex.footprints) foot *= factor;
+  }
+  return axis;
+}
+
+/// A mesh and its vertices, which are its own.
+struct ScaledMesh {
+  std::vector<Vec3d> vertices;
+  MeshView view;
+
+  ScaledMesh(const MeshView& mesh, double factor) : vertices(mesh.vertices.begin(), mesh.vertices.end()), view(mesh) {
+    for (Vec3d& v : vertices) v *= factor;
+    view.vertices = vertices;
+  }
+};
+
+void scale_back(Certificate& certificate, double factor) {
+  GeometryCheck& geometry = certificate.geometry;
+  BallUnionCheck& balls = certificate.balls;
+  for (double* value : {&geometry.radius_error, &geometry.footprint_off_surface, &geometry.footprint_error,
+                        &geometry.outside_by, &geometry.tolerance, &balls.solid_to_balls, &balls.mean_solid_to_balls,
+                        &balls.balls_beyond_solid, &balls.balls_to_surface, &balls.step}) {
+    *value /= factor;
+  }
+}
+
+Certificate certify_against(const MedialComplex& axis, const verifier::KnownSolid& known, double factor,
                             bool has_geometry, const Context& context) {
   Certificate certificate;
-  certificate.against = rule;
   certificate.solid = known.betti;
   certificate.axis = homology_of(axis, context);
   compare_topology(certificate);
   if (!has_geometry) return certificate;
   std::vector<Place> places;
   certificate.geometry = check_geometry(axis, *known.solid, places, context);
-  explain_geometry(certificate.geometry, certificate.mismatches);
   certificate.balls = check_balls(axis, *known.solid, places, context);
+  scale_back(certificate, factor);
+  explain_geometry(certificate.geometry, certificate.mismatches);
   return certificate;
 }
 
 }  // namespace
 
 Certificate certify(const MedialComplex& axis, const MeshView& mesh, bool has_geometry, const Context& context) {
-  return certify_against(axis, verifier::solid_of_mesh(mesh, context), SolidRule::polyhedron, has_geometry, context);
+  validate(mesh);
+  const double factor = factor_for(bounds(mesh).diagonal());
+  if (factor == 1) {
+    return certify_against(axis, verifier::solid_of_mesh(mesh, context), factor, has_geometry, context);
+  }
+  const ScaledMesh own(mesh, factor);
+  return certify_against(scaled(axis, factor), verifier::solid_of_mesh(own.view, context), factor, has_geometry,
+                         context);
 }
 
 Certificate certify(const MedialComplex& axis, const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
                     bool has_geometry, const Context& context) {
   validate(grid);
   if (grid.size != voxels.size()) throw InvalidOption("the grid of a certificate is not that of its voxels");
-  const SolidRule rule = surface == nullptr ? SolidRule::voxels : SolidRule::winding;
-  return certify_against(axis, verifier::solid_of_voxels(voxels, grid, surface, context), rule, has_geometry, context);
+  if (voxels.count() == 0) throw InvalidOption("there are no voxels, and so no solid to check an axis against");
+  if (surface != nullptr) validate(*surface);
+  const double factor = factor_for(length(grid.spacing));
+  GridSpec own_grid = grid;
+  own_grid.origin *= factor;
+  own_grid.spacing *= factor;
+  const ScaledMesh own(surface == nullptr ? MeshView{} : *surface, factor);
+  const verifier::KnownSolid known =
+      verifier::solid_of_voxels(voxels, own_grid, surface == nullptr ? nullptr : &own.view, context);
+  Certificate certificate =
+      certify_against(factor == 1 ? axis : scaled(axis, factor), known, factor, has_geometry, context);
+  certificate.against = surface == nullptr ? SolidRule::voxels : SolidRule::winding;
+  return certificate;
 }
 
 }  // namespace blum

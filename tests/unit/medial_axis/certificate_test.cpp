@@ -403,6 +403,29 @@ TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
   EXPECT_FALSE(c.geometry.holds);
 }
 
+TEST(Certificate, SolidsOfAnySize) {
+  const TriangleMesh plain = make_torus({.ring_segments = 24, .tube_segments = 12});
+  const Certificate expected = certify(torus_axis(plain), plain);
+  for (const double size : {1e-140, 1e-20, 1e20, 1e140}) {
+    const TriangleMesh torus = test::moved(plain, size);
+    MedialComplex axis = torus_axis(plain);
+    for (MedialVertex& vertex : axis.vertices) {
+      vertex.position *= size;
+      vertex.radius *= size;
+      for (Vec3d& foot : vertex.footprints) foot *= size;
+    }
+    Certificate c = certify(axis, torus);
+    EXPECT_TRUE(c.holds()) << size << ": " << complaints(c);
+    EXPECT_EQ(c.solid, (BettiNumbers{1, 1, 0}));
+    EXPECT_NEAR(c.balls.solid_to_balls / size, expected.balls.solid_to_balls, 1e-9);
+    EXPECT_NEAR(c.balls.mean_solid_to_balls / size, expected.balls.mean_solid_to_balls, 1e-3);
+    axis.vertices[5].radius *= 1.01;
+    c = certify(axis, torus);
+    EXPECT_NEAR(c.geometry.radius_error / axis.vertices[5].radius, 1 - 1 / 1.01, 1e-9);
+    EXPECT_EQ(c.mismatches.size(), 2U) << complaints(c);
+  }
+}
+
 TEST(Certificate, TheSameForAnyNumberOfThreads) {
   const TriangleMesh torus = make_torus({});
   const MedialComplex axis = torus_axis(torus, 300);
@@ -422,9 +445,11 @@ TEST(Certificate, CancelStopsIt) {
   std::stop_source source;
   source.request_stop();
   EXPECT_THROW((void)certify(torus_axis(torus), torus, true, {.cancel = source.get_token()}), Cancelled);
-  EXPECT_THROW((void)certify({}, VoxelSet({3, 3, 3}), {{}, {1, 1, 1}, {3, 3, 3}, {}}, nullptr, true,
-                             {.cancel = source.get_token()}),
-               Cancelled);
+  const GridSpec grid{{}, {1, 1, 1}, {3, 3, 3}, {}};
+  VoxelSet voxels(grid.size);
+  EXPECT_THROW((void)certify({}, voxels, grid, nullptr), InvalidOption) << "no solid";
+  voxels.insert(1, 1, 1);
+  EXPECT_THROW((void)certify({}, voxels, grid, nullptr, true, {.cancel = source.get_token()}), Cancelled);
 }
 
 // ---- Voxels ----
@@ -487,6 +512,20 @@ TEST(VoxelCertificate, FindsWhatIsFalse) {
   EXPECT_EQ(c.mismatches.size(), 2U) << complaints(c);
   EXPECT_NEAR(c.geometry.radius_error, 0.75, 1e-12);
   EXPECT_NEAR(c.balls.balls_beyond_solid, 0.75, 1e-12);
+  for (const double size : {1e-120, 1e120}) {
+    VoxelRing extreme;
+    extreme.grid.origin *= size;
+    extreme.grid.spacing *= size;
+    for (MedialVertex& vertex : extreme.axis.vertices) {
+      vertex.position *= size;
+      vertex.radius *= size;
+      for (Vec3d& foot : vertex.footprints) foot *= size;
+    }
+    EXPECT_TRUE(certify(extreme.axis, extreme.voxels, extreme.grid, nullptr).holds()) << size;
+    extreme.axis.vertices[4].radius *= 1.5;
+    c = certify(extreme.axis, extreme.voxels, extreme.grid, nullptr);
+    EXPECT_NEAR(c.geometry.radius_error, 0.75 * size, 1e-12 * size);
+  }
   ring = {};
   ring.voxels.erase(5, 2, 1);
   ring.voxels.erase(5, 2, 2);
