@@ -147,7 +147,7 @@ TEST(Homology, RandomComplexesHaveTheRanksOfDenseMatrices) {
     Complex c;
     c.vertices = 3 + random.below(14);
     const std::size_t edges = random.below(2 * c.vertices);
-    const std::size_t faces = random.below(1 + (trial % 4 + 1) * c.vertices);
+    const std::size_t faces = random.below(1 + static_cast<std::uint64_t>(trial % 4 + 1) * c.vertices);
     for (std::size_t e = 0; e < edges; ++e) c.edges.push_back(random_cell<2>(c.vertices, random));
     for (std::size_t f = 0; f < faces; ++f) c.faces.push_back(random_cell<3>(c.vertices, random));
     const BettiNumbers expected = dense_homology(c);
