@@ -1,0 +1,40 @@
+// Blum: distance fields of unions of balls. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/field/field.hpp"
+#include "blum/grid/grid_spec.hpp"
+
+namespace blum {
+
+/// A closed ball; radius 0 is a point.
+struct Ball {
+  Vec3d centre;
+  double radius = 0;  ///< >= 0, mesh units
+};
+
+/// The box around balls, for grid_around(); empty where there are none.
+[[nodiscard]] Box3 bounds(std::span<const Ball> balls);
+
+/// At every node x of a grid the smallest |x - centre| - radius over all balls. Its zero_surface() is the boundary of
+/// the union.
+///
+/// @param balls  1 to max_id_count, in any order, and any number of times; centres finite, of magnitude at most 1e150;
+/// radii
+///               0 to 1e150.
+/// @param grid   must pass validate(grid).
+/// @return       outside of the union the distance to it; inside, negative: its magnitude is how deep the node lies in
+///               one ball, a lower bound of the distance to the boundary of the union. Computed in double, rounded to
+///               float. Field::site is empty (its ids count no balls), and Field::sign_rule `none`, although the
+///               field has negative values: no other rule is true of it. The same bytes for any number of threads.
+/// @throws InvalidOption (also for an empty list), InvalidGrid, OutOfMemory, Cancelled.
+/// Cost: O(nodes * balls) at worst, where all balls are equally far from all nodes. For balls that fill a solid, about
+/// TIMING.
+/// Method: octants of the grid, each with the balls that may be the closest somewhere in it.
+[[nodiscard]] Field ball_union_field(std::span<const Ball> balls, const GridSpec& grid, const Context& context = {});
+
+}  // namespace blum

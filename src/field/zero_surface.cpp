@@ -1,0 +1,319 @@
+#include "blum/field/zero_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "field/cube_cases.hpp"
+
+namespace blum {
+namespace {
+
+/// Ranges share a slice with the next one, which is worked out twice: so they are not thin.
+constexpr std::size_t nodes_per_range = std::size_t{1} << 20;
+constexpr std::size_t least_slices_per_range = 4;
+/// Part of an edge that a vertex keeps from its ends: triangles next to a node of exactly the level keep an area.
+constexpr double least_part = 1e-3;
+
+void check(const Field& field, double level) {
+  validate(field.grid);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (field.grid.size[axis] < 2) {
+      throw InvalidGrid("the grid has a single layer along axis " + std::to_string(axis) +
+                        ": a surface needs at least two nodes along each axis");
+    }
+  }
+  if (field.distance.size() != field.grid.node_count()) {
+    throw InvalidOption("the field has " + std::to_string(field.distance.size()) + " distances, but its grid has " +
+                        std::to_string(field.grid.node_count()) + " nodes");
+  }
+  if (!std::isfinite(level)) throw InvalidOption("the level is " + exact_text(level) + ", but must be finite");
+}
+
+/// Which corners of the cube at each node of a slice are inside: bit c is the node c steps ahead (see CubeEdge). Beyond
+/// the border of the grid the nodes of the border go on.
+class Slice {
+ public:
+  Slice(const Field& field, double level)
+      : field_(field),
+        level_(level),
+        size_x_(static_cast<std::size_t>(field.grid.size[0])),
+        size_y_(static_cast<std::size_t>(field.grid.size[1])),
+        size_z_(static_cast<std::size_t>(field.grid.size[2])),
+        corners_(size_x_ * size_y_),
+        row_(size_x_ + 1) {}
+
+  /// Works out slice z. Stops early, with any result, where the caller has asked to stop.
+  void read(std::size_t z, const Context& context) {
+    for (std::size_t y = size_y_; y-- > 0;) {
+      if (context.cancel.stop_requested()) return;
+      read_row(y, z);
+    }
+  }
+
+  [[nodiscard]] unsigned corners(std::size_t node) const { return corners_[node]; }
+
+  /// Calls visit(x, y, node in slice) where the corners are not all inside or all outside, in the order of the nodes.
+  template <class Visit>
+  void for_each_mixed(const Visit& visit) const {
+    for (std::size_t y = 0, node = 0; y < size_y_; ++y) {
+      for (std::size_t x = 0; x < size_x_; ++x, ++node) {
+        if (corners_[node] != 0 && corners_[node] != 0xff) visit(x, y, node);
+      }
+    }
+  }
+
+ private:
+  /// Bits 0, 1, 4, 5 are this row's, and the others those of the next row, which has been read before.
+  void read_row(std::size_t y, std::size_t z) {
+    const float* const here = field_.distance.data() + (z * size_y_ + y) * size_x_;
+    const float* const above = z + 1 < size_z_ ? here + size_y_ * size_x_ : here;
+    for (std::size_t x = 0; x < size_x_; ++x) {
+      row_[x] = static_cast<std::uint8_t>((static_cast<double>(here[x]) < level_ ? 1U : 0U) |
+                                          (static_cast<double>(above[x]) < level_ ? 16U : 0U));
+    }
+    row_[size_x_] = row_[size_x_ - 1];
+    std::uint8_t* const corners = corners_.data() + y * size_x_;
+    const bool has_next = y + 1 < size_y_;
+    for (std::size_t x = 0; x < size_x_; ++x) corners[x] = static_cast<std::uint8_t>(row_[x] | row_[x + 1] << 1);
+    const std::uint8_t* const next = has_next ? corners + size_x_ : corners;
+    for (std::size_t x = 0; x < size_x_; ++x) {
+      corners[x] = static_cast<std::uint8_t>(corners[x] | (next[x] & 0x33U) << 2);
+    }
+  }
+
+  const Field& field_;
+  double level_;
+  std::size_t size_x_, size_y_, size_z_;
+  std::vector<std::uint8_t> corners_;
+  std::vector<std::uint8_t> row_;
+};
+
+/// Steps, as bits 1 to 7, from a node along edges that cross the level and stay in the grid.
+class CrossedEdges {
+ public:
+  explicit CrossedEdges(const GridSpec& grid) : size_(grid.size) {}
+
+  [[nodiscard]] unsigned operator()(unsigned corners, std::size_t x, std::size_t y, std::size_t z) const {
+    unsigned crossed = ((corners & 1U) != 0 ? ~corners : corners) & 0xfeU;
+    if (is_last(x, 0)) crossed &= without_x;
+    if (is_last(y, 1)) crossed &= without_y;
+    if (is_last(z, 2)) crossed &= without_z;
+    return crossed;
+  }
+  /// Whether a node is the first corner of a cube.
+  [[nodiscard]] bool has_cube(std::size_t x, std::size_t y, std::size_t z) const {
+    return !is_last(x, 0) && !is_last(y, 1) && !is_last(z, 2);
+  }
+
+ private:
+  static constexpr unsigned without_x = 0x55, without_y = 0x33, without_z = 0x0f;
+
+  [[nodiscard]] bool is_last(std::size_t index, std::size_t axis) const {
+    return index + 1 == static_cast<std::size_t>(size_[axis]);
+  }
+
+  std::array<std::int64_t, 3> size_;
+};
+
+/// How much of the mesh belongs to a slice: the vertices on edges from its nodes, and the triangles in the cubes above.
+struct SliceCounts {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  bool is_finite = true;
+};
+
+class Marching {
+ public:
+  Marching(const Field& field, double level, const Context& context)
+      : field_(field),
+        level_(level),
+        context_(context),
+        crossed_(field.grid),
+        slices_(static_cast<std::size_t>(field.grid.size[2])),
+        nodes_per_slice_(field.grid.node_count() / slices_) {
+    const Mat3& direction = field.grid.direction;
+    is_mirrored_ = dot(cross(direction.columns[0], direction.columns[1]), direction.columns[2]) < 0;
+    grain_ = std::max(nodes_per_range / nodes_per_slice_, least_slices_per_range);
+  }
+
+  TriangleMesh run() {
+    count();
+    add_up();
+    TriangleMesh mesh;
+    mesh.vertices.resize(counts_.back().vertices);
+    mesh.triangles.resize(counts_.back().triangles);
+    write(mesh);
+    return mesh;
+  }
+
+ private:
+  /// A slice, and the number of the first vertex of each of its nodes that has one.
+  struct NumberedSlice {
+    Slice slice;
+    std::vector<std::uint32_t> first_vertex;
+
+    NumberedSlice(const Field& field, double level, std::size_t nodes) : slice(field, level), first_vertex(nodes) {}
+  };
+
+  [[nodiscard]] bool has_finite_distances(std::size_t z) const {
+    const float* const begin = field_.distance.data() + z * nodes_per_slice_;
+    // Counting, instead of stopping at the first, vectorises.
+    std::uint32_t others = 0;
+    for (std::size_t node = 0; node < nodes_per_slice_; ++node) {
+      others |= std::abs(begin[node]) <= std::numeric_limits<float>::max() ? 0U : 1U;
+    }
+    return others == 0;
+  }
+
+  void count() {
+    counts_.assign(slices_ + 1, {});
+    parallel_for(context_, slices_, grain_, "counting", [this](const WorkRange& range) {
+      Slice slice(field_, level_);
+      for (std::size_t z = range.begin; z < range.end && !context_.cancel.stop_requested(); ++z) {
+        slice.read(z, context_);
+        SliceCounts counts;
+        counts.is_finite = has_finite_distances(z);
+        slice.for_each_mixed([&](std::size_t x, std::size_t y, std::size_t node) {
+          const unsigned corners = slice.corners(node);
+          counts.vertices += static_cast<std::size_t>(std::popcount(crossed_(corners, x, y, z)));
+          if (crossed_.has_cube(x, y, z)) counts.triangles += cube_cases[corners].triangle_count;
+        });
+        counts_[z] = counts;
+      }
+    });
+  }
+
+  /// Turns the counts of slices into where they begin.
+  void add_up() {
+    SliceCounts sum;
+    for (std::size_t z = 0; z <= slices_; ++z) {
+      if (!counts_[z].is_finite) refuse_slice(z);
+      const SliceCounts counts = counts_[z];
+      counts_[z] = sum;
+      sum.vertices += counts.vertices;
+      sum.triangles += counts.triangles;
+    }
+    if (sum.vertices > max_id_count || sum.triangles > max_id_count) {
+      throw InvalidOption("the surface has " + std::to_string(sum.vertices) + " vertices and " +
+                          std::to_string(sum.triangles) + " triangles; at most " + std::to_string(max_id_count) +
+                          " of each can be numbered: use a coarser grid");
+    }
+  }
+
+  [[noreturn]] void refuse_slice(std::size_t z) const {
+    std::size_t node = z * nodes_per_slice_;
+    while (std::isfinite(field_.distance[node])) ++node;
+    const auto size_x = static_cast<std::size_t>(field_.grid.size[0]);
+    throw InvalidOption("the distance at node (" + std::to_string(node % size_x) + ", " +
+                        std::to_string(node % nodes_per_slice_ / size_x) + ", " + std::to_string(z) + ") is " +
+                        exact_text(static_cast<double>(field_.distance[node])) +
+                        ": a surface needs finite distances everywhere");
+  }
+
+  void write(TriangleMesh& mesh) const {
+    parallel_for(context_, slices_, grain_, "surface", [this, &mesh](const WorkRange& range) {
+      NumberedSlice first(field_, level_, nodes_per_slice_);
+      NumberedSlice second(field_, level_, nodes_per_slice_);
+      NumberedSlice* here = &first;
+      NumberedSlice* above = &second;
+      number(*here, range.begin);
+      for (std::size_t z = range.begin; z < range.end; ++z) {
+        if (z + 1 < slices_) number(*above, z + 1);
+        if (context_.cancel.stop_requested()) return;
+        write_vertices(*here, z, mesh);
+        write_triangles(*here, *above, z, mesh);
+        std::swap(here, above);
+      }
+    });
+  }
+
+  void number(NumberedSlice& numbered, std::size_t z) const {
+    numbered.slice.read(z, context_);
+    if (context_.cancel.stop_requested()) return;
+    std::size_t next = counts_[z].vertices;
+    numbered.slice.for_each_mixed([&](std::size_t x, std::size_t y, std::size_t node) {
+      numbered.first_vertex[node] = static_cast<std::uint32_t>(next);
+      next += static_cast<std::size_t>(std::popcount(crossed_(numbered.slice.corners(node), x, y, z)));
+    });
+  }
+
+  void write_vertices(const NumberedSlice& here, std::size_t z, TriangleMesh& mesh) const {
+    here.slice.for_each_mixed([&](std::size_t x, std::size_t y, std::size_t node) {
+      std::size_t vertex = here.first_vertex[node];
+      for (unsigned steps = crossed_(here.slice.corners(node), x, y, z); steps != 0; steps &= steps - 1) {
+        mesh.vertices[vertex++] = vertex_on(x, y, z, static_cast<unsigned>(std::countr_zero(steps)));
+      }
+    });
+  }
+
+  [[nodiscard]] Vec3d vertex_on(std::size_t x, std::size_t y, std::size_t z, unsigned step) const {
+    const auto at = [&](std::size_t i, std::size_t j, std::size_t k) {
+      return static_cast<double>(field_.distance[field_.grid.index(
+          static_cast<std::int64_t>(i), static_cast<std::int64_t>(j), static_cast<std::int64_t>(k))]);
+    };
+    const std::size_t dx = step & 1U;
+    const std::size_t dy = step >> 1 & 1U;
+    const std::size_t dz = step >> 2 & 1U;
+    const double from = at(x, y, z);
+    const double to = at(x + dx, y + dy, z + dz);
+    const double part = std::clamp((level_ - from) / (to - from), least_part, 1 - least_part);
+    const Vec3d& spacing = field_.grid.spacing;
+    return field_.grid.origin +
+           field_.grid.direction * Vec3d{(static_cast<double>(x) + static_cast<double>(dx) * part) * spacing.x,
+                                         (static_cast<double>(y) + static_cast<double>(dy) * part) * spacing.y,
+                                         (static_cast<double>(z) + static_cast<double>(dz) * part) * spacing.z};
+  }
+
+  void write_triangles(const NumberedSlice& here, const NumberedSlice& above, std::size_t z, TriangleMesh& mesh) const {
+    const auto row = static_cast<std::size_t>(field_.grid.size[0]);
+    std::size_t next = counts_[z].triangles;
+    here.slice.for_each_mixed([&](std::size_t x, std::size_t y, std::size_t node) {
+      if (!crossed_.has_cube(x, y, z)) return;
+      const auto vertex = [&](const CubeEdge& edge) {
+        const unsigned dx = edge.from & 1U;
+        const unsigned dy = edge.from >> 1 & 1U;
+        const unsigned dz = edge.from >> 2 & 1U;
+        const NumberedSlice& slice = dz != 0 ? above : here;
+        const std::size_t from = node + dx + dy * row;
+        const unsigned crossed = crossed_(slice.slice.corners(from), x + dx, y + dy, z + dz);
+        const auto before = static_cast<std::uint32_t>(std::popcount(crossed & ((1U << edge.step) - 1)));
+        return slice.first_vertex[from] + before;
+      };
+      const CubeCase& cube = cube_cases[here.slice.corners(node)];
+      for (std::size_t t = 0; t < cube.triangle_count; ++t) {
+        const auto& [a, b, c] = cube.triangles[t];
+        mesh.triangles[next++] = {vertex(a), vertex(is_mirrored_ ? c : b), vertex(is_mirrored_ ? b : c)};
+      }
+    });
+  }
+
+  const Field& field_;
+  double level_;
+  const Context& context_;
+  CrossedEdges crossed_;
+  std::size_t slices_;
+  std::size_t nodes_per_slice_;
+  std::size_t grain_ = 1;
+  bool is_mirrored_ = false;
+  /// Before add_up(): of each slice; then: of all slices before it, and of all slices at the end.
+  std::vector<SliceCounts> counts_;
+};
+
+}  // namespace
+
+TriangleMesh zero_surface(const Field& field, double level, const Context& context) {
+  check(field, level);
+  return Marching(field, level, context).run();
+}
+
+}  // namespace blum
