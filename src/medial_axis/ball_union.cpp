@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,12 +17,11 @@ namespace blum {
 namespace {
 
 /// Blocks of at most this many nodes are not cut any further.
-constexpr std::int64_t leaf_nodes = 64;
+constexpr std::int64_t leaf_nodes = 8;
 /// Blocks of at most this many nodes are done by one worker.
 constexpr std::int64_t local_nodes = std::int64_t{1} << 18;
-/// Balls between two looks at whether the caller has asked to stop.
-constexpr std::size_t balls_per_look = std::size_t{1} << 16;
-constexpr double largest_length = 1e150;
+/// What 32-bit distances hold.
+constexpr double largest_length = 1e37;
 
 void check(std::span<const Ball> balls) {
   if (balls.empty()) throw InvalidOption("there are no balls: a union of balls needs at least one");
@@ -34,10 +32,10 @@ void check(std::span<const Ball> balls) {
   for (std::size_t i = 0; i < balls.size(); ++i) {
     const Vec3d& c = balls[i].centre;
     if (!(std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) <= largest_length) || !is_finite(c)) {
-      throw InvalidOption("the centre of ball " + std::to_string(i) + " is not finite, or beyond 1e150");
+      throw InvalidOption("the centre of ball " + std::to_string(i) + " is not finite, or beyond 1e37");
     }
     if (!(balls[i].radius >= 0 && balls[i].radius <= largest_length)) {
-      throw InvalidOption("the radius of ball " + std::to_string(i) + " must be 0 to 1e150, in mesh units");
+      throw InvalidOption("the radius of ball " + std::to_string(i) + " must be 0 to 1e37, in mesh units");
     }
   }
 }
@@ -86,63 +84,125 @@ void for_each_part(const GridSpec& grid, const Block& block, const Visit& visit)
   }
 }
 
+/// Balls, number by number.
+struct BallRows {
+  std::vector<double> x, y, z, radius;
+
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+  void resize(std::size_t size) {
+    for (std::vector<double>* row : {&x, &y, &z, &radius}) row->resize(size);
+  }
+  void push_back(const Ball& ball) {
+    x.push_back(ball.centre.x);
+    y.push_back(ball.centre.y);
+    z.push_back(ball.centre.z);
+    radius.push_back(ball.radius);
+  }
+  [[nodiscard]] Ball operator[](std::size_t k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
+};
+
 /// Leaves out the balls that are nowhere in a block closer than the one that is closest to its centre.
 class Filter {
  public:
-  explicit Filter(const Context& context) : context_(context) {}
-
-  /// Calls keep(k) for each k in [0, count) whose ball has to be looked at. Keeps any where the caller asked to stop.
-  /// @param ball  k -> ball.
-  template <class BallAt, class Keep>
-  void run(const Reach& reach, std::size_t count, const BallAt& ball, const Keep& keep) {
-    to_centre_.resize(count);
-    std::size_t best = 0;
-    double best_value = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < count; ++k) {
-      if (k % balls_per_look == 0 && context_.cancel.stop_requested()) return;
-      to_centre_[k] = length(ball(k).centre - reach.centre);
-      const double value = to_centre_[k] - ball(k).radius;
-      if (value < best_value) {
-        best_value = value;
-        best = k;
-      }
-    }
-    const Ball closest = ball(best);  // a copy: keep() may move the balls
-    for (std::size_t k = 0; k < count; ++k) {
-      if (k % balls_per_look == 0 && context_.cancel.stop_requested()) return;
-      const double behind = to_centre_[k] - ball(k).radius - best_value;
-      if (k == best || (behind < 2 * reach.radius && may_catch_up(reach, best, closest, k, ball(k), behind))) keep(k);
+  /// Calls keep(ball) for the balls from `begin` to before `end` that have to be looked at in a block, in their
+  /// order; keep may add balls to the rows.
+  template <class Keep>
+  void run(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end, const Keep& keep) {
+    measure(reach, balls, begin, end);
+    const std::size_t best = smallest_value(end - begin);
+    compare(reach, balls, begin, end, best);
+    lead_[best] = -1;
+    for (std::size_t k = 0; k < end - begin; ++k) {
+      if (lead_[k] < 0) keep(balls[begin + k]);
     }
   }
 
  private:
-  /// Whether a ball that is this much further from the centre than the closest one may be closer somewhere in reach.
-  [[nodiscard]] bool may_catch_up(const Reach& reach, std::size_t best, const Ball& closest, std::size_t k,
-                                  const Ball& other, double behind) const {
-    const double apart = length(other.centre - closest.centre);
-    if (apart <= closest.radius - other.radius) return false;  // it lies in the closest one
-    // The difference of the two distances changes by |u - v| per length, u and v the directions from the two centres;
-    // and |u - v| <= 2 apart / (|x - centre| + |x - other centre|) everywhere.
-    const double sum = to_centre_[best] + to_centre_[k] - 2 * reach.radius;
-    return behind * sum < 2 * apart * reach.radius || sum <= 0;
+  /// How far the centre of the block is from each centre, and from each ball.
+  void measure(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end) {
+    const std::size_t count = end - begin;
+    if (to_centre_.size() < count) {
+      to_centre_.resize(count);
+      value_.resize(count);
+      lead_.resize(count);
+    }
+    const double* const x = balls.x.data() + begin;
+    const double* const y = balls.y.data() + begin;
+    const double* const z = balls.z.data() + begin;
+    const double* const radius = balls.radius.data() + begin;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double dx = x[k] - reach.centre.x;
+      const double dy = y[k] - reach.centre.y;
+      const double dz = z[k] - reach.centre.z;
+      to_centre_[k] = std::sqrt(dx * dx + dy * dy + dz * dz);
+      value_[k] = to_centre_[k] - radius[k];
+    }
   }
 
-  const Context& context_;
+  /// The first of the smallest values. (std::min_element waits for each comparison before the next one.)
+  [[nodiscard]] std::size_t smallest_value(std::size_t count) const {
+    constexpr std::size_t lanes = 8;
+    std::array<double, lanes> least{};
+    least.fill(std::numeric_limits<double>::infinity());
+    std::size_t k = 0;
+    for (; k + lanes <= count; k += lanes) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        least[lane] = value_[k + lane] < least[lane] ? value_[k + lane] : least[lane];
+      }
+    }
+    double smallest = *std::min_element(least.begin(), least.end());
+    for (; k < count; ++k) smallest = std::min(smallest, value_[k]);
+    return static_cast<std::size_t>(std::find(value_.begin(), value_.end(), smallest) - value_.begin());
+  }
+
+  /// Whether each ball, further from the centre of the block than the best one, may be closer somewhere in the block.
+  ///
+  /// The difference of the two distances changes by |u - v| per length, u and v the directions from the two centres;
+  /// and |u - v| is at most 2, and at most 2 apart / (|x - one| + |x - other|) (Dunkl, Williams 1964).
+  void compare(const Reach& reach, const BallRows& balls, std::size_t begin, std::size_t end, std::size_t best) {
+    const Ball closest = balls[begin + best];
+    const double best_value = value_[best];
+    const double best_sum = to_centre_[best] - 2 * reach.radius;
+    const double four = 4 * reach.radius * reach.radius;
+    const double* const x = balls.x.data() + begin;
+    const double* const y = balls.y.data() + begin;
+    const double* const z = balls.z.data() + begin;
+    const double* const radius = balls.radius.data() + begin;
+    const double* const value = value_.data();
+    const double* const to_centre = to_centre_.data();
+    double* const lead = lead_.data();
+    for (std::size_t k = 0; k < end - begin; ++k) {
+      const double dx = x[k] - closest.centre.x;
+      const double dy = y[k] - closest.centre.y;
+      const double dz = z[k] - closest.centre.z;
+      const double squared_apart = dx * dx + dy * dy + dz * dz;
+      const double behind = value[k] - best_value;
+      const double sum = to_centre[k] + best_sum;
+      const double catching_up = sum > 0 ? behind * behind * sum * sum - four * squared_apart : -1;
+      const double near = behind - 2 * reach.radius;
+      const double deeper = closest.radius > radius[k] ? closest.radius - radius[k] : 0;
+      const double inside = deeper * deeper - squared_apart;  // not negative: it lies in the closest one
+      const double lead_or_near = catching_up > near ? catching_up : near;
+      lead[k] = inside > lead_or_near ? inside : lead_or_near;
+    }
+  }
+
   std::vector<double> to_centre_;
+  std::vector<double> value_;
+  std::vector<double> lead_;  ///< negative where a ball may be the closest one somewhere
 };
 
 /// Blocks, and the balls that have to be looked at in them.
 struct Task {
   Block block;
-  std::vector<std::uint32_t> balls;
+  BallRows balls;
 };
 
 /// Cuts the grid into blocks that one worker each does, level by level, each with its own part of the balls.
 std::vector<Task> cut_grid(std::span<const Ball> balls, const GridSpec& grid, const Context& context) {
-  Task whole{{{0, 0, 0}, grid.size}, std::vector<std::uint32_t>(balls.size())};
-  std::iota(whole.balls.begin(), whole.balls.end(), 0U);
-  std::vector<Task> tasks;
-  tasks.push_back(std::move(whole));
+  std::vector<Task> tasks(1);
+  tasks[0].block.end = grid.size;
+  for (const Ball& ball : balls) tasks[0].balls.push_back(ball);
   while (tasks.front().block.node_count() > local_nodes) {
     std::vector<Task> parts;
     std::vector<std::size_t> parents;
@@ -153,11 +213,10 @@ std::vector<Task> cut_grid(std::span<const Ball> balls, const GridSpec& grid, co
       });
     }
     parallel_for(context, parts.size(), 1, "", [&](const WorkRange& range) {
-      const std::vector<std::uint32_t>& all = tasks[parents[range.begin]].balls;
+      const BallRows& all = tasks[parents[range.begin]].balls;
       Task& part = parts[range.begin];
-      Filter(context).run(
-          reach_of(grid, part.block), all.size(), [&](std::size_t k) -> const Ball& { return balls[all[k]]; },
-          [&](std::size_t k) { part.balls.push_back(all[k]); });
+      Filter().run(reach_of(grid, part.block), all, 0, all.size(),
+                   [&](const Ball& ball) { part.balls.push_back(ball); });
     });
     tasks = std::move(parts);
   }
@@ -168,11 +227,10 @@ std::vector<Task> cut_grid(std::span<const Ball> balls, const GridSpec& grid, co
 class BlockFiller {
  public:
   BlockFiller(const GridSpec& grid, const Context& context, std::span<float> values)
-      : grid_(grid), context_(context), filter_(context), values_(values) {}
+      : grid_(grid), context_(context), values_(values) {}
 
-  void fill(const Task& task, std::span<const Ball> balls) {
-    stack_.clear();
-    for (const std::uint32_t ball : task.balls) stack_.push_back(balls[ball]);
+  void fill(const Task& task) {
+    stack_ = task.balls;
     fill(task.block, 0);
   }
 
@@ -183,9 +241,7 @@ class BlockFiller {
   void fill(const Block& block, std::size_t begin) {
     if (context_.cancel.stop_requested()) return;
     const std::size_t end = stack_.size();
-    filter_.run(
-        reach_of(grid_, block), end - begin, [&](std::size_t k) -> const Ball& { return stack_[begin + k]; },
-        [&](std::size_t k) { stack_.push_back(stack_[begin + k]); });
+    filter_.run(reach_of(grid_, block), stack_, begin, end, [&](const Ball& ball) { stack_.push_back(ball); });
     if (block.node_count() <= leaf_nodes) {
       fill_leaf(block, end);
     } else {
@@ -198,14 +254,12 @@ class BlockFiller {
     Coordinates x{};
     Coordinates y{};
     Coordinates z{};
-    const std::size_t count = read_positions(block, x, y, z);
+    read_positions(block, x, y, z);
     Coordinates best{};
     best.fill(std::numeric_limits<double>::infinity());
     for (std::size_t k = begin; k < stack_.size(); ++k) {
-      if ((k - begin) % balls_per_look == 0 && context_.cancel.stop_requested()) return;
-      const Vec3d centre = stack_[k].centre;
-      const double radius = stack_[k].radius;
-      for (std::size_t node = 0; node < count; ++node) {
+      const auto [centre, radius] = stack_[k];
+      for (std::size_t node = 0; node < best.size(); ++node) {
         const double dx = x[node] - centre.x;
         const double dy = y[node] - centre.y;
         const double dz = z[node] - centre.z;
@@ -216,7 +270,7 @@ class BlockFiller {
     write(block, best);
   }
 
-  std::size_t read_positions(const Block& block, Coordinates& x, Coordinates& y, Coordinates& z) const {
+  void read_positions(const Block& block, Coordinates& x, Coordinates& y, Coordinates& z) const {
     std::size_t count = 0;
     for (std::int64_t k = block.begin[2]; k < block.end[2]; ++k) {
       for (std::int64_t j = block.begin[1]; j < block.end[1]; ++j) {
@@ -228,7 +282,6 @@ class BlockFiller {
         }
       }
     }
-    return count;
   }
 
   void write(const Block& block, const Coordinates& best) {
@@ -246,7 +299,7 @@ class BlockFiller {
   const Context& context_;
   Filter filter_;
   std::span<float> values_;
-  std::vector<Ball> stack_;
+  BallRows stack_;
 };
 
 }  // namespace
@@ -270,7 +323,7 @@ Field ball_union_field(std::span<const Ball> balls, const GridSpec& grid, const 
   field.sign_reason = "negative inside a ball";
   const std::vector<Task> tasks = cut_grid(balls, grid, context);
   parallel_for(context, tasks.size(), 1, "balls", [&](const WorkRange& range) {
-    BlockFiller(grid, context, field.distance.span()).fill(tasks[range.begin], balls);
+    BlockFiller(grid, context, field.distance.span()).fill(tasks[range.begin]);
   });
   return field;
 }
