@@ -14,19 +14,6 @@ namespace {
 constexpr char32_t replacement = 0xFFFD;
 constexpr std::string_view hex_digits = "0123456789abcdef";
 
-std::string site_sentence(SiteIds ids) {
-  switch (ids) {
-    case SiteIds::features:
-      return "site ids: [0, V) the vertices in the mesh's order; [V, V+E) the distinct edges in rising order of "
-             "(smaller, larger vertex); [V+E, V+E+F) the triangles in the mesh's order; -1 none";
-    case SiteIds::triangles:
-      return "site ids: the smallest triangle, in the mesh's order, that the closest site lies on; -1 none";
-    case SiteIds::voxels:
-      return "site ids: the linear index x + nx * (y + ny * z) of the closest voxel; -1 none";
-  }
-  return {};
-}
-
 /// The next code point of UTF-8 text, which is advanced past it; malformed bytes give U+FFFD, one byte at a time.
 char32_t next_code_point(std::string_view& text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -186,6 +173,19 @@ Enum from_text(std::string_view text, const std::array<Enum, n>& all, std::strin
 }
 
 }  // namespace
+
+std::string site_sentence(SiteIds ids) {
+  switch (ids) {
+    case SiteIds::features:
+      return "site ids: [0, V) the vertices in the mesh's order; [V, V+E) the distinct edges in rising order of "
+             "(smaller, larger vertex); [V+E, V+E+F) the triangles in the mesh's order; -1 none";
+    case SiteIds::triangles:
+      return "site ids: the smallest triangle, in the mesh's order, that the closest site lies on; -1 none";
+    case SiteIds::voxels:
+      return "site ids: the linear index x + nx * (y + ny * z) of the closest voxel; -1 none";
+  }
+  return {};
+}
 
 Metadata field_metadata(const Field& field, const FieldFileInfo& info) {
   Metadata pairs;

@@ -14,6 +14,9 @@ namespace blum::volume_io {
 /// Pairs of key and value in the order of the file. Values are text; numbers are in their shortest exact form.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
+/// What site ids number, for people who read the file.
+[[nodiscard]] std::string site_sentence(SiteIds ids);
+
 [[nodiscard]] Metadata field_metadata(const Field& field, const FieldFileInfo& info);
 
 /// Sets the band, sign rule and kind of site values of a field as its metadata say; unknown keys are left alone.

@@ -1,6 +1,4 @@
 #include <array>
-#include <cmath>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,9 +10,7 @@
 #include "io/field_metadata.hpp"
 #include "io/field_sink.hpp"
 #include "io/image_geometry.hpp"
-#include "io/npy.hpp"
-#include "io/zip_reader.hpp"
-#include "io/zip_writer.hpp"
+#include "io/npz.hpp"
 
 namespace blum::volume_io {
 namespace {
@@ -39,31 +35,6 @@ SiteVertices site_vertices(const Field& field, const FieldFileInfo& info) {
   return out;
 }
 
-class NpzWriter {
- public:
-  NpzWriter(AtomicFile& file, FieldSink& sink, const Context& context) : zip_(file, sink, context) {}
-
-  template <class T>
-  void add(const std::string& name, std::string_view dtype, const std::vector<std::uint64_t>& shape,
-           std::span<const T> values) {
-    const std::string header = npy_header(dtype, shape);
-    zip_.add(name + ".npy", std::as_bytes(std::span(header)), std::as_bytes(values));
-  }
-  void add_vector(const std::string& name, const Vec3d& v) {
-    const std::array<double, 3> values{v.x, v.y, v.z};
-    add(name, "f8", {3}, std::span<const double>(values));
-  }
-  /// A NumPy string of one entry: four bytes for each (ASCII) character.
-  void add_text(const std::string& name, const std::string& text) {
-    const std::vector<std::uint32_t> characters(text.begin(), text.end());
-    add(name, "U" + std::to_string(text.size()), {}, std::span<const std::uint32_t>(characters));
-  }
-  void finish() { zip_.finish(); }
-
- private:
-  ZipWriter zip_;
-};
-
 void add_direction(NpzWriter& npz, const Mat3& direction) {
   std::array<double, 9> rows{};
   for (std::size_t row = 0; row < 3; ++row) {
@@ -71,66 +42,6 @@ void add_direction(NpzWriter& npz, const Mat3& direction) {
   }
   npz.add("direction", "f8", {3, 3}, std::span<const double>(rows));
 }
-
-/// The arrays of a .npz file that make up a field, as they are found.
-class NpzReader {
- public:
-  explicit NpzReader(const ByteSource& source) : source_(source), zip_(source) {}
-
-  [[nodiscard]] bool has(const std::string& array) const { return zip_.find(array + ".npy") != nullptr; }
-
-  /// Reads one array; `use` gets the stream and the header.
-  template <class Use>
-  auto read(const std::string& array, Use use) {
-    const ZipEntry* entry = zip_.find(array + ".npy");
-    if (entry == nullptr) throw FormatError(source_.name() + ": there is no array '" + array + "' in it");
-    const auto stream = zip_.open(*entry);
-    const NpyHeader header = read_npy_header(*stream);
-    auto result = use(*stream, header);
-    stream->check_finished();
-    return result;
-  }
-
-  template <std::size_t n>
-  std::array<double, n> numbers(const std::string& array, const std::vector<std::uint64_t>& shape) {
-    return read(array, [&](ByteStream& stream, const NpyHeader& header) {
-      if (header.kind != NpyHeader::Kind::scalar || header.shape != shape) {
-        throw FormatError(stream.name() + ": it should be " + std::to_string(n) + " numbers");
-      }
-      std::array<double, n> out{};
-      std::visit(
-          [&](const auto& values) {
-            for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<double>(values[i]);
-          },
-          read_npy_values(stream, header));
-      return out;
-    });
-  }
-
-  std::string text(const std::string& array) {
-    return read(array, [&](ByteStream& stream, const NpyHeader& header) {
-      if (header.kind != NpyHeader::Kind::text || header.count(stream.name()) != 1) {
-        throw FormatError(stream.name() + ": it should be one string");
-      }
-      stream.check_left(std::uint64_t{4} * header.text_length, "the text");
-      std::vector<std::uint32_t> characters(header.text_length);
-      const auto bytes = std::as_writable_bytes(std::span(characters));
-      stream.read(bytes, "the text");
-      to_native(bytes, ScalarType::u32, header.order);
-      std::string out;
-      for (const std::uint32_t c : characters) {
-        if (c == 0) break;
-        if (c > 0x7F) throw FormatError(stream.name() + ": only ASCII text is understood");
-        out += static_cast<char>(static_cast<unsigned char>(c));
-      }
-      return out;
-    });
-  }
-
- private:
-  const ByteSource& source_;
-  ZipReader zip_;
-};
 
 void read_geometry(NpzReader& npz, const std::string& name, GridSpec& grid) {
   const auto vector = [&](const char* array, const Vec3d& fallback) {

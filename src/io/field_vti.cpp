@@ -1,5 +1,4 @@
 #include <array>
-#include <bit>
 #include <string>
 
 #include "blum/core/exact_text.hpp"
@@ -7,6 +6,7 @@
 #include "io/field_files.hpp"
 #include "io/field_metadata.hpp"
 #include "io/field_sink.hpp"
+#include "io/vtk_xml.hpp"
 
 namespace blum::volume_io {
 namespace {
@@ -28,29 +28,16 @@ std::string extent_text(const std::array<std::int64_t, 3>& size) {
   return "0 " + std::to_string(size[0] - 1) + " 0 " + std::to_string(size[1] - 1) + " 0 " + std::to_string(size[2] - 1);
 }
 
-/// VTK writes strings as the numbers of their bytes, with a zero at the end.
-std::string string_array(const std::string& name, const std::string& text) {
-  std::string out = "      <DataArray type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"1\" format=\"ascii\">\n";
-  for (const char c : text) out += std::to_string(static_cast<unsigned char>(c)) + " ";
-  return out + "0\n      </DataArray>\n";
-}
-
-std::string appended_array(const char* type, const char* name, std::uint64_t offset) {
-  return std::string("        <DataArray type=\"") + type + "\" Name=\"" + name +
-         "\" NumberOfComponents=\"1\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
-}
-
 std::string header_text(const Field& field, const FieldFileInfo& info) {
   const std::string extent = extent_text(field.grid.size);
-  std::string out = "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"";
-  out += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-  out += "\" header_type=\"UInt64\">\n  <ImageData WholeExtent=\"" + extent + "\" Origin=\"" +
-         vector_text(field.grid.origin) + "\" Spacing=\"" + vector_text(field.grid.spacing) + "\" Direction=\"" +
-         matrix_text(field.grid.direction) + "\">\n    <FieldData>\n" +
-         string_array("metadata", to_json(field_metadata(field, info))) + "    </FieldData>\n    <Piece Extent=\"" +
-         extent + "\">\n      <PointData Scalars=\"distance\">\n" + appended_array("Float32", "distance", 0);
+  std::string out =
+      vtk_opening("ImageData") + "  <ImageData WholeExtent=\"" + extent + "\" Origin=\"" +
+      vector_text(field.grid.origin) + "\" Spacing=\"" + vector_text(field.grid.spacing) + "\" Direction=\"" +
+      matrix_text(field.grid.direction) + "\">\n    <FieldData>\n" +
+      vtk_string_array("metadata", to_json(field_metadata(field, info))) + "    </FieldData>\n    <Piece Extent=\"" +
+      extent + "\">\n      <PointData Scalars=\"distance\">\n" + vtk_appended_array(ScalarType::f32, "distance", 1, 0);
   if (!field.site.empty()) {
-    out += appended_array("Int32", "site", sizeof(std::uint64_t) + distance_bytes(field).size());
+    out += vtk_appended_array(ScalarType::i32, "site", 1, sizeof(std::uint64_t) + distance_bytes(field).size());
   }
   out += "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n_";
   return out;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "io/text_cursor.hpp"
+#include "io/text_scan.hpp"
 
 namespace blum {
 namespace {
@@ -47,7 +48,9 @@ class HeaderReader {
         read_element();
       } else if (keyword == "property") {
         read_property();
-      } else if (keyword != "comment" && keyword != "obj_info") {
+      } else if (keyword == "comment") {
+        header_.comments.emplace_back(rest_of_line());
+      } else if (keyword != "obj_info") {
         cursor_.fail_at(start, "unknown keyword in the header: " + in_quotes(keyword));
       }
       cursor_.skip_line();
@@ -73,6 +76,13 @@ class HeaderReader {
     }
     cursor_.set_position(start + size);
     return rest.substr(0, size);
+  }
+
+  /// Without blanks at its ends; the cursor stays.
+  [[nodiscard]] std::string_view rest_of_line() const {
+    TextCursor end = cursor_;
+    end.skip_line();
+    return volume_io::trim({cursor_.position(), static_cast<std::size_t>(end.position() - cursor_.position())});
   }
 
   std::string_view next(std::string_view what) {

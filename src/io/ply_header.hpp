@@ -37,6 +37,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::text;
   std::vector<PlyElement> elements = {};
+  std::vector<std::string> comments = {};
   std::size_t size = 0;  ///< bytes, up to where the data begins
 };
 

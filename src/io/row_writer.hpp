@@ -1,0 +1,77 @@
+// Blum: files written row by row, with progress and cancellation. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/io/atomic_file.hpp"
+
+namespace blum {
+
+/// Puts numbers into a file, as text or as little-endian bytes. The file appears with finish().
+class RowWriter {
+ public:
+  /// @param rows  how often end_row() will be called, for the progress.
+  RowWriter(const std::filesystem::path& path, std::size_t rows, const Context& context)
+      : file_(path), context_(context), rows_(rows) {
+    buffer_.reserve(piece_size + 4096);
+  }
+
+  void text(std::string_view text) { buffer_ += text; }
+  /// A blank and the shortest text that reads back to the same number.
+  template <class T>
+  void number(T value) {
+    std::array<char, 40> digits{};
+    digits[0] = ' ';
+    const auto result = std::to_chars(digits.data() + 1, digits.data() + digits.size(), value);
+    buffer_.append(digits.data(), result.ptr);
+  }
+  void vector(const Vec3d& v) {
+    for (std::size_t axis = 0; axis < 3; ++axis) number(v[axis]);
+  }
+  template <class T>
+  void bytes(T value) {
+    auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+    if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
+    buffer_.append(raw.data(), raw.size());
+  }
+  void end_row() {
+    ++done_;
+    if (buffer_.size() >= piece_size) flush();
+  }
+  /// @throws FileError, Cancelled.
+  void finish() {
+    flush();
+    file_.commit();
+  }
+
+ private:
+  /// Small enough that a call which is cancelled ends soon.
+  static constexpr std::size_t piece_size = std::size_t{1} << 20;
+
+  void flush() {
+    throw_if_cancelled(context_);
+    file_.write(buffer_);
+    buffer_.clear();
+    if (context_.progress) {
+      context_.progress(static_cast<double>(done_) / static_cast<double>(std::max<std::size_t>(rows_, 1)), "write");
+    }
+  }
+
+  AtomicFile file_;
+  const Context& context_;
+  std::string buffer_;
+  std::size_t rows_ = 0;
+  std::size_t done_ = 0;
+};
+
+}  // namespace blum
