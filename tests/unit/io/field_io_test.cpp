@@ -3,7 +3,6 @@
 #include "blum/io/field_io.hpp"
 
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 
 #include "blum/core/error.hpp"
 #include "support/image_bytes.hpp"
+#include "support/zip_bytes.hpp"
 
 namespace blum {
 namespace {
@@ -266,38 +266,6 @@ TEST(NrrdFields, AnyScalarTypeIsRead) {
   EXPECT_EQ(field.distance[0], 2.0F);
   EXPECT_EQ(field.distance[1], -1.0F);
   EXPECT_EQ(field.sign_rule, SignRule::none);
-}
-
-/// One entry of a zip archive, its local header and its line in the directory.
-struct ZipPart {
-  std::string name, data;
-  bool deflate = false;
-};
-
-template <class T>
-std::string little(T value) {
-  return bytes_of(std::vector<T>{value}, std::endian::little);
-}
-
-std::string zip_bytes(const std::vector<ZipPart>& parts) {
-  std::string out;
-  std::string directory;
-  for (const ZipPart& part : parts) {
-    const std::string packed = part.deflate ? compressed(part.data, -15) : part.data;
-    const auto crc = crc32_z(0, reinterpret_cast<const Bytef*>(part.data.data()), part.data.size());
-    const std::string common =
-        little<std::uint16_t>(20) + std::string(2, '\0') + little<std::uint16_t>(part.deflate ? 8 : 0) +
-        std::string(4, '\0') + little(static_cast<std::uint32_t>(crc)) +
-        little(static_cast<std::uint32_t>(packed.size())) + little(static_cast<std::uint32_t>(part.data.size())) +
-        little(static_cast<std::uint16_t>(part.name.size())) + std::string(2, '\0');
-    directory += "PK\1\2" + little<std::uint16_t>(20) + common + std::string(10, '\0') +
-                 little(static_cast<std::uint32_t>(out.size())) + part.name;
-    out += "PK\3\4" + common + part.name + packed;
-  }
-  const auto count = little(static_cast<std::uint16_t>(parts.size()));
-  const auto start = little(static_cast<std::uint32_t>(out.size()));
-  return out + directory + "PK\5\6" + std::string(4, '\0') + count + count +
-         little(static_cast<std::uint32_t>(directory.size())) + start + std::string(2, '\0');
 }
 
 Field read_npz_bytes(const std::string& bytes) {
