@@ -66,6 +66,8 @@ class ArrayData {
   FieldSink& sink_;
 };
 
+constexpr std::uint8_t no_role = 255;  ///< of triangles: all around them is surface
+
 /// The arrays of a file; Out is ArrayHeaders or ArrayData.
 template <class Out>
 class VtpArrays {
@@ -118,7 +120,6 @@ class VtpArrays {
   }
 
   void write_cell_data() {
-    constexpr std::uint8_t no_role = 255;
     out_.text("      <CellData>\n");
     add_cells<float>(
         "separation_angle", [](const MedialVertex& v) { return static_cast<float>(v.separation_angle); },

@@ -221,7 +221,7 @@ class VtpReader {
     for_each_integer(values(offsets, count, 1, "the number of cells"), where(offsets),
                      [&](std::size_t /*i*/, std::int64_t end) {
                        constexpr std::int64_t limit = std::int64_t{1} << 40U;
-                       if (end < last || end > limit) throw FormatError(where(offsets) + ": the offsets do not rise");
+                       if (end < last || end > limit) fail(offsets, "the offsets do not rise");
                        last = end;
                        cells.ends.push_back(static_cast<std::uint64_t>(end));
                      });
@@ -229,8 +229,8 @@ class VtpReader {
     for_each_integer(values(corners, cells.ends.back(), 1, "the last of the offsets"), where(corners),
                      [&](std::size_t /*i*/, std::int64_t vertex) {
                        if (vertex < 0 || vertex >= static_cast<std::int64_t>(header_.points)) {
-                         throw FormatError(where(corners) + ": vertex " + std::to_string(vertex) +
-                                           " is named, but there are only " + std::to_string(header_.points));
+                         fail(corners, "vertex " + std::to_string(vertex) + " is named, but there are only " +
+                                           std::to_string(header_.points));
                        }
                        cells.corners.push_back(static_cast<std::uint32_t>(vertex));
                      });

@@ -44,20 +44,29 @@ enum class MedialFormat : std::uint8_t { vtp, ply, obj, ma, npz };
 /// Writes a medial axis; the format goes by the extension.
 ///
 ///   .vtp  VTK poly data, raw appended: isolated vertices as verts; curves, rims and seams as lines; triangles as
-///   polys.
-///         Point data `radius`, `separation_angle`, `role`, `footprint_0`, `footprint_1`, `site_0`, `site_1`; cell data
-///         `separation_angle`, `role`, `sheet` (-1 for verts and lines); metadata (JSON) as field data.
-///   .ply  binary, vertices with all attributes, edges (curves, rims, seams) and triangles with theirs.
-///   .obj  v; f; l for curves; p for vertices of nothing else. No attributes, no vertex that nothing uses.
-///   .ma   text: counts; v x y z radius; e for all edges, also those of triangles; f. As medial meshes are exchanged.
-///   .npz  arrays of all that the complex holds, for NumPy.
+///         polys. Point data `radius`, `separation_angle`, `role`, `footprint_0`, `footprint_1`, `site_0`, `site_1`;
+///         cell data `separation_angle`, `role` (255 for polys), `sheet` (-1 for verts and lines); metadata (JSON) as
+///         the string `metadata` of the field data.
+///   .ply  binary, vertices with all attributes, edges (curves, rims, seams) and triangles with theirs; metadata as
+///         comments `blum {"key": "value"}`.
+///   .obj  v; f; l for edges of no triangle; p for vertices of nothing else. No attributes, no unused vertex.
+///   .ma   text: counts; v x y z radius; e for all edges, also those of triangles, each once; f. As medial meshes are
+///         exchanged (Q-MAT); such files have no metadata.
+///   .npz  `vertices`, `radius`, `separation_angle`, `role`, `footprints` [n, 2, 3], `sites` [n, 2]; `edges`,
+///         `edge_angle`, `edge_role`; `triangles`, `triangle_angle`, `triangle_sheet`; `metadata` (JSON).
 ///
+/// Roles are the numbers of MedialRole, sites are -1 where there is none, and indices count from 0 (in .obj from 1).
 /// Coordinates keep double precision. A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension; FileError; Cancelled.
+/// @throws InvalidOption for another extension, or metadata that are not finite; InvalidGrid; InvalidMesh when the
+/// complex names vertices that it does not have, or one twice in an edge or triangle, or holds numbers that are not
+/// finite, a negative radius, or a sheet beyond its count; FileError; Cancelled.
 void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata = {},
                   const Context& context = {});
 
-/// Reads a file that write_medial wrote, or one of the same form by another program.
+/// Reads a file that write_medial wrote, or one of the same form by another program: with only some of the attributes,
+/// with polygons (.ply, .obj), with other numeric types and byte orders (.vtp, .ply, .npz). .vtp, .ply and .npz give
+/// back exactly what was written. Where a file does not say what its edges are, those that are sides of triangles are
+/// left out, as the triangles imply them, and the others are curves; without sheets all triangles are on sheet 0.
 /// @throws FileError; FormatError naming the file and the reason; InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.
