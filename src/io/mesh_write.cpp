@@ -1,52 +1,16 @@
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "blum/core/error.hpp"
-#include "blum/io/atomic_file.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "io/row_writer.hpp"
 
 namespace blum {
 namespace {
-
-/// Puts numbers into a file, as text or as little-endian bytes.
-class Writer {
- public:
-  explicit Writer(const std::filesystem::path& path) : file_(path) {}
-
-  void text(std::string_view text) { file_.write(text); }
-  /// A blank and the shortest text that reads back to the same number.
-  template <class T>
-  void number(T value) {
-    std::array<char, 40> buffer;
-    buffer[0] = ' ';
-    const auto result = std::to_chars(buffer.data() + 1, buffer.data() + buffer.size(), value);
-    file_.write(buffer.data(), static_cast<std::size_t>(result.ptr - buffer.data()));
-  }
-  void vector(const Vec3d& v) {
-    for (std::size_t axis = 0; axis < 3; ++axis) number(v[axis]);
-  }
-  template <class T>
-  void bytes(T value) {
-    if constexpr (std::endian::native == std::endian::big) {
-      auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
-      std::reverse(raw.begin(), raw.end());
-      value = std::bit_cast<T>(raw);
-    }
-    file_.write(&value, sizeof(T));
-  }
-  void commit() { file_.commit(); }
-
- private:
-  AtomicFile file_;
-};
 
 [[noreturn]] void cannot_hold(const std::filesystem::path& path, MeshFormat format, std::string_view what) {
   throw FileError("cannot write '" + path.string() + "': " + std::string(to_string(format)) + " holds no " +
@@ -65,7 +29,7 @@ void refuse_points(const std::filesystem::path& path, MeshFormat format, const M
 }
 
 void write_obj(const std::filesystem::path& path, const MeshView& mesh) {
-  Writer out(path);
+  RowWriter out(path);
   for (const Vec3d& v : mesh.vertices) {
     out.text("v");
     out.vector(v);
@@ -85,13 +49,13 @@ void write_obj(const std::filesystem::path& path, const MeshView& mesh) {
     out.number(std::uint64_t{index} + 1);
     out.text("\n");
   }
-  out.commit();
+  out.finish();
 }
 
 void write_off(const std::filesystem::path& path, const MeshView& mesh) {
   if (!mesh.segments.empty()) cannot_hold(path, MeshFormat::off, "segments");
   refuse_points(path, MeshFormat::off, mesh);
-  Writer out(path);
+  RowWriter out(path);
   out.text("OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.triangles.size()) + " 0\n");
   for (const Vec3d& v : mesh.vertices) {
     out.vector(v);
@@ -102,12 +66,12 @@ void write_off(const std::filesystem::path& path, const MeshView& mesh) {
     for (const std::uint32_t index : t) out.number(index);
     out.text("\n");
   }
-  out.commit();
+  out.finish();
 }
 
 void write_ply(const std::filesystem::path& path, const MeshView& mesh) {
   refuse_points(path, MeshFormat::ply, mesh);
-  Writer out(path);
+  RowWriter out(path);
   out.text("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
            "\nproperty double x\nproperty double y\nproperty double z\n");
   if (!mesh.triangles.empty()) {
@@ -127,7 +91,7 @@ void write_ply(const std::filesystem::path& path, const MeshView& mesh) {
   for (const Segment& s : mesh.segments) {
     for (const std::uint32_t index : s) out.bytes(index);
   }
-  out.commit();
+  out.finish();
 }
 
 /// The unit normal of a triangle; zero when it has none.
@@ -154,7 +118,7 @@ void write_stl(const std::filesystem::path& path, const MeshView& mesh) {
                       " is too far from the origin for the single precision of STL; write PLY instead");
     }
   }
-  Writer out(path);
+  RowWriter out(path);
   std::string header = "binary STL, single precision";  // must not begin with "solid", as text STL does
   header.resize(80, ' ');
   out.text(header);
@@ -167,7 +131,7 @@ void write_stl(const std::filesystem::path& path, const MeshView& mesh) {
     for (const std::uint32_t index : t) write_vector(mesh.vertices[index]);
     out.bytes(std::uint16_t{0});
   }
-  out.commit();
+  out.finish();
 }
 
 }  // namespace

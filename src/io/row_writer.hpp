@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
@@ -21,19 +22,25 @@ namespace blum {
 class RowWriter {
  public:
   /// @param rows  how often end_row() will be called, for the progress.
-  RowWriter(const std::filesystem::path& path, std::size_t rows, const Context& context)
-      : file_(path), context_(context), rows_(rows) {
+  RowWriter(const std::filesystem::path& path, std::size_t rows, Context context)
+      : file_(path), context_(std::move(context)), rows_(rows) {
     buffer_.reserve(piece_size + 4096);
   }
 
-  void text(std::string_view text) { buffer_ += text; }
+  /// Without progress.
+  explicit RowWriter(const std::filesystem::path& path) : RowWriter(path, 0, {}) {}
+
+  void text(std::string_view text) {
+    buffer_ += text;
+    if (buffer_.size() >= piece_size) flush();
+  }
   /// A blank and the shortest text that reads back to the same number.
   template <class T>
   void number(T value) {
     std::array<char, 40> digits{};
     digits[0] = ' ';
     const auto result = std::to_chars(digits.data() + 1, digits.data() + digits.size(), value);
-    buffer_.append(digits.data(), result.ptr);
+    text({digits.data(), static_cast<std::size_t>(result.ptr - digits.data())});
   }
   void vector(const Vec3d& v) {
     for (std::size_t axis = 0; axis < 3; ++axis) number(v[axis]);
@@ -42,12 +49,9 @@ class RowWriter {
   void bytes(T value) {
     auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
     if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
-    buffer_.append(raw.data(), raw.size());
+    text({raw.data(), raw.size()});
   }
-  void end_row() {
-    ++done_;
-    if (buffer_.size() >= piece_size) flush();
-  }
+  void end_row() { ++done_; }
   /// @throws FileError, Cancelled.
   void finish() {
     flush();
@@ -63,12 +67,12 @@ class RowWriter {
     file_.write(buffer_);
     buffer_.clear();
     if (context_.progress) {
-      context_.progress(static_cast<double>(done_) / static_cast<double>(std::max<std::size_t>(rows_, 1)), "write");
+      context_.progress(rows_ == 0 ? 1.0 : static_cast<double>(done_) / static_cast<double>(rows_), "write");
     }
   }
 
   AtomicFile file_;
-  const Context& context_;
+  Context context_;
   std::string buffer_;
   std::size_t rows_ = 0;
   std::size_t done_ = 0;
