@@ -2,8 +2,8 @@
 #pragma once
 
 #include <span>
+#include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "blum/core/error.hpp"
 #include "blum/io/medial_io.hpp"
