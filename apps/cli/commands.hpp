@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,5 +14,13 @@ void add_slice_command(CLI::App& app);
 /// `arguments` are those of the tool, first to last: the parameters of the shape are taken out of them.
 void add_make_command(CLI::App& app, std::vector<std::string>& arguments);
 void add_info_command(CLI::App& app);
+void add_medial_command(CLI::App& app);
+void add_verify_command(CLI::App& app);
+
+/// An axis that is not certified: exit status 3.
+class NotCertified : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 }  // namespace blum::cli

@@ -60,23 +60,6 @@ struct Request {
   ReportOptions report;
 };
 
-template <class Value>
-Value parse_choice(const std::string& option, const std::string& text,
-                   const std::vector<std::pair<std::string, Value>>& choices) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : choices) {
-    if (name == text) return value;
-    names.push_back(name);
-  }
-  throw UsageError(option + " '" + text + "': must be " + join_words(names, "or"));
-}
-
-void exclude(bool first, const char* first_name, bool second, const char* second_name, const char* reason) {
-  if (first && second) {
-    throw UsageError(std::string(first_name) + " and " + second_name + " cannot be used together: " + reason);
-  }
-}
-
 Request parse(const Arguments& a) {
   Request r;
   r.input = a.input;
@@ -108,15 +91,6 @@ Request parse(const Arguments& a) {
   r.threads = parse_threads(a.threads);
   r.report = a.report;
   return r;
-}
-
-void refuse_given(const std::vector<std::pair<bool, const char*>>& given, const fs::path& input, const char* kind,
-                  const char* applies_to) {
-  for (const auto& [is_given, name] : given) {
-    if (is_given) {
-      throw UsageError(std::string(name) + " is for " + applies_to + ", and '" + input.string() + "' is " + kind);
-    }
-  }
 }
 
 void check_applicable(const Arguments& a, const Request& r, InputKind kind) {

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int exit_failure = 1;
 constexpr int exit_usage = 2;
+constexpr int exit_not_certified = 3;
 
 constexpr const char* examples = R"(Examples:
   blum make torus_knot -o knot.ply                 a shape to start from
@@ -23,8 +24,10 @@ constexpr const char* examples = R"(Examples:
   blum field knot.ply -o knot.nrrd                 its exact signed distance field
   blum slice knot.nrrd -o knot.png                 a picture of it
   blum slice knot.nrrd -o cells.png --show sites   the Voronoi diagram
+  blum medial knot.ply -o axis.vtp                 its medial axis, certified
 
-`blum COMMAND --help` says more. Exit status: 0 done, 2 bad usage, 1 any other failure.
+`blum COMMAND --help` says more. Exit status: 0 done, 2 bad usage, 3 not certified, 1 any
+other failure.
 Existing output files are only ever replaced by complete ones.)";
 
 /// A word of the command line that is neither an option nor a command, where a command is due.
@@ -84,10 +87,12 @@ void add_commands(CLI::App& app, std::vector<std::string>& arguments) {
   add_slice_command(app);
   add_make_command(app, arguments);
   add_info_command(app);
+  add_medial_command(app);
+  add_verify_command(app);
 }
 
 int run(std::vector<std::string> arguments) {
-  CLI::App app{"Exact distance fields and Voronoi diagrams of meshes and voxel images", "blum"};
+  CLI::App app{"Exact distance fields, Voronoi diagrams and medial axes of meshes and voxel images", "blum"};
   try {
     add_commands(app, arguments);
     check_command(app, arguments);
@@ -98,6 +103,8 @@ int run(std::vector<std::string> arguments) {
     return 0;
   } catch (const CLI::ParseError& error) {
     return finish(app, error);
+  } catch (const NotCertified& error) {
+    return fail(error.what(), exit_not_certified);
   } catch (const UsageError& error) {
     return fail(error.what(), exit_usage);
   } catch (const InvalidOption& error) {

@@ -171,4 +171,19 @@ std::string join_words(const std::vector<std::string>& words, std::string_view l
   return text;
 }
 
+void exclude(bool first, const char* first_name, bool second, const char* second_name, const char* reason) {
+  if (first && second) {
+    throw UsageError(std::string(first_name) + " and " + second_name + " cannot be used together: " + reason);
+  }
+}
+
+void refuse_given(const std::vector<std::pair<bool, const char*>>& given, const std::filesystem::path& input,
+                  const char* kind, const char* applies_to) {
+  for (const auto& [is_given, name] : given) {
+    if (is_given) {
+      throw UsageError(std::string(name) + " is for " + applies_to + ", and '" + input.string() + "' is " + kind);
+    }
+  }
+}
+
 }  // namespace blum::cli

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "blum/core/vec3.hpp"
@@ -61,5 +63,24 @@ void prepare_weld(std::vector<std::string>& arguments);
 
 /// "a, b and c"; "or" by `last`.
 [[nodiscard]] std::string join_words(const std::vector<std::string>& words, std::string_view last = "and");
+
+/// One of several words.
+template <class Value>
+[[nodiscard]] Value parse_choice(const std::string& option, const std::string& text,
+                                 const std::vector<std::pair<std::string, Value>>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    if (name == text) return value;
+    names.push_back(name);
+  }
+  throw UsageError(option + " '" + text + "': must be " + join_words(names, "or"));
+}
+
+/// @throws UsageError where both options are given.
+void exclude(bool first, const char* first_name, bool second, const char* second_name, const char* reason);
+
+/// @throws UsageError for an option that is given but does not apply to this kind of input.
+void refuse_given(const std::vector<std::pair<bool, const char*>>& given, const std::filesystem::path& input,
+                  const char* kind, const char* applies_to);
 
 }  // namespace blum::cli

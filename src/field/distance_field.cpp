@@ -10,7 +10,7 @@
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/pseudonormals.hpp"
 #include "field/cpu/engine.hpp"
-#include "field/phase_timer.hpp"
+#include "blum/field/phase_timer.hpp"
 #include "field/sign.hpp"
 #include "field/sign_scan.hpp"
 

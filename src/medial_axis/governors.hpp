@@ -6,8 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "blum/geometry/sites.hpp"
-#include "medial_axis/surface_walk.hpp"
+#include "medial_axis/surface.hpp"
 #include "medial_axis/voxel_solid.hpp"
 
 namespace blum {
@@ -34,15 +33,14 @@ using GovernorsAround = std::array<Governor, 8>;
 
 class GovernorField {
  public:
-  GovernorField(const VoxelSolid& solid, const SiteTable& sites, const SurfaceWalk& walk)
-      : solid_(solid), sites_(sites), walk_(walk) {}
+  GovernorField(const VoxelSolid& solid, const Surface& surface) : solid_(solid), surface_(surface) {}
 
   [[nodiscard]] Governor at(std::int64_t i, std::int64_t j, std::int64_t k) const {
     Governor g;
     const std::size_t voxel = solid_.grid.index(i, j, k);
     g.centre = solid_.grid.position(i, j, k);
-    g.foot = walk_.closest_on(sites_.triangle(solid_.site[voxel]).value, g.centre);
     g.is_inside = solid_.depth[voxel] > 0;
+    g.foot = surface_.footprint(solid_.site[voxel], g.centre, g.is_inside);
     const Vec3d out = g.is_inside ? g.foot.point - g.centre : g.centre - g.foot.point;
     const double size = length(out);
     if (size > 0) g.direction = out / size;
@@ -57,7 +55,7 @@ class GovernorField {
   }
 
   [[nodiscard]] const VoxelSolid& solid() const { return solid_; }
-  [[nodiscard]] const SurfaceWalk& walk() const { return walk_; }
+  [[nodiscard]] const Surface& surface() const { return surface_; }
   /// The smallest side of a voxel, mesh units.
   [[nodiscard]] double voxel() const {
     const Vec3d& h = solid_.grid.spacing;
@@ -66,8 +64,7 @@ class GovernorField {
 
  private:
   const VoxelSolid& solid_;
-  const SiteTable& sites_;
-  const SurfaceWalk& walk_;
+  const Surface& surface_;
 };
 
 }  // namespace blum

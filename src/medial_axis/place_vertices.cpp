@@ -1,6 +1,8 @@
 #include "medial_axis/place_vertices.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -12,66 +14,40 @@ namespace {
 
 constexpr std::size_t nodes_per_range = 256;
 constexpr int most_steps = 12;
-/// How far a vertex may move from its corner along each axis, in voxels: less than half keeps neighbours in order.
-constexpr double most_moved = 0.49;
+/// How far a vertex may move from its corner along each axis, in voxels: a corner of the squares nearest to a plane is
+/// no further from it than (1 + sqrt 3) / 4.
+constexpr double most_moved = 0.7;
 /// Two distances count as equal from here on, in voxels.
 constexpr double equal_distances = 1e-9;
+/// Squared difference of the directions to two footprints from which they count as two walls: 6 degrees.
+constexpr double two_walls = 0.01;
 
-/// A point and the footprints on the two walls that it lies between.
+/// A point that is as far from one footprint as from another, and not further from these than from others known.
 struct Placed {
   Vec3d x;
   Footprint p;
   Footprint q;
-  double angle = 0;
 };
 
 class Placer {
  public:
-  Placer(const GovernorField& governors, const Bvh& bvh, const MeshView& mesh, const SiteTable& sites)
-      : governors_(governors), walk_(governors.walk()), bvh_(bvh), mesh_(mesh), sites_(sites) {}
+  explicit Placer(const GovernorField& governors) : governors_(governors), surface_(governors.surface()) {}
 
   [[nodiscard]] MedialVertex place(const std::array<std::int64_t, 3>& node) const {
+    const GridSpec& grid = governors_.solid().grid;
     const GovernorsAround around = governors_.around(node);
-    const Vec3d corner = governors_.solid().grid.position(node[0], node[1], node[2]) -
-                         governors_.solid().grid.direction * (governors_.solid().grid.spacing * 0.5);
-    std::optional<Placed> best;
-    const auto keep = [&](const std::optional<Placed>& placed) {
-      if (placed && (!best || placed->angle > best->angle)) best = placed;
-    };
-    for (const auto& [a, b] : widest_pairs(around)) {
-      // Seams and axes first: a point that all footprints agree on; else any point between the two walls.
-      for (const int rank : {3, 2}) {
-        if (const auto start = fitted(around, corner, rank)) keep(between(around[a], around[b], *start, corner));
-      }
-      if (!best) keep(between(around[a], around[b], corner, corner));
+    const Vec3d corner = grid.position(node[0], node[1], node[2]) - grid.direction * (grid.spacing * 0.5);
+    // Seams and axes first: a point that all footprints agree on; else the nearest sheet.
+    for (const int rank : {3, 2}) {
+      const std::optional<Vec3d> start = fitted(around, corner, rank);
+      if (!start) continue;
+      if (const auto vertex = vertex_at(settle(around, *start, corner), around)) return *vertex;
     }
-    return vertex_at(best, corner);
+    if (const auto vertex = vertex_at(settle(around, corner, corner), around)) return *vertex;
+    return without_bisector(around, corner);
   }
 
  private:
-  using Pairs = std::array<std::array<std::size_t, 2>, 2>;
-
-  /// The two pairs of voxels whose directions differ most.
-  static Pairs widest_pairs(const GovernorsAround& around) {
-    Pairs pairs{{{0, 7}, {0, 7}}};
-    std::array<double, 2> least{2, 2};
-    for (std::size_t a = 0; a < 8; ++a) {
-      for (std::size_t b = a + 1; b < 8; ++b) {
-        const double cosine = dot(around[a].direction, around[b].direction);
-        if (cosine < least[0]) {
-          least[1] = least[0];
-          pairs[1] = pairs[0];
-          least[0] = cosine;
-          pairs[0] = {a, b};
-        } else if (cosine < least[1]) {
-          least[1] = cosine;
-          pairs[1] = {a, b};
-        }
-      }
-    }
-    return pairs;
-  }
-
   [[nodiscard]] std::optional<Vec3d> fitted(const GovernorsAround& around, const Vec3d& corner, int rank) const {
     std::array<Vec3d, 8> feet;
     for (std::size_t v = 0; v < 8; ++v) feet[v] = around[v].foot.point;
@@ -80,80 +56,116 @@ class Placer {
   }
 
   [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& corner) const {
-    const Vec3d moved = governors_.solid().grid.direction.transposed_times(x - corner);
+    const GridSpec& grid = governors_.solid().grid;
+    const Vec3d moved = grid.direction.transposed_times(x - corner);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (std::abs(moved[axis]) > most_moved * governors_.solid().grid.spacing[axis]) return false;
+      if (std::abs(moved[axis]) > most_moved * grid.spacing[axis]) return false;
     }
     return true;
   }
 
-  /// Newton steps towards the points that are as far from one wall as from the other, along the difference of the
-  /// directions to both.
-  [[nodiscard]] std::optional<Placed> between(const Governor& a, const Governor& b, const Vec3d& start,
-                                              const Vec3d& corner) const {
-    Placed at{start, a.foot, b.foot, 0};
+  /// Newton steps to the nearest point between the closest wall and another one.
+  [[nodiscard]] std::optional<Placed> settle(const GovernorsAround& around, const Vec3d& start,
+                                             const Vec3d& corner) const {
     const double voxel = governors_.voxel();
+    Placed at{start, {}, {}};
     for (int step = 0; step < most_steps; ++step) {
-      at.p = walk_.follow(a.foot, at.x, 2 * voxel);
-      at.q = walk_.follow(b.foot, at.x, 2 * voxel);
-      const Vec3d to_p = at.x - at.p.point;
-      const Vec3d to_q = at.x - at.q.point;
-      const double distance_p = length(to_p);
-      const double distance_q = length(to_q);
-      const double difference = distance_p - distance_q;
-      if (std::abs(difference) <= equal_distances * voxel) break;
-      if (!(distance_p > 0) || !(distance_q > 0)) return std::nullopt;
-      const Vec3d slope = to_p / distance_p - to_q / distance_q;
-      const double squared = squared_length(slope);
-      if (squared < 1e-4) return std::nullopt;  // the same wall
-      at.x -= slope * (difference / squared);
+      std::array<Footprint, 8> feet;
+      std::array<double, 8> distance{};
+      std::size_t closest = 0;
+      for (std::size_t v = 0; v < 8; ++v) {
+        feet[v] = surface_.follow(around[v].foot, at.x, 2 * voxel);
+        distance[v] = length(at.x - feet[v].point);
+        if (distance[v] < distance[closest]) closest = v;
+      }
+      if (!(distance[closest] > 0)) return std::nullopt;
+      const Vec3d towards = (at.x - feet[closest].point) / distance[closest];
+      Vec3d move;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t v = 0; v < 8; ++v) {
+        const Vec3d slope = towards - (at.x - feet[v].point) / distance[v];
+        const double squared = squared_length(slope);
+        if (squared < two_walls) continue;
+        const double difference = distance[v] - distance[closest];
+        if (difference >= least * std::sqrt(squared)) continue;
+        least = difference / std::sqrt(squared);
+        move = slope * (difference / squared);
+        at.p = feet[closest];
+        at.q = feet[v];
+      }
+      if (!(least < std::numeric_limits<double>::infinity())) return std::nullopt;
+      if (least <= equal_distances * voxel) return at;
+      at.x += move;
       if (!is_near(at.x, corner)) return std::nullopt;
     }
-    if (squared_length(at.p.point - at.q.point) < 1e-12 * voxel * voxel) return std::nullopt;
-    at.angle = angle_at(at.x, at.p.point, at.q.point);
-    return at;
+    return std::nullopt;
   }
 
-  /// The exact closest point, and the other wall's where it is as close.
-  [[nodiscard]] MedialVertex vertex_at(const std::optional<Placed>& placed, const Vec3d& corner) const {
-    MedialVertex vertex;
-    vertex.position = placed ? placed->x : corner;
-    const std::optional<NearestSite> nearest = bvh_.nearest(vertex.position);
-    if (!nearest) return vertex;
-    vertex.radius = nearest->distance;
-    vertex.footprints = {nearest->point, nearest->point};
-    vertex.sites = {nearest->site, nearest->site};
-    if (!placed) return vertex;
-    const double limit = nearest->distance + 1e-6 * governors_.voxel() + 1e-9 * nearest->distance;
+  /// Whether balls around a point and around a voxel's centre meet, so that the point is inside as well.
+  [[nodiscard]] static bool is_inside(const GovernorsAround& around, const Vec3d& x, double radius) {
+    return std::any_of(around.begin(), around.end(), [&](const Governor& g) {
+      return g.is_inside && length(x - g.centre) < radius + length(g.centre - g.foot.point);
+    });
+  }
+
+  /// The vertex at a point, if that is inside: the exact closest point, and the other wall's where it is as close.
+  [[nodiscard]] std::optional<MedialVertex> vertex_at(const std::optional<Placed>& placed,
+                                                      const GovernorsAround& around) const {
+    if (!placed) return std::nullopt;
+    MedialVertex vertex = one_wall(placed->x, placed->p);
+    if (!is_inside(around, vertex.position, vertex.radius)) return std::nullopt;
+    const double limit = vertex.radius + 1e-6 * governors_.voxel() + 1e-9 * vertex.radius;
     for (const Footprint& foot : {placed->p, placed->q}) {
       if (length(vertex.position - foot.point) > limit) continue;
-      const double angle = angle_at(vertex.position, nearest->point, foot.point);
+      const double angle = angle_at(vertex.position, vertex.footprints[0], foot.point);
       if (angle <= vertex.separation_angle) continue;
       vertex.footprints[1] = foot.point;
-      vertex.sites[1] = site_of(foot, sites_, mesh_);
+      vertex.sites[1] = surface_.site_of(foot);
       vertex.separation_angle = angle;
     }
+    return vertex.separation_angle > 0 ? std::optional(vertex) : std::nullopt;
+  }
+
+  [[nodiscard]] MedialVertex one_wall(const Vec3d& x, const Footprint& near) const {
+    const SurfacePoint nearest = surface_.nearest(x, near);
+    MedialVertex vertex;
+    vertex.position = x;
+    vertex.radius = nearest.distance;
+    vertex.footprints = {nearest.point, nearest.point};
+    vertex.sites = {nearest.site, nearest.site};
     return vertex;
   }
 
+  /// Where no bisector is within reach: at the corner; at the deepest voxel's centre where that is outside; on the
+  /// surface where that is outside, too.
+  [[nodiscard]] MedialVertex without_bisector(const GovernorsAround& around, const Vec3d& corner) const {
+    const MedialVertex vertex = one_wall(corner, around[0].foot);
+    if (is_inside(around, corner, vertex.radius)) return vertex;
+    const auto depth = [](const Governor& g) {
+      const double distance = length(g.centre - g.foot.point);
+      return g.is_inside ? distance : -distance;
+    };
+    const Governor& deepest = *std::max_element(
+        around.begin(), around.end(), [&](const Governor& a, const Governor& b) { return depth(a) < depth(b); });
+    if (deepest.is_inside) return one_wall(deepest.centre, deepest.foot);
+    MedialVertex on_surface = one_wall(deepest.foot.point, deepest.foot);
+    on_surface.position = on_surface.footprints[0];
+    on_surface.radius = 0;
+    return on_surface;
+  }
+
   const GovernorField& governors_;
-  const SurfaceWalk& walk_;
-  const Bvh& bvh_;
-  const MeshView& mesh_;
-  const SiteTable& sites_;
+  const Surface& surface_;
 };
 
 }  // namespace
 
-std::vector<MedialVertex> place_vertices(const GovernorField& governors, const CellComplex& complex,
-                                         const std::vector<std::uint32_t>& nodes, const Bvh& bvh, const MeshView& mesh,
-                                         const SiteTable& sites, const Context& context) {
-  const Placer placer(governors, bvh, mesh, sites);
+std::vector<MedialVertex> place_vertices(const GovernorField& governors, const CellLattice& lattice,
+                                         const std::vector<std::uint32_t>& nodes, const Context& context) {
+  const Placer placer(governors);
   std::vector<MedialVertex> vertices(nodes.size());
   parallel_for(context, nodes.size(), nodes_per_range, "vertices", [&](const WorkRange& range) {
-    for (std::size_t n = range.begin; n < range.end; ++n) {
-      vertices[n] = placer.place(complex.lattice().place(nodes[n]));
-    }
+    for (std::size_t n = range.begin; n < range.end; ++n) vertices[n] = placer.place(lattice.place(nodes[n]));
   });
   return vertices;
 }

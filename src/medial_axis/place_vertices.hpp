@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
-#include "blum/geometry/bvh.hpp"
 #include "blum/medial_axis/medial_complex.hpp"
 #include "medial_axis/cell_complex.hpp"
 #include "medial_axis/governors.hpp"
@@ -15,10 +14,7 @@ namespace blum {
 /// The vertices of a complex, by node: each moved from its lattice corner to a point within its voxel's reach that is
 /// as far from one wall as from another, and as far as the voxels around say from all of them; it stays where it is
 /// where only one wall is near. Radius and first footprint are those of an exact query.
-/// @param sites  of the mesh that the walk runs on; site ids are its.
-[[nodiscard]] std::vector<MedialVertex> place_vertices(const GovernorField& governors, const CellComplex& complex,
-                                                       const std::vector<std::uint32_t>& nodes, const Bvh& bvh,
-                                                       const MeshView& mesh, const SiteTable& sites,
-                                                       const Context& context);
+[[nodiscard]] std::vector<MedialVertex> place_vertices(const GovernorField& governors, const CellLattice& lattice,
+                                                       const std::vector<std::uint32_t>& nodes, const Context& context);
 
 }  // namespace blum

@@ -5,7 +5,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/pseudonormals.hpp"
-#include "field/phase_timer.hpp"
+#include "blum/field/phase_timer.hpp"
 
 namespace blum::cpu {
 namespace {

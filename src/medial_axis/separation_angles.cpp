@@ -1,4 +1,4 @@
-#include "medial_axis/mesh_importance.hpp"
+#include "medial_axis/separation_angles.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,16 +14,16 @@ namespace {
 constexpr double reach_around_axis = 1.5;
 /// How far beyond the closest distance a footprint may be to count, in voxels, at a point that all were fitted to.
 constexpr double fitted_tolerance = 0.1;
-constexpr double fitted_reach = 0.6;  ///< of a point from the middle of its cell, in voxels along each axis
+constexpr double fitted_reach = 0.7;  ///< of a point from the middle of its cell, in voxels along each axis
 constexpr int bisector_steps = 4;
+constexpr double opposite_step = 0.3;  ///< voxels
 
 class Measure {
  public:
-  Measure(const GovernorField& governors, const CellComplex& complex, const Bvh& bvh, const NoiseFloor& floor)
+  Measure(const GovernorField& governors, const CellComplex& complex, const NoiseFloor& floor)
       : governors_(governors),
-        walk_(governors.walk()),
+        surface_(governors.surface()),
         complex_(complex),
-        bvh_(bvh),
         floor_(floor),
         voxel_(governors.voxel()) {}
 
@@ -57,7 +57,7 @@ class Measure {
 
   /// The angle on the bisector between two voxels that share a square; 0 where both follow the same wall.
   [[nodiscard]] double between(const Governor& a, const Governor& b) const {
-    if (a.foot.triangle == b.foot.triangle || (!a.is_inside && !b.is_inside)) return 0;
+    if (a.foot.element == b.foot.element || (!a.is_inside && !b.is_inside)) return 0;
     double low = 0;  // where a's wall is the closer one
     double high = 1;
     double t = 0.5;
@@ -66,13 +66,13 @@ class Measure {
     Footprint q = b.foot;
     for (int step = 0; step < bisector_steps; ++step) {
       x = a.centre + (b.centre - a.centre) * t;
-      p = walk_.follow(a.foot, x, HUGE_VAL);
-      q = walk_.follow(b.foot, x, HUGE_VAL);
-      const double difference = length(x - p.point) - length(x - q.point);
+      p = surface_.follow(a.foot, x, HUGE_VAL);
+      q = surface_.follow(b.foot, x, HUGE_VAL);
+      const double difference = depth_of(x, a, p) - depth_of(x, b, q);
       if (std::abs(difference) < 1e-3 * voxel_) break;
       (difference < 0 ? low : high) = t;
       // Where both distances change linearly, their slopes are those along the two directions.
-      const double slope = slope_along(a, b, x, p) - slope_along(a, b, x, q);
+      const double slope = slope_along(a, b, x, a, p) - slope_along(a, b, x, b, q);
       const double next = slope > 0 ? t - difference / slope : -1;
       t = next > low && next < high ? next : 0.5 * (low + high);
     }
@@ -100,6 +100,7 @@ class Measure {
     Vec3d middle;
     for (unsigned v = 0; v < 8; ++v) {
       if ((v & axes) != axes) continue;
+      if (!around[v].is_inside) return 0;  // squares tell what there is to tell about thin parts
       governors[count] = &around[v];
       feet[count++] = around[v].foot.point;
       middle += around[v].centre;
@@ -120,20 +121,27 @@ class Measure {
     bool is_same = true;
     for (const Governor& g : around) {
       sum += g.direction;
-      is_same = is_same && g.foot.triangle == around[0].foot.triangle;
+      is_same = is_same && g.foot.element == around[0].foot.element;
     }
     if (is_same) return false;
     const double size = length(sum);
     const double narrow = std::cos(0.5 * floor_.angle / degrees_per_radian);
+    if (size < 8 * narrow) return true;  // opposite walls, whose sum points nowhere
     for (const Governor& g : around) {
       if (dot(g.direction, sum) < narrow * size) return true;
     }
     return false;
   }
 
-  [[nodiscard]] static double slope_along(const Governor& a, const Governor& b, const Vec3d& x, const Footprint& p) {
-    const double distance = length(x - p.point);
-    return distance > 0 ? dot(b.centre - a.centre, x - p.point) / distance : 0;
+  /// How far a point is from the footprint that follows it from a governor's; negative beyond the wall.
+  [[nodiscard]] static double depth_of(const Vec3d& x, const Governor& g, const Footprint& foot) {
+    return std::copysign(length(x - foot.point), dot(foot.point - x, g.direction));
+  }
+  /// What that changes by where x goes all the way from a to b.
+  [[nodiscard]] static double slope_along(const Governor& a, const Governor& b, const Vec3d& x, const Governor& g,
+                                          const Footprint& foot) {
+    const double depth = depth_of(x, g, foot);
+    return depth != 0 ? dot(b.centre - a.centre, x - foot.point) / depth : 0;
   }
 
   /// Whether a point near a voxel is on the inner side of the wall that the voxel is closest to.
@@ -144,41 +152,56 @@ class Measure {
   [[nodiscard]] double above_floor(const Vec3d& x, const Vec3d& p, const Vec3d& q) const {
     const double angle = angle_at(x, p, q);
     if (angle < floor_.angle) return 0;
-    if (angle < floor_.clear_angle && length(p - q) < floor_.voxels * voxel_) return 0;
+    const double apart = length(p - q);
+    if (apart < floor_.lambda || (angle < floor_.clear_angle && apart < floor_.voxels * voxel_)) return 0;
     return angle;
   }
 
   [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& middle) const {
+    const GridSpec& grid = governors_.solid().grid;
+    const Vec3d moved = grid.direction.transposed_times(x - middle);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (std::abs(x[axis] - middle[axis]) > fitted_reach * governors_.solid().grid.spacing[axis]) return false;
+      if (std::abs(moved[axis]) > fitted_reach * grid.spacing[axis]) return false;
     }
     return true;
   }
 
   [[nodiscard]] double angle_of(std::span<const Governor* const> governors, const Vec3d& x) const {
-    const std::optional<NearestSite> nearest = bvh_.nearest(x);
-    if (!nearest) return 0;
-    const double limit = nearest->distance + fitted_tolerance * voxel_;
-    std::array<Vec3d, 8> feet;
+    const double limit = surface_.nearest(x, governors[0]->foot).distance + fitted_tolerance * voxel_;
+    std::array<Footprint, 8> feet;
     std::size_t count = 0;
     bool is_in = false;
     for (const Governor* g : governors) {
       is_in = is_in || is_inside(*g, x);
-      const Footprint foot = walk_.follow(g->foot, x, reach_around_axis * voxel_);
-      if (length(x - foot.point) <= limit) feet[count++] = foot.point;
+      const Footprint foot = surface_.follow(g->foot, x, reach_around_axis * voxel_);
+      if (length(x - foot.point) <= limit) feet[count++] = foot;
     }
     if (!is_in) return 0;
     double largest = 0;
     for (std::size_t a = 0; a < count; ++a) {
-      for (std::size_t b = a + 1; b < count; ++b) largest = std::max(largest, above_floor(x, feet[a], feet[b]));
+      for (std::size_t b = a + 1; b < count; ++b) {
+        largest = std::max(largest, above_floor(x, feet[a].point, feet[b].point));
+      }
+      const Vec3d opposite = opposite_of(x, feet[a]);
+      if (length(x - opposite) <= limit) largest = std::max(largest, above_floor(x, feet[a].point, opposite));
     }
     return largest;
   }
 
+  /// A footprint on the other side: what is closest a little further away from the first one. The voxels around an axis
+  /// see only some of the directions that there are.
+  [[nodiscard]] Vec3d opposite_of(const Vec3d& x, const Footprint& foot) const {
+    const Vec3d away = x - foot.point;
+    const double distance = length(away);
+    if (!(distance > 0)) return foot.point;
+    const Vec3d beyond = x + away * (std::min(opposite_step * voxel_, 0.5 * distance) / distance);
+    const SurfacePoint there = surface_.nearest(beyond, foot);
+    return surface_.follow({there.point, there.element, 7}, x, reach_around_axis * voxel_).point;
+  }
+
   const GovernorField& governors_;
-  const SurfaceWalk& walk_;
+  const Surface& surface_;
   const CellComplex& complex_;
-  const Bvh& bvh_;
   const NoiseFloor& floor_;
   double voxel_;
 };
@@ -211,11 +234,28 @@ Entries closed(const CellLattice& lattice, const Entries& own) {
   return all;
 }
 
+/// The largest value of the squares and their faces next to a node. No cell of the complex lies on the lattice's
+/// border.
+double largest_around(const Importance& squares, const CellLattice& lattice, std::size_t node) {
+  float largest = 0;
+  for (std::size_t z = 0; z < 3; ++z) {
+    for (std::size_t y = 0; y < 3; ++y) {
+      const std::size_t row =
+          node + z * lattice.stride(2) + y * lattice.stride(1) - lattice.stride(2) - lattice.stride(1);
+      for (std::size_t n = row - 1; n <= row + 1; ++n) {
+        // Vertices have at least what the squares around them have.
+        largest = std::max(largest, squares.of(cell_at(n, 0)));
+      }
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
-Importance mesh_importance(const GovernorField& governors, const CellComplex& complex, const Bvh& bvh,
-                           const NoiseFloor& floor, const Context& context) {
-  const Measure measure(governors, complex, bvh, floor);
+Importance separation_angles(const GovernorField& governors, const CellComplex& complex, const NoiseFloor& floor,
+                             const Context& context) {
+  const Measure measure(governors, complex, floor);
   const CellLattice& lattice = complex.lattice();
   const auto layers = static_cast<std::size_t>(lattice.size()[2]);
   std::vector<Entries> found(layers);
@@ -245,7 +285,7 @@ Importance mesh_importance(const GovernorField& governors, const CellComplex& co
                    for (const CellAxes axes : {0U, 1U, 2U, 4U}) {
                      if ((cells >> axes & 1U) == 0) continue;
                      const Cell cell = cell_at(node, axes);
-                     const double known = squares.of(cell);
+                     const double known = largest_around(squares, lattice, node);
                      if (Measure::coarse(around, axes) < std::max(known + worth_looking, floor.angle)) continue;
                      const double angle = measure.fitted(around, axes);
                      if (angle > known) out.push_back({cell, static_cast<float>(angle)});

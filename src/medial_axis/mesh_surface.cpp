@@ -1,8 +1,9 @@
-#include "medial_axis/surface_walk.hpp"
+#include "medial_axis/mesh_surface.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <optional>
 
 namespace blum {
 namespace {
@@ -34,8 +35,12 @@ Footprint closest_on_triangle(const Vec3d& query, const Vec3d& a, const Vec3d& b
 
 }  // namespace
 
-SurfaceWalk::SurfaceWalk(const MeshView& mesh)
-    : mesh_(mesh), first_(mesh.vertices.size() + 1, 0), triangles_(3 * mesh.triangles.size()) {
+MeshSurface::MeshSurface(const MeshView& mesh, const SiteTable& sites, const Context& context)
+    : mesh_(mesh),
+      sites_(sites),
+      bvh_(mesh, sites, context),
+      first_(mesh.vertices.size() + 1, 0),
+      triangles_(3 * mesh.triangles.size()) {
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) ++first_[v + 1];
   }
@@ -46,32 +51,42 @@ SurfaceWalk::SurfaceWalk(const MeshView& mesh)
   }
 }
 
-SiteId site_of(const Footprint& foot, const SiteTable& sites, const MeshView& mesh) {
-  if (foot.corners == 7) return sites.id({SiteKind::face, foot.triangle});
+SiteId MeshSurface::site_of(const Footprint& foot) const {
+  if (foot.corners == 7) return sites_.id({SiteKind::face, foot.element});
   const auto corner = static_cast<std::size_t>(std::countr_zero(foot.corners));
-  if (std::popcount(foot.corners) == 1) return sites.id({SiteKind::vertex, mesh.triangles[foot.triangle][corner]});
+  if (std::popcount(foot.corners) == 1) return sites_.id({SiteKind::vertex, mesh_.triangles[foot.element][corner]});
   // Edge k of a triangle lies between its corners k and k + 1: bits 011, 110, 101.
   const std::size_t edge = foot.corners == 5 ? 2 : corner;
-  const EdgeId id = sites.triangle_edges()[foot.triangle][edge];
-  return id.has_value() ? sites.id({SiteKind::edge, id.value}) : sites.id({SiteKind::face, foot.triangle});
+  const EdgeId id = sites_.triangle_edges()[foot.element][edge];
+  return id.has_value() ? sites_.id({SiteKind::edge, id.value}) : sites_.id({SiteKind::face, foot.element});
 }
 
-Footprint SurfaceWalk::closest_on(std::uint32_t triangle, const Vec3d& query) const {
+Footprint MeshSurface::footprint(SiteId site, const Vec3d& centre, bool /*is_inside*/) const {
+  return closest_on(sites_.triangle(site).value, centre);
+}
+
+SurfacePoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) const {
+  const std::optional<NearestSite> found = bvh_.nearest(query);
+  if (found) return {found->point, found->distance, found->site, sites_.triangle(found->site).value};
+  return {near.point, length(query - near.point), site_of(near), near.element};  // a query that is not finite
+}
+
+Footprint MeshSurface::closest_on(std::uint32_t triangle, const Vec3d& query) const {
   const Triangle& t = mesh_.triangles[triangle];
   Footprint foot = closest_on_triangle(query, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
-  foot.triangle = triangle;
+  foot.element = triangle;
   return foot;
 }
 
-Footprint SurfaceWalk::follow(const Footprint& start, const Vec3d& query, double reach) const {
-  Footprint best = closest_on(start.triangle, query);
+Footprint MeshSurface::follow(const Footprint& start, const Vec3d& query, double reach) const {
+  Footprint best = closest_on(start.element, query);
   for (int step = 0; step < most_steps; ++step) {
     Footprint better = best;
     double better_squared = squared_length(query - best.point) * (1 - 1e-12);
     for (unsigned rest = best.corners == 7 ? 0 : best.corners; rest != 0; rest &= rest - 1) {
-      const std::uint32_t v = mesh_.triangles[best.triangle][static_cast<std::size_t>(std::countr_zero(rest))];
+      const std::uint32_t v = mesh_.triangles[best.element][static_cast<std::size_t>(std::countr_zero(rest))];
       for (std::uint32_t at = first_[v]; at < first_[v + 1]; ++at) {
-        if (triangles_[at] == best.triangle) continue;
+        if (triangles_[at] == best.element) continue;
         const Footprint other = closest_on(triangles_[at], query);
         const double other_squared = squared_length(query - other.point);
         if (other_squared >= better_squared) continue;
@@ -79,7 +94,7 @@ Footprint SurfaceWalk::follow(const Footprint& start, const Vec3d& query, double
         better_squared = other_squared;
       }
     }
-    if (better.triangle == best.triangle) break;
+    if (better.element == best.element) break;
     if (squared_length(better.point - start.point) > reach * reach) break;
     best = better;
   }

@@ -1,8 +1,7 @@
-// Blum: separation angles of the cells of a voxelised mesh. SPDX-License-Identifier: Apache-2.0
+// Blum: separation angles of the cells of a solid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "blum/core/context.hpp"
-#include "blum/geometry/bvh.hpp"
 #include "medial_axis/governors.hpp"
 #include "medial_axis/importance.hpp"
 
@@ -13,6 +12,7 @@ struct NoiseFloor {
   double angle = 10;        ///< degrees; smaller separation angles count as zero
   double clear_angle = 45;  ///< from here on, the distance of the footprints does not matter
   double voxels = 2;        ///< footprints closer than this many voxels, at smaller angles, count as one
+  double lambda = 0;        ///< mesh units: footprints closer than this count as one at any angle
 };
 
 /// The separation angle of each cell of a solid: the largest one at a point of the medial axis within half a voxel of
@@ -22,7 +22,7 @@ struct NoiseFloor {
 /// between the two, remain two. Edges and vertices also look for a point as far from the footprints of all voxels
 /// around them: axes of round things cross no line between two voxels.
 /// @param complex  of the solid's voxels.
-[[nodiscard]] Importance mesh_importance(const GovernorField& governors, const CellComplex& complex, const Bvh& bvh,
-                                         const NoiseFloor& floor, const Context& context);
+[[nodiscard]] Importance separation_angles(const GovernorField& governors, const CellComplex& complex,
+                                           const NoiseFloor& floor, const Context& context);
 
 }  // namespace blum

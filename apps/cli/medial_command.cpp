@@ -1,0 +1,389 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "blum/io/medial_io.hpp"
+#include "blum/medial_axis/certificate.hpp"
+#include "blum/medial_axis/medial_axis.hpp"
+#include "commands.hpp"
+#include "files.hpp"
+#include "input_facts.hpp"
+#include "medial_report.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "solid_input.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum medial part.stl -o part.vtp                        for ParaView, with all attributes
+  blum medial part.stl -o part.vtp --theta 20,60,120      part-theta20.vtp and so on, nested
+  blum medial knot.ply -o knot.obj --theta 170            curves, for Blender
+  blum medial scan.nii.gz -o vessels.npz --label 1,3      vessels-label1.npz and vessels-label3.npz
+
+Exit status 3: the axis could not be certified, and no file was written.)";
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> resolution, spacing, theta, lambda, threshold, max_resolution, weld, threads;
+  std::vector<std::string> labels;
+  bool allow_uncertified = false;
+  ReportOptions report;
+};
+
+struct Request {
+  fs::path input;
+  fs::path output;
+  MedialAxisOptions options;
+  std::vector<double> thetas{60};
+  Selections selections;
+  std::optional<double> weld;
+  bool allow_uncertified = false;
+  int threads = 0;
+  ReportOptions report;
+};
+
+std::vector<double> parse_thetas(const std::string& text) {
+  std::vector<double> thetas;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const double theta = parse_non_negative("--theta", std::string_view(text).substr(begin, end - begin));
+    if (theta > 180) throw UsageError("--theta is " + number_text(theta) + " degrees, but must be 0 to 180");
+    if (std::find(thetas.begin(), thetas.end(), theta) != thetas.end()) {
+      throw UsageError("--theta names " + number_text(theta) + " twice");
+    }
+    thetas.push_back(theta);
+    begin = end + 1;
+  }
+  return thetas;
+}
+
+Request parse(const Arguments& a) {
+  Request r;
+  r.input = a.input;
+  r.output = a.output;
+  check_extension("--output", r.output, {".vtp", ".ply", ".obj", ".ma", ".npz"});
+  if (r.input.empty()) throw UsageError("INPUT needs a file name");
+  exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the voxel size");
+  exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
+  if (a.resolution) r.options.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 8, 800));
+  if (a.spacing) r.options.spacing = parse_positive("--spacing", *a.spacing);
+  if (a.max_resolution) {
+    r.options.max_resolution = static_cast<int>(parse_integer("--max-resolution", *a.max_resolution, 8, 800));
+  }
+  if (a.theta) r.thetas = parse_thetas(*a.theta);
+  if (a.lambda) r.options.lambda = parse_non_negative("--lambda", *a.lambda);
+  r.selections.labels = parse_labels("--label", a.labels);
+  if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);
+  r.weld = parse_weld(a.weld);
+  r.allow_uncertified = a.allow_uncertified;
+  r.threads = parse_threads(a.threads);
+  r.report = a.report;
+  return r;
+}
+
+void check_applicable(const Arguments& a, const fs::path& input, InputKind kind) {
+  if (kind == InputKind::mesh) {
+    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, input, "a mesh", "images");
+    return;
+  }
+  refuse_given({{a.resolution.has_value(), "--resolution"},
+                {a.spacing.has_value(), "--spacing"},
+                {a.max_resolution.has_value(), "--max-resolution"},
+                {a.weld.has_value(), "--weld"}},
+               input, "an image", "meshes");
+}
+
+/// OUT-theta20.vtp for OUT.vtp.
+fs::path with_theta(const fs::path& path, double theta) {
+  fs::path name = path.parent_path() / path.stem();
+  name += "-theta" + number_text(theta);
+  name += path.extension();
+  return name;
+}
+
+/// A file that is written, but not yet certified; gone unless it is kept.
+class Draft {
+ public:
+  explicit Draft(fs::path name) : name_(std::move(name)) {
+    draft_ = name_.parent_path() / ("." + name_.stem().string() + ".draft");
+    draft_ += name_.extension();
+  }
+  ~Draft() {
+    std::error_code ignored;
+    if (!draft_.empty()) fs::remove(draft_, ignored);
+  }
+  Draft(Draft&& other) noexcept : name_(std::move(other.name_)), draft_(std::exchange(other.draft_, {})) {}
+  Draft& operator=(Draft&&) = delete;
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return draft_; }
+  [[nodiscard]] const fs::path& name() const { return name_; }
+  void keep() {
+    std::error_code error;
+    fs::rename(draft_, name_, error);
+    if (error) throw FileError("'" + name_.string() + "': " + error.message());
+    draft_.clear();
+  }
+
+ private:
+  fs::path name_;
+  fs::path draft_;
+};
+
+/// What a run gathers for its summary.
+struct Run {
+  Json solids = Json::array();
+  std::vector<PhaseTime> phases;
+  std::vector<Draft> drafts;
+  std::vector<std::string> warnings;
+  std::vector<std::string> mismatches;
+  TextTable table;
+};
+
+Json body_json(const BodyReport& body) {
+  return {{"solid_betti", to_json(body.solid)}, {"voxel_betti", to_json(body.voxels)},
+          {"topology_reached", body.is_right},  {"spacing", body.spacing},
+          {"voxels", body.voxel_count},         {"voxels_left_out", body.left_out},
+          {"voxels_taken_in", body.taken_in},   {"deviation", body.deviation}};
+}
+
+/// What the voxels of a solid miss, and what there is to do about it.
+std::vector<std::string> shortfalls(const MedialAxisReport& report) {
+  std::vector<std::string> out;
+  for (std::size_t b = 0; b < report.bodies.size(); ++b) {
+    const BodyReport& body = report.bodies[b];
+    if (body.is_right) continue;
+    out.push_back((report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : std::string("the solid")) + " has " +
+                  betti_text(body.solid) + ", its voxels of side " + number_text(body.spacing) + " have " +
+                  betti_text(body.voxels) + ": something is thinner than a voxel; raise --max-resolution");
+  }
+  return out;
+}
+
+void add_report(Run& run, const MedialAxisReport& report, Json& json) {
+  std::size_t voxels = 0;
+  std::size_t moved = 0;
+  double deviation = 0;
+  double spacing = report.bodies.front().spacing;
+  Json bodies = Json::array();
+  for (const BodyReport& body : report.bodies) {
+    bodies.push_back(body_json(body));
+    voxels += body.voxel_count;
+    moved += body.left_out + body.taken_in;
+    deviation = std::max(deviation, body.deviation);
+    spacing = std::min(spacing, body.spacing);
+  }
+  json["rule"] = to_string(report.rule);
+  json["reason"] = report.reason;
+  json["turned_shells"] = report.turned_shells;
+  json["grid"] = to_json(report.grid);
+  json["bodies"] = bodies;
+  run.table.add("solid", betti_text(report.solid) + " (" + report.reason + ")");
+  run.table.add("voxels", count_text(voxels) + " of side " + number_text(spacing) +
+                              (moved > 0 ? "; " + count_text(moved) + " chosen otherwise than by their centre, up to " +
+                                               number_text(deviation) + " from the surface, for the topology"
+                                         : ""));
+  if (report.turned_shells > 0) {
+    run.warnings.push_back(plural(report.turned_shells, "shell faces", "shells face") + " the solid and " +
+                           (report.turned_shells == 1 ? "was" : "were") + " turned");
+  }
+  if (report.rule == SolidRule::winding) run.warnings.push_back(report.reason + ", as voxels");
+}
+
+/// Writes, reads again and certifies an axis at one angle.
+void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
+              const MedialAxis& axis, double theta, const fs::path& name, Json& axes, const Context& context) {
+  Stopwatch watch;
+  const MedialComplex complex = axis.extract(theta);
+  run.phases.push_back({"extract", watch.lap()});
+  const MedialAxisReport& report = axis.report();
+  MedialMetadata metadata;
+  metadata.source = r.input.filename().string();
+  metadata.version = BLUM_VERSION;
+  metadata.site_ids = input.kind == InputKind::image ? SiteIds::voxels : SiteIds::features;
+  metadata.theta = theta;
+  metadata.lambda = r.options.lambda;
+  metadata.spacing = report.bodies.front().spacing;
+  metadata.solid_rule = to_string(report.rule);
+  metadata.grid = report.grid;
+  run.drafts.emplace_back(name);
+  write_medial(run.drafts.back().path(), complex, metadata, context);
+  run.phases.push_back({"write", watch.lap()});
+  MedialFile written = read_medial(run.drafts.back().path());
+  if (written.metadata.solid_rule.empty()) written.metadata = metadata;  // .obj and .ma say nothing of it
+  const bool has_geometry = written.has_radii && written.has_footprints;
+  const Certificate certificate = certificate_of(written, input, selection, context);
+  run.phases.push_back({"certificate", watch.lap()});
+  const MedialCounts counts = count(complex);
+  axes.push_back({{"theta", theta},
+                  {"file", name.string()},
+                  {"counts", to_json(counts)},
+                  {"certificate", to_json(certificate, has_geometry)}});
+  run.table.add("theta " + number_text(theta), counts_text(counts));
+  add_certificate(run.table, certificate, has_geometry);
+  for (const std::string& mismatch : certificate.mismatches) {
+    run.mismatches.push_back("at theta " + number_text(theta) + ": " + mismatch);
+  }
+}
+
+void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
+               const std::optional<std::int64_t>& label, const fs::path& output, const Context& context) {
+  MedialAxisOptions options = r.options;
+  options.selection = selection;
+  const MedialAxis axis = input.kind == InputKind::mesh ? medial_axis(input.mesh.mesh, options, context)
+                                                        : medial_axis(input.image, options, context);
+  const MedialAxisReport& report = axis.report();
+  run.phases.insert(run.phases.end(), report.phases.begin(), report.phases.end());
+  Json json;
+  if (label) {
+    json["label"] = *label;
+    run.table.add("label", std::to_string(*label));
+  }
+  add_report(run, report, json);
+  for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
+  Json axes = Json::array();
+  for (const double theta : r.thetas) {
+    const fs::path name = r.thetas.size() == 1 ? output : with_theta(output, theta);
+    add_axis(run, r, input, selection, axis, theta, name, axes, context);
+  }
+  json["axes"] = axes;
+  run.solids.push_back(json);
+}
+
+std::vector<fs::path> outputs_of(const Request& r) {
+  std::vector<fs::path> bases{r.output};
+  if (r.selections.labels.size() > 1) {
+    bases.clear();
+    for (const std::int64_t label : r.selections.labels) bases.push_back(with_label(r.output, label));
+  }
+  return bases;
+}
+
+void check_all_outputs(const Request& r, const std::vector<fs::path>& bases) {
+  std::vector<fs::path> files = r.report.files();
+  for (const fs::path& base : bases) {
+    if (r.thetas.size() == 1) files.push_back(base);
+    if (r.thetas.size() > 1) {
+      for (const double theta : r.thetas) files.push_back(with_theta(base, theta));
+    }
+  }
+  check_outputs(files, {r.input});
+}
+
+void finish(const Request& r, Run& run, const SolidInput& input, bool is_certified, const Context& context) {
+  Json seconds = Json::object();
+  double total = 0;
+  for (const PhaseTime& phase : run.phases) {
+    seconds[phase.phase] = (seconds.contains(phase.phase) ? seconds[phase.phase].get<double>() : 0.0) + phase.seconds;
+    total += phase.seconds;
+  }
+  std::string slow;
+  for (const auto& [phase, time] : seconds.items()) {
+    slow += (slow.empty() ? " (" : ", ") + phase + " " + number_text(std::round(time.get<double>() * 1e3) / 1e3);
+  }
+  Json outputs = Json::array();
+  for (const Draft& draft : run.drafts) {
+    if (!is_certified && !r.allow_uncertified) continue;
+    outputs.push_back(draft.name().string());
+    run.table.add("wrote", draft.name().string());
+  }
+  const Json json = {{"blum_version", BLUM_VERSION},
+                     {"command", "medial"},
+                     {"input", input.json},
+                     {"certified", is_certified},
+                     {"mismatches", run.mismatches},
+                     {"lambda", r.options.lambda},
+                     {"solids", run.solids},
+                     {"seconds", seconds},
+                     {"total_seconds", total},
+                     {"peak_memory_bytes", peak_memory()},
+                     {"threads", thread_count(context)},
+                     {"thread_backend", thread_backend()},
+                     {"warnings", run.warnings},
+                     {"outputs", outputs}};
+  run.table.add("time", number_text(std::round(total * 1e3) / 1e3) + " s" + slow + (slow.empty() ? "" : ")") + ", " +
+                            bytes_text(static_cast<double>(peak_memory())) + " at most");
+  report(r.report, json, input.text + run.table.text());
+  if (!r.report.quiet) warn(run.warnings);
+}
+
+void run(const Arguments& arguments) {
+  const Request r = parse(arguments);
+  check_applicable(arguments, r.input, input_kind(r.input));
+  const std::vector<fs::path> bases = outputs_of(r);
+  check_all_outputs(r, bases);
+  Progress progress(!r.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(r.threads, progress, interrupt);
+  Run run;
+  Stopwatch watch;
+  const SolidInput input = load_solid(r.input, r.weld);
+  run.phases.push_back({"read", watch.lap()});
+  const std::vector<LabelSelection> selections = r.selections.all();
+  for (std::size_t s = 0; s < selections.size(); ++s) {
+    const bool is_label = !r.selections.labels.empty();
+    add_solid(run, r, input, selections[s], is_label ? std::optional(r.selections.labels[s]) : std::nullopt,
+              bases[std::min(s, bases.size() - 1)], context);
+  }
+  progress.clear();
+  const bool is_certified = run.mismatches.empty();
+  if (is_certified || r.allow_uncertified) {
+    for (Draft& draft : run.drafts) draft.keep();
+  }
+  finish(r, run, input, is_certified, context);
+  if (!is_certified) {
+    std::string all;
+    for (const std::string& mismatch : run.mismatches) all += (all.empty() ? "" : "; ") + mismatch;
+    throw NotCertified("NOT certified: " + all + (r.allow_uncertified ? "" : "; nothing was written"));
+  }
+}
+
+}  // namespace
+
+void add_medial_command(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("medial", "Medial axis with the topology of the solid, certified");
+  command->add_option("INPUT", a->input, "Mesh (.obj .off .stl .ply) or image (.nrrd .nhdr .nii .nii.gz .npy .vol)")
+      ->required();
+  command->add_option("-o,--output", a->output, "Medial axis: .vtp, .ply, .obj, .ma or .npz")
+      ->required()
+      ->type_name("FILE");
+  const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  text("--theta", a->theta, "DEG",
+       "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) are "
+       "nested");
+  text("--lambda", a->lambda, "L", "Leave out where footprints are closer than L, mesh units (default 0)");
+  text("--resolution", a->resolution, "N", "Mesh: voxels along its longest side (default 256)");
+  text("--spacing", a->spacing, "H", "Mesh: side of a voxel, instead of --resolution");
+  text("--max-resolution", a->max_resolution, "N",
+       "Mesh: halve the voxels where the topology needs it, to at most N along the longest side (default 512)");
+  command->add_option("--label", a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each")
+      ->type_name("L")
+      ->allow_extra_args(false);
+  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the axis even where it is not certified");
+  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
+      ->type_name("[TOL]");
+  text("--threads", a->threads, "T", "Number of threads (default: one per core)");
+  text("--json", a->report.json, "FILE", "Write a summary as JSON; - is standard output");
+  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,30 @@
+// Blum: what the commands say of medial axes and their certificates. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "blum/io/medial_io.hpp"
+#include "blum/medial_axis/certificate.hpp"
+#include "blum/medial_axis/medial_axis.hpp"
+#include "solid_input.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+
+/// The certificate of an axis as a file holds it, against a solid.
+/// @param selection  of the voxels, for images.
+/// @throws FileError where the solid is known by voxels only, and the file does not say which.
+[[nodiscard]] Certificate certificate_of(const MedialFile& file, const SolidInput& input,
+                                         const LabelSelection& selection, const Context& context);
+
+[[nodiscard]] Json to_json(const BettiNumbers& betti);
+[[nodiscard]] Json to_json(const Certificate& certificate, bool has_geometry);
+[[nodiscard]] Json to_json(const MedialCounts& counts);
+/// "1 component, 5 tunnels, 0 voids".
+[[nodiscard]] std::string betti_text(const BettiNumbers& betti);
+[[nodiscard]] std::string counts_text(const MedialCounts& counts);
+/// Whether it holds, against what, and how precisely.
+void add_certificate(TextTable& table, const Certificate& certificate, bool has_geometry);
+
+}  // namespace blum::cli

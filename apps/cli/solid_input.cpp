@@ -1,0 +1,44 @@
+#include "solid_input.hpp"
+
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
+#include "input_facts.hpp"
+#include "progress.hpp"
+
+namespace blum::cli {
+
+SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld) {
+  SolidInput input;
+  input.kind = input_kind(path);
+  if (input.kind == InputKind::field) {
+    throw FileError("'" + path.string() + "' is a field; a mesh or a voxel image is needed here");
+  }
+  const Unattended reading;
+  if (input.kind == InputKind::mesh) {
+    input.mesh = load_mesh(path, {weld});
+    const MeshView mesh = input.mesh.mesh;
+    validate(mesh);
+    const SiteTable sites(mesh);
+    const Orientation facts = orientation(mesh, sites);
+    input.json = mesh_json(path, input.mesh, sites, facts);
+    input.text = mesh_text(path, input.mesh, sites, facts);
+    return input;
+  }
+  input.image = load_image(path);
+  if (has_only_nan(input.image)) {
+    throw FileError("'" + path.string() + "': every voxel is NaN (not a number), so none can be selected");
+  }
+  input.json = image_json(path, input.image);
+  input.text = image_text(path, input.image);
+  return input;
+}
+
+std::vector<LabelSelection> Selections::all() const {
+  if (threshold) return {LabelSelection::at_least(*threshold)};
+  std::vector<LabelSelection> selections;
+  for (const std::int64_t label : labels) selections.push_back(LabelSelection::of_label(label));
+  if (selections.empty()) selections.emplace_back();
+  return selections;
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,36 @@
+// Blum: meshes and images as solids. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/field/distance_transform.hpp"
+#include "files.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+
+/// A mesh or an image whose solid is asked for.
+struct SolidInput {
+  InputKind kind = InputKind::mesh;
+  MeshFile mesh;
+  VoxelImage image;
+  Json json;
+  std::string text;
+};
+
+/// @param weld  for meshes.
+/// @throws FileError for fields and for what cannot be read; InvalidMesh, InvalidImage.
+[[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
+
+/// What --label and --threshold select; all that is not 0 where neither is given. Checked against the kind of the
+/// input.
+struct Selections {
+  std::vector<std::int64_t> labels;
+  std::optional<double> threshold;
+  [[nodiscard]] std::vector<LabelSelection> all() const;
+};
+
+}  // namespace blum::cli

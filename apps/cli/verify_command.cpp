@@ -1,0 +1,92 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/io/medial_io.hpp"
+#include "commands.hpp"
+#include "files.hpp"
+#include "medial_report.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "solid_input.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum verify part.stl part.vtp
+  blum verify scan.nii.gz vessels.npz --label 1 --json -
+
+Nothing of what made the axis is used. Exit status 0: certified; 3: not.)";
+
+struct Arguments {
+  std::string input;
+  std::string axis;
+  std::optional<std::string> threshold, weld, threads;
+  std::vector<std::string> labels;
+  ReportOptions report;
+};
+
+void run(const Arguments& a) {
+  const fs::path path = a.input;
+  const fs::path axis_path = a.axis;
+  check_extension("AXIS", axis_path, {".vtp", ".ply", ".obj", ".ma", ".npz"});
+  exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
+  Selections selections;
+  selections.labels = parse_labels("--label", a.labels);
+  if (selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
+  if (a.threshold) selections.threshold = parse_number("--threshold", *a.threshold);
+  if (input_kind(path) == InputKind::mesh) {
+    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, path, "a mesh", "images");
+  } else {
+    refuse_given({{a.weld.has_value(), "--weld"}}, path, "an image", "meshes");
+  }
+  check_outputs(a.report.files(), {path, axis_path});
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(parse_threads(a.threads), progress, interrupt);
+  const SolidInput input = load_solid(path, parse_weld(a.weld));
+  const MedialFile file = read_medial(axis_path);
+  const bool has_geometry = file.has_radii && file.has_footprints;
+  const Certificate certificate = certificate_of(file, input, selections.all().front(), context);
+  progress.clear();
+  TextTable table;
+  table.add("axis", axis_path.string() + ": " + counts_text(count(file.complex)));
+  add_certificate(table, certificate, has_geometry);
+  Json json = {{"blum_version", BLUM_VERSION},
+               {"command", "verify"},
+               {"input", input.json},
+               {"axis", {{"file", axis_path.string()}, {"counts", to_json(count(file.complex))}}},
+               {"certificate", to_json(certificate, has_geometry)}};
+  report(a.report, json, input.text + table.text());
+  if (certificate.holds()) return;
+  std::string all;
+  for (const std::string& mismatch : certificate.mismatches) all += (all.empty() ? "" : "; ") + mismatch;
+  throw NotCertified("NOT certified: " + all);
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("verify", "Check a medial axis against its solid, from the files alone");
+  command->add_option("INPUT", a->input, "The mesh or image whose axis it is")->required();
+  command->add_option("AXIS", a->axis, "Medial axis: .vtp, .ply, .obj, .ma or .npz")->required();
+  command->add_option("--label", a->labels, "Image: the voxels of value L")->type_name("L")->allow_extra_args(false);
+  command->add_option("--threshold", a->threshold, "Image: the voxels of value T or more")->type_name("T");
+  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
+      ->type_name("[TOL]");
+  command->add_option("--threads", a->threads, "Number of threads (default: one per core)")->type_name("T");
+  command->add_option("--json", a->report.json, "Write the certificate as JSON; - is standard output")
+      ->type_name("FILE");
+  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

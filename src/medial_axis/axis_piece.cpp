@@ -1,0 +1,130 @@
+#include "medial_axis/axis_piece.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "blum/field/phase_timer.hpp"
+#include "medial_axis/place_vertices.hpp"
+
+namespace blum {
+namespace {
+
+/// The cells of a complex, rising.
+std::vector<AxisCell> cells_of(const CellComplex& complex, const Importance& importance) {
+  std::vector<AxisCell> cells;
+  const auto bytes = complex.bytes();
+  for (std::size_t node = 0; node < bytes.size(); ++node) {
+    for (unsigned rest = bytes[node]; rest != 0; rest &= rest - 1) {
+      const Cell cell = cell_at(node, static_cast<CellAxes>(std::countr_zero(rest)));
+      cells.push_back({cell, std::numeric_limits<float>::infinity(), importance.of(cell)});
+    }
+  }
+  return cells;
+}
+
+std::size_t index_of(const std::vector<AxisCell>& cells, Cell cell) {
+  const auto at =
+      std::lower_bound(cells.begin(), cells.end(), cell, [](const AxisCell& a, Cell value) { return a.cell < value; });
+  return static_cast<std::size_t>(at - cells.begin());
+}
+
+/// What is left of a piece at an angle.
+class Remainder {
+ public:
+  Remainder(const AxisPiece& piece, double theta, MedialComplex& complex)
+      : piece_(piece), complex_(complex), vertex_(piece.nodes.size(), 0), in_square_(piece.cells.size(), false) {
+    for (std::size_t c = 0; c < piece.cells.size(); ++c) {
+      if (piece.cells[c].level > theta) left_.push_back(c);
+    }
+  }
+
+  void append() {
+    for (const std::size_t c : left_) {
+      if (dimension_of(piece_.cells[c].cell) == 0) append_vertex(node_of(piece_.cells[c].cell));
+    }
+    for (const std::size_t c : left_) {
+      if (dimension_of(piece_.cells[c].cell) == 2) append_square(piece_.cells[c]);
+    }
+    for (const std::size_t c : left_) {
+      if (dimension_of(piece_.cells[c].cell) == 1 && !in_square_[c]) append_curve(piece_.cells[c]);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t place_of(std::size_t node) const {
+    const auto at = std::lower_bound(piece_.nodes.begin(), piece_.nodes.end(), static_cast<std::uint32_t>(node));
+    return static_cast<std::size_t>(at - piece_.nodes.begin());
+  }
+
+  void append_vertex(std::size_t node) {
+    const std::size_t place = place_of(node);
+    vertex_[place] = static_cast<std::uint32_t>(complex_.vertices.size());
+    complex_.vertices.push_back(piece_.vertices[place]);
+  }
+
+  void append_square(const AxisCell& square) {
+    const CellAxes axes = axes_of(square.cell);
+    const std::size_t node = node_of(square.cell);
+    const std::size_t u = piece_.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes)));
+    const std::size_t v = piece_.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes & (axes - 1))));
+    const std::array<std::uint32_t, 4> corners{vertex_[place_of(node)], vertex_[place_of(node + u)],
+                                               vertex_[place_of(node + u + v)], vertex_[place_of(node + v)]};
+    const auto squared = [&](std::size_t a, std::size_t b) {
+      return squared_length(complex_.vertices[corners[a]].position - complex_.vertices[corners[b]].position);
+    };
+    // The shorter diagonal, so that no triangle is needlessly thin.
+    const std::size_t first = squared(0, 2) <= squared(1, 3) ? 0 : 1;
+    const auto corner = [&](std::size_t k) { return corners[(first + k) % 4]; };
+    complex_.triangles.push_back({{corner(0), corner(1), corner(2)}, square.angle, 0});
+    complex_.triangles.push_back({{corner(0), corner(2), corner(3)}, square.angle, 0});
+    piece_.lattice.for_each_face(square.cell, [&](Cell edge) { in_square_[index_of(piece_.cells, edge)] = true; });
+  }
+
+  void append_curve(const AxisCell& edge) {
+    const std::size_t node = node_of(edge.cell);
+    const std::size_t step = piece_.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes_of(edge.cell))));
+    complex_.edges.push_back(
+        {{vertex_[place_of(node)], vertex_[place_of(node + step)]}, edge.angle, MedialRole::curve});
+  }
+
+  const AxisPiece& piece_;
+  MedialComplex& complex_;
+  std::vector<std::size_t> left_;
+  std::vector<std::uint32_t> vertex_;
+  std::vector<bool> in_square_;
+};
+
+}  // namespace
+
+AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor, std::vector<PhaseTime>& phases,
+                          const Context& context) {
+  PhaseTimer timer(phases);
+  const VoxelSolid& solid = governors.solid();
+  CellComplex complex(solid.voxels, context);
+  timer.lap("cells");
+  const Importance importance = separation_angles(governors, complex, floor, context);
+  timer.lap("separation angles");
+  AxisPiece piece;
+  piece.lattice = complex.lattice();
+  const CollapseOrder order =
+      collapse(std::move(complex), solid.depth.span(), 0.25 * governors.voxel(), importance, context);
+  piece.cells = cells_of(order.base, importance);
+  for (const Removal& removal : order.removals) {
+    for (const Cell cell : {removal.cell, removal.face}) {
+      piece.cells[index_of(piece.cells, cell)].level = removal.level;
+    }
+  }
+  timer.lap("collapse");
+  for (const AxisCell& cell : piece.cells) {
+    if (dimension_of(cell.cell) == 0) piece.nodes.push_back(static_cast<std::uint32_t>(node_of(cell.cell)));
+  }
+  piece.vertices = place_vertices(governors, piece.lattice, piece.nodes, context);
+  timer.lap("vertices");
+  return piece;
+}
+
+void append_at(const AxisPiece& piece, double theta, MedialComplex& complex) {
+  Remainder(piece, theta, complex).append();
+}
+
+}  // namespace blum

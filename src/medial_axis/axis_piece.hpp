@@ -1,0 +1,39 @@
+// Blum: the medial axis of one body, for all angles at once. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/field/field.hpp"
+#include "blum/medial_axis/medial_complex.hpp"
+#include "medial_axis/cell_complex.hpp"
+#include "medial_axis/collapse.hpp"
+#include "medial_axis/governors.hpp"
+#include "medial_axis/separation_angles.hpp"
+
+namespace blum {
+
+/// A cell that a solid collapses to.
+struct AxisCell {
+  Cell cell;
+  float level;  ///< degrees: it goes where theta is at least this; infinite where it never goes
+  float angle;  ///< degrees: its importance
+};
+
+struct AxisPiece {
+  CellLattice lattice;
+  std::vector<AxisCell> cells;         ///< by rising cell
+  std::vector<std::uint32_t> nodes;    ///< of the vertices among them, rising
+  std::vector<MedialVertex> vertices;  ///< one per node; sites are the surface's
+};
+
+/// Collapses the voxels of a solid to its medial axis.
+/// @throws Cancelled, OutOfMemory.
+[[nodiscard]] AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor,
+                                        std::vector<PhaseTime>& phases, const Context& context);
+
+/// Adds what is left of a piece at theta to a complex; edges are those of curves only.
+void append_at(const AxisPiece& piece, double theta, MedialComplex& complex);
+
+}  // namespace blum

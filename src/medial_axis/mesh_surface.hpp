@@ -1,0 +1,35 @@
+// Blum: a triangle mesh as the surface of a solid. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "medial_axis/surface.hpp"
+
+namespace blum {
+
+/// Elements are triangles. The mesh and the table must outlive it.
+class MeshSurface final : public Surface {
+ public:
+  MeshSurface(const MeshView& mesh, const SiteTable& sites, const Context& context);
+
+  [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;
+  [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
+  [[nodiscard]] SurfacePoint nearest(const Vec3d& query, const Footprint& near) const override;
+  [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
+
+ private:
+  [[nodiscard]] Footprint closest_on(std::uint32_t triangle, const Vec3d& query) const;
+
+  MeshView mesh_;
+  const SiteTable& sites_;
+  Bvh bvh_;
+  std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_
+  std::vector<std::uint32_t> triangles_;  ///< around each vertex
+};
+
+}  // namespace blum

@@ -1,0 +1,161 @@
+#include "medial_axis/solid_bodies.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/topology.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::uint32_t nobody = 0xffffffffU;
+
+/// Closed shells, numbered as Topology::shells is: by their smallest triangle.
+std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites) {
+  std::vector<std::uint32_t> parent(mesh.triangles.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t t) {
+    while (parent[t] != t) t = parent[t] = parent[parent[t]];
+    return t;
+  };
+  std::vector<std::uint32_t> first(sites.edge_count(), nobody);
+  const auto is_shown = [&](std::uint32_t t) {
+    const Triangle& v = mesh.triangles[t];
+    return v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!is_shown(t)) continue;
+    for (const EdgeId edge : sites.triangle_edges()[t]) {
+      if (first[edge.value] == nobody) first[edge.value] = t;
+      const std::uint32_t a = root(first[edge.value]);
+      const std::uint32_t b = root(t);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  std::vector<std::uint32_t> number(mesh.triangles.size(), nobody);
+  std::uint32_t count = 0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!is_shown(t)) continue;
+    const std::uint32_t r = root(t);
+    number[t] = r == t ? count++ : number[r];
+  }
+  return number;
+}
+
+/// The body of each shell: outer shells by number, voids that of the shell around them.
+std::vector<std::uint32_t> body_of_shells(const std::vector<Shell>& shells) {
+  std::vector<std::uint32_t> body(shells.size(), nobody);
+  std::uint32_t count = 0;
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    if (shells[s].depth % 2 == 0) body[s] = count++;
+  }
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    if (shells[s].depth % 2 == 1) body[s] = body[static_cast<std::size_t>(shells[s].parent)];
+  }
+  return body;
+}
+
+/// Copies triangles, and the vertices that these name.
+SolidBody copy_of(const MeshView& mesh, const std::vector<std::uint32_t>& triangles,
+                  const std::vector<bool>& is_turned) {
+  SolidBody body;
+  body.triangle_of = triangles;
+  for (const std::uint32_t t : triangles) {
+    for (const std::uint32_t v : mesh.triangles[t]) body.vertex_of.push_back(v);
+  }
+  std::sort(body.vertex_of.begin(), body.vertex_of.end());
+  body.vertex_of.erase(std::unique(body.vertex_of.begin(), body.vertex_of.end()), body.vertex_of.end());
+  for (const std::uint32_t v : body.vertex_of) body.mesh.vertices.push_back(mesh.vertices[v]);
+  for (const std::uint32_t t : triangles) {
+    Triangle own{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto at = std::lower_bound(body.vertex_of.begin(), body.vertex_of.end(), mesh.triangles[t][k]);
+      own[k] = static_cast<std::uint32_t>(at - body.vertex_of.begin());
+    }
+    if (is_turned[t]) std::swap(own[1], own[2]);
+    body.mesh.triangles.push_back(own);
+  }
+  return body;
+}
+
+/// Why a mesh bounds no polyhedron as far as its edges tell; empty where it does.
+std::string obstacle(const Topology& t) {
+  const auto number = [](std::size_t n, const char* what) {
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+  };
+  if (t.boundary_edges > 0) return "it is open (" + number(t.boundary_edges, "boundary edge") + ")";
+  if (t.nonmanifold_edges > 0) return "it is not manifold (" + number(t.nonmanifold_edges, "edge") + ")";
+  if (t.inconsistent_edges > 0) {
+    return "its triangles do not face one way (" + number(t.inconsistent_edges, "edge") + ")";
+  }
+  if (t.nonmanifold_vertices > 0) return "it is not manifold (" + number(t.nonmanifold_vertices, "vertex") + ")";
+  return t.closed ? "" : "its triangles enclose nothing";
+}
+
+/// Whether triangles cross, or those of one body touch.
+std::string crossing(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_triangle, const Context& context) {
+  const SelfIntersections found = find_self_intersections(mesh, 100000, context);
+  if (found.crossing > 0) return "it crosses itself";
+  if (!found.complete) return "it touches itself";
+  for (const TrianglePair& pair : found.pairs) {
+    if (body_of_triangle[pair.first.value] == body_of_triangle[pair.second.value]) return "it touches itself";
+  }
+  return "";
+}
+
+SolidBodies whole(const MeshView& mesh, const std::string& why) {
+  SolidBodies out;
+  out.rule = SolidRule::winding;
+  out.reason = "the mesh bounds no polyhedron: " + why + "; the solid is where the winding number is above 1/2";
+  std::vector<std::uint32_t> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  out.bodies.push_back(copy_of(mesh, all, std::vector<bool>(all.size(), false)));
+  return out;
+}
+
+}  // namespace
+
+SiteId SolidBody::input_site(SiteId own, const SiteTable& own_sites, const SiteTable& input_sites) const {
+  const Site site = own_sites.site(own);
+  if (site.kind == SiteKind::vertex) return input_sites.id({SiteKind::vertex, vertex_of[site.index]});
+  if (site.kind == SiteKind::face) return input_sites.id({SiteKind::face, triangle_of[site.index]});
+  // Vertices keep their order, so that edges do.
+  const Segment& edge = own_sites.edges()[site.index];
+  const Segment input{vertex_of[edge[0]], vertex_of[edge[1]]};
+  const auto edges = input_sites.edges();
+  const auto at = std::lower_bound(edges.begin(), edges.end(), input);
+  return input_sites.id({SiteKind::edge, static_cast<std::uint32_t>(at - edges.begin())});
+}
+
+SolidBodies split_into_bodies(const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it has no interior");
+  const Topology topology = blum::topology(mesh, sites, context);
+  if (const std::string why = obstacle(topology); !why.empty()) return whole(mesh, why);
+  const std::vector<std::uint32_t> shell = shell_of_triangles(mesh, sites);
+  const std::vector<std::uint32_t> body = body_of_shells(topology.shells);
+  std::vector<std::vector<std::uint32_t>> triangles;
+  std::vector<std::uint32_t> body_of_triangle(mesh.triangles.size(), nobody);
+  std::vector<bool> is_turned(mesh.triangles.size(), false);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (shell[t] == nobody) continue;
+    const std::uint32_t b = body_of_triangle[t] = body[shell[t]];
+    if (b >= triangles.size()) triangles.resize(b + 1);
+    triangles[b].push_back(t);
+    is_turned[t] = !topology.shells[shell[t]].faces_outwards;
+  }
+  if (const std::string why = crossing(mesh, body_of_triangle, context); !why.empty()) return whole(mesh, why);
+  SolidBodies out;
+  for (const auto& own : triangles) out.bodies.push_back(copy_of(mesh, own, is_turned));
+  for (std::size_t s = 0; s < topology.shells.size(); ++s) {
+    const Shell& one = topology.shells[s];
+    BettiNumbers& betti = out.bodies[body[s]].betti;
+    ++betti[one.depth % 2 == 0 ? 0 : 2];
+    betti[1] += one.genus;
+    out.turned_shells += one.faces_outwards ? 0 : 1;
+  }
+  out.reason = "the mesh is closed, manifold and does not cross itself";
+  return out;
+}
+
+}  // namespace blum

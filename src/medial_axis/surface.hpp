@@ -1,0 +1,50 @@
+// Blum: the surface of a solid, as a medial axis sees it. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "blum/core/ids.hpp"
+#include "blum/core/vec3.hpp"
+
+namespace blum {
+
+/// A point of a surface and an element (a triangle; a voxel beyond the surface) that it lies on.
+struct Footprint {
+  Vec3d point;
+  std::uint32_t element = 0;
+  unsigned corners = 7;  ///< triangles: a bit for each corner of the smallest feature around the point
+};
+
+/// The closest point of a surface, exactly.
+struct SurfacePoint {
+  Vec3d point;
+  double distance = 0;
+  SiteId site;
+  std::uint32_t element = 0;  ///< one that the site lies on
+};
+
+/// What the construction of a medial axis asks of the boundary of a solid. Functions may be called from many threads.
+class Surface {
+ public:
+  Surface() = default;
+  Surface(const Surface&) = delete;
+  Surface& operator=(const Surface&) = delete;
+  virtual ~Surface() = default;
+
+  /// The closest point of what a field gives a voxel as its closest site.
+  /// @param centre  of the voxel.
+  [[nodiscard]] virtual Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const = 0;
+
+  /// Walks from a footprint to the nearest local minimum of the distance: what the footprint on this part of the
+  /// surface becomes when its point moves a little, while another part may be closer.
+  /// @param reach  how far the footprint may move, mesh units; beyond that the last one within is returned.
+  [[nodiscard]] virtual Footprint follow(const Footprint& start, const Vec3d& query, double reach) const = 0;
+
+  /// The closest point of the whole surface. @param near  a footprint that is about as close.
+  [[nodiscard]] virtual SurfacePoint nearest(const Vec3d& query, const Footprint& near) const = 0;
+
+  /// The site that a footprint lies on.
+  [[nodiscard]] virtual SiteId site_of(const Footprint& foot) const = 0;
+};
+
+}  // namespace blum

@@ -1,0 +1,175 @@
+#include "medial_axis/voxel_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace blum {
+namespace {
+
+constexpr std::int64_t branching = 4;  // blocks along each axis of the next larger one
+constexpr int most_steps = 64;
+
+std::int64_t blocks(std::int64_t size, std::int64_t side) {
+  return (size + side - 1) / side;
+}
+
+}  // namespace
+
+/// The best voxel so far.
+struct VoxelSurface::Search {
+  Vec3d query;  ///< local
+  double squared = std::numeric_limits<double>::infinity();
+  Vec3d point;  ///< local
+  std::uint32_t voxel = 0;
+};
+
+VoxelSurface::VoxelSurface(const VoxelSet& voxels, const GridSpec& grid) : voxels_(voxels), grid_(grid) {
+  const Place& size = voxels.size();
+  do {
+    Level level;
+    level.side = levels_.empty() ? branching : branching * levels_.back().side;
+    for (std::size_t a = 0; a < 3; ++a) level.size[a] = blocks(size[a], level.side);
+    level.has_other.assign(static_cast<std::size_t>(level.size[0] * level.size[1] * level.size[2]), false);
+    levels_.push_back(std::move(level));
+  } while (std::max({levels_.back().size[0], levels_.back().size[1], levels_.back().size[2]}) > 1);
+  for (std::int64_t k = 0; k < size[2]; ++k) {
+    for (std::int64_t j = 0; j < size[1]; ++j) {
+      const auto row = voxels.row(j, k);
+      for (std::int64_t i = 0; i < size[0]; i += branching) {
+        const std::uint64_t here = row[static_cast<std::size_t>(i / 64)] >> (i % 64);
+        const std::int64_t count = std::min(branching, size[0] - i);
+        const std::uint64_t all = (std::uint64_t{1} << count) - 1;
+        if ((here & all) == all) continue;
+        for (Level& level : levels_) {
+          const std::int64_t s = level.side;
+          level.has_other[static_cast<std::size_t>((k / s * level.size[1] + j / s) * level.size[0] + i / s)] = true;
+        }
+      }
+    }
+  }
+}
+
+VoxelSurface::Place VoxelSurface::place(std::uint32_t voxel) const {
+  const auto v = static_cast<std::int64_t>(voxel);
+  const Place& size = voxels_.size();
+  return {v % size[0], v / size[0] % size[1], v / (size[0] * size[1])};
+}
+
+bool VoxelSurface::is_other(const Place& at) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (at[a] < 0 || at[a] >= voxels_.size()[a]) return false;
+  }
+  return !voxels_.contains(at[0], at[1], at[2]);
+}
+
+Vec3d VoxelSurface::local(const Vec3d& world) const {
+  return grid_.direction.transposed_times(world - grid_.origin) + grid_.spacing * 0.5;
+}
+
+Vec3d VoxelSurface::world(const Vec3d& local) const {
+  return grid_.origin + grid_.direction * (local - grid_.spacing * 0.5);
+}
+
+Vec3d VoxelSurface::closest_in(const Place& lower, std::int64_t side, const Vec3d& query) const {
+  Vec3d out;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double low = static_cast<double>(lower[a]) * grid_.spacing[a];
+    const double high = static_cast<double>(lower[a] + side) * grid_.spacing[a];
+    out[a] = std::clamp(query[a], low, high);
+  }
+  return out;
+}
+
+Footprint VoxelSurface::footprint(SiteId site, const Vec3d& centre, bool is_inside) const {
+  if (is_inside) return {world(closest_in(place(site.value), 1, local(centre))), site.value, 7};
+  // A voxel beyond the surface stands for itself, where it faces the solid.
+  const Place& size = voxels_.size();
+  const Vec3d at = local(centre);
+  Place own{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    own[a] = std::clamp(static_cast<std::int64_t>(at[a] / grid_.spacing[a]), std::int64_t{0}, size[a] - 1);
+  }
+  const Place other = place(site.value);
+  const Vec3d goal = closest_in(other, 1, at);
+  return {world(closest_in(own, 1, goal)), static_cast<std::uint32_t>((own[2] * size[1] + own[1]) * size[0] + own[0]),
+          7};
+}
+
+Footprint VoxelSurface::follow(const Footprint& start, const Vec3d& query, double reach) const {
+  const Vec3d at = local(query);
+  const Vec3d from = local(start.point);
+  Place best = place(start.element);
+  Vec3d best_point = closest_in(best, 1, at);
+  double best_squared = squared_length(at - best_point);
+  for (int step = 0; step < most_steps; ++step) {
+    Place next = best;
+    Vec3d next_point = best_point;
+    double next_squared = best_squared * (1 - 1e-12);
+    for (int n = 0; n < 27; ++n) {
+      const Place to{best[0] + n % 3 - 1, best[1] + n / 3 % 3 - 1, best[2] + n / 9 - 1};
+      if (n == 13 || !is_other(to)) continue;
+      const Vec3d point = closest_in(to, 1, at);
+      const double squared = squared_length(at - point);
+      if (squared >= next_squared) continue;
+      next = to;
+      next_point = point;
+      next_squared = squared;
+    }
+    if (next == best || squared_length(next_point - from) > reach * reach) break;
+    best = next;
+    best_point = next_point;
+    best_squared = next_squared;
+  }
+  const Place& size = voxels_.size();
+  return {world(best_point), static_cast<std::uint32_t>((best[2] * size[1] + best[1]) * size[0] + best[0]), 7};
+}
+
+void VoxelSurface::search(Search& best, std::size_t level, const Place& block) const {
+  // Blocks of the next smaller level (voxels below the lowest) in this one, the nearest first.
+  const std::int64_t side = level == 0 ? 1 : levels_[level - 1].side;
+  const Place limit = level == 0 ? voxels_.size() : levels_[level - 1].size;
+  struct Child {
+    double squared;
+    Place at;
+    Vec3d point;
+  };
+  std::array<Child, 64> children;
+  std::size_t count = 0;
+  for (int n = 0; n < 64; ++n) {
+    const Place at{block[0] * branching + n % 4, block[1] * branching + n / 4 % 4, block[2] * branching + n / 16};
+    if (at[0] >= limit[0] || at[1] >= limit[1] || at[2] >= limit[2]) continue;
+    const Vec3d point = closest_in({at[0] * side, at[1] * side, at[2] * side}, side, best.query);
+    const double squared = squared_length(best.query - point);
+    if (squared > best.squared) continue;
+    if (level == 0) {
+      const auto voxel = static_cast<std::uint32_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
+      if (voxels_.contains(at[0], at[1], at[2]) || (squared == best.squared && voxel >= best.voxel)) continue;
+      best.squared = squared;
+      best.point = point;
+      best.voxel = voxel;
+      continue;
+    }
+    const auto index = static_cast<std::size_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
+    if (levels_[level - 1].has_other[index]) children[count++] = {squared, at, point};
+  }
+  std::sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const Child& a, const Child& b) { return a.squared < b.squared; });
+  for (std::size_t c = 0; c < count; ++c) {
+    if (children[c].squared > best.squared) break;
+    search(best, level - 1, children[c].at);
+  }
+}
+
+SurfacePoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) const {
+  Search best;
+  best.query = local(query);
+  // Slightly more than what is known is enough to begin with.
+  best.squared = squared_length(query - near.point) * (1 + 1e-9);
+  best.point = local(near.point);
+  best.voxel = near.element;
+  search(best, levels_.size() - 1, {0, 0, 0});
+  return {world(best.point), std::sqrt(squared_length(best.query - best.point)), SiteId(best.voxel), best.voxel};
+}
+
+}  // namespace blum

@@ -1,0 +1,51 @@
+// Blum: the faces of voxels as the surface of a solid. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/voxel_set.hpp"
+#include "medial_axis/surface.hpp"
+
+namespace blum {
+
+/// The border between the voxels of a set and the others. Elements, and sites, are the others: linear indices of the
+/// set's box, of closed voxels. Everything outside of the box is as if it were far away, so the set should stay off the
+/// box's outermost layer. The set must outlive it.
+class VoxelSurface final : public Surface {
+ public:
+  /// @param grid  of the voxel centres.
+  VoxelSurface(const VoxelSet& voxels, const GridSpec& grid);
+
+  /// @param site  the closest voxel of the other kind.
+  [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;
+  [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
+  [[nodiscard]] SurfacePoint nearest(const Vec3d& query, const Footprint& near) const override;
+  [[nodiscard]] SiteId site_of(const Footprint& foot) const override { return SiteId(foot.element); }
+
+ private:
+  using Place = std::array<std::int64_t, 3>;
+  /// Blocks of 4^level voxels on a side: whether a voxel in it is not in the set.
+  struct Level {
+    Place size{};
+    std::int64_t side = 1;  ///< voxels
+    std::vector<bool> has_other;
+  };
+  struct Search;
+
+  [[nodiscard]] Place place(std::uint32_t voxel) const;
+  [[nodiscard]] bool is_other(const Place& at) const;
+  /// Coordinates along the grid's axes, mesh units, from the lower corner of voxel (0, 0, 0).
+  [[nodiscard]] Vec3d local(const Vec3d& world) const;
+  [[nodiscard]] Vec3d world(const Vec3d& local) const;
+  [[nodiscard]] Vec3d closest_in(const Place& lower, std::int64_t side, const Vec3d& query) const;
+  void search(Search& best, std::size_t level, const Place& block) const;
+
+  const VoxelSet& voxels_;
+  GridSpec grid_;
+  std::vector<Level> levels_;  ///< from single voxels (not stored) upwards; index 0 is blocks of 4
+};
+
+}  // namespace blum
