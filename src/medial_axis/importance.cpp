@@ -1,18 +1,39 @@
 #include "medial_axis/importance.hpp"
 
-namespace blum {
+#include <algorithm>
 
-Importance::Importance(std::size_t node_count, std::span<const Entry> entries)
-    : words_((node_count * 8 + 63) / 64, 0), first_(words_.size(), 0) {
-  values_.reserve(entries.size());
+namespace blum {
+namespace {
+
+/// Calls visit(cell) for a cell and all its faces, some of them more than once.
+template <class Visit>
+void for_each_in_closure(const CellLattice& lattice, Cell cell, const Visit& visit) {
+  visit(cell);
+  lattice.for_each_face(cell, [&](Cell face) {
+    visit(face);
+    lattice.for_each_face(face, visit);
+  });
+}
+
+}  // namespace
+
+Importance::Importance(const CellLattice& lattice, std::span<const Entry> entries)
+    : words_((lattice.node_count() * 8 + 63) / 64, 0), first_(words_.size(), 0) {
   for (const Entry& entry : entries) {
-    words_[entry.cell >> 6U] |= std::uint64_t{1} << (entry.cell & 63U);
-    values_.push_back(entry.degrees);
+    for_each_in_closure(lattice, entry.cell,
+                        [&](Cell cell) { words_[cell >> 6U] |= std::uint64_t{1} << (cell & 63U); });
   }
   std::uint32_t before = 0;
   for (std::size_t w = 0; w < words_.size(); ++w) {
     first_[w] = before;
     before += static_cast<std::uint32_t>(std::popcount(words_[w]));
+  }
+  values_.assign(before, 0);
+  for (const Entry& entry : entries) {
+    for_each_in_closure(lattice, entry.cell, [&](Cell cell) {
+      float& value = values_[rank(cell)];
+      value = std::max(value, entry.degrees);
+    });
   }
 }
 

@@ -18,20 +18,22 @@ class Importance {
   };
 
   Importance() = default;
-  /// @param entries  by rising cell, each once.
-  Importance(std::size_t node_count, std::span<const Entry> entries);
+  /// Gives each cell the largest value of its entries and of the entries of cells that it is a face of.
+  Importance(const CellLattice& lattice, std::span<const Entry> entries);
 
   [[nodiscard]] float of(Cell cell) const {
     if (words_.empty()) return 0;
-    const std::uint64_t word = words_[cell >> 6U];
-    const unsigned bit = cell & 63U;
-    if ((word >> bit & 1U) == 0) return 0;
-    const std::uint64_t below = word & ((std::uint64_t{1} << bit) - 1);
-    return values_[first_[cell >> 6U] + static_cast<std::size_t>(std::popcount(below))];
+    return (words_[cell >> 6U] >> (cell & 63U) & 1U) == 0 ? 0 : values_[rank(cell)];
   }
   [[nodiscard]] std::size_t count() const { return values_.size(); }
 
  private:
+  /// The number of cells with a value before this one.
+  [[nodiscard]] std::size_t rank(Cell cell) const {
+    const std::uint64_t below = words_[cell >> 6U] & ((std::uint64_t{1} << (cell & 63U)) - 1);
+    return first_[cell >> 6U] + static_cast<std::size_t>(std::popcount(below));
+  }
+
   std::vector<std::uint64_t> words_;
   std::vector<std::uint32_t> first_;  ///< values before each word
   std::vector<float> values_;

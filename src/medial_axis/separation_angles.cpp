@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "blum/core/parallel.hpp"
 #include "medial_axis/equidistant_point.hpp"
@@ -18,6 +21,66 @@ constexpr double fitted_reach = 0.7;  ///< of a point from the middle of its cel
 constexpr int bisector_steps = 4;
 constexpr double opposite_step = 0.3;  ///< voxels
 
+/// The governors of the voxels around the nodes of a layer, row after row, each found once per layer and only where it
+/// is asked for.
+class GovernorRows {
+ public:
+  GovernorRows(const GovernorField& governors, std::int64_t k) : governors_(governors), k_(k) {
+    const auto length = static_cast<std::size_t>(governors.solid().grid.size[0]);
+    for (Row& row : rows_) row = {std::vector<Governor>(length), std::vector<bool>(length, false)};
+  }
+
+  /// To the nodes of row j, which must rise.
+  void go_to(std::int64_t j) {
+    if (j == j_ + 1) {
+      std::swap(rows_[0], rows_[1]);
+      std::swap(rows_[2], rows_[3]);
+    }
+    for (std::size_t r = 0; r < 4; ++r) {
+      if (j != j_ + 1 || (r & 1U) == 1) rows_[r].is_known.assign(rows_[r].is_known.size(), false);
+    }
+    j_ = j;
+  }
+
+  [[nodiscard]] bool has_one_site(std::int64_t i) const {
+    const VoxelSolid& solid = governors_.solid();
+    const SiteId first = solid.site[solid.grid.index(i - 1, j_ - 1, k_ - 1)];
+    for (std::size_t v = 1; v < 8; ++v) {
+      const auto [x, y, z] = place(i, v);
+      if (solid.site[solid.grid.index(x, y, z)] != first) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] GovernorsAround around(std::int64_t i) {
+    GovernorsAround out;
+    for (std::size_t v = 0; v < 8; ++v) {
+      const auto [x, y, z] = place(i, v);
+      Row& row = rows_[v >> 1U];
+      const auto at = static_cast<std::size_t>(x);
+      if (!row.is_known[at]) row.governors[at] = governors_.at(x, y, z);
+      row.is_known[at] = true;
+      out[v] = row.governors[at];
+    }
+    return out;
+  }
+
+ private:
+  struct Row {
+    std::vector<Governor> governors;
+    std::vector<bool> is_known;
+  };
+  [[nodiscard]] std::array<std::int64_t, 3> place(std::int64_t i, std::size_t v) const {
+    return {i - 1 + static_cast<std::int64_t>(v & 1U), j_ - 1 + static_cast<std::int64_t>(v >> 1U & 1U),
+            k_ - 1 + static_cast<std::int64_t>(v >> 2U)};
+  }
+
+  const GovernorField& governors_;
+  std::int64_t k_;
+  std::int64_t j_ = -2;
+  std::array<Row, 4> rows_;  ///< y + 2 z
+};
+
 class Measure {
  public:
   Measure(const GovernorField& governors, const CellComplex& complex, const NoiseFloor& floor)
@@ -29,28 +92,20 @@ class Measure {
 
   using Around = GovernorsAround;
 
-  /// Calls use(node, cells, around) for the nodes of a layer that have cells, and voxels around them whose closest
-  /// points lie in different directions.
+  /// Calls use(node, around) for the nodes of a layer that have cells, and voxels around them whose closest points lie
+  /// in different directions.
   template <class Use>
   void for_each_uneven_node(std::int64_t k, const Use& use) const {
     const CellLattice& lattice = complex_.lattice();
     const auto& size = lattice.size();
-    Around around;
+    GovernorRows rows(governors_, k);
     for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
-      std::int64_t known = -2;
+      rows.go_to(j);
       for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
         const std::size_t node = lattice.node(i, j, k);
-        const unsigned cells = complex_.bytes()[node];
-        if (cells == 0) continue;
-        for (unsigned v = 0; v < 8; ++v) {
-          if ((v & 1U) == 0 && known == i - 1) {
-            around[v] = around[v + 1];
-          } else {
-            around[v] = governors_.at(i - 1 + (v & 1U), j - 1 + (v >> 1U & 1U), k - 1 + (v >> 2U));
-          }
-        }
-        known = i;
-        if (is_uneven(around)) use(node, cells, around);
+        if (complex_.bytes()[node] == 0 || rows.has_one_site(i)) continue;
+        const Around around = rows.around(i);
+        if (is_uneven(around)) use(node, around);
       }
     }
   }
@@ -215,25 +270,6 @@ Entries joined(const std::vector<Entries>& layers) {
   return all;
 }
 
-/// Gives each cell at least what its cofaces have.
-Entries closed(const CellLattice& lattice, const Entries& own) {
-  Entries all = own;
-  for (const Importance::Entry& entry : own) {
-    lattice.for_each_face(entry.cell, [&](Cell face) {
-      all.push_back({face, entry.degrees});
-      if (dimension_of(face) == 0) return;
-      lattice.for_each_face(face, [&](Cell corner) { all.push_back({corner, entry.degrees}); });
-    });
-  }
-  std::sort(all.begin(), all.end(), [](const Importance::Entry& a, const Importance::Entry& b) {
-    return a.cell != b.cell ? a.cell < b.cell : a.degrees > b.degrees;
-  });
-  all.erase(std::unique(all.begin(), all.end(),
-                        [](const Importance::Entry& a, const Importance::Entry& b) { return a.cell == b.cell; }),
-            all.end());
-  return all;
-}
-
 /// The largest value of the squares and their faces next to a node. No cell of the complex lies on the lattice's
 /// border.
 double largest_around(const Importance& squares, const CellLattice& lattice, std::size_t node) {
@@ -259,39 +295,41 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
   const CellLattice& lattice = complex.lattice();
   const auto layers = static_cast<std::size_t>(lattice.size()[2]);
   std::vector<Entries> found(layers);
+  std::vector<std::vector<std::uint32_t>> uneven(layers);
   const auto for_each_layer = [&](std::string_view phase, const auto& use) {
     parallel_for(context, layers, 1, phase, [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
-        if (k == 0 || k + 1 == layers) continue;
-        measure.for_each_uneven_node(static_cast<std::int64_t>(k),
-                                     [&](std::size_t node, unsigned cells, const Measure::Around& around) {
-                                       use(found[k], node, cells, around);
-                                     });
+        if (k > 0 && k + 1 < layers) use(k);
       }
     });
   };
-  for_each_layer("separation angles of squares",
-                 [&](Entries& out, std::size_t node, unsigned cells, const Measure::Around& around) {
-                   for (const CellAxes axes : {3U, 5U, 6U}) {
-                     if ((cells >> axes & 1U) == 0) continue;
-                     const double angle = measure.between(around[axes], around[7]);
-                     if (angle > 0) out.push_back({cell_at(node, axes), static_cast<float>(angle)});
-                   }
-                 });
-  const Importance squares(lattice.node_count(), closed(lattice, joined(found)));
-  constexpr double worth_looking = 15;  // degrees more than the squares have
-  for_each_layer("separation angles of edges",
-                 [&](Entries& out, std::size_t node, unsigned cells, const Measure::Around& around) {
-                   for (const CellAxes axes : {0U, 1U, 2U, 4U}) {
-                     if ((cells >> axes & 1U) == 0) continue;
-                     const Cell cell = cell_at(node, axes);
-                     const double known = largest_around(squares, lattice, node);
-                     if (Measure::coarse(around, axes) < std::max(known + worth_looking, floor.angle)) continue;
-                     const double angle = measure.fitted(around, axes);
-                     if (angle > known) out.push_back({cell, static_cast<float>(angle)});
-                   }
-                 });
-  return {lattice.node_count(), closed(lattice, joined(found))};
+  for_each_layer("separation angles of squares", [&](std::size_t k) {
+    measure.for_each_uneven_node(
+        static_cast<std::int64_t>(k), [&](std::size_t node, const GovernorsAround& around) {
+          uneven[k].push_back(static_cast<std::uint32_t>(node));
+          for (const CellAxes axes : {3U, 5U, 6U}) {
+            if (!complex.contains(cell_at(node, axes))) continue;
+            const double angle = measure.between(around[axes], around[7]);
+            if (angle > 0) found[k].push_back({cell_at(node, axes), static_cast<float>(angle)});
+          }
+        });
+  });
+  const Importance squares(lattice, joined(found));
+  constexpr double worth_looking = 15;  // degrees more than the squares around have
+  for_each_layer("separation angles of edges", [&](std::size_t k) {
+    for (const std::uint32_t node : uneven[k]) {
+      const double known = largest_around(squares, lattice, node);
+      const double least = std::max(known + worth_looking, floor.angle);
+      if (least >= 180) continue;
+      const GovernorsAround around = governors.around(lattice.place(node));
+      for (const CellAxes axes : {0U, 1U, 2U, 4U}) {
+        if (!complex.contains(cell_at(node, axes)) || Measure::coarse(around, axes) < least) continue;
+        const double angle = measure.fitted(around, axes);
+        if (angle >= least) found[k].push_back({cell_at(node, axes), static_cast<float>(angle)});
+      }
+    }
+  });
+  return {lattice, joined(found)};
 }
 
 }  // namespace blum
