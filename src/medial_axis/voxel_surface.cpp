@@ -7,7 +7,7 @@
 namespace blum {
 namespace {
 
-constexpr std::int64_t branching = 4;  // blocks along each axis of the next larger one
+constexpr std::int64_t branching = 2;  // blocks along each axis of the next larger one
 constexpr int most_steps = 64;
 
 std::int64_t blocks(std::int64_t size, std::int64_t side) {
@@ -132,31 +132,28 @@ void VoxelSurface::search(Search& best, std::size_t level, const Place& block) c
   struct Child {
     double squared;
     Place at;
-    Vec3d point;
   };
-  std::array<Child, 64> children;
+  std::array<Child, 8> children;
   std::size_t count = 0;
-  for (int n = 0; n < 64; ++n) {
-    const Place at{block[0] * branching + n % 4, block[1] * branching + n / 4 % 4, block[2] * branching + n / 16};
+  for (std::int64_t n = 0; n < 8; ++n) {
+    const Place at{block[0] * branching + (n & 1), block[1] * branching + (n >> 1 & 1), block[2] * branching + (n >> 2)};
     if (at[0] >= limit[0] || at[1] >= limit[1] || at[2] >= limit[2]) continue;
+    const auto index = static_cast<std::size_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
+    if (level == 0 ? voxels_.contains(at[0], at[1], at[2]) : !levels_[level - 1].has_other[index]) continue;
     const Vec3d point = closest_in({at[0] * side, at[1] * side, at[2] * side}, side, best.query);
     const double squared = squared_length(best.query - point);
     if (squared > best.squared) continue;
-    if (level == 0) {
-      const auto voxel = static_cast<std::uint32_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
-      if (voxels_.contains(at[0], at[1], at[2]) || (squared == best.squared && voxel >= best.voxel)) continue;
+    if (level > 0) {
+      std::size_t place = count++;
+      for (; place > 0 && children[place - 1].squared > squared; --place) children[place] = children[place - 1];
+      children[place] = {squared, at};
+    } else if (squared < best.squared || index < best.voxel) {
       best.squared = squared;
       best.point = point;
-      best.voxel = voxel;
-      continue;
+      best.voxel = static_cast<std::uint32_t>(index);
     }
-    const auto index = static_cast<std::size_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
-    if (levels_[level - 1].has_other[index]) children[count++] = {squared, at, point};
   }
-  std::sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
-            [](const Child& a, const Child& b) { return a.squared < b.squared; });
-  for (std::size_t c = 0; c < count; ++c) {
-    if (children[c].squared > best.squared) break;
+  for (std::size_t c = 0; c < count && children[c].squared <= best.squared; ++c) {
     search(best, level - 1, children[c].at);
   }
 }

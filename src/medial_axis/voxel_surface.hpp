@@ -27,7 +27,7 @@ class VoxelSurface final : public Surface {
 
  private:
   using Place = std::array<std::int64_t, 3>;
-  /// Blocks of 4^level voxels on a side: whether a voxel in it is not in the set.
+  /// Blocks of voxels, twice as long on a side as those of the level before: whether a voxel in it is not in the set.
   struct Level {
     Place size{};
     std::int64_t side = 1;  ///< voxels
@@ -45,7 +45,7 @@ class VoxelSurface final : public Surface {
 
   const VoxelSet& voxels_;
   GridSpec grid_;
-  std::vector<Level> levels_;  ///< from single voxels (not stored) upwards; index 0 is blocks of 4
+  std::vector<Level> levels_;  ///< from single voxels (not stored) upwards; index 0 is blocks of 2
 };
 
 }  // namespace blum
