@@ -83,6 +83,7 @@ Request parse(const Arguments& a) {
     r.options.max_resolution = static_cast<int>(parse_integer("--max-resolution", *a.max_resolution, 8, 800));
   }
   if (a.theta) r.thetas = parse_thetas(*a.theta);
+  r.options.least_theta = *std::min_element(r.thetas.begin(), r.thetas.end());
   if (a.lambda) r.options.lambda = parse_non_negative("--lambda", *a.lambda);
   r.selections.labels = parse_labels("--label", a.labels);
   if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);

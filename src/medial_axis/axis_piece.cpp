@@ -5,6 +5,7 @@
 
 #include "blum/field/phase_timer.hpp"
 #include "medial_axis/place_vertices.hpp"
+#include "medial_axis/thin_voxels.hpp"
 
 namespace blum {
 namespace {
@@ -106,6 +107,8 @@ AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floo
   timer.lap("separation angles");
   AxisPiece piece;
   piece.lattice = complex.lattice();
+  complex = CellComplex(thin_voxels(solid, piece.lattice, importance, context), context);
+  timer.lap("thinning");
   const CollapseOrder order =
       collapse(std::move(complex), solid.depth.span(), 0.25 * governors.voxel(), importance, context);
   piece.cells = cells_of(order.base, importance);

@@ -48,7 +48,7 @@ void diagonalise(Symmetric& m, Symmetric& v) {
 
 }  // namespace
 
-std::optional<Vec3d> equidistant_point(std::span<const Vec3d> points, const Vec3d& start, int rank) {
+EquidistantPoints::EquidistantPoints(std::span<const Vec3d> points, const Vec3d& start) : start_(start) {
   Vec3d mean;
   double mean_square = 0;
   for (const Vec3d& p : points) {
@@ -73,16 +73,22 @@ std::optional<Vec3d> equidistant_point(std::span<const Vec3d> points, const Vec3
   diagonalise(normal, vectors);
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int a, int b) { return normal.a[a][a] > normal.a[b][b]; });
-  const double strongest = normal.a[order[0]][order[0]];
-  Vec3d moved;
-  for (int k = 0; k < rank; ++k) {
-    const int i = order[static_cast<std::size_t>(k)];
-    const double strength = normal.a[i][i];
-    if (!(strength > weakest * strongest)) return std::nullopt;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int i = order[k];
+    strengths_[k] = normal.a[i][i];
     const Vec3d direction{vectors.a[0][i], vectors.a[1][i], vectors.a[2][i]};
-    moved += direction * ((direction.x * right[0] + direction.y * right[1] + direction.z * right[2]) / strength);
+    moves_[k] =
+        direction * ((direction.x * right[0] + direction.y * right[1] + direction.z * right[2]) / strengths_[k]);
   }
-  return start + moved;
+}
+
+std::optional<Vec3d> EquidistantPoints::of_rank(int rank) const {
+  Vec3d x = start_;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(rank); ++k) {
+    if (!(strengths_[k] > weakest * strengths_[0])) return std::nullopt;
+    x += moves_[k];
+  }
+  return x;
 }
 
 }  // namespace blum

@@ -1,6 +1,7 @@
 // Blum: the point that is as far from some points as from the others. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -8,10 +9,21 @@
 
 namespace blum {
 
-/// The point near `start` whose distances from the given points differ least, moved only along the directions in which
-/// these points say anything: the `rank` strongest ones.
-/// @param rank  1, 2 or 3.
-/// @return      nullopt where the points say less (all but one direction weaker than a tenth of the strongest, say).
-[[nodiscard]] std::optional<Vec3d> equidistant_point(std::span<const Vec3d> points, const Vec3d& start, int rank);
+/// The points near a start whose distances from given points differ least, moved only along the directions in which
+/// these say anything.
+class EquidistantPoints {
+ public:
+  EquidistantPoints(std::span<const Vec3d> points, const Vec3d& start);
+
+  /// Moved along the strongest directions only.
+  /// @param rank  how many: 1, 2 or 3.
+  /// @return      nullopt where the points say less (a direction is weaker than a tenth of the strongest).
+  [[nodiscard]] std::optional<Vec3d> of_rank(int rank) const;
+
+ private:
+  Vec3d start_;
+  std::array<Vec3d, 3> moves_;       ///< by falling strength
+  std::array<double, 3> strengths_;  ///< squares
+};
 
 }  // namespace blum

@@ -25,6 +25,10 @@ class Importance {
     if (words_.empty()) return 0;
     return (words_[cell >> 6U] >> (cell & 63U) & 1U) == 0 ? 0 : values_[rank(cell)];
   }
+  /// Bit a: whether the cell that spans `a` from a node has a value.
+  [[nodiscard]] std::uint8_t cells_at(std::size_t node) const {
+    return static_cast<std::uint8_t>(words_[node >> 3U] >> (8 * (node & 7U)));
+  }
   [[nodiscard]] std::size_t count() const { return values_.size(); }
 
  private:

@@ -33,6 +33,9 @@ void check(const MedialAxisOptions& options) {
   if (options.spacing && !(*options.spacing > 0 && std::isfinite(*options.spacing))) {
     throw InvalidOption("spacing is " + exact_text(*options.spacing) + ", but must be above 0");
   }
+  if (!(options.least_theta >= 0 && options.least_theta <= 180)) {
+    throw InvalidOption("least_theta is " + exact_text(options.least_theta) + " degrees, but must be 0 to 180");
+  }
   if (!(options.lambda >= 0 && std::isfinite(options.lambda))) {
     throw InvalidOption("lambda is " + exact_text(options.lambda) + ", but must be at least 0");
   }
@@ -51,6 +54,7 @@ void add(BettiNumbers& sum, const BettiNumbers& part) {
 struct MedialAxis::Data {
   MedialAxisReport report;
   std::vector<AxisPiece> pieces;
+  double least_theta = 0;
 };
 
 /// Makes the pieces of an axis one after the other.
@@ -59,6 +63,7 @@ class MedialAxisBuilder {
   MedialAxisBuilder(const MedialAxisOptions& options, const Context& context)
       : options_(options), context_(context), data_(std::make_unique<MedialAxis::Data>()) {
     check(options);
+    data_->least_theta = options.least_theta;
   }
 
   MedialAxis of_mesh(const MeshView& mesh) {
@@ -132,9 +137,7 @@ class MedialAxisBuilder {
     const SiteTable sites(body.mesh, context_);
     const MeshSurface surface(body.mesh, sites, context_);
     timer.lap("surface");
-    NoiseFloor floor;
-    floor.lambda = options_.lambda;
-    AxisPiece& piece = add_piece(voxelized, surface, floor);
+    AxisPiece& piece = add_piece(voxelized, surface, NoiseFloor{});
     for (MedialVertex& vertex : piece.vertices) {
       for (SiteId& site : vertex.sites) site = body.input_site(site, sites, input_sites);
     }
@@ -142,6 +145,7 @@ class MedialAxisBuilder {
 
   AxisPiece& add_piece(const Voxelized& voxelized, const Surface& surface, NoiseFloor floor) {
     floor.lambda = options_.lambda;
+    floor.angle = std::max(floor.angle, options_.least_theta);
     const GovernorField governors(voxelized.solid, surface);
     data_->pieces.push_back(make_axis_piece(governors, floor, report().phases, context_));
     if (report().bodies.empty()) report().grid = voxelized.solid.grid;
@@ -174,8 +178,9 @@ const MedialAxisReport& MedialAxis::report() const {
 }
 
 MedialComplex MedialAxis::extract(double theta) const {
-  if (!(theta >= 0 && theta <= 180)) {
-    throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be 0 to 180");
+  if (!(theta >= data_->least_theta && theta <= 180)) {
+    throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be " + exact_text(data_->least_theta) +
+                        " to 180");
   }
   MedialComplex complex;
   for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, complex);

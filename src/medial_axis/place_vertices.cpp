@@ -38,9 +38,12 @@ class Placer {
     const GovernorsAround around = governors_.around(node);
     const Vec3d corner = grid.position(node[0], node[1], node[2]) - grid.direction * (grid.spacing * 0.5);
     // Seams and axes first: a point that all footprints agree on; else the nearest sheet.
+    std::array<Vec3d, 8> feet;
+    for (std::size_t v = 0; v < 8; ++v) feet[v] = around[v].foot.point;
+    const EquidistantPoints points(feet, corner);
     for (const int rank : {3, 2}) {
-      const std::optional<Vec3d> start = fitted(around, corner, rank);
-      if (!start) continue;
+      const std::optional<Vec3d> start = points.of_rank(rank);
+      if (!start || !is_near(*start, corner)) continue;
       if (const auto vertex = vertex_at(settle(around, *start, corner), around)) return *vertex;
     }
     if (const auto vertex = vertex_at(settle(around, corner, corner), around)) return *vertex;
@@ -48,13 +51,6 @@ class Placer {
   }
 
  private:
-  [[nodiscard]] std::optional<Vec3d> fitted(const GovernorsAround& around, const Vec3d& corner, int rank) const {
-    std::array<Vec3d, 8> feet;
-    for (std::size_t v = 0; v < 8; ++v) feet[v] = around[v].foot.point;
-    const std::optional<Vec3d> x = equidistant_point(feet, corner, rank);
-    return x && is_near(*x, corner) ? x : std::nullopt;
-  }
-
   [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& corner) const {
     const GridSpec& grid = governors_.solid().grid;
     const Vec3d moved = grid.direction.transposed_times(x - corner);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -19,15 +20,20 @@ constexpr double reach_around_axis = 1.5;
 constexpr double fitted_tolerance = 0.1;
 constexpr double fitted_reach = 0.7;  ///< of a point from the middle of its cell, in voxels along each axis
 constexpr int bisector_steps = 4;
-constexpr double opposite_step = 0.3;  ///< voxels
+constexpr double opposite_step = 0.3;    ///< voxels
+constexpr double opposite_enough = 175;  ///< degrees: no need to look for a footprint that is further apart
 
 /// The governors of the voxels around the nodes of a layer, row after row, each found once per layer and only where it
 /// is asked for.
 class GovernorRows {
  public:
-  GovernorRows(const GovernorField& governors, std::int64_t k) : governors_(governors), k_(k) {
+  GovernorRows(const GovernorField& governors, const NoiseFloor& floor, std::int64_t k)
+      : governors_(governors), floor_(floor), k_(k), chord_(2 * std::sin(0.5 * floor.angle / degrees_per_radian)) {
     const auto length = static_cast<std::size_t>(governors.solid().grid.size[0]);
-    for (Row& row : rows_) row = {std::vector<Governor>(length), std::vector<bool>(length, false)};
+    for (Row& row : rows_) row = {std::vector<Governor>(length), std::vector<std::uint8_t>(length, 0), {}};
+    const SiteId any = governors.solid().site[0];
+    has_rough_ = governors.surface().rough_footprint(any).has_value();
+    for (Row& row : rows_) row.rough.resize(has_rough_ ? length : 0);
   }
 
   /// To the nodes of row j, which must rise.
@@ -37,17 +43,20 @@ class GovernorRows {
       std::swap(rows_[2], rows_[3]);
     }
     for (std::size_t r = 0; r < 4; ++r) {
-      if (j != j_ + 1 || (r & 1U) == 1) rows_[r].is_known.assign(rows_[r].is_known.size(), false);
+      if (j != j_ + 1 || (r & 1U) == 1) std::fill(rows_[r].known.begin(), rows_[r].known.end(), 0);
     }
     j_ = j;
   }
 
-  [[nodiscard]] bool has_one_site(std::int64_t i) const {
+  /// Whether what the voxels around a node are closest to certainly counts as one wall.
+  [[nodiscard]] bool has_one_wall(std::int64_t i) {
     const VoxelSolid& solid = governors_.solid();
-    const SiteId first = solid.site[solid.grid.index(i - 1, j_ - 1, k_ - 1)];
-    for (std::size_t v = 1; v < 8; ++v) {
+    const auto [x0, y0, z0] = place(i, 7);
+    const std::size_t last = solid.grid.index(x0, y0, z0);
+    if (has_rough_) return has_one_rough_wall(i, static_cast<double>(solid.depth[last]));
+    for (std::size_t v = 0; v < 7; ++v) {
       const auto [x, y, z] = place(i, v);
-      if (solid.site[solid.grid.index(x, y, z)] != first) return false;
+      if (solid.site[solid.grid.index(x, y, z)] != solid.site[last]) return false;
     }
     return true;
   }
@@ -58,8 +67,8 @@ class GovernorRows {
       const auto [x, y, z] = place(i, v);
       Row& row = rows_[v >> 1U];
       const auto at = static_cast<std::size_t>(x);
-      if (!row.is_known[at]) row.governors[at] = governors_.at(x, y, z);
-      row.is_known[at] = true;
+      if ((row.known[at] & 1U) == 0) row.governors[at] = governors_.at(x, y, z);
+      row.known[at] |= 1U;
       out[v] = row.governors[at];
     }
     return out;
@@ -68,16 +77,46 @@ class GovernorRows {
  private:
   struct Row {
     std::vector<Governor> governors;
-    std::vector<bool> is_known;
+    std::vector<std::uint8_t> known;  ///< bit 0: of governors; bit 1: of rough footprints
+    std::vector<Vec3d> rough;
   };
+
+  [[nodiscard]] const Vec3d& rough(std::int64_t i, std::size_t v) {
+    const auto [x, y, z] = place(i, v);
+    Row& row = rows_[v >> 1U];
+    const auto at = static_cast<std::size_t>(x);
+    if ((row.known[at] & 2U) == 0) {
+      const VoxelSolid& solid = governors_.solid();
+      row.rough[at] = *governors_.surface().rough_footprint(solid.site[solid.grid.index(x, y, z)]);
+      row.known[at] |= 2U;
+    }
+    return row.rough[at];
+  }
+
+  /// @param depth  of one of the voxels.
+  [[nodiscard]] bool has_one_rough_wall(std::int64_t i, double depth) {
+    // Footprints lie up to half a voxel from where they are thought to be, the node up to one from the voxel.
+    const double voxel = governors_.voxel();
+    if (depth < 3 * voxel) return false;
+    const double limit = std::max((floor_.voxels - 1) * voxel, chord_ * (depth - voxel) - voxel);
+    const Vec3d& middle = rough(i, 7);
+    for (std::size_t v = 0; v < 7; ++v) {
+      if (squared_length(rough(i, v) - middle) > limit * limit) return false;
+    }
+    return true;
+  }
+
   [[nodiscard]] std::array<std::int64_t, 3> place(std::int64_t i, std::size_t v) const {
     return {i - 1 + static_cast<std::int64_t>(v & 1U), j_ - 1 + static_cast<std::int64_t>(v >> 1U & 1U),
             k_ - 1 + static_cast<std::int64_t>(v >> 2U)};
   }
 
   const GovernorField& governors_;
+  const NoiseFloor& floor_;
   std::int64_t k_;
   std::int64_t j_ = -2;
+  double chord_;  ///< between two footprints at the angle of the floor, per distance
+  bool has_rough_ = false;
   std::array<Row, 4> rows_;  ///< y + 2 z
 };
 
@@ -98,12 +137,12 @@ class Measure {
   void for_each_uneven_node(std::int64_t k, const Use& use) const {
     const CellLattice& lattice = complex_.lattice();
     const auto& size = lattice.size();
-    GovernorRows rows(governors_, k);
+    GovernorRows rows(governors_, floor_, k);
     for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
       rows.go_to(j);
       for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
         const std::size_t node = lattice.node(i, j, k);
-        if (complex_.bytes()[node] == 0 || rows.has_one_site(i)) continue;
+        if (complex_.bytes()[node] == 0 || rows.has_one_wall(i)) continue;
         const Around around = rows.around(i);
         if (is_uneven(around)) use(node, around);
       }
@@ -161,9 +200,10 @@ class Measure {
       middle += around[v].centre;
     }
     middle *= 1.0 / static_cast<double>(count);
+    const EquidistantPoints points({feet.data(), count}, middle);
     double largest = 0;
     for (const int rank : {3, 2}) {
-      const std::optional<Vec3d> x = equidistant_point({feet.data(), count}, middle, rank);
+      const std::optional<Vec3d> x = points.of_rank(rank);
       if (!x || !is_near(*x, middle)) continue;
       largest = std::max(largest, angle_of({governors.data(), count}, *x));
     }
@@ -222,25 +262,32 @@ class Measure {
   }
 
   [[nodiscard]] double angle_of(std::span<const Governor* const> governors, const Vec3d& x) const {
-    const double limit = surface_.nearest(x, governors[0]->foot).distance + fitted_tolerance * voxel_;
     std::array<Footprint, 8> feet;
-    std::size_t count = 0;
+    std::array<double, 8> distance{};
+    double closest = std::numeric_limits<double>::infinity();
     bool is_in = false;
-    for (const Governor* g : governors) {
-      is_in = is_in || is_inside(*g, x);
-      const Footprint foot = surface_.follow(g->foot, x, reach_around_axis * voxel_);
-      if (length(x - foot.point) <= limit) feet[count++] = foot;
+    for (std::size_t g = 0; g < governors.size(); ++g) {
+      is_in = is_in || is_inside(*governors[g], x);
+      feet[g] = surface_.follow(governors[g]->foot, x, reach_around_axis * voxel_);
+      distance[g] = length(x - feet[g].point);
+      closest = std::min(closest, distance[g]);
     }
     if (!is_in) return 0;
+    const double limit = closest + fitted_tolerance * voxel_;
     double largest = 0;
-    for (std::size_t a = 0; a < count; ++a) {
-      for (std::size_t b = a + 1; b < count; ++b) {
-        largest = std::max(largest, above_floor(x, feet[a].point, feet[b].point));
+    std::size_t widest = 0;
+    for (std::size_t a = 0; a < governors.size(); ++a) {
+      for (std::size_t b = a + 1; b < governors.size() && distance[a] <= limit; ++b) {
+        if (distance[b] > limit) continue;
+        const double angle = above_floor(x, feet[a].point, feet[b].point);
+        if (angle <= largest) continue;
+        largest = angle;
+        widest = a;
       }
-      const Vec3d opposite = opposite_of(x, feet[a]);
-      if (length(x - opposite) <= limit) largest = std::max(largest, above_floor(x, feet[a].point, opposite));
     }
-    return largest;
+    if (largest == 0 || largest > opposite_enough) return largest;
+    const Vec3d opposite = opposite_of(x, feet[widest]);
+    return length(x - opposite) > limit ? largest : std::max(largest, above_floor(x, feet[widest].point, opposite));
   }
 
   /// A footprint on the other side: what is closest a little further away from the first one. The voxels around an axis
@@ -304,15 +351,14 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
     });
   };
   for_each_layer("separation angles of squares", [&](std::size_t k) {
-    measure.for_each_uneven_node(
-        static_cast<std::int64_t>(k), [&](std::size_t node, const GovernorsAround& around) {
-          uneven[k].push_back(static_cast<std::uint32_t>(node));
-          for (const CellAxes axes : {3U, 5U, 6U}) {
-            if (!complex.contains(cell_at(node, axes))) continue;
-            const double angle = measure.between(around[axes], around[7]);
-            if (angle > 0) found[k].push_back({cell_at(node, axes), static_cast<float>(angle)});
-          }
-        });
+    measure.for_each_uneven_node(static_cast<std::int64_t>(k), [&](std::size_t node, const GovernorsAround& around) {
+      uneven[k].push_back(static_cast<std::uint32_t>(node));
+      for (const CellAxes axes : {3U, 5U, 6U}) {
+        if (!complex.contains(cell_at(node, axes))) continue;
+        const double angle = measure.between(around[axes], around[7]);
+        if (angle > 0) found[k].push_back({cell_at(node, axes), static_cast<float>(angle)});
+      }
+    });
   });
   const Importance squares(lattice, joined(found));
   constexpr double worth_looking = 15;  // degrees more than the squares around have

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
@@ -34,6 +35,9 @@ class Surface {
   /// The closest point of what a field gives a voxel as its closest site.
   /// @param centre  of the voxel.
   [[nodiscard]] virtual Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const = 0;
+
+  /// Where the footprints on a site are, to within half a voxel along each axis; nullopt where sites are large.
+  [[nodiscard]] virtual std::optional<Vec3d> rough_footprint(SiteId /*site*/) const { return std::nullopt; }
 
   /// Walks from a footprint to the nearest local minimum of the distance: what the footprint on this part of the
   /// surface becomes when its point moves a little, while another part may be closer.

@@ -21,6 +21,8 @@ class VoxelSurface final : public Surface {
 
   /// @param site  the closest voxel of the other kind.
   [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;
+  /// The middle of the voxel, along the grid's axes.
+  [[nodiscard]] std::optional<Vec3d> rough_footprint(SiteId site) const override;
   [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
   [[nodiscard]] SurfacePoint nearest(const Vec3d& query, const Footprint& near) const override;
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override { return SiteId(foot.element); }
@@ -41,6 +43,8 @@ class VoxelSurface final : public Surface {
   [[nodiscard]] Vec3d local(const Vec3d& world) const;
   [[nodiscard]] Vec3d world(const Vec3d& local) const;
   [[nodiscard]] Vec3d closest_in(const Place& lower, std::int64_t side, const Vec3d& query) const;
+  /// Which of the 27 voxels around one is closest to a local point, if it is closer than a squared distance; else -1.
+  [[nodiscard]] int closer_neighbour(const Place& voxel, const Vec3d& query, double squared) const;
   void search(Search& best, std::size_t level, const Place& block) const;
 
   const VoxelSet& voxels_;

@@ -33,6 +33,9 @@ struct MedialAxisOptions {
   /// Pieces of the axis whose two footprints are closer than this count for nothing (the lambda-medial axis of Chazal
   /// and Lieutier 2005), >= 0, mesh units.
   double lambda = 0;
+  /// The smallest theta that will be asked for, 0 to 180 degrees: what is seen at less is not looked at closely, which
+  /// saves time where much is. What joins the rest may then run elsewhere.
+  double least_theta = 0;
   /// Images: which voxels are the solid.
   LabelSelection selection = {};
 };
@@ -80,7 +83,7 @@ class MedialAxis {
 
   /// The part where two footprints are seen at more than theta apart, and what homotopy needs to join it: a complex
   /// with the Betti numbers report().voxels. What a larger theta gives is part of what a smaller one gives.
-  /// @param theta  degrees, 0 to 180.
+  /// @param theta  degrees, MedialAxisOptions::least_theta to 180.
   /// @throws InvalidOption. Cost: linear in the result.
   [[nodiscard]] MedialComplex extract(double theta) const;
 
