@@ -54,9 +54,9 @@ struct BallUnionCheck {
   /// the solid; 0 for exact radii.
   double balls_beyond_solid = 0;
   /// How far points of the surface of the union are from the surface of the solid at most, over 32 points of each ball;
-  /// of more than 62,500 balls, over those of 31,250 to 62,500 of them.
+  /// of more than 15,600 balls, over those of 7,800 to 15,600 of them.
   double balls_to_surface = 0;
-  /// Each point of the surface is at most this far from a sample, mesh units: half the median edge of the axis (1/256
+  /// Each point of the surface is at most this far from a sample, mesh units: the median edge of the axis (1/256
   /// of the diagonal, for an axis without edges), or more where that would take over a million samples. Samples of
   /// voxels are one or four points of each face; above a million faces, one for each direction of faces in 4 x 4 x 4
   /// voxels.

@@ -20,6 +20,7 @@ BallUnion::BallUnion(const std::vector<Ball>& balls, const Context& context) {
 double BallUnion::gap(const Vec3d& p, std::uint32_t& first) const {
   if (balls_.empty()) return HUGE_VAL;
   double best = gap_to(p, first);
+  if (best <= 0) return best;
   tree_.search(
       best, [&](std::uint32_t n) { return std::sqrt(squared_distance(p, tree_.node(n).box)) - largest_[n]; },
       [&](std::uint32_t place) {
@@ -28,7 +29,7 @@ double BallUnion::gap(const Vec3d& p, std::uint32_t& first) const {
           best = own;
           first = place;
         }
-        return best;
+        return best <= 0 ? -HUGE_VAL : best;  // in the union: the search ends
       });
   return best;
 }

@@ -21,7 +21,8 @@ class BallUnion {
   /// @throws Cancelled.
   BallUnion(const std::vector<Ball>& balls, const Context& context);
 
-  /// The least of distance to the centre - radius, over all balls: not above 0 in the union. Balls are tried from
+  /// The least of distance to the centre - radius, over all balls, where that is above 0: the distance from the union;
+  /// something not above 0 in the union. Balls are tried from
   /// `first` on, which costs less where it is nearly the best, and holds the best one afterwards.
   [[nodiscard]] double gap(const Vec3d& p, std::uint32_t& first) const;
 

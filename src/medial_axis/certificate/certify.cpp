@@ -135,7 +135,7 @@ struct OwnedBall {
   std::uint32_t body = 0;
 };
 
-/// Half the length of the median edge; of an axis without edges, a part of the solid.
+/// The length of the median edge; of an axis without edges, a part of the solid.
 double default_step(const MedialComplex& axis, double diagonal) {
   constexpr double parts_of_diagonal = 256;
   std::vector<double> squares;
@@ -148,7 +148,7 @@ double default_step(const MedialComplex& axis, double diagonal) {
   if (squares.empty()) return diagonal / parts_of_diagonal;
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
-  return std::max(0.5 * std::sqrt(*middle), rounding_of_diagonal * diagonal);
+  return std::max(std::sqrt(*middle), rounding_of_diagonal * diagonal);
 }
 
 /// Fills what the samples of the surface tell.
@@ -180,7 +180,7 @@ void measure_surface(const std::vector<Sample>& samples, const BallUnion& balls,
 }
 
 constexpr std::size_t directions_per_ball = 32;
-constexpr std::size_t most_directions = 2'000'000;
+constexpr std::size_t most_directions = 500'000;
 
 /// Directions spread evenly along a spiral from pole to pole.
 std::array<Vec3d, directions_per_ball> directions() {
