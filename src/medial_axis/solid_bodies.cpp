@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
@@ -41,6 +42,53 @@ std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTa
     number[t] = r == t ? count++ : number[r];
   }
   return number;
+}
+
+/// Triangles turned such that neighbours agree, by walking over the edges of a closed manifold; shells keep the way that
+/// most of their triangles face. nullopt where a surface has only one side.
+std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites) {
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  std::vector<std::array<std::uint32_t, 2>> of_edge(sites.edge_count(), {nobody, nobody});
+  for (std::uint32_t t = 0; t < count; ++t) {
+    for (const EdgeId edge : sites.triangle_edges()[t]) {
+      if (!edge.has_value()) continue;
+      auto& pair = of_edge[edge.value];
+      pair[pair[0] == nobody ? 0 : 1] = t;
+    }
+  }
+  const auto rises = [&](std::uint32_t t, std::uint32_t edge) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sites.triangle_edges()[t][k].value == edge) return mesh.triangles[t][k] < mesh.triangles[t][(k + 1) % 3];
+    }
+    return false;
+  };
+  std::vector<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
+  std::vector<int> facing(count, 0);
+  std::vector<std::uint32_t> shell;
+  for (std::uint32_t first = 0; first < count; ++first) {
+    if (facing[first] != 0) continue;
+    facing[first] = 1;
+    shell.assign(1, first);
+    int sum = 0;
+    for (std::size_t next = 0; next < shell.size(); ++next) {
+      const std::uint32_t t = shell[next];
+      sum += facing[t];
+      for (const EdgeId edge : sites.triangle_edges()[t]) {
+        if (!edge.has_value()) continue;
+        const auto& pair = of_edge[edge.value];
+        const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
+        if (other == nobody || other == t) continue;
+        const int wanted = rises(t, edge.value) != rises(other, edge.value) ? facing[t] : -facing[t];
+        if (facing[other] == -wanted) return std::nullopt;
+        if (facing[other] == 0) shell.push_back(other);
+        facing[other] = wanted;
+      }
+    }
+    for (const std::uint32_t t : shell) {
+      if ((facing[t] > 0) != (sum >= 0)) std::swap(triangles[t][1], triangles[t][2]);
+    }
+  }
+  return triangles;
 }
 
 /// The body of each shell: outer shells by number, voids that of the shell around them.
@@ -131,6 +179,14 @@ SiteId SolidBody::input_site(SiteId own, const SiteTable& own_sites, const SiteT
 SolidBodies split_into_bodies(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it has no interior");
   const Topology topology = blum::topology(mesh, sites, context);
+  if (topology.closed && topology.inconsistent_edges > 0) {
+    if (const auto triangles = agreeing_triangles(mesh, sites)) {
+      const MeshView turned{mesh.vertices, *triangles};
+      SolidBodies out = split_into_bodies(turned, SiteTable(turned, context), context);
+      out.reason += "; neighbouring triangles faced different ways and were turned";
+      return out;
+    }
+  }
   if (const std::string why = obstacle(topology); !why.empty()) return whole(mesh, why);
   const std::vector<std::uint32_t> shell = shell_of_triangles(mesh, sites);
   const std::vector<std::uint32_t> body = body_of_shells(topology.shells);

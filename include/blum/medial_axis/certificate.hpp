@@ -75,12 +75,12 @@ struct Certificate {
   [[nodiscard]] bool holds() const { return mismatches.empty(); }
 };
 
-/// Checks an axis against the closed, oriented, manifold mesh whose solid it is said to have. Nothing of the
+/// Checks an axis against the closed, manifold mesh whose solid it is said to have. Nothing of the
 /// construction is used: Betti numbers come from the homology of the surface and the nesting of its components by
 /// counting crossings of lines; distances from a search of its own. Shells may face either way, and touch; whether they
 /// cross each other or themselves is not looked for. Triangles that name a vertex twice are left out.
 /// @param has_geometry  whether radii and footprints are known; where they are not, only the topology is checked.
-/// @throws InvalidMesh where the mesh is not closed, manifold and consistently oriented, or a shell encloses nothing,
+/// @throws InvalidMesh where the mesh is not closed and manifold, or a shell encloses nothing,
 /// or just what another one does; InvalidOption for a complex that is none (see homology()); Cancelled. Cost: on one
 /// core about 2 s for 100,000 vertices and as many triangles.
 [[nodiscard]] Certificate certify(const MedialComplex& axis, const MeshView& mesh, bool has_geometry = true,

@@ -83,10 +83,6 @@ void for_each_edge(const std::vector<Side>& sides, const Use& use) {
       throw InvalidMesh("the mesh is not closed and manifold: " + named(sides[begin]) + " has " +
                         std::to_string(end - begin) + " triangles instead of two");
     }
-    if (sides[begin].rises == sides[begin + 1].rises) {
-      throw InvalidMesh("the mesh is not consistently oriented: both triangles of " + named(sides[begin]) +
-                        " traverse it in the same direction");
-    }
     use(sides[begin], sides[begin + 1]);
     begin = end;
   }
@@ -95,6 +91,44 @@ void for_each_edge(const std::vector<Side>& sides, const Use& use) {
 /// The corner of a triangle after a given one, both as 3 * triangle + k.
 std::uint32_t after(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
+/// For each triangle 1 or -1, such that those with one sign, and the others turned, face one way. Shells begin with 1.
+/// @throws InvalidMesh for a surface that has only one side.
+std::vector<std::int8_t> facings(const MeshView& mesh, const std::vector<Side>& sides, const Context& context) {
+  struct Neighbour {
+    std::uint32_t triangle = 0;
+    std::int8_t agrees = 0;
+  };
+  std::vector<Neighbour> beside(3 * mesh.triangles.size());
+  for_each_edge(sides, [&](const Side& a, const Side& b) {
+    const auto agrees = static_cast<std::int8_t>(a.rises != b.rises ? 1 : -1);
+    beside[a.corner] = {b.corner / 3, agrees};
+    beside[b.corner] = {a.corner / 3, agrees};
+  });
+  throw_if_cancelled(context);
+  std::vector<std::int8_t> facing(mesh.triangles.size(), 0);
+  std::vector<std::uint32_t> line;
+  for (std::uint32_t first = 0; first < mesh.triangles.size(); ++first) {
+    if (facing[first] != 0 || names_a_vertex_twice(mesh.triangles[first])) continue;
+    facing[first] = 1;
+    line.push_back(first);
+    while (!line.empty()) {
+      const std::uint32_t t = line.back();
+      line.pop_back();
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const Neighbour& other = beside[3 * t + k];
+        const auto wanted = static_cast<std::int8_t>(facing[t] * other.agrees);
+        if (facing[other.triangle] == 0) line.push_back(other.triangle);
+        if (facing[other.triangle] == -wanted) {
+          throw InvalidMesh("the mesh bounds nothing: the surface around triangle " + std::to_string(t) +
+                            " has only one side");
+        }
+        facing[other.triangle] = wanted;
+      }
+    }
+  }
+  return facing;
 }
 
 /// @throws InvalidMesh where the triangles around a vertex are more than one fan.
@@ -124,7 +158,8 @@ std::vector<std::vector<std::uint32_t>> members(const ClosedShells& shells) {
 
 /// Measures a shell: its genus by its homology, its volume by the tetrahedra over a point of it.
 ClosedShell measured(const MeshView& mesh, const std::vector<std::uint32_t>& triangles,
-                     std::vector<std::uint32_t>& number, const Context& context) {
+                     const std::vector<std::int8_t>& facing, std::vector<std::uint32_t>& number,
+                     const Context& context) {
   std::vector<Triangle> own;
   own.reserve(triangles.size());
   std::vector<std::uint32_t> vertices;
@@ -142,7 +177,7 @@ ClosedShell measured(const MeshView& mesh, const std::vector<std::uint32_t>& tri
       }
       corners[k] = name;
     }
-    volume += dot(at[0], cross(at[1], at[2])) / 6;
+    volume += facing[t] * dot(at[0], cross(at[1], at[2])) / 6;
   }
   const BettiNumbers betti = homology({vertices.size(), {}, own}, context);
   for (const std::uint32_t v : vertices) number[v] = no_group;
@@ -233,11 +268,14 @@ ClosedShells find_shells(const MeshView& mesh, const Context& context) {
   if (sides.empty()) throw InvalidMesh("the mesh has no triangle that names three vertices: it bounds nothing");
   for_each_edge(sides, [&](const Side& a, const Side& b) {
     triangles.join(a.corner / 3, b.corner / 3);
-    corners.join(a.corner, after(b.corner));  // one side begins where the other one ends
-    corners.join(after(a.corner), b.corner);
+    // One side begins where the other one ends, unless their triangles face different ways.
+    const bool is_opposite = a.rises != b.rises;
+    corners.join(a.corner, is_opposite ? after(b.corner) : b.corner);
+    corners.join(after(a.corner), is_opposite ? b.corner : after(b.corner));
   });
   throw_if_cancelled(context);
   check_fans(mesh, corners);
+  const std::vector<std::int8_t> facing = facings(mesh, sides, context);
   ClosedShells result;
   result.of_triangle.assign(mesh.triangles.size(), no_group);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -252,7 +290,7 @@ ClosedShells find_shells(const MeshView& mesh, const Context& context) {
   throw_if_cancelled(context);
   const auto lists = members(result);
   std::vector<std::uint32_t> number(mesh.vertices.size(), no_group);
-  for (std::size_t s = 0; s < lists.size(); ++s) result.shells[s] = measured(mesh, lists[s], number, context);
+  for (std::size_t s = 0; s < lists.size(); ++s) result.shells[s] = measured(mesh, lists[s], facing, number, context);
   return result;
 }
 

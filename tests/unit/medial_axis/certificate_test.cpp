@@ -151,6 +151,15 @@ std::string refusal(const MeshView& mesh) {
   return {};
 }
 
+TEST(SolidBetti, DoesNotDependOnHowTrianglesFace) {
+  TriangleMesh torus = make_torus({});
+  Random random(31);
+  for (Triangle& t : torus.triangles) {
+    if (random.uniform() < 0.5) std::swap(t[1], t[2]);
+  }
+  EXPECT_EQ(certify({}, torus, false).solid, (BettiNumbers{1, 1, 0}));
+}
+
 TEST(SolidBetti, RefusesWhatBoundsNoSolid) {
   const auto says = [](const MeshView& mesh, const std::string& words) {
     const std::string message = refusal(mesh);
@@ -159,9 +168,12 @@ TEST(SolidBetti, RefusesWhatBoundsNoSolid) {
   TriangleMesh open = make_box({});
   open.triangles.pop_back();
   says(open, "not closed and manifold");
-  TriangleMesh turned = make_box({});
-  std::swap(turned.triangles[3][0], turned.triangles[3][1]);
-  says(turned, "not consistently oriented");
+  // The least projective plane, six vertices in general position: closed, manifold, and with one side only.
+  TriangleMesh one_sided;
+  one_sided.vertices = {{0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0.3}, {0.4, 0.3, 1}, {1, 1.1, 0.9}, {0.1, 0.7, 1.2}};
+  one_sided.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},
+                         {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}};
+  says(one_sided, "only one side");
   TriangleMesh doubled = make_box({});
   doubled.triangles.insert(doubled.triangles.end(), doubled.triangles.begin(), doubled.triangles.end());
   says(doubled, "4 triangles instead of two");
