@@ -16,6 +16,7 @@ void add_make_command(CLI::App& app, std::vector<std::string>& arguments);
 void add_info_command(CLI::App& app);
 void add_medial_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
+void add_reconstruct_command(CLI::App& app);
 
 /// An axis that is not certified: exit status 3.
 class NotCertified : public std::runtime_error {

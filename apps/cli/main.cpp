@@ -89,6 +89,7 @@ void add_commands(CLI::App& app, std::vector<std::string>& arguments) {
   add_info_command(app);
   add_medial_command(app);
   add_verify_command(app);
+  add_reconstruct_command(app);
 }
 
 int run(std::vector<std::string> arguments) {

@@ -26,6 +26,8 @@ std::string_view to_string(SignRule rule) {
       return "winding";
     case SignRule::label:
       return "label";
+    case SignRule::balls:
+      return "balls";
   }
   return "unknown";
 }

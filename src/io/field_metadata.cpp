@@ -231,7 +231,7 @@ void apply_metadata(const Metadata& metadata, const std::string& name, Field& fi
     field.band = band;
   }
   if (const std::string_view text = find_value(metadata, "sign_rule"); !text.empty()) {
-    constexpr std::array all{SignRule::none, SignRule::normals, SignRule::winding, SignRule::label};
+    constexpr std::array all{SignRule::none, SignRule::normals, SignRule::winding, SignRule::label, SignRule::balls};
     field.sign_rule = from_text(text, all, "sign_rule", name);
   }
   if (const std::string_view text = find_value(metadata, "site_ids"); !text.empty()) {

@@ -44,8 +44,8 @@ std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTa
   return number;
 }
 
-/// Triangles turned such that neighbours agree, by walking over the edges of a closed manifold; shells keep the way that
-/// most of their triangles face. nullopt where a surface has only one side.
+/// Triangles turned such that neighbours agree, by walking over the edges of a closed manifold; shells keep the way
+/// that most of their triangles face. nullopt where a surface has only one side.
 std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   std::vector<std::array<std::uint32_t, 2>> of_edge(sites.edge_count(), {nobody, nobody});

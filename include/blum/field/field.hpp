@@ -30,7 +30,13 @@ enum class SignMode : std::uint8_t {
 };
 
 /// How the sign of a field was found.
-enum class SignRule : std::uint8_t { none, normals, winding, label };
+enum class SignRule : std::uint8_t {
+  none,
+  normals,
+  winding,
+  label,
+  balls  ///< inside where a ball is (ball_union_field)
+};
 
 /// What the site values of a field count.
 enum class SiteIds : std::uint8_t {

@@ -98,9 +98,10 @@ class MedialAxis {
 
 /// The medial axis of the solid that a mesh bounds.
 ///
-/// Closed, manifold meshes that do not cross themselves are taken as polyhedra, shell by shell: each outer shell and the
-/// voids in it are one body, and bodies may touch. Triangles that face another way than their neighbours are turned, and
-/// so are shells that face the solid. For other meshes the solid is where the winding number is above 1/2 (SolidRule::winding).
+/// Closed, manifold meshes that do not cross themselves are taken as polyhedra, shell by shell: each outer shell and
+/// the voids in it are one body, and bodies may touch. Triangles that face another way than their neighbours are
+/// turned, and so are shells that face the solid. For other meshes the solid is where the winding number is above 1/2
+/// (SolidRule::winding).
 ///
 /// Vertices lie on the bisector of two parts of the surface where there are two, within half a voxel of a corner of the
 /// voxel lattice; their radius is the exact distance to the surface (1e-9 of the extent).

@@ -1,0 +1,185 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/field/zero_surface.hpp"
+#include "blum/io/field_io.hpp"
+#include "blum/io/medial_io.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/medial_axis/ball_union.hpp"
+#include "commands.hpp"
+#include "files.hpp"
+#include "medial_report.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "solid_input.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum reconstruct part.vtp -o part.ply                      what the balls of an axis fill, as a mesh
+  blum reconstruct part.vtp -o part.nrrd --resolution 512    as a signed field
+  blum reconstruct part.vtp -o part.ply --input part.stl     and how far it is from the solid)";
+
+const std::vector<std::string> field_extensions{".nrrd", ".npz", ".vti"};
+const std::vector<std::string> mesh_extensions{".obj", ".off", ".stl", ".ply"};
+
+struct Arguments {
+  std::string axis;
+  std::string output;
+  std::optional<std::string> input, resolution, spacing, threshold, weld, threads;
+  std::vector<std::string> labels;
+  ReportOptions report;
+};
+
+struct Request {
+  fs::path axis;
+  fs::path output;
+  std::optional<fs::path> input;
+  bool is_field = false;
+  int resolution = 256;
+  std::optional<double> spacing;
+  Selections selections;
+  std::optional<double> weld;
+  int threads = 0;
+};
+
+Request parse(const Arguments& a) {
+  Request r;
+  r.axis = a.axis;
+  r.output = a.output;
+  check_extension("AXIS", r.axis, {".vtp", ".ply", ".ma", ".npz"});
+  std::vector<std::string> known = field_extensions;
+  known.insert(known.end(), mesh_extensions.begin(), mesh_extensions.end());
+  check_extension("--output", r.output, known);
+  r.is_field =
+      std::find(field_extensions.begin(), field_extensions.end(), extension(r.output)) != field_extensions.end();
+  exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
+  exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
+  if (a.input) r.input = *a.input;
+  if (a.resolution) r.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 2, 65536));
+  if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
+  r.selections.labels = parse_labels("--label", a.labels);
+  if (r.selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
+  if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);
+  r.weld = parse_weld(a.weld);
+  if (!r.input) {
+    refuse_given(
+        {{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}, {r.weld.has_value(), "--weld"}},
+        r.axis, "an axis", "the image or mesh of --input");
+  }
+  r.threads = parse_threads(a.threads);
+  return r;
+}
+
+std::vector<Ball> balls_of(const MedialFile& file, const fs::path& path) {
+  if (!file.has_radii) throw FileError("'" + path.string() + "' holds no radii: take a .vtp, .ply, .ma or .npz file");
+  std::vector<Ball> balls;
+  for (const MedialVertex& vertex : file.complex.vertices) balls.push_back({vertex.position, vertex.radius});
+  if (balls.empty()) throw FileError("'" + path.string() + "' holds no vertices, and so no balls");
+  return balls;
+}
+
+void run(const Arguments& a) {
+  const Request r = parse(a);
+  std::vector<fs::path> outputs = r.is_field ? field_files(r.output) : std::vector<fs::path>{r.output};
+  std::vector<fs::path> inputs{r.axis};
+  if (r.input) inputs.push_back(*r.input);
+  {
+    std::vector<fs::path> all = outputs;
+    for (const fs::path& file : a.report.files()) all.push_back(file);
+    check_outputs(all, inputs);
+  }
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(r.threads, progress, interrupt);
+  Stopwatch watch;
+  const MedialFile file = read_medial(r.axis);
+  const std::vector<Ball> balls = balls_of(file, r.axis);
+  const Box3 box = bounds(balls);
+  const GridSpec grid = r.spacing ? grid_around_with_spacing(box, *r.spacing) : grid_around(box, r.resolution);
+  check_memory(4.0 * static_cast<double>(grid.node_count()), "a grid of " + size_text(grid) + " nodes",
+               "use a coarser grid");
+  const Field field = ball_union_field(balls, grid, context);
+  const double field_seconds = watch.lap();
+
+  TextTable table;
+  table.add("axis", r.axis.string() + ": " + counts_text(count(file.complex)));
+  table.add("grid", size_text(grid) + " nodes, spacing " + number_text(grid.spacing.x));
+  Json json = {{"blum_version", BLUM_VERSION},
+               {"command", "reconstruct"},
+               {"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}},
+               {"grid", to_json(grid)}};
+  if (r.is_field) {
+    write_field(r.output, field, {nullptr, nullptr, r.axis.filename().string(), BLUM_VERSION}, context);
+    // Nothing is beside the distances: balls are no sites.
+    outputs = {r.output};
+  } else {
+    const TriangleMesh surface = zero_surface(field, 0, context);
+    if (surface.triangles.empty()) throw FileError("the balls are smaller than the grid's spacing: use a finer grid");
+    write_mesh(r.output, surface);
+    json["surface"] = {{"vertices", surface.vertices.size()}, {"triangles", surface.triangles.size()}};
+    table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
+                             " triangles");
+  }
+  if (r.input) {
+    const SolidInput input = load_solid(*r.input, r.weld);
+    const Certificate certificate = certificate_of(file, input, r.selections.all().front(), context);
+    json["input"] = input.json;
+    json["distance"] = {{"solid_to_balls", certificate.balls.solid_to_balls},
+                        {"mean_solid_to_balls", certificate.balls.mean_solid_to_balls},
+                        {"balls_beyond_solid", certificate.balls.balls_beyond_solid},
+                        {"balls_to_surface", certificate.balls.balls_to_surface}};
+    table.add("distance", "the solid reaches at most " + number_text(certificate.balls.solid_to_balls) +
+                              " beyond the union of the balls (mean " +
+                              number_text(certificate.balls.mean_solid_to_balls) + "), whose surface is at most " +
+                              number_text(certificate.balls.balls_to_surface) + " from the solid's");
+  }
+  progress.clear();
+  json["field_seconds"] = field_seconds;
+  json["total_seconds"] = field_seconds + watch.lap();
+  json["peak_memory_bytes"] = peak_memory();
+  json["outputs"] = Json::array();
+  for (const fs::path& output : outputs) {
+    json["outputs"].push_back(output.string());
+    table.add("wrote", output.string());
+  }
+  report(a.report, json, table.text());
+}
+
+}  // namespace
+
+void add_reconstruct_command(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("reconstruct", "The union of the balls of a medial axis, as a field or a mesh");
+  command->add_option("AXIS", a->axis, "Medial axis: .vtp, .ply, .ma or .npz")->required();
+  command->add_option("-o,--output", a->output, "Field (.nrrd .npz .vti) or mesh (.obj .off .stl .ply)")
+      ->required()
+      ->type_name("FILE");
+  const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  text("--input", a->input, "FILE", "The mesh or image whose axis it is: says how far the balls are from it");
+  text("--resolution", a->resolution, "N", "Nodes along the longest side of the grid (default 256)");
+  text("--spacing", a->spacing, "H", "Distance between nodes, instead of --resolution");
+  command->add_option("--label", a->labels, "Image: the voxels of value L")->type_name("L")->allow_extra_args(false);
+  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more");
+  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
+      ->type_name("[TOL]");
+  text("--threads", a->threads, "T", "Number of threads (default: one per core)");
+  text("--json", a->report.json, "FILE", "Write a summary as JSON; - is standard output");
+  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli
