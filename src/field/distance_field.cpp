@@ -7,10 +7,10 @@
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/field/field.hpp"
+#include "blum/field/phase_timer.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/pseudonormals.hpp"
 #include "field/cpu/engine.hpp"
-#include "blum/field/phase_timer.hpp"
 #include "field/sign.hpp"
 #include "field/sign_scan.hpp"
 

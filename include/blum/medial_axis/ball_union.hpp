@@ -28,8 +28,8 @@ struct Ball {
 /// @param grid   must pass validate(grid).
 /// @return       outside of the union the distance to it; inside, negative: its magnitude is how deep the node lies in
 ///               one ball, a lower bound of the distance to the boundary of the union. Computed in double, rounded to
-///               float. Field::site is empty (its ids count no balls), and Field::sign_rule `balls`. The same bytes for any
-///               number of threads.
+///               float. Field::site is empty (its ids count no balls), and Field::sign_rule `balls`. The same bytes for
+///               any number of threads.
 /// @throws InvalidOption (also for an empty list), InvalidGrid, OutOfMemory, Cancelled.
 /// Cost: about O(nodes log(nodes)) as long as there are no more balls than nodes near each other: on one core, at 256^3
 /// nodes, 1.5 s for 40,000 balls of a curved sheet and 2 s for 300,000 balls strewn at random. In proportion to the

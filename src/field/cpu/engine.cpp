@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "blum/core/parallel.hpp"
-#include "blum/geometry/pseudonormals.hpp"
 #include "blum/field/phase_timer.hpp"
+#include "blum/geometry/pseudonormals.hpp"
 
 namespace blum::cpu {
 namespace {
