@@ -16,7 +16,7 @@ struct Symmetric {
 
 /// Eigenvectors as columns of v, eigenvalues on the diagonal of m, by Jacobi rotations.
 void diagonalise(Symmetric& m, Symmetric& v) {
-  for (int i = 0; i < 3; ++i) v.a[i][i] = 1;
+  v.a[0][0] = v.a[1][1] = v.a[2][2] = 1;
   for (int sweep = 0; sweep < 8; ++sweep) {
     for (int p = 0; p < 2; ++p) {
       for (int q = p + 1; q < 3; ++q) {
@@ -25,11 +25,11 @@ void diagonalise(Symmetric& m, Symmetric& v) {
         const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
         const double c = 1 / std::sqrt(t * t + 1);
         const double s = t * c;
-        for (int k = 0; k < 3; ++k) {
-          const double kp = m.a[k][p];
-          const double kq = m.a[k][q];
-          m.a[k][p] = c * kp - s * kq;
-          m.a[k][q] = s * kp + c * kq;
+        for (auto& row : m.a) {
+          const double kp = row[p];
+          const double kq = row[q];
+          row[p] = c * kp - s * kq;
+          row[q] = s * kp + c * kq;
         }
         for (int k = 0; k < 3; ++k) {
           const double pk = m.a[p][k];

@@ -44,52 +44,76 @@ std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTa
   return number;
 }
 
-/// Triangles turned such that neighbours agree, by walking over the edges of a closed manifold; shells keep the way
-/// that most of their triangles face. nullopt where a surface has only one side.
-std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites) {
-  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-  std::vector<std::array<std::uint32_t, 2>> of_edge(sites.edge_count(), {nobody, nobody});
-  for (std::uint32_t t = 0; t < count; ++t) {
-    for (const EdgeId edge : sites.triangle_edges()[t]) {
-      if (!edge.has_value()) continue;
-      auto& pair = of_edge[edge.value];
-      pair[pair[0] == nobody ? 0 : 1] = t;
-    }
-  }
-  const auto rises = [&](std::uint32_t t, std::uint32_t edge) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (sites.triangle_edges()[t][k].value == edge) return mesh.triangles[t][k] < mesh.triangles[t][(k + 1) % 3];
-    }
-    return false;
-  };
-  std::vector<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
-  std::vector<int> facing(count, 0);
-  std::vector<std::uint32_t> shell;
-  for (std::uint32_t first = 0; first < count; ++first) {
-    if (facing[first] != 0) continue;
-    facing[first] = 1;
-    shell.assign(1, first);
-    int sum = 0;
-    for (std::size_t next = 0; next < shell.size(); ++next) {
-      const std::uint32_t t = shell[next];
-      sum += facing[t];
+/// Turns the triangles of a closed manifold such that neighbours agree, by walking over its edges.
+class Turner {
+ public:
+  Turner(const MeshView& mesh, const SiteTable& sites)
+      : mesh_(mesh),
+        sites_(sites),
+        of_edge_(sites.edge_count(), {nobody, nobody}),
+        facing_(mesh.triangles.size(), 0),
+        triangles_(mesh.triangles.begin(), mesh.triangles.end()) {
+    for (std::uint32_t t = 0; t < facing_.size(); ++t) {
       for (const EdgeId edge : sites.triangle_edges()[t]) {
         if (!edge.has_value()) continue;
-        const auto& pair = of_edge[edge.value];
-        const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
-        if (other == nobody || other == t) continue;
-        const int wanted = rises(t, edge.value) != rises(other, edge.value) ? facing[t] : -facing[t];
-        if (facing[other] == -wanted) return std::nullopt;
-        if (facing[other] == 0) shell.push_back(other);
-        facing[other] = wanted;
+        auto& pair = of_edge_[edge.value];
+        pair[pair[0] == nobody ? 0 : 1] = t;
       }
     }
-    for (const std::uint32_t t : shell) {
-      if ((facing[t] > 0) != (sum >= 0)) std::swap(triangles[t][1], triangles[t][2]);
-    }
   }
-  return triangles;
-}
+
+  /// Shells keep the way that most of their triangles face. nullopt where a surface has only one side.
+  std::optional<std::vector<Triangle>> agreeing() {
+    for (std::uint32_t first = 0; first < facing_.size(); ++first) {
+      if (facing_[first] == 0 && !turn_shell(first)) return std::nullopt;
+    }
+    return std::move(triangles_);
+  }
+
+ private:
+  bool turn_shell(std::uint32_t first) {
+    std::vector<std::uint32_t> shell{first};
+    facing_[first] = 1;
+    int sum = 0;
+    for (std::size_t next = 0; next < shell.size(); ++next) {
+      sum += facing_[shell[next]];
+      if (!spread(shell[next], shell)) return false;
+    }
+    for (const std::uint32_t t : shell) {
+      if ((facing_[t] > 0) != (sum >= 0)) std::swap(triangles_[t][1], triangles_[t][2]);
+    }
+    return true;
+  }
+
+  /// Tells the neighbours of a triangle how they face; false where one was told otherwise.
+  bool spread(std::uint32_t t, std::vector<std::uint32_t>& shell) {
+    for (const EdgeId edge : sites_.triangle_edges()[t]) {
+      if (!edge.has_value()) continue;
+      const auto& pair = of_edge_[edge.value];
+      const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
+      if (other == nobody || other == t) continue;
+      const int wanted = rises(t, edge) != rises(other, edge) ? facing_[t] : -facing_[t];
+      if (facing_[other] == -wanted) return false;
+      if (facing_[other] == 0) shell.push_back(other);
+      facing_[other] = wanted;
+    }
+    return true;
+  }
+
+  /// Whether a triangle traverses an edge towards the larger vertex.
+  [[nodiscard]] bool rises(std::uint32_t t, EdgeId edge) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sites_.triangle_edges()[t][k] == edge) return mesh_.triangles[t][k] < mesh_.triangles[t][(k + 1) % 3];
+    }
+    return false;
+  }
+
+  const MeshView& mesh_;
+  const SiteTable& sites_;
+  std::vector<std::array<std::uint32_t, 2>> of_edge_;
+  std::vector<int> facing_;  ///< 1 or -1; 0 where it is not known
+  std::vector<Triangle> triangles_;
+};
 
 /// The body of each shell: outer shells by number, voids that of the shell around them.
 std::vector<std::uint32_t> body_of_shells(const std::vector<Shell>& shells) {
@@ -180,7 +204,7 @@ SolidBodies split_into_bodies(const MeshView& mesh, const SiteTable& sites, cons
   if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it has no interior");
   const Topology topology = blum::topology(mesh, sites, context);
   if (topology.closed && topology.inconsistent_edges > 0) {
-    if (const auto triangles = agreeing_triangles(mesh, sites)) {
+    if (const auto triangles = Turner(mesh, sites).agreeing()) {
       const MeshView turned{mesh.vertices, *triangles};
       SolidBodies out = split_into_bodies(turned, SiteTable(turned, context), context);
       out.reason += "; neighbouring triangles faced different ways and were turned";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace blum {
 namespace {
@@ -12,6 +13,28 @@ constexpr int most_steps = 64;
 
 std::int64_t blocks(std::int64_t size, std::int64_t side) {
   return (size + side - 1) / side;
+}
+
+/// Bit k of the result: whether bit 2 k or 2 k + 1 is set.
+std::uint64_t pairs(std::uint64_t word) {
+  word = (word | word >> 1U) & 0x5555555555555555U;
+  word = (word | word >> 1U) & 0x3333333333333333U;
+  word = (word | word >> 2U) & 0x0f0f0f0f0f0f0f0fU;
+  word = (word | word >> 4U) & 0x00ff00ff00ff00ffU;
+  word = (word | word >> 8U) & 0x0000ffff0000ffffU;
+  return (word | word >> 16U) & 0x00000000ffffffffU;
+}
+
+/// Adds to a row of blocks which of them hold one of a row's bits (or missing bits) of the first `length`.
+void add_pairs(std::span<const std::uint64_t> row, bool wants_missing, std::int64_t length,
+               std::span<std::uint64_t> blocks) {
+  for (std::size_t w = 0; w < row.size(); ++w) {
+    const std::int64_t left = length - 64 * static_cast<std::int64_t>(w);
+    if (left <= 0) break;
+    const std::uint64_t within = left >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
+    const std::uint64_t bits = (wants_missing ? ~row[w] : row[w]) & within;
+    blocks[w / 2] |= pairs(bits) << (32 * (w % 2));
+  }
 }
 
 }  // namespace
@@ -25,29 +48,21 @@ struct VoxelSurface::Search {
 };
 
 VoxelSurface::VoxelSurface(const VoxelSet& voxels, const GridSpec& grid) : voxels_(voxels), grid_(grid) {
-  const Place& size = voxels.size();
   do {
+    const bool is_first = levels_.empty();
+    const Place size = is_first ? voxels.size() : levels_.back().size;
     Level level;
-    level.side = levels_.empty() ? branching : branching * levels_.back().side;
-    for (std::size_t a = 0; a < 3; ++a) level.size[a] = blocks(size[a], level.side);
-    level.has_other.assign(static_cast<std::size_t>(level.size[0] * level.size[1] * level.size[2]), false);
-    levels_.push_back(std::move(level));
-  } while (std::max({levels_.back().size[0], levels_.back().size[1], levels_.back().size[2]}) > 1);
-  for (std::int64_t k = 0; k < size[2]; ++k) {
-    for (std::int64_t j = 0; j < size[1]; ++j) {
-      const auto row = voxels.row(j, k);
-      for (std::int64_t i = 0; i < size[0]; i += branching) {
-        const std::uint64_t here = row[static_cast<std::size_t>(i / 64)] >> (i % 64);
-        const std::int64_t count = std::min(branching, size[0] - i);
-        const std::uint64_t all = (std::uint64_t{1} << count) - 1;
-        if ((here & all) == all) continue;
-        for (Level& level : levels_) {
-          const std::int64_t s = level.side;
-          level.has_other[static_cast<std::size_t>((k / s * level.size[1] + j / s) * level.size[0] + i / s)] = true;
-        }
+    level.side = branching * (is_first ? 1 : levels_.back().side);
+    for (std::size_t a = 0; a < 3; ++a) level.size[a] = blocks(size[a], branching);
+    level.has_other = VoxelSet(level.size);
+    for (std::int64_t k = 0; k < size[2]; ++k) {
+      for (std::int64_t j = 0; j < size[1]; ++j) {
+        const auto from = is_first ? voxels.row(j, k) : levels_.back().has_other.row(j, k);
+        add_pairs(from, is_first, size[0], level.has_other.row(j / branching, k / branching));
       }
     }
-  }
+    levels_.push_back(std::move(level));
+  } while (std::max({levels_.back().size[0], levels_.back().size[1], levels_.back().size[2]}) > 1);
 }
 
 VoxelSurface::Place VoxelSurface::place(std::uint32_t voxel) const {
@@ -163,7 +178,8 @@ void VoxelSurface::search(Search& best, std::size_t level, const Place& block) c
                    block[2] * branching + (n >> 2)};
     if (at[0] >= limit[0] || at[1] >= limit[1] || at[2] >= limit[2]) continue;
     const auto index = static_cast<std::size_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
-    if (level == 0 ? voxels_.contains(at[0], at[1], at[2]) : !levels_[level - 1].has_other[index]) continue;
+    const VoxelSet& set = level == 0 ? voxels_ : levels_[level - 1].has_other;
+    if (set.contains(at[0], at[1], at[2]) == (level == 0)) continue;
     const Vec3d point = closest_in({at[0] * side, at[1] * side, at[2] * side}, side, best.query);
     const double squared = squared_length(best.query - point);
     if (squared > best.squared) continue;

@@ -33,7 +33,7 @@ class VoxelSurface final : public Surface {
   struct Level {
     Place size{};
     std::int64_t side = 1;  ///< voxels
-    std::vector<bool> has_other;
+    VoxelSet has_other;
   };
   struct Search;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "blum/core/exact_text.hpp"
@@ -129,7 +130,7 @@ Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& co
   options.sign = SignMode::normals;
   out.solid = solid_of(distance_field(body.mesh, voxels_around(bounds(body.mesh), spacing), options, context));
   const RepairReport repair =
-      choose_voxels(out.solid.depth.span(), body.betti, std::sqrt(3.0) * spacing, out.solid.voxels, context);
+      choose_voxels(out.solid.depth.span(), body.betti, std::numbers::sqrt3 * spacing, out.solid.voxels, context);
   BodyReport& report = out.report;
   report.solid = body.betti;
   report.voxels = repair.betti;
