@@ -9,6 +9,8 @@ namespace {
 
 /// Of the strongest direction's square.
 constexpr double weakest = 0.01;
+/// Of the squared distance from the start: what points closer together than a millionth say is rounding.
+constexpr double rounding = 1e-12;
 
 struct Symmetric {
   double a[3][3] = {};
@@ -75,7 +77,7 @@ EquidistantPoints::EquidistantPoints(std::span<const Vec3d> points, const Vec3d&
   std::sort(order.begin(), order.end(), [&](int a, int b) { return normal.a[a][a] > normal.a[b][b]; });
   for (std::size_t k = 0; k < 3; ++k) {
     const int i = order[k];
-    strengths_[k] = normal.a[i][i];
+    strengths_[k] = normal.a[i][i] > rounding * n * mean_square ? normal.a[i][i] : 0;
     const Vec3d direction{vectors.a[0][i], vectors.a[1][i], vectors.a[2][i]};
     moves_[k] =
         direction * ((direction.x * right[0] + direction.y * right[1] + direction.z * right[2]) / strengths_[k]);

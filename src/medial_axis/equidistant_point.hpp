@@ -17,7 +17,8 @@ class EquidistantPoints {
 
   /// Moved along the strongest directions only.
   /// @param rank  how many: 1, 2 or 3.
-  /// @return      nullopt where the points say less (a direction is weaker than a tenth of the strongest).
+  /// @return      nullopt where the points say less (a direction is weaker than a tenth of the strongest, or all are
+  /// one).
   [[nodiscard]] std::optional<Vec3d> of_rank(int rank) const;
 
  private:
