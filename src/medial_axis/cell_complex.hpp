@@ -36,7 +36,7 @@ inline int dimension_of(Cell cell) {
 class CellLattice {
  public:
   CellLattice() = default;
-  /// @throws InvalidImage for more cells than 32 bits count (boxes above 812^3 voxels).
+  /// @throws InvalidImage for more cells than 32 bits count (boxes above 811^3 voxels).
   explicit CellLattice(const std::array<std::int64_t, 3>& voxels);
 
   [[nodiscard]] std::size_t node_count() const { return count_; }
