@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
 
+bool names_a_vertex_twice(const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
 /// Closed shells, numbered as Topology::shells is: by their smallest triangle.
 std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites) {
   std::vector<std::uint32_t> parent(mesh.triangles.size());
@@ -21,12 +25,8 @@ std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTa
     return t;
   };
   std::vector<std::uint32_t> first(sites.edge_count(), nobody);
-  const auto is_shown = [&](std::uint32_t t) {
-    const Triangle& v = mesh.triangles[t];
-    return v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
-  };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!is_shown(t)) continue;
+    if (names_a_vertex_twice(mesh.triangles[t])) continue;
     for (const EdgeId edge : sites.triangle_edges()[t]) {
       if (first[edge.value] == nobody) first[edge.value] = t;
       const std::uint32_t a = root(first[edge.value]);
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTa
   std::vector<std::uint32_t> number(mesh.triangles.size(), nobody);
   std::uint32_t count = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!is_shown(t)) continue;
+    if (names_a_vertex_twice(mesh.triangles[t])) continue;
     const std::uint32_t r = root(t);
     number[t] = r == t ? count++ : number[r];
   }
@@ -54,8 +54,8 @@ class Turner {
         facing_(mesh.triangles.size(), 0),
         triangles_(mesh.triangles.begin(), mesh.triangles.end()) {
     for (std::uint32_t t = 0; t < facing_.size(); ++t) {
+      if (names_a_vertex_twice(mesh.triangles[t])) continue;
       for (const EdgeId edge : sites.triangle_edges()[t]) {
-        if (!edge.has_value()) continue;
         auto& pair = of_edge_[edge.value];
         pair[pair[0] == nobody ? 0 : 1] = t;
       }
@@ -65,7 +65,8 @@ class Turner {
   /// Shells keep the way that most of their triangles face. nullopt where a surface has only one side.
   std::optional<std::vector<Triangle>> agreeing() {
     for (std::uint32_t first = 0; first < facing_.size(); ++first) {
-      if (facing_[first] == 0 && !turn_shell(first)) return std::nullopt;
+      if (facing_[first] != 0 || names_a_vertex_twice(mesh_.triangles[first])) continue;
+      if (!turn_shell(first)) return std::nullopt;
     }
     return std::move(triangles_);
   }
@@ -88,7 +89,6 @@ class Turner {
   /// Tells the neighbours of a triangle how they face; false where one was told otherwise.
   bool spread(std::uint32_t t, std::vector<std::uint32_t>& shell) {
     for (const EdgeId edge : sites_.triangle_edges()[t]) {
-      if (!edge.has_value()) continue;
       const auto& pair = of_edge_[edge.value];
       const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
       if (other == nobody || other == t) continue;

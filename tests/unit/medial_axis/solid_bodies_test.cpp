@@ -1,0 +1,241 @@
+// Proves that a mesh is taken apart into the bodies that it bounds, each with its topology and facing outwards, that
+// their sites are those of the input, and that what bounds no polyhedron is said to, with the reason.
+#include "medial_axis/solid_bodies.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/random.hpp"
+#include "blum/geometry/generators.hpp"
+#include "blum/geometry/shape_catalog.hpp"
+#include "blum/geometry/topology.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+using test::box_between;
+
+SolidBodies bodies_of(const TriangleMesh& mesh) {
+  return split_into_bodies(mesh, SiteTable(mesh), {});
+}
+
+std::vector<BettiNumbers> betti_of(const SolidBodies& split) {
+  std::vector<BettiNumbers> betti;
+  for (const SolidBody& body : split.bodies) betti.push_back(body.betti);
+  return betti;
+}
+
+/// Torus, box, box in the torus's hole, and a hollow box with a box in its void.
+TriangleMesh many_bodies() {
+  TriangleMesh mesh = make_torus({.ring_segments = 16, .tube_segments = 8});
+  append(mesh, make_torus({.tube_radius = 0.1, .ring_segments = 16, .tube_segments = 8}));
+  mesh.vertices.push_back({100, 100, 100});  // named by nothing
+  append(mesh, make_box({.size = {0.2, 0.2, 0.2}}));
+  append(mesh, box_between({3, 3, 3}, {6, 6, 6}));
+  append(mesh, box_between({4, 4, 4}, {5, 5, 5}));
+  append(mesh, box_between({4.4, 4.4, 4.4}, {4.6, 4.6, 4.6}));
+  return mesh;
+}
+
+TEST(SolidBodies, OuterShellsHaveTheVoidsInThem) {
+  const SolidBodies split = bodies_of(many_bodies());
+  EXPECT_EQ(split.rule, SolidRule::polyhedron);
+  EXPECT_EQ(betti_of(split), (std::vector<BettiNumbers>{{1, 2, 1}, {1, 0, 0}, {1, 0, 1}, {1, 0, 0}}));
+  EXPECT_EQ(split.turned_shells, 2U) << "the two voids were given as boxes and tori are";
+  EXPECT_EQ(split.reason, "the mesh is closed, manifold and does not cross itself");
+}
+
+TEST(SolidBodies, ShellsInEachOtherAreBodiesInTurn) {
+  const SolidBodies split = bodies_of(make_nested_shells({.shells = 5, .frequency = 2}));
+  EXPECT_EQ(betti_of(split), (std::vector<BettiNumbers>{{1, 0, 1}, {1, 0, 1}, {1, 0, 0}}));
+  EXPECT_EQ(split.turned_shells, 0U);
+}
+
+TEST(SolidBodies, CatalogueShapesAddUpToTheirNumbers) {
+  int shapes = 0;
+  for (const ShapeInfo& shape : shape_catalog()) {
+    const ShapeParameters parameters = complete_parameters(shape, {});
+    const auto known = shape.betti(parameters);
+    if (!known || shape.name == "organic") continue;
+    const SolidBodies split = bodies_of(shape.make(parameters));
+    EXPECT_EQ(split.rule, SolidRule::polyhedron) << shape.name << ": " << split.reason;
+    BettiNumbers sum{};
+    for (const SolidBody& body : split.bodies) {
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += body.betti[k];
+    }
+    EXPECT_EQ(sum, *known) << shape.name;
+    ++shapes;
+  }
+  EXPECT_GT(shapes, 15);
+}
+
+TEST(SolidBodies, EachFacesOutwardsWhicheverWayItsShellsCame) {
+  const TriangleMesh mesh = many_bodies();
+  TriangleMesh turned = mesh;
+  turned.triangles = turned_triangles(mesh.triangles);
+  for (const TriangleMesh& input : {mesh, turned}) {
+    const SolidBodies split = bodies_of(input);
+    for (const SolidBody& body : split.bodies) {
+      const Topology facts = topology(body.mesh);
+      EXPECT_TRUE(facts.closed && facts.manifold && facts.faces_outwards);
+      EXPECT_EQ(facts.betti, body.betti);
+    }
+  }
+  EXPECT_EQ(bodies_of(turned).turned_shells, 4U) << "all but the two voids";
+}
+
+TEST(SolidBodies, TrianglesThatDisagreeAreTurned) {
+  Random random(2);
+  for (const bool has_degenerate : {false, true}) {
+    TriangleMesh mesh = many_bodies();
+    const std::vector<BettiNumbers> expected = betti_of(bodies_of(mesh));
+    for (Triangle& t : mesh.triangles) {
+      if (random.uniform() < 0.3) std::swap(t[0], t[1]);
+    }
+    if (has_degenerate) {
+      const Triangle first = mesh.triangles.front();
+      mesh.triangles.insert(mesh.triangles.begin(), {first[0], first[0], first[1]});
+      mesh.triangles.push_back({first[1], first[2], first[1]});
+    }
+    const SolidBodies split = bodies_of(mesh);
+    ASSERT_EQ(split.rule, SolidRule::polyhedron) << split.reason;
+    EXPECT_EQ(betti_of(split), expected);
+    EXPECT_TRUE(split.reason.ends_with("; neighbouring triangles faced different ways and were turned"));
+    for (const SolidBody& body : split.bodies) {
+      const Topology facts = topology(body.mesh);
+      EXPECT_TRUE(facts.closed && facts.oriented && facts.faces_outwards);
+    }
+  }
+}
+
+TEST(SolidBodies, EveryTriangleIsInOneBody) {
+  const TriangleMesh mesh = many_bodies();
+  const SolidBodies split = bodies_of(mesh);
+  std::vector<int> times(mesh.triangles.size(), 0);
+  for (const SolidBody& body : split.bodies) {
+    ASSERT_EQ(body.triangle_of.size(), body.mesh.triangles.size());
+    ASSERT_EQ(body.vertex_of.size(), body.mesh.vertices.size());
+    for (const std::uint32_t t : body.triangle_of) ++times[t];
+  }
+  EXPECT_EQ(times, std::vector<int>(mesh.triangles.size(), 1));
+}
+
+/// The positions of the vertices of a site, in an order of their own.
+std::vector<std::array<double, 3>> corners_of(const TriangleMesh& mesh, const SiteTable& sites, SiteId site) {
+  std::vector<std::array<double, 3>> corners;
+  for (const std::int32_t v : sites.vertices(site)) {
+    if (v < 0) continue;
+    const Vec3d& p = mesh.vertices[static_cast<std::size_t>(v)];
+    corners.push_back({p.x, p.y, p.z});
+  }
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+TEST(SolidBodies, SitesAreThoseOfTheInput) {
+  TriangleMesh mixed = many_bodies();  // its triangles in another order, so that bodies interleave
+  Random random(1);
+  for (std::size_t t = mixed.triangles.size(); t > 1; --t) {
+    std::swap(mixed.triangles[t - 1], mixed.triangles[random.below(t)]);
+  }
+  TriangleMesh open = make_torus({.ring_segments = 12, .tube_segments = 6});
+  open.triangles.erase(open.triangles.begin());
+  for (const TriangleMesh& mesh : {mixed, open}) {
+    const SiteTable input_sites(mesh);
+    for (const SolidBody& body : bodies_of(mesh).bodies) {
+      const SiteTable own_sites(body.mesh);
+      for (std::uint32_t own = 0; own < own_sites.size(); ++own) {
+        const SiteId input = body.input_site(SiteId(own), own_sites, input_sites);
+        ASSERT_LT(input.value, input_sites.size());
+        ASSERT_EQ(input_sites.site(input).kind, own_sites.site(SiteId(own)).kind);
+        ASSERT_EQ(corners_of(mesh, input_sites, input), corners_of(body.mesh, own_sites, SiteId(own)));
+      }
+    }
+  }
+}
+
+TEST(SolidBodies, BodiesMayTouch) {
+  TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
+  append(mesh, box_between({0, 0, 1}, {1, 1, 2}));    // a face
+  append(mesh, box_between({1, 1, 0}, {2, 2, 0.5}));  // an edge
+  append(mesh, box_between({2, 2, 0.5}, {3, 3, 3}));  // a corner
+  const SolidBodies split = bodies_of(mesh);
+  EXPECT_EQ(split.rule, SolidRule::polyhedron) << split.reason;
+  EXPECT_EQ(betti_of(split), (std::vector<BettiNumbers>(4, BettiNumbers{1, 0, 0})));
+}
+
+/// Says why a mesh bounds no polyhedron, and looks at what it is then.
+std::string obstacle_of(const TriangleMesh& mesh) {
+  const SolidBodies split = bodies_of(mesh);
+  EXPECT_EQ(split.rule, SolidRule::winding) << split.reason;
+  EXPECT_EQ(split.turned_shells, 0U);
+  EXPECT_EQ(split.bodies.size(), 1U);
+  EXPECT_EQ(split.bodies.front().mesh.triangles.size(), mesh.triangles.size());
+  const std::string before = "the mesh bounds no polyhedron: ";
+  const std::string after = "; the solid is where the winding number is above 1/2";
+  EXPECT_TRUE(split.reason.starts_with(before) && split.reason.ends_with(after)) << split.reason;
+  return split.reason.substr(before.size(), split.reason.size() - before.size() - after.size());
+}
+
+TEST(SolidBodies, AMeshThatIsOpenIsNoPolyhedron) {
+  TriangleMesh mesh = make_box({});
+  mesh.triangles.pop_back();
+  EXPECT_EQ(obstacle_of(mesh), "it is open (3 boundary edges)");
+}
+
+TEST(SolidBodies, AMeshThatIsNotManifoldIsNoPolyhedron) {
+  TriangleMesh edge;
+  edge.vertices = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}};
+  edge.triangles = {{0, 2, 1}, {0, 3, 2}, {1, 2, 3}, {0, 1, 3}, {0, 1, 4}, {0, 4, 5}, {1, 5, 4}, {0, 5, 1}};
+  EXPECT_EQ(obstacle_of(edge), "it is not manifold (1 edge)");
+  TriangleMesh vertex;
+  vertex.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  vertex.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}};
+  EXPECT_EQ(obstacle_of(vertex), "it is not manifold (1 vertex)");
+}
+
+TEST(SolidBodies, ASurfaceOfOneSideIsNoPolyhedron) {
+  TriangleMesh mesh;  // the projective plane of six vertices
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 2}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},
+                    {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}};
+  EXPECT_TRUE(obstacle_of(mesh).starts_with("its triangles do not face one way ("));
+}
+
+TEST(SolidBodies, AMeshThatCrossesItselfIsNoPolyhedron) {
+  TriangleMesh mesh = box_between({0, 0, 0}, {2, 2, 2});
+  append(mesh, box_between({1, 1, 1}, {3, 3, 3}));
+  EXPECT_EQ(obstacle_of(mesh), "it crosses itself");
+}
+
+TEST(SolidBodies, AVoidThatTouchesItsWallIsNoPolyhedron) {
+  TriangleMesh mesh = box_between({0, 0, 0}, {2, 2, 2});
+  append(mesh, box_between({0, 0.5, 0.5}, {1, 1, 1}, true));
+  EXPECT_EQ(obstacle_of(mesh), "it touches itself");
+}
+
+TEST(SolidBodies, NoTrianglesAreRefused) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}};
+  mesh.segments = {{0, 1}};
+  EXPECT_THROW((void)bodies_of(mesh), InvalidMesh);
+}
+
+TEST(SolidBodies, TrianglesThatNameAVertexTwiceAreLeftOut) {
+  TriangleMesh mesh = make_box({});
+  mesh.triangles.insert(mesh.triangles.begin(), {0, 0, 1});
+  mesh.triangles.push_back({5, 5, 5});
+  const SolidBodies split = bodies_of(mesh);
+  ASSERT_EQ(split.rule, SolidRule::polyhedron) << split.reason;
+  EXPECT_EQ(split.bodies.size(), 1U);
+  EXPECT_EQ(split.bodies[0].mesh.triangles.size(), 12U);
+}
+
+}  // namespace
+}  // namespace blum
