@@ -47,20 +47,23 @@ class Sheets {
   std::vector<std::uint32_t> parent_;
 };
 
+constexpr std::uint32_t no_sheet = 0xffffffffU;
+
 /// What is known of a vertex from its edges.
 struct Around {
   std::uint32_t rims = 0, seams = 0, curves = 0;
-  std::uint32_t sheet = 0xffffffffU;
+  std::uint32_t sheet = no_sheet;
   bool has_several_sheets = false;
 };
 
 MedialRole role_of(const Around& a) {
   if (a.curves == 0 && a.seams == 0) {
-    if (a.rims > 2 || (a.rims == 0 && a.has_several_sheets)) return MedialRole::junction;  // sheets touch here only
+    if (a.sheet == no_sheet) return MedialRole::curve;                    // a vertex alone
+    if (a.rims > 2 || a.has_several_sheets) return MedialRole::junction;  // sheets touch here only
     return a.rims > 0 ? MedialRole::rim : MedialRole::sheet;
   }
   if (a.seams == 2 && a.curves == 0) return a.rims == 0 ? MedialRole::seam : MedialRole::junction;
-  if (a.curves <= 2 && a.seams == 0 && a.rims == 0 && a.sheet == 0xffffffffU) return MedialRole::curve;
+  if (a.curves <= 2 && a.seams == 0 && a.rims == 0 && a.sheet == no_sheet) return MedialRole::curve;
   return MedialRole::junction;
 }
 
@@ -99,7 +102,7 @@ void label_sheets(MedialComplex& complex) {
   }
   for (const MedialTriangle& t : complex.triangles) {
     for (const std::uint32_t v : t.vertices) {
-      if (around[v].sheet != 0xffffffffU && around[v].sheet != t.sheet) around[v].has_several_sheets = true;
+      if (around[v].sheet != no_sheet && around[v].sheet != t.sheet) around[v].has_several_sheets = true;
       around[v].sheet = t.sheet;
     }
   }

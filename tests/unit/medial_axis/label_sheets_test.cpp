@@ -1,0 +1,147 @@
+// Proves that sheets, rims, seams, curves and junctions are told apart, on complexes made by hand.
+#include "medial_axis/label_sheets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace blum {
+namespace {
+
+using enum MedialRole;
+using Face = std::array<std::uint32_t, 3>;
+using Edge = std::array<std::uint32_t, 2>;
+
+MedialComplex labelled(std::size_t vertices, const std::vector<Face>& faces, const std::vector<Edge>& curves = {}) {
+  MedialComplex complex;
+  complex.vertices.resize(vertices);
+  for (const Face& face : faces) {
+    complex.triangles.push_back({face, static_cast<float>(10 + complex.triangles.size()), 99});
+  }
+  for (const Edge& edge : curves) complex.edges.push_back({edge, 5, curve});
+  label_sheets(complex);
+  return complex;
+}
+
+std::vector<MedialRole> roles_of(const MedialComplex& complex) {
+  std::vector<MedialRole> roles;
+  for (const MedialVertex& vertex : complex.vertices) roles.push_back(vertex.role);
+  return roles;
+}
+
+std::vector<std::uint32_t> sheets_of(const MedialComplex& complex) {
+  std::vector<std::uint32_t> sheets;
+  for (const MedialTriangle& triangle : complex.triangles) sheets.push_back(triangle.sheet);
+  return sheets;
+}
+
+/// The edges of a role, smaller vertex first.
+std::vector<Edge> edges_of(const MedialComplex& complex, MedialRole role) {
+  std::vector<Edge> edges;
+  for (const MedialEdge& edge : complex.edges) {
+    if (edge.role == role) edges.push_back(edge.vertices);
+  }
+  return edges;
+}
+
+TEST(LabelSheets, ASquareIsASheetWithARim) {
+  const MedialComplex complex = labelled(4, {{0, 1, 2}, {0, 2, 3}});
+  EXPECT_EQ(complex.sheet_count, 1U);
+  EXPECT_EQ(sheets_of(complex), (std::vector<std::uint32_t>{0, 0}));
+  EXPECT_EQ(edges_of(complex, rim), (std::vector<Edge>{{0, 1}, {0, 3}, {1, 2}, {2, 3}}));
+  EXPECT_EQ(complex.edges.size(), 4U) << "the diagonal is no edge of a role";
+  EXPECT_EQ(roles_of(complex), std::vector<MedialRole>(4, rim));
+}
+
+TEST(LabelSheets, AnInnerVertexIsInTheSheet) {
+  const MedialComplex complex = labelled(5, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
+  EXPECT_EQ(roles_of(complex), (std::vector<MedialRole>{rim, rim, rim, rim, sheet}));
+}
+
+/// Vertices 0, 1, 2 lie on the seam; three strips of two squares begin there.
+TEST(LabelSheets, ThreeSheetsMeetInASeam) {
+  std::vector<Face> faces;
+  for (const std::uint32_t first : {3U, 6U, 9U}) {
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      faces.push_back({k, k + 1, first + k});
+      faces.push_back({k + 1, first + k + 1, first + k});
+    }
+  }
+  const MedialComplex complex = labelled(12, faces);
+  EXPECT_EQ(complex.sheet_count, 3U);
+  EXPECT_EQ(sheets_of(complex), (std::vector<std::uint32_t>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
+  EXPECT_EQ(edges_of(complex, seam), (std::vector<Edge>{{0, 1}, {1, 2}}));
+  EXPECT_EQ(edges_of(complex, rim).size(), 12U);
+  std::vector<MedialRole> expected(12, rim);
+  expected[0] = expected[2] = junction;
+  expected[1] = seam;
+  EXPECT_EQ(roles_of(complex), expected);
+}
+
+TEST(LabelSheets, EdgesHaveTheLargestAngleOfTheirTriangles) {
+  const MedialComplex complex = labelled(5, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}});
+  for (const MedialEdge& edge : complex.edges) {
+    const float expected = edge.role == seam                                    ? 12
+                           : std::max(edge.vertices[0], edge.vertices[1]) == 2U ? 10
+                           : std::max(edge.vertices[0], edge.vertices[1]) == 3U ? 11
+                                                                                : 12;
+    EXPECT_EQ(edge.separation_angle, expected);
+  }
+  EXPECT_EQ(edges_of(complex, seam), (std::vector<Edge>{{0, 1}}));
+}
+
+TEST(LabelSheets, SheetsThatTouchInAVertexAreApart) {
+  const MedialComplex rims = labelled(5, {{0, 1, 2}, {0, 3, 4}});
+  EXPECT_EQ(rims.sheet_count, 2U);
+  EXPECT_EQ(roles_of(rims), (std::vector<MedialRole>{junction, rim, rim, rim, rim}));
+  // Two closed surfaces.
+  const MedialComplex closed =
+      labelled(7, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 4, 5}, {0, 4, 6}, {0, 5, 6}, {4, 5, 6}});
+  EXPECT_EQ(closed.sheet_count, 2U);
+  EXPECT_TRUE(closed.edges.empty());
+  EXPECT_EQ(roles_of(closed), (std::vector<MedialRole>{junction, sheet, sheet, sheet, sheet, sheet, sheet}));
+  // A rim that touches a closed surface.
+  const MedialComplex both = labelled(6, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 4, 5}});
+  EXPECT_EQ(roles_of(both), (std::vector<MedialRole>{junction, sheet, sheet, sheet, rim, rim}));
+}
+
+TEST(LabelSheets, ACurveEndsOnASheet) {
+  const std::vector<Face> fan{{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  const MedialComplex inside = labelled(7, fan, {{4, 5}, {5, 6}});
+  EXPECT_EQ(roles_of(inside), (std::vector<MedialRole>{rim, rim, rim, rim, junction, curve, curve}));
+  const MedialComplex at_rim = labelled(6, fan, {{5, 0}});
+  EXPECT_EQ(roles_of(at_rim), (std::vector<MedialRole>{junction, rim, rim, rim, sheet, curve}));
+  EXPECT_EQ(edges_of(at_rim, curve), (std::vector<Edge>{{5, 0}}));
+}
+
+TEST(LabelSheets, CurvesMeetInJunctions) {
+  const MedialComplex circle = labelled(3, {}, {{0, 1}, {1, 2}, {2, 0}});
+  EXPECT_EQ(roles_of(circle), std::vector<MedialRole>(3, curve));
+  EXPECT_EQ(circle.sheet_count, 0U);
+  const MedialComplex star = labelled(4, {}, {{0, 1}, {0, 2}, {3, 0}});
+  EXPECT_EQ(roles_of(star), (std::vector<MedialRole>{junction, curve, curve, curve}));
+}
+
+TEST(LabelSheets, AVertexAloneIsOnNoSheet) {
+  EXPECT_EQ(roles_of(labelled(1, {})), std::vector<MedialRole>{curve});
+}
+
+TEST(LabelSheets, ACurveThatEndsOnASeamIsAJunction) {
+  const MedialComplex complex = labelled(6, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}, {{0, 5}});
+  EXPECT_EQ(roles_of(complex), (std::vector<MedialRole>{junction, junction, rim, rim, rim, curve}));
+}
+
+TEST(LabelSheets, CountsAreThoseOfTheParts) {
+  const MedialCounts counts = count(labelled(8, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}, {{0, 5}, {5, 6}}));
+  EXPECT_EQ(counts.vertices, 8U);
+  EXPECT_EQ(counts.triangles, 3U);
+  EXPECT_EQ(counts.sheets, 3U);
+  EXPECT_EQ(counts.curve_edges, 2U);
+  EXPECT_EQ(counts.rim_edges, 6U);
+  EXPECT_EQ(counts.seam_edges, 1U);
+  EXPECT_EQ(counts.junctions, 2U);
+}
+
+}  // namespace
+}  // namespace blum
