@@ -1,0 +1,195 @@
+// Proves the order among medial axes: what a larger angle or a larger lambda keeps is part of what a smaller one keeps,
+// and the number of threads changes no byte.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "blum/geometry/generators.hpp"
+#include "blum/geometry/shape_catalog.hpp"
+#include "blum/grid/image_generators.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "support/data.hpp"
+#include "support/medial_check.hpp"
+
+namespace blum {
+namespace {
+
+using Place = std::array<double, 3>;
+
+/// Cells as sets of points: the places of their corners, in rising order.
+struct Cells {
+  std::vector<Place> vertices;
+  std::vector<std::array<Place, 2>> edges;
+  std::vector<std::array<Place, 3>> triangles;
+};
+
+template <class T>
+void sort_once(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+Cells cells_of(const MedialComplex& complex) {
+  Cells cells;
+  const auto place = [&](std::uint32_t v) {
+    const Vec3d& p = complex.vertices[v].position;
+    return Place{p.x, p.y, p.z};
+  };
+  const auto add_edge = [&](std::uint32_t a, std::uint32_t b) {
+    cells.edges.push_back({std::min(place(a), place(b)), std::max(place(a), place(b))});
+  };
+  for (std::uint32_t v = 0; v < complex.vertices.size(); ++v) cells.vertices.push_back(place(v));
+  for (const MedialEdge& edge : complex.edges) add_edge(edge.vertices[0], edge.vertices[1]);
+  for (const MedialTriangle& triangle : complex.triangles) {
+    const auto& v = triangle.vertices;
+    for (std::size_t k = 0; k < 3; ++k) add_edge(v[k], v[(k + 1) % 3]);
+    std::array<Place, 3> corners{place(v[0]), place(v[1]), place(v[2])};
+    std::sort(corners.begin(), corners.end());
+    cells.triangles.push_back(corners);
+  }
+  sort_once(cells.vertices);
+  sort_once(cells.edges);
+  sort_once(cells.triangles);
+  return cells;
+}
+
+template <class T>
+bool is_part(const std::vector<T>& small, const std::vector<T>& large) {
+  return std::includes(large.begin(), large.end(), small.begin(), small.end());
+}
+
+void expect_nested(const MedialAxis& axis) {
+  Cells larger = cells_of(axis.extract(0));
+  std::size_t steps = 0;
+  for (double theta = 5; theta <= 180; theta += 5) {
+    const Cells cells = cells_of(axis.extract(theta));
+    EXPECT_TRUE(is_part(cells.vertices, larger.vertices)) << "theta " << theta;
+    EXPECT_TRUE(is_part(cells.edges, larger.edges)) << "theta " << theta;
+    EXPECT_TRUE(is_part(cells.triangles, larger.triangles)) << "theta " << theta;
+    steps += cells.vertices.size() < larger.vertices.size() ? 1 : 0;
+    larger = cells;
+  }
+  EXPECT_GE(steps, 2U);
+}
+
+class MedialOrderOfShapes : public testing::TestWithParam<std::string> {};
+
+TEST_P(MedialOrderOfShapes, LargerAnglesKeepPartsOfWhatSmallerOnesKeep) {
+  expect_nested(medial_axis(make_shape(GetParam()), {.resolution = 64}));
+}
+INSTANTIATE_TEST_SUITE_P(Catalogue, MedialOrderOfShapes,
+                         testing::Values("box", "ellipsoid", "plate", "star", "organic", "void_cube"),
+                         [](const auto& info) { return info.param; });
+
+TEST(MedialOrder, LargerAnglesKeepPartsOfWhatSmallerOnesKeepInRealMeshes) {
+  for (const char* const name : {"meshes/fandisk.obj", "meshes/rocker-arm.obj"}) {
+    const auto file = test::data_file(name);
+    if (!file) GTEST_SKIP() << test::no_data(name);
+    expect_nested(medial_axis(read_mesh(*file), {.resolution = 96}));
+  }
+}
+
+TEST(MedialOrder, LargerAnglesKeepPartsOfWhatSmallerOnesKeepInImages) {
+  expect_nested(medial_axis(make_tube_image({.nodes = 2, .pitch = 16})));
+  expect_nested(medial_axis(make_ball_image({.size = 48, .spacing = {1, 1.5, 0.8}, .inner_radius = 0.5})));
+}
+
+void expect_same(const MedialComplex& a, const MedialComplex& b) {
+  ASSERT_EQ(a.vertices.size(), b.vertices.size());
+  ASSERT_EQ(a.edges.size(), b.edges.size());
+  ASSERT_EQ(a.triangles.size(), b.triangles.size());
+  EXPECT_EQ(a.sheet_count, b.sheet_count);
+  const auto is_same_vertex = [](const MedialVertex& v, const MedialVertex& w) {
+    return v.position == w.position && v.radius == w.radius && v.footprints == w.footprints && v.sites == w.sites &&
+           v.separation_angle == w.separation_angle && v.role == w.role;
+  };
+  const auto is_same_edge = [](const MedialEdge& e, const MedialEdge& f) {
+    return e.vertices == f.vertices && e.separation_angle == f.separation_angle && e.role == f.role;
+  };
+  const auto is_same_triangle = [](const MedialTriangle& s, const MedialTriangle& t) {
+    return s.vertices == t.vertices && s.separation_angle == t.separation_angle && s.sheet == t.sheet;
+  };
+  EXPECT_TRUE(std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), is_same_vertex));
+  EXPECT_TRUE(std::equal(a.edges.begin(), a.edges.end(), b.edges.begin(), is_same_edge));
+  EXPECT_TRUE(std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), is_same_triangle));
+}
+
+/// @param make  gives the axis, made as a context says.
+void expect_same_for_all_threads(const std::function<MedialAxis(const Context&)>& make) {
+  const MedialAxis one = make({.threads = 1});
+  for (const int threads : {2, 7}) {
+    const MedialAxis many = make({.threads = threads});
+    EXPECT_EQ(many.report().voxels, one.report().voxels);
+    for (const double theta : {0.0, 60.0}) expect_same(many.extract(theta), one.extract(theta));
+  }
+}
+
+TEST(MedialThreads, ChangeNoByteOfTheAxisOfAMesh) {
+  for (const char* const name : {"organic", "bracket", "linked_tori", "wedge"}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = make_shape(name);
+    expect_same_for_all_threads([&](const Context& context) { return medial_axis(mesh, {.resolution = 48}, context); });
+  }
+}
+
+TEST(MedialThreads, ChangeNoByteOfTheAxisOfAMeshThatIsNoPolyhedron) {
+  const TriangleMesh mesh = make_organic({.frequency = 20, .holes = 3});
+  expect_same_for_all_threads([&](const Context& context) { return medial_axis(mesh, {.resolution = 48}, context); });
+}
+
+TEST(MedialThreads, ChangeNoByteOfTheAxisOfAnImage) {
+  const VoxelImage image = make_tube_image({.nodes = 3, .pitch = 14, .spacing = {1, 1, 1.5}});
+  expect_same_for_all_threads([&](const Context& context) { return medial_axis(image, {}, context); });
+}
+
+/// Cells with a separation angle above an angle: kept for themselves, and not for the topology alone.
+MedialComplex kept_for_themselves(MedialComplex complex, double theta) {
+  std::erase_if(complex.edges, [&](const MedialEdge& e) { return !(e.separation_angle > theta); });
+  std::erase_if(complex.triangles, [&](const MedialTriangle& t) { return !(t.separation_angle > theta); });
+  return complex;
+}
+
+double footprint_distance(const MedialVertex& vertex) {
+  return length(vertex.footprints[0] - vertex.footprints[1]);
+}
+
+class MedialLambda : public testing::TestWithParam<std::string> {};
+
+TEST_P(MedialLambda, LeavesLessTheLargerItIs) {
+  const TriangleMesh mesh = make_shape(GetParam());
+  const double extent = bounds(mesh).diagonal();
+  constexpr double theta = 30;
+  MedialComplex larger = medial_axis(mesh, {.resolution = 64}).extract(theta);
+  for (const double part : {0.05, 0.1, 0.2}) {
+    SCOPED_TRACE(testing::Message() << "lambda " << part << " of the diagonal");
+    const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .lambda = part * extent});
+    const MedialComplex complex = axis.extract(theta);
+    EXPECT_LE(complex.triangles.size(), larger.triangles.size());
+    EXPECT_LE(test::furthest_from(test::shape_of(larger), test::positions(complex)), test::voxel_diagonal(axis));
+    EXPECT_TRUE(is_part(cells_of(kept_for_themselves(complex, theta)).triangles,
+                        cells_of(kept_for_themselves(larger, theta)).triangles));
+    larger = complex;
+  }
+}
+
+TEST_P(MedialLambda, KeepsPiecesWhoseFootprintsAreFurtherApart) {
+  // A corner of a triangle is within a diagonal of the point whose footprints lambda judged, and footprints that belong
+  // to one wall move no more than that where the wall is flat.
+  const TriangleMesh mesh = make_shape(GetParam());
+  const double lambda = 0.06 * bounds(mesh).diagonal();
+  const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .lambda = lambda});
+  const MedialComplex complex = kept_for_themselves(axis.extract(30), 30);
+  double least = HUGE_VAL;
+  for (const MedialTriangle& triangle : complex.triangles) {
+    double apart = 0;
+    for (const std::uint32_t v : triangle.vertices) apart = std::max(apart, footprint_distance(complex.vertices[v]));
+    least = std::min(least, apart);
+  }
+  EXPECT_GE(least, lambda - 2 * test::voxel_diagonal(axis));
+  EXPECT_FALSE(complex.triangles.empty());
+}
+INSTANTIATE_TEST_SUITE_P(Catalogue, MedialLambda, testing::Values("box", "bracket", "star"),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace blum

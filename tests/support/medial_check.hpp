@@ -1,0 +1,126 @@
+// Blum: what the tests ask of medial axes. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "blum/field/closest_points.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/medial_axis/certificate.hpp"
+#include "blum/medial_axis/medial_axis.hpp"
+
+namespace blum::test {
+
+/// From nothing left out to almost nothing kept; 90 degrees is the angle of many sheets.
+inline constexpr std::array<double, 6> angles{0, 20, 60, 90, 120, 170};
+
+/// Letters and digits, as names of tests may have.
+inline std::string test_name(std::string name) {
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return name;
+}
+
+/// Betti numbers of a complex as it is written.
+inline BettiNumbers betti_of(const MedialComplex& complex) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const MedialEdge& edge : complex.edges) edges.push_back(edge.vertices);
+  for (const MedialTriangle& triangle : complex.triangles) triangles.push_back(triangle.vertices);
+  return homology({complex.vertices.size(), edges, triangles});
+}
+
+/// At every angle.
+inline void expect_betti(const MedialAxis& axis, const BettiNumbers& betti) {
+  for (const double theta : angles) EXPECT_EQ(betti_of(axis.extract(theta)), betti) << "theta " << theta;
+}
+
+/// A mesh that was taken as a polyhedron, and whose axis has its topology.
+inline void expect_certified(const MedialAxis& axis, const BettiNumbers& betti) {
+  EXPECT_EQ(axis.report().rule, SolidRule::polyhedron) << axis.report().reason;
+  EXPECT_TRUE(axis.report().is_right);
+  EXPECT_EQ(axis.report().solid, betti);
+  EXPECT_EQ(axis.report().voxels, betti);
+  expect_betti(axis, betti);
+}
+
+/// A complex as a shape that distances can be measured to; vertices keep their order.
+inline TriangleMesh shape_of(const MedialComplex& complex) {
+  TriangleMesh mesh;
+  for (const MedialVertex& vertex : complex.vertices) {
+    mesh.points.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+    mesh.vertices.push_back(vertex.position);
+  }
+  for (const MedialEdge& edge : complex.edges) mesh.segments.push_back(edge.vertices);
+  for (const MedialTriangle& triangle : complex.triangles) mesh.triangles.push_back(triangle.vertices);
+  return mesh;
+}
+
+inline std::vector<Vec3d> positions(const MedialComplex& complex) {
+  return shape_of(complex).vertices;
+}
+
+/// The largest distance of any of some points from a shape.
+inline double furthest_from(const MeshView& shape, std::span<const Vec3d> points) {
+  double furthest = 0;
+  for (const ClosestPoint& at : closest_points(shape, points, {.sign = SignMode::none})) {
+    furthest = std::max(furthest, at.distance);
+  }
+  return furthest;
+}
+
+/// The diagonal of the largest voxel that any body was given.
+inline double voxel_diagonal(const MedialAxis& axis) {
+  double spacing = 0;
+  for (const BodyReport& body : axis.report().bodies) spacing = std::max(spacing, body.spacing);
+  return std::sqrt(3.0) * spacing;
+}
+
+/// Footprints lie on the surface, and as far from their vertex as the surface is: all within 1e-6 of the diagonal.
+inline void expect_exact_balls(const MedialComplex& complex, const MeshView& mesh) {
+  const double tolerance = 1e-6 * bounds(mesh).diagonal();
+  const std::vector<Vec3d> centres = positions(complex);
+  const ClosestPointQuery surface(mesh, {.sign = SignMode::none});
+  double radius_error = 0;
+  double off_surface = 0;
+  double footprint_error = 0;
+  for (const MedialVertex& vertex : complex.vertices) {
+    const double radius = surface.nearest(vertex.position).distance;
+    radius_error = std::max(radius_error, std::abs(vertex.radius - radius));
+    for (const Vec3d& foot : vertex.footprints) {
+      off_surface = std::max(off_surface, surface.nearest(foot).distance);
+      footprint_error = std::max(footprint_error, std::abs(length(foot - vertex.position) - radius));
+    }
+  }
+  EXPECT_LE(radius_error, tolerance);
+  EXPECT_LE(off_surface, tolerance);
+  EXPECT_LE(footprint_error, tolerance);
+}
+
+/// The matrix that turns by an angle, in degrees, around an axis.
+inline Mat3 rotation(const Vec3d& axis, double degrees) {
+  const Vec3d u = axis / length(axis);
+  const double radians = degrees * 3.14159265358979323846 / 180;
+  Mat3 turn;
+  for (Vec3d& column : turn.columns) {
+    column = column * std::cos(radians) + cross(u, column) * std::sin(radians) +
+             u * (dot(u, column) * (1 - std::cos(radians)));
+  }
+  return turn;
+}
+
+inline TriangleMesh turned(TriangleMesh mesh, const Mat3& turn) {
+  for (Vec3d& v : mesh.vertices) v = turn * v;
+  return mesh;
+}
+
+}  // namespace blum::test
