@@ -1,0 +1,144 @@
+// Proves how medial_axis() behaves as a call: options out of range are refused by name, progress rises, and a call that
+// is asked to stop does so in every phase.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <limits>
+#include <optional>
+#include <stop_token>
+#include <thread>
+
+#include "blum/geometry/generators.hpp"
+#include "blum/grid/image_generators.hpp"
+#include "support/medial_check.hpp"
+
+namespace blum {
+namespace {
+
+void expect_refused(const MedialAxisOptions& options, const std::string& name) {
+  try {
+    (void)medial_axis(make_box({}), options);
+    ADD_FAILURE() << name << " was not refused";
+  } catch (const InvalidOption& error) {
+    EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+  }
+}
+
+TEST(MedialCall, OptionsOutOfRangeAreRefusedByName) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  for (const int value : {-1, 0, 7, 801, 1 << 30}) {
+    expect_refused({.resolution = value}, "resolution");
+    expect_refused({.max_resolution = value}, "max_resolution");
+  }
+  for (const double value : {0.0, -1.0, nan, infinite, -infinite}) expect_refused({.spacing = value}, "spacing");
+  for (const double value : {-1e-9, nan, infinite}) expect_refused({.lambda = value}, "lambda");
+  expect_refused({.spacing = 1e-9}, "too small");
+}
+
+TEST(MedialCall, OptionsAreCheckedForImages) {
+  const VoxelImage image = make_ball_image({.size = 16});
+  EXPECT_THROW((void)medial_axis(image, {.lambda = -1}), InvalidOption);
+  MedialAxisOptions options;
+  options.selection = LabelSelection::at_least(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THROW((void)medial_axis(image, options), InvalidOption);
+}
+
+TEST(MedialCall, AnglesOutOfRangeAreRefused) {
+  const MedialAxis axis = medial_axis(make_box({}), {.resolution = 8});
+  for (const double theta : {-1.0, -1e-9, 180.001, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW((void)axis.extract(theta), InvalidOption) << theta;
+  }
+  EXPECT_FALSE(axis.extract(180).vertices.empty());
+}
+
+TEST(MedialCall, TheLeastAndTheMostResolutionWork) {
+  test::expect_certified(medial_axis(make_box({}), {.resolution = 8, .max_resolution = 8}), {1, 0, 0});
+  const TriangleMesh rod = make_box({.size = {1, 0.02, 0.02}});
+  test::expect_certified(medial_axis(rod, {.resolution = 800, .max_resolution = 800}), {1, 0, 0});
+  test::expect_certified(medial_axis(make_box({}), {.spacing = 10}), {1, 0, 0});
+}
+
+/// Fractions that were told, by phase, in the order that phases began.
+struct Told {
+  std::string phase;
+  std::vector<double> fractions;
+};
+
+std::vector<Told> progress_of(const MeshView& mesh, const MedialAxisOptions& options) {
+  std::vector<Told> told;
+  Context context;
+  context.progress = [&](double fraction, std::string_view phase) {
+    if (told.empty() || told.back().phase != phase) told.push_back({std::string(phase), {}});
+    told.back().fractions.push_back(fraction);
+  };
+  (void)medial_axis(mesh, options, context);
+  return told;
+}
+
+TEST(MedialCall, ProgressRisesInEveryPhase) {
+  const std::vector<Told> all = progress_of(make_organic({.frequency = 24}), {.resolution = 64});
+  EXPECT_GE(all.size(), 3U);
+  for (const Told& told : all) {
+    EXPECT_TRUE(std::is_sorted(told.fractions.begin(), told.fractions.end())) << told.phase;
+    EXPECT_GE(told.fractions.front(), 0) << told.phase;
+    EXPECT_LE(told.fractions.back(), 1) << told.phase;
+    EXPECT_FALSE(told.phase.empty());
+  }
+}
+
+using Clock = std::chrono::steady_clock;
+
+/// Seconds that a call takes to end from the moment, in seconds, at which it is asked to; nullopt where it ended
+/// before.
+std::optional<double> seconds_to_stop(const MeshView& mesh, double moment, double* whole = nullptr) {
+  std::stop_source source;
+  Clock::time_point asked = Clock::time_point::max();
+  std::jthread waiting([&](const std::stop_token& token) {
+    const auto until = Clock::now() + std::chrono::duration<double>(moment);
+    while (Clock::now() < until && !token.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    asked = Clock::now();
+    source.request_stop();
+  });
+  const auto begin = Clock::now();
+  bool is_cancelled = false;
+  try {
+    (void)medial_axis(mesh, {}, {.cancel = source.get_token()});
+  } catch (const Cancelled&) {
+    is_cancelled = true;
+  }
+  const auto end = Clock::now();
+  waiting.request_stop();
+  waiting.join();
+  if (whole != nullptr) *whole = std::chrono::duration<double>(end - begin).count();
+  if (!is_cancelled) return std::nullopt;
+  return std::chrono::duration<double>(end - asked).count();
+}
+
+TEST(SlowMedialCall, StopsSoonWheneverItIsAskedTo) {
+  // 200 ms are promised; the bound leaves room for a machine that is busy with other things.
+  constexpr double bound = 1.0;
+  const TriangleMesh mesh = make_organic({});
+  double whole = 0;
+  ASSERT_FALSE(seconds_to_stop(mesh, 1e9, &whole));
+  double longest = 0;
+  for (int k = 0; k < 16; ++k) {
+    const double moment = whole * k / 16;
+    const std::optional<double> seconds = seconds_to_stop(mesh, moment);
+    if (!seconds) continue;
+    longest = std::max(longest, *seconds);
+    EXPECT_LE(*seconds, bound) << "asked to stop after " << moment << " of " << whole << " s";
+  }
+  RecordProperty("longest_ms", static_cast<int>(1000 * longest));
+}
+
+TEST(MedialCall, ACallThatIsCancelledBeforehandDoesNothing) {
+  std::stop_source source;
+  source.request_stop();
+  const Context context{.cancel = source.get_token()};
+  EXPECT_THROW((void)medial_axis(make_box({}), {.resolution = 16}, context), Cancelled);
+  EXPECT_THROW((void)medial_axis(make_ball_image({.size = 16}), {}, context), Cancelled);
+}
+
+}  // namespace
+}  // namespace blum

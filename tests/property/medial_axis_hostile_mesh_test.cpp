@@ -1,0 +1,218 @@
+// Proves what medial_axis() does with meshes that are no clean solids: turned and nested shells, open and crossing
+// surfaces, parts thinner than a voxel, bodies that touch; and that it says no to what has no interior.
+#include <gtest/gtest.h>
+
+#include "blum/geometry/generators.hpp"
+#include "blum/geometry/shape_catalog.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "support/data.hpp"
+#include "support/medial_check.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+constexpr MedialAxisOptions coarse{.resolution = 48};
+
+TEST(MedialHostileMesh, ShapesThatFaceInwardsAreTurned) {
+  for (const char* const name : {"box", "torus", "plate", "void_cube", "linked_tori"}) {
+    SCOPED_TRACE(name);
+    TriangleMesh mesh = make_shape(name);
+    const Topology right = topology(mesh);
+    reverse_triangles(mesh);
+    const MedialAxis axis = medial_axis(mesh, coarse);
+    EXPECT_EQ(axis.report().turned_shells, right.shells.size());
+    test::expect_certified(axis, right.betti.value());
+  }
+}
+
+TEST(MedialHostileMesh, NestedShellsMayFaceEitherWay) {
+  for (const bool is_outer_turned : {false, true}) {
+    for (const bool is_void_turned : {false, true}) {
+      TriangleMesh mesh = test::box_between({-1, -1, -1}, {1, 1, 1}, is_outer_turned);
+      append(mesh, test::box_between({-0.7, -0.7, -0.7}, {0.7, 0.7, 0.7}, is_void_turned));
+      append(mesh, test::box_between({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, is_outer_turned));
+      const MedialAxis axis = medial_axis(mesh, coarse);
+      EXPECT_EQ(axis.report().turned_shells, (is_outer_turned ? 2U : 0U) + (is_void_turned ? 0U : 1U));
+      EXPECT_EQ(axis.report().bodies.size(), 2U);
+      test::expect_certified(axis, {2, 0, 1});
+    }
+  }
+}
+
+TEST(MedialHostileMesh, OpposedMotionsOfTrianglesThatTurnShellsMoveNothing) {
+  TriangleMesh mesh = make_shape("bracket");
+  const MedialComplex straight = medial_axis(mesh, coarse).extract(60);
+  reverse_triangles(mesh);
+  const MedialComplex turned = medial_axis(mesh, coarse).extract(60);
+  EXPECT_EQ(test::positions(turned), test::positions(straight));
+}
+
+/// No polyhedron: the axis has the topology of its voxels.
+void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& options) {
+  const MedialAxis axis = medial_axis(mesh, options);
+  EXPECT_EQ(axis.report().rule, SolidRule::winding);
+  EXPECT_FALSE(axis.report().reason.empty());
+  EXPECT_EQ(axis.report().solid, axis.report().voxels);
+  EXPECT_GE(axis.report().voxels[0], 1);
+  test::expect_betti(axis, axis.report().voxels);
+  test::expect_exact_balls(axis.extract(60), mesh);
+}
+
+TEST(MedialHostileMesh, OpenSurfacesAreSolidWhereTheyWindMostly) {
+  for (const int holes : {1, 6, 12}) {
+    SCOPED_TRACE(holes);
+    expect_axis_of_voxels(make_organic({.frequency = 24, .holes = holes}), coarse);
+  }
+}
+
+TEST(MedialHostileMesh, ABoxWithoutALidIsABox) {
+  TriangleMesh mesh = make_box({.size = {1, 1, 1}, .segments = {8, 8, 8}});
+  const auto is_in_lid = [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
+      const Vec3d& p = mesh.vertices[v];
+      return p.z > 0.49 && std::abs(p.x) < 0.3 && std::abs(p.y) < 0.3;
+    });
+  };
+  EXPECT_GT(std::erase_if(mesh.triangles, is_in_lid), 4U);
+  expect_axis_of_voxels(mesh, coarse);
+  EXPECT_EQ(medial_axis(mesh, coarse).report().voxels, (BettiNumbers{1, 0, 0}));
+}
+
+TEST(MedialHostileMesh, SurfacesThatCrossThemselvesAreTheUnionOfWhatTheyBound) {
+  TriangleMesh boxes = test::box_between({0, 0, 0}, {2, 1, 1});
+  append(boxes, test::box_between({1.3, 0.2, 0.2}, {3, 0.8, 1.7}));
+  expect_axis_of_voxels(boxes, coarse);
+  EXPECT_EQ(medial_axis(boxes, coarse).report().voxels, (BettiNumbers{1, 0, 0}));
+  TriangleMesh tori = make_torus();
+  append(tori, make_torus(), {1.3, 0, 0});
+  expect_axis_of_voxels(tori, coarse);
+  EXPECT_EQ(medial_axis(tori, coarse).report().voxels, (BettiNumbers{1, 3, 0}));
+}
+
+TEST(MedialHostileMesh, TrianglesThatFaceBothWaysOrRepeatAreNoPolyhedron) {
+  TriangleMesh one_turned = make_sphere({.frequency = 10});
+  std::swap(one_turned.triangles[7][0], one_turned.triangles[7][1]);
+  expect_axis_of_voxels(one_turned, coarse);
+  TriangleMesh repeated = make_box({.size = {1, 2, 1}, .segments = {4, 4, 4}});
+  repeated.triangles.push_back(repeated.triangles.front());
+  expect_axis_of_voxels(repeated, coarse);
+}
+
+class MedialHostileRealMesh : public testing::TestWithParam<std::string> {};
+
+TEST_P(MedialHostileRealMesh, HasTheAxisOfItsVoxels) {
+  const std::string name = "meshes/" + GetParam();
+  const auto file = test::data_file(name);
+  if (!file) GTEST_SKIP() << test::no_data(name);
+  expect_axis_of_voxels(read_mesh(*file), {.resolution = 64});
+}
+INSTANTIATE_TEST_SUITE_P(Data, MedialHostileRealMesh,
+                         testing::Values("stanford-bunny.obj", "featuretype.STL", "not_convex.obj", "multibody.stl"),
+                         [](const auto& info) { return test::test_name(info.param); });
+
+/// The message of the error that a call throws; empty where it throws none.
+template <class Thrown, class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+  } catch (const Thrown& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_no_interior(const MeshView& mesh, const char* why) {
+  SCOPED_TRACE(why);
+  const std::string message = message_of<InvalidMesh>([&] { (void)medial_axis(mesh, coarse); });
+  EXPECT_NE(message.find("interior"), std::string::npos) << "message: " << message;
+}
+
+TEST(MedialHostileMesh, WhatHasNoInteriorIsRefused) {
+  expect_no_interior(make_points({.points = 50}), "points");
+  expect_no_interior(make_segments({.segments = 50}), "segments");
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}}, {}, {}};
+  expect_no_interior(mesh, "one triangle");
+  mesh.triangles.push_back({1, 3, 2});
+  expect_no_interior(mesh, "a square");
+  mesh.triangles.push_back({0, 2, 1});
+  mesh.triangles.push_back({1, 2, 3});
+  expect_no_interior(mesh, "a square from both sides");
+  expect_no_interior({mesh.vertices, std::span(mesh.triangles).first(0), {}, std::array<std::uint32_t, 1>{0}},
+                     "a point");
+  mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
+  expect_no_interior(mesh, "a triangle from both sides");
+  mesh.vertices = {{2, 2, 2}, {2, 2, 2}, {2, 2, 2}, {2, 2, 2}};
+  expect_no_interior(mesh, "triangles without size");
+}
+
+TEST(MedialHostileMesh, MeshesThatAreNoneAreRefused) {
+  EXPECT_THROW((void)medial_axis(MeshView{}), InvalidMesh);
+  TriangleMesh mesh = make_box({});
+  mesh.vertices[3].y = std::nan("");
+  EXPECT_THROW((void)medial_axis(mesh), InvalidMesh);
+  mesh = make_box({});
+  mesh.triangles[5][1] = 8;
+  EXPECT_THROW((void)medial_axis(mesh), InvalidMesh);
+}
+
+TEST(MedialHostileMesh, LooseTrianglesAreRefusedOrHaveTheAxisOfTheirVoxels) {
+  const auto file = test::data_file("meshes/soup.stl");
+  if (!file) GTEST_SKIP() << test::no_data("meshes/soup.stl");
+  for (const TriangleMesh& mesh : {read_mesh(*file), make_soup({.awkward = 0.5})}) {
+    const std::string refusal = message_of<InvalidMesh>([&] { expect_axis_of_voxels(mesh, coarse); });
+    if (!refusal.empty()) {
+      EXPECT_NE(refusal.find("interior"), std::string::npos) << refusal;
+    }
+  }
+}
+
+TEST(MedialHostileMesh, PartsThinnerThanAVoxelAreKept) {
+  for (const double thickness : {0.01, 0.002, 1e-4}) {
+    for (const Mat3& turn : {Mat3{}, test::rotation({1, 2, 3}, 40)}) {
+      SCOPED_TRACE(testing::Message() << "thickness " << thickness);
+      const TriangleMesh plate = test::turned(make_box({.size = {1, 1, thickness}}), turn);
+      const TriangleMesh needle = test::turned(make_box({.size = {1, thickness, thickness}}), turn);
+      for (const TriangleMesh& mesh : {plate, needle}) {
+        const MedialAxis axis = medial_axis(mesh, coarse);
+        EXPECT_FALSE(axis.extract(60).vertices.empty());
+        test::expect_certified(axis, {1, 0, 0});
+      }
+    }
+  }
+}
+
+TEST(MedialHostileMesh, AThinPlateKeepsItsHoles) {
+  for (const double thickness : {0.02, 0.005}) {
+    SCOPED_TRACE(thickness);
+    test::expect_certified(medial_axis(make_plate({.thickness = thickness}), coarse), {1, 6, 0});
+  }
+}
+
+TEST(MedialHostileMesh, BodiesThatTouchStayApart) {
+  const TriangleMesh box = test::box_between({0, 0, 0}, {1, 1, 1});
+  for (const Vec3d& offset : {Vec3d{1, 0, 0}, Vec3d{1, 0.3, 0.2}, Vec3d{1, 1, 0}, Vec3d{1, 1, 1}, Vec3d{1.001, 0, 0}}) {
+    SCOPED_TRACE(testing::Message() << offset.x << " " << offset.y << " " << offset.z);
+    TriangleMesh mesh = box;
+    append(mesh, box, offset);
+    test::expect_certified(medial_axis(mesh, coarse), {2, 0, 0});
+  }
+}
+
+TEST(MedialHostileMesh, AVoidMayReachTheSurfaceUpToAThinWall) {
+  TriangleMesh mesh = test::box_between({0, 0, 0}, {1, 1, 1});
+  append(mesh, test::box_between({0.3, 0.3, 0.3}, {0.7, 0.7, 0.995}, true));
+  test::expect_certified(medial_axis(mesh, coarse), {1, 0, 1});
+}
+
+TEST(MedialHostileMesh, SizeAndPlaceDoNotMatter) {
+  const TriangleMesh mesh = make_shape("plate", {{"holes_x", 2}, {"holes_y", 1}});
+  for (const double scale : {1e-9, 1e6, 1e12}) {
+    SCOPED_TRACE(scale);
+    test::expect_certified(medial_axis(test::moved(mesh, scale, Vec3d{40, -70, 10} * scale), coarse), {1, 2, 0});
+  }
+}
+
+}  // namespace
+}  // namespace blum

@@ -1,0 +1,59 @@
+// Proves that noise on the surface leaves the 60 degree axis where it is: boxes and spheres whose vertices are moved by
+// up to 1 % of their size, with edges of at least eight times that, both ways within two voxels.
+#include <gtest/gtest.h>
+
+#include "blum/geometry/generators.hpp"
+#include "support/medial_check.hpp"
+
+namespace blum {
+namespace {
+
+double shortest_edge(const TriangleMesh& mesh) {
+  double shortest = HUGE_VAL;
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      shortest = std::min(shortest, length(mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]));
+    }
+  }
+  return shortest;
+}
+
+void expect_stable(const TriangleMesh& clean, double amplitude, int resolution) {
+  ASSERT_GE(shortest_edge(clean), 8 * amplitude);
+  constexpr double theta = 60;
+  const MedialAxis clean_axis = medial_axis(clean, {.resolution = resolution});
+  const TriangleMesh expected = test::shape_of(clean_axis.extract(theta));
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const TriangleMesh noisy = make_noisy(clean, amplitude, seed);
+    const MedialAxis axis = medial_axis(noisy, {.resolution = resolution});
+    test::expect_certified(axis, {1, 0, 0});
+    const MedialComplex complex = axis.extract(theta);
+    test::expect_exact_balls(complex, noisy);
+    const double bound = 2 * axis.report().bodies[0].spacing;
+    EXPECT_LE(test::furthest_from(expected, test::positions(complex)), bound) << "with noise to without";
+    EXPECT_LE(test::furthest_from(test::shape_of(complex), expected.vertices), bound) << "without noise to with";
+  }
+}
+
+TEST(MedialNoise, OnABoxMovesTheAxisByLessThanTwoVoxels) {
+  expect_stable(make_box({.size = {1, 0.7, 0.4}, .segments = {12, 8, 4}}), 0.01, 64);
+}
+
+TEST(MedialNoise, OnASphereMovesTheAxisByLessThanTwoVoxels) {
+  expect_stable(make_sphere({.frequency = 8}), 0.01, 64);
+}
+
+TEST(SlowMedialNoise, OnABoxMovesTheAxisByLessThanTwoVoxelsByDefault) {
+  // Noise of about a voxel: the axis moves with the surface.
+  const int resolution = MedialAxisOptions{}.resolution;
+  expect_stable(make_box({.size = {1, 0.7, 0.4}, .segments = {24, 16, 10}}), 1.0 / resolution, resolution);
+}
+
+TEST(SlowMedialNoise, OnASphereMovesTheAxisByLessThanTwoVoxelsByDefault) {
+  const int resolution = MedialAxisOptions{}.resolution;
+  expect_stable(make_sphere({.frequency = 14}), 2.0 / resolution, resolution);
+}
+
+}  // namespace
+}  // namespace blum
