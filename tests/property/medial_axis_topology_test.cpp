@@ -107,16 +107,22 @@ std::vector<Mat3> rotations() {
           test::rotation({1, -1, 0.3}, 163)};
 }
 
-class MedialTopologyOfAWedge : public testing::TestWithParam<int> {};
-
-TEST_P(MedialTopologyOfAWedge, OfTenDegreesIsThatOfAPointHoweverItIsTurned) {
+/// A wedge of 10 degrees, whose sharp edge is thinner than a voxel however small that is.
+void expect_wedge(int resolution) {
   const TriangleMesh wedge = make_shape("wedge", {{"angle", 10}});
-  const MedialAxisOptions options{.resolution = GetParam()};
+  const MedialAxisOptions options{.resolution = resolution};
   test::expect_certified(medial_axis(wedge, options), {1, 0, 0});
-  for (const Mat3& turn : rotations())
+  for (const Mat3& turn : rotations()) {
     test::expect_certified(medial_axis(test::turned(wedge, turn), options), {1, 0, 0});
+  }
 }
-INSTANTIATE_TEST_SUITE_P(Resolutions, MedialTopologyOfAWedge, testing::Values(64, 128, 256));
+
+TEST(MedialTopologyOfAWedge, IsThatOfAPointHoweverItIsTurned) {
+  for (const int resolution : {64, 128}) expect_wedge(resolution);
+}
+TEST(SlowMedialTopologyOfAWedge, IsThatOfAPointHoweverItIsTurnedByDefault) {
+  expect_wedge(MedialAxisOptions{}.resolution);
+}
 
 class MedialTopologyOfMovedShapes : public testing::TestWithParam<Shape> {};
 
