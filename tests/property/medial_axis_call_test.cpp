@@ -33,6 +33,7 @@ TEST(MedialCall, OptionsOutOfRangeAreRefusedByName) {
   }
   for (const double value : {0.0, -1.0, nan, infinite, -infinite}) expect_refused({.spacing = value}, "spacing");
   for (const double value : {-1e-9, nan, infinite}) expect_refused({.lambda = value}, "lambda");
+  for (const double value : {-1e-9, 180.1, nan}) expect_refused({.least_theta = value}, "least_theta");
   expect_refused({.spacing = 1e-9}, "too small");
 }
 

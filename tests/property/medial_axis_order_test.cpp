@@ -142,6 +142,20 @@ TEST(MedialThreads, ChangeNoByteOfTheAxisOfAnImage) {
   expect_same_for_all_threads([&](const Context& context) { return medial_axis(image, {}, context); });
 }
 
+TEST(MedialOrder, ALeastAngleChangesNoTopologyAndKeepsTheNesting) {
+  const TriangleMesh mesh = make_shape("bracket");
+  const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .least_theta = 60});
+  EXPECT_THROW((void)axis.extract(59), InvalidOption);
+  Cells larger = cells_of(axis.extract(60));
+  for (const double theta : {70.0, 90.0, 120.0, 170.0}) {
+    const MedialComplex complex = axis.extract(theta);
+    const Cells cells = cells_of(complex);
+    EXPECT_TRUE(is_part(cells.vertices, larger.vertices) && is_part(cells.triangles, larger.triangles)) << theta;
+    EXPECT_EQ(test::betti_of(complex), (BettiNumbers{1, 4, 0})) << theta;
+    larger = cells;
+  }
+}
+
 /// Cells with a separation angle above an angle: kept for themselves, and not for the topology alone.
 MedialComplex kept_for_themselves(MedialComplex complex, double theta) {
   std::erase_if(complex.edges, [&](const MedialEdge& e) { return !(e.separation_angle > theta); });
