@@ -56,6 +56,11 @@ class GovernorField {
 
   [[nodiscard]] const VoxelSolid& solid() const { return solid_; }
   [[nodiscard]] const Surface& surface() const { return surface_; }
+  /// The longest side of a voxel, mesh units.
+  [[nodiscard]] double longest_voxel() const {
+    const Vec3d& h = solid_.grid.spacing;
+    return std::max({h.x, h.y, h.z});
+  }
   /// The smallest side of a voxel, mesh units.
   [[nodiscard]] double voxel() const {
     const Vec3d& h = solid_.grid.spacing;

@@ -96,7 +96,7 @@ class GovernorRows {
   /// @param depth  of one of the voxels.
   [[nodiscard]] bool has_one_rough_wall(std::int64_t i, double depth) {
     // Footprints lie up to half a voxel from where they are thought to be, the node up to one from the voxel.
-    const double voxel = governors_.voxel();
+    const double voxel = governors_.longest_voxel();
     if (depth < 3 * voxel) return false;
     const double limit = std::max((floor_.voxels - 1) * voxel, chord_ * (depth - voxel) - voxel);
     const Vec3d& middle = rough(i, 7);
@@ -127,7 +127,8 @@ class Measure {
         surface_(governors.surface()),
         complex_(complex),
         floor_(floor),
-        voxel_(governors.voxel()) {}
+        voxel_(governors.voxel()),
+        step_(governors.longest_voxel()) {}
 
   using Around = GovernorsAround;
 
@@ -248,7 +249,7 @@ class Measure {
     const double angle = angle_at(x, p, q);
     if (angle < floor_.angle) return 0;
     const double apart = length(p - q);
-    if (apart < floor_.lambda || (angle < floor_.clear_angle && apart < floor_.voxels * voxel_)) return 0;
+    if (apart < floor_.lambda || (angle < floor_.clear_angle && apart < floor_.voxels * step_)) return 0;
     return angle;
   }
 
@@ -306,6 +307,7 @@ class Measure {
   const CellComplex& complex_;
   const NoiseFloor& floor_;
   double voxel_;
+  double step_;  ///< of the grid's steps along a surface
 };
 
 using Entries = std::vector<Importance::Entry>;

@@ -11,8 +11,8 @@ namespace blum {
 struct NoiseFloor {
   double angle = 10;        ///< degrees; smaller separation angles count as zero
   double clear_angle = 45;  ///< from here on, the distance of the footprints does not matter
-  double voxels = 2;        ///< footprints closer than this many voxels, at smaller angles, count as one
-  double lambda = 0;        ///< mesh units: footprints closer than this count as one at any angle
+  double voxels = 2;  ///< footprints closer than this many (long sides of) voxels, at smaller angles, count as one
+  double lambda = 0;  ///< mesh units: footprints closer than this count as one at any angle
 };
 
 /// The separation angle of each cell of a solid: the largest one at a point of the medial axis within half a voxel of

@@ -43,7 +43,6 @@ void add_pairs(std::span<const std::uint64_t> row, bool wants_missing, std::int6
 struct VoxelSurface::Search {
   Vec3d query;  ///< local
   double squared = std::numeric_limits<double>::infinity();
-  Vec3d point;  ///< local
   std::uint32_t voxel = 0;
 };
 
@@ -167,31 +166,41 @@ void VoxelSurface::search(Search& best, std::size_t level, const Place& block) c
   // Blocks of the next smaller level (voxels below the lowest) in this one, the nearest first.
   const std::int64_t side = level == 0 ? 1 : levels_[level - 1].side;
   const Place limit = level == 0 ? voxels_.size() : levels_[level - 1].size;
+  // Squared distances along each axis to the first and the second block; infinite beyond the last one.
+  std::array<std::array<double, 2>, 3> part{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double length = static_cast<double>(side) * grid_.spacing[a];
+    for (std::size_t n = 0; n < 2; ++n) {
+      const std::int64_t at = branching * block[a] + static_cast<std::int64_t>(n);
+      const double low = static_cast<double>(at) * length;
+      const double beyond = std::max({low - best.query[a], best.query[a] - low - length, 0.0});
+      part[a][n] = at < limit[a] ? beyond * beyond : std::numeric_limits<double>::infinity();
+    }
+  }
   struct Child {
     double squared;
     Place at;
   };
   std::array<Child, 8> children;
   std::size_t count = 0;
+  const VoxelSet& set = level == 0 ? voxels_ : levels_[level - 1].has_other;
   for (std::int64_t n = 0; n < 8; ++n) {
+    const double squared = part[0][static_cast<std::size_t>(n & 1)] + part[1][static_cast<std::size_t>(n >> 1 & 1)] +
+                           part[2][static_cast<std::size_t>(n >> 2)];
+    if (squared > best.squared) continue;
     const Place at{block[0] * branching + (n & 1), block[1] * branching + (n >> 1 & 1),
                    block[2] * branching + (n >> 2)};
-    if (at[0] >= limit[0] || at[1] >= limit[1] || at[2] >= limit[2]) continue;
-    const auto index = static_cast<std::size_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
-    const VoxelSet& set = level == 0 ? voxels_ : levels_[level - 1].has_other;
     if (set.contains(at[0], at[1], at[2]) == (level == 0)) continue;
-    const Vec3d point = closest_in({at[0] * side, at[1] * side, at[2] * side}, side, best.query);
-    const double squared = squared_length(best.query - point);
-    if (squared > best.squared) continue;
     if (level > 0) {
       std::size_t place = count++;
       for (; place > 0 && children[place - 1].squared > squared; --place) children[place] = children[place - 1];
       children[place] = {squared, at};
-    } else if (squared < best.squared || index < best.voxel) {
-      best.squared = squared;
-      best.point = point;
-      best.voxel = static_cast<std::uint32_t>(index);
+      continue;
     }
+    const auto voxel = static_cast<std::uint32_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
+    if (squared == best.squared && voxel >= best.voxel) continue;
+    best.squared = squared;
+    best.voxel = voxel;
   }
   for (std::size_t c = 0; c < count && children[c].squared <= best.squared; ++c) {
     search(best, level - 1, children[c].at);
@@ -203,10 +212,10 @@ SurfacePoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) co
   best.query = local(query);
   // Slightly more than what is known is enough to begin with.
   best.squared = squared_length(query - near.point) * (1 + 1e-9);
-  best.point = local(near.point);
   best.voxel = near.element;
   search(best, levels_.size() - 1, {0, 0, 0});
-  return {world(best.point), std::sqrt(squared_length(best.query - best.point)), SiteId(best.voxel), best.voxel};
+  const Vec3d point = closest_in(place(best.voxel), 1, best.query);
+  return {world(point), length(best.query - point), SiteId(best.voxel), best.voxel};
 }
 
 }  // namespace blum
