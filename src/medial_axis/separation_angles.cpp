@@ -363,7 +363,7 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
     });
   });
   const Importance squares(lattice, joined(found));
-  constexpr double worth_looking = 15;  // degrees more than the squares around have
+  constexpr double worth_looking = 5;  // degrees more than the squares around have
   for_each_layer("separation angles of edges", [&](std::size_t k) {
     for (const std::uint32_t node : uneven[k]) {
       const double known = largest_around(squares, lattice, node);
