@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 """Draws a solid, translucent, and a medial axis in it, seen from several sides, as one PNG. Needs VTK and NumPy.
 
-  medial_pictures.py MESH AXIS.npz -o OUT.png [--color radius|angle|sheet] [--views N] [--size PIXELS]
+  medial_pictures.py MESH AXIS.npz ... -o OUT.png [--color radius|angle|sheet] [--views N] [--eye X,Y,Z]
+                     [--size PIXELS]
 
-MESH is .obj, .off, .stl or .ply; AXIS.npz is what `blum medial` writes. Sheets are surfaces, curves thick lines,
-vertices of nothing else dots.
+MESH is .obj, .off, .stl or .ply; AXIS.npz is what `blum medial` writes. Several axes stand side by side, each with its
+theta, and share their colours. Sheets are surfaces, curves (and triangles without area) thick lines, vertices of
+nothing else dots.
 """
 
 import argparse
 import colorsys
+import json
 import os
 import pathlib
 import sys
@@ -23,6 +26,8 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to
 TITLES = {"radius": "Radius", "angle": "Separation angle (degrees)", "sheet": "Sheet"}
 OVERSAMPLING = 2  # pixels drawn for each one of the picture along each axis
 BAR_HEIGHT = 90  # pixels
+CAPTION_HEIGHT = 36  # pixels
+FLAT = 0.02  # twice the area by the square of the longest side, below which triangles are drawn as lines
 CURVE = 3  # the role of edges that lie on no triangle, as MedialRole counts
 # Where the eye is, as seen from the middle of the solid: the first ones show the most.
 EYES = [(1, -1.6, 0.9), (-1.6, -1, 0.7), (0, 0, 1), (0, -1, 0), (1, 0, 0), (-1, 1.6, -0.9)]
@@ -122,6 +127,7 @@ class Axis:
         self.triangles = arrays["triangles"].reshape(-1, 3).astype(np.int64)
         if "edge_role" in arrays:
             self.edges = self.edges[arrays["edge_role"] == CURVE]
+        self.edges = np.concatenate([self.edges, self.sides_of_flat_triangles()])
         used = np.zeros(len(self.vertices), dtype=bool)
         used[self.edges.ravel()] = True
         used[self.triangles.ravel()] = True
@@ -131,6 +137,17 @@ class Axis:
         if name not in arrays:
             sys.exit(f"{path}: no array {name}, which --color {color} needs")
         self.values = arrays[name].astype(float)
+        metadata = json.loads(str(arrays["metadata"])) if "metadata" in arrays else {}
+        theta = metadata.get("theta")
+        self.caption = path.stem if theta is None else f"theta {theta} degrees"
+
+    def sides_of_flat_triangles(self) -> np.ndarray:
+        """Else triangles with next to no area would not be seen."""
+        corners = self.vertices[self.triangles]
+        sides = np.roll(corners, -1, axis=1) - corners
+        double_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+        flat = self.triangles[double_area < FLAT * (sides**2).sum(axis=2).max(axis=1, initial=0)]
+        return np.concatenate([flat[:, [0, 1]], flat[:, [1, 2]], flat[:, [2, 0]]])
 
     def sheet_count(self) -> int:
         return int(self.values.max()) + 1 if len(self.values) else 0
@@ -145,11 +162,14 @@ class Axis:
             data.GetPointData().SetScalars(numpy_to_vtk(self.values, deep=True))
         return data
 
-    def table(self, color: str):
-        if color == "sheet":
-            return sheet_table(self.sheet_count())
-        low, high = (float(self.values.min()), float(self.values.max())) if len(self.values) else (0.0, 1.0)
-        return smooth_table(low, 180.0 if color == "angle" else high)
+
+def table_of(axes: list[Axis], color: str):
+    """The colours of all axes."""
+    if color == "sheet":
+        return sheet_table(max(axis.sheet_count() for axis in axes))
+    values = np.concatenate([axis.values for axis in axes])
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    return smooth_table(low if low > 0.1 * high else 0.0, 180.0 if color == "angle" else high)
 
 
 def solid_actor(mesh: vtk.vtkPolyData) -> vtk.vtkActor:
@@ -255,32 +275,65 @@ def color_bar(table, title: str) -> vtk.vtkRenderer:
     return strip
 
 
-def draw(mesh: vtk.vtkPolyData, axis: Axis, options: argparse.Namespace) -> None:
-    table = axis.table(options.color)
-    kinds = [kind for kind in ("triangles", "edges", "points") if len(getattr(axis, kind))]
-    actors = [axis_actor(axis, kind, table, options.size * OVERSAMPLING) for kind in kinds] + [solid_actor(mesh)]
-    points = np.concatenate([vtk_to_numpy(mesh.GetPoints().GetData()), axis.vertices])
+def caption(text: str) -> vtk.vtkRenderer:
+    actor = vtk.vtkTextActor()
+    actor.SetInput(text)
+    actor.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    actor.GetPositionCoordinate().SetValue(0.5, 0.25)
+    look = actor.GetTextProperty()
+    look.SetJustificationToCentered()
+    look.SetColor(0.1, 0.1, 0.1)
+    look.SetFontFamilyToArial()
+    look.SetFontSize(17 * OVERSAMPLING)
+    strip = empty_view()
+    strip.AddViewProp(actor)
+    return strip
+
+
+class Panels:
+    """Parts of a picture, each with what is drawn in it. Pixels count from the upper left corner."""
+
+    def __init__(self, width: int, height: int):
+        self.size = (width, height)
+        self.window = vtk.vtkRenderWindow()
+        self.window.SetOffScreenRendering(1)
+        self.window.SetAlphaBitPlanes(1)
+        self.window.SetMultiSamples(0)  # depth peeling, which orders what is translucent, does without
+        self.window.SetSize(width * OVERSAMPLING, height * OVERSAMPLING)
+
+    def add(self, view: vtk.vtkRenderer, left: int, top: int, width: int, height: int) -> None:
+        across, down = self.size
+        view.SetViewport(left / across, 1 - (top + height) / down, (left + width) / across, 1 - top / down)
+        self.window.AddRenderer(view)
+
+
+def draw(mesh: vtk.vtkPolyData, axes: list[Axis], options: argparse.Namespace) -> None:
+    table = table_of(axes, options.color)
+    size = options.size
+    eyes = ([options.eye] if options.eye else []) + EYES
+    points = np.concatenate([vtk_to_numpy(mesh.GetPoints().GetData())] + [axis.vertices for axis in axes])
+    has_captions = len(axes) > 1
+    # Several axes: one column for each, one row for each side. One axis: its sides, row after row.
+    columns = len(axes) if has_captions else 2 if options.views == 4 else min(options.views, 3)
+    rows = options.views if has_captions else -(-options.views // columns)
+    top = CAPTION_HEIGHT if has_captions else 0
     bar_height = 0 if options.color == "sheet" else BAR_HEIGHT  # numbers of sheets mean nothing
-    columns = 2 if options.views == 4 else min(options.views, 3)
-    rows = -(-options.views // columns)
-    height = rows * options.size + bar_height
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetAlphaBitPlanes(1)
-    window.SetMultiSamples(0)  # depth peeling, which orders what is translucent, does without
-    window.SetSize(columns * options.size * OVERSAMPLING, height * OVERSAMPLING)
+    panels = Panels(columns * size, top + rows * size + bar_height)
+    actors = []
+    for axis in axes:
+        kinds = [kind for kind in ("triangles", "edges", "points") if len(getattr(axis, kind))]
+        actors.append([axis_actor(axis, kind, table, size * OVERSAMPLING) for kind in kinds] + [solid_actor(mesh)])
     for place in range(rows * columns):
-        view = view_of(actors, EYES[place], points) if place < options.views else empty_view()
         column, row = place % columns, place // columns
-        top = 1 - row * options.size / height
-        view.SetViewport(column / columns, top - options.size / height, (column + 1) / columns, top)
-        window.AddRenderer(view)
+        which, eye = (column, row) if has_captions else (0, place)
+        view = view_of(actors[which], eyes[eye], points) if eye < options.views else empty_view()
+        panels.add(view, column * size, top + row * size, size, size)
+    for column, axis in enumerate(axes if has_captions else []):
+        panels.add(caption(axis.caption), column * size, 0, size, CAPTION_HEIGHT)
     if bar_height:
-        strip = color_bar(table, TITLES[options.color])
-        strip.SetViewport(0, 0, 1, bar_height / height)
-        window.AddRenderer(strip)
-    window.Render()
-    save(window, options.output, (columns * options.size, height))
+        panels.add(color_bar(table, TITLES[options.color]), 0, top + rows * size, columns * size, bar_height)
+    panels.window.Render()
+    save(panels.window, options.output, panels.size)
 
 
 def save(window: vtk.vtkRenderWindow, path: pathlib.Path, size: tuple[int, int]) -> None:
@@ -304,13 +357,21 @@ def save(window: vtk.vtkRenderWindow, path: pathlib.Path, size: tuple[int, int])
         sys.exit(f"{path}: cannot be written")
 
 
+def direction(text: str) -> tuple[float, ...]:
+    numbers = tuple(float(part) for part in text.split(","))
+    if len(numbers) != 3 or not any(numbers):
+        raise argparse.ArgumentTypeError("three numbers, not all 0")
+    return numbers
+
+
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Draws a solid and its medial axis, seen from several sides.")
     parser.add_argument("mesh", type=pathlib.Path, help="the solid: .obj, .off, .stl or .ply")
-    parser.add_argument("axis", type=pathlib.Path, help="its medial axis: .npz")
+    parser.add_argument("axes", type=pathlib.Path, nargs="+", metavar="AXIS", help="its medial axis, or several: .npz")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help="the picture: .png")
     parser.add_argument("--color", choices=list(TITLES), default="radius")
     parser.add_argument("--views", type=int, default=3, choices=range(1, len(EYES) + 1), help="number of sides")
+    parser.add_argument("--eye", type=direction, metavar="X,Y,Z", help="where the first view is from")
     parser.add_argument("--size", type=int, default=700, help="pixels along the sides of each view")
     options = parser.parse_args()
     if not 100 <= options.size <= 4000:
@@ -320,7 +381,7 @@ def parse() -> argparse.Namespace:
 
 def main() -> None:
     options = parse()
-    draw(read_mesh(options.mesh), Axis(options.axis, options.color), options)
+    draw(read_mesh(options.mesh), [Axis(path, options.color) for path in options.axes], options)
 
 
 if __name__ == "__main__":
