@@ -89,8 +89,8 @@ def make(picture: Picture, blum: pathlib.Path, output: pathlib.Path, folder: pat
     with Image.open(drawn) as image:
         image.convert("RGB").save(output, optimize=True)
         if output.stat().st_size > MOST_BYTES:
-            image.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-                output, optimize=True)
+            few = image.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
+            few.save(output, optimize=True)
 
 
 def main() -> None:

@@ -142,12 +142,16 @@ class Axis:
         self.caption = path.stem if theta is None else f"theta {theta} degrees"
 
     def sides_of_flat_triangles(self) -> np.ndarray:
-        """Else triangles with next to no area would not be seen."""
+        """Of those away from others: strips of triangles with next to no area would not be seen."""
         corners = self.vertices[self.triangles]
         sides = np.roll(corners, -1, axis=1) - corners
         double_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-        flat = self.triangles[double_area < FLAT * (sides**2).sum(axis=2).max(axis=1, initial=0)]
-        return np.concatenate([flat[:, [0, 1]], flat[:, [1, 2]], flat[:, [2, 0]]])
+        is_flat = double_area < FLAT * (sides**2).sum(axis=2).max(axis=1, initial=0)
+        is_seen = np.zeros(len(self.vertices), dtype=bool)
+        is_seen[self.triangles[~is_flat].ravel()] = True
+        flat = self.triangles[is_flat]
+        edges = np.concatenate([flat[:, [0, 1]], flat[:, [1, 2]], flat[:, [2, 0]]])
+        return edges[~is_seen[edges].any(axis=1)]
 
     def sheet_count(self) -> int:
         return int(self.values.max()) + 1 if len(self.values) else 0
