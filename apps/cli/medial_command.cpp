@@ -225,16 +225,13 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   run.phases.push_back({"write", watch.lap()});
   MedialFile written = read_medial(run.drafts.back().path());
   if (written.metadata.solid_rule.empty()) written.metadata = metadata;  // .obj and .ma say nothing of it
-  const bool has_geometry = written.has_radii && written.has_footprints;
   const Certificate certificate = certificate_of(written, input, selection, context);
   run.phases.push_back({"certificate", watch.lap()});
   const MedialCounts counts = count(complex);
-  axes.push_back({{"theta", theta},
-                  {"file", name.string()},
-                  {"counts", to_json(counts)},
-                  {"certificate", to_json(certificate, has_geometry)}});
+  axes.push_back(
+      {{"theta", theta}, {"file", name.string()}, {"counts", to_json(counts)}, {"certificate", to_json(certificate)}});
   run.table.add("theta " + number_text(theta), counts_text(counts));
-  add_certificate(run.table, certificate, has_geometry);
+  add_certificate(run.table, certificate);
   for (const std::string& mismatch : certificate.mismatches) {
     run.mismatches.push_back("at theta " + number_text(theta) + ": " + mismatch);
   }

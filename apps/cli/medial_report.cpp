@@ -32,36 +32,40 @@ const char* against_text(SolidRule rule) {
 
 Certificate certificate_of(const MedialFile& file, const SolidInput& input, const LabelSelection& selection,
                            const Context& context) {
-  const bool has_geometry = file.has_radii && file.has_footprints;
+  const AxisGeometry known = !file.has_radii       ? AxisGeometry::none
+                             : file.has_footprints ? AxisGeometry::footprints
+                                                   : AxisGeometry::radii;
   if (input.kind == InputKind::image) {
     const VoxelSet voxels = selected_voxels(input.image, selection, context);
-    return certify(file.complex, voxels, input.image.grid, nullptr, has_geometry, context);
+    return certify(file.complex, voxels, input.image.grid, nullptr, known, context);
   }
   const MeshView mesh = input.mesh.mesh;
   if (file.metadata.solid_rule != to_string(SolidRule::winding)) {
-    return certify(file.complex, mesh, has_geometry, context);
+    return certify(file.complex, mesh, known, context);
   }
   if (!file.metadata.grid) {
     throw FileError("the axis is that of voxels, but its file does not say which: take .vtp, .ply or .npz");
   }
   const VoxelSet voxels = voxels_inside(mesh, *file.metadata.grid, context);
-  return certify(file.complex, voxels, *file.metadata.grid, &mesh, has_geometry, context);
+  return certify(file.complex, voxels, *file.metadata.grid, &mesh, known, context);
 }
 
 Json to_json(const BettiNumbers& betti) {
   return Json::array({betti[0], betti[1], betti[2]});
 }
 
-Json to_json(const Certificate& c, bool has_geometry) {
+Json to_json(const Certificate& c) {
   Json json = {{"certified", c.holds()},        {"against", to_string(c.against)},    {"solid_betti", to_json(c.solid)},
                {"axis_betti", to_json(c.axis)}, {"topology_holds", c.topology_holds}, {"mismatches", c.mismatches}};
-  if (!has_geometry) return json;
+  if (c.checked == AxisGeometry::none) return json;
   json["geometry"] = {{"holds", c.geometry.holds},
                       {"vertices", c.geometry.vertices},
                       {"radius_error", c.geometry.radius_error},
-                      {"footprint_off_surface", c.geometry.footprint_off_surface},
-                      {"footprint_error", c.geometry.footprint_error},
                       {"tolerance", c.geometry.tolerance}};
+  if (c.checked == AxisGeometry::footprints) {
+    json["geometry"]["footprint_off_surface"] = c.geometry.footprint_off_surface;
+    json["geometry"]["footprint_error"] = c.geometry.footprint_error;
+  }
   json["balls"] = {{"solid_to_balls", c.balls.solid_to_balls},
                    {"mean_solid_to_balls", c.balls.mean_solid_to_balls},
                    {"balls_beyond_solid", c.balls.balls_beyond_solid},
@@ -91,7 +95,7 @@ std::string counts_text(const MedialCounts& counts) {
          plural(counts.junctions, "junction", "junctions");
 }
 
-void add_certificate(TextTable& table, const Certificate& c, bool has_geometry) {
+void add_certificate(TextTable& table, const Certificate& c) {
   const std::string axis = "the axis has " + betti_text(c.axis);
   if (c.holds()) {
     table.add("certified", "against " + std::string(against_text(c.against)) + ": " + axis + ", as the solid");
@@ -99,10 +103,16 @@ void add_certificate(TextTable& table, const Certificate& c, bool has_geometry) 
     table.add("NOT certified", axis + "; the solid " + betti_text(c.solid));
     for (const std::string& mismatch : c.mismatches) table.add("", mismatch);
   }
-  if (!has_geometry) return;
-  table.add("geometry", "radii off by at most " + number_text(c.geometry.radius_error) + ", footprints " +
-                            number_text(c.geometry.footprint_off_surface) + " off the surface (tolerance " +
-                            number_text(c.geometry.tolerance) + ")");
+  if (c.checked == AxisGeometry::none) {
+    table.add("geometry", "not checked: the file holds no radii");
+    return;
+  }
+  const std::string footprints =
+      c.checked == AxisGeometry::footprints
+          ? "footprints " + number_text(c.geometry.footprint_off_surface) + " off the surface"
+          : "no footprints in the file";
+  table.add("geometry", "radii off by at most " + number_text(c.geometry.radius_error) + ", " + footprints +
+                            " (tolerance " + number_text(c.geometry.tolerance) + ")");
   table.add("balls", "the solid reaches at most " + number_text(c.balls.solid_to_balls) +
                          " beyond the union of the balls (mean " + number_text(c.balls.mean_solid_to_balls) +
                          "), whose surface is at most " + number_text(c.balls.balls_to_surface) + " from the solid's");

@@ -19,12 +19,12 @@ namespace blum::cli {
                                          const LabelSelection& selection, const Context& context);
 
 [[nodiscard]] Json to_json(const BettiNumbers& betti);
-[[nodiscard]] Json to_json(const Certificate& certificate, bool has_geometry);
+[[nodiscard]] Json to_json(const Certificate& certificate);
 [[nodiscard]] Json to_json(const MedialCounts& counts);
 /// "1 component, 5 tunnels, 0 voids".
 [[nodiscard]] std::string betti_text(const BettiNumbers& betti);
 [[nodiscard]] std::string counts_text(const MedialCounts& counts);
 /// Whether it holds, against what, and how precisely.
-void add_certificate(TextTable& table, const Certificate& certificate, bool has_geometry);
+void add_certificate(TextTable& table, const Certificate& certificate);
 
 }  // namespace blum::cli

@@ -52,17 +52,16 @@ void run(const Arguments& a) {
   const Context context = make_context(parse_threads(a.threads), progress, interrupt);
   const SolidInput input = load_solid(path, parse_weld(a.weld));
   const MedialFile file = read_medial(axis_path);
-  const bool has_geometry = file.has_radii && file.has_footprints;
   const Certificate certificate = certificate_of(file, input, selections.all().front(), context);
   progress.clear();
   TextTable table;
   table.add("axis", axis_path.string() + ": " + counts_text(count(file.complex)));
-  add_certificate(table, certificate, has_geometry);
+  add_certificate(table, certificate);
   Json json = {{"blum_version", BLUM_VERSION},
                {"command", "verify"},
                {"input", input.json},
                {"axis", {{"file", axis_path.string()}, {"counts", to_json(count(file.complex))}}},
-               {"certificate", to_json(certificate, has_geometry)}};
+               {"certificate", to_json(certificate)}};
   report(a.report, json, input.text + table.text());
   if (certificate.holds()) return;
   std::string all;

@@ -90,7 +90,9 @@ def test_every_format_holds_the_axis_and_verifies(solids, axes, tmp_path, end):
     assert "certified" in out and "NOT" not in out
     certificate = run_json("verify", solids / "box.obj", output)["certificate"]
     assert certificate["certified"] and certificate["axis_betti"] == [1, 0, 0]
-    assert ("geometry" in certificate) == (end in ("vtp", "ply", "npz"))
+    geometry = certificate.get("geometry", {})
+    assert ("radius_error" in geometry) == (end != "obj") == ("not checked" not in out)
+    assert ("footprint_error" in geometry) == (end in ("vtp", "ply", "npz"))
 
 
 def test_angles_give_a_file_each_and_nested_axes(solids, tmp_path):
@@ -424,6 +426,13 @@ def test_the_topology_of_files_without_geometry_is_verified(solids, axes, tmp_pa
             lines[0] = f"{vertices} {edges} {int(triangles) - 1}"
         (tmp_path / f"hole.{end}").write_text("\n".join(lines) + "\n")
         assert "tunnel" in run("verify", solids / "box.obj", tmp_path / f"hole.{end}", status=3)[1]
+
+
+def test_radii_of_files_without_footprints_are_verified(solids, axes, tmp_path):
+    text = (axes / "box.ma").read_text()
+    (tmp_path / "false.ma").write_text(re.sub(r"^(v .* )(\S+)$", lambda m: m[1] + str(1.01 * float(m[2])), text,
+                                              count=1, flags=re.M))
+    assert "a radius differs" in run("verify", solids / "box.obj", tmp_path / "false.ma", status=3)[1]
 
 
 def test_an_axis_of_voxels_needs_a_file_that_says_which(solids, tmp_path):

@@ -63,8 +63,16 @@ struct BallUnionCheck {
   double step = 0;
 };
 
+/// What is known of the vertices of an axis besides their positions.
+enum class AxisGeometry : std::uint8_t {
+  none,       ///< only the topology is checked
+  radii,      ///< footprints are not looked at
+  footprints  ///< and radii
+};
+
 struct Certificate {
   SolidRule against = SolidRule::polyhedron;
+  AxisGeometry checked = AxisGeometry::footprints;
   BettiNumbers solid{};  ///< from its boundary, or its voxels
   BettiNumbers axis{};   ///< of the complex, by homology()
   bool topology_holds = false;
@@ -79,12 +87,12 @@ struct Certificate {
 /// construction is used: Betti numbers come from the homology of the surface and the nesting of its components by
 /// counting crossings of lines; distances from a search of its own. Shells may face either way, and touch; whether they
 /// cross each other or themselves is not looked for. Triangles that name a vertex twice are left out.
-/// @param has_geometry  whether radii and footprints are known; where they are not, only the topology is checked.
+/// @param known  what to check besides the topology.
 /// @throws InvalidMesh where the mesh is not closed and manifold, or a shell encloses nothing,
 /// or just what another one does; InvalidOption for a complex that is none (see homology()); Cancelled. Cost: on one
 /// core about 2 s for 100,000 vertices and as many triangles.
-[[nodiscard]] Certificate certify(const MedialComplex& axis, const MeshView& mesh, bool has_geometry = true,
-                                  const Context& context = {});
+[[nodiscard]] Certificate certify(const MedialComplex& axis, const MeshView& mesh,
+                                  AxisGeometry known = AxisGeometry::footprints, const Context& context = {});
 
 /// The same against voxels whose closed union is the solid: of an image, with distances to their faces; or of a mesh
 /// that is no polyhedron (SolidRule::winding), with distances to that mesh.
@@ -92,6 +100,7 @@ struct Certificate {
 /// @throws InvalidGrid, InvalidMesh, InvalidOption (also for a grid of another size than the voxels, and where there
 /// are no voxels), Cancelled.
 [[nodiscard]] Certificate certify(const MedialComplex& axis, const VoxelSet& voxels, const GridSpec& grid,
-                                  const MeshView* surface, bool has_geometry = true, const Context& context = {});
+                                  const MeshView* surface, AxisGeometry known = AxisGeometry::footprints,
+                                  const Context& context = {});
 
 }  // namespace blum

@@ -58,10 +58,12 @@ bool is_finite(const MedialVertex& vertex) {
 }
 
 /// Adds what one vertex is off by.
-void look_at(const MedialVertex& vertex, const Place& place, const Solid& solid, GeometryCheck& check) {
+void look_at(const MedialVertex& vertex, const Place& place, const Solid& solid, AxisGeometry known,
+             GeometryCheck& check) {
   check.radius_error = std::max(check.radius_error, std::abs(vertex.radius - place.distance));
   if (place.outside_by > check.tolerance) ++check.outside;
   check.outside_by = std::max(check.outside_by, place.outside_by);
+  if (known != AxisGeometry::footprints) return;
   for (const Vec3d& foot : vertex.footprints) {
     check.footprint_off_surface = std::max(check.footprint_off_surface, solid.distance(foot, place.body));
     const double distance = length(vertex.position - foot);
@@ -80,8 +82,8 @@ void merge(GeometryCheck& all, const GeometryCheck& part) {
 }
 
 /// Looks at every vertex, and tells where each lies.
-GeometryCheck check_geometry(const MedialComplex& axis, const Solid& solid, std::vector<Place>& places,
-                             const Context& context) {
+GeometryCheck check_geometry(const MedialComplex& axis, const Solid& solid, AxisGeometry known,
+                             std::vector<Place>& places, const Context& context) {
   constexpr std::size_t grain = 256;
   GeometryCheck all;
   all.tolerance = tolerance_of_diagonal * solid.diagonal();
@@ -98,7 +100,7 @@ GeometryCheck check_geometry(const MedialComplex& axis, const Solid& solid, std:
         continue;
       }
       places[v] = solid.locate(vertex.position);
-      look_at(vertex, places[v], solid, part);
+      look_at(vertex, places[v], solid, known, part);
     }
   });
   for (const GeometryCheck& part : parts) merge(all, part);
@@ -283,16 +285,17 @@ void scale_back(Certificate& certificate, double factor) {
   }
 }
 
-Certificate certify_against(const MedialComplex& axis, const verifier::KnownSolid& known, double factor,
-                            bool has_geometry, const Context& context) {
+Certificate certify_against(const MedialComplex& axis, const verifier::KnownSolid& solid, double factor,
+                            AxisGeometry known, const Context& context) {
   Certificate certificate;
-  certificate.solid = known.betti;
+  certificate.checked = known;
+  certificate.solid = solid.betti;
   certificate.axis = homology_of(axis, context);
   compare_topology(certificate);
-  if (!has_geometry) return certificate;
+  if (known == AxisGeometry::none) return certificate;
   std::vector<Place> places;
-  certificate.geometry = check_geometry(axis, *known.solid, places, context);
-  certificate.balls = check_balls(axis, *known.solid, places, context);
+  certificate.geometry = check_geometry(axis, *solid.solid, known, places, context);
+  certificate.balls = check_balls(axis, *solid.solid, places, context);
   scale_back(certificate, factor);
   explain_geometry(certificate.geometry, certificate.mismatches);
   return certificate;
@@ -300,19 +303,18 @@ Certificate certify_against(const MedialComplex& axis, const verifier::KnownSoli
 
 }  // namespace
 
-Certificate certify(const MedialComplex& axis, const MeshView& mesh, bool has_geometry, const Context& context) {
+Certificate certify(const MedialComplex& axis, const MeshView& mesh, AxisGeometry known, const Context& context) {
   validate(mesh);
   const double factor = factor_for(bounds(mesh).diagonal());
   if (factor == 1) {
-    return certify_against(axis, verifier::solid_of_mesh(mesh, context), factor, has_geometry, context);
+    return certify_against(axis, verifier::solid_of_mesh(mesh, context), factor, known, context);
   }
   const ScaledMesh own(mesh, factor);
-  return certify_against(scaled(axis, factor), verifier::solid_of_mesh(own.view, context), factor, has_geometry,
-                         context);
+  return certify_against(scaled(axis, factor), verifier::solid_of_mesh(own.view, context), factor, known, context);
 }
 
 Certificate certify(const MedialComplex& axis, const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
-                    bool has_geometry, const Context& context) {
+                    AxisGeometry known, const Context& context) {
   validate(grid);
   if (grid.size != voxels.size()) throw InvalidOption("the grid of a certificate is not that of its voxels");
   if (voxels.count() == 0) throw InvalidOption("there are no voxels, and so no solid to check an axis against");
@@ -322,10 +324,9 @@ Certificate certify(const MedialComplex& axis, const VoxelSet& voxels, const Gri
   own_grid.origin *= factor;
   own_grid.spacing *= factor;
   const ScaledMesh own(surface == nullptr ? MeshView{} : *surface, factor);
-  const verifier::KnownSolid known =
+  const verifier::KnownSolid solid =
       verifier::solid_of_voxels(voxels, own_grid, surface == nullptr ? nullptr : &own.view, context);
-  Certificate certificate =
-      certify_against(factor == 1 ? axis : scaled(axis, factor), known, factor, has_geometry, context);
+  Certificate certificate = certify_against(factor == 1 ? axis : scaled(axis, factor), solid, factor, known, context);
   certificate.against = surface == nullptr ? SolidRule::voxels : SolidRule::winding;
   return certificate;
 }

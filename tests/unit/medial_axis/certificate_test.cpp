@@ -31,7 +31,7 @@ using test::box_between;
 
 /// The Betti numbers that a certificate finds for a solid.
 BettiNumbers solid_of(const MeshView& mesh) {
-  return certify({}, mesh, false).solid;
+  return certify({}, mesh, AxisGeometry::none).solid;
 }
 
 /// Turns some of the shells of a mesh around.
@@ -144,7 +144,7 @@ TEST(SolidBetti, RealMeshes) {
 /// The message with which a mesh is refused.
 std::string refusal(const MeshView& mesh) {
   try {
-    (void)certify({}, mesh, false);
+    (void)certify({}, mesh, AxisGeometry::none);
   } catch (const InvalidMesh& error) {
     return error.what();
   }
@@ -157,7 +157,7 @@ TEST(SolidBetti, DoesNotDependOnHowTrianglesFace) {
   for (Triangle& t : torus.triangles) {
     if (random.uniform() < 0.5) std::swap(t[1], t[2]);
   }
-  EXPECT_EQ(certify({}, torus, false).solid, (BettiNumbers{1, 1, 0}));
+  EXPECT_EQ(certify({}, torus, AxisGeometry::none).solid, (BettiNumbers{1, 1, 0}));
 }
 
 TEST(SolidBetti, RefusesWhatBoundsNoSolid) {
@@ -306,7 +306,7 @@ class FalsifiedAxis : public testing::Test {
 
   void expect(const std::vector<std::string>& words) {
     for (const int threads : {1, 2, 7}) {
-      const Certificate c = certify(axis, torus, true, {.threads = threads});
+      const Certificate c = certify(axis, torus, AxisGeometry::footprints, {.threads = threads});
       EXPECT_FALSE(c.holds());
       ASSERT_EQ(c.mismatches.size(), words.size()) << complaints(c);
       for (std::size_t k = 0; k < words.size(); ++k) {
@@ -409,10 +409,19 @@ TEST_F(FalsifiedAxis, NoVertexOfThatNumber) {
 
 TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
   for (MedialVertex& vertex : axis.vertices) vertex.radius = 0;
-  const Certificate c = certify(axis, torus, false);
+  const Certificate c = certify(axis, torus, AxisGeometry::none);
   EXPECT_TRUE(c.holds()) << complaints(c);
   EXPECT_EQ(c.geometry.vertices, 0U);
   EXPECT_FALSE(c.geometry.holds);
+}
+
+TEST_F(FalsifiedAxis, RadiiWithoutFootprintsAreJudgedAlone) {
+  for (MedialVertex& vertex : axis.vertices) vertex.footprints = {};
+  const Certificate c = certify(axis, torus, AxisGeometry::radii);
+  EXPECT_TRUE(c.holds()) << complaints(c);
+  EXPECT_EQ(c.geometry.vertices, axis.vertices.size());
+  axis.vertices[5].radius *= 1.01;
+  EXPECT_FALSE(certify(axis, torus, AxisGeometry::radii).holds());
 }
 
 TEST(Certificate, SolidsOfAnySize) {
@@ -441,9 +450,9 @@ TEST(Certificate, SolidsOfAnySize) {
 TEST(Certificate, TheSameForAnyNumberOfThreads) {
   const TriangleMesh torus = make_torus({});
   const MedialComplex axis = torus_axis(torus, 300);
-  const Certificate one = certify(axis, torus, true, {.threads = 1});
+  const Certificate one = certify(axis, torus, AxisGeometry::footprints, {.threads = 1});
   for (const int threads : {2, 7}) {
-    const Certificate other = certify(axis, torus, true, {.threads = threads});
+    const Certificate other = certify(axis, torus, AxisGeometry::footprints, {.threads = threads});
     EXPECT_EQ(one.balls.mean_solid_to_balls, other.balls.mean_solid_to_balls);
     EXPECT_EQ(one.balls.solid_to_balls, other.balls.solid_to_balls);
     EXPECT_EQ(one.balls.balls_to_surface, other.balls.balls_to_surface);
@@ -456,12 +465,14 @@ TEST(Certificate, CancelStopsIt) {
   const TriangleMesh torus = make_torus({});
   std::stop_source source;
   source.request_stop();
-  EXPECT_THROW((void)certify(torus_axis(torus), torus, true, {.cancel = source.get_token()}), Cancelled);
+  EXPECT_THROW((void)certify(torus_axis(torus), torus, AxisGeometry::footprints, {.cancel = source.get_token()}),
+               Cancelled);
   const GridSpec grid{{}, {1, 1, 1}, {3, 3, 3}, {}};
   VoxelSet voxels(grid.size);
   EXPECT_THROW((void)certify({}, voxels, grid, nullptr), InvalidOption) << "no solid";
   voxels.insert(1, 1, 1);
-  EXPECT_THROW((void)certify({}, voxels, grid, nullptr, true, {.cancel = source.get_token()}), Cancelled);
+  EXPECT_THROW((void)certify({}, voxels, grid, nullptr, AxisGeometry::footprints, {.cancel = source.get_token()}),
+               Cancelled);
 }
 
 // ---- Voxels ----
@@ -589,7 +600,7 @@ TEST(CertificateSlow, ALargeAxis) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     if (fraction == 0 || fraction == 1) std::cout << phase << " " << fraction << ": " << seconds.count() << " s\n";
   };
-  const Certificate c = certify(axis, ball, true, {.threads = 1, .progress = log});
+  const Certificate c = certify(axis, ball, AxisGeometry::footprints, {.threads = 1, .progress = log});
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   std::cout << axis.vertices.size() << " vertices, " << ball.triangles.size() << " triangles: " << seconds.count()
             << " s, step " << c.balls.step << "\n";
