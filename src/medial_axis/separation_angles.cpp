@@ -249,8 +249,29 @@ class Measure {
     const double angle = angle_at(x, p, q);
     if (angle < floor_.angle) return 0;
     const double apart = length(p - q);
-    if (apart < floor_.lambda || (angle < floor_.clear_angle && apart < floor_.voxels * step_)) return 0;
-    return angle;
+    if (apart < floor_.lambda) return 0;
+    if (apart >= floor_.voxels * step_) return angle;
+    return angle < floor_.clear_angle || !is_thin_around(x) ? 0 : angle;
+  }
+
+  [[nodiscard]] bool is_thin_around(const Vec3d& x) const {
+    if (floor_.thin_within == 0) return true;
+    const GridSpec& grid = governors_.solid().grid;
+    const Vec3d at = grid.direction.transposed_times(x - grid.origin);
+    std::array<std::array<std::int64_t, 2>, 3> range{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto middle = static_cast<std::int64_t>(std::lround(at[a] / grid.spacing[a]));
+      range[a] = {std::max<std::int64_t>(middle - floor_.thin_within, 0),
+                  std::min<std::int64_t>(middle + floor_.thin_within, grid.size[a] - 1)};
+    }
+    for (std::int64_t k = range[2][0]; k <= range[2][1]; ++k) {
+      for (std::int64_t j = range[1][0]; j <= range[1][1]; ++j) {
+        for (std::int64_t i = range[0][0]; i <= range[0][1]; ++i) {
+          if (governors_.solid().depth[grid.index(i, j, k)] > floor_.voxels * step_) return false;
+        }
+      }
+    }
+    return true;
   }
 
   [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& middle) const {
@@ -363,7 +384,7 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
     });
   });
   const Importance squares(lattice, joined(found));
-  constexpr double worth_looking = 5;  // degrees more than the squares around have
+  constexpr double worth_looking = 15;  // degrees more than the squares around have
   for_each_layer("separation angles of edges", [&](std::size_t k) {
     for (const std::uint32_t node : uneven[k]) {
       const double known = largest_around(squares, lattice, node);

@@ -12,6 +12,9 @@ struct NoiseFloor {
   double angle = 10;        ///< degrees; smaller separation angles count as zero
   double clear_angle = 45;  ///< from here on, the distance of the footprints does not matter
   double voxels = 2;  ///< footprints closer than this many (long sides of) voxels, at smaller angles, count as one
+  /// Footprints closer than `voxels` count, at clear angles, only where no voxel within this many is deeper than that:
+  /// in thin parts, and not in the steps that voxels make of a round surface. 0: everywhere.
+  int thin_within = 0;
   double lambda = 0;  ///< mesh units: footprints closer than this count as one at any angle
 };
 
