@@ -13,7 +13,9 @@ namespace blum {
 namespace {
 
 constexpr std::size_t nodes_per_range = 256;
-constexpr int most_steps = 12;
+constexpr int most_steps = 24;
+/// The eight voxels around a corner see not all walls of round things: as many others may turn up.
+constexpr std::size_t most_walls = 16;
 /// How far a vertex may move from its corner along each axis, in voxels: a corner of the squares nearest to a plane is
 /// no further from it than (1 + sqrt 3) / 4.
 constexpr double most_moved = 0.7;
@@ -65,12 +67,15 @@ class Placer {
                                              const Vec3d& corner) const {
     const double voxel = governors_.voxel();
     Placed at{start, {}, {}};
+    std::array<Footprint, most_walls> walls;
+    std::size_t count = 0;
+    for (const Governor& g : around) walls[count++] = g.foot;
     for (int step = 0; step < most_steps; ++step) {
-      std::array<Footprint, 8> feet;
-      std::array<double, 8> distance{};
+      std::array<Footprint, most_walls> feet;
+      std::array<double, most_walls> distance{};
       std::size_t closest = 0;
-      for (std::size_t v = 0; v < 8; ++v) {
-        feet[v] = surface_.follow(around[v].foot, at.x, 2 * voxel);
+      for (std::size_t v = 0; v < count; ++v) {
+        feet[v] = surface_.follow(walls[v], at.x, 2 * voxel);
         distance[v] = length(at.x - feet[v].point);
         if (distance[v] < distance[closest]) closest = v;
       }
@@ -78,7 +83,7 @@ class Placer {
       const Vec3d towards = (at.x - feet[closest].point) / distance[closest];
       Vec3d move;
       double least = std::numeric_limits<double>::infinity();
-      for (std::size_t v = 0; v < 8; ++v) {
+      for (std::size_t v = 0; v < count; ++v) {
         const Vec3d slope = towards - (at.x - feet[v].point) / distance[v];
         const double squared = squared_length(slope);
         if (squared < two_walls) continue;
@@ -90,7 +95,13 @@ class Placer {
         at.q = feet[v];
       }
       if (!(least < std::numeric_limits<double>::infinity())) return std::nullopt;
-      if (least <= equal_distances * voxel) return at;
+      if (least <= equal_distances * voxel) {
+        const SurfacePoint nearest = surface_.nearest(at.x, at.p);
+        if (nearest.distance >= distance[closest] - 1e-7 * voxel) return at;
+        if (count == most_walls) return std::nullopt;
+        walls[count++] = {nearest.point, nearest.element, 7};
+        continue;
+      }
       at.x += move;
       if (!is_near(at.x, corner)) return std::nullopt;
     }

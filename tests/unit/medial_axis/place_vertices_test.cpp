@@ -101,6 +101,25 @@ TEST(PlaceVertices, VerticesStayNearTheirCorners) {
   }
 }
 
+/// The voxels around a corner see eight of the many facets of a round body: the others turn up on the way. The axis of
+/// a torus is a circle, of which few vertices are far.
+TEST(PlaceVertices, VerticesOfARoundBodySeeTwoWalls) {
+  const double h = 0.04;
+  const Sample s(make_torus({.ring_segments = 48, .tube_segments = 24}), h);
+  MedialComplex circle;
+  append_at(s.piece, 60, circle);
+  ASSERT_GT(circle.vertices.size(), 100U);
+  std::vector<double> off;
+  std::size_t one_wall = 0;
+  for (const MedialVertex& v : circle.vertices) {
+    off.push_back(std::hypot(std::hypot(v.position.x, v.position.y) - 1, v.position.z));
+    one_wall += v.separation_angle > 0 ? 0 : 1;
+  }
+  EXPECT_LT(one_wall, circle.vertices.size() / 20);
+  std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end());
+  EXPECT_LT(off[off.size() / 2], 0.15 * h);
+}
+
 /// Against the closed voxels that are not selected, one by one.
 TEST(PlaceVertices, RadiiOfImagesAreDistancesToVoxelFaces) {
   VoxelImage image = make_tube_image({.nodes = 2, .pitch = 10, .radius = 2.5, .spacing = {1, 1.25, 0.8}});
