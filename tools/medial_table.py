@@ -4,7 +4,7 @@
     tools/medial_table.py BLUM_PROGRAM [-o OUT.md] [--data FOLDER] [--resolution N] [--only SHAPE ...]
 
 OUT.md is docs/generated/medial-axes.md by default. With --data, the meshes below a folder follow those of the
-catalogue. Takes an hour on two cores; a line on standard error for each shape.
+catalogue. Takes some twenty minutes on two cores; a line on standard error for each shape.
 """
 
 import argparse
@@ -76,6 +76,10 @@ def axis_text(solid):
     return "; ".join(f"{text} at {theta:g}" for theta, text in told.items())
 
 
+def seconds(value):
+    return f"{value:.0f}" if value >= 10 else f"{value:.2g}"
+
+
 def diagonal_of(solid):
     """Of the smallest voxel."""
     body = min(solid["bodies"], key=lambda body: body["spacing"])
@@ -98,21 +102,25 @@ def row(name, summary):
     making = sum(time for phase, time in summary["seconds"].items() if phase != "certificate")
     return [name, betti(certificate["solid_betti"]), axis_text(solid), verdict, f"{counts['vertices']:,}",
             f"{counts['triangles']:,}", f"{counts['sheets']:,}",
-            f"{making:.2g} + {summary['seconds']['certificate']:.2g}", f"{error / diagonal:.0e}", f"{uncovered:.2f}"]
+            f"{seconds(making)} + {seconds(summary['seconds']['certificate'])}", f"{error / diagonal:.0e}", f"{uncovered:.2f}"]
 
 
-def machine(loads):
+def commit_now():
+    done = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True)
+    return done.stdout.strip() or "unknown"
+
+
+def machine(loads, commit):
     model = next((line.split(":")[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
                   if line.startswith("model name")), "unknown processor")
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True)
     now = datetime.datetime.now().isoformat(timespec="minutes")
     return (f"{now}, {model}, {os.cpu_count()} cores, load average {min(loads):.1f} to {max(loads):.1f} before the "
-            f"shapes, commit {commit.stdout.strip() or 'unknown'}.")
+            f"shapes, commit {commit}.")
 
 
-def page(rows, loads, resolution):
+def page(rows, loads, resolution, commit):
     lines = ["# Certificates of medial axes", "",
-             "Written by tools/medial_table.py; do not edit.", "", machine(loads), "",
+             "Written by tools/medial_table.py; do not edit.", "", machine(loads, commit), "",
              f"Every shape of `blum make --list` with its defaults, `blum medial --resolution {resolution} --theta "
              f"{','.join(map(str, THETAS))}`; images at their own resolution. One certificate for each theta.", "",
              "- *solid*, *axis*: Betti numbers (components, tunnels, voids); of the axis as the files hold it, one "
@@ -149,7 +157,7 @@ def parse():
 def main():
     options = parse()
     blum = options.blum.resolve()
-    rows, loads = [], []
+    rows, loads, commit = [], [], commit_now()
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         inputs = [(name, lambda name=name, kind=kind: made(blum, name, kind, folder))
@@ -160,7 +168,7 @@ def main():
             loads.append(os.getloadavg()[0])
             rows.append(row(name, measure(blum, path(), options.resolution, folder)))
             print(" | ".join(rows[-1]), file=sys.stderr, flush=True)
-    options.output.write_text(page(rows, loads, options.resolution))
+    options.output.write_text(page(rows, loads, options.resolution, commit))
     return 0 if all(not cells[3].startswith("NO") for cells in rows) else 1
 
 
