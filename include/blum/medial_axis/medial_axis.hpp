@@ -103,7 +103,7 @@ class MedialAxis {
 /// turned, and so are shells that face the solid. For other meshes the solid is where the winding number is above 1/2
 /// (SolidRule::winding).
 ///
-/// Vertices lie on the bisector of two parts of the surface where there are two, within half a voxel of a corner of the
+/// Vertices lie on the bisector of two parts of the surface where there are two, within 0.7 voxels of a corner of the
 /// voxel lattice; their radius is the exact distance to the surface (1e-9 of the extent).
 ///
 /// @param mesh  must pass validate(mesh); segments and points are ignored.
