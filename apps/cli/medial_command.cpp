@@ -11,6 +11,7 @@
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/certificate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
+#include "blum/medial_axis/prune_sheets.hpp"
 #include "commands.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
@@ -36,7 +37,7 @@ Exit status 3: the axis could not be certified, and no file was written.)";
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> resolution, spacing, theta, lambda, threshold, max_resolution, weld, threads;
+  std::optional<std::string> resolution, spacing, theta, lambda, prune, threshold, max_resolution, weld, threads;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
   ReportOptions report;
@@ -46,7 +47,8 @@ struct Request {
   fs::path input;
   fs::path output;
   MedialAxisOptions options;
-  std::vector<double> thetas{60};
+  std::vector<double> thetas{60};  ///< rising where sheets are pruned
+  bool prunes_sheets = false;
   Selections selections;
   std::optional<double> weld;
   bool allow_uncertified = false;
@@ -83,7 +85,10 @@ Request parse(const Arguments& a) {
     r.options.max_resolution = static_cast<int>(parse_integer("--max-resolution", *a.max_resolution, 8, 800));
   }
   if (a.theta) r.thetas = parse_thetas(*a.theta);
-  r.options.least_theta = *std::min_element(r.thetas.begin(), r.thetas.end());
+  if (a.prune) r.prunes_sheets = parse_choice<bool>("--prune", *a.prune, {{"sheets", true}});
+  if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
+  // Sheets are pruned whole, so they must be whole first.
+  r.options.least_theta = r.prunes_sheets ? 0 : *std::min_element(r.thetas.begin(), r.thetas.end());
   if (a.lambda) r.options.lambda = parse_non_negative("--lambda", *a.lambda);
   r.selections.labels = parse_labels("--label", a.labels);
   if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);
@@ -206,11 +211,9 @@ void add_report(Run& run, const MedialAxisReport& report, Json& json) {
 
 /// Writes, reads again and certifies an axis at one angle.
 void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
-              const MedialAxis& axis, double theta, const fs::path& name, Json& axes, const Context& context) {
+              const MedialAxisReport& report, const MedialComplex& complex, double theta, const fs::path& name,
+              Json& axes, const Context& context) {
   Stopwatch watch;
-  const MedialComplex complex = axis.extract(theta);
-  run.phases.push_back({"extract", watch.lap()});
-  const MedialAxisReport& report = axis.report();
   MedialMetadata metadata;
   metadata.source = r.input.filename().string();
   metadata.version = BLUM_VERSION;
@@ -253,9 +256,16 @@ void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelS
   add_report(run, report, json);
   for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
   Json axes = Json::array();
+  MedialComplex whole;
+  if (r.prunes_sheets) whole = axis.extract(0);
   for (const double theta : r.thetas) {
     const fs::path name = r.thetas.size() == 1 ? output : with_theta(output, theta);
-    add_axis(run, r, input, selection, axis, theta, name, axes, context);
+    Stopwatch watch;
+    // From one angle to the next, so that what is left is nested.
+    if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
+    const MedialComplex cut = r.prunes_sheets ? MedialComplex{} : axis.extract(theta);
+    run.phases.push_back({"extract", watch.lap()});
+    add_axis(run, r, input, selection, report, r.prunes_sheets ? whole : cut, theta, name, axes, context);
   }
   json["axes"] = axes;
   run.solids.push_back(json);
@@ -304,6 +314,7 @@ void finish(const Request& r, Run& run, const SolidInput& input, bool is_certifi
                      {"certified", is_certified},
                      {"mismatches", run.mismatches},
                      {"lambda", r.options.lambda},
+                     {"prune", r.prunes_sheets ? Json("sheets") : Json(nullptr)},
                      {"solids", run.solids},
                      {"seconds", seconds},
                      {"total_seconds", total},
@@ -366,6 +377,7 @@ void add_medial_command(CLI::App& app) {
        "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) are "
        "nested");
   text("--lambda", a->lambda, "L", "Leave out where footprints are closer than L, mesh units (default 0)");
+  text("--prune", a->prune, "sheets", "Drop whole sheets of at most --theta instead of cutting them there");
   text("--resolution", a->resolution, "N", "Mesh: voxels along its longest side (default 256)");
   text("--spacing", a->spacing, "H", "Mesh: side of a voxel, instead of --resolution");
   text("--max-resolution", a->max_resolution, "N",

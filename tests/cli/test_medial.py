@@ -1,5 +1,5 @@
-# Proves that `blum medial` and `blum verify` do what their help says: every format, angles and labels, exit status and
-# message, nothing written that is not certified, and falsified axes found out.
+# Proves that `blum medial`, `blum verify` and `blum reconstruct` do what their help says: every format, angles and
+# labels, exit status and message, nothing written that is not certified, and falsified axes found out.
 import json
 import re
 import signal
@@ -139,7 +139,7 @@ def test_lambda_leaves_out_what_is_thin(solids, axes, tmp_path):
 
 def test_summary_has_its_keys(solids, tmp_path):
     summary = run_json("medial", solids / "torus.obj", "-o", tmp_path / "t.vtp", "--spacing", 0.08, "--threads", 2)
-    assert {"blum_version", "command", "input", "certified", "mismatches", "lambda", "solids", "seconds",
+    assert {"blum_version", "command", "input", "certified", "mismatches", "lambda", "prune", "solids", "seconds",
             "total_seconds", "peak_memory_bytes", "threads", "thread_backend", "warnings", "outputs"} == set(summary)
     assert (summary["command"], summary["certified"], summary["threads"]) == ("medial", True, 2)
     assert summary["mismatches"] == [] and summary["warnings"] == [] and summary["lambda"] == 0
@@ -449,3 +449,35 @@ def test_files_that_are_no_axis_are_refused(solids, axes, tmp_path):
     arrays["radius"][3] = np.nan
     np.savez(tmp_path / "nan.npz", **arrays)
     assert "vertex 3" in run("verify", solids / "box.obj", tmp_path / "nan.npz", status=1)[1]
+
+
+def test_pruned_sheets_are_certified_nested_and_no_smaller_than_cut_ones(solids, tmp_path):
+    for way, options in (("whole", ["--prune", "sheets"]), ("cut", [])):
+        run("medial", solids / "plate.obj", "-o", tmp_path / f"{way}.npz", "--theta", "120,60", "--resolution", 48,
+            *options)
+    sizes = {path.name: len(np.load(path)["triangles"]) for path in tmp_path.iterdir()}
+    assert sizes["whole-theta120.npz"] <= sizes["whole-theta60.npz"]
+    assert sizes["whole-theta120.npz"] >= sizes["cut-theta120.npz"]
+    assert sizes["cut-theta120.npz"] > 0
+    _, error = run("medial", solids / "box.obj", "-o", tmp_path / "x.vtp", "--prune", "leaves", status=2)
+    assert "must be sheets" in error
+
+
+def test_balls_of_an_axis_become_a_field_and_a_mesh_near_the_solid(solids, axes, tmp_path):
+    summary = run_json("reconstruct", axes / "box.vtp", "-o", tmp_path / "box.ply", "--input", solids / "box.obj",
+                       "--resolution", 40)  # finer grids see between the balls
+    assert summary["surface"]["triangles"] > 1000
+    distance = summary["distance"]
+    assert 0 < distance["mean_solid_to_balls"] < distance["solid_to_balls"] < 0.1, "voxels are 1/16 long"
+    assert abs(distance["balls_beyond_solid"]) < 1e-9
+    assert run_json("info", tmp_path / "box.ply")["betti"] == [1, 0, 0]
+    run("reconstruct", axes / "box.ma", "-o", tmp_path / "box.npz", "--resolution", 40)
+    field = np.load(tmp_path / "box.npz")["distance"]
+    assert max(field.shape) == 40
+    assert field.min() < -0.4 and field[0, 0, 0] > 0, "negative in the balls, of which the largest has radius 1/2"
+
+
+def test_reconstruct_refuses_what_has_no_balls(solids, axes, tmp_path):
+    assert "AXIS" in run("reconstruct", axes / "box.obj", "-o", tmp_path / "x.ply", status=2)[1]
+    assert "--output" in run("reconstruct", axes / "box.vtp", "-o", tmp_path / "x.png", status=2)[1]
+    assert names(tmp_path) == []

@@ -1,0 +1,21 @@
+// Blum: medial axes simplified sheet by sheet. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
+#include "blum/medial_axis/medial_complex.hpp"
+
+namespace blum {
+
+/// Drops whole sheets whose separation angle, the largest of their triangles', is at most theta; the smallest first. A
+/// sheet goes only where elementary collapses from its rim consume it, so that the homotopy type stays; sheets that
+/// others kept from going are tried again when these are gone. Curves of at most theta go from their free ends. Where
+/// MedialAxis::extract() cuts sheets apart at theta, this keeps each as it is or drops it.
+/// @param axis   as extract() gives it, at a small theta: sheets are taken as they are labelled.
+/// @param theta  degrees, 0 to 180.
+/// @return       part of the axis, labelled anew; what a larger theta leaves of the result is part of it.
+/// @throws InvalidOption, Cancelled.
+/// Cost: O(n log n), more where many sheets are tried in vain. Method: Sud 2006, 5.6.
+[[nodiscard]] MedialComplex prune_sheets(const MedialComplex& axis, double theta, const Context& context = {});
+
+}  // namespace blum
