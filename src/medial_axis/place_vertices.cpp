@@ -29,6 +29,7 @@ struct Placed {
   Vec3d x;
   Footprint p;
   Footprint q;
+  SurfacePoint nearest;  ///< to x
 };
 
 class Placer {
@@ -66,7 +67,7 @@ class Placer {
   [[nodiscard]] std::optional<Placed> settle(const GovernorsAround& around, const Vec3d& start,
                                              const Vec3d& corner) const {
     const double voxel = governors_.voxel();
-    Placed at{start, {}, {}};
+    Placed at{start, {}, {}, {}};
     std::array<Footprint, most_walls> walls;
     std::size_t count = 0;
     for (const Governor& g : around) walls[count++] = g.foot;
@@ -96,10 +97,10 @@ class Placer {
       }
       if (!(least < std::numeric_limits<double>::infinity())) return std::nullopt;
       if (least <= equal_distances * voxel) {
-        const SurfacePoint nearest = surface_.nearest(at.x, at.p);
-        if (nearest.distance >= distance[closest] - 1e-7 * voxel) return at;
+        at.nearest = surface_.nearest(at.x, at.p);
+        if (at.nearest.distance >= distance[closest] - 1e-7 * voxel) return at;
         if (count == most_walls) return std::nullopt;
-        walls[count++] = {nearest.point, nearest.element, 7};
+        walls[count++] = {at.nearest.point, at.nearest.element, 7};
         continue;
       }
       at.x += move;
@@ -119,7 +120,7 @@ class Placer {
   [[nodiscard]] std::optional<MedialVertex> vertex_at(const std::optional<Placed>& placed,
                                                       const GovernorsAround& around) const {
     if (!placed) return std::nullopt;
-    MedialVertex vertex = one_wall(placed->x, placed->p);
+    MedialVertex vertex = one_wall(placed->x, placed->nearest);
     if (!is_inside(around, vertex.position, vertex.radius)) return std::nullopt;
     const double limit = vertex.radius + 1e-6 * governors_.voxel() + 1e-9 * vertex.radius;
     for (const Footprint& foot : {placed->p, placed->q}) {
@@ -134,7 +135,9 @@ class Placer {
   }
 
   [[nodiscard]] MedialVertex one_wall(const Vec3d& x, const Footprint& near) const {
-    const SurfacePoint nearest = surface_.nearest(x, near);
+    return one_wall(x, surface_.nearest(x, near));
+  }
+  [[nodiscard]] static MedialVertex one_wall(const Vec3d& x, const SurfacePoint& nearest) {
     MedialVertex vertex;
     vertex.position = x;
     vertex.radius = nearest.distance;

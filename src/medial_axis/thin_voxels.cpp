@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -121,7 +122,8 @@ class Thinner {
         lattice_(lattice),
         importance_(importance),
         context_(context),
-        depth_(depth_of(solid)),
+        own_depth_(is_depth_enough(solid, context) ? Buffer<float>() : depth_of(solid)),
+        depth_(own_depth_.empty() ? solid.depth.span() : own_depth_.span()),
         step_(std::min({solid.grid.spacing.x, solid.grid.spacing.y, solid.grid.spacing.z}) / 16) {
     for (std::size_t n = 0; n < 27; ++n) {
       const auto at = static_cast<std::int64_t>(n);
@@ -160,6 +162,26 @@ class Thinner {
   }
 
  private:
+  /// Whether the depths are above zero for the voxels of the solid, and only for these: unless the topology asked for
+  /// other voxels than those whose centre is inside.
+  static bool is_depth_enough(const VoxelSolid& solid, const Context& context) {
+    const auto layers = static_cast<std::size_t>(solid.grid.size[2]);
+    std::vector<std::uint8_t> is_enough(layers, 1);
+    parallel_for(context, layers, 1, "", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        std::size_t at = solid.grid.index(0, 0, static_cast<std::int64_t>(k));
+        for (std::int64_t j = 0; j < solid.grid.size[1]; ++j) {
+          const auto row = solid.voxels.row(j, static_cast<std::int64_t>(k));
+          for (std::int64_t i = 0; i < solid.grid.size[0]; ++i, ++at) {
+            const bool is_in = (row[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1U) != 0;
+            if (is_in != (solid.depth[at] > 0)) is_enough[k] = 0;
+          }
+        }
+      }
+    });
+    return std::all_of(is_enough.begin(), is_enough.end(), [](std::uint8_t is) { return is != 0; });
+  }
+
   /// Depths that are above zero for the voxels of the solid, and only for these.
   static Buffer<float> depth_of(const VoxelSolid& solid) {
     Buffer<float> depth = solid.depth.clone();
@@ -271,7 +293,8 @@ class Thinner {
   const CellLattice& lattice_;
   const Importance& importance_;
   const Context& context_;
-  Buffer<float> depth_;
+  Buffer<float> own_depth_;
+  std::span<const float> depth_;
   double step_;
   std::array<std::int64_t, 27> offset_{};
   VoxelSet is_in_line_;

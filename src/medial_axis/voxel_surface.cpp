@@ -1,6 +1,7 @@
 #include "medial_axis/voxel_surface.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -15,25 +16,16 @@ std::int64_t blocks(std::int64_t size, std::int64_t side) {
   return (size + side - 1) / side;
 }
 
-/// Bit k of the result: whether bit 2 k or 2 k + 1 is set.
-std::uint64_t pairs(std::uint64_t word) {
-  word = (word | word >> 1U) & 0x5555555555555555U;
-  word = (word | word >> 1U) & 0x3333333333333333U;
-  word = (word | word >> 2U) & 0x0f0f0f0f0f0f0f0fU;
-  word = (word | word >> 4U) & 0x00ff00ff00ff00ffU;
-  word = (word | word >> 8U) & 0x0000ffff0000ffffU;
-  return (word | word >> 16U) & 0x00000000ffffffffU;
-}
-
-/// Adds to a row of blocks which of them hold one of a row's bits (or missing bits) of the first `length`.
-void add_pairs(std::span<const std::uint64_t> row, bool wants_missing, std::int64_t length,
-               std::span<std::uint64_t> blocks) {
+/// Adds to a row of blocks which voxels of a row are missing: two to each, from bit `shift` on.
+void add_missing(std::span<const std::uint64_t> row, std::int64_t length, unsigned shift, std::uint8_t* blocks) {
   for (std::size_t w = 0; w < row.size(); ++w) {
     const std::int64_t left = length - 64 * static_cast<std::int64_t>(w);
     if (left <= 0) break;
     const std::uint64_t within = left >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
-    const std::uint64_t bits = (wants_missing ? ~row[w] : row[w]) & within;
-    blocks[w / 2] |= pairs(bits) << (32 * (w % 2));
+    std::uint64_t missing = ~row[w] & within;
+    for (std::uint8_t* block = blocks + 32 * w; missing != 0; missing >>= 2U, ++block) {
+      *block |= static_cast<std::uint8_t>((missing & 3U) << shift);
+    }
   }
 }
 
@@ -47,21 +39,28 @@ struct VoxelSurface::Search {
 };
 
 VoxelSurface::VoxelSurface(const VoxelSet& voxels, const GridSpec& grid) : voxels_(voxels), grid_(grid) {
+  Place size = voxels.size();
   do {
-    const bool is_first = levels_.empty();
-    const Place size = is_first ? voxels.size() : levels_.back().size;
     Level level;
-    level.side = branching * (is_first ? 1 : levels_.back().side);
     for (std::size_t a = 0; a < 3; ++a) level.size[a] = blocks(size[a], branching);
-    level.has_other = VoxelSet(level.size);
+    level.parts.assign(static_cast<std::size_t>(level.size[0] * level.size[1] * level.size[2]), 0);
     for (std::int64_t k = 0; k < size[2]; ++k) {
       for (std::int64_t j = 0; j < size[1]; ++j) {
-        const auto from = is_first ? voxels.row(j, k) : levels_.back().has_other.row(j, k);
-        add_pairs(from, is_first, size[0], level.has_other.row(j / branching, k / branching));
+        std::uint8_t* blocks = level.parts.data() + level.index({0, j / branching, k / branching});
+        const auto shift = static_cast<unsigned>(2 * (j & 1) + 4 * (k & 1));
+        if (levels_.empty()) {
+          add_missing(voxels.row(j, k), size[0], shift, blocks);
+          continue;
+        }
+        const std::uint8_t* from = levels_.back().parts.data() + levels_.back().index({0, j, k});
+        for (std::int64_t i = 0; i < size[0]; ++i) {
+          if (from[i] != 0) blocks[i / 2] |= static_cast<std::uint8_t>(1U << (shift + (i & 1)));
+        }
       }
     }
+    size = level.size;
     levels_.push_back(std::move(level));
-  } while (std::max({levels_.back().size[0], levels_.back().size[1], levels_.back().size[2]}) > 1);
+  } while (std::max({size[0], size[1], size[2]}) > 1);
 }
 
 VoxelSurface::Place VoxelSurface::place(std::uint32_t voxel) const {
@@ -163,48 +162,44 @@ int VoxelSurface::closer_neighbour(const Place& voxel, const Vec3d& query, doubl
 }
 
 void VoxelSurface::search(Search& best, std::size_t level, const Place& block) const {
-  // Blocks of the next smaller level (voxels below the lowest) in this one, the nearest first.
-  const std::int64_t side = level == 0 ? 1 : levels_[level - 1].side;
-  const Place limit = level == 0 ? voxels_.size() : levels_[level - 1].size;
-  // Squared distances along each axis to the first and the second block; infinite beyond the last one.
-  std::array<std::array<double, 2>, 3> part{};
+  unsigned parts = levels_[level].parts[levels_[level].index(block)];
+  // Squared distances along each axis to the first and the second part.
+  const auto side = static_cast<double>(std::int64_t{1} << level);
+  std::array<std::array<double, 2>, 3> squares{};
   for (std::size_t a = 0; a < 3; ++a) {
-    const double length = static_cast<double>(side) * grid_.spacing[a];
-    for (std::size_t n = 0; n < 2; ++n) {
-      const std::int64_t at = branching * block[a] + static_cast<std::int64_t>(n);
-      const double low = static_cast<double>(at) * length;
-      const double beyond = std::max({low - best.query[a], best.query[a] - low - length, 0.0});
-      part[a][n] = at < limit[a] ? beyond * beyond : std::numeric_limits<double>::infinity();
-    }
+    const double length = side * grid_.spacing[a];
+    const double middle = static_cast<double>(branching * block[a] + 1) * length;
+    const double past = best.query[a] - middle;
+    const double first = std::max({past, -past - length, 0.0});
+    const double second = std::max({-past, past - length, 0.0});
+    squares[a] = {first * first, second * second};
   }
-  struct Child {
+  struct Part {
     double squared;
     Place at;
   };
-  std::array<Child, 8> children;
+  std::array<Part, 8> nearer;
   std::size_t count = 0;
-  const VoxelSet& set = level == 0 ? voxels_ : levels_[level - 1].has_other;
-  for (std::int64_t n = 0; n < 8; ++n) {
-    const double squared = part[0][static_cast<std::size_t>(n & 1)] + part[1][static_cast<std::size_t>(n >> 1 & 1)] +
-                           part[2][static_cast<std::size_t>(n >> 2)];
+  for (; parts != 0; parts &= parts - 1) {
+    const auto n = static_cast<std::size_t>(std::countr_zero(parts));
+    const double squared = squares[0][n & 1U] + squares[1][n >> 1U & 1U] + squares[2][n >> 2U];
     if (squared > best.squared) continue;
-    const Place at{block[0] * branching + (n & 1), block[1] * branching + (n >> 1 & 1),
-                   block[2] * branching + (n >> 2)};
-    if (set.contains(at[0], at[1], at[2]) == (level == 0)) continue;
+    const auto bit = static_cast<std::int64_t>(n);
+    const Place at{branching * block[0] + (bit & 1), branching * block[1] + (bit >> 1 & 1),
+                   branching * block[2] + (bit >> 2)};
     if (level > 0) {
       std::size_t place = count++;
-      for (; place > 0 && children[place - 1].squared > squared; --place) children[place] = children[place - 1];
-      children[place] = {squared, at};
+      for (; place > 0 && nearer[place - 1].squared > squared; --place) nearer[place] = nearer[place - 1];
+      nearer[place] = {squared, at};
       continue;
     }
-    const auto voxel = static_cast<std::uint32_t>((at[2] * limit[1] + at[1]) * limit[0] + at[0]);
+    const Place& size = voxels_.size();
+    const auto voxel = static_cast<std::uint32_t>((at[2] * size[1] + at[1]) * size[0] + at[0]);
     if (squared == best.squared && voxel >= best.voxel) continue;
     best.squared = squared;
     best.voxel = voxel;
   }
-  for (std::size_t c = 0; c < count && children[c].squared <= best.squared; ++c) {
-    search(best, level - 1, children[c].at);
-  }
+  for (std::size_t p = 0; p < count && nearer[p].squared <= best.squared; ++p) search(best, level - 1, nearer[p].at);
 }
 
 SurfacePoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) const {

@@ -29,11 +29,14 @@ class VoxelSurface final : public Surface {
 
  private:
   using Place = std::array<std::int64_t, 3>;
-  /// Blocks of voxels, twice as long on a side as those of the level before: whether a voxel in it is not in the set.
+  /// Blocks of voxels, twice as long on a side as those of the level before: which of the eight blocks (or voxels, at
+  /// the lowest level) in each hold voxels that are not in the set. Bit 0 of a bit's number tells the side along x.
   struct Level {
     Place size{};
-    std::int64_t side = 1;  ///< voxels
-    VoxelSet has_other;
+    std::vector<std::uint8_t> parts;
+    [[nodiscard]] std::size_t index(const Place& at) const {
+      return static_cast<std::size_t>((at[2] * size[1] + at[1]) * size[0] + at[0]);
+    }
   };
   struct Search;
 
@@ -49,7 +52,7 @@ class VoxelSurface final : public Surface {
 
   const VoxelSet& voxels_;
   GridSpec grid_;
-  std::vector<Level> levels_;  ///< from single voxels (not stored) upwards; index 0 is blocks of 2
+  std::vector<Level> levels_;  ///< index 0 is blocks of 2 voxels on a side; the last one has one block
 };
 
 }  // namespace blum
