@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # `make bench`: builds every benchmark with its peers, runs it, and leaves its figures as JSON in out/bench, as tables
 # in docs/generated/performance.md and as plots in docs/pictures.
-#   tools/bench.sh [PROGRAM ...]   only these, for example field_bench, or image_peers; then no report is written
+#   tools/bench.sh [PROGRAM ...]   only these, for example field_bench, image_peers or skeleton_peers; then no report is written
 # BENCH_OPTIONS: options for Google Benchmark, for example BENCH_OPTIONS=--benchmark_filter=bunny.
 # BLUM_BENCH_PEER_NODES=all: peers compute every node, also where that takes minutes (default: 2,200,000 nodes, spread
 # evenly, and scaled). BLUM_BENCH_RUNS: runs per case (default: 25 below 0.3 s, 5 below 2 s, 3 below 20 s, else 1).
@@ -16,7 +16,7 @@ mkdir -p "$out"
 programs=("$@")
 if [[ ${#programs[@]} -eq 0 ]]; then
   for source in bench/*_bench.cpp; do programs+=("$(basename "$source" .cpp)"); done
-  programs+=(image_peers)
+  programs+=(image_peers skeleton_peers)
 fi
 read -r -a options <<<"${BENCH_OPTIONS:-}"
 export BLUM_DISTANCE_TRANSFORM_SAMPLE="$PWD/build/bench/bin/distance_transform_sample"
@@ -25,6 +25,13 @@ for program in "${programs[@]}"; do
   echo "--- bench: $program"
   if [[ $program == image_peers ]]; then
     build/venv/bin/python bench/peers/image_peers.py --json "$out/image_peers.json"
+    continue
+  fi
+  if [[ $program == skeleton_peers ]]; then
+    for shape in bumpy organs pores; do
+      BLUM_CLI="$PWD/build/bench/bin/blum" build/venv/bin/python bench/peers/skeleton_peers.py --shape "$shape" \
+        --json "$out/skeleton_peers_$shape.json"
+    done
     continue
   fi
   "build/bench/bin/$program" --benchmark_out="$out/$program.json" --benchmark_out_format=json "${options[@]}"
