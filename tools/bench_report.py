@@ -22,8 +22,12 @@ class Results:
     def __init__(self, folder):
         self.cases, self.contexts = {}, []
         self.images = None
+        self.skeletons = {}  # by shape
         for file in sorted(folder.glob("*.json")):
             content = json.loads(file.read_text())
+            if file.name.startswith("skeleton_peers"):
+                self.skeletons[content["shape"]] = content
+                continue
             if "benchmarks" not in content:
                 self.images = content
                 continue
@@ -123,6 +127,27 @@ def edt_row(results):
             f"{seconds(peer['seconds'])} wall", "-", f"{peer['seconds'] / blum['seconds']:.3g}x", "-", "-"]
 
 
+def skeleton_rows(results):
+    rows = []
+    for shape, must, aim in (("bumpy", "2x", "10x"), ("organs", "-", "-"), ("pores", "-", "-")):
+        report = results.skeletons.get(shape)
+        if report is None:
+            continue
+        programs = report["programs"]
+        ours = programs["blum"]
+        share = 100 * report["selected"] / report["side"] ** 3
+        for peer in ("scikit-image", "kimimaro", "itk"):
+            title = f"medial axis, image {report['side']}^3 ({shape}, {share:.0f} % solid), versus {peer}"
+            if peer not in programs:
+                rows.append([title, "-", "not run", "-", "-", must, aim])
+                continue
+            theirs = programs[peer]
+            rows.append([title, f"{seconds(ours['seconds'])} wall (certificate {seconds(ours['certificate_seconds'])} more)",
+                         f"{seconds(theirs['cpu_seconds'])} CPU, {seconds(theirs['seconds'])} wall", "-",
+                         f"{theirs['seconds'] / ours['seconds']:.3g}x", must, aim])
+    return rows
+
+
 def plain_row(title, case, key, unit, must, aim, note=""):
     value = case if isinstance(case, str) else f"{case[key]:.3g} {unit}"
     return [title, value, note, "-", "-", must, aim]
@@ -168,6 +193,7 @@ def goals(results):
                                   results.get(f"signed-band/{name}/512/openvdb"), "2x", "5x"))
     rows += [frame_row(results, "blum", ""), frame_row(results, "blum-signed", ", signed"),
              image_row(results), edt_row(results)]
+    rows += skeleton_rows(results)
     for name in ("bunny/field", "bunny/field-winding", "noisy-1.6M/field", "noisy-1.6M/field-winding",
                  "noisy-1.6M/closest-points", "image/512"):
         case = results.get(f"cancel/{name}")
