@@ -29,14 +29,14 @@ TriangleMesh noisy_dense() {
 }
 
 TriangleMesh make(const std::string& name, std::string& note) {
-  const auto file = data_folder() / "meshes" / (name == "bunny" ? "stanford-bunny.obj" : "fandisk.obj");
-  if (name == "bunny" || name == "fandisk") {
+  const auto file = data_folder() / "meshes" / ((name == "bunny" ? "stanford-bunny" : name) + ".obj");
+  if (name == "bunny" || name == "fandisk" || name == "rocker-arm") {
     if (std::filesystem::exists(file)) {
       note = name;
       return read_mesh(file);
     }
     note = "generated twin of the " + name;
-    return name == "bunny" ? make_organic({.holes = 5}) : make_fan_part();
+    return name == "bunny" ? make_organic({.holes = 5}) : name == "fandisk" ? make_fan_part() : organic(20088);
   }
   note = name;
   if (name == "noisy-1.6M") return noisy_dense();
