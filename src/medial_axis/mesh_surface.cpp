@@ -83,16 +83,21 @@ Footprint MeshSurface::follow(const Footprint& start, const Vec3d& query, double
   for (int step = 0; step < most_steps; ++step) {
     Footprint better = best;
     double better_squared = squared_length(query - best.point) * (1 - 1e-12);
-    for (unsigned rest = best.corners == 7 ? 0 : best.corners; rest != 0; rest &= rest - 1) {
-      const std::uint32_t v = mesh_.triangles[best.element][static_cast<std::size_t>(std::countr_zero(rest))];
-      for (std::uint32_t at = first_[v]; at < first_[v + 1]; ++at) {
-        if (triangles_[at] == best.element) continue;
-        const Footprint other = closest_on(triangles_[at], query);
-        const double other_squared = squared_length(query - other.point);
-        if (other_squared >= better_squared) continue;
-        better = other;
-        better_squared = other_squared;
-      }
+    // Only triangles that the foot lies on: others at the ends of its edge may be closer, but belong to other walls.
+    const Triangle& own = mesh_.triangles[best.element];
+    const auto first = static_cast<std::size_t>(std::countr_zero(best.corners));
+    const unsigned others = best.corners & (best.corners - 1);
+    const std::uint32_t far = others == 0 ? own[first] : own[static_cast<std::size_t>(std::countr_zero(others))];
+    const std::uint32_t v = own[first];
+    for (std::uint32_t at = first_[v]; best.corners != 7 && at < first_[v + 1]; ++at) {
+      const std::uint32_t t = triangles_[at];
+      const Triangle& corners = mesh_.triangles[t];
+      if (t == best.element || (corners[0] != far && corners[1] != far && corners[2] != far)) continue;
+      const Footprint other = closest_on(t, query);
+      const double other_squared = squared_length(query - other.point);
+      if (other_squared >= better_squared) continue;
+      better = other;
+      better_squared = other_squared;
     }
     if (better.element == best.element) break;
     if (squared_length(better.point - start.point) > reach * reach) break;
