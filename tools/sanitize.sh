@@ -21,8 +21,8 @@ case $preset in
     export UBSAN_OPTIONS=print_stacktrace=1
     ;;
   tsan)
-    targets=(-- test_core test_field)
-    selection=(--label-exclude slow --tests-regex '^test_(core|field)\.')
+    targets=(-- test_core test_field test_medial_axis)
+    selection=(--label-exclude slow --tests-regex '^test_(core|field|medial_axis)\.')
     export TSAN_OPTIONS=allocator_may_return_null=1:halt_on_error=1:second_deadlock_stack=1
     ;;
   *)
