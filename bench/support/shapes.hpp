@@ -21,7 +21,8 @@ struct Shape {
 };
 
 /// A shape by name, made or read at the first call and kept.
-/// - "bunny", "fandisk", "rocker-arm": the real ones where the data folder (BLUM_DATA_DIR) has them, else generated twins;
+/// - "bunny", "fandisk", "rocker-arm": the real ones where the data folder (BLUM_DATA_DIR) has them, else generated
+/// twins;
 /// - "organic": closed, 69,620 triangles; "organic-N": closed, about N triangles;
 /// - "noisy-1.6M": a closed organic shape, subdivided twice, each vertex moved by up to 5 % of an edge.
 const Shape& shape(const std::string& name);
