@@ -20,7 +20,7 @@ namespace {
 constexpr int least_resolution = 8;
 constexpr int most_resolution = 800;
 /// What a grid of voxels makes of a smooth surface: steps whose edges the axis would reach out for.
-constexpr NoiseFloor stairs{20, 120, 3, 3, 0};
+constexpr NoiseFloor stairs{20, 120, 3, 3, 15, 0};
 
 void check(const MedialAxisOptions& options) {
   const auto check_resolution = [](const char* name, int value) {

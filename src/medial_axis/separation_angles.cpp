@@ -384,13 +384,12 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
     });
   });
   const Importance squares(lattice, joined(found));
-  constexpr double worth_looking = 15;     // degrees more than the squares around have
   constexpr double nearly_opposite = 170;  // degrees, on axes of round things
   constexpr double wide = 100;             // degrees between two of few voxels, where others may be opposite
   for_each_layer("separation angles of edges", [&](std::size_t k) {
     for (const std::uint32_t node : uneven[k]) {
       const double known = largest_around(squares, lattice, node);
-      const double least = std::max(std::min(known + worth_looking, nearly_opposite), floor.angle);
+      const double least = std::max(std::min(known + floor.clearly_more, nearly_opposite), floor.angle);
       if (known >= least) continue;
       const GovernorsAround around = governors.around(lattice.place(node));
       for (const CellAxes axes : {0U, 1U, 2U, 4U}) {

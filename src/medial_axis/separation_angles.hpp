@@ -15,6 +15,8 @@ struct NoiseFloor {
   /// Footprints closer than `voxels` count, at clear angles, only where no voxel within this many is deeper than that:
   /// in thin parts, and not in the steps that voxels make of a round surface. 0: everywhere.
   int thin_within = 0;
+  /// Degrees: points off the lines between voxels count where they see this much more than such points around them.
+  double clearly_more = 5;
   double lambda = 0;  ///< mesh units: footprints closer than this count as one at any angle
 };
 
