@@ -21,7 +21,8 @@ void add_reconstruct_command(CLI::App& app);
 /// An axis that is not certified: exit status 3.
 class NotCertified : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// @param mismatches  why not.  @param rest  what else there is to say.
+  explicit NotCertified(const std::vector<std::string>& mismatches, const std::string& rest = "");
 };
 
 }  // namespace blum::cli

@@ -14,11 +14,13 @@
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
+#include "common_options.hpp"
 #include "field_statistics.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
 #include "options.hpp"
 #include "progress.hpp"
+#include "solid_input.hpp"
 #include "summary.hpp"
 
 namespace blum::cli {
@@ -53,8 +55,7 @@ struct Request {
   SignMode sign = SignMode::automatic;
   std::optional<Band> band;
   SiteIds site_ids = SiteIds::features;
-  std::vector<std::int64_t> labels;
-  std::optional<double> threshold;
+  Selections selections;
   std::optional<double> weld;
   int threads = 0;
   ReportOptions report;
@@ -85,8 +86,8 @@ Request parse(const Arguments& a) {
     r.site_ids = parse_choice<SiteIds>("--site-ids", *a.site_ids,
                                        {{"features", SiteIds::features}, {"triangles", SiteIds::triangles}});
   }
-  r.labels = parse_labels("--label", a.labels);
-  if (a.threshold) r.threshold = parse_number("--threshold", *a.threshold);
+  r.selections.labels = parse_labels("--label", a.labels);
+  if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);
   r.weld = parse_weld(a.weld);
   r.threads = parse_threads(a.threads);
   r.report = a.report;
@@ -200,16 +201,7 @@ std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& 
 }
 
 void finish(const Request& request, Run& run, const GridSpec& grid, const Context& context) {
-  double total = 0;
-  Json seconds = Json::object();
-  std::string slow;
-  for (const PhaseTime& phase : run.phases) {
-    seconds[phase.phase] = (seconds.contains(phase.phase) ? seconds[phase.phase].get<double>() : 0.0) + phase.seconds;
-    total += phase.seconds;
-  }
-  for (const auto& [phase, time] : seconds.items()) {
-    slow += (slow.empty() ? " (" : ", ") + phase + " " + number_text(std::round(time.get<double>() * 1e3) / 1e3);
-  }
+  const PhaseSummary spent = summarize(run.phases);
   const double nodes = static_cast<double>(grid.node_count()) * static_cast<double>(run.fields.size());
   const double rate = nodes / std::max(run.field_seconds, 1e-9);
   Json outputs = Json::array();
@@ -220,16 +212,16 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                      {"grid", to_json(grid)},
                      {"sign_asked", to_string(request.sign)},
                      {"fields", run.fields},
-                     {"seconds", seconds},
+                     {"seconds", spent.seconds},
                      {"field_seconds", run.field_seconds},
-                     {"total_seconds", total},
+                     {"total_seconds", spent.total},
                      {"nodes_per_second", rate},
                      {"peak_memory_bytes", peak_memory()},
                      {"threads", thread_count(context)},
                      {"thread_backend", thread_backend()},
                      {"warnings", run.warnings},
                      {"outputs", outputs}};
-  run.table.add("time", number_text(std::round(total * 1e3) / 1e3) + " s" + slow + (slow.empty() ? "" : ")"));
+  run.table.add("time", spent.text);
   run.table.add("speed", number_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
                              plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads") + ", " +
                              bytes_text(static_cast<double>(peak_memory())) + " at most");
@@ -306,20 +298,12 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   finish(r, run, grid, context);
 }
 
-std::vector<LabelSelection> selections_of(const Request& r) {
-  if (r.threshold) return {LabelSelection::at_least(*r.threshold)};
-  std::vector<LabelSelection> selections;
-  for (const std::int64_t label : r.labels) selections.push_back(LabelSelection::of_label(label));
-  if (selections.empty()) selections.emplace_back();
-  return selections;
-}
-
 void run_image(const Request& r, Progress& progress, const Interrupt& interrupt) {
   const Context context = make_context(r.threads, progress, interrupt);
   std::vector<fs::path> names;
-  if (r.labels.size() < 2) names.push_back(r.output);
-  if (r.labels.size() >= 2) {
-    for (const std::int64_t label : r.labels) names.push_back(with_label(r.output, label));
+  if (r.selections.labels.size() < 2) names.push_back(r.output);
+  if (r.selections.labels.size() >= 2) {
+    for (const std::int64_t label : r.selections.labels) names.push_back(with_label(r.output, label));
   }
   std::vector<fs::path> all = r.report.files();
   for (const fs::path& name : names) {
@@ -341,7 +325,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
   run.input = image_json(r.input, image);
   run.input_text = image_text(r.input, image);
   run.time("input facts", watch.lap());
-  const std::vector<LabelSelection> selections = selections_of(r);
+  const std::vector<LabelSelection> selections = r.selections.all();
   check_field_memory(image.grid, selections.size());
   add_grid_text(run, image.grid);
   DistanceTransformOptions options;
@@ -359,7 +343,8 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
     write_field(names[i], fields[i], {nullptr, nullptr, r.input.filename().string(), BLUM_VERSION, image.space},
                 context);
     run.time("write", watch.lap());
-    add_field(run, fields[i], statistics, field_files(names[i]), r.labels.empty() ? nullptr : &r.labels[i]);
+    add_field(run, fields[i], statistics, field_files(names[i]),
+              r.selections.labels.empty() ? nullptr : &r.selections.labels[i]);
     fields[i] = {};
   }
   progress.clear();
@@ -390,7 +375,7 @@ void add_field_command(CLI::App& app) {
       ->required()
       ->type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
+    add_text_option(*command, name, value, type, help);
   };
   text("--resolution", a->resolution, "N", "Mesh: nodes along the longest side of the grid (default 256)");
   text("--spacing", a->spacing, "H", "Mesh: distance between nodes, instead of --resolution");
@@ -400,15 +385,11 @@ void add_field_command(CLI::App& app) {
   text("--sign", a->sign, "RULE", "auto, normals, winding or none (default auto); image: auto or none");
   text("--band", a->band, "W", "Only distances up to W, in mesh units, or in grid steps as in 3v");
   text("--site-ids", a->site_ids, "KIND", "Mesh: number sites as features or triangles (default features)");
-  command->add_option("--label", a->labels, "Image: the voxels of value L; several (1,3 or repeated) give a field each")
-      ->type_name("L")
-      ->allow_extra_args(false);
+  add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give a field each");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
-  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
-      ->type_name("[TOL]");
-  text("--threads", a->threads, "T", "Number of threads (default: one per core)");
-  text("--json", a->report.json, "FILE", "Write a summary as JSON; - is standard output");
-  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  add_weld_option(*command, a->weld);
+  add_threads_option(*command, a->threads);
+  add_report_options(*command, a->report);
   command->footer(examples);
   command->callback([a] { run(*a); });
 }

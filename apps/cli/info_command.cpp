@@ -16,6 +16,7 @@
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
+#include "common_options.hpp"
 #include "field_statistics.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
@@ -364,10 +365,8 @@ void add_info_command(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("info", "What a mesh, an image or a field file holds");
   command->add_option("INPUT", a->input, "Mesh, image or field file")->required();
-  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
-      ->type_name("[TOL]");
-  command->add_option("--json", a->report.json, "Write the facts as JSON; - is standard output")->type_name("FILE");
-  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  add_weld_option(*command, a->weld);
+  add_report_options(*command, a->report, "Write the facts as JSON; - is standard output");
   command->footer(examples);
   command->callback([a] { run(*a); });
 }

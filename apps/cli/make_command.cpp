@@ -16,6 +16,7 @@
 #include "blum/io/image_io.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "commands.hpp"
+#include "common_options.hpp"
 #include "files.hpp"
 #include "options.hpp"
 #include "progress.hpp"
@@ -292,9 +293,7 @@ void add_make_command(CLI::App& app, std::vector<std::string>& arguments) {
   command->add_option("-o,--output", a->output, "Mesh (.obj .off .stl .ply) or image (.nrrd .npy), as the shape is")
       ->type_name("FILE");
   command->add_flag("--list", a->list, "List all shapes, or one, with parameters, defaults and ranges");
-  command->add_option("--json", a->report.json, "Write what was made (or the list) as JSON; - is standard output")
-      ->type_name("FILE");
-  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  add_report_options(*command, a->report, "Write what was made (or the list) as JSON; - is standard output");
   command->footer(examples);
   command->callback([a] { run(*a); });
 }

@@ -13,6 +13,7 @@
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "commands.hpp"
+#include "common_options.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
 #include "medial_report.hpp"
@@ -292,16 +293,7 @@ void check_all_outputs(const Request& r, const std::vector<fs::path>& bases) {
 }
 
 void finish(const Request& r, Run& run, const SolidInput& input, bool is_certified, const Context& context) {
-  Json seconds = Json::object();
-  double total = 0;
-  for (const PhaseTime& phase : run.phases) {
-    seconds[phase.phase] = (seconds.contains(phase.phase) ? seconds[phase.phase].get<double>() : 0.0) + phase.seconds;
-    total += phase.seconds;
-  }
-  std::string slow;
-  for (const auto& [phase, time] : seconds.items()) {
-    slow += (slow.empty() ? " (" : ", ") + phase + " " + number_text(std::round(time.get<double>() * 1e3) / 1e3);
-  }
+  const PhaseSummary spent = summarize(run.phases);
   Json outputs = Json::array();
   for (const Draft& draft : run.drafts) {
     if (!is_certified && !r.allow_uncertified) continue;
@@ -316,15 +308,14 @@ void finish(const Request& r, Run& run, const SolidInput& input, bool is_certifi
                      {"lambda", r.options.lambda},
                      {"prune", r.prunes_sheets ? Json("sheets") : Json(nullptr)},
                      {"solids", run.solids},
-                     {"seconds", seconds},
-                     {"total_seconds", total},
+                     {"seconds", spent.seconds},
+                     {"total_seconds", spent.total},
                      {"peak_memory_bytes", peak_memory()},
                      {"threads", thread_count(context)},
                      {"thread_backend", thread_backend()},
                      {"warnings", run.warnings},
                      {"outputs", outputs}};
-  run.table.add("time", number_text(std::round(total * 1e3) / 1e3) + " s" + slow + (slow.empty() ? "" : ")") + ", " +
-                            bytes_text(static_cast<double>(peak_memory())) + " at most");
+  run.table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(r.report, json, input.text + run.table.text());
   if (!r.report.quiet) warn(run.warnings);
 }
@@ -353,11 +344,7 @@ void run(const Arguments& arguments) {
     for (Draft& draft : run.drafts) draft.keep();
   }
   finish(r, run, input, is_certified, context);
-  if (!is_certified) {
-    std::string all;
-    for (const std::string& mismatch : run.mismatches) all += (all.empty() ? "" : "; ") + mismatch;
-    throw NotCertified("NOT certified: " + all + (r.allow_uncertified ? "" : "; nothing was written"));
-  }
+  if (!is_certified) throw NotCertified(run.mismatches, r.allow_uncertified ? "" : "; nothing was written");
 }
 
 }  // namespace
@@ -371,7 +358,7 @@ void add_medial_command(CLI::App& app) {
       ->required()
       ->type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
+    add_text_option(*command, name, value, type, help);
   };
   text("--theta", a->theta, "DEG",
        "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) are "
@@ -382,16 +369,12 @@ void add_medial_command(CLI::App& app) {
   text("--spacing", a->spacing, "H", "Mesh: side of a voxel, instead of --resolution");
   text("--max-resolution", a->max_resolution, "N",
        "Mesh: halve the voxels where the topology needs it, to at most N along the longest side (default 512)");
-  command->add_option("--label", a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each")
-      ->type_name("L")
-      ->allow_extra_args(false);
+  add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
   command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the axis even where it is not certified");
-  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
-      ->type_name("[TOL]");
-  text("--threads", a->threads, "T", "Number of threads (default: one per core)");
-  text("--json", a->report.json, "FILE", "Write a summary as JSON; - is standard output");
-  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  add_weld_option(*command, a->weld);
+  add_threads_option(*command, a->threads);
+  add_report_options(*command, a->report);
   command->footer(examples);
   command->callback([a] { run(*a); });
 }

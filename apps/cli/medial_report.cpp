@@ -1,6 +1,10 @@
 #include "medial_report.hpp"
 
+#include <string>
+#include <vector>
+
 #include "blum/field/field.hpp"
+#include "commands.hpp"
 
 namespace blum::cli {
 namespace {
@@ -49,6 +53,13 @@ Certificate certificate_of(const MedialFile& file, const SolidInput& input, cons
   const VoxelSet voxels = voxels_inside(mesh, *file.metadata.grid, context);
   return certify(file.complex, voxels, *file.metadata.grid, &mesh, known, context);
 }
+
+NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std::string& rest)
+    : std::runtime_error([&] {
+        std::string all;
+        for (const std::string& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch;
+        return "NOT certified: " + all + rest;
+      }()) {}
 
 Json to_json(const BettiNumbers& betti) {
   return Json::array({betti[0], betti[1], betti[2]});

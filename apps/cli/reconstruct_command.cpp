@@ -12,6 +12,7 @@
 #include "blum/io/mesh_io.hpp"
 #include "blum/medial_axis/ball_union.hpp"
 #include "commands.hpp"
+#include "common_options.hpp"
 #include "files.hpp"
 #include "medial_report.hpp"
 #include "options.hpp"
@@ -166,18 +167,16 @@ void add_reconstruct_command(CLI::App& app) {
       ->required()
       ->type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {
-    command->add_option(name, value, help)->type_name(type);
+    add_text_option(*command, name, value, type, help);
   };
   text("--input", a->input, "FILE", "The mesh or image whose axis it is: says how far the balls are from it");
   text("--resolution", a->resolution, "N", "Nodes along the longest side of the grid (default 256)");
   text("--spacing", a->spacing, "H", "Distance between nodes, instead of --resolution");
-  command->add_option("--label", a->labels, "Image: the voxels of value L")->type_name("L")->allow_extra_args(false);
+  add_label_option(*command, a->labels, "Image: the voxels of value L");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more");
-  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
-      ->type_name("[TOL]");
-  text("--threads", a->threads, "T", "Number of threads (default: one per core)");
-  text("--json", a->report.json, "FILE", "Write a summary as JSON; - is standard output");
-  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  add_weld_option(*command, a->weld);
+  add_threads_option(*command, a->threads);
+  add_report_options(*command, a->report);
   command->footer(examples);
   command->callback([a] { run(*a); });
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 #include "blum/core/error.hpp"
@@ -119,6 +120,22 @@ void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
     throw FileError("standard output cannot be written");
   }
+}
+
+PhaseSummary summarize(const std::vector<PhaseTime>& phases) {
+  PhaseSummary out;
+  for (const PhaseTime& phase : phases) {
+    const double before = out.seconds.contains(phase.phase) ? out.seconds[phase.phase].get<double>() : 0.0;
+    out.seconds[phase.phase] = before + phase.seconds;
+    out.total += phase.seconds;
+  }
+  const auto rounded = [](double seconds) { return number_text(std::round(seconds * 1e3) / 1e3); };
+  std::string each;
+  for (const auto& [phase, seconds] : out.seconds.items()) {
+    each += (each.empty() ? " (" : ", ") + phase + " " + rounded(seconds.get<double>());
+  }
+  out.text = rounded(out.total) + " s" + each + (each.empty() ? "" : ")");
+  return out;
 }
 
 }  // namespace blum::cli

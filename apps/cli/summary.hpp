@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "blum/core/vec3.hpp"
+#include "blum/field/field.hpp"
 #include "blum/grid/grid_spec.hpp"
 
 namespace blum::cli {
@@ -45,6 +46,14 @@ class Stopwatch {
 [[nodiscard]] std::string size_text(const GridSpec& grid);
 /// "1 edge", "2 edges".
 [[nodiscard]] std::string plural(std::uint64_t count, std::string_view one, std::string_view many);
+
+/// How long the phases of a run took; those of one name are added.
+struct PhaseSummary {
+  Json seconds = Json::object();  ///< by phase
+  double total = 0;
+  std::string text;  ///< "1.5 s (read 0.5, write 1)"
+};
+[[nodiscard]] PhaseSummary summarize(const std::vector<PhaseTime>& phases);
 
 /// Lines of text in two columns, label and content.
 class TextTable {

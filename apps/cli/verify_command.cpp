@@ -6,6 +6,7 @@
 
 #include "blum/io/medial_io.hpp"
 #include "commands.hpp"
+#include "common_options.hpp"
 #include "files.hpp"
 #include "medial_report.hpp"
 #include "options.hpp"
@@ -63,10 +64,7 @@ void run(const Arguments& a) {
                {"axis", {{"file", axis_path.string()}, {"counts", to_json(count(file.complex))}}},
                {"certificate", to_json(certificate)}};
   report(a.report, json, input.text + table.text());
-  if (certificate.holds()) return;
-  std::string all;
-  for (const std::string& mismatch : certificate.mismatches) all += (all.empty() ? "" : "; ") + mismatch;
-  throw NotCertified("NOT certified: " + all);
+  if (!certificate.holds()) throw NotCertified(certificate.mismatches);
 }
 
 }  // namespace
@@ -76,14 +74,11 @@ void add_verify_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("verify", "Check a medial axis against its solid, from the files alone");
   command->add_option("INPUT", a->input, "The mesh or image whose axis it is")->required();
   command->add_option("AXIS", a->axis, "Medial axis: .vtp, .ply, .obj, .ma or .npz")->required();
-  command->add_option("--label", a->labels, "Image: the voxels of value L")->type_name("L")->allow_extra_args(false);
+  add_label_option(*command, a->labels, "Image: the voxels of value L");
   command->add_option("--threshold", a->threshold, "Image: the voxels of value T or more")->type_name("T");
-  command->add_option("--weld", a->weld, "Mesh: merge equal vertices, or those within TOL (default for STL: equal)")
-      ->type_name("[TOL]");
-  command->add_option("--threads", a->threads, "Number of threads (default: one per core)")->type_name("T");
-  command->add_option("--json", a->report.json, "Write the certificate as JSON; - is standard output")
-      ->type_name("FILE");
-  command->add_flag("--quiet", a->report.quiet, "Say nothing but errors");
+  add_weld_option(*command, a->weld);
+  add_threads_option(*command, a->threads);
+  add_report_options(*command, a->report, "Write the certificate as JSON; - is standard output");
   command->footer(examples);
   command->callback([a] { run(*a); });
 }

@@ -1,0 +1,29 @@
+// Blum: options that several commands have. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "summary.hpp"
+
+namespace blum::cli {
+
+/// An option with one value, which is read later.
+void add_text_option(CLI::App& command, const char* name, std::optional<std::string>& value, const char* type,
+                     const char* help);
+
+/// --label, which may be given several times.
+void add_label_option(CLI::App& command, std::vector<std::string>& labels, const char* help);
+
+/// --weld, with or without a value: see prepare_weld().
+void add_weld_option(CLI::App& command, std::optional<std::string>& weld);
+
+void add_threads_option(CLI::App& command, std::optional<std::string>& threads);
+
+/// --json and --quiet.
+void add_report_options(CLI::App& command, ReportOptions& report,
+                        const char* json_help = "Write a summary as JSON; - is standard output");
+
+}  // namespace blum::cli
