@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/union_find.hpp"
+#include "blum/core/union_find.hpp"
 
 namespace blum::detail {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blum/core/union_find.hpp"
 #include "geometry/orient2d.hpp"
 #include "geometry/shells.hpp"
-#include "geometry/union_find.hpp"
 
 namespace blum {
 namespace {

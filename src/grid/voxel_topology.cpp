@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "blum/core/union_find.hpp"
 
 namespace blum {
 namespace {
@@ -30,8 +31,7 @@ class RunComponents {
         first_.push_back(runs_.size());
       }
     }
-    parent_.resize(runs_.size() + 1);
-    for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
+    joined_ = detail::UnionFind(runs_.size() + 1);
     count_ = static_cast<std::int64_t>(runs_.size());
     for (std::int64_t k = 0; k < size_[2]; ++k) {
       throw_if_cancelled(context);
@@ -104,24 +104,15 @@ class RunComponents {
     }
   }
 
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
   void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a == b) return;
-    parent_[std::max(a, b)] = std::min(a, b);
-    --count_;
+    if (joined_.join(a, b)) --count_;
   }
 
   std::array<std::int64_t, 3> size_;
   std::int32_t reach_;
   std::vector<Run> runs_;
   std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> parent_;
+  detail::UnionFind joined_{0};
   std::int64_t count_ = 0;
 };
 

@@ -1,7 +1,8 @@
 #include "medial_axis/label_sheets.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "blum/core/union_find.hpp"
 
 namespace blum {
 namespace {
@@ -29,24 +30,6 @@ std::vector<Side> sorted_sides(const std::vector<MedialTriangle>& triangles) {
   return sides;
 }
 
-/// Triangles joined through shared sides.
-class Sheets {
- public:
-  explicit Sheets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-  std::uint32_t root(std::uint32_t t) {
-    while (parent_[t] != t) t = parent_[t] = parent_[parent_[t]];
-    return t;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 constexpr std::uint32_t no_sheet = 0xffffffffU;
 
 /// What is known of a vertex from its edges.
@@ -71,7 +54,7 @@ MedialRole role_of(const Around& a) {
 
 void label_sheets(MedialComplex& complex) {
   const std::vector<Side> sides = sorted_sides(complex.triangles);
-  Sheets sheets(complex.triangles.size());
+  detail::UnionFind sheets(complex.triangles.size());
   for (std::size_t first = 0; first < sides.size();) {
     std::size_t end = first;
     float largest = 0;
@@ -89,8 +72,8 @@ void label_sheets(MedialComplex& complex) {
   std::vector<std::uint32_t> number(complex.triangles.size(), 0);
   complex.sheet_count = 0;
   for (std::uint32_t t = 0; t < complex.triangles.size(); ++t) {
-    if (sheets.root(t) == t) number[t] = complex.sheet_count++;
-    complex.triangles[t].sheet = number[sheets.root(t)];
+    if (sheets.find(t) == t) number[t] = complex.sheet_count++;
+    complex.triangles[t].sheet = number[sheets.find(t)];
   }
   std::vector<Around> around(complex.vertices.size());
   for (const MedialEdge& edge : complex.edges) {

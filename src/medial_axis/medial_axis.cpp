@@ -91,7 +91,7 @@ class MedialAxisBuilder {
     const VoxelSurface surface(voxelized.solid.voxels, voxelized.solid.grid);
     AxisPiece& piece = add_piece(voxelized, surface, stairs);
     const auto input_site = [&](SiteId own) {
-      std::array<std::int64_t, 3> at = piece_place(voxelized.solid.grid, own);
+      std::array<std::int64_t, 3> at = voxelized.solid.voxels.place(own.value);
       for (std::size_t a = 0; a < 3; ++a) {
         at[a] = std::clamp(at[a] + first[a], std::int64_t{0}, image.grid.size[a] - 1);
       }
@@ -105,11 +105,6 @@ class MedialAxisBuilder {
 
  private:
   MedialAxisReport& report() { return data_->report; }
-
-  static std::array<std::int64_t, 3> piece_place(const GridSpec& grid, SiteId voxel) {
-    const auto v = static_cast<std::int64_t>(voxel.value);
-    return {v % grid.size[0], v / grid.size[0] % grid.size[1], v / (grid.size[0] * grid.size[1])};
-  }
 
   /// Voxels fine enough for the topology of a body, if any are that the options allow.
   [[nodiscard]] Voxelized voxelize(const SolidBody& body, double spacing) const {

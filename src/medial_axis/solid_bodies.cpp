@@ -4,6 +4,7 @@
 #include <numeric>
 #include <optional>
 
+#include "blum/core/union_find.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
 
@@ -18,27 +19,20 @@ bool names_a_vertex_twice(const Triangle& t) {
 
 /// Closed shells, numbered as Topology::shells is: by their smallest triangle.
 std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites) {
-  std::vector<std::uint32_t> parent(mesh.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t t) {
-    while (parent[t] != t) t = parent[t] = parent[parent[t]];
-    return t;
-  };
+  detail::UnionFind joined(mesh.triangles.size());
   std::vector<std::uint32_t> first(sites.edge_count(), nobody);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (names_a_vertex_twice(mesh.triangles[t])) continue;
     for (const EdgeId edge : sites.triangle_edges()[t]) {
       if (first[edge.value] == nobody) first[edge.value] = t;
-      const std::uint32_t a = root(first[edge.value]);
-      const std::uint32_t b = root(t);
-      parent[std::max(a, b)] = std::min(a, b);
+      joined.join(first[edge.value], t);
     }
   }
   std::vector<std::uint32_t> number(mesh.triangles.size(), nobody);
   std::uint32_t count = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (names_a_vertex_twice(mesh.triangles[t])) continue;
-    const std::uint32_t r = root(t);
+    const std::uint32_t r = joined.find(t);
     number[t] = r == t ? count++ : number[r];
   }
   return number;

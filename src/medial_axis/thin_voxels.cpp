@@ -136,7 +136,7 @@ class Thinner {
     is_in_line_ = VoxelSet(size_);
     kept_ = VoxelSet(size_);
     for (const std::uint32_t voxel : stuck()) {
-      const Place at = place(voxel);
+      const Place at = voxels_.place(voxel);
       is_in_line_.insert(at[0], at[1], at[2]);
       line.push({depth_[voxel], voxel});
     }
@@ -145,14 +145,14 @@ class Thinner {
     std::size_t steps = 0;
     while (line.pop(next)) {
       if (++steps % steps_between_looks == 0) throw_if_cancelled(context_);
-      const Place at = place(next.voxel);
+      const Place at = voxels_.place(next.voxel);
       const Neighbourhood around = present_around(next.voxel, at);
       if (simple.is_simple(around) && !is_needed(at, around)) continue;
       kept_.insert(at[0], at[1], at[2]);
       for (std::size_t n = 0; n < 27; ++n) {
         const auto other = static_cast<std::uint32_t>(next.voxel + offset_[n]);
         if (!is_deeper(other, next.voxel)) continue;
-        const Place there = place(other);
+        const Place there = voxels_.place(other);
         if (is_in_line_.contains(there[0], there[1], there[2])) continue;
         is_in_line_.insert(there[0], there[1], there[2]);
         line.push({depth_[other], other});
@@ -198,10 +198,6 @@ class Thinner {
     return depth;
   }
 
-  [[nodiscard]] Place place(std::uint32_t voxel) const {
-    const auto v = static_cast<std::int64_t>(voxel);
-    return {v % size_[0], v / size_[0] % size_[1], v / (size_[0] * size_[1])};
-  }
   [[nodiscard]] bool is_deeper(std::uint32_t a, std::uint32_t b) const {
     return depth_[a] != depth_[b] ? depth_[a] > depth_[b] : a > b && depth_[a] > 0;
   }

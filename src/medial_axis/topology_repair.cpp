@@ -30,20 +30,7 @@ class Chooser {
   Chooser(std::span<const float> depth, VoxelSet& voxels, const Context& context)
       : depth_(depth), voxels_(voxels), size_(voxels.size()), context_(context), is_waiting_(depth.size(), false) {}
 
-  /// Takes the voxels deeper than a limit.
-  void take_deeper_than(double limit) {
-    voxels_ = VoxelSet(size_);
-    parallel_for(context_, static_cast<std::size_t>(size_[2]), 1, "", [&](const WorkRange& range) {
-      for (auto k = static_cast<std::int64_t>(range.begin); k < static_cast<std::int64_t>(range.end); ++k) {
-        if (k == 0 || k + 1 == size_[2]) continue;
-        for (std::int64_t j = 1; j + 1 < size_[1]; ++j) {
-          for (std::int64_t i = 1; i + 1 < size_[0]; ++i) {
-            if (depth_[index({i, j, k})] > limit) voxels_.insert(i, j, k);
-          }
-        }
-      }
-    });
-  }
+  void take_deeper_than(double limit) { blum::take_deeper_than(depth_, limit, voxels_, context_); }
 
   /// Takes in simple voxels deeper than `limit`, the deepest first, until none is left.
   void grow(double limit) {
@@ -80,7 +67,7 @@ class Chooser {
     };
     for_each(offer);
     while (!line.empty()) {
-      const Place at = place(line.top().voxel);
+      const Place at = voxels_.place(line.top().voxel);
       line.pop();
       look();
       if (!voxels_.contains(at[0], at[1], at[2])) continue;
@@ -101,7 +88,7 @@ class Chooser {
     });
     std::sort(found.begin(), found.end(), [](const Waiting& a, const Waiting& b) { return b < a; });
     std::vector<Place> places;
-    for (const Waiting& w : found) places.push_back(place(w.voxel));
+    for (const Waiting& w : found) places.push_back(voxels_.place(w.voxel));
     return places;
   }
 
@@ -123,10 +110,6 @@ class Chooser {
  private:
   [[nodiscard]] std::size_t index(const Place& at) const {
     return static_cast<std::size_t>((at[2] * size_[1] + at[1]) * size_[0] + at[0]);
-  }
-  [[nodiscard]] Place place(std::size_t index) const {
-    const auto v = static_cast<std::int64_t>(index);
-    return {v % size_[0], v / size_[0] % size_[1], v / (size_[0] * size_[1])};
   }
 
   /// All voxels but those of the outermost layer.
@@ -162,11 +145,11 @@ class Chooser {
   }
   void take_in_line() {
     while (!line_.empty()) {
-      const std::size_t v = line_.top().voxel;
+      const std::uint32_t v = line_.top().voxel;
       line_.pop();
       is_waiting_[v] = false;
       look();
-      const Place at = place(v);
+      const Place at = voxels_.place(v);
       if (voxels_.contains(at[0], at[1], at[2])) continue;
       if (is_simple(neighbourhood(voxels_, at[0], at[1], at[2]))) take(at);
     }
@@ -230,6 +213,22 @@ bool grow_from_deepest(Chooser& chooser, VoxelSet& voxels, const BettiNumbers& w
 }
 
 }  // namespace
+
+void take_deeper_than(std::span<const float> depth, double limit, VoxelSet& voxels, const Context& context) {
+  const Place size = voxels.size();
+  voxels = VoxelSet(size);
+  parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
+    for (auto k = static_cast<std::int64_t>(range.begin); k < static_cast<std::int64_t>(range.end); ++k) {
+      if (k == 0 || k + 1 == size[2]) continue;
+      for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
+        for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
+          const auto voxel = static_cast<std::size_t>((k * size[1] + j) * size[0] + i);
+          if (static_cast<double>(depth[voxel]) > limit) voxels.insert(i, j, k);
+        }
+      }
+    }
+  });
+}
 
 RepairReport choose_voxels(std::span<const float> depth, const BettiNumbers& wanted, double tolerance, VoxelSet& voxels,
                            const Context& context) {

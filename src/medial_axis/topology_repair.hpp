@@ -20,6 +20,10 @@ struct RepairReport {
   double deviation = 0;     ///< the largest distance from the surface of the centre of a voxel left out or taken in
 };
 
+/// Makes a set that of the voxels deeper than a limit, those of the box's outermost layer left out.
+/// @param depth  as for choose_voxels.  @throws Cancelled.
+void take_deeper_than(std::span<const float> depth, double limit, VoxelSet& voxels, const Context& context);
+
 /// Chooses voxels with the Betti numbers of a connected solid: those whose centre is inside where that will do; else,
 /// within `tolerance` of the surface, what simple voxels added to (or taken from) a set of the right topology make of
 /// it; else what grows from the deepest voxel, with as many handles and voids as the solid has, the deepest first.

@@ -63,15 +63,6 @@ VoxelSurface::VoxelSurface(const VoxelSet& voxels, const GridSpec& grid) : voxel
   } while (std::max({size[0], size[1], size[2]}) > 1);
 }
 
-VoxelSurface::Place VoxelSurface::place(std::uint32_t voxel) const {
-  // 32 bits, which divide several times faster.
-  const Place& size = voxels_.size();
-  const auto x = static_cast<std::uint32_t>(size[0]);
-  const auto y = static_cast<std::uint32_t>(size[1]);
-  const std::uint32_t row = voxel / x;
-  return {voxel - row * x, row % y, row / y};
-}
-
 bool VoxelSurface::is_other(const Place& at) const {
   for (std::size_t a = 0; a < 3; ++a) {
     if (at[a] < 0 || at[a] >= voxels_.size()[a]) return false;
@@ -98,7 +89,7 @@ Vec3d VoxelSurface::closest_in(const Place& lower, std::int64_t side, const Vec3
 }
 
 Footprint VoxelSurface::footprint(SiteId site, const Vec3d& centre, bool is_inside) const {
-  if (is_inside) return {world(closest_in(place(site.value), 1, local(centre))), site.value, 7};
+  if (is_inside) return {world(closest_in(voxels_.place(site.value), 1, local(centre))), site.value, 7};
   // A voxel beyond the surface stands for itself, where it faces the solid.
   const Place& size = voxels_.size();
   const Vec3d at = local(centre);
@@ -106,14 +97,14 @@ Footprint VoxelSurface::footprint(SiteId site, const Vec3d& centre, bool is_insi
   for (std::size_t a = 0; a < 3; ++a) {
     own[a] = std::clamp(static_cast<std::int64_t>(at[a] / grid_.spacing[a]), std::int64_t{0}, size[a] - 1);
   }
-  const Place other = place(site.value);
+  const Place other = voxels_.place(site.value);
   const Vec3d goal = closest_in(other, 1, at);
   return {world(closest_in(own, 1, goal)), static_cast<std::uint32_t>((own[2] * size[1] + own[1]) * size[0] + own[0]),
           7};
 }
 
 std::optional<Vec3d> VoxelSurface::rough_footprint(SiteId site) const {
-  const auto [i, j, k] = place(site.value);
+  const auto [i, j, k] = voxels_.place(site.value);
   return Vec3d{static_cast<double>(i) * grid_.spacing.x, static_cast<double>(j) * grid_.spacing.y,
                static_cast<double>(k) * grid_.spacing.z};
 }
@@ -121,7 +112,7 @@ std::optional<Vec3d> VoxelSurface::rough_footprint(SiteId site) const {
 Footprint VoxelSurface::follow(const Footprint& start, const Vec3d& query, double reach) const {
   const Vec3d at = local(query);
   const Vec3d from = local(start.point);
-  Place best = place(start.element);
+  Place best = voxels_.place(start.element);
   Vec3d best_point = closest_in(best, 1, at);
   double best_squared = squared_length(at - best_point);
   for (int step = 0; step < most_steps; ++step) {
@@ -209,7 +200,7 @@ SurfacePoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) co
   best.squared = squared_length(query - near.point) * (1 + 1e-9);
   best.voxel = near.element;
   search(best, levels_.size() - 1, {0, 0, 0});
-  const Vec3d point = closest_in(place(best.voxel), 1, best.query);
+  const Vec3d point = closest_in(voxels_.place(best.voxel), 1, best.query);
   return {world(point), length(best.query - point), SiteId(best.voxel), best.voxel};
 }
 

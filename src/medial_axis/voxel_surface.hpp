@@ -40,7 +40,6 @@ class VoxelSurface final : public Surface {
   };
   struct Search;
 
-  [[nodiscard]] Place place(std::uint32_t voxel) const;
   [[nodiscard]] bool is_other(const Place& at) const;
   /// Coordinates along the grid's axes, mesh units, from the lower corner of voxel (0, 0, 0).
   [[nodiscard]] Vec3d local(const Vec3d& world) const;

@@ -46,20 +46,6 @@ VoxelSolid solid_of(Field field) {
   return solid;
 }
 
-void take_inside(VoxelSolid& solid, const Context& context) {
-  const Place& size = solid.grid.size;
-  parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
-    for (auto k = static_cast<std::int64_t>(range.begin); k < static_cast<std::int64_t>(range.end); ++k) {
-      if (k == 0 || k + 1 == size[2]) continue;
-      for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
-        for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
-          if (solid.depth[solid.grid.index(i, j, k)] > 0) solid.voxels.insert(i, j, k);
-        }
-      }
-    }
-  });
-}
-
 /// The smallest box that holds all voxels of a set: its lower corner, and beyond its upper one.
 struct Extent {
   Place lower{std::numeric_limits<std::int64_t>::max(), 0, 0};
@@ -148,7 +134,7 @@ Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Contex
   FieldOptions options;
   options.sign = SignMode::winding;
   out.solid = solid_of(distance_field(mesh, voxels_around(bounds(mesh), spacing), options, context));
-  take_inside(out.solid, context);
+  take_deeper_than(out.solid.depth.span(), 0, out.solid.voxels, context);
   out.report = report_of(out.solid, context);
   return out;
 }

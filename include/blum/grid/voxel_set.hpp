@@ -24,6 +24,14 @@ class VoxelSet {
   [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
   [[nodiscard]] std::size_t words_per_row() const { return words_per_row_; }
 
+  /// The place of a voxel by its linear index, x fastest. In 32 bits, which divide several times faster.
+  [[nodiscard]] std::array<std::int64_t, 3> place(std::uint32_t voxel) const {
+    const auto x = static_cast<std::uint32_t>(size_[0]);
+    const auto y = static_cast<std::uint32_t>(size_[1]);
+    const std::uint32_t row = voxel / x;
+    return {voxel - row * x, row % y, row / y};
+  }
+
   /// Whether a voxel is in the set; any indices.
   [[nodiscard]] bool contains(std::int64_t i, std::int64_t j, std::int64_t k) const {
     if (i < 0 || j < 0 || k < 0 || i >= size_[0] || j >= size_[1] || k >= size_[2]) return false;

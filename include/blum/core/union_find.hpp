@@ -17,14 +17,17 @@ class UnionFind {
     while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];
     return item;
   }
-  void join(std::uint32_t a, std::uint32_t b) {
+  /// Whether they were apart before.
+  bool join(std::uint32_t a, std::uint32_t b) {
     a = find(a);
     b = find(b);
+    if (a == b) return false;
     if (a < b) {
       parent_[b] = a;
     } else {
       parent_[a] = b;
     }
+    return true;
   }
 
  private:
