@@ -19,10 +19,15 @@ struct Symmetric {
 /// Eigenvectors as columns of v, eigenvalues on the diagonal of m, by Jacobi rotations.
 void diagonalise(Symmetric& m, Symmetric& v) {
   v.a[0][0] = v.a[1][1] = v.a[2][2] = 1;
-  for (int sweep = 0; sweep < 8; ++sweep) {
+  // What is left beside the diagonal is less than rounding leaves of the largest eigenvalue.
+  const double negligible = 1e-16 * (m.a[0][0] + m.a[1][1] + m.a[2][2]);
+  bool is_done = false;
+  for (int sweep = 0; sweep < 8 && !is_done; ++sweep) {
+    is_done = true;
     for (int p = 0; p < 2; ++p) {
       for (int q = p + 1; q < 3; ++q) {
-        if (std::abs(m.a[p][q]) < 1e-300) continue;
+        if (std::abs(m.a[p][q]) <= negligible) continue;
+        is_done = false;
         const double theta = (m.a[q][q] - m.a[p][p]) / (2 * m.a[p][q]);
         const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
         const double c = 1 / std::sqrt(t * t + 1);

@@ -10,6 +10,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "medial_axis/equidistant_point.hpp"
+#include "medial_axis/thick_parts.hpp"
 
 namespace blum {
 namespace {
@@ -23,12 +24,39 @@ constexpr int bisector_steps = 4;
 constexpr double opposite_step = 0.3;    ///< voxels
 constexpr double opposite_enough = 175;  ///< degrees: no need to look for a footprint that is further apart
 
+/// Where a floor of noise lets footprints that are close together count at clear angles: nowhere in thick parts.
+class ThickParts {
+ public:
+  ThickParts(const GovernorField& governors, const NoiseFloor& floor, const Context& context) {
+    if (floor.thin_within == 0) return;
+    const double depth = floor.voxels * governors.longest_voxel();
+    at_ = voxels_near_deep_ones(governors.solid(), depth, floor.thin_within, context);
+    all_around_ = voxels_near_deep_ones(governors.solid(), depth, floor.thin_within - 1, context);
+  }
+
+  [[nodiscard]] bool contain(const std::array<std::int64_t, 3>& voxel) const {
+    return at_.contains(voxel[0], voxel[1], voxel[2]);
+  }
+  /// A voxel and all its neighbours.
+  [[nodiscard]] bool contain_all_around(const std::array<std::int64_t, 3>& voxel) const {
+    return all_around_.contains(voxel[0], voxel[1], voxel[2]);
+  }
+
+ private:
+  VoxelSet at_;
+  VoxelSet all_around_;
+};
+
 /// The governors of the voxels around the nodes of a layer, row after row, each found once per layer and only where it
 /// is asked for.
 class GovernorRows {
  public:
-  GovernorRows(const GovernorField& governors, const NoiseFloor& floor, std::int64_t k)
-      : governors_(governors), floor_(floor), k_(k), chord_(2 * std::sin(0.5 * floor.angle / degrees_per_radian)) {
+  GovernorRows(const GovernorField& governors, const NoiseFloor& floor, const ThickParts& thick, std::int64_t k)
+      : governors_(governors),
+        floor_(floor),
+        thick_(thick),
+        k_(k),
+        chord_(2 * std::sin(0.5 * floor.angle / degrees_per_radian)) {
     const auto length = static_cast<std::size_t>(governors.solid().grid.size[0]);
     for (Row& row : rows_) row = {std::vector<Governor>(length), std::vector<std::uint8_t>(length, 0), {}};
     const SiteId any = governors.solid().site[0];
@@ -97,7 +125,7 @@ class GovernorRows {
   [[nodiscard]] bool has_one_rough_wall(std::int64_t i, double depth) {
     // Footprints lie up to half a voxel from where they are thought to be, the node up to one from the voxel.
     const double voxel = governors_.longest_voxel();
-    if (depth < 3 * voxel) return false;
+    if (!thick_.contain_all_around(place(i, 7))) return false;
     const double limit = std::max((floor_.voxels - 1) * voxel, chord_ * (depth - voxel) - voxel);
     const Vec3d& middle = rough(i, 7);
     for (std::size_t v = 0; v < 7; ++v) {
@@ -113,6 +141,7 @@ class GovernorRows {
 
   const GovernorField& governors_;
   const NoiseFloor& floor_;
+  const ThickParts& thick_;
   std::int64_t k_;
   std::int64_t j_ = -2;
   double chord_;  ///< between two footprints at the angle of the floor, per distance
@@ -122,8 +151,9 @@ class GovernorRows {
 
 class Measure {
  public:
-  Measure(const GovernorField& governors, const CellComplex& complex, const NoiseFloor& floor)
-      : governors_(governors),
+  Measure(const GovernorField& governors, const CellComplex& complex, const NoiseFloor& floor, const Context& context)
+      : thick_(governors, floor, context),
+        governors_(governors),
         surface_(governors.surface()),
         complex_(complex),
         floor_(floor),
@@ -138,7 +168,7 @@ class Measure {
   void for_each_uneven_node(std::int64_t k, const Use& use) const {
     const CellLattice& lattice = complex_.lattice();
     const auto& size = lattice.size();
-    GovernorRows rows(governors_, floor_, k);
+    GovernorRows rows(governors_, floor_, thick_, k);
     for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
       rows.go_to(j);
       for (std::int64_t i = 1; i + 1 < size[0]; ++i) {
@@ -258,20 +288,11 @@ class Measure {
     if (floor_.thin_within == 0) return true;
     const GridSpec& grid = governors_.solid().grid;
     const Vec3d at = grid.direction.transposed_times(x - grid.origin);
-    std::array<std::array<std::int64_t, 2>, 3> range{};
+    std::array<std::int64_t, 3> voxel{};
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto middle = static_cast<std::int64_t>(std::lround(at[a] / grid.spacing[a]));
-      range[a] = {std::max<std::int64_t>(middle - floor_.thin_within, 0),
-                  std::min<std::int64_t>(middle + floor_.thin_within, grid.size[a] - 1)};
+      voxel[a] = std::clamp(std::int64_t{std::lround(at[a] / grid.spacing[a])}, std::int64_t{0}, grid.size[a] - 1);
     }
-    for (std::int64_t k = range[2][0]; k <= range[2][1]; ++k) {
-      for (std::int64_t j = range[1][0]; j <= range[1][1]; ++j) {
-        for (std::int64_t i = range[0][0]; i <= range[0][1]; ++i) {
-          if (governors_.solid().depth[grid.index(i, j, k)] > floor_.voxels * step_) return false;
-        }
-      }
-    }
-    return true;
+    return !thick_.contain(voxel);
   }
 
   [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& middle) const {
@@ -297,13 +318,17 @@ class Measure {
     if (!is_in) return 0;
     const double limit = closest + fitted_tolerance * voxel_;
     double largest = 0;
+    double least_cosine = std::cos(floor_.angle / degrees_per_radian);
     std::size_t widest = 0;
     for (std::size_t a = 0; a < governors.size(); ++a) {
       for (std::size_t b = a + 1; b < governors.size() && distance[a] <= limit; ++b) {
         if (distance[b] > limit) continue;
+        const double cosine_scaled = dot(feet[a].point - x, feet[b].point - x);
+        if (cosine_scaled > least_cosine * distance[a] * distance[b]) continue;  // before the angle, which costs more
         const double angle = above_floor(x, feet[a].point, feet[b].point);
         if (angle <= largest) continue;
         largest = angle;
+        least_cosine = std::cos(angle / degrees_per_radian);
         widest = a;
       }
     }
@@ -323,6 +348,7 @@ class Measure {
     return surface_.follow({there.point, there.element, 7}, x, reach_around_axis * voxel_).point;
   }
 
+  ThickParts thick_;
   const GovernorField& governors_;
   const Surface& surface_;
   const CellComplex& complex_;
@@ -361,7 +387,7 @@ double largest_around(const Importance& squares, const CellLattice& lattice, std
 
 Importance separation_angles(const GovernorField& governors, const CellComplex& complex, const NoiseFloor& floor,
                              const Context& context) {
-  const Measure measure(governors, complex, floor);
+  const Measure measure(governors, complex, floor, context);
   const CellLattice& lattice = complex.lattice();
   const auto layers = static_cast<std::size_t>(lattice.size()[2]);
   std::vector<Entries> found(layers);

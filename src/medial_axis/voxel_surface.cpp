@@ -63,11 +63,21 @@ VoxelSurface::VoxelSurface(const VoxelSet& voxels, const GridSpec& grid) : voxel
   } while (std::max({size[0], size[1], size[2]}) > 1);
 }
 
-bool VoxelSurface::is_other(const Place& at) const {
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (at[a] < 0 || at[a] >= voxels_.size()[a]) return false;
-  }
-  return !voxels_.contains(at[0], at[1], at[2]);
+unsigned VoxelSurface::others_in_row(const Place& middle) const {
+  const Place& size = voxels_.size();
+  if (middle[1] < 0 || middle[1] >= size[1] || middle[2] < 0 || middle[2] >= size[2]) return 0;
+  const std::span<const std::uint64_t> row = voxels_.row(middle[1], middle[2]);
+  // Rows end in bits of no voxel, so that the word after that of a voxel is there where the next voxel is.
+  const std::int64_t first = middle[0] - 1;
+  const auto word = static_cast<std::size_t>(std::max<std::int64_t>(first, 0) / 64);
+  const auto shift = static_cast<unsigned>(std::max<std::int64_t>(first, 0) % 64);
+  std::uint64_t selected = row[word] >> shift;
+  if (shift > 61 && word + 1 < row.size()) selected |= row[word + 1] << (64 - shift);
+  unsigned others = static_cast<unsigned>(~selected & 7U);
+  if (first < 0) others = others << 1U & 7U;
+  const std::int64_t left = size[0] - first;  // voxels of the row from the first one on
+  if (left < 3) others &= (1U << static_cast<unsigned>(left)) - 1;
+  return others;
 }
 
 Vec3d VoxelSurface::local(const Vec3d& world) const {
@@ -139,15 +149,20 @@ int VoxelSurface::closer_neighbour(const Place& voxel, const Vec3d& query, doubl
       part[a][n] = beyond * beyond;
     }
   }
+  const double least_x = std::min({part[0][0], part[0][1], part[0][2]});
   int best = -1;
   double least = squared * (1 - 1e-12);
-  for (int n = 0; n < 27; ++n) {
-    const double sum = part[0][static_cast<std::size_t>(n % 3)] + part[1][static_cast<std::size_t>(n / 3 % 3)] +
-                       part[2][static_cast<std::size_t>(n / 9)];
-    if (sum >= least) continue;
-    if (!is_other({voxel[0] + n % 3 - 1, voxel[1] + n / 3 % 3 - 1, voxel[2] + n / 9 - 1})) continue;
-    least = sum;
-    best = n;
+  for (int row = 0; row < 9; ++row) {
+    const double across = part[1][static_cast<std::size_t>(row % 3)] + part[2][static_cast<std::size_t>(row / 3)];
+    if (across + least_x >= least) continue;
+    unsigned others = others_in_row({voxel[0], voxel[1] + row % 3 - 1, voxel[2] + row / 3 - 1});
+    for (; others != 0; others &= others - 1) {
+      const int n = std::countr_zero(others);
+      const double sum = across + part[0][static_cast<std::size_t>(n)];
+      if (sum >= least) continue;
+      least = sum;
+      best = 3 * row + n;
+    }
   }
   return best;
 }

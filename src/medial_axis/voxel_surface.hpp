@@ -40,7 +40,8 @@ class VoxelSurface final : public Surface {
   };
   struct Search;
 
-  [[nodiscard]] bool is_other(const Place& at) const;
+  /// Bit n is set where voxel n - 1 along x from the middle one lies in the box and beyond the surface.
+  [[nodiscard]] unsigned others_in_row(const Place& middle) const;
   /// Coordinates along the grid's axes, mesh units, from the lower corner of voxel (0, 0, 0).
   [[nodiscard]] Vec3d local(const Vec3d& world) const;
   [[nodiscard]] Vec3d world(const Vec3d& local) const;
