@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::int64_t branching = 2;  // blocks along each axis of the next larger one
 constexpr int most_steps = 64;
+/// Squared cosine of the angle between two footprints beyond which the second is another wall, unless the way along the
+/// surface leads there: 45 degrees.
+constexpr double most_turned = 0.5;
 
 std::int64_t blocks(std::int64_t size, std::int64_t side) {
   return (size + side - 1) / side;
@@ -30,6 +33,13 @@ void add_missing(std::span<const std::uint64_t> row, std::int64_t length, unsign
 }
 
 }  // namespace
+
+/// Along each axis: squared distances of a query from the voxel before one, from that one, and from the one after, and
+/// which of these may be taken, as bits.
+struct VoxelSurface::Axes {
+  std::array<std::array<double, 3>, 3> squared{};
+  std::array<unsigned, 3> allowed{};
+};
 
 /// The best voxel so far.
 struct VoxelSurface::Search {
@@ -140,22 +150,41 @@ Footprint VoxelSurface::follow(const Footprint& start, const Vec3d& query, doubl
 }
 
 int VoxelSurface::closer_neighbour(const Place& voxel, const Vec3d& query, double squared) const {
-  // Squared distances along each axis to the voxel before, this one and the one after.
-  std::array<std::array<double, 3>, 3> part{};
+  Axes axes;
   for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t n = 0; n < 3; ++n) {
-      const double low = static_cast<double>(voxel[a] + static_cast<std::int64_t>(n) - 1) * grid_.spacing[a];
-      const double beyond = query[a] - std::clamp(query[a], low, low + grid_.spacing[a]);
-      part[a][n] = beyond * beyond;
-    }
+    const double low = static_cast<double>(voxel[a]) * grid_.spacing[a];
+    const double high = low + grid_.spacing[a];
+    const auto square = [](double value) { return value * value; };
+    axes.squared[a] = {square(std::max({low - grid_.spacing[a] - query[a], query[a] - low, 0.0})),
+                       square(std::max({low - query[a], query[a] - high, 0.0})),
+                       square(std::max({high - query[a], query[a] - high - grid_.spacing[a], 0.0}))};
+    axes.allowed[a] = 7;
   }
-  const double least_x = std::min({part[0][0], part[0][1], part[0][2]});
+  const int best = closest_of(voxel, axes, squared);
+  if (best < 0) return best;
+  const Place to{voxel[0] + best % 3 - 1, voxel[1] + best / 3 % 3 - 1, voxel[2] + best / 9 - 1};
+  const Vec3d from_foot = query - closest_in(voxel, 1, query);
+  const Vec3d from_next = query - closest_in(to, 1, query);
+  const double next_squared = squared_length(from_next);
+  const double cosine_scaled = dot(from_foot, from_next);
+  if (cosine_scaled > 0 && cosine_scaled * cosine_scaled >= most_turned * squared * next_squared) return best;
+  // Too far around a corner to be the same wall: on to what the footprint lies on, towards the query, or nowhere.
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double low = static_cast<double>(voxel[a]) * grid_.spacing[a];
+    axes.allowed[a] = 2U | (query[a] <= low ? 1U : 0U) | (query[a] >= low + grid_.spacing[a] ? 4U : 0U);
+  }
+  return closest_of(voxel, axes, squared);
+}
+
+int VoxelSurface::closest_of(const Place& voxel, const Axes& axes, double squared) const {
+  const auto& [part, allowed] = axes;
   int best = -1;
   double least = squared * (1 - 1e-12);
   for (int row = 0; row < 9; ++row) {
+    if ((allowed[1] >> (row % 3) & allowed[2] >> (row / 3) & 1U) == 0) continue;
     const double across = part[1][static_cast<std::size_t>(row % 3)] + part[2][static_cast<std::size_t>(row / 3)];
-    if (across + least_x >= least) continue;
-    unsigned others = others_in_row({voxel[0], voxel[1] + row % 3 - 1, voxel[2] + row / 3 - 1});
+    if (across >= least) continue;
+    unsigned others = others_in_row({voxel[0], voxel[1] + row % 3 - 1, voxel[2] + row / 3 - 1}) & allowed[0];
     for (; others != 0; others &= others - 1) {
       const int n = std::countr_zero(others);
       const double sum = across + part[0][static_cast<std::size_t>(n)];

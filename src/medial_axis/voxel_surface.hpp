@@ -38,6 +38,7 @@ class VoxelSurface final : public Surface {
       return static_cast<std::size_t>((at[2] * size[1] + at[1]) * size[0] + at[0]);
     }
   };
+  struct Axes;
   struct Search;
 
   /// Bit n is set where voxel n - 1 along x from the middle one lies in the box and beyond the surface.
@@ -47,7 +48,9 @@ class VoxelSurface final : public Surface {
   [[nodiscard]] Vec3d world(const Vec3d& local) const;
   [[nodiscard]] Vec3d closest_in(const Place& lower, std::int64_t side, const Vec3d& query) const;
   /// Which of the 27 voxels around one is closest to a local point, if it is closer than a squared distance; else -1.
+  /// Steps are jumped over: that of a stair, but not the corner of a thin part.
   [[nodiscard]] int closer_neighbour(const Place& voxel, const Vec3d& query, double squared) const;
+  [[nodiscard]] int closest_of(const Place& voxel, const Axes& axes, double squared) const;
   void search(Search& best, std::size_t level, const Place& block) const;
 
   const VoxelSet& voxels_;

@@ -110,19 +110,20 @@ TEST(VoxelSurface, NearestStaysWhereTheNearestIsKnown) {
   }
 }
 
-/// Whether no voxel around one is closer.
+/// Whether no voxel that a footprint lies on is closer.
 bool is_least_around(const Sample& s, const Footprint& foot, const Vec3d& query) {
   const Place at = s.place(foot.element);
   const double distance = length(query - foot.point);
   for (int n = 0; n < 27; ++n) {
     const Place next{at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
-    if (s.is_other(next) && length(query - s.closest_in(next, query)) < distance - 1e-9) return false;
+    if (!s.is_other(next) || length(foot.point - s.closest_in(next, foot.point)) > 1e-12) continue;
+    if (length(query - s.closest_in(next, query)) < distance - 1e-9) return false;
   }
   return true;
 }
 
 /// Unless that is more than 64 steps away.
-TEST(VoxelSurface, FollowingEndsWhereNoNeighbourIsCloser) {
+TEST(VoxelSurface, FollowingEndsWhereNoVoxelThatTouchesTheFootprintIsCloser) {
   Random random(4);
   for (const auto& s : samples()) {
     if (s->grid.size[0] > 64) continue;
