@@ -109,15 +109,19 @@ class Turner {
   std::vector<Triangle> triangles_;
 };
 
-/// The body of each shell: outer shells by number, voids that of the shell around them.
-std::vector<std::uint32_t> body_of_shells(const std::vector<Shell>& shells) {
+/// The body of each shell: outer shells by number, voids that of the shell around them. nullopt where a void's parent
+/// bounds no body, as depths and parents may say of shells that cross or coincide.
+std::optional<std::vector<std::uint32_t>> body_of_shells(const std::vector<Shell>& shells) {
   std::vector<std::uint32_t> body(shells.size(), nobody);
   std::uint32_t count = 0;
   for (std::size_t s = 0; s < shells.size(); ++s) {
     if (shells[s].depth % 2 == 0) body[s] = count++;
   }
   for (std::size_t s = 0; s < shells.size(); ++s) {
-    if (shells[s].depth % 2 == 1) body[s] = body[static_cast<std::size_t>(shells[s].parent)];
+    if (shells[s].depth % 2 == 0) continue;
+    const std::int64_t parent = shells[s].parent;
+    if (parent < 0 || shells[static_cast<std::size_t>(parent)].depth % 2 == 1) return std::nullopt;
+    body[s] = body[static_cast<std::size_t>(parent)];
   }
   return body;
 }
@@ -207,13 +211,14 @@ SolidBodies split_into_bodies(const MeshView& mesh, const SiteTable& sites, cons
   }
   if (const std::string why = obstacle(topology); !why.empty()) return whole(mesh, why);
   const std::vector<std::uint32_t> shell = shell_of_triangles(mesh, sites);
-  const std::vector<std::uint32_t> body = body_of_shells(topology.shells);
+  const std::optional<std::vector<std::uint32_t>> body = body_of_shells(topology.shells);
+  if (!body) return whole(mesh, "its shells do not lie in each other, they cross or coincide");
   std::vector<std::vector<std::uint32_t>> triangles;
   std::vector<std::uint32_t> body_of_triangle(mesh.triangles.size(), nobody);
   std::vector<bool> is_turned(mesh.triangles.size(), false);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (shell[t] == nobody) continue;
-    const std::uint32_t b = body_of_triangle[t] = body[shell[t]];
+    const std::uint32_t b = body_of_triangle[t] = (*body)[shell[t]];
     if (b >= triangles.size()) triangles.resize(b + 1);
     triangles[b].push_back(t);
     is_turned[t] = !topology.shells[shell[t]].faces_outwards;
@@ -223,7 +228,7 @@ SolidBodies split_into_bodies(const MeshView& mesh, const SiteTable& sites, cons
   for (const auto& own : triangles) out.bodies.push_back(copy_of(mesh, own, is_turned));
   for (std::size_t s = 0; s < topology.shells.size(); ++s) {
     const Shell& one = topology.shells[s];
-    BettiNumbers& betti = out.bodies[body[s]].betti;
+    BettiNumbers& betti = out.bodies[(*body)[s]].betti;
     ++betti[one.depth % 2 == 0 ? 0 : 2];
     betti[1] += one.genus;
     out.turned_shells += one.faces_outwards ? 0 : 1;

@@ -114,6 +114,31 @@ TEST(SolidBodies, TrianglesThatDisagreeAreTurned) {
   }
 }
 
+TEST(SolidBodies, ABoxGivenTwiceIsNoPolyhedron) {
+  TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
+  append(mesh, box_between({0, 0, 0}, {1, 1, 1}));
+  const SolidBodies split = bodies_of(mesh);
+  EXPECT_EQ(split.rule, SolidRule::winding);
+  EXPECT_EQ(split.bodies.size(), 1U);
+}
+
+/// Rays from shells that cross may say anything of how these lie in each other.
+TEST(SolidBodies, BoxesThatCrossAtRandomAreNoPolyhedron) {
+  Random random(8);
+  const auto place = [&](double least) {
+    return Vec3d{random.uniform(least, 1), random.uniform(least, 1), random.uniform(least, 1)};
+  };
+  for (int n = 0; n < 200; ++n) {
+    TriangleMesh mesh = box_between({0.4, 0.4, 0.4}, {0.6, 0.6, 0.6});
+    append(mesh, box_between({0.5, 0.45, 0.45}, {0.7, 0.55, 0.55}));  // crosses the first in any case
+    for (int k = 0; k < 6; ++k) {
+      const Vec3d lower = place(0);
+      append(mesh, box_between(lower, lower + place(0.01)));
+    }
+    ASSERT_EQ(bodies_of(mesh).rule, SolidRule::winding);
+  }
+}
+
 TEST(SolidBodies, EveryTriangleIsInOneBody) {
   const TriangleMesh mesh = many_bodies();
   const SolidBodies split = bodies_of(mesh);
