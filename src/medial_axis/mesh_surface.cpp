@@ -39,6 +39,7 @@ MeshSurface::MeshSurface(const MeshView& mesh, const SiteTable& sites, const Con
     : mesh_(mesh),
       sites_(sites),
       bvh_(mesh, sites, context),
+      normals_(mesh, sites),
       first_(mesh.vertices.size() + 1, 0),
       triangles_(3 * mesh.triangles.size()) {
   for (const Triangle& t : mesh.triangles) {

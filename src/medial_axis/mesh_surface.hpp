@@ -6,6 +6,7 @@
 
 #include "blum/core/context.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/pseudonormals.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "medial_axis/surface.hpp"
@@ -20,6 +21,9 @@ class MeshSurface final : public Surface {
   [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;
   [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
   [[nodiscard]] SurfacePoint nearest(const Vec3d& query, const Footprint& near) const override;
+  [[nodiscard]] bool is_inside(const Vec3d& query, const SurfacePoint& nearest) const override {
+    return nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
+  }
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
 
  private:
@@ -28,6 +32,7 @@ class MeshSurface final : public Surface {
   MeshView mesh_;
   const SiteTable& sites_;
   Bvh bvh_;
+  Pseudonormals normals_;
   std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_
   std::vector<std::uint32_t> triangles_;  ///< around each vertex
 };

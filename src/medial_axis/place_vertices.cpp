@@ -8,6 +8,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "medial_axis/equidistant_point.hpp"
+#include "medial_axis/thin_ball.hpp"
 
 namespace blum {
 namespace {
@@ -21,6 +22,7 @@ constexpr std::size_t most_walls = 16;
 constexpr double most_moved = 0.7;
 /// Two distances count as equal from here on, in voxels.
 constexpr double equal_distances = 1e-9;
+constexpr double least_radius = 1e-6;  ///< voxels
 /// Squared difference of the directions to two footprints from which they count as two walls: 6 degrees.
 constexpr double two_walls = 0.01;
 
@@ -69,18 +71,23 @@ class Placer {
     const double voxel = governors_.voxel();
     Placed at{start, {}, {}, {}};
     std::array<Footprint, most_walls> walls;
+    std::array<Vec3d, most_walls> outwards;  // zero where it is not known
     std::size_t count = 0;
-    for (const Governor& g : around) walls[count++] = g.foot;
+    for (const Governor& g : around) {
+      outwards[count] = g.direction;
+      walls[count++] = g.foot;
+    }
     for (int step = 0; step < most_steps; ++step) {
       std::array<Footprint, most_walls> feet;
-      std::array<double, most_walls> distance{};
+      std::array<double, most_walls> distance{};  // negative beyond the wall, as corners next to thin parts are
       std::size_t closest = 0;
       for (std::size_t v = 0; v < count; ++v) {
         feet[v] = surface_.follow(walls[v], at.x, 2 * voxel);
-        distance[v] = length(at.x - feet[v].point);
+        const Vec3d away = at.x - feet[v].point;
+        distance[v] = dot(away, outwards[v]) > 0 ? -length(away) : length(away);
+        if (distance[v] == 0) return std::nullopt;
         if (distance[v] < distance[closest]) closest = v;
       }
-      if (!(distance[closest] > 0)) return std::nullopt;
       const Vec3d towards = (at.x - feet[closest].point) / distance[closest];
       Vec3d move;
       double least = std::numeric_limits<double>::infinity();
@@ -100,6 +107,7 @@ class Placer {
         at.nearest = surface_.nearest(at.x, at.p);
         if (at.nearest.distance >= distance[closest] - 1e-7 * voxel) return at;
         if (count == most_walls) return std::nullopt;
+        outwards[count] = {};
         walls[count++] = {at.nearest.point, at.nearest.element, 7};
         continue;
       }
@@ -109,19 +117,21 @@ class Placer {
     return std::nullopt;
   }
 
-  /// Whether balls around a point and around a voxel's centre meet, so that the point is inside as well.
-  [[nodiscard]] static bool is_inside(const GovernorsAround& around, const Vec3d& x, double radius) {
-    return std::any_of(around.begin(), around.end(), [&](const Governor& g) {
-      return g.is_inside && length(x - g.centre) < radius + length(g.centre - g.foot.point);
+  /// Whether a point is in the solid: balls around it and around a voxel's centre that meet say so without more ado.
+  [[nodiscard]] bool is_inside(const GovernorsAround& around, const Vec3d& x, const SurfacePoint& nearest) const {
+    const bool meets = std::any_of(around.begin(), around.end(), [&](const Governor& g) {
+      return g.is_inside && length(x - g.centre) < nearest.distance + length(g.centre - g.foot.point);
     });
+    return meets || surface_.is_inside(x, nearest);
   }
 
   /// The vertex at a point, if that is inside: the exact closest point, and the other wall's where it is as close.
   [[nodiscard]] std::optional<MedialVertex> vertex_at(const std::optional<Placed>& placed,
                                                       const GovernorsAround& around) const {
-    if (!placed) return std::nullopt;
+    // On the surface, at a convex edge say, directions are rounding.
+    if (!placed || placed->nearest.distance < least_radius * governors_.voxel()) return std::nullopt;
     MedialVertex vertex = one_wall(placed->x, placed->nearest);
-    if (!is_inside(around, vertex.position, vertex.radius)) return std::nullopt;
+    if (!is_inside(around, placed->x, placed->nearest)) return std::nullopt;
     const double limit = vertex.radius + 1e-6 * governors_.voxel() + 1e-9 * vertex.radius;
     for (const Footprint& foot : {placed->p, placed->q}) {
       if (length(vertex.position - foot.point) > limit) continue;
@@ -146,11 +156,23 @@ class Placer {
     return vertex;
   }
 
-  /// Where no bisector is within reach: at the corner; at the deepest voxel's centre where that is outside; on the
-  /// surface where that is outside, too.
+  /// The middle of a thin part next to a corner beyond the surface.
+  [[nodiscard]] std::optional<MedialVertex> in_thin_part(const SurfacePoint& touched, const Vec3d& corner) const {
+    const std::optional<ThinBall> ball = thin_ball_behind(surface_, touched, corner, 2 * governors_.longest_voxel());
+    if (!ball) return std::nullopt;
+    MedialVertex vertex = one_wall(ball->centre, ball->nearest);
+    vertex.footprints[1] = ball->other.point;
+    vertex.sites[1] = ball->other.site;
+    vertex.separation_angle = ball->angle;
+    return vertex;
+  }
+
+  /// Where no bisector is within reach: at the corner; where that is outside, in the middle of a thin part next to it;
+  /// else at the deepest voxel's centre; on the surface where that is outside, too.
   [[nodiscard]] MedialVertex without_bisector(const GovernorsAround& around, const Vec3d& corner) const {
-    const MedialVertex vertex = one_wall(corner, around[0].foot);
-    if (is_inside(around, corner, vertex.radius)) return vertex;
+    const SurfacePoint nearest = surface_.nearest(corner, around[0].foot);
+    if (is_inside(around, corner, nearest)) return one_wall(corner, nearest);
+    if (const auto vertex = in_thin_part(nearest, corner)) return *vertex;
     const auto depth = [](const Governor& g) {
       const double distance = length(g.centre - g.foot.point);
       return g.is_inside ? distance : -distance;

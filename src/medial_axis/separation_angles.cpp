@@ -10,7 +10,9 @@
 
 #include "blum/core/parallel.hpp"
 #include "medial_axis/equidistant_point.hpp"
-#include "medial_axis/thick_parts.hpp"
+#include "medial_axis/spread_voxels.hpp"
+#include "medial_axis/thin_ball.hpp"
+#include "medial_axis/topology_repair.hpp"
 
 namespace blum {
 namespace {
@@ -29,9 +31,11 @@ class ThickParts {
  public:
   ThickParts(const GovernorField& governors, const NoiseFloor& floor, const Context& context) {
     if (floor.thin_within == 0) return;
-    const double depth = floor.voxels * governors.longest_voxel();
-    at_ = voxels_near_deep_ones(governors.solid(), depth, floor.thin_within, context);
-    all_around_ = voxels_near_deep_ones(governors.solid(), depth, floor.thin_within - 1, context);
+    const VoxelSolid& solid = governors.solid();
+    VoxelSet deep(solid.voxels.size());
+    take_deeper_than(solid.depth.span(), floor.voxels * governors.longest_voxel(), deep, context);
+    at_ = spread(deep, floor.thin_within, context);
+    all_around_ = spread(deep, floor.thin_within - 1, context);
   }
 
   [[nodiscard]] bool contain(const std::array<std::int64_t, 3>& voxel) const {
@@ -182,7 +186,10 @@ class Measure {
 
   /// The angle on the bisector between two voxels that share a square; 0 where both follow the same wall.
   [[nodiscard]] double between(const Governor& a, const Governor& b) const {
-    if (a.foot.element == b.foot.element || (!a.is_inside && !b.is_inside)) return 0;
+    if (a.foot.element == b.foot.element) return 0;
+    // Between two voxels beyond the surface the solid may still pass: a thin part.
+    const bool is_thin = !a.is_inside && !b.is_inside;
+    if (is_thin && dot(a.direction, b.direction) > 0) return 0;
     double low = 0;  // where a's wall is the closer one
     double high = 1;
     double t = 0.5;
@@ -201,7 +208,9 @@ class Measure {
       const double next = slope > 0 ? t - difference / slope : -1;
       t = next > low && next < high ? next : 0.5 * (low + high);
     }
-    if (!is_inside(a, x) && !is_inside(b, x)) return 0;
+    const bool is_behind_a = is_inside(a, x);
+    const bool is_behind_b = is_inside(b, x);
+    if (is_thin ? !is_behind_a || !is_behind_b : !is_behind_a && !is_behind_b) return 0;
     return above_floor(x, p.point, q.point);
   }
 
@@ -222,14 +231,17 @@ class Measure {
     std::array<Vec3d, 8> feet;
     std::array<const Governor*, 8> governors{};
     std::size_t count = 0;
+    std::size_t inside = 0;
     Vec3d middle;
     for (unsigned v = 0; v < 8; ++v) {
       if ((v & axes) != axes) continue;
-      if (!around[v].is_inside) return 0;  // squares tell what there is to tell about thin parts
+      inside += around[v].is_inside ? 1 : 0;
       governors[count] = &around[v];
       feet[count++] = around[v].foot.point;
       middle += around[v].centre;
     }
+    // Squares tell what there is to tell about thin parts, but not about wires that pass between all voxels.
+    if (inside != 0 && inside != count) return 0;
     middle *= 1.0 / static_cast<double>(count);
     const EquidistantPoints points({feet.data(), count}, middle);
     double largest = 0;
@@ -238,7 +250,13 @@ class Measure {
       if (!x || !is_near(*x, middle)) continue;
       largest = std::max(largest, angle_of({governors.data(), count}, *x));
     }
-    return largest;
+    if (largest > 0 || inside != 0) return largest;
+    // A wire may be too thin for the footprints to tell its middle.
+    const SurfacePoint nearest = surface_.nearest(middle, governors[0]->foot);
+    if (nearest.distance > step_ || surface_.is_inside(middle, nearest)) return 0;
+    const std::optional<ThinBall> ball = thin_ball_behind(surface_, nearest, middle, step_);
+    if (!ball || !is_near(ball->centre, middle)) return 0;
+    return above_floor(ball->centre, ball->nearest.point, ball->other.point);
   }
 
  private:
@@ -308,14 +326,14 @@ class Measure {
     std::array<Footprint, 8> feet;
     std::array<double, 8> distance{};
     double closest = std::numeric_limits<double>::infinity();
-    bool is_in = false;
+    std::size_t behind = 0;
     for (std::size_t g = 0; g < governors.size(); ++g) {
-      is_in = is_in || is_inside(*governors[g], x);
+      behind += is_inside(*governors[g], x) ? 1 : 0;
       feet[g] = surface_.follow(governors[g]->foot, x, reach_around_axis * voxel_);
       distance[g] = length(x - feet[g].point);
       closest = std::min(closest, distance[g]);
     }
-    if (!is_in) return 0;
+    if (behind < (governors[0]->is_inside ? 1 : governors.size())) return 0;
     const double limit = closest + fitted_tolerance * voxel_;
     double largest = 0;
     double least_cosine = std::cos(floor_.angle / degrees_per_radian);

@@ -47,6 +47,9 @@ class Surface {
   /// The closest point of the whole surface. @param near  a footprint that is about as close.
   [[nodiscard]] virtual SurfacePoint nearest(const Vec3d& query, const Footprint& near) const = 0;
 
+  /// Whether a point is in the solid. @param nearest  its closest point of the surface.
+  [[nodiscard]] virtual bool is_inside(const Vec3d& query, const SurfacePoint& nearest) const = 0;
+
   /// The site that a footprint lies on.
   [[nodiscard]] virtual SiteId site_of(const Footprint& foot) const = 0;
 };

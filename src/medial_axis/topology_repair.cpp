@@ -8,6 +8,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "blum/grid/voxel_topology.hpp"
+#include "medial_axis/spread_voxels.hpp"
 
 namespace blum {
 namespace {
@@ -29,6 +30,8 @@ class Chooser {
  public:
   Chooser(std::span<const float> depth, VoxelSet& voxels, const Context& context)
       : depth_(depth), voxels_(voxels), size_(voxels.size()), context_(context), is_waiting_(depth.size(), false) {}
+
+  [[nodiscard]] BettiNumbers betti() const { return betti_numbers(voxels_, context_); }
 
   void take_deeper_than(double limit) { blum::take_deeper_than(depth_, limit, voxels_, context_); }
 
@@ -55,6 +58,28 @@ class Chooser {
       if (depth_[index(at)] > depth_[index(deepest)]) deepest = at;
     });
     force(deepest);
+  }
+
+  /// Takes in simple voxels of those that a thin part of the solid may pass through: no deep voxel is near, so that the
+  /// part may miss the centres of all voxels, or of some. @param half  of a voxel's diagonal.
+  void reach_into_thin_parts(double half) {
+    constexpr int near = 3;
+    VoxelSet touched(size_);
+    blum::take_deeper_than(depth_, -half, touched, context_);
+    VoxelSet deep(size_);
+    blum::take_deeper_than(depth_, half, deep, context_);
+    const VoxelSet thick = spread(deep, near, context_);
+    VoxelSet lost(size_);
+    for_each_word([&](std::size_t w, std::int64_t j, std::int64_t k) {
+      lost.row(j, k)[w] = touched.row(j, k)[w] & ~thick.row(j, k)[w] & ~voxels_.row(j, k)[w];
+    });
+    // Such voxels hang together with the others through those near by that the solid passes, too.
+    allowed_ = spread(lost, near + 1, context_);
+    for_each_word(
+        [&](std::size_t w, std::int64_t j, std::int64_t k) { allowed_.row(j, k)[w] &= touched.row(j, k)[w]; });
+    has_allowed_ = true;
+    grow(-half);
+    has_allowed_ = false;
   }
 
   /// Leaves out simple voxels whose centre is outside, the outermost first.
@@ -92,8 +117,6 @@ class Chooser {
     return places;
   }
 
-  [[nodiscard]] BettiNumbers betti() const { return betti_numbers(voxels_, context_); }
-
   RepairReport report() const {
     RepairReport report;
     for_each([&](const Place& at) {
@@ -112,6 +135,14 @@ class Chooser {
     return static_cast<std::size_t>((at[2] * size_[1] + at[1]) * size_[0] + at[0]);
   }
 
+  template <class Visit>
+  void for_each_word(const Visit& visit) const {
+    for (std::int64_t k = 0; k < size_[2]; ++k) {
+      for (std::int64_t j = 0; j < size_[1]; ++j) {
+        for (std::size_t w = 0; w < voxels_.words_per_row(); ++w) visit(w, j, k);
+      }
+    }
+  }
   /// All voxels but those of the outermost layer.
   template <class Visit>
   void for_each(const Visit& visit) const {
@@ -135,6 +166,7 @@ class Chooser {
     for_each_around(at, [&](const Place& next) {
       const std::size_t v = index(next);
       if (is_waiting_[v] || !(depth_[v] > limit_) || voxels_.contains(next[0], next[1], next[2])) return;
+      if (has_allowed_ && !allowed_.contains(next[0], next[1], next[2])) return;
       is_waiting_[v] = true;
       line_.push({depth_[v], static_cast<std::uint32_t>(v)});
     });
@@ -163,6 +195,8 @@ class Chooser {
   std::array<std::int64_t, 3> size_;
   const Context& context_;
   double limit_ = 0;
+  VoxelSet allowed_;
+  bool has_allowed_ = false;
   std::priority_queue<Waiting> line_;
   std::vector<bool> is_waiting_;
   std::size_t looks_ = 0;
@@ -239,6 +273,7 @@ RepairReport choose_voxels(std::span<const float> depth, const BettiNumbers& wan
     (void)grow_from_deepest(chooser, voxels, wanted, -tolerance);
     chooser.shrink();
   }
+  chooser.reach_into_thin_parts(0.5 * tolerance);
   RepairReport report = chooser.report();
   report.is_right = report.betti == wanted;
   return report;

@@ -25,6 +25,9 @@ class VoxelSurface final : public Surface {
   [[nodiscard]] std::optional<Vec3d> rough_footprint(SiteId site) const override;
   [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
   [[nodiscard]] SurfacePoint nearest(const Vec3d& query, const Footprint& near) const override;
+  [[nodiscard]] bool is_inside(const Vec3d& /*query*/, const SurfacePoint& nearest) const override {
+    return nearest.distance > 0;
+  }
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override { return SiteId(foot.element); }
 
  private:

@@ -194,19 +194,85 @@ TEST(MedialHostileMesh, LooseTrianglesAreRefusedOrHaveTheAxisOfTheirVoxels) {
   }
 }
 
-TEST(MedialHostileMesh, PartsThinnerThanAVoxelAreKept) {
-  for (const double thickness : {0.01, 0.002, 1e-4}) {
+/// The middle of a box whose sides are 1 or thin: a grid of points, a thin side from the borders.
+std::vector<Vec3d> middle_of(const Vec3d& size, double thin) {
+  std::vector<Vec3d> points;
+  const auto steps = [&](double side) { return side > thin ? 40 : 0; };
+  for (int i = 0; i <= steps(size.x); ++i) {
+    for (int j = 0; j <= steps(size.y); ++j) {
+      const double y = steps(size.y) > 0 ? (j / 40.0 - 0.5) * (size.y - 2 * thin) : 0;
+      points.push_back({(i / 40.0 - 0.5) * (size.x - 2 * thin), y, 0});
+    }
+  }
+  return points;
+}
+
+TEST(MedialHostileMesh, PartsThinnerThanAVoxelAreKeptWhole) {
+  for (const double thickness : {0.02, 0.01, 0.002, 1e-4}) {
     for (const Mat3& turn : {Mat3{}, test::rotation({1, 2, 3}, 40)}) {
-      SCOPED_TRACE(testing::Message() << "thickness " << thickness);
-      const TriangleMesh plate = test::turned(make_box({.size = {1, 1, thickness}}), turn);
-      const TriangleMesh needle = test::turned(make_box({.size = {1, thickness, thickness}}), turn);
-      for (const TriangleMesh& mesh : {plate, needle}) {
+      for (const Vec3d& size : {Vec3d{1, 1, thickness}, Vec3d{1, thickness, thickness}}) {
+        SCOPED_TRACE(testing::Message() << size.x << " x " << size.y << " x " << size.z);
+        const TriangleMesh mesh = test::turned(make_box({.size = size}), turn);
         const MedialAxis axis = medial_axis(mesh, coarse);
-        EXPECT_FALSE(axis.extract(60).vertices.empty());
         test::expect_certified(axis, {1, 0, 0});
+        const MedialComplex complex = axis.extract(60);
+        test::expect_exact_balls(complex, mesh);
+        std::vector<double> radii;
+        for (const MedialVertex& vertex : complex.vertices) radii.push_back(vertex.radius);
+        std::sort(radii.begin(), radii.end());
+        // The axis of a wire has sheets towards its edges as well.
+        const bool is_wire = size.y < 1;
+        EXPECT_GT(radii[radii.size() / (is_wire ? 10 : 20)], 0.1 * thickness) << "inside, and not on the surface";
+        EXPECT_NEAR(radii[radii.size() / 2], 0.5 * thickness, is_wire ? 0.3 * thickness : 1e-9);
+        std::vector<Vec3d> middle = middle_of(size, thickness);
+        for (Vec3d& point : middle) point = turn * point;
+        const double bound = test::voxel_diagonal(axis);
+        EXPECT_LE(test::furthest_from(test::shape_of(complex), middle), bound) << "the middle is all there";
       }
     }
   }
+}
+
+TEST(MedialHostileMesh, AThinFinOnABlockIsKeptWhole) {
+  TriangleMesh mesh = make_box({.size = {1, 1, 1}, .segments = {1, 1, 3}});
+  // The middle third of a side, drawn out: the vertices at z = +-1/6 come together where the fin begins.
+  constexpr double half = 5e-4;
+  for (Vec3d& p : mesh.vertices) {
+    if (std::abs(p.z) < 0.4) p.z = std::copysign(half, p.z);
+  }
+  std::uint32_t corner[2][2] = {};  // of the side x = 1/2: y, z
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Vec3d& p = mesh.vertices[v];
+    if (p.x > 0.4 && std::abs(p.z) < 0.1) corner[p.y > 0][p.z > 0] = v;
+  }
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
+      return v == corner[0][0] || v == corner[0][1] || v == corner[1][0] || v == corner[1][1];
+    });
+  });
+  std::uint32_t tip[2][2] = {};
+  for (const int y : {0, 1}) {
+    for (const int z : {0, 1}) {
+      tip[y][z] = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.push_back(mesh.vertices[corner[y][z]] + Vec3d{2, 0, 0});
+    }
+  }
+  const auto add_side = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  add_side(tip[0][0], tip[1][0], tip[1][1], tip[0][1]);
+  add_side(corner[0][1], tip[0][1], tip[1][1], corner[1][1]);
+  add_side(corner[1][0], tip[1][0], tip[0][0], corner[0][0]);
+  add_side(corner[0][0], tip[0][0], tip[0][1], corner[0][1]);
+  add_side(corner[1][1], tip[1][1], tip[1][0], corner[1][0]);
+  const MedialAxis axis = medial_axis(mesh, coarse);
+  test::expect_certified(axis, {1, 0, 0});
+  const MedialComplex complex = axis.extract(60);
+  test::expect_exact_balls(complex, mesh);
+  std::vector<Vec3d> middle;
+  for (int n = 0; n <= 40; ++n) middle.push_back({0.5 + 1.95 * n / 40, 0.45 * std::sin(n), 0});
+  EXPECT_LE(test::furthest_from(test::shape_of(complex), middle), test::voxel_diagonal(axis));
 }
 
 TEST(MedialHostileMesh, AThinPlateKeepsItsHoles) {
