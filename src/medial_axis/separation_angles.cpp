@@ -21,7 +21,7 @@ namespace {
 constexpr double reach_around_axis = 1.5;
 /// How far beyond the closest distance a footprint may be to count, in voxels, at a point that all were fitted to.
 constexpr double fitted_tolerance = 0.1;
-constexpr double fitted_reach = 0.7;  ///< of a point from the middle of its cell, in voxels along each axis
+constexpr double fitted_reach = 0.5;  ///< of a point from the middle of its cell, in voxels along each axis
 constexpr int bisector_steps = 4;
 constexpr double opposite_step = 0.3;    ///< voxels
 constexpr double opposite_enough = 175;  ///< degrees: no need to look for a footprint that is further apart
