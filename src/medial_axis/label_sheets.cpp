@@ -1,6 +1,8 @@
 #include "medial_axis/label_sheets.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "blum/core/union_find.hpp"
 
@@ -50,11 +52,86 @@ MedialRole role_of(const Around& a) {
   return MedialRole::junction;
 }
 
+/// Two triangles that share an edge with no other.
+struct Hinge {
+  std::array<std::uint32_t, 2> vertices;
+  std::array<std::uint32_t, 2> triangles;
+};
+
+/// From an edge to the third vertex of a triangle, at a right angle to the edge.
+Vec3d leaf(const MedialComplex& complex, const std::array<std::uint32_t, 2>& edge, std::uint32_t triangle) {
+  const auto& v = complex.triangles[triangle].vertices;
+  const std::uint32_t third = v[0] ^ v[1] ^ v[2] ^ edge[0] ^ edge[1];
+  const Vec3d& from = complex.vertices[edge[0]].position;
+  const Vec3d along = complex.vertices[edge[1]].position - from;
+  const Vec3d out = complex.vertices[third].position - from;
+  const double squared = squared_length(along);
+  return squared > 0 ? out - along * (dot(out, along) / squared) : out;
+}
+
+/// The cosine of the angle at a hinge: -1 where it is flat, and where a triangle has no area.
+double cosine_of(const MedialComplex& complex, const Hinge& hinge) {
+  const Vec3d a = leaf(complex, hinge.vertices, hinge.triangles[0]);
+  const Vec3d b = leaf(complex, hinge.vertices, hinge.triangles[1]);
+  const double scale = length(a) * length(b);
+  return scale > 0 ? dot(a, b) / scale : -1;
+}
+
+/// Joins the triangles of sheets. Where seams lie a step beside the crease of two sheets, first on one side of it and
+/// then on the other, the two hang together at the step: so sharp hinges at seams join nothing, unless what they cut
+/// off is only a few triangles.
+class SheetJoiner {
+ public:
+  explicit SheetJoiner(const MedialComplex& complex) : complex_(complex), sheets_(complex.triangles.size()) {}
+
+  detail::UnionFind join(const std::vector<Hinge>& hinges) {
+    std::vector<bool> is_on_seam(complex_.vertices.size(), false);
+    for (const MedialEdge& edge : complex_.edges) {
+      if (edge.role != MedialRole::seam) continue;
+      for (const std::uint32_t v : edge.vertices) is_on_seam[v] = true;
+    }
+    std::vector<std::pair<double, Hinge>> sharp;
+    for (const Hinge& hinge : hinges) {
+      const bool is_at_seam = is_on_seam[hinge.vertices[0]] || is_on_seam[hinge.vertices[1]];
+      const double cosine = is_at_seam ? cosine_of(complex_, hinge) : -1;
+      if (cosine > sharp_cosine) {
+        sharp.emplace_back(cosine, hinge);
+      } else {
+        sheets_.join(hinge.triangles[0], hinge.triangles[1]);
+      }
+    }
+    join_small(sharp);
+    return std::move(sheets_);
+  }
+
+ private:
+  static constexpr double sharp_cosine = -0.8;  ///< 37 degrees from flat
+  static constexpr std::size_t few = 8;         ///< triangles
+
+  /// Pieces of a few triangles go to the neighbour that they are flattest with.
+  void join_small(std::vector<std::pair<double, Hinge>>& sharp) {
+    std::stable_sort(sharp.begin(), sharp.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<std::size_t> size(complex_.triangles.size(), 0);
+    for (std::uint32_t t = 0; t < size.size(); ++t) ++size[sheets_.find(t)];
+    for (const auto& [cosine, hinge] : sharp) {
+      const std::uint32_t a = sheets_.find(hinge.triangles[0]);
+      const std::uint32_t b = sheets_.find(hinge.triangles[1]);
+      if (a == b || std::min(size[a], size[b]) >= few) continue;
+      const std::size_t sum = size[a] + size[b];
+      sheets_.join(a, b);
+      size[sheets_.find(a)] = sum;
+    }
+  }
+
+  const MedialComplex& complex_;
+  detail::UnionFind sheets_;
+};
+
 }  // namespace
 
 void label_sheets(MedialComplex& complex) {
   const std::vector<Side> sides = sorted_sides(complex.triangles);
-  detail::UnionFind sheets(complex.triangles.size());
+  std::vector<Hinge> hinges;
   for (std::size_t first = 0; first < sides.size();) {
     std::size_t end = first;
     float largest = 0;
@@ -63,12 +140,13 @@ void label_sheets(MedialComplex& complex) {
       ++end;
     }
     if (end - first == 2) {
-      sheets.join(sides[first].triangle, sides[first + 1].triangle);
+      hinges.push_back({sides[first].vertices, {sides[first].triangle, sides[first + 1].triangle}});
     } else {
       complex.edges.push_back({sides[first].vertices, largest, end - first == 1 ? MedialRole::rim : MedialRole::seam});
     }
     first = end;
   }
+  detail::UnionFind sheets = SheetJoiner(complex).join(hinges);
   std::vector<std::uint32_t> number(complex.triangles.size(), 0);
   complex.sheet_count = 0;
   for (std::uint32_t t = 0; t < complex.triangles.size(); ++t) {

@@ -42,7 +42,9 @@ struct MedialEdge {
 struct MedialTriangle {
   std::array<std::uint32_t, 3> vertices;
   float separation_angle = 0;  ///< degrees; 0 where only homotopy keeps the triangle
-  std::uint32_t sheet = 0;     ///< sheets are the triangles joined through edges that exactly two triangles share
+  /// Sheets are the triangles joined through edges that exactly two triangles share; next to a seam, not through edges
+  /// where these are 37 degrees from flat, or more.
+  std::uint32_t sheet = 0;
 };
 
 /// A medial axis: the vertices, the edges, the triangles, and the edges and vertices of these.

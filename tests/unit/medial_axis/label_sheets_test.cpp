@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace blum {
@@ -77,6 +79,58 @@ TEST(LabelSheets, ThreeSheetsMeetInASeam) {
   expected[0] = expected[2] = junction;
   expected[1] = seam;
   EXPECT_EQ(roles_of(complex), expected);
+}
+
+/// A point at some distance from the x axis, in a plane turned around it.
+Vec3d on_page(double x, double distance, double degrees) {
+  const double turn = degrees * std::numbers::pi / 180;
+  return {x, distance * std::cos(turn), distance * std::sin(turn)};
+}
+
+/// A book of two pages, folded by some angle along the x axis, with a third page of which one edge, of 16, is missing
+/// at the fold.
+MedialComplex torn_book(double fold) {
+  constexpr std::uint32_t steps = 16;
+  MedialComplex complex;
+  const auto row_of_vertices = [&](double distance, double degrees) {
+    std::vector<std::uint32_t> row;
+    for (std::uint32_t k = 0; k <= steps; ++k) {
+      row.push_back(static_cast<std::uint32_t>(complex.vertices.size()));
+      complex.vertices.emplace_back().position = on_page(k, distance, degrees);
+    }
+    return row;
+  };
+  const std::vector<std::uint32_t> fold_line = row_of_vertices(0, 0);
+  for (const double degrees : {0.0, 180 - fold, 180 + 0.5 * (180 - fold)}) {
+    std::vector<std::uint32_t> from = fold_line;
+    for (const double distance : {1, 2}) {
+      const std::vector<std::uint32_t> to = row_of_vertices(distance, degrees);
+      for (std::uint32_t k = 0; k < steps; ++k) {
+        const bool is_missing = degrees > 180 && distance == 1 && k == steps / 2;
+        if (!is_missing) complex.triangles.push_back({{from[k], from[k + 1], to[k]}, 10, 0});
+        complex.triangles.push_back({{from[k + 1], to[k + 1], to[k]}, 10, 0});
+      }
+      from = to;
+    }
+  }
+  label_sheets(complex);
+  return complex;
+}
+
+TEST(LabelSheets, ATornSeamDoesNotJoinSheets) {
+  EXPECT_EQ(torn_book(90).sheet_count, 3U);
+  EXPECT_EQ(torn_book(40).sheet_count, 3U);
+  EXPECT_EQ(torn_book(20).sheet_count, 2U) << "nearly flat: they are one sheet";
+}
+
+TEST(LabelSheets, ASharpFoldIsOneSheetWhereNoSeamIsNear) {
+  MedialComplex complex;
+  for (const Vec3d& at : {Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
+    complex.vertices.emplace_back().position = at;
+  }
+  complex.triangles = {{{0, 1, 2}, 10, 0}, {{1, 0, 3}, 10, 0}};
+  label_sheets(complex);
+  EXPECT_EQ(complex.sheet_count, 1U);
 }
 
 TEST(LabelSheets, EdgesHaveTheLargestAngleOfTheirTriangles) {
