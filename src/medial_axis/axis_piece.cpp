@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <limits>
 
+#include "blum/core/union_find.hpp"
 #include "blum/field/phase_timer.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/thin_voxels.hpp"
 
 namespace blum {
 namespace {
+
+constexpr double same_place = 1e-6;  ///< voxels
 
 /// The cells of a complex, rising.
 std::vector<AxisCell> cells_of(const CellComplex& complex, const Importance& importance) {
@@ -27,6 +30,26 @@ std::size_t index_of(const std::vector<AxisCell>& cells, Cell cell) {
   const auto at =
       std::lower_bound(cells.begin(), cells.end(), cell, [](const AxisCell& a, Cell value) { return a.cell < value; });
   return static_cast<std::size_t>(at - cells.begin());
+}
+
+std::size_t place_of(const std::vector<std::uint32_t>& nodes, std::size_t node) {
+  return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), static_cast<std::uint32_t>(node)) -
+                                  nodes.begin());
+}
+
+/// Makes ends of edges that are as good as at the same place the same: those of a ribbon around a curve, say.
+void make_equal(AxisPiece& piece, double tolerance) {
+  detail::UnionFind joined(piece.nodes.size());
+  for (const AxisCell& cell : piece.cells) {
+    if (dimension_of(cell.cell) != 1) continue;
+    const std::size_t node = node_of(cell.cell);
+    const std::size_t step = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes_of(cell.cell))));
+    const std::size_t a = place_of(piece.nodes, node);
+    const std::size_t b = place_of(piece.nodes, node + step);
+    if (squared_length(piece.vertices[a].position - piece.vertices[b].position) > tolerance * tolerance) continue;
+    joined.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+  }
+  for (std::uint32_t v = 0; v < piece.vertices.size(); ++v) piece.vertices[v] = piece.vertices[joined.find(v)];
 }
 
 /// What is left of a piece at an angle.
@@ -52,10 +75,7 @@ class Remainder {
   }
 
  private:
-  [[nodiscard]] std::size_t place_of(std::size_t node) const {
-    const auto at = std::lower_bound(piece_.nodes.begin(), piece_.nodes.end(), static_cast<std::uint32_t>(node));
-    return static_cast<std::size_t>(at - piece_.nodes.begin());
-  }
+  [[nodiscard]] std::size_t place_of(std::size_t node) const { return blum::place_of(piece_.nodes, node); }
 
   void append_vertex(std::size_t node) {
     const std::size_t place = place_of(node);
@@ -122,6 +142,7 @@ AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floo
     if (dimension_of(cell.cell) == 0) piece.nodes.push_back(static_cast<std::uint32_t>(node_of(cell.cell)));
   }
   piece.vertices = place_vertices(governors, piece.lattice, piece.nodes, context);
+  make_equal(piece, same_place * governors.voxel());
   timer.lap("vertices");
   return piece;
 }

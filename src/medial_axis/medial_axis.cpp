@@ -8,6 +8,7 @@
 #include "blum/field/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
 #include "medial_axis/axis_piece.hpp"
+#include "medial_axis/contract_points.hpp"
 #include "medial_axis/label_sheets.hpp"
 #include "medial_axis/mesh_surface.hpp"
 #include "medial_axis/solid_bodies.hpp"
@@ -179,6 +180,7 @@ MedialComplex MedialAxis::extract(double theta) const {
   }
   MedialComplex complex;
   for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, complex);
+  contract_points(complex);
   label_sheets(complex);
   return complex;
 }

@@ -16,7 +16,8 @@ namespace {
 
 using Place = std::array<double, 3>;
 
-/// Cells as sets of points: the places of their corners, in rising order.
+/// Cells as sets of points: the places of their corners, in rising order. Cells with two corners at one place are
+/// points or edges.
 struct Cells {
   std::vector<Place> vertices;
   std::vector<std::array<Place, 2>> edges;
@@ -36,7 +37,7 @@ Cells cells_of(const MedialComplex& complex) {
     return Place{p.x, p.y, p.z};
   };
   const auto add_edge = [&](std::uint32_t a, std::uint32_t b) {
-    cells.edges.push_back({std::min(place(a), place(b)), std::max(place(a), place(b))});
+    if (place(a) != place(b)) cells.edges.push_back({std::min(place(a), place(b)), std::max(place(a), place(b))});
   };
   for (std::uint32_t v = 0; v < complex.vertices.size(); ++v) cells.vertices.push_back(place(v));
   for (const MedialEdge& edge : complex.edges) add_edge(edge.vertices[0], edge.vertices[1]);
@@ -45,7 +46,7 @@ Cells cells_of(const MedialComplex& complex) {
     for (std::size_t k = 0; k < 3; ++k) add_edge(v[k], v[(k + 1) % 3]);
     std::array<Place, 3> corners{place(v[0]), place(v[1]), place(v[2])};
     std::sort(corners.begin(), corners.end());
-    cells.triangles.push_back(corners);
+    if (std::adjacent_find(corners.begin(), corners.end()) == corners.end()) cells.triangles.push_back(corners);
   }
   sort_once(cells.vertices);
   sort_once(cells.edges);
