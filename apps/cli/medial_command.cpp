@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "axis_solid.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/certificate.hpp"
@@ -224,6 +225,7 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   metadata.spacing = report.bodies.front().spacing;
   metadata.solid_rule = to_string(report.rule);
   metadata.grid = report.grid;
+  record(selection, r.weld, input.kind, metadata);
   run.drafts.emplace_back(name);
   write_medial(run.drafts.back().path(), complex, metadata, context);
   run.phases.push_back({"write", watch.lap()});

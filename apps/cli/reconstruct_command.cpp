@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "axis_solid.hpp"
 #include "blum/field/zero_surface.hpp"
 #include "blum/io/field_io.hpp"
 #include "blum/io/medial_io.hpp"
@@ -48,8 +49,7 @@ struct Request {
   bool is_field = false;
   int resolution = 256;
   std::optional<double> spacing;
-  Selections selections;
-  std::optional<double> weld;
+  SolidChoice given;
   int threads = 0;
 };
 
@@ -68,13 +68,13 @@ Request parse(const Arguments& a) {
   if (a.input) r.input = *a.input;
   if (a.resolution) r.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 2, 65536));
   if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
-  r.selections.labels = parse_labels("--label", a.labels);
-  if (r.selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
-  if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);
-  r.weld = parse_weld(a.weld);
+  r.given.selections.labels = parse_labels("--label", a.labels);
+  if (r.given.selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
+  if (a.threshold) r.given.selections.threshold = parse_number("--threshold", *a.threshold);
+  r.given.weld = parse_weld(a.weld);
   if (!r.input) {
     refuse_given(
-        {{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}, {r.weld.has_value(), "--weld"}},
+        {{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}, {r.given.weld.has_value(), "--weld"}},
         r.axis, "an axis", "the image or mesh of --input");
   }
   r.threads = parse_threads(a.threads);
@@ -131,9 +131,13 @@ void run(const Arguments& a) {
     table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
                              " triangles");
   }
+  std::vector<std::string> warnings;
   if (r.input) {
-    const SolidInput input = load_solid(*r.input, r.weld);
-    const Certificate certificate = certificate_of(file, input, r.selections.all().front(), context);
+    const InputKind kind = input_kind(*r.input);
+    const SolidChoice solid = solid_of_axis(r.given, kind, file.metadata, r.axis);
+    warnings = solid.warnings;
+    const SolidInput input = load_solid(*r.input, solid.weld);
+    const Certificate certificate = certificate_of(file, input, solid.selections.all().front(), context);
     json["input"] = input.json;
     json["distance"] = {{"solid_to_balls", certificate.balls.solid_to_balls},
                         {"mean_solid_to_balls", certificate.balls.mean_solid_to_balls},
@@ -153,7 +157,9 @@ void run(const Arguments& a) {
     json["outputs"].push_back(output.string());
     table.add("wrote", output.string());
   }
+  json["warnings"] = warnings;
   report(a.report, json, table.text());
+  if (!a.report.quiet) warn(warnings);
 }
 
 }  // namespace
@@ -172,8 +178,8 @@ void add_reconstruct_command(CLI::App& app) {
   text("--input", a->input, "FILE", "The mesh or image whose axis it is: says how far the balls are from it");
   text("--resolution", a->resolution, "N", "Nodes along the longest side of the grid (default 256)");
   text("--spacing", a->spacing, "H", "Distance between nodes, instead of --resolution");
-  add_label_option(*command, a->labels, "Image: the voxels of value L");
-  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more");
+  add_label_option(*command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
+  text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: as AXIS tells)");
   add_weld_option(*command, a->weld);
   add_threads_option(*command, a->threads);
   add_report_options(*command, a->report);

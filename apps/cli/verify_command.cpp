@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "axis_solid.hpp"
 #include "blum/io/medial_io.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
@@ -38,11 +39,13 @@ void run(const Arguments& a) {
   const fs::path axis_path = a.axis;
   check_extension("AXIS", axis_path, {".vtp", ".ply", ".obj", ".ma", ".npz"});
   exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
-  Selections selections;
-  selections.labels = parse_labels("--label", a.labels);
-  if (selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
-  if (a.threshold) selections.threshold = parse_number("--threshold", *a.threshold);
-  if (input_kind(path) == InputKind::mesh) {
+  SolidChoice given;
+  given.selections.labels = parse_labels("--label", a.labels);
+  if (given.selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
+  if (a.threshold) given.selections.threshold = parse_number("--threshold", *a.threshold);
+  given.weld = parse_weld(a.weld);
+  const InputKind kind = input_kind(path);
+  if (kind == InputKind::mesh) {
     refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, path, "a mesh", "images");
   } else {
     refuse_given({{a.weld.has_value(), "--weld"}}, path, "an image", "meshes");
@@ -51,9 +54,10 @@ void run(const Arguments& a) {
   Progress progress(!a.report.quiet);
   const Interrupt interrupt;
   const Context context = make_context(parse_threads(a.threads), progress, interrupt);
-  const SolidInput input = load_solid(path, parse_weld(a.weld));
   const MedialFile file = read_medial(axis_path);
-  const Certificate certificate = certificate_of(file, input, selections.all().front(), context);
+  const SolidChoice solid = solid_of_axis(given, kind, file.metadata, axis_path);
+  const SolidInput input = load_solid(path, solid.weld);
+  const Certificate certificate = certificate_of(file, input, solid.selections.all().front(), context);
   progress.clear();
   TextTable table;
   table.add("axis", axis_path.string() + ": " + counts_text(count(file.complex)));
@@ -62,9 +66,14 @@ void run(const Arguments& a) {
                {"command", "verify"},
                {"input", input.json},
                {"axis", {{"file", axis_path.string()}, {"counts", to_json(count(file.complex))}}},
-               {"certificate", to_json(certificate)}};
+               {"certificate", to_json(certificate)},
+               {"warnings", solid.warnings}};
   report(a.report, json, input.text + table.text());
-  if (!certificate.holds()) throw NotCertified(certificate.mismatches);
+  if (!a.report.quiet) warn(solid.warnings);
+  if (!certificate.holds()) {
+    throw NotCertified(certificate.mismatches,
+                       missing_options(given, kind, file.metadata, certificate.topology_holds));
+  }
 }
 
 }  // namespace
@@ -74,8 +83,9 @@ void add_verify_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("verify", "Check a medial axis against its solid, from the files alone");
   command->add_option("INPUT", a->input, "The mesh or image whose axis it is")->required();
   command->add_option("AXIS", a->axis, "Medial axis: .vtp, .ply, .obj, .ma or .npz")->required();
-  add_label_option(*command, a->labels, "Image: the voxels of value L");
-  command->add_option("--threshold", a->threshold, "Image: the voxels of value T or more")->type_name("T");
+  add_label_option(*command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
+  add_text_option(*command, "--threshold", a->threshold, "T",
+                  "Image: the voxels of value T or more (default: as AXIS tells)");
   add_weld_option(*command, a->weld);
   add_threads_option(*command, a->threads);
   add_report_options(*command, a->report, "Write the certificate as JSON; - is standard output");

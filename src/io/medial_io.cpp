@@ -113,11 +113,18 @@ MedialFormat format_of(const std::filesystem::path& path) {
 }
 
 void check_metadata(const MedialMetadata& metadata) {
-  for (const auto& [name, value] : {std::pair{"theta", metadata.theta}, std::pair{"lambda", metadata.lambda},
-                                    std::pair{"spacing", metadata.spacing}}) {
+  for (const auto& [name, value] :
+       {std::pair{"theta", metadata.theta}, std::pair{"lambda", metadata.lambda}, std::pair{"spacing", metadata.spacing},
+        std::pair{"threshold", metadata.threshold}, std::pair{"weld", metadata.weld}}) {
     if (value && !std::isfinite(*value)) {
       throw InvalidOption(std::string(name) + " of the metadata is not finite: " + exact_text(*value));
     }
+  }
+  if (metadata.weld && *metadata.weld < 0) {
+    throw InvalidOption("weld of the metadata is negative: " + exact_text(*metadata.weld));
+  }
+  if (metadata.label && metadata.threshold) {
+    throw InvalidOption("the metadata have a label and a threshold; a solid is selected by one of them");
   }
   if (metadata.grid) validate(*metadata.grid);
 }

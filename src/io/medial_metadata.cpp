@@ -54,9 +54,15 @@ class PairReader {
     }
     return out;
   }
-  [[nodiscard]] std::optional<double> number(std::string_view key) const {
-    const auto value = numbers<double, 1>(key);
+  template <class T = double>
+  [[nodiscard]] std::optional<T> number(std::string_view key) const {
+    const auto value = numbers<T, 1>(key);
     return value ? std::optional((*value)[0]) : std::nullopt;
+  }
+  [[nodiscard]] std::optional<double> not_negative(std::string_view key) const {
+    const auto value = number(key);
+    if (value && *value < 0) fail(key, "it must not be negative");
+    return value;
   }
 
   [[nodiscard]] SiteIds site_ids() const {
@@ -114,6 +120,9 @@ Metadata to_pairs(const MedialMetadata& metadata) {
   if (metadata.spacing) pairs.emplace_back("spacing", exact_text(*metadata.spacing));
   if (!metadata.solid_rule.empty()) pairs.emplace_back("solid_rule", metadata.solid_rule);
   if (metadata.grid) add_grid(pairs, *metadata.grid);
+  if (metadata.label) pairs.emplace_back("label", std::to_string(*metadata.label));
+  if (metadata.threshold) pairs.emplace_back("threshold", exact_text(*metadata.threshold));
+  if (metadata.weld) pairs.emplace_back("weld", exact_text(*metadata.weld));
   return pairs;
 }
 
@@ -128,6 +137,12 @@ MedialMetadata from_pairs(const Metadata& pairs, const std::string& name) {
   metadata.spacing = reader.number("spacing");
   metadata.solid_rule = reader.text("solid_rule");
   metadata.grid = reader.grid();
+  metadata.label = reader.number<std::int64_t>("label");
+  metadata.threshold = reader.number("threshold");
+  if (metadata.label && metadata.threshold) {
+    throw FormatError(name + ": the metadata say a label and a threshold, but the solid can only be by one of them");
+  }
+  metadata.weld = reader.not_negative("weld");
   return metadata;
 }
 

@@ -174,7 +174,7 @@ def test_summary_has_its_keys(solids, tmp_path):
 
 def test_summary_of_verify_has_its_keys(solids, axes):
     summary = run_json("verify", solids / "box.obj", axes / "box.npz")
-    assert set(summary) == {"blum_version", "command", "input", "axis", "certificate"}
+    assert set(summary) == {"blum_version", "command", "input", "axis", "certificate", "warnings"}
     assert summary["command"] == "verify" and summary["axis"]["file"] == str(axes / "box.npz")
     assert summary["axis"]["counts"]["vertices"] == len(np.load(axes / "box.npz")["vertices"])
 
@@ -412,8 +412,60 @@ def test_the_axis_of_another_solid_is_found_out(solids, axes):
 def test_the_axis_of_another_label_is_found_out(solids, tmp_path):
     run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 1)
     run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 1)
-    run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 2, status=3)
-    run("verify", solids / "balls.npy", tmp_path / "b.npz", status=3)
+    _, err = run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 2, status=3, warns=True)
+    assert f"'{tmp_path / 'b.npz'}' was made with --label 1; --label 2 is used, as it was given" in err
+
+
+@pytest.mark.parametrize("selection", [("--label", 2), ("--threshold", 2.5)], ids=lambda s: s[0])
+@pytest.mark.parametrize("end", ["vtp", "ply", "npz"])
+def test_the_file_tells_which_voxels_it_is_of(solids, tmp_path, end, selection):
+    axis = tmp_path / f"b.{end}"
+    run("medial", solids / "balls.npy", "-o", axis, *selection)
+    assert run_json("verify", solids / "balls.npy", axis)["certificate"]["certified"]
+    distance = [run_json("reconstruct", axis, "-o", tmp_path / "r.ply", "--input", solids / "balls.npy", "--resolution",
+                         20, *options)["distance"] for options in ((), selection)]
+    assert distance[0] == distance[1]
+    _, err = run("verify", solids / "balls.npy", axis, "--label", 1, status=3, warns=True)
+    assert f"was made with {selection[0]} {selection[1]}; --label 1 is used" in err
+
+
+def test_a_file_that_does_not_tell_which_voxels_asks_for_the_option(solids, tmp_path):
+    for end in ("obj", "ma"):
+        run("medial", solids / "balls.npy", "-o", tmp_path / f"b.{end}", "--label", 2)
+        assert "if --label or --threshold was given" in run("verify", solids / "balls.npy", tmp_path / f"b.{end}",
+                                                            status=3)[1]
+        run("verify", solids / "balls.npy", tmp_path / f"b.{end}", "--label", 2)
+        assert "--threshold" not in run("verify", solids / "balls.npy", tmp_path / f"b.{end}", "--label", 1,
+                                        status=3)[1]
+
+
+def test_the_file_tells_how_the_mesh_was_welded(solids, tmp_path):
+    lines = (solids / "box.obj").read_text().splitlines()
+    points = [line for line in lines if line.startswith("v ")]
+    soup = [points[int(word.split("/")[0]) - 1] for line in lines if line.startswith("f ") for word in line.split()[1:]]
+    soup += [f"f {k + 1} {k + 2} {k + 3}" for k in range(0, len(soup), 3)]
+    (tmp_path / "soup.obj").write_text("\n".join(soup) + "\n")
+    for weld in (["--weld"], ["--weld", "1e-6"]):
+        for end in ("vtp", "ply", "npz", "obj"):
+            summary = run_json("medial", tmp_path / "soup.obj", "-o", tmp_path / f"s.{end}", "--resolution", 12, *weld)
+            assert summary["solids"][0]["rule"] == "polyhedron"
+        for end in ("vtp", "ply", "npz"):
+            verified = run_json("verify", tmp_path / "soup.obj", tmp_path / f"s.{end}")
+            assert verified["certificate"]["against"] == "polyhedron" and verified["warnings"] == []
+        run("verify", tmp_path / "soup.obj", tmp_path / "s.obj", *weld)
+        assert "--weld" in run("verify", tmp_path / "soup.obj", tmp_path / "s.obj", status=1)[1]
+    _, err = run("verify", tmp_path / "soup.obj", tmp_path / "s.npz", "--weld", warns=True)
+    assert "was made with --weld 1e-06; --weld is used" in err
+
+
+def test_files_of_before_that_tell_no_selection_are_read(solids, tmp_path):
+    run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 2)
+    arrays = dict(np.load(tmp_path / "b.npz"))
+    metadata = json.loads(str(arrays["metadata"]))
+    assert metadata.pop("label") == "2"
+    np.savez(tmp_path / "old.npz", **(arrays | {"metadata": np.array(json.dumps(metadata))}))
+    run("verify", solids / "balls.npy", tmp_path / "old.npz", "--label", 2)
+    run("verify", solids / "balls.npy", tmp_path / "old.npz", status=3)
 
 
 def test_the_topology_of_files_without_geometry_is_verified(solids, axes, tmp_path):

@@ -17,12 +17,12 @@ def run(*arguments, status=0, timeout=60, warns=False):
     done = subprocess.run([BLUM, *map(str, arguments)], capture_output=True, timeout=timeout, check=False)
     out, err = done.stdout.decode(), done.stderr.decode()
     assert done.returncode == status, f"{arguments}: status {done.returncode}, expected {status}\n{out}\n{err}"
-    if status == 0:
-        lines = err.splitlines()
-        assert bool(lines) == warns and all(line.startswith("blum: warning: ") for line in lines), err
-    else:
-        assert err.startswith("blum: error: "), err
-        assert len(err.strip().splitlines()) <= 3, err
+    lines = err.splitlines()
+    first = next((k for k, line in enumerate(lines) if not line.startswith("blum: warning: ")), len(lines))
+    assert status != 0 or first == len(lines), err
+    assert (first > 0) == warns, err
+    if status != 0:
+        assert first < len(lines) <= first + 3 and lines[first].startswith("blum: error: "), err
     return out, err
 
 

@@ -57,6 +57,8 @@ inline MedialMetadata sample_metadata() {
   grid.direction.columns[1] = {0.6, 0, -0.8};
   grid.direction.columns[2] = {-0.8, 0, -0.6};
   metadata.grid = grid;
+  metadata.label = -9007199254740993;  // no double
+  metadata.weld = 1e-6;
   return metadata;
 }
 

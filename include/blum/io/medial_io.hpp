@@ -27,6 +27,11 @@ struct MedialMetadata {
   /// What the topology is against: "polyhedron", "winding" or "voxels" (SolidRule).
   std::string solid_rule = {};
   std::optional<GridSpec> grid = {};  ///< voxel centres, where the solid is only known as voxels (SolidRule::winding)
+  // Of the solid's file: which voxels of an image, at most one of two (neither: all that are not 0), and how a mesh was
+  // welded.
+  std::optional<std::int64_t> label = {};  ///< those of this value
+  std::optional<double> threshold = {};    ///< those of this value or more, in image values
+  std::optional<double> weld = {};         ///< MeshReadOptions::weld, >= 0, mesh units; unset: the default of the format
 };
 
 /// A medial axis as a file holds it.
@@ -57,7 +62,7 @@ enum class MedialFormat : std::uint8_t { vtp, ply, obj, ma, npz };
 ///
 /// Roles are the numbers of MedialRole, sites are -1 where there is none, and indices count from 0 (in .obj from 1).
 /// Coordinates keep double precision. A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension, or metadata that are not finite; InvalidGrid; InvalidMesh when the
+/// @throws InvalidOption for another extension, or metadata that are not finite or not as said above; InvalidGrid; InvalidMesh when the
 /// complex names vertices that it does not have, or one twice in an edge or triangle, or holds numbers that are not
 /// finite, a negative radius, or a sheet beyond its count; FileError; Cancelled.
 void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata = {},

@@ -131,7 +131,12 @@ TEST(MedialHostile, Ply) {
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"theta\": \"x\"}\n"), "theta 'x'", ""},
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"grid_origin\": \"0 0 0\"}\n"),
         "only a part of the grid", ""},
-       {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"site_ids\": \"x\"}\n"), "not known", ""}},
+       {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"site_ids\": \"x\"}\n"), "not known", ""},
+       {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"weld\": \"-1\"}\n"), "weld '-1'", ""},
+       {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"label\": \"1.5\"}\n"), "label '1.5'", ""},
+       {replaced(ply_with("", "0 0 0\n"), "1.0\n",
+                 "1.0\ncomment blum {\"label\": \"1\", \"threshold\": \"2\"}\n"),
+        "a label and a threshold", ""}},
       ply);
   EXPECT_EQ(medial_refusal(ply_edges(two, "0 1\n"), ply), "read");
 }

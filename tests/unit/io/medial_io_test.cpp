@@ -56,6 +56,9 @@ void expect_same(const MedialMetadata& a, const MedialMetadata& b) {
   EXPECT_EQ(a.spacing, b.spacing);
   EXPECT_EQ(a.solid_rule, b.solid_rule);
   EXPECT_EQ(a.grid, b.grid);
+  EXPECT_EQ(a.label, b.label);
+  EXPECT_EQ(a.threshold, b.threshold);
+  EXPECT_EQ(a.weld, b.weld);
 }
 
 /// What an .obj file keeps: places, triangles, curves. A .ma file keeps the radii as well.
@@ -123,6 +126,14 @@ TEST_P(MedialFiles, EveryKindOfSiteAndNoMetadata) {
     write_medial(path, sample_complex(), metadata);
     if (keeps_all()) expect_same(read_medial(path).metadata, metadata);
   }
+}
+
+TEST_P(MedialFiles, KeepAThreshold) {
+  MedialMetadata metadata;
+  metadata.threshold = -1.0 / 3.0;
+  metadata.weld = 0;
+  write_medial(path, sample_complex(), metadata);
+  expect_same(read_medial(path).metadata, keeps_all() ? metadata : MedialMetadata{});
 }
 
 TEST_P(MedialFiles, EmptyAndPartlyEmpty) {
@@ -234,6 +245,13 @@ TEST_P(MedialFiles, FailedWriteLeavesNothing) {
   metadata.theta = std::numeric_limits<double>::infinity();
   EXPECT_THROW(write_medial(path, sample_complex(), metadata), InvalidOption);
   metadata.theta.reset();
+  metadata.weld = -1;
+  EXPECT_THROW(write_medial(path, sample_complex(), metadata), InvalidOption);
+  metadata.weld.reset();
+  metadata.label = 1;
+  metadata.threshold = 1;
+  EXPECT_THROW(write_medial(path, sample_complex(), metadata), InvalidOption);
+  metadata.label.reset();
   metadata.grid = GridSpec{};
   EXPECT_THROW(write_medial(path, sample_complex(), metadata), InvalidGrid);
   EXPECT_EQ(folder.entries(), 0);
