@@ -234,12 +234,37 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   const Certificate certificate = certificate_of(written, input, selection, context);
   run.phases.push_back({"certificate", watch.lap()});
   const MedialCounts counts = count(complex);
-  axes.push_back(
-      {{"theta", theta}, {"file", name.string()}, {"counts", to_json(counts)}, {"certificate", to_json(certificate)}});
-  run.table.add("theta " + number_text(theta), counts_text(counts));
+  axes.push_back({{"theta", theta},
+                  {"file", name.string()},
+                  {"counts", counts_json(counts, true)},
+                  {"certificate", to_json(certificate)}});
+  run.table.add("theta " + number_text(theta), counts_text(counts, true));
   add_certificate(run.table, certificate);
   for (const std::string& mismatch : certificate.mismatches) {
     run.mismatches.push_back("at theta " + number_text(theta) + ": " + mismatch);
+  }
+}
+
+/// Six times the volume between the triangles of a mesh and the middle of its box: negative where an open mesh faces
+/// inwards.
+double volume_around_middle(const MeshView& mesh) {
+  const Vec3d middle = bounds(mesh).center();
+  double volume = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d a = mesh.vertices[t[0]] - middle;
+    volume += dot(a, cross(mesh.vertices[t[1]] - middle, mesh.vertices[t[2]] - middle));
+  }
+  return volume;
+}
+
+MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, const Context& context) {
+  if (input.kind == InputKind::image) return medial_axis(input.image, options, context);
+  try {
+    return medial_axis(input.mesh.mesh, options, context);
+  } catch (const InvalidMesh& error) {
+    const std::string message = error.what();
+    const bool is_inward = message.find("no interior") != std::string::npos && volume_around_middle(input.mesh.mesh) < 0;
+    throw InvalidMesh(message + (is_inward ? "; its triangles face inwards: flip them" : ""));
   }
 }
 
@@ -247,8 +272,7 @@ void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelS
                const std::optional<std::int64_t>& label, const fs::path& output, const Context& context) {
   MedialAxisOptions options = r.options;
   options.selection = selection;
-  const MedialAxis axis = input.kind == InputKind::mesh ? medial_axis(input.mesh.mesh, options, context)
-                                                        : medial_axis(input.image, options, context);
+  const MedialAxis axis = make_axis(input, options, context);
   const MedialAxisReport& report = axis.report();
   run.phases.insert(run.phases.end(), report.phases.begin(), report.phases.end());
   Json json;

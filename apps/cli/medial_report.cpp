@@ -32,6 +32,11 @@ const char* against_text(SolidRule rule) {
                                        : "the image's voxels";
 }
 
+/// Where a mesh bounds no polyhedron, and the axis's file has no metadata.
+constexpr const char* untold_rule =
+    "; so its axis is that of voxels, and the file of the axis does not tell which (.obj and .ma name neither rule nor "
+    "grid): verify the .vtp, .ply or .npz of the same run, or give --weld here too if it was given then";
+
 }  // namespace
 
 Certificate certificate_of(const MedialFile& file, const SolidInput& input, const LabelSelection& selection,
@@ -45,7 +50,12 @@ Certificate certificate_of(const MedialFile& file, const SolidInput& input, cons
   }
   const MeshView mesh = input.mesh.mesh;
   if (file.metadata.solid_rule != to_string(SolidRule::winding)) {
-    return certify(file.complex, mesh, known, context);
+    try {
+      return certify(file.complex, mesh, known, context);
+    } catch (const InvalidMesh& error) {
+      if (!file.metadata.solid_rule.empty()) throw;
+      throw InvalidMesh(error.what() + std::string(untold_rule));
+    }
   }
   if (!file.metadata.grid) {
     throw FileError("the axis is that of voxels, but its file does not say which: take .vtp, .ply or .npz");
@@ -85,10 +95,15 @@ Json to_json(const Certificate& c) {
   return json;
 }
 
-Json to_json(const MedialCounts& counts) {
-  return {{"vertices", counts.vertices},       {"triangles", counts.triangles}, {"sheets", counts.sheets},
-          {"curve_edges", counts.curve_edges}, {"rim_edges", counts.rim_edges}, {"seam_edges", counts.seam_edges},
-          {"junctions", counts.junctions}};
+Json counts_json(const MedialCounts& counts, bool has_labels) {
+  const auto labelled = [&](std::size_t n) { return has_labels ? Json(n) : Json(nullptr); };
+  return {{"vertices", counts.vertices},
+          {"triangles", counts.triangles},
+          {"sheets", labelled(counts.sheets)},
+          {"curve_edges", counts.curve_edges},
+          {"rim_edges", labelled(counts.rim_edges)},
+          {"seam_edges", labelled(counts.seam_edges)},
+          {"junctions", labelled(counts.junctions)}};
 }
 
 std::string betti_text(const BettiNumbers& betti) {
@@ -99,11 +114,15 @@ std::string betti_text(const BettiNumbers& betti) {
          number(betti[2], "void", "voids");
 }
 
-std::string counts_text(const MedialCounts& counts) {
-  return plural(counts.vertices, "vertex", "vertices") + ", " + plural(counts.triangles, "triangle", "triangles") +
-         " in " + plural(counts.sheets, "sheet", "sheets") + "; edges: " + count_text(counts.curve_edges) +
-         " of curves, " + count_text(counts.rim_edges) + " of rims, " + count_text(counts.seam_edges) + " of seams; " +
-         plural(counts.junctions, "junction", "junctions");
+std::string counts_text(const MedialCounts& counts, bool has_labels) {
+  const std::string cells =
+      plural(counts.vertices, "vertex", "vertices") + ", " + plural(counts.triangles, "triangle", "triangles");
+  if (!has_labels) {
+    return cells + ", " + plural(counts.curve_edges, "edge", "edges") + " of curves (the file tells no sheets)";
+  }
+  return cells + " in " + plural(counts.sheets, "sheet", "sheets") + "; edges: " + count_text(counts.curve_edges) +
+         " of curves, " + count_text(counts.rim_edges) + " of rims, " + count_text(counts.seam_edges) +
+         " of seams; " + plural(counts.junctions, "junction", "junctions");
 }
 
 void add_certificate(TextTable& table, const Certificate& c) {
@@ -111,8 +130,7 @@ void add_certificate(TextTable& table, const Certificate& c) {
   if (c.holds()) {
     table.add("certified", "against " + std::string(against_text(c.against)) + ": " + axis + ", as the solid");
   } else {
-    table.add("NOT certified", axis + "; the solid " + betti_text(c.solid));
-    for (const std::string& mismatch : c.mismatches) table.add("", mismatch);
+    table.add("NOT certified", axis + "; the solid " + betti_text(c.solid));  // why is told by the error
   }
   if (c.checked == AxisGeometry::none) {
     table.add("geometry", "not checked: the file holds no radii");

@@ -20,11 +20,13 @@ namespace blum::cli {
 
 [[nodiscard]] Json to_json(const BettiNumbers& betti);
 [[nodiscard]] Json to_json(const Certificate& certificate);
-[[nodiscard]] Json to_json(const MedialCounts& counts);
+/// Where the file of an axis holds no labels, what they would say is null. Edges are then those of no triangle.
+[[nodiscard]] Json counts_json(const MedialCounts& counts, bool has_labels);
 /// "1 component, 5 tunnels, 0 voids".
 [[nodiscard]] std::string betti_text(const BettiNumbers& betti);
-[[nodiscard]] std::string counts_text(const MedialCounts& counts);
-/// Whether it holds, against what, and how precisely.
+/// The same as text, without what the file does not tell.
+[[nodiscard]] std::string counts_text(const MedialCounts& counts, bool has_labels);
+/// Whether it holds, against what, and how precisely. Why not is left to NotCertified.
 void add_certificate(TextTable& table, const Certificate& certificate);
 
 }  // namespace blum::cli

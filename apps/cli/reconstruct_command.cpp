@@ -113,7 +113,7 @@ void run(const Arguments& a) {
   const double field_seconds = watch.lap();
 
   TextTable table;
-  table.add("axis", r.axis.string() + ": " + counts_text(count(file.complex)));
+  table.add("axis", r.axis.string() + ": " + counts_text(count(file.complex), file.has_labels));
   table.add("grid", size_text(grid) + " nodes, spacing " + number_text(grid.spacing.x));
   Json json = {{"blum_version", BLUM_VERSION},
                {"command", "reconstruct"},

@@ -60,12 +60,12 @@ void run(const Arguments& a) {
   const Certificate certificate = certificate_of(file, input, solid.selections.all().front(), context);
   progress.clear();
   TextTable table;
-  table.add("axis", axis_path.string() + ": " + counts_text(count(file.complex)));
+  table.add("axis", axis_path.string() + ": " + counts_text(count(file.complex), file.has_labels));
   add_certificate(table, certificate);
   Json json = {{"blum_version", BLUM_VERSION},
                {"command", "verify"},
                {"input", input.json},
-               {"axis", {{"file", axis_path.string()}, {"counts", to_json(count(file.complex))}}},
+               {"axis", {{"file", axis_path.string()}, {"counts", counts_json(count(file.complex), file.has_labels)}}},
                {"certificate", to_json(certificate)},
                {"warnings", solid.warnings}};
   report(a.report, json, input.text + table.text());

@@ -1,11 +1,12 @@
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/medial_axis/certificate.hpp"
 #include "medial_axis/certificate/ball_union.hpp"
@@ -36,8 +37,22 @@ BettiNumbers homology_of(const MedialComplex& axis, const Context& context) {
   return homology({axis.vertices.size(), edges, triangles}, context);
 }
 
+/// Six digits say enough of an error.
+std::string rounded_text(double value) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
+  return {text.data(), result.ptr};
+}
+
+/// "1,234,567".
+std::string count_text(std::uint64_t count) {
+  std::string text = std::to_string(count);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
+  return text;
+}
+
 std::string counted(std::int64_t count, const char* thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+  return count_text(static_cast<std::uint64_t>(count)) + " " + thing + (count == 1 ? "" : "s");
 }
 
 void compare_topology(Certificate& certificate) {
@@ -46,7 +61,7 @@ void compare_topology(Certificate& certificate) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (certificate.solid[k] == certificate.axis[k]) continue;
     certificate.mismatches.push_back("the solid has " + counted(certificate.solid[k], things[k]) + ", the axis " +
-                                     std::to_string(certificate.axis[k]));
+                                     count_text(static_cast<std::uint64_t>(certificate.axis[k])));
   }
 }
 
@@ -110,22 +125,21 @@ GeometryCheck check_geometry(const MedialComplex& axis, const Solid& solid, Axis
 }
 
 void explain_geometry(const GeometryCheck& check, std::vector<std::string>& mismatches) {
-  const std::string allowed = " (allowed: " + exact_text(check.tolerance) + ")";
+  const std::string allowed = " (allowed: " + rounded_text(check.tolerance) + ")";
   const auto add = [&](double error, const std::string& what) {
-    if (!(error <= check.tolerance)) mismatches.push_back(what + exact_text(error) + allowed);
+    if (!(error <= check.tolerance)) mismatches.push_back(what + rounded_text(error) + allowed);
   };
+  const std::string of_vertices = "of the " + count_text(check.vertices) + " vertices of the axis ";
   if (check.not_finite > 0) {
-    mismatches.push_back("of the " + std::to_string(check.vertices) + " vertices of the axis " +
-                         std::to_string(check.not_finite) +
+    mismatches.push_back(of_vertices + count_text(check.not_finite) +
                          " have a coordinate, footprint or radius that is no finite number");
   }
   add(check.radius_error, "a radius differs from the exact distance to the surface by ");
   add(check.footprint_off_surface, "a footprint lies off the surface by ");
   add(check.footprint_error, "the distance to a footprint differs from the radius by ");
   if (check.outside > 0) {
-    mismatches.push_back("of the " + std::to_string(check.vertices) + " vertices of the axis " +
-                         std::to_string(check.outside) + " lie outside of the solid, by up to " +
-                         exact_text(check.outside_by) + allowed);
+    mismatches.push_back(of_vertices + count_text(check.outside) + " lie outside of the solid, by up to " +
+                         rounded_text(check.outside_by) + allowed);
   }
 }
 
