@@ -497,6 +497,21 @@ def test_radii_of_files_without_footprints_are_verified(solids, axes, tmp_path):
     assert "a radius differs" in run("verify", solids / "box.obj", tmp_path / "false.ma", status=3)[1]
 
 
+def test_several_axes_are_verified_at_once(solids, axes, tmp_path):
+    files = [axes / f"box.{end}" for end in FORMATS]
+    summaries = run_json("verify", solids / "box.obj", *files)
+    assert [summary["axis"]["file"] for summary in summaries] == [str(path) for path in files]
+    assert all(summary["certificate"]["certified"] for summary in summaries)
+    run("medial", solids / "balls.npy", "-o", tmp_path / "b.vtp", "--label", "1,2")
+    out, _ = run("verify", solids / "balls.npy", tmp_path / "b-label1.vtp", tmp_path / "b-label2.vtp")
+    assert out.count("certified") == 2 and out.count("input") == 1
+    false = falsified(axes, tmp_path, "box.npz", scale_radii)
+    out, err = run("verify", solids / "box.obj", files[0], false, files[1], "--json", "-", status=3)
+    assert [summary["certificate"]["certified"] for summary in json.loads(out)] == [True, False, True]
+    assert f"{false}: a radius differs" in err and str(files[0]) not in err
+    assert run("verify", solids / "box.obj", files[0], tmp_path / "none.vtp", status=1)[0] == ""
+
+
 def test_an_axis_of_voxels_needs_a_file_that_says_which(solids, tmp_path):
     for end in ("obj", "ma"):
         run("medial", solids / "open.obj", "-o", tmp_path / f"o.{end}", "--resolution", 12, warns=True)
