@@ -35,6 +35,16 @@ std::string read_head(const fs::path& path) {
   return head;
 }
 
+/// The last bytes of a file: of a zip archive, where it tells what is in it.
+std::string read_tail(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : 0;
+  std::string tail(std::min(head_size, static_cast<std::size_t>(std::max<std::streamoff>(size, 0))), '\0');
+  file.seekg(size - static_cast<std::streamoff>(tail.size()));
+  file.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+  return tail;
+}
+
 std::vector<std::byte> read_all(const fs::path& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
@@ -161,6 +171,11 @@ InputKind input_kind(const fs::path& path) {
   const std::string head = read_head(path);
   const std::string end = extension(path);
   if (end == ".npz" || end == ".vti") return InputKind::field;
+  if (end == ".vtp" || end == ".ma") {
+    throw FileError("'" + path.string() +
+                    "' is a medial axis; a mesh, an image or a field is needed here (`blum info`, `blum verify` and "
+                    "`blum reconstruct` take axes)");
+  }
   if (mesh_format(path)) return InputKind::mesh;
   if (image_format(path) == ImageFormat::nrrd || image_format_of_bytes(head) == ImageFormat::nrrd) {
     return is_field_header(head) ? InputKind::field : InputKind::image;
@@ -170,6 +185,18 @@ InputKind input_kind(const fs::path& path) {
   throw FileError("'" + path.string() +
                   "' is of no known kind; meshes are .obj, .off, .stl and .ply files, images .nrrd, .nhdr, .nii, "
                   ".nii.gz, .npy and .vol");
+}
+
+bool is_axis(const fs::path& path) {
+  const std::string head = read_head(path);
+  const std::string end = extension(path);
+  if (end == ".vtp" || end == ".ma") return true;
+  if (end == ".npz") {
+    const std::string tail = read_tail(path);
+    return tail.find("vertices.npy") != std::string::npos && tail.find("distance.npy") == std::string::npos;
+  }
+  const std::string_view header = std::string_view(head).substr(0, head.find("end_header"));
+  return end == ".ply" && header.find(R"(comment blum {"content": "medial axis"})") != std::string_view::npos;
 }
 
 void check_may_be_field(const fs::path& path) {

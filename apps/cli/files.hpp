@@ -23,6 +23,11 @@ enum class InputKind { mesh, image, field };
 /// @throws FileError when the file cannot be opened, is a directory or is of no known kind.
 [[nodiscard]] InputKind input_kind(const std::filesystem::path& path);
 
+/// Whether a file holds a medial axis rather than a field, a mesh or anything else: every .vtp and .ma, an .npz with
+/// vertices and no distances, a .ply that says so. An .obj does not tell.
+/// @throws FileError when the file cannot be opened or is a directory.
+[[nodiscard]] bool is_axis(const std::filesystem::path& path);
+
 /// Refuses what cannot be a field: meshes, and images other than NRRD files of floating-point numbers, which may be
 /// distances that another program wrote.
 /// @throws FileError, also as input_kind.

@@ -17,6 +17,7 @@
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
+#include "axis_info.hpp"
 #include "field_statistics.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
@@ -33,7 +34,8 @@ constexpr const char* examples = R"(Examples:
   blum info bunny.obj
   blum info part.stl --weld 1e-6 --json part.json
   blum info scan.nii.gz --json - | jq .labels
-  blum info bunny.nrrd                             a field that Blum wrote)";
+  blum info bunny.nrrd                             a field that Blum wrote
+  blum info bunny.vtp                              a medial axis)";
 
 constexpr std::size_t contact_limit = 100000;   // looked for
 constexpr std::size_t pair_limit = 20;          // shown in JSON
@@ -346,9 +348,13 @@ void run_field(const Arguments& a) {
 void run(const Arguments& a) {
   if (a.input.empty()) throw UsageError("INPUT needs a file name");
   const std::optional<double> weld = parse_weld(a.weld);
+  check_outputs(a.report.files(), {a.input});
+  if (is_axis(a.input)) {
+    if (weld) throw UsageError("--weld is for meshes, and '" + a.input + "' is a medial axis");
+    return report_axis(a.input, a.report);
+  }
   const InputKind kind = input_kind(a.input);
   if (weld && kind != InputKind::mesh) throw UsageError("--weld is for meshes, and '" + a.input + "' is none");
-  check_outputs(a.report.files(), {a.input});
   switch (kind) {
     case InputKind::mesh:
       return run_mesh(a, weld);
@@ -363,8 +369,8 @@ void run(const Arguments& a) {
 
 void add_info_command(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("info", "What a mesh, an image or a field file holds");
-  command->add_option("INPUT", a->input, "Mesh, image or field file")->required();
+  CLI::App* command = app.add_subcommand("info", "What a mesh, an image, a field or a medial axis holds");
+  command->add_option("INPUT", a->input, "Mesh, image, field or medial axis")->required();
   add_weld_option(*command, a->weld);
   add_report_options(*command, a->report, "Write the facts as JSON; - is standard output");
   command->footer(examples);

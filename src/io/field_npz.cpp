@@ -90,6 +90,9 @@ void write_field_npz(const std::filesystem::path& path, const Field& field, cons
 
 Field read_field_npz(const ByteSource& source) {
   NpzReader npz(source);
+  if (!npz.has("distance") && npz.has("vertices")) {
+    throw FormatError(source.name() + ": it holds vertices, but no array 'distance': a medial axis, not a field");
+  }
   Field field;
   field.distance = npz.read("distance", [&](ByteStream& stream, const NpyHeader& header) {
     field.grid.size = npy_image_size(header, stream.name());

@@ -15,6 +15,8 @@ namespace {
 using volume_io::find_value;
 using volume_io::Metadata;
 
+constexpr const char* axis_content = "medial axis";
+
 std::string numbers_text(const Vec3d& v) {
   return exact_text(v.x) + " " + exact_text(v.y) + " " + exact_text(v.z);
 }
@@ -109,7 +111,7 @@ class PairReader {
 
 Metadata to_pairs(const MedialMetadata& metadata) {
   Metadata pairs;
-  pairs.emplace_back("content", "medial axis");
+  pairs.emplace_back("content", axis_content);
   if (!metadata.version.empty()) pairs.emplace_back("blum_version", metadata.version);
   if (!metadata.source.empty()) pairs.emplace_back("source", metadata.source);
   pairs.emplace_back("site_ids", to_string(metadata.site_ids));
@@ -128,6 +130,9 @@ Metadata to_pairs(const MedialMetadata& metadata) {
 
 MedialMetadata from_pairs(const Metadata& pairs, const std::string& name) {
   const PairReader reader(pairs, name);
+  if (const std::string content = reader.text("content"); !content.empty() && content != axis_content) {
+    throw FormatError(name + ": the metadata call it '" + content + "', not a medial axis");
+  }
   MedialMetadata metadata;
   metadata.source = reader.text("source");
   metadata.version = reader.text("blum_version");

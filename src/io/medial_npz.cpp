@@ -80,6 +80,10 @@ class MedialNpzReader {
   explicit MedialNpzReader(const volume_io::ByteSource& source) : source_(source), npz_(source) {}
 
   MedialFile read() {
+    // Fields of meshes have an array 'vertices', too.
+    if (npz_.has("distance")) {
+      throw FormatError(source_.name() + ": it holds a distance field (array 'distance'), not a medial axis");
+    }
     read_vertices();
     read_edges();
     read_triangles();

@@ -497,6 +497,36 @@ def test_radii_of_files_without_footprints_are_verified(solids, axes, tmp_path):
     assert "a radius differs" in run("verify", solids / "box.obj", tmp_path / "false.ma", status=3)[1]
 
 
+def test_a_field_is_no_axis_and_an_axis_no_field(solids, axes, tmp_path):
+    for arguments in (["verify", solids / "sphere.ply", solids / "sphere.npz"],
+                      ["reconstruct", solids / "sphere.npz", "-o", tmp_path / "x.ply"]):
+        assert "it holds a distance field" in run(*arguments, status=1)[1]
+    assert "a medial axis, not a field" in run("slice", axes / "box.npz", "-o", tmp_path / "x.png", status=1)[1]
+    assert "is a medial axis; a mesh" in run("field", axes / "box.vtp", "-o", tmp_path / "x.npz", status=1)[1]
+    np.savez(tmp_path / "else.npz", vertices=np.zeros((2, 3)), metadata=np.array('{"content": "a sonnet"}'))
+    assert "call it 'a sonnet', not a medial axis" in run("info", tmp_path / "else.npz", status=1)[1]
+
+
+@pytest.mark.parametrize("end", ["vtp", "ply", "npz", "ma"])
+def test_info_of_an_axis(axes, end):
+    path = axes / f"box.{end}"
+    facts = run_json("info", path)
+    known = np.load(axes / "box.npz")
+    assert (facts["kind"], facts["betti"]) == ("medial axis", [1, 0, 0])
+    assert facts["radius"] == [known["radius"].min(), known["radius"].max()]
+    assert facts["bounds"]["lower"] == known["vertices"].min(axis=0).tolist()
+    assert (facts["counts"]["vertices"], facts["counts"]["triangles"]) == (len(known["vertices"]),
+                                                                           len(known["triangles"]))
+    out, _ = run("info", path)
+    assert f"{path}: medial axis" in out and "1 component, 0 tunnels, 0 voids" in out
+    if end == "ma":
+        assert facts["theta"] is facts["counts"]["sheets"] is facts["source"] is None
+        return
+    assert (facts["theta"], facts["source"], facts["solid_rule"]) == (60, "box.obj", "polyhedron")
+    assert "theta 60, lambda 0" in out and facts["counts"]["sheets"] == len(set(known["triangle_sheet"]))
+    run("info", path, "--weld", status=2)
+
+
 def test_several_axes_are_verified_at_once(solids, axes, tmp_path):
     files = [axes / f"box.{end}" for end in FORMATS]
     summaries = run_json("verify", solids / "box.obj", *files)

@@ -1,0 +1,100 @@
+#include "axis_info.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/io/medial_io.hpp"
+#include "blum/medial_axis/certificate.hpp"
+#include "files.hpp"
+#include "medial_report.hpp"
+#include "progress.hpp"
+
+namespace blum::cli {
+namespace {
+
+BettiNumbers betti_of(const MedialComplex& axis, const Context& context) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const MedialEdge& edge : axis.edges) edges.push_back(edge.vertices);
+  for (const MedialTriangle& triangle : axis.triangles) triangles.push_back(triangle.vertices);
+  return homology({axis.vertices.size(), edges, triangles}, context);
+}
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+Json or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+/// Theta and what else the axis was made with, as the file tells it.
+std::string made_text(const MedialMetadata& m) {
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (m.theta) add("theta " + number_text(*m.theta));
+  if (m.lambda) add("lambda " + number_text(*m.lambda));
+  if (m.spacing) add("voxels of side " + number_text(*m.spacing));
+  if (m.label) add("label " + std::to_string(*m.label));
+  if (m.threshold) add("threshold " + number_text(*m.threshold));
+  if (m.weld) add(*m.weld > 0 ? "welded within " + number_text(*m.weld) : "welded");
+  return text.empty() ? "the file does not tell" : text;
+}
+
+std::string source_text(const MedialMetadata& m) {
+  const std::string source = m.source.empty() ? "the file does not tell" : m.source;
+  return source + (m.solid_rule.empty() ? "" : ", as " + m.solid_rule);
+}
+
+}  // namespace
+
+void report_axis(const std::filesystem::path& path, const ReportOptions& options) {
+  Progress progress(!options.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(0, progress, interrupt);
+  const MedialFile file = read_medial(path);
+  const MedialCounts counts = count(file.complex);
+  const BettiNumbers betti = betti_of(file.complex, context);
+  progress.clear();
+  Box3 box;
+  double least = 0;
+  double most = 0;
+  for (const MedialVertex& v : file.complex.vertices) {
+    least = box.is_empty() ? v.radius : std::min(least, v.radius);
+    most = std::max(most, v.radius);
+    box.extend(v.position);
+  }
+  const bool has_radii = file.has_radii && !box.is_empty();
+  const MedialMetadata& m = file.metadata;
+  const Json json = {{"path", path.string()},
+                     {"kind", "medial axis"},
+                     {"counts", counts_json(counts, file.has_labels)},
+                     {"betti", to_json(betti)},
+                     {"radius", has_radii ? Json::array({least, most}) : Json(nullptr)},
+                     {"footprints", file.has_footprints},
+                     {"source", or_null(m.source)},
+                     {"blum_version", or_null(m.version)},
+                     {"solid_rule", or_null(m.solid_rule)},
+                     {"theta", or_null(m.theta)},
+                     {"lambda", or_null(m.lambda)},
+                     {"spacing", or_null(m.spacing)},
+                     {"label", or_null(m.label)},
+                     {"threshold", or_null(m.threshold)},
+                     {"weld", or_null(m.weld)},
+                     {"bounds", to_json(box)}};
+  TextTable table;
+  table.add("file", path.string() + ": medial axis");
+  table.add("axis", counts_text(counts, file.has_labels));
+  table.add("topology", betti_text(betti));
+  table.add("radii", has_radii ? number_text(least) + " to " + number_text(most) : "none in the file");
+  table.add("footprints", file.has_footprints ? "two at each vertex" : "none in the file");
+  if (!box.is_empty()) table.add("bounds", vector_text(box.lower) + " to " + vector_text(box.upper));
+  table.add("of", source_text(m));
+  table.add("made with", made_text(m));
+  report(options, json, table.text());
+}
+
+}  // namespace blum::cli
