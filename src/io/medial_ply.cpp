@@ -21,11 +21,14 @@ std::string header_text(const MedialComplex& complex, const MedialMetadata& meta
                            "footprint_0_z", "footprint_1_x", "footprint_1_y", "footprint_1_z"}) {
     out += std::string("property double ") + name + "\n";
   }
-  out += "property int site_0\nproperty int site_1\nproperty uchar role\nelement face " +
+  // MeshLab colours by `quality`.
+  out += "property int site_0\nproperty int site_1\nproperty uchar role\nproperty float quality\nelement face " +
          std::to_string(complex.triangles.size()) +
          "\nproperty list uchar int vertex_indices\nproperty float separation_angle\nproperty int sheet\n";
-  out += "element edge " + std::to_string(complex.edges.size()) +
-         "\nproperty int vertex1\nproperty int vertex2\nproperty float separation_angle\nproperty uchar role\n";
+  // Readers such as trimesh's take all that is in `edge` for corners.
+  const std::string edges = std::to_string(complex.edges.size());
+  out += "element edge " + edges + "\nproperty int vertex1\nproperty int vertex2\nelement edge_attributes " + edges +
+         "\nproperty float separation_angle\nproperty uchar role\n";
   return out + "end_header\n";
 }
 
@@ -37,7 +40,7 @@ void write_vector(RowWriter& out, const Vec3d& v) {
 
 void write_ply(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata,
                const Context& context) {
-  RowWriter out(path, complex.vertices.size() + complex.triangles.size() + complex.edges.size(), context);
+  RowWriter out(path, complex.vertices.size() + complex.triangles.size() + 2 * complex.edges.size(), context);
   out.text(header_text(complex, metadata));
   for (const MedialVertex& v : complex.vertices) {
     write_vector(out, v.position);
@@ -46,6 +49,7 @@ void write_ply(const std::filesystem::path& path, const MedialComplex& complex, 
     for (const Vec3d& footprint : v.footprints) write_vector(out, footprint);
     for (const SiteId site : v.sites) out.bytes(site.to_file());
     out.bytes(static_cast<std::uint8_t>(v.role));
+    out.bytes(static_cast<float>(v.radius));
     out.end_row();
   }
   for (const MedialTriangle& t : complex.triangles) {
@@ -57,6 +61,9 @@ void write_ply(const std::filesystem::path& path, const MedialComplex& complex, 
   }
   for (const MedialEdge& e : complex.edges) {
     for (const std::uint32_t v : e.vertices) out.bytes(v);
+    out.end_row();
+  }
+  for (const MedialEdge& e : complex.edges) {
     out.bytes(e.separation_angle);
     out.bytes(static_cast<std::uint8_t>(e.role));
     out.end_row();

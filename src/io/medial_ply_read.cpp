@@ -62,6 +62,8 @@ constexpr std::array<NamedColumn, 4> edge_columns{{{"vertex1", Column::first},
                                                    {"vertex2", Column::second},
                                                    {"separation_angle", Column::angle},
                                                    {"role", Column::role}}};
+constexpr std::array<NamedColumn, 2> edge_attribute_columns{
+    {{"separation_angle", Column::angle}, {"role", Column::role}}};
 
 /// The columns of one element: one for each property, in their order.
 class Columns {
@@ -120,6 +122,7 @@ class MedialPlyReader {
     if (element.name == "vertex") return read_vertices(element);
     if (element.name == "face") return read_faces(element);
     if (element.name == "edge") return read_edges(element);
+    if (element.name == "edge_attributes") return read_edge_attributes(element);
     for (std::size_t i = 0; i < element.count; ++i) {
       for (const PlyProperty& property : element.properties) source_.skip(property);
     }
@@ -245,23 +248,45 @@ class MedialPlyReader {
     const Columns columns = columns_of(element, edge_columns);
     need(element, columns, Column::first, "vertex1");
     need(element, columns, Column::second, "vertex2");
-    edges_have_roles_ = columns.has(Column::role);
-    has_angles_ = has_angles_ && columns.has(Column::angle);
+    // Blum wrote the attributes into this element, once.
+    edges_have_roles_ = edges_have_roles_ || columns.has(Column::role);
+    edges_have_angles_ = edges_have_angles_ || columns.has(Column::angle);
     edges_.reserve(element.count);
     for (std::size_t i = 0; i < element.count; ++i) {
       const std::size_t where = source_.where();
       MedialEdge edge{};
       read_entry(element, columns, [&](Column column, const PlyProperty& property) {
-        if (column == Column::role) {
-          edge.role = role_from_file(source_.integer(property.type, "role"), fail());
-        } else if (column == Column::angle) {
-          edge.separation_angle = angle_from_file(source_.number(property.type, "angle"));
-        } else {
+        if (column == Column::first || column == Column::second) {
           edge.vertices[column == Column::first ? 0 : 1] = index(property.type);
+        } else {
+          set_attribute(edge, column, property.type);
         }
       });
       builder_.add_segment(edge.vertices[0], edge.vertices[1], where);
       edges_.push_back(edge);
+    }
+  }
+
+  /// One record for each edge, in their order.
+  void read_edge_attributes(const PlyElement& element) {
+    const Columns columns = columns_of(element, edge_attribute_columns);
+    if (edges_.size() != element.count) {
+      source_.fail("there are " + std::to_string(element.count) + " of element 'edge_attributes', but " +
+                   std::to_string(edges_.size()) + " edges before them");
+    }
+    edges_have_roles_ = edges_have_roles_ || columns.has(Column::role);
+    edges_have_angles_ = edges_have_angles_ || columns.has(Column::angle);
+    for (MedialEdge& edge : edges_) {
+      read_entry(element, columns,
+                 [&](Column column, const PlyProperty& property) { set_attribute(edge, column, property.type); });
+    }
+  }
+
+  void set_attribute(MedialEdge& edge, Column column, PlyType type) {
+    if (column == Column::role) {
+      edge.role = role_from_file(source_.integer(type, "role"), fail());
+    } else {
+      edge.separation_angle = angle_from_file(source_.number(type, "angle"));
     }
   }
 
@@ -287,7 +312,7 @@ class MedialPlyReader {
         complex.triangles.push_back({mesh.triangles[complex.triangles.size()], face.angle, face.sheet});
       }
     }
-    file_.has_angles = has_angles_;
+    file_.has_angles = has_angles_ && (edges_have_angles_ || complex.edges.empty());
     file_.has_labels = has_labels_ && (edges_have_roles_ || complex.edges.empty());
     if (!edges_have_roles_) keep_curves_only(complex);
     file_.metadata = metadata();
@@ -316,7 +341,8 @@ class MedialPlyReader {
   std::vector<std::uint32_t> corners_;
   bool vertices_there_ = false;
   bool edges_have_roles_ = false;
-  bool has_angles_ = true;  ///< of all elements so far
+  bool edges_have_angles_ = false;
+  bool has_angles_ = true;  ///< of all vertices and faces so far
   bool has_labels_ = true;
 };
 

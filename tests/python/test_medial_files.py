@@ -235,8 +235,12 @@ def test_ply_by_its_header(samples, expected):
         assert_same(numpy.stack([vertex[f"footprint_{i}_{a}"] for a in "xyz"], 1), expected.footprints[:, i])
         assert_same(vertex[f"site_{i}"], expected.sites[:, i])
     assert_same(numpy.stack([edge["vertex1"], edge["vertex2"]], 1), expected.edge)
-    assert_same(edge["separation_angle"], expected.edge_angle)
-    assert_same(edge["role"], expected.edge_role)
+    assert edge.dtype.names == ("vertex1", "vertex2"), "trimesh takes every column for a corner"
+    attributes = arrays["edge_attributes"]
+    assert_same(attributes["separation_angle"], expected.edge_angle)
+    assert_same(attributes["role"], expected.edge_role)
+    assert list(arrays) == ["vertex", "face", "edge", "edge_attributes"]
+    assert_same(vertex["quality"], expected.radius.astype(numpy.float32))
     assert (face["corners"] == 3).all()
     assert_same(face["vertex_indices"], expected.triangle)
     assert_same(face["separation_angle"], expected.triangle_angle)

@@ -52,8 +52,9 @@ enum class MedialFormat : std::uint8_t { vtp, ply, obj, ma, npz };
 ///         polys. Point data `radius`, `separation_angle`, `role`, `footprint_0`, `footprint_1`, `site_0`, `site_1`;
 ///         cell data `separation_angle`, `role` (255 for polys), `sheet` (-1 for verts and lines); metadata (JSON) as
 ///         the string `metadata` of the field data.
-///   .ply  binary, vertices with all attributes, edges (curves, rims, seams) and triangles with theirs; metadata as
-///         comments `blum {"key": "value"}`.
+///   .ply  binary, vertices with all attributes, and the radius again as `quality` (float32); triangles with theirs;
+///         edges (curves, rims, seams), whose attributes are an element of their own, `edge_attributes`, in the edges'
+///         order; metadata as comments `blum {"key": "value"}`.
 ///   .obj  v; f; l for edges of no triangle; p for vertices of nothing else. No attributes, no unused vertex.
 ///   .ma   text: counts; v x y z radius; e for all edges, also those of triangles, each once; f. As medial meshes are
 ///         exchanged (Q-MAT); such files have no metadata.

@@ -136,7 +136,10 @@ TEST(MedialHostile, Ply) {
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"label\": \"1.5\"}\n"), "label '1.5'", ""},
        {replaced(ply_with("", "0 0 0\n"), "1.0\n",
                  "1.0\ncomment blum {\"label\": \"1\", \"threshold\": \"2\"}\n"),
-        "a label and a threshold", ""}},
+        "a label and a threshold", ""},
+       {replaced(ply_edges(two, "0 1\n"), "end_header", "element edge_attributes 2\nproperty uchar role\nend_header") +
+            "1\n1\n",
+        "2 of element 'edge_attributes', but 1 edges", ""}},
       ply);
   EXPECT_EQ(medial_refusal(ply_edges(two, "0 1\n"), ply), "read");
 }

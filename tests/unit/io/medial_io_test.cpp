@@ -343,6 +343,29 @@ TEST(MedialOthers, PlainPlyAsText) {
   EXPECT_FALSE(file.has_radii || file.has_footprints || file.has_angles || file.has_labels);
 }
 
+/// As Blum wrote them at first: with the attributes of edges beside their corners.
+TEST(MedialOthers, PlyWithAttributesInTheEdges) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+      "separation_angle\nproperty uchar role\n";
+  const std::string points = "0 0 0 10 4\n1 0 0 20 3\n1 1 0 30 3\n";
+  for (const std::string& edges :
+       {"element edge 2\nproperty int vertex1\nproperty int vertex2\nproperty float separation_angle\nproperty uchar "
+        "role\nend_header\n" +
+            points + "0 1 40.5 3\n2 1 50.5 1\n",
+        "element edge 2\nproperty int vertex1\nproperty int vertex2\nelement edge_attributes 2\nproperty uchar role\n"
+        "property float separation_angle\nend_header\n" +
+            points + "0 1\n2 1\n3 40.5\n1 50.5\n"}) {
+    const MedialFile file = parse_medial(head + edges, MedialFormat::ply);
+    ASSERT_EQ(file.complex.edges.size(), 2U);
+    EXPECT_EQ(file.complex.edges[1].vertices, (std::array<std::uint32_t, 2>{2, 1}));
+    EXPECT_EQ(file.complex.edges[1].separation_angle, 50.5F);
+    EXPECT_EQ(file.complex.edges[0].role, MedialRole::curve);
+    EXPECT_EQ(file.complex.edges[1].role, MedialRole::rim);
+    EXPECT_TRUE(file.has_angles && file.has_labels);
+  }
+}
+
 TEST(MedialOthers, PlyThatIsBigEndian) {
   std::string data;
   for (const double value : {0.0, 0.0, 1.5, 2.0, 0.0, 0.0, -1.0, 0.25}) {
