@@ -113,9 +113,9 @@ MedialFormat format_of(const std::filesystem::path& path) {
 }
 
 void check_metadata(const MedialMetadata& metadata) {
-  for (const auto& [name, value] :
-       {std::pair{"theta", metadata.theta}, std::pair{"lambda", metadata.lambda}, std::pair{"spacing", metadata.spacing},
-        std::pair{"threshold", metadata.threshold}, std::pair{"weld", metadata.weld}}) {
+  for (const auto& [name, value] : {std::pair{"theta", metadata.theta}, std::pair{"lambda", metadata.lambda},
+                                    std::pair{"spacing", metadata.spacing}, std::pair{"threshold", metadata.threshold},
+                                    std::pair{"weld", metadata.weld}}) {
     if (value && !std::isfinite(*value)) {
       throw InvalidOption(std::string(name) + " of the metadata is not finite: " + exact_text(*value));
     }

@@ -17,6 +17,13 @@ using volume_io::Metadata;
 
 constexpr const char* axis_content = "medial axis";
 
+/// Footprints lie on the border of the solid, so that voxels that are not selected name them.
+std::string site_sentence(SiteIds ids) {
+  if (ids != SiteIds::voxels) return volume_io::site_sentence(ids);
+  return "site ids: the linear index x + nx * (y + ny * z) of the voxel beside the solid whose face the footprint lies "
+         "on: one that is not selected, or, outside of the image, the image's voxel next to it; -1 none";
+}
+
 std::string numbers_text(const Vec3d& v) {
   return exact_text(v.x) + " " + exact_text(v.y) + " " + exact_text(v.z);
 }
@@ -115,7 +122,7 @@ Metadata to_pairs(const MedialMetadata& metadata) {
   if (!metadata.version.empty()) pairs.emplace_back("blum_version", metadata.version);
   if (!metadata.source.empty()) pairs.emplace_back("source", metadata.source);
   pairs.emplace_back("site_ids", to_string(metadata.site_ids));
-  pairs.emplace_back("sites", volume_io::site_sentence(metadata.site_ids));
+  pairs.emplace_back("sites", site_sentence(metadata.site_ids));
   pairs.emplace_back("roles", "0 sheet, 1 rim, 2 seam, 3 curve, 4 junction");
   if (metadata.theta) pairs.emplace_back("theta", exact_text(*metadata.theta));
   if (metadata.lambda) pairs.emplace_back("lambda", exact_text(*metadata.lambda));

@@ -31,7 +31,7 @@ struct MedialMetadata {
   // welded.
   std::optional<std::int64_t> label = {};  ///< those of this value
   std::optional<double> threshold = {};    ///< those of this value or more, in image values
-  std::optional<double> weld = {};         ///< MeshReadOptions::weld, >= 0, mesh units; unset: the default of the format
+  std::optional<double> weld = {};  ///< MeshReadOptions::weld, >= 0, mesh units; unset: the default of the format
 };
 
 /// A medial axis as a file holds it.
@@ -63,9 +63,9 @@ enum class MedialFormat : std::uint8_t { vtp, ply, obj, ma, npz };
 ///
 /// Roles are the numbers of MedialRole, sites are -1 where there is none, and indices count from 0 (in .obj from 1).
 /// Coordinates keep double precision. A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension, or metadata that are not finite or not as said above; InvalidGrid; InvalidMesh when the
-/// complex names vertices that it does not have, or one twice in an edge or triangle, or holds numbers that are not
-/// finite, a negative radius, or a sheet beyond its count; FileError; Cancelled.
+/// @throws InvalidOption for another extension, or metadata that are not finite or not as said above; InvalidGrid;
+/// InvalidMesh when the complex names vertices that it does not have, or one twice in an edge or triangle, or holds
+/// numbers that are not finite, a negative radius, or a sheet beyond its count; FileError; Cancelled.
 void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata = {},
                   const Context& context = {});
 

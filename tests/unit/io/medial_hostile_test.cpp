@@ -134,8 +134,7 @@ TEST(MedialHostile, Ply) {
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"site_ids\": \"x\"}\n"), "not known", ""},
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"weld\": \"-1\"}\n"), "weld '-1'", ""},
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"label\": \"1.5\"}\n"), "label '1.5'", ""},
-       {replaced(ply_with("", "0 0 0\n"), "1.0\n",
-                 "1.0\ncomment blum {\"label\": \"1\", \"threshold\": \"2\"}\n"),
+       {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"label\": \"1\", \"threshold\": \"2\"}\n"),
         "a label and a threshold", ""},
        {replaced(ply_edges(two, "0 1\n"), "end_header", "element edge_attributes 2\nproperty uchar role\nend_header") +
             "1\n1\n",
