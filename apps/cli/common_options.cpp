@@ -11,9 +11,8 @@ void add_label_option(CLI::App& command, std::vector<std::string>& labels, const
   command.add_option("--label", labels, help)->type_name("L")->allow_extra_args(false);
 }
 
-void add_weld_option(CLI::App& command, std::optional<std::string>& weld) {
-  add_text_option(command, "--weld", weld, "[TOL]",
-                  "Mesh: merge equal vertices, or those within TOL (default for STL: equal)");
+void add_weld_option(CLI::App& command, std::optional<std::string>& weld, const char* help) {
+  add_text_option(command, "--weld", weld, "[TOL]", help);
 }
 
 void add_threads_option(CLI::App& command, std::optional<std::string>& threads) {

@@ -18,7 +18,11 @@ void add_text_option(CLI::App& command, const char* name, std::optional<std::str
 void add_label_option(CLI::App& command, std::vector<std::string>& labels, const char* help);
 
 /// --weld, with or without a value: see prepare_weld().
-void add_weld_option(CLI::App& command, std::optional<std::string>& weld);
+void add_weld_option(CLI::App& command, std::optional<std::string>& weld,
+                     const char* help = "Mesh: merge equal vertices, or those within TOL (default for STL: equal)");
+
+/// The same where the file of an axis may tell.
+constexpr const char* weld_of_axis_help = "Mesh: merge equal vertices, or those within TOL (default: as AXIS tells)";
 
 void add_threads_option(CLI::App& command, std::optional<std::string>& threads);
 

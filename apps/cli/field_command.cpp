@@ -231,6 +231,7 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
 }
 
 GridSpec make_grid(const Request& r, const Box3& box) {
+  if (r.spacing) check_spacing(*r.spacing, r.bounds.value_or(box));
   if (r.bounds) return r.spacing ? grid_in_with_spacing(*r.bounds, *r.spacing) : grid_in(*r.bounds, r.resolution);
   return r.spacing ? grid_around_with_spacing(box, *r.spacing, r.padding) : grid_around(box, r.resolution, r.padding);
 }

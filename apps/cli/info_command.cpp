@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "axis_info.hpp"
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/self_intersections.hpp"
@@ -17,7 +18,6 @@
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
-#include "axis_info.hpp"
 #include "field_statistics.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"

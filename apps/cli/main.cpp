@@ -45,7 +45,12 @@ std::string leftover_text(const CLI::App& command) {
   const std::vector<std::string> left = command.remaining(true);
   if (left.empty()) return {};
   const std::string word = left.front().substr(0, left.front().find('='));
-  if (word.size() < 2 || word[0] != '-') return "'" + left.front() + "' was not expected";
+  if (word.size() < 2 || word[0] != '-') {
+    const CLI::Option* theta = command.get_option_no_throw("--theta");
+    const bool is_angle = theta != nullptr && theta->count() == 1 && looks_like_number(word);
+    return "'" + left.front() + "' was not expected" +
+           (is_angle ? "; for several angles, --theta " + theta->results().front() + "," + word : "");
+  }
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);

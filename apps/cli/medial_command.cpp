@@ -181,29 +181,64 @@ std::vector<std::string> shortfalls(const MedialAxisReport& report) {
   return out;
 }
 
-void add_report(Run& run, const MedialAxisReport& report, Json& json) {
+/// The side of a mesh's voxels that the options ask for.
+double asked_spacing(const SolidInput& input, const MedialAxisOptions& options) {
+  const Vec3d size = bounds(input.mesh.mesh).size();
+  return options.spacing.value_or(std::max({size.x, size.y, size.z}) / options.resolution);
+}
+
+/// How many bodies have finer voxels than were asked for, and why; empty where none has.
+std::string refined_text(const MedialAxisReport& report, double asked) {
+  std::size_t finer = 0;
+  double finest = asked;
+  for (const BodyReport& body : report.bodies) {
+    if (body.spacing < asked * (1 - 1e-9)) ++finer;
+    finest = std::min(finest, body.spacing);
+  }
+  if (finer == 0) return {};
+  const std::string of_bodies =
+      report.bodies.size() == 1 ? ""
+                                : " for " + count_text(finer) + " of " + count_text(report.bodies.size()) + " bodies";
+  return "voxels from side " + number_text(asked) + " to " + number_text(finest) + of_bodies +
+         (report.rule == SolidRule::polyhedron
+              ? ": with larger ones they do not have the topology of the solid, or none lies inside"
+              : ": of larger ones none lies inside");
+}
+
+/// "0.5", "0.25 to 0.5" for bodies that differ, "(0.5, 1, 2.5)" for an image.
+std::string sides_text(const MedialAxisReport& report) {
+  const Vec3d& sides = report.grid.spacing;
+  if (report.rule == SolidRule::voxels && (sides.x != sides.y || sides.y != sides.z)) return "s " + vector_text(sides);
+  const auto [least, most] =
+      std::minmax_element(report.bodies.begin(), report.bodies.end(),
+                          [](const BodyReport& a, const BodyReport& b) { return a.spacing < b.spacing; });
+  return " " + number_text(least->spacing) +
+         (least->spacing < most->spacing ? " to " + number_text(most->spacing) : "");
+}
+
+void add_report(Run& run, const MedialAxisReport& report, std::optional<double> asked, Json& json) {
   std::size_t voxels = 0;
   std::size_t moved = 0;
   double deviation = 0;
-  double spacing = report.bodies.front().spacing;
   Json bodies = Json::array();
   for (const BodyReport& body : report.bodies) {
     bodies.push_back(body_json(body));
     voxels += body.voxel_count;
     moved += body.left_out + body.taken_in;
     deviation = std::max(deviation, body.deviation);
-    spacing = std::min(spacing, body.spacing);
   }
+  json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
   json["rule"] = to_string(report.rule);
   json["reason"] = report.reason;
   json["turned_shells"] = report.turned_shells;
   json["grid"] = to_json(report.grid);
   json["bodies"] = bodies;
   run.table.add("solid", betti_text(report.solid) + " (" + report.reason + ")");
-  run.table.add("voxels", count_text(voxels) + " of side " + number_text(spacing) +
+  run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
                               (moved > 0 ? "; " + count_text(moved) + " chosen otherwise than by their centre, up to " +
                                                number_text(deviation) + " from the surface, for the topology"
                                          : ""));
+  if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
   if (report.turned_shells > 0) {
     run.warnings.push_back(plural(report.turned_shells, "shell faces", "shells face") + " the solid and " +
                            (report.turned_shells == 1 ? "was" : "were") + " turned");
@@ -259,11 +294,13 @@ double volume_around_middle(const MeshView& mesh) {
 
 MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, const Context& context) {
   if (input.kind == InputKind::image) return medial_axis(input.image, options, context);
+  if (options.spacing) check_spacing(*options.spacing, bounds(input.mesh.mesh));
   try {
     return medial_axis(input.mesh.mesh, options, context);
   } catch (const InvalidMesh& error) {
     const std::string message = error.what();
-    const bool is_inward = message.find("no interior") != std::string::npos && volume_around_middle(input.mesh.mesh) < 0;
+    const bool is_inward =
+        message.find("no interior") != std::string::npos && volume_around_middle(input.mesh.mesh) < 0;
     throw InvalidMesh(message + (is_inward ? "; its triangles face inwards: flip them" : ""));
   }
 }
@@ -280,7 +317,8 @@ void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelS
     json["label"] = *label;
     run.table.add("label", std::to_string(*label));
   }
-  add_report(run, report, json);
+  add_report(run, report, input.kind == InputKind::mesh ? std::optional(asked_spacing(input, options)) : std::nullopt,
+             json);
   for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
   Json axes = Json::array();
   MedialComplex whole;

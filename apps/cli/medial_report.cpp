@@ -121,8 +121,8 @@ std::string counts_text(const MedialCounts& counts, bool has_labels) {
     return cells + ", " + plural(counts.curve_edges, "edge", "edges") + " of curves (the file tells no sheets)";
   }
   return cells + " in " + plural(counts.sheets, "sheet", "sheets") + "; edges: " + count_text(counts.curve_edges) +
-         " of curves, " + count_text(counts.rim_edges) + " of rims, " + count_text(counts.seam_edges) +
-         " of seams; " + plural(counts.junctions, "junction", "junctions");
+         " of curves, " + count_text(counts.rim_edges) + " of rims, " + count_text(counts.seam_edges) + " of seams; " +
+         plural(counts.junctions, "junction", "junctions");
 }
 
 void add_certificate(TextTable& table, const Certificate& c) {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <system_error>
 
+#include "summary.hpp"
+
 namespace blum::cli {
 namespace {
 
@@ -169,6 +171,15 @@ std::string join_words(const std::vector<std::string>& words, std::string_view l
     text += words[i];
   }
   return text;
+}
+
+void check_spacing(double spacing, const Box3& box) {
+  constexpr double most = 1099511627776.0;
+  const Vec3d size = box.size();
+  const double nodes = (size.x / spacing + 1) * (size.y / spacing + 1) * (size.z / spacing + 1);
+  if (box.is_empty() || nodes <= most) return;
+  throw UsageError("--spacing " + number_text(spacing) + " is too small for a box of " + vector_text(size) +
+                   ": it would take more than 2^40 steps; raise it");
 }
 
 void exclude(bool first, const char* first_name, bool second, const char* second_name, const char* reason) {

@@ -76,6 +76,9 @@ template <class Value>
   throw UsageError(option + " '" + text + "': must be " + join_words(names, "or"));
 }
 
+/// @throws UsageError where a box takes more than 2^40 steps of --spacing.
+void check_spacing(double spacing, const Box3& box);
+
 /// @throws UsageError where both options are given.
 void exclude(bool first, const char* first_name, bool second, const char* second_name, const char* reason);
 

@@ -73,9 +73,10 @@ Request parse(const Arguments& a) {
   if (a.threshold) r.given.selections.threshold = parse_number("--threshold", *a.threshold);
   r.given.weld = parse_weld(a.weld);
   if (!r.input) {
-    refuse_given(
-        {{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}, {r.given.weld.has_value(), "--weld"}},
-        r.axis, "an axis", "the image or mesh of --input");
+    refuse_given({{!a.labels.empty(), "--label"},
+                  {a.threshold.has_value(), "--threshold"},
+                  {r.given.weld.has_value(), "--weld"}},
+                 r.axis, "an axis", "the image or mesh of --input");
   }
   r.threads = parse_threads(a.threads);
   return r;
@@ -106,6 +107,7 @@ void run(const Arguments& a) {
   const MedialFile file = read_medial(r.axis);
   const std::vector<Ball> balls = balls_of(file, r.axis);
   const Box3 box = bounds(balls);
+  if (r.spacing) check_spacing(*r.spacing, box);
   const GridSpec grid = r.spacing ? grid_around_with_spacing(box, *r.spacing) : grid_around(box, r.resolution);
   check_memory(4.0 * static_cast<double>(grid.node_count()), "a grid of " + size_text(grid) + " nodes",
                "use a coarser grid");
@@ -180,7 +182,7 @@ void add_reconstruct_command(CLI::App& app) {
   text("--spacing", a->spacing, "H", "Distance between nodes, instead of --resolution");
   add_label_option(*command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: as AXIS tells)");
-  add_weld_option(*command, a->weld);
+  add_weld_option(*command, a->weld, weld_of_axis_help);
   add_threads_option(*command, a->threads);
   add_report_options(*command, a->report);
   command->footer(examples);

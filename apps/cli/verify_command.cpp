@@ -75,8 +75,8 @@ class Verifier {
                         {"warnings", choice.warnings}});
     warnings_.insert(warnings_.end(), choice.warnings.begin(), choice.warnings.end());
     if (!certificate.holds()) {
-      failures_.push_back({axis, certificate.mismatches,
-                           missing_options(given_, kind_, file.metadata, certificate.topology_holds)});
+      failures_.push_back(
+          {axis, certificate.mismatches, missing_options(given_, kind_, file.metadata, certificate.topology_holds)});
     }
   }
 
@@ -152,7 +152,7 @@ void add_verify_command(CLI::App& app) {
   add_label_option(*command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
   add_text_option(*command, "--threshold", a->threshold, "T",
                   "Image: the voxels of value T or more (default: as AXIS tells)");
-  add_weld_option(*command, a->weld);
+  add_weld_option(*command, a->weld, weld_of_axis_help);
   add_threads_option(*command, a->threads);
   add_report_options(*command, a->report, "Write the certificates as JSON; - is standard output");
   command->footer(examples);

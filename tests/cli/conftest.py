@@ -1,7 +1,9 @@
 # What the tests of the command-line tool share.
+import re
+
 import pytest
 
-from tool import run
+from tool import FORMATS, run
 
 
 @pytest.fixture(scope="session")
@@ -14,4 +16,28 @@ def shapes(tmp_path_factory):
     run("make", "balls", "-o", folder / "balls.npy", "--count", 3)
     run("field", folder / "sphere.ply", "-o", folder / "sphere.nrrd", "--resolution", 24)
     run("field", folder / "sphere.ply", "-o", folder / "sphere.npz", "--resolution", 24, "--band", "3v")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def solids(shapes):
+    """Beside the shapes, a box, one inside out, one that is open, and a plate with narrow holes."""
+    run("make", "box", "-o", shapes / "box.obj")
+    lines = (shapes / "box.obj").read_text().splitlines()
+    turned = [re.sub(r"^f (\S+) (\S+) (\S+)$", r"f \1 \3 \2", line) for line in lines]
+    (shapes / "inverted.obj").write_text("\n".join(turned) + "\n")
+    (shapes / "open.obj").write_text("\n".join(lines[:-1]) + "\n")
+    (shapes / "axis.ma").write_text("2 0 0\nv 0 0 0 1\nv 1 0 0 1\n")
+    run("make", "plate", "-o", shapes / "plate.obj", "--hole-radius", 0.02)
+    return shapes
+
+
+@pytest.fixture(scope="session")
+def axes(solids, tmp_path_factory):
+    """Axes of the box in every format, of the torus, and of the open box."""
+    folder = tmp_path_factory.mktemp("axes")
+    for end in FORMATS:
+        run("medial", solids / "box.obj", "-o", folder / f"box.{end}", "--resolution", 16)
+    run("medial", solids / "torus.obj", "-o", folder / "torus.npz", "--resolution", 40)
+    run("medial", solids / "open.obj", "-o", folder / "open.npz", "--resolution", 16, warns=True)
     return folder

@@ -327,6 +327,7 @@ USAGE = [
     ["field", "sphere.ply", "-o", "out.nrrd", "--resolution", "64", "--spacing", "0.1"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--resolution", "64", "--resolution", "32"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--spacing", "0"],
+    ["field", "sphere.ply", "-o", "out.nrrd", "--spacing", "0.00001"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--spacing", "nan"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--spacing", "1e999"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--spacing", "0,5"],

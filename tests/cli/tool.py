@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 BLUM = os.environ.get("BLUM_CLI", "")
+FORMATS = ["vtp", "ply", "obj", "ma", "npz"]  # of medial axes
 
 
 def run(*arguments, status=0, timeout=60, warns=False):
@@ -29,6 +30,10 @@ def run(*arguments, status=0, timeout=60, warns=False):
 def run_json(*arguments, warns=False):
     out, _ = run(*arguments, "--json", "-", warns=warns)
     return json.loads(out)
+
+
+def names(folder):
+    return sorted(path.name for path in Path(folder).iterdir())
 
 
 def png_rows(path):

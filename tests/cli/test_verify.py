@@ -1,0 +1,260 @@
+# Proves that `blum verify`, `blum reconstruct` and `blum info` do with the files of medial axes what their help says:
+# falsified axes are found out, and files tell what they are of.
+import json
+import re
+
+import numpy as np
+import pytest
+
+from tool import BLUM, FORMATS, names, run, run_json
+
+pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
+
+
+def falsified(axes, tmp_path, name, change):
+    """A copy of an axis whose arrays were changed."""
+    arrays = dict(np.load(axes / name))
+    change(arrays)
+    np.savez(tmp_path / "false.npz", **arrays)
+    return tmp_path / "false.npz"
+
+
+def test_summary_of_verify_has_its_keys(solids, axes):
+    summary = run_json("verify", solids / "box.obj", axes / "box.npz")
+    assert set(summary) == {"blum_version", "command", "input", "axis", "certificate", "warnings"}
+    assert summary["command"] == "verify" and summary["axis"]["file"] == str(axes / "box.npz")
+    assert summary["axis"]["counts"]["vertices"] == len(np.load(axes / "box.npz")["vertices"])
+
+
+def move_a_vertex(arrays):
+    arrays["vertices"][100] += [0.01, 0.02, 0.03]
+
+
+def move_a_vertex_outside(arrays):
+    arrays["vertices"][0] = [0.7, 0, 0]
+
+
+def scale_radii(arrays):
+    arrays["radius"] *= 1.001
+
+
+def move_a_footprint(arrays):
+    arrays["footprints"][7, 1] *= 0.99
+
+
+def drop_a_triangle(arrays):
+    """One whose corners lie inside a sheet, so that a hole remains."""
+    inner = np.all(arrays["role"][arrays["triangles"]] == 0, axis=1)
+    arrays["triangles"] = np.delete(arrays["triangles"], np.flatnonzero(inner)[0], axis=0)
+    for name in ("triangle_angle", "triangle_sheet"):
+        arrays[name] = arrays[name][:-1]
+
+
+def add_a_vertex(arrays):
+    for name in ("vertices", "radius", "separation_angle", "role", "footprints", "sites"):
+        arrays[name] = np.concatenate([arrays[name], arrays[name][:1]])
+
+
+@pytest.mark.parametrize("change,reason", [
+    (move_a_vertex, "a radius differs from the exact distance"),
+    (move_a_vertex_outside, "outside of the solid"),
+    (scale_radii, "a radius differs from the exact distance"),
+    (move_a_footprint, "a footprint lies off the surface"),
+    (drop_a_triangle, "the solid has 0 tunnels, the axis 1"),
+    (add_a_vertex, "the solid has 1 component, the axis 2"),
+], ids=lambda value: getattr(value, "__name__", ""))
+def test_a_falsified_axis_is_found_out(solids, axes, tmp_path, change, reason):
+    false = falsified(axes, tmp_path, "box.npz", change)
+    out, err = run("verify", solids / "box.obj", false, "--json", "-", status=3)
+    assert "NOT certified" in err and reason in err
+    certificate = json.loads(out)["certificate"]
+    assert certificate["certified"] is False and any(reason in text for text in certificate["mismatches"])
+    text, err = run("verify", solids / "box.obj", false, status=3)
+    assert "NOT certified" in text and (text + err).count(reason) == 1, "once is enough"
+    assert not re.search(r"[1-9]\d{6}", err), "six digits say enough"
+
+
+def test_an_axis_that_was_not_falsified_is_not_found_out(solids, axes, tmp_path):
+    run("verify", solids / "box.obj", falsified(axes, tmp_path, "box.npz", lambda arrays: None))
+
+
+def test_the_axis_of_another_solid_is_found_out(solids, axes):
+    assert "NOT certified" in run("verify", solids / "sphere.ply", axes / "torus.npz", status=3)[1]
+    assert "1 tunnel" in run("verify", solids / "torus.obj", axes / "box.npz", status=3)[1]
+
+
+def test_the_axis_of_another_label_is_found_out(solids, tmp_path):
+    run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 1)
+    run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 1)
+    _, err = run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 2, status=3, warns=True)
+    assert f"'{tmp_path / 'b.npz'}' was made with --label 1; --label 2 is used, as it was given" in err
+
+
+@pytest.mark.parametrize("selection", [("--label", 2), ("--threshold", 2.5)], ids=lambda s: s[0])
+@pytest.mark.parametrize("end", ["vtp", "ply", "npz"])
+def test_the_file_tells_which_voxels_it_is_of(solids, tmp_path, end, selection):
+    axis = tmp_path / f"b.{end}"
+    run("medial", solids / "balls.npy", "-o", axis, *selection)
+    assert run_json("verify", solids / "balls.npy", axis)["certificate"]["certified"]
+    distance = [run_json("reconstruct", axis, "-o", tmp_path / "r.ply", "--input", solids / "balls.npy", "--resolution",
+                         20, *options)["distance"] for options in ((), selection)]
+    assert distance[0] == distance[1]
+    _, err = run("verify", solids / "balls.npy", axis, "--label", 1, status=3, warns=True)
+    assert f"was made with {selection[0]} {selection[1]}; --label 1 is used" in err
+
+
+def test_a_file_that_does_not_tell_which_voxels_asks_for_the_option(solids, tmp_path):
+    for end in ("obj", "ma"):
+        run("medial", solids / "balls.npy", "-o", tmp_path / f"b.{end}", "--label", 2)
+        assert "if --label or --threshold was given" in run("verify", solids / "balls.npy", tmp_path / f"b.{end}",
+                                                            status=3)[1]
+        run("verify", solids / "balls.npy", tmp_path / f"b.{end}", "--label", 2)
+    assert "--threshold" not in run("verify", solids / "balls.npy", tmp_path / "b.ma", "--label", 1, status=3)[1]
+
+
+def test_the_file_tells_how_the_mesh_was_welded(solids, tmp_path):
+    lines = (solids / "box.obj").read_text().splitlines()
+    points = [line for line in lines if line.startswith("v ")]
+    soup = [points[int(word.split("/")[0]) - 1] for line in lines if line.startswith("f ") for word in line.split()[1:]]
+    soup += [f"f {k + 1} {k + 2} {k + 3}" for k in range(0, len(soup), 3)]
+    (tmp_path / "soup.obj").write_text("\n".join(soup) + "\n")
+    for weld in (["--weld"], ["--weld", "1e-6"]):
+        for end in ("vtp", "ply", "npz", "obj"):
+            summary = run_json("medial", tmp_path / "soup.obj", "-o", tmp_path / f"s.{end}", "--resolution", 12, *weld)
+            assert summary["solids"][0]["rule"] == "polyhedron"
+        for end in ("vtp", "ply", "npz"):
+            verified = run_json("verify", tmp_path / "soup.obj", tmp_path / f"s.{end}")
+            assert verified["certificate"]["against"] == "polyhedron" and verified["warnings"] == []
+        run("verify", tmp_path / "soup.obj", tmp_path / "s.obj", *weld)
+        assert "--weld" in run("verify", tmp_path / "soup.obj", tmp_path / "s.obj", status=1)[1]
+    _, err = run("verify", tmp_path / "soup.obj", tmp_path / "s.npz", "--weld", warns=True)
+    assert "was made with --weld 1e-06; --weld is used" in err
+
+
+def test_files_of_before_that_tell_no_selection_are_read(solids, tmp_path):
+    run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 2)
+    arrays = dict(np.load(tmp_path / "b.npz"))
+    metadata = json.loads(str(arrays["metadata"]))
+    assert metadata.pop("label") == "2"
+    np.savez(tmp_path / "old.npz", **(arrays | {"metadata": np.array(json.dumps(metadata))}))
+    run("verify", solids / "balls.npy", tmp_path / "old.npz", "--label", 2)
+    run("verify", solids / "balls.npy", tmp_path / "old.npz", status=3)
+
+
+def test_the_topology_of_files_without_geometry_is_verified(solids, axes, tmp_path):
+    for end in ("obj", "ma"):
+        lines = (axes / f"box.{end}").read_text().splitlines()
+        faces = [k for k, line in enumerate(lines) if line.startswith("f ")]
+        del lines[faces[len(faces) // 2]]
+        if end == "ma":
+            vertices, edges, triangles = lines[0].split()
+            lines[0] = f"{vertices} {edges} {int(triangles) - 1}"
+        (tmp_path / f"hole.{end}").write_text("\n".join(lines) + "\n")
+        assert "tunnel" in run("verify", solids / "box.obj", tmp_path / f"hole.{end}", status=3)[1]
+
+
+@pytest.mark.parametrize("end", ["obj", "ma"])
+def test_what_files_without_labels_do_not_tell_is_not_told(solids, axes, end):
+    out, _ = run("verify", solids / "box.obj", axes / f"box.{end}")
+    assert "0 edges of curves (the file tells no sheets)" in out and "rims" not in out and "1 sheet" not in out
+    counts = run_json("verify", solids / "box.obj", axes / f"box.{end}")["axis"]["counts"]
+    assert counts["sheets"] is counts["rim_edges"] is counts["seam_edges"] is counts["junctions"] is None
+    assert counts["triangles"] == len(np.load(axes / "box.npz")["triangles"]) and counts["curve_edges"] == 0
+
+
+def test_radii_of_files_without_footprints_are_verified(solids, axes, tmp_path):
+    text = (axes / "box.ma").read_text()
+    (tmp_path / "false.ma").write_text(re.sub(r"^(v .* )(\S+)$", lambda m: m[1] + str(1.01 * float(m[2])), text,
+                                              count=1, flags=re.M))
+    assert "a radius differs" in run("verify", solids / "box.obj", tmp_path / "false.ma", status=3)[1]
+
+
+def test_a_field_is_no_axis_and_an_axis_no_field(solids, axes, tmp_path):
+    for arguments in (["verify", solids / "sphere.ply", solids / "sphere.npz"],
+                      ["reconstruct", solids / "sphere.npz", "-o", tmp_path / "x.ply"]):
+        assert "it holds a distance field" in run(*arguments, status=1)[1]
+    assert "a medial axis, not a field" in run("slice", axes / "box.npz", "-o", tmp_path / "x.png", status=1)[1]
+    assert "is a medial axis; a mesh" in run("field", axes / "box.vtp", "-o", tmp_path / "x.npz", status=1)[1]
+    np.savez(tmp_path / "else.npz", vertices=np.zeros((2, 3)), metadata=np.array('{"content": "a sonnet"}'))
+    assert "call it 'a sonnet', not a medial axis" in run("info", tmp_path / "else.npz", status=1)[1]
+
+
+@pytest.mark.parametrize("end", ["vtp", "ply", "npz", "ma"])
+def test_info_of_an_axis(axes, end):
+    path = axes / f"box.{end}"
+    facts = run_json("info", path)
+    known = np.load(axes / "box.npz")
+    assert (facts["kind"], facts["betti"]) == ("medial axis", [1, 0, 0])
+    assert facts["radius"] == [known["radius"].min(), known["radius"].max()]
+    assert facts["bounds"]["lower"] == known["vertices"].min(axis=0).tolist()
+    assert (facts["counts"]["vertices"], facts["counts"]["triangles"]) == (len(known["vertices"]),
+                                                                           len(known["triangles"]))
+    out, _ = run("info", path)
+    assert f"{path}: medial axis" in out and "1 component, 0 tunnels, 0 voids" in out
+    if end == "ma":
+        assert facts["theta"] is facts["counts"]["sheets"] is facts["source"] is None
+        return
+    assert (facts["theta"], facts["source"], facts["solid_rule"]) == (60, "box.obj", "polyhedron")
+    assert "theta 60, lambda 0" in out and facts["counts"]["sheets"] == len(set(known["triangle_sheet"]))
+    run("info", path, "--weld", status=2)
+
+
+def test_several_axes_are_verified_at_once(solids, axes, tmp_path):
+    files = [axes / f"box.{end}" for end in FORMATS]
+    summaries = run_json("verify", solids / "box.obj", *files)
+    assert [summary["axis"]["file"] for summary in summaries] == [str(path) for path in files]
+    assert all(summary["certificate"]["certified"] for summary in summaries)
+    run("medial", solids / "balls.npy", "-o", tmp_path / "b.vtp", "--label", "1,2")
+    out, _ = run("verify", solids / "balls.npy", tmp_path / "b-label1.vtp", tmp_path / "b-label2.vtp")
+    assert out.count("certified") == 2 and out.count("input") == 1
+    false = falsified(axes, tmp_path, "box.npz", scale_radii)
+    out, err = run("verify", solids / "box.obj", files[0], false, files[1], "--json", "-", status=3)
+    assert [summary["certificate"]["certified"] for summary in json.loads(out)] == [True, False, True]
+    assert f"{false}: a radius differs" in err and str(files[0]) not in err
+    assert run("verify", solids / "box.obj", files[0], tmp_path / "none.vtp", status=1)[0] == ""
+
+
+def test_an_axis_of_voxels_needs_a_file_that_says_which(solids, tmp_path):
+    for end in ("obj", "ma"):
+        run("medial", solids / "open.obj", "-o", tmp_path / f"o.{end}", "--resolution", 12, warns=True)
+        _, err = run("verify", solids / "open.obj", tmp_path / f"o.{end}", status=1)
+        assert "not closed and manifold" in err and ".obj and .ma name neither rule nor grid" in err
+        assert "verify the .vtp, .ply or .npz of the same run" in err
+
+
+def test_an_open_mesh_that_faces_inwards_is_told_of(solids, tmp_path):
+    lines = (solids / "inverted.obj").read_text().splitlines()
+    (tmp_path / "in.obj").write_text("\n".join(lines[:-1]) + "\n")
+    _, err = run("medial", tmp_path / "in.obj", "-o", tmp_path / "o.vtp", "--resolution", 12, status=1)
+    assert "no interior" in err and "its triangles face inwards: flip them" in err
+
+
+def test_files_that_are_no_axis_are_refused(solids, axes, tmp_path):
+    (tmp_path / "cut.npz").write_bytes((axes / "box.npz").read_bytes()[:5000])
+    (tmp_path / "empty.vtp").write_bytes(b"")
+    for name in ("cut.npz", "empty.vtp", "none.ply"):
+        assert name in run("verify", solids / "box.obj", tmp_path / name, status=1)[1]
+    arrays = dict(np.load(axes / "box.npz"))
+    arrays["radius"][3] = np.nan
+    np.savez(tmp_path / "nan.npz", **arrays)
+    assert "vertex 3" in run("verify", solids / "box.obj", tmp_path / "nan.npz", status=1)[1]
+
+
+def test_balls_of_an_axis_become_a_field_and_a_mesh_near_the_solid(solids, axes, tmp_path):
+    summary = run_json("reconstruct", axes / "box.vtp", "-o", tmp_path / "box.ply", "--input", solids / "box.obj",
+                       "--resolution", 40)  # finer grids see between the balls
+    assert summary["surface"]["triangles"] > 1000
+    distance = summary["distance"]
+    assert 0 < distance["mean_solid_to_balls"] < distance["solid_to_balls"] < 0.1, "voxels are 1/16 long"
+    assert abs(distance["balls_beyond_solid"]) < 1e-9
+    assert run_json("info", tmp_path / "box.ply")["betti"] == [1, 0, 0]
+    run("reconstruct", axes / "box.ma", "-o", tmp_path / "box.npz", "--resolution", 40)
+    field = np.load(tmp_path / "box.npz")["distance"]
+    assert max(field.shape) == 40
+    assert field.min() < -0.4 and field[0, 0, 0] > 0, "negative in the balls, of which the largest has radius 1/2"
+
+
+def test_reconstruct_refuses_what_has_no_balls(solids, axes, tmp_path):
+    assert "AXIS" in run("reconstruct", axes / "box.obj", "-o", tmp_path / "x.ply", status=2)[1]
+    assert "--output" in run("reconstruct", axes / "box.vtp", "-o", tmp_path / "x.png", status=2)[1]
+    assert names(tmp_path) == []
