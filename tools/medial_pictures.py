@@ -5,7 +5,7 @@
                      [--size PIXELS]
 
 MESH is .obj, .off, .stl or .ply; AXIS.npz is what `blum medial` writes. Several axes stand side by side, each with its
-theta, and share their colours. Sheets are surfaces, curves (and triangles without area) thick lines, vertices of
+theta, and share their colours. Sheets are surfaces, curves (and narrow sheets) thick lines, vertices of
 nothing else dots.
 """
 
@@ -27,7 +27,7 @@ TITLES = {"radius": "Radius", "angle": "Separation angle (degrees)", "sheet": "S
 OVERSAMPLING = 2  # pixels drawn for each one of the picture along each axis
 BAR_HEIGHT = 90  # pixels
 CAPTION_HEIGHT = 36  # pixels
-FLAT = 0.02  # twice the area by the square of the longest side, below which triangles are drawn as lines
+NARROW = 1 / 150  # of the whole axis: sheets of less than this width on average are drawn as lines
 CURVE = 3  # the role of edges that lie on no triangle, as MedialRole counts
 # Where the eye is, as seen from the middle of the solid: the first ones show the most.
 EYES = [(1, -1.6, 0.9), (-1.6, -1, 0.7), (0, 0, 1), (0, -1, 0), (1, 0, 0), (-1, 1.6, -0.9)]
@@ -127,7 +127,8 @@ class Axis:
         self.triangles = arrays["triangles"].reshape(-1, 3).astype(np.int64)
         if "edge_role" in arrays:
             self.edges = self.edges[arrays["edge_role"] == CURVE]
-        self.edges = np.concatenate([self.edges, self.sides_of_flat_triangles()])
+        sheet = arrays["triangle_sheet"] if "triangle_sheet" in arrays else np.zeros(len(self.triangles), dtype=np.int64)
+        self.edges = np.concatenate([self.edges, self.sides_of_narrow_sheets(sheet)])
         used = np.zeros(len(self.vertices), dtype=bool)
         used[self.edges.ravel()] = True
         used[self.triangles.ravel()] = True
@@ -141,17 +142,22 @@ class Axis:
         theta = metadata.get("theta")
         self.caption = path.stem if theta is None else f"theta {theta} degrees"
 
-    def sides_of_flat_triangles(self) -> np.ndarray:
-        """Of those away from others: strips of triangles with next to no area would not be seen."""
+    def sides_of_narrow_sheets(self, sheet: np.ndarray) -> np.ndarray:
+        """Sheets of a pixel or two would not be seen, most of all along curves."""
+        if len(self.triangles) == 0:
+            return self.triangles[:, :2]
         corners = self.vertices[self.triangles]
         sides = np.roll(corners, -1, axis=1) - corners
-        double_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-        is_flat = double_area < FLAT * (sides**2).sum(axis=2).max(axis=1, initial=0)
-        is_seen = np.zeros(len(self.vertices), dtype=bool)
-        is_seen[self.triangles[~is_flat].ravel()] = True
-        flat = self.triangles[is_flat]
-        edges = np.concatenate([flat[:, [0, 1]], flat[:, [1, 2]], flat[:, [2, 0]]])
-        return edges[~is_seen[edges].any(axis=1)]
+        area = np.bincount(sheet, weights=0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1))
+        low = np.full((len(area), 3), np.inf)
+        high = np.full((len(area), 3), -np.inf)
+        for corner in range(3):
+            np.minimum.at(low, sheet, corners[:, corner])
+            np.maximum.at(high, sheet, corners[:, corner])
+        length = np.linalg.norm(high - low, axis=1)
+        whole = np.ptp(self.vertices, axis=0).max()
+        narrow = self.triangles[(area < NARROW * whole * length)[sheet]]
+        return np.concatenate([narrow[:, [0, 1]], narrow[:, [1, 2]], narrow[:, [2, 0]]])
 
     def sheet_count(self) -> int:
         return int(self.values.max()) + 1 if len(self.values) else 0

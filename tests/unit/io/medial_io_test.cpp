@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -179,7 +180,7 @@ MedialComplex long_strip(std::uint32_t count) {
   for (std::uint32_t i = 0; i < count + 2; ++i) {
     MedialVertex v;
     v.position = {std::sqrt(i), static_cast<double>(i % 2), std::sin(i)};
-    v.radius = std::sqrt(2.0) * i;
+    v.radius = std::numbers::sqrt2 * i;
     complex.vertices.push_back(v);
   }
   for (std::uint32_t i = 0; i < count; ++i) complex.triangles.push_back({{i, i + 1, i + 2}, 1.0F, 0});
