@@ -1,5 +1,6 @@
 #include "files.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <random>
 #include <sstream>
 #include <system_error>
 
@@ -269,6 +271,35 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
     }
   }
   for (const fs::path& output : outputs) check_writable(output);
+}
+
+fs::path make_draft(const fs::path& path) {
+  constexpr int most_attempts = 100;
+  constexpr std::size_t most_of_name = 100;
+  const fs::path target = resolved(path);
+  std::random_device random;
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    std::ostringstream name;
+    name << "." << target.stem().string().substr(0, most_of_name) << "." << std::hex << random() << random() << ".draft"
+         << target.extension().string();
+    fs::path draft = target.parent_path() / name.str();
+    const int file = open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) {
+      close(file);
+      return draft;
+    }
+    if (errno != EEXIST) break;
+  }
+  throw FileError("'" + path.string() + "' cannot be written: " + std::strerror(errno));
+}
+
+void replace_by_draft(const fs::path& path, const fs::path& draft) {
+  const fs::path target = resolved(path);
+  std::error_code error;
+  const fs::file_status old = fs::status(target, error);
+  if (fs::is_regular_file(old)) fs::permissions(draft, old.permissions(), error);
+  fs::rename(draft, target, error);
+  if (error) throw FileError("'" + path.string() + "': " + error.message());
 }
 
 void check_extension(std::string_view option, const fs::path& path, const std::vector<std::string>& known) {

@@ -50,6 +50,15 @@ void check_may_be_field(const std::filesystem::path& path);
 /// or may not be written, or the name is a folder's.
 void check_outputs(const std::vector<std::filesystem::path>& outputs, const std::vector<std::filesystem::path>& inputs);
 
+/// Makes an empty file beside another one, for what is not to bear that name yet: hidden, with the same extension, and
+/// with a name that no file had. A link is followed, so that the file can take the place of what it points to.
+/// @throws FileError
+[[nodiscard]] std::filesystem::path make_draft(const std::filesystem::path& path);
+
+/// Lets a draft take the place of a file, whose permissions it gets where there is one.
+/// @throws FileError
+void replace_by_draft(const std::filesystem::path& path, const std::filesystem::path& draft);
+
 /// @throws UsageError naming `option` unless the extension is one of `known`.
 void check_extension(std::string_view option, const std::filesystem::path& path, const std::vector<std::string>& known);
 

@@ -124,10 +124,7 @@ fs::path with_theta(const fs::path& path, double theta) {
 /// A file that is written, but not yet certified; gone unless it is kept.
 class Draft {
  public:
-  explicit Draft(fs::path name) : name_(std::move(name)) {
-    draft_ = name_.parent_path() / ("." + name_.stem().string() + ".draft");
-    draft_ += name_.extension();
-  }
+  explicit Draft(fs::path name) : name_(std::move(name)), draft_(make_draft(name_)) {}
   ~Draft() {
     std::error_code ignored;
     if (!draft_.empty()) fs::remove(draft_, ignored);
@@ -140,9 +137,7 @@ class Draft {
   [[nodiscard]] const fs::path& path() const { return draft_; }
   [[nodiscard]] const fs::path& name() const { return name_; }
   void keep() {
-    std::error_code error;
-    fs::rename(draft_, name_, error);
-    if (error) throw FileError("'" + name_.string() + "': " + error.message());
+    replace_by_draft(name_, draft_);
     draft_.clear();
   }
 
@@ -265,7 +260,10 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   write_medial(run.drafts.back().path(), complex, metadata, context);
   run.phases.push_back({"write", watch.lap()});
   MedialFile written = read_medial(run.drafts.back().path());
-  if (written.metadata.solid_rule.empty()) written.metadata = metadata;  // .obj and .ma say nothing of it
+  if (written.metadata.solid_rule.empty()) {  // .obj and .ma say nothing of it
+    written.metadata.solid_rule = metadata.solid_rule;
+    written.metadata.grid = metadata.grid;
+  }
   const Certificate certificate = certificate_of(written, input, selection, context);
   run.phases.push_back({"certificate", watch.lap()});
   const MedialCounts counts = count(complex);

@@ -1,10 +1,12 @@
 #include "medial_report.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/field/field.hpp"
 #include "commands.hpp"
+#include "files.hpp"
 
 namespace blum::cli {
 namespace {
@@ -26,6 +28,25 @@ VoxelSet voxels_inside(const MeshView& mesh, const GridSpec& grid, const Context
   return voxels;
 }
 
+/// What a file says of itself that is not so.
+std::vector<std::string> false_claims(const MedialFile& file, SolidRule rule) {
+  std::vector<std::string> claims;
+  const MedialMetadata& metadata = file.metadata;
+  if (!metadata.solid_rule.empty() && metadata.solid_rule != to_string(rule)) {
+    claims.push_back("the file says that its solid is '" + metadata.solid_rule + "', and it is '" +
+                     std::string(to_string(rule)) + "'");
+  }
+  if (metadata.version.empty()) return claims;  // of another program, which need not know all of it
+  const SiteIds sites = rule == SolidRule::voxels ? SiteIds::voxels : SiteIds::features;
+  for (const auto& [is_there, what] :
+       {std::pair{file.has_radii, "radii"}, std::pair{file.has_footprints, "footprints"},
+        std::pair{file.has_angles, "separation angles"}, std::pair{file.has_sites, "sites"},
+        std::pair{!file.has_sites || metadata.site_ids == sites, "sites of this kind of solid"}}) {
+    if (!is_there) claims.push_back("the file says that Blum " + metadata.version + " wrote it, but holds no " + what);
+  }
+  return claims;
+}
+
 const char* against_text(SolidRule rule) {
   return rule == SolidRule::polyhedron ? "the polyhedron"
          : rule == SolidRule::winding  ? "voxels (of the winding number)"
@@ -34,34 +55,40 @@ const char* against_text(SolidRule rule) {
 
 /// Where a mesh bounds no polyhedron, and the axis's file has no metadata.
 constexpr const char* untold_rule =
-    "; so its axis is that of voxels, and the file of the axis does not tell which (.obj and .ma name neither rule nor "
+    ": its axis is that of voxels, and the file of the axis does not tell which (.obj and .ma name neither rule nor "
     "grid): verify the .vtp, .ply or .npz of the same run, or give --weld here too if it was given then";
 
 }  // namespace
 
 Certificate certificate_of(const MedialFile& file, const SolidInput& input, const LabelSelection& selection,
                            const Context& context) {
-  const AxisGeometry known = !file.has_radii       ? AxisGeometry::none
-                             : file.has_footprints ? AxisGeometry::footprints
-                                                   : AxisGeometry::radii;
-  if (input.kind == InputKind::image) {
+  const bool is_image = input.kind == InputKind::image;
+  CertificateOptions options;
+  options.radii = file.has_radii;
+  options.footprints = file.has_footprints;
+  options.angles = file.has_angles;
+  options.sites = file.has_sites && file.metadata.site_ids == (is_image ? SiteIds::voxels : SiteIds::features);
+  const auto with_claims = [&](Certificate certificate) {
+    for (const std::string& claim : false_claims(file, certificate.against)) certificate.mismatches.push_back(claim);
+    return certificate;
+  };
+  if (is_image) {
     const VoxelSet voxels = selected_voxels(input.image, selection, context);
-    return certify(file.complex, voxels, input.image.grid, nullptr, known, context);
+    return with_claims(certify(file.complex, voxels, input.image.grid, nullptr, options, context));
   }
   const MeshView mesh = input.mesh.mesh;
-  if (file.metadata.solid_rule != to_string(SolidRule::winding)) {
-    try {
-      return certify(file.complex, mesh, known, context);
-    } catch (const InvalidMesh& error) {
-      if (!file.metadata.solid_rule.empty()) throw;
-      throw InvalidMesh(error.what() + std::string(untold_rule));
-    }
-  }
+  const MeshSolidRule found = solid_rule(mesh, context);
+  if (found.rule == SolidRule::polyhedron) return with_claims(certify(file.complex, mesh, options, context));
   if (!file.metadata.grid) {
-    throw FileError("the axis is that of voxels, but its file does not say which: take .vtp, .ply or .npz");
+    throw InvalidMesh("the mesh bounds no polyhedron (" + found.reason + ")" + untold_rule);
   }
-  const VoxelSet voxels = voxels_inside(mesh, *file.metadata.grid, context);
-  return certify(file.complex, voxels, *file.metadata.grid, &mesh, known, context);
+  const GridSpec& grid = *file.metadata.grid;
+  // Distances, winding numbers, and what the fields beside them take.
+  check_memory(16.0 * static_cast<double>(grid.node_count()),
+               "the grid that the axis names, of " + size_text(grid) + " nodes,",
+               "it is not one that Blum would have made here");
+  const VoxelSet voxels = voxels_inside(mesh, grid, context);
+  return with_claims(certify(file.complex, voxels, grid, &mesh, options, context));
 }
 
 NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std::string& rest)
@@ -76,17 +103,36 @@ Json to_json(const BettiNumbers& betti) {
 }
 
 Json to_json(const Certificate& c) {
-  Json json = {{"certified", c.holds()},        {"against", to_string(c.against)},    {"solid_betti", to_json(c.solid)},
-               {"axis_betti", to_json(c.axis)}, {"topology_holds", c.topology_holds}, {"mismatches", c.mismatches}};
-  if (c.checked == AxisGeometry::none) return json;
-  json["geometry"] = {{"holds", c.geometry.holds},
-                      {"vertices", c.geometry.vertices},
-                      {"radius_error", c.geometry.radius_error},
-                      {"tolerance", c.geometry.tolerance}};
-  if (c.checked == AxisGeometry::footprints) {
+  Json checked = {"topology", "positions", "edges"};
+  for (const auto& [is_checked, what] :
+       {std::pair{c.checked.radii, "radii"}, std::pair{c.checked.footprints, "footprints"},
+        std::pair{c.checked.angles, "angles"}, std::pair{c.checked.sites, "sites"}}) {
+    if (is_checked) checked.push_back(what);
+  }
+  std::size_t wrong = 0;
+  for (const BodyCheck& body : c.bodies) wrong += body.solid == body.axis ? 0 : 1;
+  Json json = {{"certified", c.holds()},
+               {"against", to_string(c.against)},
+               {"checked", checked},
+               {"solid_betti", to_json(c.solid)},
+               {"axis_betti", to_json(c.axis)},
+               {"bodies", {{"count", c.bodies.size()}, {"wrong", wrong}}},
+               {"topology_holds", c.topology_holds},
+               {"mismatches", c.mismatches}};
+  json["geometry"] = {{"holds", c.geometry.holds},           {"vertices", c.geometry.vertices},
+                      {"not_finite", c.geometry.not_finite}, {"outside", c.geometry.outside},
+                      {"outside_by", c.geometry.outside_by}, {"tolerance", c.geometry.tolerance}};
+  json["edges"] = {{"holds", c.edges.holds},         {"edges", c.edges.edges},     {"pushed", c.edges.pushed},
+                   {"pushed_by", c.edges.pushed_by}, {"outside", c.edges.outside}, {"outside_by", c.edges.outside_by},
+                   {"tolerance", c.edges.tolerance}};
+  if (c.checked.radii) json["geometry"]["radius_error"] = c.geometry.radius_error;
+  if (c.checked.footprints) {
     json["geometry"]["footprint_off_surface"] = c.geometry.footprint_off_surface;
     json["geometry"]["footprint_error"] = c.geometry.footprint_error;
   }
+  if (c.checked.sites) json["geometry"]["site_error"] = c.geometry.site_error;
+  if (c.checked.angles) json["geometry"]["angle_error"] = c.geometry.angle_error;
+  if (!c.checked.balls) return json;
   json["balls"] = {{"solid_to_balls", c.balls.solid_to_balls},
                    {"mean_solid_to_balls", c.balls.mean_solid_to_balls},
                    {"balls_beyond_solid", c.balls.balls_beyond_solid},
@@ -128,20 +174,31 @@ std::string counts_text(const MedialCounts& counts, bool has_labels) {
 void add_certificate(TextTable& table, const Certificate& c) {
   const std::string axis = "the axis has " + betti_text(c.axis);
   if (c.holds()) {
-    table.add("certified", "against " + std::string(against_text(c.against)) + ": " + axis + ", as the solid");
+    table.add("certified",
+              "against " + std::string(against_text(c.against)) + ": " + axis + ", as the solid" +
+                  (c.bodies.size() > 1 ? ", in each of its " + count_text(c.bodies.size()) + " bodies" : ""));
   } else {
     table.add("NOT certified", axis + "; the solid " + betti_text(c.solid));  // why is told by the error
   }
-  if (c.checked == AxisGeometry::none) {
-    table.add("geometry", "not checked: the file holds no radii");
-    return;
+  std::string geometry = "vertices and edges in the solid";
+  if (!c.geometry.holds || !c.edges.holds) geometry = "wrong";
+  if (c.edges.pushed > 0) {
+    geometry += ", but for " + plural(c.edges.pushed, "edge that cuts a corner", "edges that cut corners") +
+                " by up to " + number_text(c.edges.pushed_by);
   }
-  const std::string footprints =
-      c.checked == AxisGeometry::footprints
-          ? "footprints " + number_text(c.geometry.footprint_off_surface) + " off the surface"
-          : "no footprints in the file";
-  table.add("geometry", "radii off by at most " + number_text(c.geometry.radius_error) + ", " + footprints +
-                            " (tolerance " + number_text(c.geometry.tolerance) + ")");
+  if (c.checked.radii) geometry += "; radii off by at most " + number_text(c.geometry.radius_error);
+  if (c.checked.footprints) {
+    geometry += ", footprints " + number_text(c.geometry.footprint_off_surface) + " off the surface";
+  }
+  table.add("geometry", geometry + " (tolerance " + number_text(c.geometry.tolerance) + ")");
+  std::string unknown;
+  for (const auto& [is_checked, what] :
+       {std::pair{c.checked.radii, "radii"}, std::pair{c.checked.footprints, "footprints"},
+        std::pair{c.checked.angles, "separation angles"}, std::pair{c.checked.sites, "sites"}}) {
+    if (!is_checked) unknown += (unknown.empty() ? "" : ", ") + std::string(what);
+  }
+  if (!unknown.empty()) table.add("not checked", "not in the file: " + unknown);
+  if (!c.checked.balls) return;
   table.add("balls", "the solid reaches at most " + number_text(c.balls.solid_to_balls) +
                          " beyond the union of the balls (mean " + number_text(c.balls.mean_solid_to_balls) +
                          "), whose surface is at most " + number_text(c.balls.balls_to_surface) + " from the solid's");

@@ -121,19 +121,8 @@ void run(const Arguments& a) {
                {"command", "reconstruct"},
                {"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}},
                {"grid", to_json(grid)}};
-  if (r.is_field) {
-    write_field(r.output, field, {nullptr, nullptr, r.axis.filename().string(), BLUM_VERSION}, context);
-    // Nothing is beside the distances: balls are no sites.
-    outputs = {r.output};
-  } else {
-    const TriangleMesh surface = zero_surface(field, 0, context);
-    if (surface.triangles.empty()) throw FileError("the balls are smaller than the grid's spacing: use a finer grid");
-    write_mesh(r.output, surface);
-    json["surface"] = {{"vertices", surface.vertices.size()}, {"triangles", surface.triangles.size()}};
-    table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
-                             " triangles");
-  }
   std::vector<std::string> warnings;
+  // Before anything is written, as it may fail.
   if (r.input) {
     const InputKind kind = input_kind(*r.input);
     const SolidChoice solid = solid_of_axis(r.given, kind, file.metadata, r.axis);
@@ -149,6 +138,18 @@ void run(const Arguments& a) {
                               " beyond the union of the balls (mean " +
                               number_text(certificate.balls.mean_solid_to_balls) + "), whose surface is at most " +
                               number_text(certificate.balls.balls_to_surface) + " from the solid's");
+  }
+  if (r.is_field) {
+    write_field(r.output, field, {nullptr, nullptr, r.axis.filename().string(), BLUM_VERSION}, context);
+    // Nothing is beside the distances: balls are no sites.
+    outputs = {r.output};
+  } else {
+    const TriangleMesh surface = zero_surface(field, 0, context);
+    if (surface.triangles.empty()) throw FileError("the balls are smaller than the grid's spacing: use a finer grid");
+    write_mesh(r.output, surface);
+    json["surface"] = {{"vertices", surface.vertices.size()}, {"triangles", surface.triangles.size()}};
+    table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
+                             " triangles");
   }
   progress.clear();
   json["field_seconds"] = field_seconds;

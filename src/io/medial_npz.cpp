@@ -152,13 +152,12 @@ class MedialNpzReader {
     file_.has_labels = integers("role", {count}, [&](std::size_t i, std::int64_t value, const auto& bad) {
       vertices[i].role = role_from_file(value, bad);
     });
-    const bool there = numbers("footprints", {count, 2, 3}, [&](std::size_t i, double value) {
+    file_.has_footprints = numbers("footprints", {count, 2, 3}, [&](std::size_t i, double value) {
       vertices[i / 6].footprints[i / 3 % 2][i % 3] = value;
     });
-    const bool named = integers("sites", {count, 2}, [&](std::size_t i, std::int64_t value, const auto& bad) {
+    file_.has_sites = integers("sites", {count, 2}, [&](std::size_t i, std::int64_t value, const auto& bad) {
       vertices[i / 2].sites[i % 2] = site_from_file(value, bad);
     });
-    file_.has_footprints = there && named;
   }
 
   /// The corners of cells, of which an array may hold none.

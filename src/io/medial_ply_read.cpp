@@ -178,7 +178,8 @@ class MedialPlyReader {
     if (element.count > max_id_count) source_.fail("too many vertices: 2^31 - 1 are the most");
     vertices_there_ = true;
     file_.has_radii = columns.has(Column::radius);
-    file_.has_footprints = columns.has_all(Column::footprint_0_x, Column::site_1);
+    file_.has_footprints = columns.has_all(Column::footprint_0_x, Column::footprint_1_z);
+    file_.has_sites = columns.has_all(Column::site_0, Column::site_1);
     has_angles_ = has_angles_ && columns.has(Column::angle);
     has_labels_ = has_labels_ && columns.has(Column::role);
     builder_.reserve_vertices(element.count);

@@ -190,7 +190,8 @@ class VtpReader {
     using V = MedialVertex;
     if (header_.points == 0) {
       file_.has_radii = header_.find("PointData/radius") != nullptr;
-      file_.has_footprints = header_.find("PointData/site_1") != nullptr;
+      file_.has_footprints = header_.find("PointData/footprint_1") != nullptr;
+      file_.has_sites = header_.find("PointData/site_1") != nullptr;
       return;
     }
     const VoxelImage::Values places = values("Points/Points", header_.points, 3, "the number of points");
@@ -201,7 +202,7 @@ class VtpReader {
     point_numbers("PointData/separation_angle", 1, [](V& v, std::size_t, double value) { v.separation_angle = value; });
     point_integers("PointData/role",
                    [&](V& v, std::int64_t value, const auto& bad) { v.role = role_from_file(value, bad); });
-    file_.has_footprints = true;
+    file_.has_footprints = file_.has_sites = true;
     for (std::size_t side = 0; side < 2; ++side) {
       const std::string number = std::to_string(side);
       const bool there = point_numbers("PointData/footprint_" + number, 3,
@@ -209,7 +210,8 @@ class VtpReader {
       const std::string key = "PointData/site_" + number;
       const bool named = point_integers(
           key, [&](V& v, std::int64_t value, const auto& bad) { v.sites[side] = site_from_file(value, bad); });
-      file_.has_footprints = file_.has_footprints && there && named;
+      file_.has_footprints = file_.has_footprints && there;
+      file_.has_sites = file_.has_sites && named;
     }
   }
 

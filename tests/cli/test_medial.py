@@ -54,9 +54,12 @@ def test_every_format_holds_the_axis_and_verifies(solids, axes, tmp_path, end):
     assert "certified" in out and "NOT" not in out
     certificate = run_json("verify", solids / "box.obj", output)["certificate"]
     assert certificate["certified"] and certificate["axis_betti"] == [1, 0, 0]
-    geometry = certificate.get("geometry", {})
-    assert ("radius_error" in geometry) == (end != "obj") == ("not checked" not in out)
-    assert ("footprint_error" in geometry) == (end in ("vtp", "ply", "npz"))
+    geometry = certificate["geometry"]
+    assert ("radius_error" in geometry) == ("balls" in certificate) == (end != "obj")
+    assert ("footprint_error" in geometry) == (end in ("vtp", "ply", "npz")) == ("not checked" not in out)
+    checked = ["topology", "positions", "edges"] + ["radii"] * (end != "obj")
+    checked += ["footprints", "angles", "sites"] * (end in ("vtp", "ply", "npz"))
+    assert certificate["checked"] == checked
 
 
 def test_angles_give_a_file_each_and_nested_axes(solids, tmp_path):
@@ -159,8 +162,14 @@ def test_summary_has_its_keys(solids, tmp_path):
     assert certificate["solid_betti"] == certificate["axis_betti"] == [1, 1, 0]
     geometry = certificate["geometry"]
     assert geometry["holds"] is True and geometry["vertices"] == axis["counts"]["vertices"]
-    for error in ("radius_error", "footprint_off_surface", "footprint_error"):
+    for error in ("radius_error", "footprint_off_surface", "footprint_error", "site_error"):
         assert 0 <= geometry[error] <= geometry["tolerance"] < 1e-5
+    assert geometry["outside"] == geometry["outside_by"] == geometry["not_finite"] == 0
+    assert 0 <= geometry["angle_error"] < 1e-4
+    edges = certificate["edges"]
+    assert edges["holds"] is True and edges["edges"] > geometry["vertices"] and edges["outside"] == 0
+    assert edges["pushed"] == 0 and edges["pushed_by"] == edges["outside_by"] == 0 and edges["tolerance"] > 0
+    assert certificate["bodies"] == {"count": 1, "wrong": 0}
     balls = certificate["balls"]
     assert 0 <= balls["mean_solid_to_balls"] <= balls["solid_to_balls"] < 0.3 and balls["sample_step"] > 0
 
@@ -260,6 +269,29 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(solids, tmp_pa
     assert body["topology_reached"] is False and body["solid_betti"] == [1, 6, 0] != body["voxel_betti"]
     assert names(tmp_path) == ["p.npz"]
     assert "the solid has 6 tunnels" in run("verify", solids / "plate.obj", tmp_path / "p.npz", status=3)[1]
+
+
+def test_drafts_touch_no_file_of_others(solids, tmp_path):
+    mine = tmp_path / ".b.draft.npz"
+    mine.write_bytes(b"mine")
+    run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 12)
+    assert mine.read_bytes() == b"mine" and names(tmp_path) == [".b.draft.npz", "b.npz"]
+    run("medial", solids / "plate.obj", "-o", tmp_path / "b.npz", *COARSE, status=3)
+    assert mine.read_bytes() == b"mine" and names(tmp_path) == [".b.draft.npz", "b.npz"]
+    (tmp_path / ".p.draft.ply").write_bytes((solids / "sphere.ply").read_bytes())
+    run("medial", tmp_path / ".p.draft.ply", "-o", tmp_path / "p.ply", "--resolution", 12)
+    assert (tmp_path / ".p.draft.ply").exists()
+
+
+def test_a_link_and_permissions_of_an_output_stay(solids, tmp_path):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "real" / "b.npz").write_bytes(b"old")
+    (tmp_path / "real" / "b.npz").chmod(0o600)
+    (tmp_path / "b.npz").symlink_to(tmp_path / "real" / "b.npz")
+    run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 12)
+    assert (tmp_path / "b.npz").is_symlink() and names(tmp_path / "real") == ["b.npz"]
+    assert (tmp_path / "real" / "b.npz").stat().st_mode & 0o777 == 0o600
+    assert len(np.load(tmp_path / "b.npz")["vertices"]) > 100
 
 
 def test_summary_of_what_is_not_certified_lists_no_output(solids, tmp_path):

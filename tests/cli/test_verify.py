@@ -55,7 +55,53 @@ def add_a_vertex(arrays):
         arrays[name] = np.concatenate([arrays[name], arrays[name][:1]])
 
 
+def change_metadata(arrays, **changes):
+    """Changes values of the metadata, and drops those that become None."""
+    pairs = json.loads(str(arrays["metadata"])) | changes
+    arrays["metadata"] = np.array(json.dumps({key: value for key, value in pairs.items() if value is not None}))
+
+
+def claim_winding(arrays):
+    change_metadata(arrays, solid_rule="winding", grid_size="1 1 1")
+
+
+def claim_nonsense(arrays):
+    change_metadata(arrays, solid_rule="nonsense")
+
+
+def drop_radii(arrays):
+    del arrays["radius"]
+
+
+def drop_footprints(arrays):
+    del arrays["footprints"]
+
+
+def drop_sites(arrays):
+    del arrays["sites"]
+
+
+def drop_angles(arrays):
+    del arrays["separation_angle"]
+
+
+def change_sites(arrays):
+    arrays["sites"][:] = 0
+
+
+def change_angles(arrays):
+    arrays["separation_angle"][:] = 7
+
+
 @pytest.mark.parametrize("change,reason", [
+    (claim_winding, "its solid is 'winding', and it is 'polyhedron'"),
+    (claim_nonsense, "its solid is 'nonsense', and it is 'polyhedron'"),
+    (drop_radii, "holds no radii"),
+    (drop_footprints, "holds no footprints"),
+    (drop_sites, "holds no sites"),
+    (drop_angles, "holds no separation angles"),
+    (change_sites, "off the site that is named for it"),
+    (change_angles, "a separation angle differs"),
     (move_a_vertex, "a radius differs from the exact distance"),
     (move_a_vertex_outside, "outside of the solid"),
     (scale_radii, "a radius differs from the exact distance"),
@@ -139,6 +185,38 @@ def test_files_of_before_that_tell_no_selection_are_read(solids, tmp_path):
     np.savez(tmp_path / "old.npz", **(arrays | {"metadata": np.array(json.dumps(metadata))}))
     run("verify", solids / "balls.npy", tmp_path / "old.npz", "--label", 2)
     run("verify", solids / "balls.npy", tmp_path / "old.npz", status=3)
+
+
+def test_files_of_other_programs_are_checked_as_far_as_they_go(solids, axes, tmp_path):
+    def foreign(*names):
+        def change(arrays):
+            for name in ("metadata", *names):
+                del arrays[name]
+        return falsified(axes, tmp_path, "box.npz", change)
+
+    out, _ = run("verify", solids / "box.obj", foreign("radius", "sites", "footprints", "separation_angle"))
+    assert "not in the file: radii, footprints, separation angles, sites" in out
+    certificate = run_json("verify", solids / "box.obj", foreign("sites"))["certificate"]
+    assert certificate["checked"] == ["topology", "positions", "edges", "radii", "footprints", "angles"]
+
+
+def test_positions_of_obj_files_are_verified(solids, axes, tmp_path):
+    (tmp_path / "out.obj").write_text("v 0.7 0 0\np 1\n")
+    assert "outside of the solid" in run("verify", solids / "box.obj", tmp_path / "out.obj", status=3)[1]
+    (tmp_path / "chords.obj").write_text("v 1 0 0\nv -0.5 0.866 0\nv -0.5 -0.866 0\nl 1 2\nl 2 3\nl 3 1\n")
+    assert "3 leave the solid between" in run("verify", solids / "torus.obj", tmp_path / "chords.obj", status=3)[1]
+
+
+def test_bodies_are_compared_one_by_one(solids, tmp_path):
+    run("make", "bodies", "-o", tmp_path / "two.ply", "--count", 2)
+    centres = run_json("info", tmp_path / "two.ply")
+    assert centres["betti"] == [2, 0, 0]
+    run("medial", tmp_path / "two.ply", "-o", tmp_path / "two.npz", "--resolution", 24)
+    vertices = np.load(tmp_path / "two.npz")["vertices"]
+    first = vertices[np.argsort(vertices[:, 0])[:2]]
+    (tmp_path / "one.obj").write_text("".join("v {} {} {}\n".format(*v) for v in first) + "p 1\np 2\n")
+    _, err = run("verify", tmp_path / "two.ply", tmp_path / "one.obj", status=3)
+    assert "body 1 of 2" in err and "body 2 of 2" in err
 
 
 def test_the_topology_of_files_without_geometry_is_verified(solids, axes, tmp_path):
@@ -229,6 +307,27 @@ def test_an_open_mesh_that_faces_inwards_is_told_of(solids, tmp_path):
     assert "no interior" in err and "its triangles face inwards: flip them" in err
 
 
+def test_a_mesh_that_crosses_itself_is_no_polyhedron_whatever_the_axis_says(solids, tmp_path):
+    lines = (solids / "box.obj").read_text().splitlines()
+    corners = [[float(x) + 0.3 for x in line.split()[1:]] for line in lines if line.startswith("v ")]
+    more = ["f " + " ".join(str(int(v) + len(corners)) for v in line.split()[1:]) for line in lines if line[:2] == "f "]
+    two = tmp_path / "two.obj"
+    two.write_text("\n".join(lines + ["v {} {} {}".format(*corner) for corner in corners] + more) + "\n")
+    (tmp_path / "axis.obj").write_text("v 0 0 0\nv 0.3 0.3 0.3\np 1\np 2\n")
+    (tmp_path / "axis.ma").write_text("2 0 0\nv 0 0 0 0.5\nv 0.3 0.3 0.3 0.5\n")
+    for end in ("obj", "ma"):
+        _, err = run("verify", two, tmp_path / f"axis.{end}", status=1)
+        assert "crosses itself" in err and "verify the .vtp, .ply or .npz" in err
+    run("medial", two, "-o", tmp_path / "t.npz", "--resolution", 16, warns=True)
+    run("verify", two, tmp_path / "t.npz")
+    false = falsified(tmp_path, tmp_path, "t.npz", lambda arrays: change_metadata(arrays, solid_rule="polyhedron"))
+    assert "it is 'winding'" in run("verify", two, false, status=3)[1]
+    for grid, reason in [({"grid_size": "8 8 8"}, "does not cover the mesh"),
+                         ({"grid_size": "9000 9000 9000"}, "of memory")]:
+        false = falsified(tmp_path, tmp_path, "t.npz", lambda arrays, grid=grid: change_metadata(arrays, **grid))
+        assert reason in run("verify", two, false, status=1)[1]
+
+
 def test_files_that_are_no_axis_are_refused(solids, axes, tmp_path):
     (tmp_path / "cut.npz").write_bytes((axes / "box.npz").read_bytes()[:5000])
     (tmp_path / "empty.vtp").write_bytes(b"")
@@ -258,3 +357,14 @@ def test_reconstruct_refuses_what_has_no_balls(solids, axes, tmp_path):
     assert "AXIS" in run("reconstruct", axes / "box.obj", "-o", tmp_path / "x.ply", status=2)[1]
     assert "--output" in run("reconstruct", axes / "box.vtp", "-o", tmp_path / "x.png", status=2)[1]
     assert names(tmp_path) == []
+
+
+def test_reconstruct_writes_nothing_where_its_input_is_of_no_use(solids, axes, tmp_path):
+    (tmp_path / "x.ply").write_bytes(b"old")
+    (tmp_path / "text.obj").write_text("hello\n")
+    for name in ("text.obj", "none.obj"):
+        assert name in run("reconstruct", axes / "box.vtp", "-o", tmp_path / "x.ply", "--input", tmp_path / name,
+                           "--resolution", 20, status=1)[1]
+    run("reconstruct", axes / "box.ma", "-o", tmp_path / "x.ply", "--input", solids / "open.obj", "--resolution", 20,
+        status=1)
+    assert (tmp_path / "x.ply").read_bytes() == b"old" and names(tmp_path) == ["text.obj", "x.ply"]

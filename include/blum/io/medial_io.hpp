@@ -39,9 +39,10 @@ struct MedialFile {
   MedialComplex complex;
   MedialMetadata metadata;
   bool has_radii = false;
-  bool has_footprints = false;  ///< and their sites
-  bool has_angles = false;      ///< of vertices, edges and triangles
-  bool has_labels = false;      ///< sheets and roles
+  bool has_footprints = false;
+  bool has_sites = false;
+  bool has_angles = false;  ///< of vertices, edges and triangles
+  bool has_labels = false;  ///< sheets and roles
 };
 
 enum class MedialFormat : std::uint8_t { vtp, ply, obj, ma, npz };

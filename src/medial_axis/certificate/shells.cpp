@@ -321,13 +321,14 @@ void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& sear
   }
 }
 
-BettiNumbers betti_numbers(const ClosedShells& shells) {
-  BettiNumbers betti{0, 0, 0};
+std::vector<BettiNumbers> betti_numbers(const ClosedShells& shells) {
+  std::vector<BettiNumbers> bodies(shells.bodies);
   for (const ClosedShell& shell : shells.shells) {
+    BettiNumbers& betti = bodies[shell.body];
     betti[1] += shell.genus;
     ++betti[shell.depth % 2 == 0 ? 0 : 2];
   }
-  return betti;
+  return bodies;
 }
 
 }  // namespace blum::verifier

@@ -25,6 +25,9 @@ struct ClosedShells {
   std::uint32_t bodies = 0;
 };
 
+/// @throws InvalidMesh where triangles cross, or touch in too many places to look at them all; Cancelled.
+void check_crossings(const MeshView& mesh, const Context& context);
+
 /// Cuts a mesh into its shells. Which of them lies in which is not yet known.
 /// @throws InvalidMesh unless every edge has two triangles that traverse it in opposite directions, and every vertex
 /// one fan of triangles; Cancelled.
@@ -35,7 +38,7 @@ struct ClosedShells {
 /// @throws InvalidMesh where a shell encloses nothing, or just what another one does; Cancelled.
 void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& search, const Context& context);
 
-/// Of the solid that nested shells bound.
-[[nodiscard]] BettiNumbers betti_numbers(const ClosedShells& shells);
+/// Of each body of the solid that nested shells bound.
+[[nodiscard]] std::vector<BettiNumbers> betti_numbers(const ClosedShells& shells);
 
 }  // namespace blum::verifier

@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/geometry/sites.hpp"
 #include "medial_axis/certificate/solid.hpp"
+#include "medial_axis/certificate/triangle_samples.hpp"
 #include "medial_axis/certificate/triangle_search.hpp"
 #include "medial_axis/certificate/voxel_betti.hpp"
 #include "medial_axis/certificate/voxel_surface.hpp"
@@ -11,19 +15,70 @@
 namespace blum::verifier {
 namespace {
 
-/// Voxels of an image: one body, whose surface are the faces.
+/// Voxels of an image, whose surface are the faces.
 class VoxelSolid : public Solid {
  public:
-  VoxelSolid(const VoxelSet& voxels, const GridSpec& grid, const Context& context) : faces_(voxels, grid, context) {}
+  VoxelSolid(const VoxelSet& voxels, const GridSpec& grid, const VoxelBodies& bodies, const Context& context)
+      : faces_(voxels, grid, context), bodies_(bodies) {}
 
   [[nodiscard]] double diagonal() const override { return faces_.box().diagonal(); }
 
+  [[nodiscard]] Box3 box(std::uint32_t body) const override {
+    const VoxelBodies::Extent& extent = bodies_.extent(body);
+    Box3 box;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Vec3d at;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double end = (corner >> a & 1U) != 0 ? static_cast<double>(extent.upper[a]) + 0.5
+                                                   : static_cast<double>(extent.lower[a]) - 0.5;
+        at[a] = end * faces_.grid().spacing[a];
+      }
+      box.extend(world(at));
+    }
+    return box;
+  }
+
+  [[nodiscard]] double diagonal(std::uint32_t body) const override {
+    const VoxelBodies::Extent& extent = bodies_.extent(body);
+    Vec3d size;
+    for (std::size_t a = 0; a < 3; ++a) {
+      size[a] = static_cast<double>(extent.upper[a] - extent.lower[a] + 1) * faces_.grid().spacing[a];
+    }
+    return length(size);
+  }
+
   [[nodiscard]] Place locate(const Vec3d& p) const override {
-    const double own = faces_.distance(p);
-    return {0, own, faces_.contains(p) ? 0 : own};
+    const VoxelSurface::Nearest nearest = faces_.nearest(p);
+    if (const auto voxel = faces_.voxel_at(p)) return {body_of(*voxel), nearest.distance, 0, nearest.distance};
+    return {body_beside(nearest.face), nearest.distance, nearest.distance, -nearest.distance};
   }
 
   [[nodiscard]] double distance(const Vec3d& p, std::uint32_t /*body*/) const override { return faces_.distance(p); }
+
+  [[nodiscard]] double depth(const Vec3d& p, std::uint32_t body) const override {
+    const auto voxel = faces_.voxel_at(p);
+    return voxel && body_of(*voxel) == body ? faces_.distance(p) : -faces_.distance(p);
+  }
+
+  [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t /*body*/) const override {
+    const GridSpec& grid = faces_.grid();
+    const Box3 face = faces_.rectangle(faces_.nearest(p).face);
+    return world(max(face.lower, min(face.upper, grid.direction.transposed_times(p - grid.origin))));
+  }
+
+  [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
+    const GridSpec& grid = faces_.grid();
+    if (!site.has_value() || site.value >= grid.node_count()) return HUGE_VAL;
+    const auto row = site.value / static_cast<std::uint32_t>(grid.size[0]);
+    const std::array<std::int64_t, 3> voxel{site.value % grid.size[0], row % grid.size[1], row / grid.size[1]};
+    const Vec3d q = grid.direction.transposed_times(p - grid.origin);
+    Box3 box;
+    for (std::size_t a = 0; a < 3; ++a) {
+      box.lower[a] = (static_cast<double>(voxel[a]) - 0.5) * grid.spacing[a];
+      box.upper[a] = (static_cast<double>(voxel[a]) + 0.5) * grid.spacing[a];
+    }
+    return std::sqrt(squared_distance(q, box));
+  }
 
   [[nodiscard]] Samples samples(double step, const Context& context) const override {
     std::size_t count = 0;
@@ -41,6 +96,17 @@ class VoxelSolid : public Solid {
   [[nodiscard]] const VoxelSurface& faces() const { return faces_; }
 
  private:
+  [[nodiscard]] std::uint32_t body_of(const std::array<std::int64_t, 3>& voxel) const {
+    return bodies_.of(voxel[0], voxel[1], voxel[2]);
+  }
+
+  /// The body that has a face.
+  [[nodiscard]] std::uint32_t body_beside(const VoxelSurface::Face& face) const {
+    std::array<std::int64_t, 3> voxel = face.voxel;
+    if (!faces_.voxels().contains(voxel[0], voxel[1], voxel[2])) --voxel[face.axis];
+    return body_of(voxel);
+  }
+
   [[nodiscard]] double face_diagonal() const {
     std::array<double, 3> sides{faces_.grid().spacing.x, faces_.grid().spacing.y, faces_.grid().spacing.z};
     std::sort(sides.begin(), sides.end());
@@ -92,38 +158,79 @@ class VoxelSolid : public Solid {
   }
 
   VoxelSurface faces_;
+  const VoxelBodies bodies_;
 };
 
 /// Voxels that stand for the inside of a mesh: distances are to the mesh, and a voxel more or less is no matter.
 class WindingSolid : public VoxelSolid {
  public:
-  WindingSolid(const VoxelSet& voxels, const GridSpec& grid, const MeshView& surface, const Context& context)
-      : VoxelSolid(voxels, grid, context), search_(surface, {}, context) {}
+  WindingSolid(const VoxelSet& voxels, const GridSpec& grid, const VoxelBodies& bodies, const MeshView& surface,
+               const Context& context)
+      : VoxelSolid(voxels, grid, bodies, context),
+        mesh_(surface),
+        search_(surface, {}, context),
+        sites_(surface, context) {}
 
   [[nodiscard]] double diagonal() const override { return search_.bounds().diagonal(); }
 
   [[nodiscard]] Place locate(const Vec3d& p) const override {
-    const double beyond = faces().contains(p) ? 0 : faces().distance(p) - length(faces().grid().spacing);
-    return {0, distance(p, 0), std::max(beyond, 0.0)};
+    Place place = VoxelSolid::locate(p);
+    place.distance = distance(p, place.body);
+    place.outside_by = std::max(place.outside_by - slack(), 0.0);
+    return place;
   }
 
   [[nodiscard]] double distance(const Vec3d& p, std::uint32_t /*body*/) const override {
     return search_.nearest(p).distance;
   }
 
+  [[nodiscard]] double slack() const override { return length(faces().grid().spacing); }
+
+  [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
+    return verifier::distance_from_site(mesh_, sites_, p, site);
+  }
+
+  [[nodiscard]] Samples samples(double step, const Context& context) const override {
+    return samples_of_triangles(mesh_, {}, step, context);
+  }
+
  private:
+  MeshView mesh_;
   TriangleSearch search_;
+  SiteTable sites_;
 };
+
+/// @throws InvalidGrid unless the voxels of a grid hold all triangles.
+void check_covers(const GridSpec& grid, const MeshView& surface) {
+  for (const Triangle& triangle : surface.triangles) {
+    for (const std::uint32_t v : triangle) {
+      const Vec3d q = grid.direction.transposed_times(surface.vertices[v] - grid.origin);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double at = q[a] / grid.spacing[a];
+        if (at >= -0.5 && at <= static_cast<double>(grid.size[a]) - 0.5) continue;
+        throw InvalidGrid("the grid of the voxels does not cover the mesh: vertex " + std::to_string(v) +
+                          " lies beyond it");
+      }
+    }
+  }
+}
 
 }  // namespace
 
 KnownSolid solid_of_voxels(const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
                            const Context& context) {
-  const BettiNumbers betti = voxel_betti_numbers(voxels, context);
-  if (surface == nullptr) return {std::make_unique<VoxelSolid>(voxels, grid, context), betti};
-  validate(*surface);
-  if (surface->triangles.empty()) throw InvalidMesh("the mesh has no triangles: distances to it are not known");
-  return {std::make_unique<WindingSolid>(voxels, grid, *surface, context), betti};
+  if (surface != nullptr) {
+    if (surface->triangles.empty()) throw InvalidMesh("the mesh has no triangles: distances to it are not known");
+    check_covers(grid, *surface);
+  }
+  const VoxelBodies bodies(voxels, context);
+  KnownSolid known{nullptr, voxel_betti_numbers(voxels, bodies, context)};
+  if (surface == nullptr) {
+    known.solid = std::make_unique<VoxelSolid>(voxels, grid, bodies, context);
+  } else {
+    known.solid = std::make_unique<WindingSolid>(voxels, grid, bodies, *surface, context);
+  }
+  return known;
 }
 
 }  // namespace blum::verifier

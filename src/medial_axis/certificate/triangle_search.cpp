@@ -9,11 +9,11 @@
 namespace blum::verifier {
 namespace {
 
-double squared_distance_to_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
+Vec3d closest_of_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   const Vec3d along = b - a;
   const double squared = squared_length(along);
   const double t = squared > 0 ? std::clamp(dot(p - a, along) / squared, 0.0, 1.0) : 0.0;
-  return squared_length(p - (a + along * t));
+  return a + along * t;
 }
 
 enum class Meeting : std::uint8_t { none, crossing, doubtful };
@@ -59,13 +59,18 @@ Meeting meet(const Line& line, const std::array<Vec3d, 3>& corners, double& at) 
   return Meeting::crossing;
 }
 
-/// Whether a line may meet a box, with room for rounding.
-bool may_meet(const Line& line, const Box3& box, double slack) {
-  double begin = -HUGE_VAL;
-  double end = HUGE_VAL;
+/// Whether a stretch of a line may meet a box, with room for rounding.
+bool may_meet(const Line& line, const Box3& box, double begin, double end, double slack) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double a = (box.lower[axis] - line.point[axis]) / line.along[axis];
-    const double b = (box.upper[axis] - line.point[axis]) / line.along[axis];
+    const double low = box.lower[axis] - line.point[axis];
+    const double high = box.upper[axis] - line.point[axis];
+    if (std::abs(line.along[axis]) < 1e-6) {  // beside it or not: rounding is no matter
+      const double room = std::abs(end) < HUGE_VAL ? slack + 1e-6 * end : HUGE_VAL;
+      if (low > room || high < -room) return false;
+      continue;
+    }
+    const double a = low / line.along[axis];
+    const double b = high / line.along[axis];
     begin = std::max(begin, std::min(a, b));
     end = std::min(end, std::max(a, b));
   }
@@ -86,18 +91,49 @@ Line line_through(const Vec3d& point, std::uint32_t attempt) {
   return {point, along, across, cross(along, across)};
 }
 
-double squared_distance(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
+Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
   const auto& [a, b, c] = corners;
-  double best = std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
-                          squared_distance_to_segment(p, c, a)});
+  Vec3d best = a;
+  const auto look_at = [&](const Vec3d& other) {
+    if (squared_length(p - other) < squared_length(p - best)) best = other;
+  };
+  look_at(closest_of_segment(p, a, b));
+  look_at(closest_of_segment(p, b, c));
+  look_at(closest_of_segment(p, c, a));
   // The foot on the plane, if it is in the triangle: whatever the rounding, a mean of the corners is a point of it.
   const Vec3d normal = cross(b - a, c - a);
   const double squared = squared_length(normal);
   if (!(squared > 0)) return best;
   const double to_b = dot(cross(p - a, c - a), normal) / squared;
   const double to_c = dot(cross(b - a, p - a), normal) / squared;
-  if (to_b < 0 || to_c < 0 || to_b + to_c > 1) return best;
-  return std::min(best, squared_length(p - (a + (b - a) * to_b + (c - a) * to_c)));
+  if (to_b >= 0 && to_c >= 0 && to_b + to_c <= 1) look_at(a + (b - a) * to_b + (c - a) * to_c);
+  return best;
+}
+
+Line line_between(const Vec3d& from, const Vec3d& to) {
+  const Vec3d along = (to - from) / length(to - from);
+  std::size_t least = 0;
+  for (std::size_t a = 1; a < 3; ++a) {
+    if (std::abs(along[a]) < std::abs(along[least])) least = a;
+  }
+  Vec3d other;
+  other[least] = 1;
+  const Vec3d across = cross(along, other) / length(cross(along, other));
+  return {from, along, across, cross(along, across)};
+}
+
+double squared_distance(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
+  return squared_length(p - closest_point(p, corners));
+}
+
+double distance_from_site(const MeshView& mesh, const SiteTable& sites, const Vec3d& p, SiteId site) {
+  if (!site.has_value() || site.value >= sites.size()) return HUGE_VAL;
+  const std::array<std::int32_t, 3> vertices = sites.vertices(site);
+  std::array<Vec3d, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corners[k] = mesh.vertices[static_cast<std::size_t>(vertices[k] < 0 ? vertices[0] : vertices[k])];
+  }
+  return std::sqrt(squared_distance(p, corners));
 }
 
 TriangleSearch::TriangleSearch(const MeshView& mesh, std::span<const std::uint32_t> groups, const Context& context) {
@@ -176,12 +212,13 @@ TriangleSearch::Nearest TriangleSearch::nearest(const Vec3d& p, std::uint32_t gr
   return {std::sqrt(best), triangle};
 }
 
-bool TriangleSearch::crossings(const Line& line, std::vector<Crossing>& found) const {
+bool TriangleSearch::crossings(const Line& line, std::vector<Crossing>& found, double reach) const {
   found.clear();
   bool is_certain = true;
   const double slack = 1e-9 * (bounds_.diagonal() + length(line.point - bounds_.center()));
+  const double begin = reach < HUGE_VAL ? -slack : -HUGE_VAL;
   tree_.search(
-      1, [&](std::uint32_t n) { return may_meet(line, tree_.node(n).box, slack) ? 0.0 : 2.0; },
+      1, [&](std::uint32_t n) { return may_meet(line, tree_.node(n).box, begin, reach, slack) ? 0.0 : 2.0; },
       [&](std::uint32_t place) {
         double at = 0;
         const Meeting meeting = meet(line, corners_[place], at);

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "medial_axis/certificate/box_tree.hpp"
 
@@ -23,6 +25,8 @@ struct Line {
 };
 /// One of a fixed sequence of directions, none of them nearly along a plane of two axes.
 [[nodiscard]] Line line_through(const Vec3d& point, std::uint32_t attempt);
+/// From one point to another one.
+[[nodiscard]] Line line_between(const Vec3d& from, const Vec3d& to);
 
 /// Where a line meets a triangle.
 struct Crossing {
@@ -46,8 +50,9 @@ class TriangleSearch {
   /// The closest triangle of a group, or for no_group of all. Exact up to rounding. HUGE_VAL where there is none.
   [[nodiscard]] Nearest nearest(const Vec3d& p, std::uint32_t group = no_group) const;
 
-  /// Finds all crossings of a line; false if it comes too close to an edge to tell.
-  [[nodiscard]] bool crossings(const Line& line, std::vector<Crossing>& found) const;
+  /// Finds all crossings of a line, those with triangles near its first `reach` at least; false if it comes too close
+  /// to an edge to tell.
+  [[nodiscard]] bool crossings(const Line& line, std::vector<Crossing>& found, double reach = HUGE_VAL) const;
 
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
 
@@ -72,6 +77,16 @@ class TriangleSearch {
   Box3 bounds_;
 };
 
+/// Distance of a point from a vertex, an edge or a triangle of a mesh; HUGE_VAL where there is no such site.
+[[nodiscard]] double distance_from_site(const MeshView& mesh, const SiteTable& sites, const Vec3d& p, SiteId site);
+
+[[nodiscard]] inline std::array<Vec3d, 3> corners_of(const MeshView& mesh, std::uint32_t triangle) {
+  const Triangle& t = mesh.triangles[triangle];
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+/// The point of a triangle, which may be a segment or a point, that is closest to a point.
+[[nodiscard]] Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners);
 /// Squared distance of a point from a triangle, which may be a segment or a point.
 [[nodiscard]] double squared_distance(const Vec3d& p, const std::array<Vec3d, 3>& corners);
 

@@ -84,28 +84,35 @@ Box3 VoxelSurface::rectangle(const Face& face) const {
   return box;
 }
 
-double VoxelSurface::distance(const Vec3d& p) const {
+VoxelSurface::Nearest VoxelSurface::nearest(const Vec3d& p) const {
   const Vec3d q = local(p);
+  Nearest found;
   double best = HUGE_VAL;
   tree_.search(
       best, [&](std::uint32_t n) { return squared_distance(q, tree_.node(n).box); },
       [&](std::uint32_t brick) {
         if (!(squared_distance(q, boxes_[brick]) < best)) return best;
-        for_each_face(brick, [&](const Face& face) { best = std::min(best, squared_distance(q, rectangle(face))); });
+        for_each_face(brick, [&](const Face& face) {
+          const double squared = squared_distance(q, rectangle(face));
+          if (!(squared < best)) return;
+          best = squared;
+          found.face = face;
+        });
         return best;
       });
-  return std::sqrt(best);
+  found.distance = std::sqrt(best);
+  return found;
 }
 
-bool VoxelSurface::contains(const Vec3d& p) const {
+std::optional<std::array<std::int64_t, 3>> VoxelSurface::voxel_at(const Vec3d& p) const {
   const Vec3d q = local(p);
   std::array<std::int64_t, 3> voxel{};
   for (std::size_t a = 0; a < 3; ++a) {
     const double at = std::floor(q[a] / grid_.spacing[a] + 0.5);
-    if (!(at >= 0) || !(at < static_cast<double>(voxels_.size()[a]))) return false;
+    if (!(at >= 0) || !(at < static_cast<double>(voxels_.size()[a]))) return std::nullopt;
     voxel[a] = static_cast<std::int64_t>(at);
   }
-  return voxels_.contains(voxel[0], voxel[1], voxel[2]);
+  return voxels_.contains(voxel[0], voxel[1], voxel[2]) ? std::optional(voxel) : std::nullopt;
 }
 
 }  // namespace blum::verifier

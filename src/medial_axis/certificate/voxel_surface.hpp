@@ -3,7 +3,9 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -25,10 +27,16 @@ class VoxelSurface {
   /// The voxels must outlive it. @throws Cancelled.
   VoxelSurface(const VoxelSet& voxels, const GridSpec& grid, const Context& context);
 
+  struct Nearest {
+    double distance = HUGE_VAL;
+    Face face;
+  };
   /// Exact distance from a point of the world to the closest face; HUGE_VAL where there is none.
-  [[nodiscard]] double distance(const Vec3d& p) const;
-  /// Whether a point lies in a voxel of the set; where voxels meet, in one of them.
-  [[nodiscard]] bool contains(const Vec3d& p) const;
+  [[nodiscard]] Nearest nearest(const Vec3d& p) const;
+  [[nodiscard]] double distance(const Vec3d& p) const { return nearest(p).distance; }
+  /// The voxel of the set that a point lies in; where voxels meet, one of them; nullopt outside.
+  [[nodiscard]] std::optional<std::array<std::int64_t, 3>> voxel_at(const Vec3d& p) const;
+  [[nodiscard]] bool contains(const Vec3d& p) const { return voxel_at(p).has_value(); }
 
   /// The number of bricks of 4 x 4 x 4 voxels that have faces.
   [[nodiscard]] std::size_t brick_count() const { return bricks_.size(); }
@@ -39,6 +47,7 @@ class VoxelSurface {
   /// The rectangle of a face: along the axes of the grid, from its first node.
   [[nodiscard]] Box3 rectangle(const Face& face) const;
   [[nodiscard]] const GridSpec& grid() const { return grid_; }
+  [[nodiscard]] const VoxelSet& voxels() const { return voxels_; }
   /// The box around the faces, along the axes of the grid.
   [[nodiscard]] const Box3& box() const { return box_; }
 

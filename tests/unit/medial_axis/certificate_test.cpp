@@ -112,7 +112,13 @@ TEST(Certificate, SeveralBodiesAndVoids) {
   Certificate c = certify(axis, mesh);
   EXPECT_EQ(c.solid, (BettiNumbers{3, 0, 1}));
   EXPECT_TRUE(c.geometry.holds);
-  EXPECT_EQ(complaints(c), "the solid has 1 void, the axis 0\n");
+  EXPECT_EQ(complaints(c), "body 2 of 3 (around 2.5 1.5 1.5) has 1 void, the axis in it 0\n");
+  // As many in all, but not in the same bodies.
+  axis.vertices[2] = axis.vertices[0];
+  EXPECT_TRUE(
+      complaints(certify(axis, mesh))
+          .starts_with("body 1 of 3 (around 0.5 0.5 0.5) has 1 component, the axis in it 2\nbody 2 of 3 (around 2.5"))
+      << complaints(certify(axis, mesh));
   // In the void is outside.
   axis.vertices[2] = vertex_at(bvh, {1.1, 1.5, 1.5});
   c = certify(axis, mesh);
@@ -120,6 +126,88 @@ TEST(Certificate, SeveralBodiesAndVoids) {
   EXPECT_NEAR(c.geometry.outside_by, 0.1, 1e-12);
   EXPECT_NE(complaints(c).find("of the 3 vertices of the axis 1 lie outside"), std::string::npos) << complaints(c);
   EXPECT_NEAR(c.balls.balls_beyond_solid, 0.2, 1e-12);
+}
+
+TEST(Certificate, EdgesMayCutCornersButCrossNoGap) {
+  // A U, and an axis from one prong to the other one: over the floor, past the corners between, or across the gap.
+  const auto axis_of = [](const MeshView& mesh, const std::vector<Vec3d>& way) {
+    const Bvh bvh(mesh, SiteTable(mesh));
+    MedialComplex axis;
+    for (const Vec3d& p : way) axis.vertices.push_back(vertex_at(bvh, p));
+    for (std::uint32_t v = 1; v < way.size(); ++v) axis.edges.push_back({{v - 1, v}});
+    return axis;
+  };
+  for (const double gap : {0.5, 1e-4}) {
+    const std::vector<Point2> outline{{-1 - gap, 0}, {1 + gap, 0}, {1 + gap, 3}, {gap, 3},
+                                      {gap, 1},      {-gap, 1},    {-gap, 3},    {-1 - gap, 3}};
+    const TriangleMesh u = make_extrusion(outline, {});
+    const Vec3d middle = bounds(u).center();
+    const auto at = [&](double x, double y) { return Vec3d{x, y, middle.z}; };
+    Certificate c = certify(axis_of(u, {at(-0.5, 2), at(-0.5, 0.5), at(0.5, 0.5), at(0.5, 2)}), u);
+    EXPECT_TRUE(c.holds()) << complaints(c);
+    EXPECT_EQ(c.edges.edges, 3U);
+    EXPECT_EQ(c.edges.pushed, 0U);
+    c = certify(axis_of(u, {at(-0.5, 2), at(0.5, 2)}), u);
+    EXPECT_EQ(c.edges.outside, 1U) << gap;
+    EXPECT_NEAR(c.edges.outside_by, gap, gap / 2);
+    EXPECT_EQ(complaints(c).substr(0, 38), "of the 1 edges of the axis 1 leave the");
+    // Past the corner by 0.02.
+    const double past = 0.02 * std::sqrt(2.0);
+    c = certify(axis_of(u, {at(-gap - 0.1 + past, 1.1), at(-gap + 0.1 + past, 0.9)}), u);
+    EXPECT_EQ(c.edges.pushed, gap > 0.1 ? 1U : 0U) << complaints(c);
+    EXPECT_EQ(c.holds(), gap > 0.1) << complaints(c);
+  }
+}
+
+TEST(Certificate, ToleratesWhatIsSmallForTheBody) {
+  // Far apart: what is little for the scene is not for a body.
+  TriangleMesh mesh = make_sphere({.radius = 1e-3});
+  append(mesh, make_sphere({.radius = 1e-3}), {5000, 0, 0});
+  const Bvh bvh(mesh, SiteTable(mesh));
+  MedialComplex axis;
+  axis.vertices = {vertex_at(bvh, {}), vertex_at(bvh, {5000, 0, 0})};
+  EXPECT_TRUE(certify(axis, mesh).holds());
+  axis.vertices[1].radius *= 1.001;
+  EXPECT_FALSE(certify(axis, mesh).holds());
+  axis.vertices[1] = vertex_at(bvh, {5000.0011, 0, 0});
+  EXPECT_EQ(certify(axis, mesh).geometry.outside, 1U);
+}
+
+TEST(Certificate, MeshesThatCrossThemselvesAreRefused) {
+  TriangleMesh mesh = make_sphere({});
+  append(mesh, make_sphere({}), {1, 0.1, 0.05});
+  EXPECT_EQ(solid_rule(mesh).rule, SolidRule::winding);
+  EXPECT_EQ(solid_rule(mesh).reason, "the mesh crosses itself");
+  EXPECT_THROW((void)certify(ball_axis(mesh, {}), mesh), InvalidMesh);
+  EXPECT_EQ(solid_rule(make_void_cube({})).rule, SolidRule::polyhedron);
+  TriangleMesh open = make_box({});
+  open.triangles.pop_back();
+  EXPECT_EQ(solid_rule(open).rule, SolidRule::winding);
+  // Two bodies may touch, a body not itself.
+  mesh = box_between({0, 0, 0}, {1, 1, 1});
+  append(mesh, box_between({1, 0, 0}, {2, 1, 1}));
+  EXPECT_EQ(solid_rule(mesh).rule, SolidRule::polyhedron);
+  mesh = box_between({0, 0, 0}, {3, 3, 3});
+  append(mesh, box_between({0, 1, 1}, {1, 2, 2}, true));
+  EXPECT_EQ(solid_rule(mesh).rule, SolidRule::winding);
+}
+
+TEST(Certificate, PositionsAreCheckedWithoutRadii) {
+  const TriangleMesh torus = make_torus({});
+  MedialComplex axis = torus_axis(torus);
+  for (MedialVertex& vertex : axis.vertices) vertex = {.position = vertex.position, .footprints = {}, .sites = {}};
+  EXPECT_TRUE(certify(axis, torus, {.radii = false}).holds());
+  for (MedialVertex& vertex : axis.vertices) vertex.position.x += 5;
+  const Certificate c = certify(axis, torus, {.radii = false});
+  EXPECT_EQ(c.geometry.outside, 96U);
+  EXPECT_EQ(c.edges.outside, 96U);
+  EXPECT_FALSE(c.checked.footprints || c.checked.balls);
+}
+
+TEST(Certificate, CoarseNumbersEndTheSampling) {
+  // Sides of 1 where numbers are 1/8 apart: no piece is as short as the step.
+  const TriangleMesh box = test::moved(make_box({}), 1, {1e15, 1e15, 1e15});
+  EXPECT_GT(certify(ball_axis(box, {1e15, 1e15, 1e15}), box).balls.step, 0);
 }
 
 /// A torus' axis that was tampered with.
@@ -130,7 +218,7 @@ class FalsifiedAxis : public testing::Test {
 
   void expect(const std::vector<std::string>& words) {
     for (const int threads : {1, 2, 7}) {
-      const Certificate c = certify(axis, torus, AxisGeometry::footprints, {.threads = threads});
+      const Certificate c = certify(axis, torus, {}, {.threads = threads});
       EXPECT_FALSE(c.holds());
       ASSERT_EQ(c.mismatches.size(), words.size()) << complaints(c);
       for (std::size_t k = 0; k < words.size(); ++k) {
@@ -179,7 +267,7 @@ TEST_F(FalsifiedAxis, SmallerBall) {
   // Everything agrees with itself, but there is no surface where the footprints are.
   for (Vec3d& foot : axis.vertices[40].footprints) foot = (foot + axis.vertices[40].position) * 0.5;
   axis.vertices[40].radius *= 0.5;
-  expect({"a radius differs", "a footprint lies off the surface by"});
+  expect({"a radius differs", "a footprint lies off the surface by", "off the site that is named for it"});
 }
 
 TEST_F(FalsifiedAxis, FootprintOffTheSurface) {
@@ -189,17 +277,41 @@ TEST_F(FalsifiedAxis, FootprintOffTheSurface) {
   Vec3d other = cross(off, vertex.position);
   other = other * (vertex.radius / length(other)) + off * 0.2;
   vertex.footprints[1] = vertex.position + other * (vertex.radius / length(other));
-  expect({"a footprint lies off the surface by"});
+  expect({"a footprint lies off the surface by", "off the site that is named for it", "a separation angle differs"});
 }
 
 TEST_F(FalsifiedAxis, FootprintElsewhereOnTheSurface) {
   axis.vertices[3].footprints[0] = axis.vertices[50].footprints[0];
-  expect({"the distance to a footprint differs"});
+  expect({"the distance to a footprint differs", "off the site that is named for it", "a separation angle differs"});
+}
+
+TEST_F(FalsifiedAxis, OtherSites) {
+  axis.vertices[3].sites[1] = axis.vertices[50].sites[0];
+  expect({"a footprint lies off the site that is named for it by"});
+  axis.vertices[3].sites[1] = SiteId(1U << 30U);
+  expect({"a footprint is said to lie on a site that the solid does not have"});
+  axis.vertices[3].sites[1] = SiteId::none();
+  EXPECT_TRUE(certify(axis, torus).holds());
+}
+
+TEST_F(FalsifiedAxis, OtherAngle) {
+  axis.vertices[3].separation_angle = 0.01;
+  expect({"a separation angle differs from the angle between the footprints by 0.01 degrees"});
+}
+
+TEST_F(FalsifiedAxis, ChordsThroughTheHole) {
+  // One tunnel, exact vertices, and nothing of it runs through the solid.
+  axis.vertices = {axis.vertices[0], axis.vertices[32], axis.vertices[64]};
+  axis.edges = {{{0, 1}}, {{1, 2}}, {{2, 0}}};
+  expect({"of the 3 edges of the axis 3 leave the solid between their ends, by up to 0.1"});
+  axis.edges.clear();
+  axis.triangles = {{{0, 1, 2}}};
+  EXPECT_EQ(certify(axis, torus).edges.outside, 3U) << "edges of triangles, too";
 }
 
 TEST_F(FalsifiedAxis, VertexOutside) {
   axis.vertices[10] = vertex_at(Bvh(torus, SiteTable(torus)), axis.vertices[10].position * 1.5);
-  expect({"of the 96 vertices of the axis 1 lie outside"});
+  expect({"of the 96 vertices of the axis 1 lie outside", "of the 96 edges of the axis 2 leave the solid"});
 }
 
 TEST_F(FalsifiedAxis, NoNumbers) {
@@ -233,7 +345,7 @@ TEST_F(FalsifiedAxis, NoVertexOfThatNumber) {
 
 TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
   for (MedialVertex& vertex : axis.vertices) vertex.radius = 0;
-  const Certificate c = certify(axis, torus, AxisGeometry::none);
+  const Certificate c = certify(axis, torus, {.positions = false});
   EXPECT_TRUE(c.holds()) << complaints(c);
   EXPECT_EQ(c.geometry.vertices, 0U);
   EXPECT_FALSE(c.geometry.holds);
@@ -241,11 +353,11 @@ TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
 
 TEST_F(FalsifiedAxis, RadiiWithoutFootprintsAreJudgedAlone) {
   for (MedialVertex& vertex : axis.vertices) vertex.footprints = {};
-  const Certificate c = certify(axis, torus, AxisGeometry::radii);
+  const Certificate c = certify(axis, torus, {.footprints = false});
   EXPECT_TRUE(c.holds()) << complaints(c);
   EXPECT_EQ(c.geometry.vertices, axis.vertices.size());
   axis.vertices[5].radius *= 1.01;
-  EXPECT_FALSE(certify(axis, torus, AxisGeometry::radii).holds());
+  EXPECT_FALSE(certify(axis, torus, {.footprints = false}).holds());
 }
 
 TEST(Certificate, SolidsOfAnySize) {
@@ -274,9 +386,9 @@ TEST(Certificate, SolidsOfAnySize) {
 TEST(Certificate, TheSameForAnyNumberOfThreads) {
   const TriangleMesh torus = make_torus({});
   const MedialComplex axis = torus_axis(torus, 300);
-  const Certificate one = certify(axis, torus, AxisGeometry::footprints, {.threads = 1});
+  const Certificate one = certify(axis, torus, {}, {.threads = 1});
   for (const int threads : {2, 7}) {
-    const Certificate other = certify(axis, torus, AxisGeometry::footprints, {.threads = threads});
+    const Certificate other = certify(axis, torus, {}, {.threads = threads});
     EXPECT_EQ(one.balls.mean_solid_to_balls, other.balls.mean_solid_to_balls);
     EXPECT_EQ(one.balls.solid_to_balls, other.balls.solid_to_balls);
     EXPECT_EQ(one.balls.balls_to_surface, other.balls.balls_to_surface);
@@ -289,14 +401,12 @@ TEST(Certificate, CancelStopsIt) {
   const TriangleMesh torus = make_torus({});
   std::stop_source source;
   source.request_stop();
-  EXPECT_THROW((void)certify(torus_axis(torus), torus, AxisGeometry::footprints, {.cancel = source.get_token()}),
-               Cancelled);
+  EXPECT_THROW((void)certify(torus_axis(torus), torus, {}, {.cancel = source.get_token()}), Cancelled);
   const GridSpec grid{{}, {1, 1, 1}, {3, 3, 3}, {}};
   VoxelSet voxels(grid.size);
   EXPECT_THROW((void)certify({}, voxels, grid, nullptr), InvalidOption) << "no solid";
   voxels.insert(1, 1, 1);
-  EXPECT_THROW((void)certify({}, voxels, grid, nullptr, AxisGeometry::footprints, {.cancel = source.get_token()}),
-               Cancelled);
+  EXPECT_THROW((void)certify({}, voxels, grid, nullptr, {}, {.cancel = source.get_token()}), Cancelled);
 }
 
 // ---- Voxels ----
@@ -344,12 +454,44 @@ TEST(VoxelCertificate, HoldsForTheMiddleOfARing) {
   const VoxelRing ring;
   const Certificate c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
   EXPECT_TRUE(c.holds()) << complaints(c);
+  EXPECT_EQ(c.edges.edges, 24U);
   EXPECT_EQ(c.against, SolidRule::voxels);
   EXPECT_EQ(c.solid, (BettiNumbers{1, 1, 0}));
   EXPECT_NEAR(c.geometry.tolerance, 1e-6 * std::sqrt(81 + 81 + 4.5 * 4.5), 1e-9);
   EXPECT_GT(c.balls.solid_to_balls, 0.5) << "corners";
   EXPECT_LT(c.balls.solid_to_balls, std::sqrt(1.5 * 1.5 + 1.5 * 1.5 + 2.25 * 2.25) - 1.5);
   EXPECT_NEAR(c.balls.balls_beyond_solid, 0, 1e-12);
+}
+
+TEST(VoxelCertificate, BodyByBody) {
+  VoxelSet voxels({9, 3, 3});
+  for (const std::int64_t i : {1, 2, 3, 6, 7}) voxels.insert(i, 1, 1);
+  const GridSpec grid{{}, {1, 1, 1}, voxels.size(), {}};
+  MedialComplex axis;
+  const auto add = [&](double x) {
+    const Vec3d p{x, 1, 1};
+    axis.vertices.push_back({p, 0.5, {p + Vec3d{0, 0.5, 0}, p + Vec3d{0, 0.5, 0}}, {}});
+  };
+  add(2);
+  add(6.5);
+  EXPECT_TRUE(certify(axis, voxels, grid, nullptr).holds()) << complaints(certify(axis, voxels, grid, nullptr));
+  // The site is the voxel beyond the face, or none.
+  axis.vertices[0].sites = {SiteId(2 + 9 * (2 + 3 * 1)), SiteId::none()};
+  EXPECT_TRUE(certify(axis, voxels, grid, nullptr).holds());
+  axis.vertices[0].sites[1] = SiteId(2);
+  EXPECT_FALSE(certify(axis, voxels, grid, nullptr).holds());
+  axis.vertices.clear();
+  add(1);
+  add(3);
+  EXPECT_EQ(complaints(certify(axis, voxels, grid, nullptr)),
+            "body 1 of 2 (around 2 1 1) has 1 component, the axis in it 2\n"
+            "body 2 of 2 (around 6.5 1 1) has 1 component, the axis in it 0\n");
+  axis.vertices.clear();
+  add(3);
+  add(6);
+  axis.edges = {{{0, 1}}};
+  const Certificate c = certify(axis, voxels, grid, nullptr);
+  EXPECT_EQ(c.edges.outside, 1U) << complaints(c);
 }
 
 TEST(VoxelCertificate, FindsWhatIsFalse) {
@@ -409,6 +551,11 @@ TEST(VoxelCertificate, VoxelsOfAnOpenMeshAreMeasuredAgainstTheMesh) {
   TriangleMesh points = make_points({});
   const MeshView no_surface = points;
   EXPECT_THROW((void)certify(axis, voxels, grid, &no_surface), InvalidMesh);
+  // A single voxel is the solid of nothing.
+  VoxelSet one({1, 1, 1});
+  one.insert(0, 0, 0);
+  axis = ball_axis(mesh, {2, 2, 2});
+  EXPECT_THROW((void)certify(axis, one, {{2, 2, 2}, {1, 1, 1}, {1, 1, 1}, {}}, &view), InvalidGrid);
 }
 
 TEST(CertificateSlow, ALargeAxis) {
@@ -424,7 +571,7 @@ TEST(CertificateSlow, ALargeAxis) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     if (fraction == 0 || fraction == 1) std::cout << phase << " " << fraction << ": " << seconds.count() << " s\n";
   };
-  const Certificate c = certify(axis, ball, AxisGeometry::footprints, {.threads = 1, .progress = log});
+  const Certificate c = certify(axis, ball, {}, {.threads = 1, .progress = log});
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   std::cout << axis.vertices.size() << " vertices, " << ball.triangles.size() << " triangles: " << seconds.count()
             << " s, step " << c.balls.step << "\n";

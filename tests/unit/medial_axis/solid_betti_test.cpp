@@ -23,7 +23,7 @@ using test::box_between;
 
 /// The Betti numbers that a certificate finds for a solid.
 BettiNumbers solid_of(const MeshView& mesh) {
-  return certify({}, mesh, AxisGeometry::none).solid;
+  return certify({}, mesh, {.positions = false}).solid;
 }
 
 /// Turns some of the shells of a mesh around.
@@ -136,7 +136,7 @@ TEST(SolidBetti, RealMeshes) {
 /// The message with which a mesh is refused.
 std::string refusal(const MeshView& mesh) {
   try {
-    (void)certify({}, mesh, AxisGeometry::none);
+    (void)certify({}, mesh, {.positions = false});
   } catch (const InvalidMesh& error) {
     return error.what();
   }
@@ -149,7 +149,7 @@ TEST(SolidBetti, DoesNotDependOnHowTrianglesFace) {
   for (Triangle& t : torus.triangles) {
     if (random.uniform() < 0.5) std::swap(t[1], t[2]);
   }
-  EXPECT_EQ(certify({}, torus, AxisGeometry::none).solid, (BettiNumbers{1, 1, 0}));
+  EXPECT_EQ(certify({}, torus, {.positions = false}).solid, (BettiNumbers{1, 1, 0}));
 }
 
 TEST(SolidBetti, RefusesWhatBoundsNoSolid) {
