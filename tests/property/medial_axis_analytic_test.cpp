@@ -239,7 +239,7 @@ void expect_known_axes(const Case& known_case, int resolution) {
   const double step = 0.35 * std::max({size.x, size.y, size.z}) / resolution;
   const Known known = known_case.make(step);
   const MedialAxis axis = medial_axis(known.mesh, {.resolution = resolution});
-  test::expect_certified(axis, {1, 0, 0});
+  test::expect_certified(axis, known.mesh, {1, 0, 0});
   test::expect_exact_balls(axis.extract(0), known.mesh);
   for (const double theta : {40.0, 60.0, 120.0}) expect_known_axis(known, axis, theta);
 }

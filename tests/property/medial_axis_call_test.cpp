@@ -54,10 +54,10 @@ TEST(MedialCall, AnglesOutOfRangeAreRefused) {
 }
 
 TEST(MedialCall, TheLeastAndTheMostResolutionWork) {
-  test::expect_certified(medial_axis(make_box({}), {.resolution = 8, .max_resolution = 8}), {1, 0, 0});
+  test::expect_certified(medial_axis(make_box({}), {.resolution = 8, .max_resolution = 8}), make_box({}), {1, 0, 0});
   const TriangleMesh rod = make_box({.size = {1, 0.02, 0.02}});
-  test::expect_certified(medial_axis(rod, {.resolution = 800, .max_resolution = 800}), {1, 0, 0});
-  test::expect_certified(medial_axis(make_box({}), {.spacing = 10}), {1, 0, 0});
+  test::expect_certified(medial_axis(rod, {.resolution = 800, .max_resolution = 800}), rod, {1, 0, 0});
+  test::expect_certified(medial_axis(make_box({}), {.spacing = 10}), make_box({}), {1, 0, 0});
 }
 
 /// Fractions that were told, by phase, in the order that phases began.

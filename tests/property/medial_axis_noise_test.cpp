@@ -27,7 +27,7 @@ void expect_stable(const TriangleMesh& clean, double amplitude, int resolution) 
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const TriangleMesh noisy = make_noisy(clean, amplitude, seed);
     const MedialAxis axis = medial_axis(noisy, {.resolution = resolution});
-    test::expect_certified(axis, {1, 0, 0});
+    test::expect_certified(axis, noisy, {1, 0, 0});
     const MedialComplex complex = axis.extract(theta);
     test::expect_exact_balls(complex, noisy);
     const double bound = 2 * axis.report().bodies[0].spacing;

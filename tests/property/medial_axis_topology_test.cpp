@@ -42,7 +42,7 @@ void expect_shape(const Shape& shape, const MedialAxisOptions& options) {
   const TriangleMesh mesh = make_shape(shape.name, shape.parameters);
   ASSERT_TRUE(betti);
   ASSERT_EQ(topology(mesh).betti, betti);
-  test::expect_certified(medial_axis(mesh, options), *betti);
+  test::expect_certified(medial_axis(mesh, options), mesh, *betti);
 }
 
 class MedialTopologyOfShapes : public testing::TestWithParam<Shape> {};
@@ -85,7 +85,7 @@ void expect_real_mesh(const RealMesh& real, const MedialAxisOptions& options) {
   if (!file) GTEST_SKIP() << test::no_data(name);
   const TriangleMesh mesh = read_mesh(*file);
   ASSERT_EQ(topology(mesh).betti, real.betti);
-  test::expect_certified(medial_axis(mesh, options), real.betti);
+  test::expect_certified(medial_axis(mesh, options), mesh, real.betti);
 }
 
 TEST_P(MedialTopologyOfRealMeshes, IsTheSolidsAtEveryAngleOnCoarseVoxels) {
@@ -111,9 +111,9 @@ std::vector<Mat3> rotations() {
 void expect_wedge(int resolution) {
   const TriangleMesh wedge = make_shape("wedge", {{"angle", 10}});
   const MedialAxisOptions options{.resolution = resolution};
-  test::expect_certified(medial_axis(wedge, options), {1, 0, 0});
+  test::expect_certified(medial_axis(wedge, options), wedge, {1, 0, 0});
   for (const Mat3& turn : rotations()) {
-    test::expect_certified(medial_axis(test::turned(wedge, turn), options), {1, 0, 0});
+    test::expect_certified(medial_axis(test::turned(wedge, turn), options), test::turned(wedge, turn), {1, 0, 0});
   }
 }
 
@@ -131,7 +131,7 @@ TEST_P(MedialTopologyOfMovedShapes, DoesNotDependOnHowTheShapeLies) {
   const auto betti = topology(mesh).betti;
   ASSERT_TRUE(betti);
   for (const Mat3& turn : rotations()) {
-    test::expect_certified(medial_axis(test::turned(mesh, turn), {.resolution = 48}), *betti);
+    test::expect_certified(medial_axis(test::turned(mesh, turn), {.resolution = 48}), test::turned(mesh, turn), *betti);
   }
 }
 
@@ -146,7 +146,8 @@ TEST_P(MedialTopologyOfMovedShapes, DoesNotDependOnWhereTheVoxelsLie) {
     const Vec3d offset = Vec3d{part, -part, 3 + part} * voxel;
     for (const double more : {0.99, 1.01, 1.02}) {
       SCOPED_TRACE(testing::Message() << "offset " << part << ", spacing " << more);
-      test::expect_certified(medial_axis(test::moved(mesh, 1, offset), {.spacing = more * voxel}), *betti);
+      test::expect_certified(medial_axis(test::moved(mesh, 1, offset), {.spacing = more * voxel}),
+                             test::moved(mesh, 1, offset), *betti);
     }
   }
 }

@@ -44,13 +44,23 @@ inline void expect_betti(const MedialAxis& axis, const BettiNumbers& betti) {
   for (const double theta : angles) EXPECT_EQ(betti_of(axis.extract(theta)), betti) << "theta " << theta;
 }
 
-/// A mesh that was taken as a polyhedron, and whose axis has its topology.
-inline void expect_certified(const MedialAxis& axis, const BettiNumbers& betti) {
+/// A certificate holds for an axis as it is given out: all of it at the smallest angle, of whose parts the others are
+/// made, and body by body at the largest one.
+inline void expect_certificates(const MedialAxis& axis, const MeshView& mesh, double least_theta = 0) {
+  for (const double theta : {least_theta, angles.back()}) {
+    const Certificate certificate = certify(axis.extract(theta), mesh, {.balls = false});
+    for (const std::string& mismatch : certificate.mismatches) ADD_FAILURE() << "theta " << theta << ": " << mismatch;
+  }
+}
+
+/// A mesh that was taken as a polyhedron, and whose axis is certified.
+inline void expect_certified(const MedialAxis& axis, const MeshView& mesh, const BettiNumbers& betti) {
   EXPECT_EQ(axis.report().rule, SolidRule::polyhedron) << axis.report().reason;
   EXPECT_TRUE(axis.report().is_right);
   EXPECT_EQ(axis.report().solid, betti);
   EXPECT_EQ(axis.report().voxels, betti);
   expect_betti(axis, betti);
+  expect_certificates(axis, mesh);
 }
 
 /// A complex as a shape that distances can be measured to; vertices keep their order.

@@ -83,8 +83,8 @@ struct BallUnionCheck {
   /// of more than 15,600 balls, over those of 7,800 to 15,600 of them.
   double balls_to_surface = 0;
   /// Each point of the surface is at most this far from a sample, mesh units: the median edge of the axis (1/256
-  /// of the diagonal, for an axis without edges), or more where that would take over a million samples. Samples of
-  /// voxels are one or four points of each face; above a million faces, one for each direction of faces in 4 x 4 x 4
+  /// of the diagonal, for an axis without edges), or more where that would take over 250,000 samples. Samples of
+  /// voxels are one or four points of each face; above 250,000 faces, one for each direction of faces in 4 x 4 x 4
   /// voxels.
   double step = 0;
 };
@@ -140,7 +140,8 @@ struct MeshSolidRule {
                                   const CertificateOptions& options = {}, const Context& context = {});
 
 /// The same against voxels whose closed union is the solid: of an image, with distances to their faces; or of a mesh
-/// that is no polyhedron (SolidRule::winding), with distances to that mesh.
+/// that is no polyhedron (SolidRule::winding), with distances to that mesh. The voxels are taken as given: who makes
+/// them as the construction does shares its errors.
 /// @param grid  of the voxels' centres.  @param surface  the mesh; nullptr for an image.
 /// @throws InvalidGrid (also for a grid that does not cover the mesh), InvalidMesh, InvalidOption (also for a grid of
 /// another size than the voxels, and where there are no voxels), Cancelled.
