@@ -22,6 +22,8 @@ constexpr double reach_around_axis = 1.5;
 /// How far beyond the closest distance a footprint may be to count, in voxels, at a point that all were fitted to.
 constexpr double fitted_tolerance = 0.1;
 constexpr double fitted_reach = 0.5;  ///< of a point from the middle of its cell, in voxels along each axis
+/// The same for wires between the voxels: balls in these are found less surely.
+constexpr double wire_reach = 0.7;
 constexpr int bisector_steps = 4;
 constexpr double opposite_step = 0.3;    ///< voxels
 constexpr double opposite_enough = 175;  ///< degrees: no need to look for a footprint that is further apart
@@ -188,8 +190,7 @@ class Measure {
   [[nodiscard]] double between(const Governor& a, const Governor& b) const {
     if (a.foot.element == b.foot.element) return 0;
     // Between two voxels beyond the surface the solid may still pass: a thin part.
-    const bool is_thin = !a.is_inside && !b.is_inside;
-    if (is_thin && dot(a.direction, b.direction) > 0) return 0;
+    if (!a.is_inside && !b.is_inside && dot(a.direction, b.direction) > 0) return 0;
     double low = 0;  // where a's wall is the closer one
     double high = 1;
     double t = 0.5;
@@ -208,9 +209,7 @@ class Measure {
       const double next = slope > 0 ? t - difference / slope : -1;
       t = next > low && next < high ? next : 0.5 * (low + high);
     }
-    const bool is_behind_a = is_inside(a, x);
-    const bool is_behind_b = is_inside(b, x);
-    if (is_thin ? !is_behind_a || !is_behind_b : !is_behind_a && !is_behind_b) return 0;
+    if (!is_inside(a, x) || !is_inside(b, x)) return 0;
     return above_floor(x, p.point, q.point);
   }
 
@@ -247,7 +246,7 @@ class Measure {
     double largest = 0;
     for (const int rank : {3, 2}) {
       const std::optional<Vec3d> x = points.of_rank(rank);
-      if (!x || !is_near(*x, middle)) continue;
+      if (!x || !is_near(*x, middle, inside == 0 ? wire_reach : fitted_reach)) continue;
       largest = std::max(largest, angle_of({governors.data(), count}, *x));
     }
     if (largest > 0 || inside != 0) return largest;
@@ -255,7 +254,7 @@ class Measure {
     const SurfacePoint nearest = surface_.nearest(middle, governors[0]->foot);
     if (nearest.distance > step_ || surface_.is_inside(middle, nearest)) return 0;
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, nearest, middle, step_);
-    if (!ball || !is_near(ball->centre, middle)) return 0;
+    if (!ball || !is_near(ball->centre, middle, wire_reach)) return 0;
     return above_floor(ball->centre, ball->nearest.point, ball->other.point);
   }
 
@@ -313,11 +312,11 @@ class Measure {
     return !thick_.contain(voxel);
   }
 
-  [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& middle) const {
+  [[nodiscard]] bool is_near(const Vec3d& x, const Vec3d& middle, double reach) const {
     const GridSpec& grid = governors_.solid().grid;
     const Vec3d moved = grid.direction.transposed_times(x - middle);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (std::abs(moved[axis]) > fitted_reach * grid.spacing[axis]) return false;
+      if (std::abs(moved[axis]) > reach * grid.spacing[axis]) return false;
     }
     return true;
   }
