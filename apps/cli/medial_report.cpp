@@ -175,8 +175,9 @@ void add_certificate(TextTable& table, const Certificate& c) {
   const std::string axis = "the axis has " + betti_text(c.axis);
   if (c.holds()) {
     table.add("certified",
-              "against " + std::string(against_text(c.against)) + ": " + axis + ", as the solid" +
-                  (c.bodies.size() > 1 ? ", in each of its " + count_text(c.bodies.size()) + " bodies" : ""));
+              "against " + std::string(against_text(c.against)) + ": " + axis + ", as many as the solid" +
+                  (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : "") +
+                  " (numbers are compared, not homotopy classes)");
   } else {
     table.add("NOT certified", axis + "; the solid " + betti_text(c.solid));  // why is told by the error
   }

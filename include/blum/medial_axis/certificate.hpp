@@ -66,7 +66,7 @@ struct EdgeCheck {
   std::size_t outside = 0;  ///< those that leave that body otherwise
   double outside_by = 0;    ///< how far the furthest of these is out, at least, mesh units
   Vec3d where;              ///< and there, mesh units
-  double tolerance = 0;     ///< as GeometryCheck::tolerance, and the diagonal of a voxel for SolidRule::winding
+  double tolerance = 0;     ///< ten times GeometryCheck::tolerance; the diagonal of a voxel more for SolidRule::winding
   bool holds = false;       ///< none is outside
 };
 

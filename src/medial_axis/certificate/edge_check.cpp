@@ -27,6 +27,8 @@ std::vector<Edge> edges_of(const MedialComplex& axis, const Context& context) {
 }
 
 constexpr double corner_of_diagonal = 1.0 / 64;
+/// Of what vertices are allowed: an edge along the surface is asked about as often as this goes into it.
+constexpr double more_for_edges = 10;
 
 /// A point, and how deep it lies in a body.
 struct Stop {
@@ -61,9 +63,7 @@ class BodyEdges {
       Stop middle{p.at + (q.at - p.at) * ((begin + end) / (2 * gap)), 0};
       if (middle.at == p.at || middle.at == q.at) continue;
       const Stop& known = std::abs(p.depth) > std::abs(q.depth) ? p : q;
-      middle.depth = std::abs(known.depth) > allowed_ / 16
-                         ? solid_.depth_beside(middle.at, body_, known.at, known.depth > 0)
-                         : solid_.depth(middle.at, body_);
+      middle.depth = solid_.depth_beside(middle.at, body_, known.at, known.depth, allowed / 2);
       if (middle.depth < worst.depth) worst = middle;
       stack.emplace_back(p, middle);
       stack.emplace_back(middle, q);
@@ -74,12 +74,13 @@ class BodyEdges {
   /// Whether a segment that leaves the body can be pushed into it: the point that is furthest out goes through the
   /// closest point of the surface, and both parts are asked again. Past an edge of the solid that soon succeeds; across
   /// a gap it never does.
-  [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, int times) const {
+  /// @param moves  how many points may be moved yet.
+  [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, int& moves) const {
     const Stop worst = furthest_out(a, b, allowed_);
     if (-worst.depth <= allowed_) return true;
-    if (times == 0) return false;
+    if (moves-- <= 0) return false;
     const Stop moved = pushed_in(worst);
-    return can_be_pushed_in(a, moved, times - 1) && can_be_pushed_in(moved, b, times - 1);
+    return can_be_pushed_in(a, moved, moves) && can_be_pushed_in(moved, b, moves);
   }
 
  private:
@@ -117,12 +118,12 @@ struct Findings {
 
 /// Looks at one edge.
 Findings look_at(const Stop& a, const Stop& b, const BodyEdges& body, bool may_push) {
-  constexpr int most_times = 30;
+  int moves = 64;
   Findings found;
   const Stop worst = body.furthest_out(a, b, body.allowed());
   if (-worst.depth <= body.allowed()) return found;
   may_push = may_push && -worst.depth <= body.corner() && std::min(a.depth, b.depth) >= -body.allowed();
-  if (may_push && body.can_be_pushed_in(a, b, most_times)) {
+  if (may_push && body.can_be_pushed_in(a, b, moves)) {
     found.check.pushed = 1;
     found.check.pushed_by = -worst.depth;
     return found;
@@ -150,7 +151,7 @@ EdgeCheck check_edges(const MedialComplex& axis, const KnownSolid& solid, const 
   const std::vector<Edge> edges = edges_of(axis, context);
   std::vector<double> allowed = tolerances(solid);
   const double slack = solid.solid->slack();
-  for (double& amount : allowed) amount += slack;
+  for (double& amount : allowed) amount = more_for_edges * amount + slack;
   std::vector<Findings> found(edges.size() / grain + 1);
   parallel_for(context, edges.size(), grain, "checking edges", [&](const WorkRange& range) {
     for (std::size_t e = range.begin; e < range.end; ++e) {

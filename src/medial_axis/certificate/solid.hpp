@@ -52,9 +52,10 @@ class Solid {
   [[nodiscard]] virtual double distance(const Vec3d& p, std::uint32_t body) const = 0;
   /// How deep a point lies in a body; below 0 outside of it. No two points differ by more than they are apart.
   [[nodiscard]] virtual double depth(const Vec3d& p, std::uint32_t body) const = 0;
-  /// The same, where it is known whether another point near by lies in the body, and not on its surface: costs less.
+  /// The same, but below 0 wherever the boundary is closer than `near`; and where `other_depth` is above that, or below
+  /// its negative, that of another point near by is used, which costs less.
   [[nodiscard]] virtual double depth_beside(const Vec3d& p, std::uint32_t body, const Vec3d& /*other*/,
-                                            bool /*other_is_inside*/) const {
+                                            double /*other_depth*/, double /*near*/) const {
     return depth(p, body);
   }
   /// The closest point of the surface of a body.

@@ -55,9 +55,12 @@ class MeshSolid : public Solid {
     return shell && shells_.shells[*shell].body == body && shells_.shells[*shell].depth % 2 == 0 ? own : -own;
   }
 
-  [[nodiscard]] double depth_beside(const Vec3d& p, std::uint32_t body, const Vec3d& other,
-                                    bool other_is_inside) const override {
+  [[nodiscard]] double depth_beside(const Vec3d& p, std::uint32_t body, const Vec3d& other, double other_depth,
+                                    double near) const override {
     const double own = distance(p, body);
+    if (own < near) return -own;
+    if (std::abs(other_depth) <= near) return depth(p, body);
+    const bool other_is_inside = other_depth > 0;
     const double reach = length(other - p);
     const double nothing = 1e-13 * diagonal();
     if (reach < own) return other_is_inside ? own : -own;
