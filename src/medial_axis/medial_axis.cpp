@@ -131,7 +131,7 @@ class MedialAxisBuilder {
                                   exact_text(voxelized.report.spacing));
     }
     const SiteTable sites(body.mesh, context_);
-    const MeshSurface surface(body.mesh, sites, context_);
+    const MeshSurface surface(body.mesh, sites, report().rule == SolidRule::polyhedron, context_);
     timer.lap("surface");
     AxisPiece& piece = add_piece(voxelized, surface, NoiseFloor{});
     for (MedialVertex& vertex : piece.vertices) {

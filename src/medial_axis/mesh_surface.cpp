@@ -35,9 +35,10 @@ Footprint closest_on_triangle(const Vec3d& query, const Vec3d& a, const Vec3d& b
 
 }  // namespace
 
-MeshSurface::MeshSurface(const MeshView& mesh, const SiteTable& sites, const Context& context)
+MeshSurface::MeshSurface(const MeshView& mesh, const SiteTable& sites, bool bounds_solid, const Context& context)
     : mesh_(mesh),
       sites_(sites),
+      bounds_solid_(bounds_solid),
       bvh_(mesh, sites, context),
       normals_(mesh, sites),
       first_(mesh.vertices.size() + 1, 0),

@@ -16,13 +16,15 @@ namespace blum {
 /// Elements are triangles. The mesh and the table must outlive it.
 class MeshSurface final : public Surface {
  public:
-  MeshSurface(const MeshView& mesh, const SiteTable& sites, const Context& context);
+  /// @param bounds_solid  whether the mesh is a closed surface that faces outwards; else no point is known to be
+  /// inside.
+  MeshSurface(const MeshView& mesh, const SiteTable& sites, bool bounds_solid, const Context& context);
 
   [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;
   [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
   [[nodiscard]] SurfacePoint nearest(const Vec3d& query, const Footprint& near) const override;
   [[nodiscard]] bool is_inside(const Vec3d& query, const SurfacePoint& nearest) const override {
-    return nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
+    return bounds_solid_ && nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
   }
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
 
@@ -31,6 +33,7 @@ class MeshSurface final : public Surface {
 
   MeshView mesh_;
   const SiteTable& sites_;
+  bool bounds_solid_;
   Bvh bvh_;
   Pseudonormals normals_;
   std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_

@@ -11,6 +11,7 @@
 #include "support/data.hpp"
 #include "support/medial_check.hpp"
 #include "support/mesh_places.hpp"
+#include "support/voxel_sets.hpp"
 
 namespace blum {
 namespace {
@@ -59,7 +60,15 @@ void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& option
   EXPECT_EQ(axis.report().solid, axis.report().voxels);
   EXPECT_GE(axis.report().voxels[0], 1);
   test::expect_betti(axis, axis.report().voxels);
-  test::expect_exact_balls(axis.extract(60), mesh);
+  const MedialComplex complex = axis.extract(60);
+  test::expect_exact_balls(complex, mesh);
+  const Field field = distance_field(mesh, axis.report().grid, {.sign = SignMode::winding});
+  VoxelSet voxels(field.grid.size);
+  test::for_each_voxel(field.grid.size, 1, [&](auto i, auto j, auto k) {
+    if (field.distance[field.grid.index(i, j, k)] < 0) voxels.insert(i, j, k);
+  });
+  const Certificate certificate = certify(complex, voxels, field.grid, &mesh, {.balls = false});
+  for (const std::string& mismatch : certificate.mismatches) ADD_FAILURE() << mismatch;
 }
 
 TEST(MedialHostileMesh, OpenSurfacesAreSolidWhereTheyWindMostly) {

@@ -17,7 +17,7 @@ namespace {
 
 /// A mesh with its sites and its surface.
 struct Sample {
-  explicit Sample(TriangleMesh its_mesh) : mesh(std::move(its_mesh)), brute(mesh), surface(mesh, sites, {}) {}
+  explicit Sample(TriangleMesh its_mesh) : mesh(std::move(its_mesh)), brute(mesh), surface(mesh, sites, true, {}) {}
 
   [[nodiscard]] double distance_to(std::uint32_t triangle, const Vec3d& query) const {
     const Triangle& t = mesh.triangles[triangle];
@@ -52,6 +52,23 @@ TEST(MeshSurface, NearestIsTheNearestOfAllTriangles) {
       ASSERT_LE(s.brute.site_distance(found.site, found.point), tolerance * scale);
       ASSERT_LE(s.distance_to(found.element, found.point), tolerance * scale);
     }
+  }
+}
+
+TEST(MeshSurface, InsideIsWhatAClosedMeshBounds) {
+  for (const TriangleMesh& mesh : {make_torus({}), make_shape("gear", {{"teeth", 40}}), make_wedge({.angle = 2})}) {
+    const Sample s(mesh);
+    const MeshSurface open(s.mesh, s.sites, false, {});
+    std::size_t inside = 0;
+    for (const Vec3d& query : test::places_around(s.mesh, 400, 4)) {
+      const SurfacePoint nearest = s.surface.nearest(query, s.footprint_on(0, query));
+      if (nearest.distance < 1e-9) continue;
+      const bool expected = reference::winding_number(s.mesh, query) > 0.5;
+      ASSERT_EQ(s.surface.is_inside(query, nearest), expected);
+      ASSERT_FALSE(open.is_inside(query, nearest)) << "nothing is known";
+      inside += expected ? 1 : 0;
+    }
+    EXPECT_GT(inside, 0U);
   }
 }
 

@@ -27,7 +27,7 @@ struct Sample {
   Sample(const TriangleMesh& input, double spacing)
       : mesh(split_into_bodies(input, SiteTable(input), {}).bodies.at(0)),
         sites(mesh.mesh),
-        surface(mesh.mesh, sites, {}),
+        surface(mesh.mesh, sites, true, {}),
         solid(voxelize_body(mesh, spacing, {}).solid),
         piece(make_axis_piece(GovernorField(solid, surface), {}, phases, {})) {}
 
