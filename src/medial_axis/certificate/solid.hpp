@@ -60,6 +60,8 @@ class Solid {
   }
   /// The closest point of the surface of a body.
   [[nodiscard]] virtual Vec3d closest_point(const Vec3d& p, std::uint32_t body) const = 0;
+  /// The diagonal of a voxel, where the solid is made of voxels; else 0.
+  [[nodiscard]] virtual double grain() const { return 0; }
   /// How far outside of the solid is not outside: 0, unless only voxels tell inside from outside.
   [[nodiscard]] virtual double slack() const { return 0; }
   /// Distance of a point from a site; HUGE_VAL where there is no such site.

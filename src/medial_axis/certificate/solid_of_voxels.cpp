@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "blum/core/error.hpp"
 #include "blum/geometry/sites.hpp"
@@ -18,8 +19,8 @@ namespace {
 /// Voxels of an image, whose surface are the faces.
 class VoxelSolid : public Solid {
  public:
-  VoxelSolid(const VoxelSet& voxels, const GridSpec& grid, const VoxelBodies& bodies, const Context& context)
-      : faces_(voxels, grid, context), bodies_(bodies) {}
+  VoxelSolid(const VoxelSet& voxels, const GridSpec& grid, VoxelBodies bodies, const Context& context)
+      : faces_(voxels, grid, context), bodies_(std::move(bodies)) {}
 
   [[nodiscard]] double diagonal() const override { return faces_.box().diagonal(); }
 
@@ -46,6 +47,8 @@ class VoxelSolid : public Solid {
     }
     return length(size);
   }
+
+  [[nodiscard]] double grain() const override { return length(faces_.grid().spacing); }
 
   [[nodiscard]] Place locate(const Vec3d& p) const override {
     const VoxelSurface::Nearest nearest = faces_.nearest(p);
@@ -158,7 +161,7 @@ class VoxelSolid : public Solid {
   }
 
   VoxelSurface faces_;
-  const VoxelBodies bodies_;
+  VoxelBodies bodies_;
 };
 
 /// Voxels that stand for the inside of a mesh: distances are to the mesh, and a voxel more or less is no matter.
