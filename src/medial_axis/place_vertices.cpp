@@ -26,6 +26,27 @@ constexpr double least_radius = 1e-6;  ///< voxels
 /// Squared difference of the directions to two footprints from which they count as two walls: 6 degrees.
 constexpr double two_walls = 0.01;
 
+/// Whether voxels around a corner, as bits, hang together through faces there, also those around each edge at it.
+bool are_joined_by_faces(unsigned voxels) {
+  for (const unsigned axis : {1U, 2U, 4U}) {
+    const unsigned u = axis == 1 ? 2 : 1;
+    const unsigned v = 7U ^ axis ^ u;
+    for (const unsigned side : {0U, axis}) {
+      const auto has = [&](unsigned voxel) { return (voxels >> (side | voxel) & 1U) != 0; };
+      const bool is_diagonal = has(0) == has(u | v) && has(u) == has(v) && has(0) != has(u);
+      if (is_diagonal) return false;
+    }
+  }
+  unsigned reached = voxels & (0U - voxels);
+  for (unsigned before = 0; before != reached;) {
+    before = reached;
+    for (unsigned v = 0; v < 8; ++v) {
+      if ((reached >> v & 1U) != 0) reached |= voxels & (1U << (v ^ 1U) | 1U << (v ^ 2U) | 1U << (v ^ 4U));
+    }
+  }
+  return reached == voxels;
+}
+
 /// A point that is as far from one footprint as from another, and not further from these than from others known.
 struct Placed {
   Vec3d x;
@@ -42,6 +63,7 @@ class Placer {
     const GridSpec& grid = governors_.solid().grid;
     const GovernorsAround around = governors_.around(node);
     const Vec3d corner = grid.position(node[0], node[1], node[2]) - grid.direction * (grid.spacing * 0.5);
+    if (const auto joint = joint_at(around, corner)) return *joint;
     // Seams and axes first: a point that all footprints agree on; else the nearest sheet.
     std::array<Vec3d, 8> feet;
     for (std::size_t v = 0; v < 8; ++v) feet[v] = around[v].foot.point;
@@ -63,6 +85,18 @@ class Placer {
       if (std::abs(moved[axis]) > most_moved * grid.spacing[axis]) return false;
     }
     return true;
+  }
+
+  /// The corner itself where it is what joins voxels of an image: elsewhere edges would leave the solid there.
+  [[nodiscard]] std::optional<MedialVertex> joint_at(const GovernorsAround& around, const Vec3d& corner) const {
+    unsigned inside = 0;
+    for (unsigned v = 0; v < 8; ++v) inside |= around[v].is_inside ? 1U << v : 0U;
+    if (are_joined_by_faces(inside)) return std::nullopt;
+    const SurfacePoint nearest = surface_.nearest(corner, around[0].foot);
+    if (nearest.distance > 1e-9 * governors_.voxel()) return std::nullopt;
+    MedialVertex vertex = one_wall(nearest.point, nearest);
+    vertex.radius = 0;
+    return vertex;
   }
 
   /// Newton steps to the nearest point between the closest wall and another one.

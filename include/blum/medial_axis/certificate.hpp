@@ -57,9 +57,8 @@ struct GeometryCheck {
 /// along each, so that nothing is left out. An edge may cut a corner, by 1/64 of the diagonal of the
 /// body at most, if it can be pushed into the solid: its point that is furthest out goes through the closest point of
 /// the surface, then those of both parts, until all lies in the solid. That fails for an edge across a gap, however
-/// narrow. Voxels are joined through corners, too, where nothing can be pushed: against those of an image, an edge of
-/// at most two of a voxel's diagonals may be out by half of one, so that a gap of one voxel may be overlooked. Against
-/// the voxels of a mesh the diagonal of a voxel is allowed, and nothing is pushed.
+/// narrow. Against the voxels of an image a corner may be cut by half the diagonal of a voxel where that is more, and
+/// 1/64 of it is not out. Against the voxels of a mesh the diagonal of a voxel is allowed, and nothing is pushed.
 struct EdgeCheck {
   std::size_t edges = 0;    ///< looked at, each once
   std::size_t pushed = 0;   ///< of them, those that cut a corner of the body that their ends lie in

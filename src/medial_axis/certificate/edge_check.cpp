@@ -43,17 +43,11 @@ class BodyEdges {
       : solid_(solid),
         body_(body),
         allowed_(allowed),
-        corner_(corner_of_diagonal * solid.diagonal(body)),
-        grain_(solid.grain()) {}
+        corner_(std::max(corner_of_diagonal * solid.diagonal(body), solid.grain() / 2)) {}
 
   [[nodiscard]] double allowed() const { return allowed_; }
   /// How far out an edge may be that can be pushed in.
   [[nodiscard]] double corner() const { return corner_; }
-
-  /// Voxels are joined through corners and edges, where nothing can be pushed: a short edge may miss these.
-  [[nodiscard]] bool misses_a_joint(const Stop& a, const Stop& b, const Stop& worst) const {
-    return -worst.depth <= grain_ / 2 && length(b.at - a.at) <= 2 * grain_;
-  }
 
   /// The point of a segment that is furthest out, as far as that is more than is allowed. A ball as large as a point is
   /// deep lies in the body, so that only what is between such balls is left to ask about.
@@ -107,7 +101,6 @@ class BodyEdges {
   std::uint32_t body_;
   double allowed_;
   double corner_;
-  double grain_;
 };
 
 /// What is found of some of the edges.
@@ -132,9 +125,8 @@ Findings look_at(const Stop& a, const Stop& b, const BodyEdges& body, bool may_p
   Findings found;
   const Stop worst = body.furthest_out(a, b, body.allowed());
   if (-worst.depth <= body.allowed()) return found;
-  const bool are_ends_in = std::min(a.depth, b.depth) >= -body.allowed();
-  may_push = may_push && are_ends_in && -worst.depth <= body.corner();
-  if ((are_ends_in && body.misses_a_joint(a, b, worst)) || (may_push && body.can_be_pushed_in(a, b, moves))) {
+  may_push = may_push && -worst.depth <= body.corner() && std::min(a.depth, b.depth) >= -body.allowed();
+  if (may_push && body.can_be_pushed_in(a, b, moves)) {
     found.check.pushed = 1;
     found.check.pushed_by = -worst.depth;
     return found;
