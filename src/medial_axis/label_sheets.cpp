@@ -110,7 +110,9 @@ class SheetJoiner {
 
   /// Pieces of a few triangles go to the neighbour that they are flattest with.
   void join_small(std::vector<std::pair<double, Hinge>>& sharp) {
-    std::stable_sort(sharp.begin(), sharp.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::sort(sharp.begin(), sharp.end(), [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first < b.first : a.second.triangles < b.second.triangles;
+    });
     std::vector<std::size_t> size(complex_.triangles.size(), 0);
     for (std::uint32_t t = 0; t < size.size(); ++t) ++size[sheets_.find(t)];
     for (const auto& [cosine, hinge] : sharp) {
