@@ -144,7 +144,8 @@ class VertexRow {
       std::uint64_t any = 0;
       std::uint64_t all = ~std::uint64_t{0};
       for (std::size_t r = 0; r < 4; ++r) {
-        const std::uint64_t word = word_of(voxels_, j_ - 1 + (r % 2), k_ - 1 + (r / 2), w);
+        const auto row = static_cast<std::int64_t>(r);
+        const std::uint64_t word = word_of(voxels_, j_ - 1 + row % 2, k_ - 1 + row / 2, w);
         bits[2 * r + 1] = word;
         bits[2 * r] = word << 1U | carry[r];
         carry[r] = word >> 63U;
