@@ -35,12 +35,12 @@ Json or_null(const std::string& text) {
 std::string made_text(const MedialMetadata& m) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-  if (m.theta) add("theta " + number_text(*m.theta));
-  if (m.lambda) add("lambda " + number_text(*m.lambda));
-  if (m.spacing) add("voxels of side " + number_text(*m.spacing));
+  if (m.theta) add("theta " + rounded_text(*m.theta));
+  if (m.lambda) add("lambda " + rounded_text(*m.lambda));
+  if (m.spacing) add("voxels of side " + rounded_text(*m.spacing));
   if (m.label) add("label " + std::to_string(*m.label));
-  if (m.threshold) add("threshold " + number_text(*m.threshold));
-  if (m.weld) add(*m.weld > 0 ? "welded within " + number_text(*m.weld) : "welded");
+  if (m.threshold) add("threshold " + rounded_text(*m.threshold));
+  if (m.weld) add(*m.weld > 0 ? "welded within " + rounded_text(*m.weld) : "welded");
   return text.empty() ? "the file does not tell" : text;
 }
 
@@ -89,7 +89,7 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
   table.add("file", path.string() + ": medial axis");
   table.add("axis", counts_text(counts, file.has_labels));
   table.add("topology", betti_text(betti));
-  table.add("radii", has_radii ? number_text(least) + " to " + number_text(most) : "none in the file");
+  table.add("radii", has_radii ? rounded_text(least) + " to " + rounded_text(most) : "none in the file");
   table.add("footprints", file.has_footprints ? "two at each vertex" : "none in the file");
   if (!box.is_empty()) table.add("bounds", vector_text(box.lower) + " to " + vector_text(box.upper));
   table.add("of", source_text(m));

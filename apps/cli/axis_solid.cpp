@@ -6,11 +6,11 @@ namespace {
 /// The selection as options; empty for all that is not 0.
 std::string selection_text(const std::optional<std::int64_t>& label, const std::optional<double>& threshold) {
   if (label) return "--label " + std::to_string(*label);
-  return threshold ? "--threshold " + number_text(*threshold) : "";
+  return threshold ? "--threshold " + rounded_text(*threshold) : "";
 }
 
 std::string weld_text(double weld) {
-  return weld == 0 ? "--weld" : "--weld " + number_text(weld);
+  return weld == 0 ? "--weld" : "--weld " + rounded_text(weld);
 }
 
 std::string contradiction(const std::filesystem::path& axis, const std::string& recorded, const std::string& given) {

@@ -144,7 +144,7 @@ std::string sites_text(const FieldStatistics& s, SiteIds ids) {
   const auto part = [&](std::size_t kind, const char* name) {
     const double share =
         s.all.nodes == 0 ? 0 : 100.0 * static_cast<double>(s.kinds[kind].nodes) / static_cast<double>(s.all.nodes);
-    return count_text(s.kinds[kind].sites) + " " + name + " (" + number_text(std::round(share * 10) / 10) + " %)";
+    return count_text(s.kinds[kind].sites) + " " + name + " (" + rounded_text(std::round(share * 10) / 10) + " %)";
   };
   return part(0, "vertices") + ", " + part(1, "edges") + ", " + part(2, "faces") + " of the nodes' closest";
 }
@@ -169,8 +169,8 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   if (label) run.table.add("label", std::to_string(*label));
   run.table.add("sign",
                 std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
-  run.table.add("distance", number_text(s.minimum) + " to " + number_text(s.maximum) +
-                                (field.band ? ", in a band of +-" + number_text(*field.band) : ""));
+  run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
+                                (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
   run.table.add("sites", sites_text(s, field.site_ids));
 }
 
@@ -222,7 +222,7 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                      {"warnings", run.warnings},
                      {"outputs", outputs}};
   run.table.add("time", spent.text);
-  run.table.add("speed", number_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
+  run.table.add("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
                              plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads") + ", " +
                              bytes_text(static_cast<double>(peak_memory())) + " at most");
   for (const fs::path& file : run.outputs) run.table.add("wrote", file.string());
@@ -244,7 +244,7 @@ void check_field_memory(const GridSpec& grid, std::size_t fields) {
 void add_grid_text(Run& run, const GridSpec& grid) {
   run.table.add("grid",
                 size_text(grid) + " nodes, spacing " +
-                    (grid.spacing.x == grid.spacing.y && grid.spacing.y == grid.spacing.z ? number_text(grid.spacing.x)
+                    (grid.spacing.x == grid.spacing.y && grid.spacing.y == grid.spacing.z ? rounded_text(grid.spacing.x)
                                                                                           : vector_text(grid.spacing)) +
                     ", origin " + vector_text(grid.origin));
 }

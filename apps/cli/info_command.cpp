@@ -182,8 +182,8 @@ std::string topology_text(const fs::path& path, const MeshFile& file, const Topo
     table.add("oriented",
               t.oriented ? "yes"
                          : "no: " + plural(t.inconsistent_edges, "edge", "edges") + " between triangles that disagree");
-    table.add("area", number_text(t.area));
-    if (t.closed && t.oriented) table.add("volume", number_text(t.signed_volume));
+    table.add("area", rounded_text(t.area));
+    if (t.closed && t.oriented) table.add("volume", rounded_text(t.signed_volume));
     table.add("Euler number", std::to_string(t.euler_characteristic));
     if (!t.shells.empty()) table.add("genus", genus_text(t));
   }
@@ -308,7 +308,7 @@ void run_image(const Arguments& a) {
   table.add("file", a.input + ": " + image_format_name(a.input) + " image of " + type_name(image.values));
   add_grid(table, image.grid);
   if (!image.space.empty()) table.add("world axes", image.space);
-  table.add("range", has_values ? number_text(facts.minimum) + " to " + number_text(facts.maximum) : "no numbers");
+  table.add("range", has_values ? rounded_text(facts.minimum) + " to " + rounded_text(facts.maximum) : "no numbers");
   table.add("not zero", plural(facts.nonzero, "voxel", "voxels"));
   if (facts.not_numbers > 0) table.add("not a number", plural(facts.not_numbers, "voxel", "voxels"));
   table.add("labels", labels_text(facts));
@@ -334,8 +334,8 @@ void run_field(const Arguments& a) {
   TextTable table;
   table.add("file", a.input + ": distance field");
   add_grid(table, field.grid);
-  table.add("distance", number_text(s.minimum) + " to " + number_text(s.maximum));
-  if (field.band) table.add("band", "+-" + number_text(*field.band));
+  table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum));
+  if (field.band) table.add("band", "+-" + rounded_text(*field.band));
   table.add("sign",
             std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
   table.add("inside", plural(s.inside_nodes, "node", "nodes"));

@@ -130,8 +130,8 @@ Recipe find(const std::string& given) {
 double read_parameter(const Parameter& parameter, const std::string& given, const std::string& text) {
   const double value = parse_number("--" + given, text);
   if (value < parameter.minimum || value > parameter.maximum) {
-    throw UsageError("--" + given + " '" + text + "': must be between " + number_text(parameter.minimum) + " and " +
-                     number_text(parameter.maximum));
+    throw UsageError("--" + given + " '" + text + "': must be between " + rounded_text(parameter.minimum) + " and " +
+                     rounded_text(parameter.maximum));
   }
   if (parameter.integer && value != std::trunc(value)) {
     throw UsageError("--" + given + " '" + text + "': must be a whole number");
@@ -178,8 +178,8 @@ Json parameters_json(const std::vector<Parameter>& parameters) {
 std::string parameters_text(const std::vector<Parameter>& parameters) {
   TextTable table;
   for (const Parameter& p : parameters) {
-    table.add("    " + option_name(p.name) + " " + number_text(p.default_value),
-              p.description + " (" + number_text(p.minimum) + " to " + number_text(p.maximum) +
+    table.add("    " + option_name(p.name) + " " + rounded_text(p.default_value),
+              p.description + " (" + rounded_text(p.minimum) + " to " + rounded_text(p.maximum) +
                   (p.integer ? ", whole)" : ")"));
   }
   return table.text();

@@ -63,9 +63,9 @@ std::vector<double> parse_thetas(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const double theta = parse_non_negative("--theta", std::string_view(text).substr(begin, end - begin));
-    if (theta > 180) throw UsageError("--theta is " + number_text(theta) + " degrees, but must be 0 to 180");
+    if (theta > 180) throw UsageError("--theta is " + rounded_text(theta) + " degrees, but must be 0 to 180");
     if (std::find(thetas.begin(), thetas.end(), theta) != thetas.end()) {
-      throw UsageError("--theta names " + number_text(theta) + " twice");
+      throw UsageError("--theta names " + rounded_text(theta) + " twice");
     }
     thetas.push_back(theta);
     begin = end + 1;
@@ -116,7 +116,7 @@ void check_applicable(const Arguments& a, const fs::path& input, InputKind kind)
 /// OUT-theta20.vtp for OUT.vtp.
 fs::path with_theta(const fs::path& path, double theta) {
   fs::path name = path.parent_path() / path.stem();
-  name += "-theta" + number_text(theta);
+  name += "-theta" + rounded_text(theta);
   name += path.extension();
   return name;
 }
@@ -170,7 +170,7 @@ std::vector<std::string> shortfalls(const MedialAxisReport& report) {
     const BodyReport& body = report.bodies[b];
     if (body.is_right) continue;
     out.push_back((report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : std::string("the solid")) + " has " +
-                  betti_text(body.solid) + ", its voxels of side " + number_text(body.spacing) + " have " +
+                  betti_text(body.solid) + ", its voxels of side " + rounded_text(body.spacing) + " have " +
                   betti_text(body.voxels) + ": something is thinner than a voxel; raise --max-resolution");
   }
   return out;
@@ -194,7 +194,7 @@ std::string refined_text(const MedialAxisReport& report, double asked) {
   const std::string of_bodies =
       report.bodies.size() == 1 ? ""
                                 : " for " + count_text(finer) + " of " + count_text(report.bodies.size()) + " bodies";
-  return "voxels from side " + number_text(asked) + " to " + number_text(finest) + of_bodies +
+  return "voxels from side " + rounded_text(asked) + " to " + rounded_text(finest) + of_bodies +
          (report.rule == SolidRule::polyhedron
               ? ": with larger ones they do not have the topology of the solid, or none lies inside"
               : ": of larger ones none lies inside");
@@ -207,8 +207,8 @@ std::string sides_text(const MedialAxisReport& report) {
   const auto [least, most] =
       std::minmax_element(report.bodies.begin(), report.bodies.end(),
                           [](const BodyReport& a, const BodyReport& b) { return a.spacing < b.spacing; });
-  return " " + number_text(least->spacing) +
-         (least->spacing < most->spacing ? " to " + number_text(most->spacing) : "");
+  return " " + rounded_text(least->spacing) +
+         (least->spacing < most->spacing ? " to " + rounded_text(most->spacing) : "");
 }
 
 void add_report(Run& run, const MedialAxisReport& report, std::optional<double> asked, Json& json) {
@@ -231,7 +231,7 @@ void add_report(Run& run, const MedialAxisReport& report, std::optional<double> 
   run.table.add("solid", betti_text(report.solid) + " (" + report.reason + ")");
   run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
                               (moved > 0 ? "; " + count_text(moved) + " chosen otherwise than by their centre, up to " +
-                                               number_text(deviation) + " from the surface, for the topology"
+                                               rounded_text(deviation) + " from the surface, for the topology"
                                          : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
   if (report.turned_shells > 0) {
@@ -271,10 +271,10 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
                   {"certificate", to_json(certificate)}});
-  run.table.add("theta " + number_text(theta), counts_text(counts, true));
+  run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   add_certificate(run.table, certificate);
   for (const std::string& mismatch : certificate.mismatches) {
-    run.mismatches.push_back("at theta " + number_text(theta) + ": " + mismatch);
+    run.mismatches.push_back("at theta " + rounded_text(theta) + ": " + mismatch);
   }
 }
 

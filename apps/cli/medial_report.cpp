@@ -185,13 +185,13 @@ void add_certificate(TextTable& table, const Certificate& c) {
   if (!c.geometry.holds || !c.edges.holds) geometry = "wrong";
   if (c.edges.pushed > 0) {
     geometry += ", but for " + plural(c.edges.pushed, "edge that cuts a corner", "edges that cut corners") +
-                " by up to " + number_text(c.edges.pushed_by);
+                " by up to " + rounded_text(c.edges.pushed_by);
   }
-  if (c.checked.radii) geometry += "; radii off by at most " + number_text(c.geometry.radius_error);
+  if (c.checked.radii) geometry += "; radii off by at most " + rounded_text(c.geometry.radius_error);
   if (c.checked.footprints) {
-    geometry += ", footprints " + number_text(c.geometry.footprint_off_surface) + " off the surface";
+    geometry += ", footprints " + rounded_text(c.geometry.footprint_off_surface) + " off the surface";
   }
-  table.add("geometry", geometry + " (tolerance " + number_text(c.geometry.tolerance) + ")");
+  table.add("geometry", geometry + " (tolerance " + rounded_text(c.geometry.tolerance) + ")");
   std::string unknown;
   for (const auto& [is_checked, what] :
        {std::pair{c.checked.radii, "radii"}, std::pair{c.checked.footprints, "footprints"},
@@ -200,9 +200,9 @@ void add_certificate(TextTable& table, const Certificate& c) {
   }
   if (!unknown.empty()) table.add("not checked", "not in the file: " + unknown);
   if (!c.checked.balls) return;
-  table.add("balls", "the solid reaches at most " + number_text(c.balls.solid_to_balls) +
-                         " beyond the union of the balls (mean " + number_text(c.balls.mean_solid_to_balls) +
-                         "), whose surface is at most " + number_text(c.balls.balls_to_surface) + " from the solid's");
+  table.add("balls", "the solid reaches at most " + rounded_text(c.balls.solid_to_balls) +
+                         " beyond the union of the balls (mean " + rounded_text(c.balls.mean_solid_to_balls) +
+                         "), whose surface is at most " + rounded_text(c.balls.balls_to_surface) + " from the solid's");
 }
 
 }  // namespace blum::cli

@@ -178,7 +178,7 @@ void check_spacing(double spacing, const Box3& box) {
   const Vec3d size = box.size();
   const double nodes = (size.x / spacing + 1) * (size.y / spacing + 1) * (size.z / spacing + 1);
   if (box.is_empty() || nodes <= most) return;
-  throw UsageError("--spacing " + number_text(spacing) + " is too small for a box of " + vector_text(size) +
+  throw UsageError("--spacing " + rounded_text(spacing) + " is too small for a box of " + vector_text(size) +
                    ": it would take more than 2^40 steps; raise it");
 }
 

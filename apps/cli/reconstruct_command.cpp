@@ -116,7 +116,7 @@ void run(const Arguments& a) {
 
   TextTable table;
   table.add("axis", r.axis.string() + ": " + counts_text(count(file.complex), file.has_labels));
-  table.add("grid", size_text(grid) + " nodes, spacing " + number_text(grid.spacing.x));
+  table.add("grid", size_text(grid) + " nodes, spacing " + rounded_text(grid.spacing.x));
   Json json = {{"blum_version", BLUM_VERSION},
                {"command", "reconstruct"},
                {"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}},
@@ -134,10 +134,10 @@ void run(const Arguments& a) {
                         {"mean_solid_to_balls", certificate.balls.mean_solid_to_balls},
                         {"balls_beyond_solid", certificate.balls.balls_beyond_solid},
                         {"balls_to_surface", certificate.balls.balls_to_surface}};
-    table.add("distance", "the solid reaches at most " + number_text(certificate.balls.solid_to_balls) +
+    table.add("distance", "the solid reaches at most " + rounded_text(certificate.balls.solid_to_balls) +
                               " beyond the union of the balls (mean " +
-                              number_text(certificate.balls.mean_solid_to_balls) + "), whose surface is at most " +
-                              number_text(certificate.balls.balls_to_surface) + " from the solid's");
+                              rounded_text(certificate.balls.mean_solid_to_balls) + "), whose surface is at most " +
+                              rounded_text(certificate.balls.balls_to_surface) + " from the solid's");
   }
   if (r.is_field) {
     write_field(r.output, field, {nullptr, nullptr, r.axis.filename().string(), BLUM_VERSION}, context);

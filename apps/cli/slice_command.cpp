@@ -56,7 +56,7 @@ std::int64_t layer_at(const GridSpec& grid, std::size_t axis, double position) {
   const double last = first + *along * static_cast<double>(grid.size[axis] - 1) * grid.spacing[axis];
   const double layer = std::round((position - first) / (*along * grid.spacing[axis]));
   if (!(layer >= 0 && layer < static_cast<double>(grid.size[axis]))) {
-    throw UsageError("--position: the field's layers lie from " + number_text(first) + " to " + number_text(last));
+    throw UsageError("--position: the field's layers lie from " + rounded_text(first) + " to " + rounded_text(last));
   }
   return static_cast<std::int64_t>(layer);
 }

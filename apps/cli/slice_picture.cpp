@@ -45,7 +45,7 @@ Layout make_layout(const Slice& slice, double scale, int legend_width) {
   const double width = std::max(1.0, std::round(static_cast<double>(slice.width) * layout.per_u));
   const double height = std::max(1.0, std::round(static_cast<double>(slice.height) * layout.per_v));
   if (!(width * height <= largest_area) || width > 65000 || height > 65000) {
-    throw InvalidOption("the picture would have " + number_text(width) + " x " + number_text(height) +
+    throw InvalidOption("the picture would have " + rounded_text(width) + " x " + rounded_text(height) +
                         " pixels; use a smaller --scale (50 million pixels at most)");
   }
   layout.width = static_cast<int>(width);
@@ -165,7 +165,7 @@ void draw_caption(Picture& picture, const std::string& text) {
 /// A level as text with as many decimals as the step has: "0.15".
 std::string level_text(double level, double step) {
   const int decimals = static_cast<int>(std::max(0.0, std::ceil(-std::log10(step) - 1e-9)));
-  if (decimals > 5 || std::abs(level) >= 1e6) return level == 0 ? "0" : number_text(level);
+  if (decimals > 5 || std::abs(level) >= 1e6) return level == 0 ? "0" : rounded_text(level);
   char text[40];
   const auto result =
       std::to_chars(text, text + sizeof(text), level == 0 ? 0.0 : level, std::chars_format::fixed, decimals);
@@ -326,7 +326,7 @@ Slice take_slice(const Field& field, std::size_t axis, std::int64_t index) {
   slice.place = layers == 1 ? "one layer" : "layer " + std::to_string(index) + " of 0 to " + std::to_string(layers - 1);
   if (const std::optional<double> along = along_world(field.grid, axis)) {
     const double place = field.grid.origin[axis] + *along * static_cast<double>(index) * field.grid.spacing[axis];
-    slice.place = std::string(names[axis]) + " = " + number_text(place) + ", " + slice.place;
+    slice.place = std::string(names[axis]) + " = " + rounded_text(place) + ", " + slice.place;
   } else {
     slice.place = std::string("axis ") + names[axis] + ", " + slice.place;
   }
@@ -364,7 +364,7 @@ Picture distance_picture(const Slice& slice, double scale, const Context& contex
   });
   draw_frame(picture, margin, margin, layout.width, layout.height);
   draw_legend(picture, slice, style, layout);
-  draw_caption(picture, slice.place + (style.step() > 0 ? ", contours every " + number_text(style.step()) : ""));
+  draw_caption(picture, slice.place + (style.step() > 0 ? ", contours every " + rounded_text(style.step()) : ""));
   return picture;
 }
 

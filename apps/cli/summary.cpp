@@ -34,21 +34,6 @@ Json to_json(const GridSpec& grid) {
   return json;
 }
 
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
-  return {text.data(), result.ptr};
-}
-
-std::string count_text(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (std::size_t at = text.size(); at > 3;) {
-    at -= 3;
-    text.insert(at, ",");
-  }
-  return text;
-}
-
 std::string bytes_text(double bytes) {
   constexpr std::array<std::string_view, 7> units = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
   std::size_t unit = 0;
@@ -63,7 +48,7 @@ std::string bytes_text(double bytes) {
 }
 
 std::string vector_text(const Vec3d& v) {
-  return "(" + number_text(v.x) + ", " + number_text(v.y) + ", " + number_text(v.z) + ")";
+  return "(" + rounded_text(v.x) + ", " + rounded_text(v.y) + ", " + rounded_text(v.z) + ")";
 }
 
 std::string size_text(const GridSpec& grid) {
@@ -129,7 +114,7 @@ PhaseSummary summarize(const std::vector<PhaseTime>& phases) {
     out.seconds[phase.phase] = before + phase.seconds;
     out.total += phase.seconds;
   }
-  const auto rounded = [](double seconds) { return number_text(std::round(seconds * 1e3) / 1e3); };
+  const auto rounded = [](double seconds) { return rounded_text(std::round(seconds * 1e3) / 1e3); };
   std::string each;
   for (const auto& [phase, seconds] : out.seconds.items()) {
     each += (each.empty() ? " (" : ", ") + phase + " " + rounded(seconds.get<double>());

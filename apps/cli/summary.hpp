@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "blum/core/exact_text.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/field/field.hpp"
 #include "blum/grid/grid_spec.hpp"
@@ -36,10 +37,6 @@ class Stopwatch {
 [[nodiscard]] Json to_json(const Box3& box);
 [[nodiscard]] Json to_json(const GridSpec& grid);
 
-/// Six significant digits: "0.0123457", "1.5e-07".
-[[nodiscard]] std::string number_text(double value);
-/// "1,234,567".
-[[nodiscard]] std::string count_text(std::uint64_t value);
 /// "1.5 GiB".
 [[nodiscard]] std::string bytes_text(double bytes);
 [[nodiscard]] std::string vector_text(const Vec3d& v);

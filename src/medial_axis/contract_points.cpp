@@ -48,7 +48,7 @@ class Contractor {
       std::vector<Pair> left;
       for (const Pair& point : points) {
         const Pair now = ordered(now_at(point[0]), now_at(point[1]));
-        if (now[0] == now[1] || !has_edge(now)) continue;
+        if (now[0] == now[1]) continue;
         if (may_contract(now)) {
           contract(now);
         } else {
@@ -140,11 +140,6 @@ class Contractor {
     return vertices;
   }
 
-  [[nodiscard]] bool has_edge(const Pair& edge) const {
-    const Link link = link_of(edge[0]);
-    return std::binary_search(link.vertices.begin(), link.vertices.end(), edge[1]);
-  }
-
   [[nodiscard]] bool may_contract(const Pair& edge) const {
     const Link a = link_of(edge[0]);
     const Link b = link_of(edge[1]);
@@ -203,22 +198,21 @@ class Contractor {
       complex_.vertices[count++] = complex_.vertices[v];
     }
     complex_.vertices.resize(count);
+    sweep(complex_.triangles, is_triangle_gone_, number);
+    sweep(complex_.edges, is_edge_gone_, number);
+  }
+
+  template <class Cell>
+  static void sweep(std::vector<Cell>& cells, const std::vector<bool>& is_gone,
+                    const std::vector<std::uint32_t>& number) {
     std::size_t kept = 0;
-    for (std::size_t t = 0; t < complex_.triangles.size(); ++t) {
-      if (is_triangle_gone_[t]) continue;
-      MedialTriangle triangle = complex_.triangles[t];
-      for (std::uint32_t& v : triangle.vertices) v = number[v];
-      complex_.triangles[kept++] = triangle;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      if (is_gone[c]) continue;
+      Cell cell = cells[c];
+      for (std::uint32_t& v : cell.vertices) v = number[v];
+      cells[kept++] = cell;
     }
-    complex_.triangles.resize(kept);
-    kept = 0;
-    for (std::size_t e = 0; e < complex_.edges.size(); ++e) {
-      if (is_edge_gone_[e]) continue;
-      MedialEdge edge = complex_.edges[e];
-      for (std::uint32_t& v : edge.vertices) v = number[v];
-      complex_.edges[kept++] = edge;
-    }
-    complex_.edges.resize(kept);
+    cells.resize(kept);
   }
 
   MedialComplex& complex_;

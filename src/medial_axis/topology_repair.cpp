@@ -73,13 +73,18 @@ class Chooser {
     for_each_word([&](std::size_t w, std::int64_t j, std::int64_t k) {
       lost.row(j, k)[w] = touched.row(j, k)[w] & ~thick.row(j, k)[w] & ~voxels_.row(j, k)[w];
     });
+    if (lost.count() == 0) return;
     // Such voxels hang together with the others through those near by that the solid passes, too.
-    allowed_ = spread(lost, near + 1, context_);
-    for_each_word(
-        [&](std::size_t w, std::int64_t j, std::int64_t k) { allowed_.row(j, k)[w] &= touched.row(j, k)[w]; });
-    has_allowed_ = true;
-    grow(-half);
-    has_allowed_ = false;
+    VoxelSet allowed = spread(lost, near + 1, context_);
+    for_each_word([&](std::size_t w, std::int64_t j, std::int64_t k) { allowed.row(j, k)[w] &= touched.row(j, k)[w]; });
+    limit_ = -half;
+    allowed_ = &allowed;
+    // Those that are not next to the set yet are not simple; they are offered again when a neighbour is taken in.
+    for_each([&](const Place& at) {
+      if (allowed.contains(at[0], at[1], at[2])) offer(at);
+    });
+    take_in_line();
+    allowed_ = nullptr;
   }
 
   /// Leaves out simple voxels whose centre is outside, the outermost first.
@@ -162,14 +167,15 @@ class Chooser {
     }
   }
 
+  void offer(const Place& at) {
+    const std::size_t v = index(at);
+    if (is_waiting_[v] || !(depth_[v] > limit_) || voxels_.contains(at[0], at[1], at[2])) return;
+    if (allowed_ != nullptr && !allowed_->contains(at[0], at[1], at[2])) return;
+    is_waiting_[v] = true;
+    line_.push({depth_[v], static_cast<std::uint32_t>(v)});
+  }
   void offer_around(const Place& at) {
-    for_each_around(at, [&](const Place& next) {
-      const std::size_t v = index(next);
-      if (is_waiting_[v] || !(depth_[v] > limit_) || voxels_.contains(next[0], next[1], next[2])) return;
-      if (has_allowed_ && !allowed_.contains(next[0], next[1], next[2])) return;
-      is_waiting_[v] = true;
-      line_.push({depth_[v], static_cast<std::uint32_t>(v)});
-    });
+    for_each_around(at, [&](const Place& next) { offer(next); });
   }
   void take(const Place& at) {
     voxels_.insert(at[0], at[1], at[2]);
@@ -195,8 +201,7 @@ class Chooser {
   std::array<std::int64_t, 3> size_;
   const Context& context_;
   double limit_ = 0;
-  VoxelSet allowed_;
-  bool has_allowed_ = false;
+  const VoxelSet* allowed_ = nullptr;  ///< nullptr: all
   std::priority_queue<Waiting> line_;
   std::vector<bool> is_waiting_;
   std::size_t looks_ = 0;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "blum/core/exact_text.hpp"
 #include "blum/medial_axis/certificate.hpp"
 #include "medial_axis/certificate/checks.hpp"
 #include "medial_axis/certificate/scaling.hpp"
@@ -33,7 +34,7 @@ BettiNumbers sum(const std::vector<BettiNumbers>& all) {
 }
 
 std::string counted(std::int64_t count, const char* thing) {
-  return verifier::count_text(static_cast<std::uint64_t>(count)) + " " + thing + (count == 1 ? "" : "s");
+  return count_text(static_cast<std::uint64_t>(count)) + " " + thing + (count == 1 ? "" : "s");
 }
 
 /// Compares body by body. @param name  of a body, by its number.
@@ -50,7 +51,7 @@ void compare_topology(Certificate& certificate, const Name& name) {
       if (body.solid[k] == body.axis[k]) continue;
       certificate.mismatches.push_back(name(b) + " has " + counted(body.solid[k], things[k]) + ", the axis " +
                                        (certificate.bodies.size() > 1 ? "in it " : "") +
-                                       verifier::count_text(static_cast<std::uint64_t>(body.axis[k])));
+                                       count_text(static_cast<std::uint64_t>(body.axis[k])));
     }
   }
   certificate.topology_holds = wrong == 0;
@@ -78,8 +79,8 @@ Certificate certify_against(const MedialComplex& axis, const verifier::KnownSoli
   compare_topology(certificate, [&](std::size_t b) {
     if (body_count == 1) return std::string("the solid");
     const Vec3d at = solid.solid->box(static_cast<std::uint32_t>(b)).center() / factor;
-    return "body " + std::to_string(b + 1) + " of " + std::to_string(body_count) + " (around " +
-           verifier::rounded_text(at.x) + " " + verifier::rounded_text(at.y) + " " + verifier::rounded_text(at.z) + ")";
+    return "body " + std::to_string(b + 1) + " of " + std::to_string(body_count) + " (around " + rounded_text(at.x) +
+           " " + rounded_text(at.y) + " " + rounded_text(at.z) + ")";
   });
   certificate.geometry =
       verifier::check_vertices(axis, solid, places, certificate.checked, factor, certificate.mismatches, context);

@@ -17,11 +17,6 @@ namespace blum::verifier {
          is_finite(vertex.footprints[1]) && std::isfinite(vertex.separation_angle);
 }
 
-/// Six digits say enough of an error.
-[[nodiscard]] std::string rounded_text(double value);
-/// "1,234,567".
-[[nodiscard]] std::string count_text(std::uint64_t count);
-
 /// How far off positions may be in each body.
 [[nodiscard]] std::vector<double> tolerances(const KnownSolid& solid);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "medial_axis/certificate/checks.hpp"
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "medial_axis/certificate/checks.hpp"
 
@@ -116,18 +116,6 @@ void explain(const Findings& found, double factor, std::vector<std::string>& mis
 }
 
 }  // namespace
-
-std::string rounded_text(double value) {
-  std::array<char, 32> text{};
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
-  return {text.data(), result.ptr};
-}
-
-std::string count_text(std::uint64_t count) {
-  std::string text = std::to_string(count);
-  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
-  return text;
-}
 
 std::vector<double> tolerances(const KnownSolid& solid) {
   std::vector<double> all;
