@@ -47,6 +47,57 @@ bool are_joined_by_faces(unsigned voxels) {
   return reached == voxels;
 }
 
+/// The walls around a point, and what is closest to it on each.
+class Walls {
+ public:
+  struct Wall {
+    Footprint start;
+    Vec3d outwards;       ///< at the start; zero where it is not known
+    Footprint foot;       ///< of the point
+    double distance = 0;  ///< from it; negative beyond the wall, as corners next to thin parts are
+  };
+
+  /// @param reach  how far a footprint may move from its start, mesh units.
+  Walls(const Surface& surface, double reach) : surface_(surface), reach_(reach) {}
+
+  [[nodiscard]] bool is_full() const { return count_ == most_walls; }
+  void add(const Footprint& start, const Vec3d& outwards) { walls_[count_++] = {start, outwards, start, 0}; }
+
+  /// Two walls whose footprints meet are one from then on.
+  void follow_to(const Vec3d& x) {
+    std::size_t kept = 0;
+    closest_ = 0;
+    for (std::size_t w = 0; w < count_; ++w) {
+      Wall wall = walls_[w];
+      wall.foot = surface_.follow(wall.start, x, reach_);
+      const Vec3d away = x - wall.foot.point;
+      wall.distance = dot(away, wall.outwards) > 0 ? -length(away) : length(away);
+      const auto meets = [&](const Wall& other) {
+        return other.foot.element == wall.foot.element && other.distance == wall.distance;
+      };
+      if (std::any_of(walls_.begin(), walls_.begin() + kept, meets)) continue;
+      if (wall.distance < walls_[closest_].distance || kept == 0) closest_ = kept;
+      walls_[kept++] = wall;
+    }
+    count_ = kept;
+  }
+
+  /// What follow_to() found.
+  [[nodiscard]] std::span<const Wall> all() const { return {walls_.data(), count_}; }
+  [[nodiscard]] const Wall& closest() const { return walls_[closest_]; }
+  /// Whether the point is on one of them.
+  [[nodiscard]] bool touch() const {
+    return std::any_of(all().begin(), all().end(), [](const Wall& wall) { return wall.distance == 0; });
+  }
+
+ private:
+  const Surface& surface_;
+  double reach_;
+  std::array<Wall, most_walls> walls_;
+  std::size_t count_ = 0;
+  std::size_t closest_ = 0;
+};
+
 /// A point that is as far from one footprint as from another, and not further from these than from others known.
 struct Placed {
   Vec3d x;
@@ -104,45 +155,32 @@ class Placer {
                                              const Vec3d& corner) const {
     const double voxel = governors_.voxel();
     Placed at{start, {}, {}, {}};
-    std::array<Footprint, most_walls> walls;
-    std::array<Vec3d, most_walls> outwards;  // zero where it is not known
-    std::size_t count = 0;
-    for (const Governor& g : around) {
-      outwards[count] = g.direction;
-      walls[count++] = g.foot;
-    }
+    Walls walls(surface_, 2 * voxel);
+    for (const Governor& g : around) walls.add(g.foot, g.direction);
     for (int step = 0; step < most_steps; ++step) {
-      std::array<Footprint, most_walls> feet;
-      std::array<double, most_walls> distance{};  // negative beyond the wall, as corners next to thin parts are
-      std::size_t closest = 0;
-      for (std::size_t v = 0; v < count; ++v) {
-        feet[v] = surface_.follow(walls[v], at.x, 2 * voxel);
-        const Vec3d away = at.x - feet[v].point;
-        distance[v] = dot(away, outwards[v]) > 0 ? -length(away) : length(away);
-        if (distance[v] == 0) return std::nullopt;
-        if (distance[v] < distance[closest]) closest = v;
-      }
-      const Vec3d towards = (at.x - feet[closest].point) / distance[closest];
+      walls.follow_to(at.x);
+      const Walls::Wall& closest = walls.closest();
+      if (walls.touch()) return std::nullopt;
+      const Vec3d towards = (at.x - closest.foot.point) / closest.distance;
       Vec3d move;
       double least = std::numeric_limits<double>::infinity();
-      for (std::size_t v = 0; v < count; ++v) {
-        const Vec3d slope = towards - (at.x - feet[v].point) / distance[v];
+      for (const Walls::Wall& wall : walls.all()) {
+        const Vec3d slope = towards - (at.x - wall.foot.point) / wall.distance;
         const double squared = squared_length(slope);
         if (squared < two_walls) continue;
-        const double difference = distance[v] - distance[closest];
+        const double difference = wall.distance - closest.distance;
         if (difference >= least * std::sqrt(squared)) continue;
         least = difference / std::sqrt(squared);
         move = slope * (difference / squared);
-        at.p = feet[closest];
-        at.q = feet[v];
+        at.p = closest.foot;
+        at.q = wall.foot;
       }
       if (!(least < std::numeric_limits<double>::infinity())) return std::nullopt;
       if (least <= equal_distances * voxel) {
         at.nearest = surface_.nearest(at.x, at.p);
-        if (at.nearest.distance >= distance[closest] - 1e-7 * voxel) return at;
-        if (count == most_walls) return std::nullopt;
-        outwards[count] = {};
-        walls[count++] = {at.nearest.point, at.nearest.element, 7};
+        if (at.nearest.distance >= closest.distance - 1e-7 * voxel) return at;
+        if (walls.is_full()) return std::nullopt;
+        walls.add({at.nearest.point, at.nearest.element, 7}, {});
         continue;
       }
       at.x += move;
