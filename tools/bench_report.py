@@ -139,13 +139,40 @@ def skeleton_rows(results):
         for peer in ("scikit-image", "kimimaro", "itk"):
             title = f"medial axis, image {report['side']}^3 ({shape}, {share:.0f} % solid), versus {peer}"
             if peer not in programs:
-                rows.append([title, "-", "not run", "-", "-", must, aim])
+                if shape == "bumpy":  # the others are timed against one peer alone
+                    rows.append([title, "-", "not run", "-", "-", must, aim])
                 continue
             theirs = programs[peer]
             rows.append([title, f"{seconds(ours['seconds'])} wall (certificate {seconds(ours['certificate_seconds'])} more)",
                          f"{seconds(theirs['cpu_seconds'])} CPU, {seconds(theirs['seconds'])} wall", "-",
                          f"{theirs['seconds'] / ours['seconds']:.3g}x", must, aim])
     return rows
+
+
+def medial_rows(results):
+    """Goals of medial axes that no peer is timed for."""
+    rows = [plain_row("medial axis, rocker-arm at 256, with its certificate", results.get("medial/rocker-arm/256"),
+                      "wall_s", "s", "10 s", "2 s")]
+    least, most = results.get("medial-image/64"), results.get("medial-image/640")
+    title = "medial axis, image 64^3 to 640^3, time per solid voxel: largest over smallest side"
+    if isinstance(least, str) or isinstance(most, str):
+        rows.append([title, "not run", "-", "-", "-", "1.3", "-"])
+    else:
+        rows.append([title, f"{most['ns_per_solid_voxel'] / least['ns_per_solid_voxel']:.2f} "
+                     f"({least['ns_per_solid_voxel']:.0f} ns, {most['ns_per_solid_voxel']:.0f} ns)", "-", "-", "-", "1.3", "-"])
+    rows.append(plain_row("medial axis, image 512^3, peak memory beyond the image", results.get("medial-image/512"),
+                          "peak_MiB_beyond_image", "MiB", "6 GiB", "3 GiB"))
+    return rows
+
+
+def medial_cases(results):
+    """Seconds of every phase, one row for each case."""
+    cases = {name: case for name, case in results.cases.items() if name.startswith("medial") and "wall_s" in case}
+    phases = dict.fromkeys(key.removeprefix("phase ") for case in cases.values() for key in case if key.startswith("phase "))
+    rows = [[name.removeprefix("medial/").removeprefix("medial-"), seconds(case["wall_s"]),
+             *(seconds(case[f"phase {phase}"]) if f"phase {phase}" in case else "" for phase in phases)]
+            for name, case in cases.items()]
+    return [["case", "whole", *phases], *rows]
 
 
 def plain_row(title, case, key, unit, must, aim, note=""):
@@ -193,7 +220,7 @@ def goals(results):
                                   results.get(f"signed-band/{name}/512/openvdb"), "2x", "5x"))
     rows += [frame_row(results, "blum", ""), frame_row(results, "blum-signed", ", signed"),
              image_row(results), edt_row(results)]
-    rows += skeleton_rows(results)
+    rows += skeleton_rows(results) + medial_rows(results)
     for name in ("bunny/field", "bunny/field-winding", "noisy-1.6M/field", "noisy-1.6M/field-winding",
                  "noisy-1.6M/closest-points", "image/512"):
         case = results.get(f"cancel/{name}")
@@ -288,8 +315,10 @@ def machine(results):
                   if line.startswith("model name")), "unknown processor")
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True)
     load = f"load average {min(loads):.1f} to {max(loads):.1f}" if loads else "load unknown"
-    return (f"{context.get('date', 'date unknown')[:16]}, {model}, {context.get('num_cpus', os.cpu_count())} cores, "
-            f"{load} before the cases, commit {commit.stdout.strip() or 'unknown'}.")
+    dates = sorted(context["date"][:16] for context in results.contexts if "date" in context)
+    when = " to ".join(dict.fromkeys([dates[0], dates[-1]])) if dates else "date unknown"
+    return (f"{when}, {model}, {context.get('num_cpus', os.cpu_count())} cores, "
+            f"{load} before the cases; reported at commit {commit.stdout.strip() or 'unknown'}.")
 
 
 def main():
@@ -324,6 +353,9 @@ def main():
     for n, points in triangles.items():
         parts += [f"{n}^3:\n", table(["triangles", *scaled[1:]], scaling(results, points))]
     parts += ["![Time against triangles](../pictures/performance-triangles.png)\n"]
+    header, *rows = medial_cases(results)
+    if rows:
+        parts += ["## Medial axes, by phase\n\nWall-clock; meshes with their certificate, images without.\n", table(header, rows)]
     target = ROOT / "docs/generated/performance.md"
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text("\n".join(parts))

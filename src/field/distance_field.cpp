@@ -118,15 +118,15 @@ struct FieldSolver::State {
   cpu::Engine engine;
   Field field;
 
-  void compute(const MeshView& mesh);
+  void compute(const MeshView& mesh, const Context& frame_context);
 };
 
-void FieldSolver::State::compute(const MeshView& mesh) {
+void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_context) {
   validate(mesh);
   check_site_ids(mesh, options);
-  throw_if_cancelled(context);
+  throw_if_cancelled(frame_context);
   const std::size_t nodes = field.grid.node_count();
-  // One by one: where memory runs out between the two, the next frame finds the first one there already.
+  // One by one: where memory runs out between the two, the next frame_context finds the first one there already.
   if (field.distance.size() != nodes) field.distance = Buffer<float>(nodes);
   if (field.site.size() != nodes) field.site = Buffer<SiteId>(nodes);
   field.band = options.band;
@@ -134,19 +134,20 @@ void FieldSolver::State::compute(const MeshView& mesh) {
   field.phases.clear();
 
   PhaseTimer connectivity_timer(field.phases);
-  engine.set_mesh(mesh, context);
+  engine.set_mesh(mesh, frame_context);
   const SignChoice choice = choose_sign_rule(options.sign, mesh, engine.sites());
   connectivity_timer.lap("connectivity");
   const bool with_sides = choice.rule == SignRule::normals && !choice.level;
-  const std::vector<std::size_t> unsettled = engine.compute({field.grid, options.band, with_sides}, context, field);
+  const std::vector<std::size_t> unsettled =
+      engine.compute({field.grid, options.band, with_sides}, frame_context, field);
   PhaseTimer sign_timer(field.phases);
-  settle_nodes(unsettled, mesh, engine.sites(), with_sides, context, field);
+  settle_nodes(unsettled, mesh, engine.sites(), with_sides, frame_context, field);
   field.sign_rule = choice.rule;
   field.sign_reason = choice.reason;
-  if (choice.rule == SignRule::winding) sign_by_winding(mesh, engine.sites(), context, field);
-  if (choice.level) sign_by_orientation(mesh, engine.sites(), choice, context, field);
+  if (choice.rule == SignRule::winding) sign_by_winding(mesh, engine.sites(), frame_context, field);
+  if (choice.level) sign_by_orientation(mesh, engine.sites(), choice, frame_context, field);
   sign_timer.lap("sign");
-  if (options.site_ids == SiteIds::triangles) show_triangles(engine.sites(), context, field);
+  if (options.site_ids == SiteIds::triangles) show_triangles(engine.sites(), frame_context, field);
 }
 
 FieldSolver::FieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context)
@@ -164,7 +165,11 @@ FieldSolver& FieldSolver::operator=(FieldSolver&&) noexcept = default;
 FieldSolver::~FieldSolver() = default;
 
 const Field& FieldSolver::compute(const MeshView& mesh) {
-  state_->compute(mesh);
+  return compute(mesh, state_->context);
+}
+
+const Field& FieldSolver::compute(const MeshView& mesh, const Context& context) {
+  state_->compute(mesh, context);
   return state_->field;
 }
 

@@ -7,7 +7,7 @@
 
 namespace blum {
 
-void validate(const VoxelImage& image) {
+void validate(const VoxelImageView& image) {
   try {
     validate(image.grid);
   } catch (const InvalidGrid& error) {

@@ -66,7 +66,7 @@ VoxelImage read_source(const ByteSource& source, ImageFormat format, const std::
   return read_vol(source);
 }
 
-void write_values(AtomicFile& file, const VoxelImage& image) {
+void write_values(AtomicFile& file, const VoxelImageView& image) {
   const auto bytes = as_bytes(image.values);
   file.write(bytes.data(), bytes.size());
   file.commit();
@@ -94,7 +94,7 @@ VoxelImage read_image(std::span<const std::byte> bytes, ImageFormat format, cons
   return checked(read_source(MemorySource(bytes, name), format, {}), name);
 }
 
-void write_image(const std::filesystem::path& path, const VoxelImage& image) {
+void write_image(const std::filesystem::path& path, const VoxelImageView& image) {
   const std::string extension = lower_case(path.extension().string());
   const ScalarType type = scalar_type(image.values);
   validate(image);

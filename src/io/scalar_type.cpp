@@ -32,7 +32,7 @@ std::size_t scalar_size(ScalarType type) {
   return sizes[static_cast<std::size_t>(type)];
 }
 
-ScalarType scalar_type(const VoxelImage::Values& values) {
+ScalarType scalar_type(const VoxelImageView::Values& values) {
   return static_cast<ScalarType>(values.index());
 }
 
@@ -55,8 +55,8 @@ std::span<std::byte> as_bytes(VoxelImage::Values& values) {
   return std::visit([](auto& v) { return std::as_writable_bytes(std::span(v)); }, values);
 }
 
-std::span<const std::byte> as_bytes(const VoxelImage::Values& values) {
-  return std::visit([](const auto& v) { return std::as_bytes(std::span(v)); }, values);
+std::span<const std::byte> as_bytes(const VoxelImageView::Values& values) {
+  return std::visit([](const auto& v) { return std::as_bytes(v); }, values);
 }
 
 void to_native(std::span<std::byte> bytes, ScalarType type, std::endian order) {

@@ -82,7 +82,7 @@ class MedialAxisBuilder {
     return finish();
   }
 
-  MedialAxis of_image(const VoxelImage& image) {
+  MedialAxis of_image(const VoxelImageView& image) {
     report().rule = SolidRule::voxels;
     report().reason = "the solid is the union of the selected voxels";
     std::array<std::int64_t, 3> first{};
@@ -189,7 +189,7 @@ MedialAxis medial_axis(const MeshView& mesh, const MedialAxisOptions& options, c
   return MedialAxisBuilder(options, context).of_mesh(mesh);
 }
 
-MedialAxis medial_axis(const VoxelImage& image, const MedialAxisOptions& options, const Context& context) {
+MedialAxis medial_axis(const VoxelImageView& image, const MedialAxisOptions& options, const Context& context) {
   return MedialAxisBuilder(options, context).of_image(image);
 }
 

@@ -139,8 +139,8 @@ Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Contex
   return out;
 }
 
-Voxelized voxelize_image(const VoxelImage& image, const LabelSelection& selection, std::array<std::int64_t, 3>& first,
-                         const Context& context) {
+Voxelized voxelize_image(const VoxelImageView& image, const LabelSelection& selection,
+                         std::array<std::int64_t, 3>& first, const Context& context) {
   Voxelized out;
   VoxelImage cut;
   {

@@ -24,7 +24,7 @@ struct Voxelized {
 /// The selected voxels of an image, with a layer of others around the smallest box that holds them.
 /// @param first  the place in the image of the box's voxel (0, 0, 0); may be -1.
 /// @throws InvalidImage where no voxel is selected.
-[[nodiscard]] Voxelized voxelize_image(const VoxelImage& image, const LabelSelection& selection,
+[[nodiscard]] Voxelized voxelize_image(const VoxelImageView& image, const LabelSelection& selection,
                                        std::array<std::int64_t, 3>& first, const Context& context);
 
 }  // namespace blum

@@ -32,7 +32,7 @@ struct LabelSelection {
 /// The selected voxels of an image, which may be none.
 /// @param image  must pass validate(image).
 /// @throws InvalidImage, InvalidOption, Cancelled. Cost: the speed of memory; 1/8 byte per voxel, twice.
-[[nodiscard]] VoxelSet selected_voxels(const VoxelImage& image, const LabelSelection& selection,
+[[nodiscard]] VoxelSet selected_voxels(const VoxelImageView& image, const LabelSelection& selection,
                                        const Context& context = {});
 
 struct DistanceTransformOptions {
@@ -62,14 +62,14 @@ struct DistanceTransformOptions {
 /// a few MiB per thread, beside it.
 /// Method: one pass per axis (Maurer 2003; Felzenszwalb, Huttenlocher 2012); instead of lower envelopes the passes
 /// along y and z use that the closest row moves monotonically along a column (Aggarwal 1987), many columns at a time.
-[[nodiscard]] Field distance_transform(const VoxelImage& image, const DistanceTransformOptions& options = {},
+[[nodiscard]] Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options = {},
                                        const Context& context = {});
 
 /// The transforms of several selections (labels, thresholds) of one image, in their order; each equals, byte for byte,
 /// distance_transform with that selection. options.selection is ignored. The image is checked once and working memory
 /// is shared; the results take 8 bytes per voxel and selection.
 /// @throws as distance_transform.
-[[nodiscard]] std::vector<Field> distance_transforms(const VoxelImage& image,
+[[nodiscard]] std::vector<Field> distance_transforms(const VoxelImageView& image,
                                                      std::span<const LabelSelection> selections,
                                                      const DistanceTransformOptions& options = {},
                                                      const Context& context = {});

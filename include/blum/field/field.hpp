@@ -106,6 +106,8 @@ class FieldSolver {
   /// The field of this frame's mesh; valid until the next call. Equal, byte for byte, to distance_field's.
   /// @throws as distance_field; the solver stays usable.
   const Field& compute(const MeshView& mesh);
+  /// The same with a context for this frame alone, which it can be cancelled by.
+  const Field& compute(const MeshView& mesh, const Context& context);
 
   /// Moves the last computed field out of the solver; the next frame gets new buffers.
   [[nodiscard]] Field take();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -9,6 +10,19 @@
 #include "blum/grid/grid_spec.hpp"
 
 namespace blum {
+
+/// A 3D image seen through a span: nothing is copied or owned. See VoxelImage.
+struct VoxelImageView {
+  /// In the order of VoxelImage::Values.
+  using Values =
+      std::variant<std::span<const std::uint8_t>, std::span<const std::int8_t>, std::span<const std::uint16_t>,
+                   std::span<const std::int16_t>, std::span<const std::uint32_t>, std::span<const std::int32_t>,
+                   std::span<const std::uint64_t>, std::span<const std::int64_t>, std::span<const float>,
+                   std::span<const double>>;
+  GridSpec grid;
+  Values values;  ///< grid.node_count() values
+  std::string space = {};
+};
 
 /// A 3D image: one value per voxel, x fastest, and where its voxel centres lie in the world.
 /// The grid's nodes are the voxel centres. World axes are those of the file that it came from (NRRD and ITK: LPS;
@@ -23,9 +37,14 @@ struct VoxelImage {
   /// What the world axes are, as NRRD names it ("left-posterior-superior", "right-anterior-superior", "scanner-xyz",
   /// ...); empty where the file does not say.
   std::string space = {};
+
+  [[nodiscard]] VoxelImageView view() const {
+    return {grid, std::visit([](const auto& v) { return VoxelImageView::Values(std::span(v)); }, values), space};
+  }
+  operator VoxelImageView() const { return view(); }  // NOLINT(google-explicit-constructor): an image is its view
 };
 
 /// @throws InvalidImage unless the grid is valid, holds at most max_id_count voxels and values has one entry per voxel.
-void validate(const VoxelImage& image);
+void validate(const VoxelImageView& image);
 
 }  // namespace blum

@@ -48,6 +48,6 @@ enum class ImageFormat : std::uint8_t { nrrd, nifti, npy, vol };
 /// Writes an image as .nrrd (raw data; keeps geometry and space) or .npy (values only), in the byte order of the
 /// machine. The file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension; InvalidImage unless validate(image) passes; FileError.
-void write_image(const std::filesystem::path& path, const VoxelImage& image);
+void write_image(const std::filesystem::path& path, const VoxelImageView& image);
 
 }  // namespace blum

@@ -120,7 +120,7 @@ class MedialAxis {
 /// corner are one). Distances are to the faces of the voxels; sites are voxels that are not selected, or that lie just
 /// outside of the image, where the id is that of the image's voxel next to them.
 /// @throws InvalidImage (also when no voxel is selected), InvalidOption, OutOfMemory, Cancelled.
-[[nodiscard]] MedialAxis medial_axis(const VoxelImage& image, const MedialAxisOptions& options = {},
+[[nodiscard]] MedialAxis medial_axis(const VoxelImageView& image, const MedialAxisOptions& options = {},
                                      const Context& context = {});
 
 }  // namespace blum

@@ -239,7 +239,7 @@ std::string describe(const LabelSelection& selection) {
   return "is selected";
 }
 
-Field transform(const VoxelImage& image, const LabelSelection& selection, const DistanceTransformOptions& options,
+Field transform(const VoxelImageView& image, const LabelSelection& selection, const DistanceTransformOptions& options,
                 TransformPlan plan, Workspace& work, const Context& context) {
   Field field;
   PhaseClock clock(field.phases);
@@ -275,7 +275,7 @@ Field transform(const VoxelImage& image, const LabelSelection& selection, const 
 
 }  // namespace
 
-VoxelSet selected_voxels(const VoxelImage& image, const LabelSelection& selection, const Context& context) {
+VoxelSet selected_voxels(const VoxelImageView& image, const LabelSelection& selection, const Context& context) {
   validate(image);
   detail::MaskBits mask;
   const auto& size = image.grid.size;
@@ -291,7 +291,7 @@ VoxelSet selected_voxels(const VoxelImage& image, const LabelSelection& selectio
   return voxels;
 }
 
-std::vector<Field> distance_transforms(const VoxelImage& image, std::span<const LabelSelection> selections,
+std::vector<Field> distance_transforms(const VoxelImageView& image, std::span<const LabelSelection> selections,
                                        const DistanceTransformOptions& options, const Context& context) {
   validate(image);
   const TransformPlan plan = make_plan(image.grid, options, context);
@@ -304,7 +304,7 @@ std::vector<Field> distance_transforms(const VoxelImage& image, std::span<const 
   return fields;
 }
 
-Field distance_transform(const VoxelImage& image, const DistanceTransformOptions& options, const Context& context) {
+Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options, const Context& context) {
   return std::move(distance_transforms(image, {&options.selection, 1}, options, context).front());
 }
 

@@ -137,7 +137,7 @@ std::size_t select_row(const T* values, std::size_t length, const Predicate& tes
 
 }  // namespace
 
-std::size_t select_voxels(const VoxelImage& image, const LabelSelection& selection, std::size_t row_length,
+std::size_t select_voxels(const VoxelImageView& image, const LabelSelection& selection, std::size_t row_length,
                           const Context& context, MaskBits& mask) {
   const std::size_t rows = image.grid.node_count() / row_length;
   mask.words_per_row = (row_length + 63) / 64;
@@ -150,7 +150,7 @@ std::size_t select_voxels(const VoxelImage& image, const LabelSelection& selecti
   const std::size_t grain = std::max<std::size_t>(1, task_voxels / stretch);
   std::atomic<std::size_t> selected{0};
   std::visit(
-      [&]<class T>(const std::vector<T>& values) {
+      [&]<class T>(const std::span<const T>& values) {
         std::visit(
             [&](const auto& test) {
               parallel_for(context, rows * stretches, grain, "select voxels", [&](const WorkRange& range) {

@@ -20,7 +20,7 @@ struct MaskBits {
 
 /// Fills the bits of an image cut into rows of `row_length` voxels, and counts the selected voxels.
 /// The buffer is reused where it has the right size. @throws InvalidOption when the threshold is NaN; Cancelled.
-std::size_t select_voxels(const VoxelImage& image, const LabelSelection& selection, std::size_t row_length,
+std::size_t select_voxels(const VoxelImageView& image, const LabelSelection& selection, std::size_t row_length,
                           const Context& context, MaskBits& mask);
 
 }  // namespace blum::detail

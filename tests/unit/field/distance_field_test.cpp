@@ -234,5 +234,19 @@ TEST(DistanceField, RefusesExtentsThatFloat32CannotHold) {
   }
 }
 
+TEST(FieldSolver, IsCancelledByTheContextOfAFrameAloneAndStaysUsable) {
+  const TriangleMesh mesh = make_sphere();
+  const GridSpec grid = grid_around(bounds(mesh), 24);
+  FieldSolver solver(grid);
+  std::stop_source stop;
+  stop.request_stop();
+  Context cancelled;
+  cancelled.cancel = stop.get_token();
+  EXPECT_THROW(static_cast<void>(solver.compute(mesh, cancelled)), Cancelled);
+  const Field expected = distance_field(mesh, grid);
+  const Field& field = solver.compute(mesh);
+  EXPECT_TRUE(std::equal(field.distance.begin(), field.distance.end(), expected.distance.begin()));
+}
+
 }  // namespace
 }  // namespace blum
