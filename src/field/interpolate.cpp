@@ -50,13 +50,15 @@ double value_at(const GridSpec& grid, std::span<const float> values, const Vec3d
     if (!found) return std::numeric_limits<double>::quiet_NaN();
     axes[a] = *found;
   }
-  const auto& [x, y, z] = axes;
+  const Between& x = axes[0];
   const auto along_x = [&](std::int64_t j, std::int64_t k) {
-    const auto distance = [&](std::int64_t i) { return static_cast<double>(values[grid.index(i, j, k)]); };
-    return mix(distance(x.before), distance(x.after), x.part);
+    const std::size_t row = grid.index(0, j, k);
+    const auto before = static_cast<double>(values[row + static_cast<std::size_t>(x.before)]);
+    return mix(before, static_cast<double>(values[row + static_cast<std::size_t>(x.after)]), x.part);
   };
+  const Between& y = axes[1];
   const auto along_y = [&](std::int64_t k) { return mix(along_x(y.before, k), along_x(y.after, k), y.part); };
-  return mix(along_y(z.before), along_y(z.after), z.part);
+  return mix(along_y(axes[2].before), along_y(axes[2].after), axes[2].part);
 }
 
 }  // namespace
