@@ -1,0 +1,93 @@
+// Blum: arrays of Python as Blum sees them, and the other way round. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum::python {
+
+namespace nb = nanobind;
+
+/// Arrays that come in: contiguous, on the CPU, of exactly this type. The Python side of the package sees to that.
+template <class T, class Shape>
+using In = nb::ndarray<const T, Shape, nb::c_contig, nb::device::cpu>;
+using PointsIn = In<double, nb::shape<-1, 3>>;
+using TrianglesIn = In<std::int32_t, nb::shape<-1, 3>>;
+using SegmentsIn = In<std::int32_t, nb::shape<-1, 2>>;
+using IndicesIn = In<std::int32_t, nb::shape<-1>>;
+
+/// An array that goes out; it keeps what it shows alive.
+template <class T>
+using Out = nb::ndarray<nb::numpy, T>;
+
+/// n x 3 doubles as vectors.
+[[nodiscard]] inline std::span<const Vec3d> vectors(const PointsIn& array) {
+  static_assert(sizeof(Vec3d) == 3 * sizeof(double));
+  return {reinterpret_cast<const Vec3d*>(array.data()), array.shape(0)};
+}
+
+/// The elements of an array as rows of another type of the same size. Indices below zero become ones that are far out
+/// of range, which every check sees.
+template <class Row, class Array>
+[[nodiscard]] std::span<const Row> rows(const Array& array) {
+  return {reinterpret_cast<const Row*>(array.data()), array.shape(0)};
+}
+
+/// A view of memory that `owner` keeps alive. @param strides  in elements; none: contiguous.
+template <class T>
+[[nodiscard]] Out<T> view_of(T* data, std::initializer_list<std::size_t> shape, nb::handle owner,
+                             std::initializer_list<std::int64_t> strides = {}) {
+  static T nothing{};
+  T* const start = data == nullptr ? &nothing : data;  // an empty array needs a place, too
+  return Out<T>(start, shape.size(), shape.begin(), owner, strides.size() == 0 ? nullptr : strides.begin());
+}
+
+/// Hands a vector over to Python, without a copy. @param width  elements T per entry; 0: an array of one axis.
+template <class T, class Entry>
+[[nodiscard]] Out<T> handed_over(std::vector<Entry> entries, std::size_t width = 0) {
+  static_assert(sizeof(Entry) % sizeof(T) == 0);
+  auto* held = new std::vector<Entry>(std::move(entries));
+  const nb::capsule owner(held, [](void* memory) noexcept { delete static_cast<std::vector<Entry>*>(memory); });
+  T* const data = reinterpret_cast<T*>(held->data());
+  const std::size_t length = held->size();
+  return width == 0 ? view_of<T>(data, {length}, owner) : view_of<T>(data, {length, width}, owner);
+}
+
+/// The arrays of a mesh, seen by Blum without a copy.
+struct MeshArrays {
+  PointsIn vertices;
+  TrianglesIn triangles;
+  SegmentsIn segments;
+  IndicesIn points;
+
+  [[nodiscard]] MeshView view() const {
+    return {vectors(vertices), rows<Triangle>(triangles), rows<Segment>(segments), rows<std::uint32_t>(points)};
+  }
+};
+
+/// (vertices, triangles, segments, points).
+[[nodiscard]] inline nb::tuple arrays_of(TriangleMesh mesh) {
+  return nb::make_tuple(
+      handed_over<double>(std::move(mesh.vertices), 3), handed_over<std::int32_t>(std::move(mesh.triangles), 3),
+      handed_over<std::int32_t>(std::move(mesh.segments), 2), handed_over<std::int32_t>(std::move(mesh.points)));
+}
+
+[[nodiscard]] inline std::array<double, 3> triple(const Vec3d& v) {
+  return {v.x, v.y, v.z};
+}
+[[nodiscard]] inline Vec3d vector(const std::array<double, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace blum::python

@@ -1,0 +1,34 @@
+// Blum: how Python calls long work. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "blum/core/context.hpp"
+
+namespace blum::python {
+
+/// How a call runs, as Python says it.
+struct Call {
+  int threads = 0;            ///< as Context::threads
+  nanobind::object progress;  ///< None, or called with (fraction, phase) in the thread that called
+};
+
+/// Runs work in a thread of its own, without the interpreter's lock. Meanwhile the calling thread looks after signals
+/// and progress every 50 ms: what a handler (Ctrl-C) or the progress callback raises cancels the work, and is raised
+/// here once that has ended.
+void run_call(const Call& call, const std::function<void(const Context&)>& work);
+
+/// The same for work with a result.
+template <class Work>
+auto run(const Call& call, const Work& work) {
+  using Result = decltype(work(std::declval<const Context&>()));
+  std::optional<Result> result;
+  run_call(call, [&](const Context& context) { result.emplace(work(context)); });
+  return std::move(*result);
+}
+
+}  // namespace blum::python

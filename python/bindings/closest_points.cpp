@@ -1,0 +1,62 @@
+#include "blum/field/closest_points.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "call.hpp"
+#include "fields.hpp"
+
+namespace blum::python {
+namespace {
+
+/// (points, distances, sites, triangles), views of one block of memory.
+nb::tuple columns_of(std::vector<ClosestPoint> found) {
+  static_assert(sizeof(ClosestPoint) % sizeof(double) == 0);
+  constexpr auto doubles = static_cast<std::int64_t>(sizeof(ClosestPoint) / sizeof(double));
+  constexpr auto ints = static_cast<std::int64_t>(sizeof(ClosestPoint) / sizeof(std::int32_t));
+  auto* held = new std::vector<ClosestPoint>(std::move(found));
+  const nb::capsule owner(held, [](void* memory) noexcept { delete static_cast<std::vector<ClosestPoint>*>(memory); });
+  static ClosestPoint nowhere;
+  ClosestPoint& first = held->empty() ? nowhere : held->front();
+  const std::size_t count = held->size();
+  return nb::make_tuple(
+      view_of<double>(&first.point.x, {count, 3}, owner, {doubles, 1}),
+      view_of<double>(&first.distance, {count}, owner, {doubles}),
+      view_of<std::int32_t>(reinterpret_cast<std::int32_t*>(&first.site), {count}, owner, {ints}),
+      view_of<std::int32_t>(reinterpret_cast<std::int32_t*>(&first.triangle), {count}, owner, {ints}));
+}
+
+}  // namespace
+
+void bind_closest_points(nb::module_& m) {
+  nb::class_<ClosestPointQuery>(m, "ClosestPointQuery")
+      .def(
+          "__init__",
+          [](ClosestPointQuery* self, const MeshArrays& mesh, const std::string& sign,
+             std::optional<double> max_distance, int threads, nb::object progress) {
+            const MeshView view = mesh.view();
+            const ClosestPointOptions options{sign_mode(sign), max_distance};
+            new (self) ClosestPointQuery(run({threads, std::move(progress)}, [&](const Context& context) {
+              return ClosestPointQuery(view, options, context);
+            }));
+          },
+          nb::arg("mesh"), nb::arg("sign"), nb::arg("max_distance").none(), nb::arg("threads"),
+          nb::arg("progress").none())
+      .def(
+          "nearest",
+          [](const ClosestPointQuery& self, const PointsIn& points, int threads, nb::object progress) {
+            return columns_of(run({threads, std::move(progress)},
+                                  [&](const Context& context) { return self.nearest(vectors(points), context); }));
+          },
+          nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none())
+      .def_prop_ro("sign_rule", [](const ClosestPointQuery& self) { return std::string(to_string(self.sign_rule())); })
+      .def_prop_ro("sign_reason", [](const ClosestPointQuery& self) { return self.sign_reason(); });
+}
+
+}  // namespace blum::python

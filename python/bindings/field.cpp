@@ -1,0 +1,151 @@
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "blum/field/field.hpp"
+#include "blum/field/interpolate.hpp"
+#include "blum/field/zero_surface.hpp"
+#include "call.hpp"
+#include "fields.hpp"
+
+namespace blum::python {
+namespace {
+
+using FloatsIn = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+
+template <class T>
+Out<T> grid_view(nb::pointer_and_handle<Field> self, T* data) {
+  const auto& size = self.p->grid.size;
+  return view_of<T>(
+      data, {static_cast<std::size_t>(size[2]), static_cast<std::size_t>(size[1]), static_cast<std::size_t>(size[0])},
+      self.h);
+}
+
+Field field_of(const FloatsIn& distance, const GridSpec& grid) {
+  Field field;
+  field.grid = grid;
+  field.distance = Buffer<float>(distance.size());
+  std::copy(distance.data(), distance.data() + distance.size(), field.distance.begin());
+  return field;
+}
+
+FieldOptions options_of(const std::string& sign, std::optional<double> band, const std::string& site_ids) {
+  FieldOptions options;
+  options.sign = sign_mode(sign);
+  options.band = band;
+  options.site_ids = site_ids_of(site_ids);
+  return options;
+}
+
+void bind_field_class(nb::module_& m) {
+  nb::class_<Field>(m, "Field")
+      .def(
+          "__init__",
+          [](Field* self, const FloatsIn& distance, const GridSpec& grid) {
+            new (self) Field(field_of(distance, grid));
+          },
+          nb::arg("distance").noconvert(), nb::arg("grid"))
+      .def_prop_ro("distance",
+                   [](nb::pointer_and_handle<Field> self) { return grid_view(self, self.p->distance.data()); })
+      .def_prop_ro("site",
+                   [](nb::pointer_and_handle<Field> self) -> nb::object {
+                     if (self.p->site.empty()) return nb::none();
+                     return nb::cast(grid_view(self, reinterpret_cast<std::int32_t*>(self.p->site.data())));
+                   })
+      .def_ro("grid", &Field::grid)
+      .def_prop_ro("site_ids", [](const Field& field) { return std::string(to_string(field.site_ids)); })
+      .def_ro("band", &Field::band)
+      .def_prop_ro("sign_rule", [](const Field& field) { return std::string(to_string(field.sign_rule)); })
+      .def_ro("sign_reason", &Field::sign_reason)
+      .def_prop_ro("phases", [](const Field& field) { return phases_of(field.phases); })
+      .def(
+          "interpolate",
+          [](const Field& field, const PointsIn& points, int threads, nb::object progress) {
+            return handed_over<double>(run({threads, std::move(progress)}, [&](const Context& context) {
+              return interpolate(field, vectors(points), context);
+            }));
+          },
+          nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none())
+      .def(
+          "zero_surface",
+          [](const Field& field, double level, int threads, nb::object progress) {
+            return arrays_of(run({threads, std::move(progress)},
+                                 [&](const Context& context) { return zero_surface(field, level, context); }));
+          },
+          nb::arg("level"), nb::arg("threads"), nb::arg("progress").none());
+}
+
+/// A solver, and whether its fields are views of its own buffers.
+void bind_solver(nb::module_& m) {
+  nb::class_<FieldSolver>(m, "FieldSolver")
+      .def(
+          "__init__",
+          [](FieldSolver* self, const GridSpec& grid, const std::string& sign, std::optional<double> band,
+             const std::string& site_ids) { new (self) FieldSolver(grid, options_of(sign, band, site_ids)); },
+          nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"))
+      .def(
+          "compute",
+          [](FieldSolver& solver, const MeshArrays& mesh, int threads, nb::object progress) {
+            const MeshView view = mesh.view();
+            return run({threads, std::move(progress)}, [&](const Context& context) {
+              (void)solver.compute(view, context);
+              return solver.take();
+            });
+          },
+          nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none())
+      .def(
+          "compute_in_place",
+          [](FieldSolver& solver, const MeshArrays& mesh, int threads, nb::object progress) {
+            const MeshView view = mesh.view();
+            return run({threads, std::move(progress)},
+                       [&](const Context& context) { return &solver.compute(view, context); });
+          },
+          nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none(), nb::rv_policy::reference_internal);
+}
+
+}  // namespace
+
+SignMode sign_mode(const std::string& name) {
+  if (name == "auto") return SignMode::automatic;
+  for (const SignMode mode : {SignMode::normals, SignMode::winding, SignMode::none}) {
+    if (name == to_string(mode)) return mode;
+  }
+  throw InvalidOption("sign is \"" + name + "\", but must be \"auto\", \"normals\", \"winding\" or \"none\"");
+}
+
+SiteIds site_ids_of(const std::string& name) {
+  for (const SiteIds ids : {SiteIds::features, SiteIds::triangles}) {
+    if (name == to_string(ids)) return ids;
+  }
+  throw InvalidOption("site_ids is \"" + name + "\", but must be \"features\" or \"triangles\"");
+}
+
+nb::list phases_of(const std::vector<PhaseTime>& phases) {
+  nb::list out;
+  for (const PhaseTime& phase : phases) out.append(nb::make_tuple(phase.phase, phase.seconds));
+  return out;
+}
+
+void bind_field(nb::module_& m) {
+  bind_field_class(m);
+  bind_solver(m);
+  m.def(
+      "distance_field",
+      [](const MeshArrays& mesh, const GridSpec& grid, const std::string& sign, std::optional<double> band,
+         const std::string& site_ids, int threads, nb::object progress) {
+        const MeshView view = mesh.view();
+        const FieldOptions options = options_of(sign, band, site_ids);
+        return run({threads, std::move(progress)},
+                   [&](const Context& context) { return distance_field(view, grid, options, context); });
+      },
+      nb::arg("mesh"), nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"),
+      nb::arg("threads"), nb::arg("progress").none());
+}
+
+}  // namespace blum::python

@@ -1,0 +1,171 @@
+#include "images.hpp"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "bindings.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/field/distance_transform.hpp"
+#include "blum/field/image_reference.hpp"
+#include "blum/grid/voxel_topology.hpp"
+#include "call.hpp"
+#include "fields.hpp"
+
+namespace blum::python {
+namespace {
+
+template <std::size_t index = 0>
+VoxelImageView::Values values_of(const ValuesIn& array) {
+  if constexpr (index == std::variant_size_v<VoxelImageView::Values>) {
+    throw nb::type_error("values of this type cannot be used as an image");
+  } else {
+    using Span = std::variant_alternative_t<index, VoxelImageView::Values>;
+    using Value = std::remove_const_t<typename Span::element_type>;
+    if (array.dtype() == nb::dtype<Value>()) {
+      return Span(static_cast<const Value*>(array.data()), array.size());
+    }
+    return values_of<index + 1>(array);
+  }
+}
+
+LabelSelection selection_of(std::optional<std::int64_t> label, std::optional<double> threshold) {
+  if (label) return LabelSelection::of_label(*label);
+  if (threshold) return LabelSelection::at_least(*threshold);
+  return {};
+}
+
+void bind_transforms(nb::module_& m) {
+  m.def(
+      "distance_transforms",
+      [](const ImageArrays& image, const std::vector<std::int64_t>& labels, std::optional<double> threshold,
+         bool is_signed, std::optional<double> band, int threads, nb::object progress) {
+        std::vector<LabelSelection> selections;
+        for (const std::int64_t label : labels) selections.push_back(LabelSelection::of_label(label));
+        if (labels.empty()) selections.push_back(selection_of({}, threshold));
+        const DistanceTransformOptions options{{}, is_signed, band};
+        std::vector<Field> fields = run({threads, std::move(progress)}, [&](const Context& context) {
+          return distance_transforms(image.view, selections, options, context);
+        });
+        nb::list out;
+        for (Field& field : fields) out.append(nb::cast(std::move(field)));
+        return out;
+      },
+      nb::arg("image"), nb::arg("labels"), nb::arg("threshold").none(), nb::arg("is_signed"), nb::arg("band").none(),
+      nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "selected_voxels",
+      [](const ImageArrays& image, std::optional<std::int64_t> label, std::optional<double> threshold, int threads,
+         nb::object progress) {
+        return mask_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return selected_voxels(image.view, selection_of(label, threshold), context);
+        }));
+      },
+      nb::arg("image"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("threads"),
+      nb::arg("progress").none());
+  m.def(
+      "voxel_topology",
+      [](const MaskIn& mask, int threads, nb::object progress) {
+        return run({threads, std::move(progress)}, [&](const Context& context) {
+          const VoxelSet voxels = voxel_set(mask);
+          return std::pair(betti_numbers(voxels, context), euler_characteristic(voxels, context));
+        });
+      },
+      nb::arg("mask").noconvert(), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "reference_nearest_voxel",
+      [](const MaskIn& targets, const GridSpec& grid, const IndicesIn& voxels, int threads, nb::object progress) {
+        const std::vector<std::uint8_t> wanted(targets.data(), targets.data() + targets.size());
+        const auto asked = rows<std::uint32_t>(voxels);
+        std::vector<double> squared(asked.size());
+        std::vector<std::int32_t> sites(asked.size());
+        run_call({threads, std::move(progress)}, [&](const Context& context) {
+          parallel_for(context, asked.size(), 1, "brute force", [&](const WorkRange& range) {
+            for (std::size_t v = range.begin; v < range.end; ++v) {
+              const reference::NearestVoxel nearest = reference::nearest_voxel(grid, wanted, asked[v]);
+              squared[v] = nearest.squared;
+              sites[v] = nearest.site.to_file();
+            }
+          });
+        });
+        return nb::make_tuple(handed_over<double>(std::move(squared)), handed_over<std::int32_t>(std::move(sites)));
+      },
+      nb::arg("targets").noconvert(), nb::arg("grid"), nb::arg("voxels").noconvert(), nb::arg("threads"),
+      nb::arg("progress").none());
+}
+
+}  // namespace
+
+ImageArrays image_arrays(ValuesIn values, const GridSpec& grid, std::string space) {
+  VoxelImageView view{grid, values_of(values), std::move(space)};
+  validate(view);
+  return {std::move(values), std::move(view)};
+}
+
+nb::tuple image_of(VoxelImage image) {
+  const auto& size = image.grid.size;
+  nb::object values = std::visit(
+      [&]<class T>(std::vector<T>& entries) {
+        auto held = std::make_unique<std::vector<T>>(std::move(entries));
+        T* const data = held->data();
+        const nb::capsule owner(held.release(),
+                                [](void* memory) noexcept { delete static_cast<std::vector<T>*>(memory); });
+        return nb::cast(view_of<T>(
+            data,
+            {static_cast<std::size_t>(size[2]), static_cast<std::size_t>(size[1]), static_cast<std::size_t>(size[0])},
+            owner));
+      },
+      image.values);
+  return nb::make_tuple(std::move(values), image.grid, image.space);
+}
+
+VoxelSet voxel_set(const MaskIn& mask) {
+  VoxelSet out({static_cast<std::int64_t>(mask.shape(2)), static_cast<std::int64_t>(mask.shape(1)),
+                static_cast<std::int64_t>(mask.shape(0))});
+  const std::uint8_t* at = mask.data();
+  for (std::int64_t k = 0; k < out.size()[2]; ++k) {
+    for (std::int64_t j = 0; j < out.size()[1]; ++j) {
+      for (std::int64_t i = 0; i < out.size()[0]; ++i, ++at) {
+        if (*at != 0) out.insert(i, j, k);
+      }
+    }
+  }
+  return out;
+}
+
+Out<std::uint8_t> mask_of(const VoxelSet& voxels) {
+  const auto& size = voxels.size();
+  auto held = std::make_unique<std::vector<std::uint8_t>>();
+  held->reserve(static_cast<std::size_t>(size[0] * size[1] * size[2]));
+  for (std::int64_t k = 0; k < size[2]; ++k) {
+    for (std::int64_t j = 0; j < size[1]; ++j) {
+      for (std::int64_t i = 0; i < size[0]; ++i) held->push_back(voxels.contains(i, j, k) ? 1 : 0);
+    }
+  }
+  std::uint8_t* const data = held->data();
+  const nb::capsule owner(held.release(),
+                          [](void* memory) noexcept { delete static_cast<std::vector<std::uint8_t>*>(memory); });
+  return view_of<std::uint8_t>(
+      data, {static_cast<std::size_t>(size[2]), static_cast<std::size_t>(size[1]), static_cast<std::size_t>(size[0])},
+      owner);
+}
+
+void bind_images(nb::module_& m) {
+  nb::class_<ImageArrays>(m, "ImageArrays")
+      .def(
+          "__init__",
+          [](ImageArrays* self, ValuesIn values, const GridSpec& grid, std::string space) {
+            new (self) ImageArrays(image_arrays(std::move(values), grid, std::move(space)));
+          },
+          nb::arg("values").noconvert(), nb::arg("grid"), nb::arg("space"));
+  bind_transforms(m);
+}
+
+}  // namespace blum::python

@@ -1,0 +1,61 @@
+// The extension module blum._core: what the C++ library does, on arrays, for the Python package alone to call.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+
+#include <exception>
+
+#include "bindings.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
+
+namespace blum::python {
+namespace {
+
+void raise(const char* name, const std::exception& error) {
+  PyErr_SetString(nb::module_::import_("blum._errors").attr(name).ptr(), error.what());
+}
+
+/// Blum's exceptions become those of the same name in blum._errors.
+void translate(const std::exception_ptr& thrown, void* /*payload*/) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const InvalidMesh& error) {
+    raise("InvalidMesh", error);
+  } catch (const InvalidGrid& error) {
+    raise("InvalidGrid", error);
+  } catch (const InvalidImage& error) {
+    raise("InvalidImage", error);
+  } catch (const InvalidOption& error) {
+    raise("InvalidOption", error);
+  } catch (const OutOfMemory& error) {
+    raise("OutOfMemory", error);
+  } catch (const Cancelled& error) {
+    raise("Cancelled", error);
+  } catch (const FormatError& error) {
+    raise("FormatError", error);
+  } catch (const FileError& error) {
+    raise("FileError", error);
+  } catch (const Error& error) {
+    raise("Error", error);
+  }
+}
+
+}  // namespace
+}  // namespace blum::python
+
+// NOLINTNEXTLINE: the macro is nanobind's
+NB_MODULE(_core, m) {
+  using namespace blum::python;
+  m.doc() = "The C++ library on arrays. Private to the package.";
+  nb::register_exception_translator(translate);
+  m.attr("version") = BLUM_VERSION;
+  m.def("thread_count", [](int threads) { return blum::thread_count({.threads = threads}); }, nb::arg("threads") = 0);
+  bind_grid(m);
+  bind_geometry(m);
+  bind_field(m);
+  bind_closest_points(m);
+  bind_images(m);
+  bind_medial_axis(m);
+  bind_certificate(m);
+  bind_files(m);
+}

@@ -1,0 +1,141 @@
+"""Blum: exact distance fields, Voronoi diagrams and certified medial axes of 3D shapes.
+
+Meshes are anything with vertices and triangles, images are arrays [z, y, x]; lengths have the units of the input, and
+inside is negative. The same verbs as in C++ and on the command line:
+
+    field = blum.distance_field(vertices, triangles, resolution=256)
+    found = blum.closest_points(mesh, points)
+    axis = blum.medial_axis("part.stl").simplify(60)
+    axis.certificate.holds
+"""
+
+from . import reference
+from ._certificate import (
+    BallUnionCheck,
+    Certificate,
+    EdgeCheck,
+    GeometryCheck,
+    SolidRule,
+    certify,
+    homology,
+    solid_rule,
+)
+from ._core import thread_count
+from ._core import version as __version__
+from ._errors import (
+    Cancelled,
+    Error,
+    FileError,
+    FormatError,
+    InvalidGrid,
+    InvalidImage,
+    InvalidMesh,
+    InvalidOption,
+    NotCertified,
+    OutOfMemory,
+)
+from ._field import (
+    ClosestPointQuery,
+    ClosestPoints,
+    Field,
+    FieldSolver,
+    VoxelTopology,
+    closest_points,
+    distance_field,
+    distance_transform,
+    distance_transforms,
+    read_field,
+    selected_voxels,
+    voxel_topology,
+)
+from ._grid import Grid
+from ._image import Image, read_image
+from ._medial import (
+    ROLES,
+    BodyReport,
+    MedialAxis,
+    MedialAxisReport,
+    MedialComplex,
+    ball_union_field,
+    medial_axis,
+    read_medial,
+)
+from ._mesh import (
+    Mesh,
+    SelfIntersections,
+    Shell,
+    Sites,
+    Topology,
+    WindingNumber,
+    pseudonormals,
+    read_mesh,
+    self_intersections,
+    topology,
+    weld,
+    weld_clusters,
+)
+from ._shapes import ShapeInfo, ShapeParameter, generate, known_betti, shapes
+
+__all__ = [
+    "ROLES",
+    "BallUnionCheck",
+    "BodyReport",
+    "Cancelled",
+    "Certificate",
+    "ClosestPointQuery",
+    "ClosestPoints",
+    "EdgeCheck",
+    "Error",
+    "Field",
+    "FieldSolver",
+    "FileError",
+    "FormatError",
+    "GeometryCheck",
+    "Grid",
+    "Image",
+    "InvalidGrid",
+    "InvalidImage",
+    "InvalidMesh",
+    "InvalidOption",
+    "MedialAxis",
+    "MedialAxisReport",
+    "MedialComplex",
+    "Mesh",
+    "NotCertified",
+    "OutOfMemory",
+    "SelfIntersections",
+    "ShapeInfo",
+    "ShapeParameter",
+    "Shell",
+    "Sites",
+    "SolidRule",
+    "Topology",
+    "VoxelTopology",
+    "WindingNumber",
+    "__version__",
+    "ball_union_field",
+    "certify",
+    "closest_points",
+    "distance_field",
+    "distance_transform",
+    "distance_transforms",
+    "generate",
+    "homology",
+    "known_betti",
+    "medial_axis",
+    "pseudonormals",
+    "read_field",
+    "read_image",
+    "read_medial",
+    "read_mesh",
+    "reference",
+    "selected_voxels",
+    "self_intersections",
+    "shapes",
+    "solid_rule",
+    "thread_count",
+    "topology",
+    "voxel_topology",
+    "weld",
+    "weld_clusters",
+]

@@ -1,0 +1,149 @@
+"""Arguments as users give them, turned into what the C++ library takes; errors name the argument."""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import InvalidMesh, InvalidOption
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int32]
+PathLike = str | os.PathLike[str]
+
+_LARGEST_INDEX = np.iinfo(np.int32).max
+
+
+def existing_file(path: PathLike) -> Path:
+    """The path of a file that can be read, or FileNotFoundError, as open() raises it."""
+    file = Path(os.fspath(path))
+    if not file.exists():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(file))
+    return file
+
+
+def as_array(value: Any, name: str) -> npt.NDArray[Any]:
+    """Any array-like on the CPU as a NumPy array, without a copy where that can be."""
+    if isinstance(value, np.ndarray):
+        return value
+    try:
+        if hasattr(value, "__dlpack__") and hasattr(value, "__dlpack_device__"):
+            return np.from_dlpack(value)
+        array = np.asarray(value)
+    except Exception as error:
+        raise TypeError(f"{name} cannot be used as an array on the CPU: {error}") from error
+    return array
+
+
+def float_rows(value: Any, name: str, width: int = 3) -> FloatArray:
+    """An (n, width) array of float64. No copy is made of a C-contiguous one, and one of any other."""
+    array = as_array(value, name)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
+    if array.ndim == 1 and array.size == 0:
+        array = array.reshape(0, width)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise ValueError(f"{name} has the shape {array.shape}, but must have (n, {width})")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def points_and_shape(value: Any, name: str) -> tuple[FloatArray, tuple[int, ...]]:
+    """Points of the shape (..., 3) as rows, and the shape without the 3."""
+    array = as_array(value, name)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"{name} has the shape {array.shape}, but must have (..., 3)")
+    return np.ascontiguousarray(array.reshape(-1, 3), dtype=np.float64), array.shape[:-1]
+
+
+def float_list(value: Any, name: str) -> FloatArray:
+    array = as_array(value, name)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
+    if array.ndim != 1:
+        raise ValueError(f"{name} has the shape {array.shape}, but must have (n,)")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def indices(value: Any, name: str, width: int | None, count: int | None = None) -> IntArray:
+    """Indices as int32, (n, width) or (n,). No copy is made of C-contiguous int32 and uint32, and one of any other.
+
+    With `count`, they must be below it; the error names the first that is not.
+    """
+    array = as_array(value, name)
+    wanted = "(n,)" if width is None else f"(n, {width})"
+    if array.size == 0:
+        return np.zeros((0,) if width is None else (0, width), dtype=np.int32)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name} must hold integers, not {array.dtype}")
+    if array.ndim != (1 if width is None else 2) or (width is not None and array.shape[1] != width):
+        raise ValueError(f"{name} has the shape {array.shape}, but must have {wanted}")
+    limit = _LARGEST_INDEX if count is None else count
+    if int(array.min()) < 0 or int(array.max()) >= limit:
+        wrong = np.argwhere((array < 0) | (array >= limit))[0]
+        where = ", ".join(str(int(place)) for place in wrong)
+        reason = f"must be 0 to {limit - 1}" if limit else "there are no vertices"
+        raise InvalidMesh(f"{name}[{where}] is {int(array[tuple(wrong)])}, but {reason}")
+    if array.dtype == np.uint32:
+        array = array.view(np.int32)
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def triple(value: Any, name: str) -> tuple[float, float, float]:
+    """Three numbers in x, y, z order; a single number stands for all three."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must be numbers, not {type(value).__name__}")
+    if array.shape == ():
+        array = np.repeat(array, 3)
+    if array.shape != (3,):
+        raise ValueError(f"{name} has the shape {array.shape}, but must be three numbers (x, y, z)")
+    return float(array[0]), float(array[1]), float(array[2])
+
+
+def matrix(value: Any, name: str) -> FloatArray:
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must hold numbers, not {array.dtype}")
+    if array.shape != (3, 3):
+        raise ValueError(f"{name} has the shape {array.shape}, but must have (3, 3)")
+    return array.astype(np.float64)
+
+
+def box(value: Any, name: str) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """A box as (lower, upper)."""
+    if not isinstance(value, (Sequence, np.ndarray)) or isinstance(value, (str, bytes)) or len(value) != 2:
+        raise ValueError(f"{name} must be a pair of corners, ((x0, y0, z0), (x1, y1, z1))")
+    return triple(value[0], f"{name}[0]"), triple(value[1], f"{name}[1]")
+
+
+def one_of(value: Any, name: str, allowed: Sequence[str]) -> str:
+    if value in allowed:
+        return str(value)
+    raise InvalidOption(f"{name} is {value!r}, but must be one of {', '.join(map(repr, allowed))}")
+
+
+def integer(value: Any, name: str) -> int:
+    """An integer of Python or NumPy that fits the library's 32 bits."""
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name} must be an integer, not {type(value).__name__}")
+    if not -(2**31) <= int(value) < 2**31:
+        raise InvalidOption(f"{name} is {int(value)}, which is out of range")
+    return int(value)
+
+
+def number(value: Any, name: str) -> float:
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise TypeError(f"{name} must be a number, not {type(value).__name__}")
+    return float(value)
+
+
+def optional_number(value: Any, name: str) -> float | None:
+    return None if value is None else number(value, name)

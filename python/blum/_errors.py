@@ -1,0 +1,41 @@
+"""What Blum raises. Each class is also the built-in one that a caller would expect."""
+
+
+class Error(Exception):
+    """Base of everything that Blum raises on purpose; its text says what was wrong, where, and what to do."""
+
+
+class InvalidMesh(Error, ValueError):
+    """A mesh that cannot be used: nothing in it, coordinates that are not finite, indices out of range."""
+
+
+class InvalidGrid(Error, ValueError):
+    """A grid that cannot be used: spacing that is not positive, no nodes, too many nodes."""
+
+
+class InvalidImage(Error, ValueError):
+    """An image that cannot be used, or in which nothing is selected."""
+
+
+class InvalidOption(Error, ValueError):
+    """An argument out of its range, or arguments that exclude each other."""
+
+
+class OutOfMemory(Error, MemoryError):
+    """The memory that a call needs is not there; the text says how much it asked for."""
+
+
+class Cancelled(Error):
+    """The call was asked to stop."""
+
+
+class FileError(Error, OSError):
+    """A file that cannot be opened, read or written."""
+
+
+class FormatError(FileError, ValueError):
+    """A file whose content is not what its format asks for."""
+
+
+class NotCertified(Error):
+    """An axis that does not have the topology or the geometry that it should have."""

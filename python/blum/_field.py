@@ -1,0 +1,513 @@
+"""Distance fields of meshes and images, and exact closest points."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arguments import (
+    FloatArray,
+    IntArray,
+    PathLike,
+    as_array,
+    existing_file,
+    integer,
+    number,
+    one_of,
+    optional_number,
+    points_and_shape,
+)
+from ._errors import InvalidOption
+from ._grid import Grid, grid_for, mask_array
+from ._image import as_image
+from ._mesh import Betti, Mesh, as_mesh, mesh_of_arrays
+from ._progress import Progress, reporting
+
+Sign = Literal["auto", "normals", "winding", "none"]
+SiteIds = Literal["features", "triangles"]
+
+_SIGNS = ("auto", "normals", "winding", "none")
+_SITE_IDS = ("features", "triangles")
+
+
+class Field:
+    """Distance and closest site at every node of a grid; made by :func:`distance_field` and its kin.
+
+    ``Field(distance, grid)`` makes one of an array (z, y, x) of float32 (copied), to take level surfaces of, say.
+    """
+
+    def __init__(self, distance: Any, grid: Grid) -> None:
+        array = as_array(distance, "distance")
+        if array.dtype.kind not in "fiu":
+            raise TypeError(f"distance must hold real numbers, not {array.dtype}")
+        if array.shape != grid.shape:
+            raise ValueError(f"distance has the shape {array.shape}, but the grid's is {grid.shape}")
+        self._take(_core.Field(np.ascontiguousarray(array, dtype=np.float32), grid._spec))
+
+    @classmethod
+    def _of(cls, core: _core.Field, mesh: Mesh | None = None, source: str = "", space: str = "") -> Field:
+        field = cls.__new__(cls)
+        field._take(core, mesh, source, space)
+        return field
+
+    def _take(self, core: _core.Field, mesh: Mesh | None = None, source: str = "", space: str = "") -> None:
+        self._core = core
+        self._space = space
+        #: The mesh that the field is of, if that is known.
+        self.mesh = mesh
+        #: Where the shape came from, for the metadata of files.
+        self.source = source
+        #: float32 (z, y, x): distance in mesh units, negative inside when signed; +-band beyond a band.
+        self.distance: npt.NDArray[np.float32] = core.distance
+        #: int32 (z, y, x): the closest site, -1 where there is none; None for a field without sites.
+        self.site: IntArray | None = cast("IntArray | None", core.site)
+
+    @property
+    def grid(self) -> Grid:
+        return Grid._of(self._core.grid)
+
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """Position of node (0, 0, 0), in x, y, z order."""
+        return self.grid.origin
+
+    @property
+    def spacing(self) -> tuple[float, float, float]:
+        """Distance between nodes, in x, y, z order."""
+        return self.grid.spacing
+
+    @property
+    def site_ids(self) -> str:
+        """What the sites count: "features" (see :class:`Sites`), "triangles" or "voxels" (flat indices)."""
+        return str(self._core.site_ids)
+
+    @property
+    def band(self) -> float | None:
+        """Half-width of the band, mesh units."""
+        found: float | None = self._core.band
+        return found
+
+    @property
+    def sign_rule(self) -> str:
+        """How signs were found: "normals", "winding", "label", "balls" or "none"."""
+        return str(self._core.sign_rule)
+
+    @property
+    def sign_reason(self) -> str:
+        """Why, in one sentence."""
+        return str(self._core.sign_reason)
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Wall-clock seconds of each phase."""
+        return dict(self._core.phases)
+
+    def interpolate(self, points: Any, *, threads: int = 0, progress: Progress = False) -> FloatArray:
+        """The distance at points of the shape (..., 3), trilinear between nodes; NaN outside of the grid.
+
+        Not exact, as :func:`closest_points` is: off by up to about half a cell's diagonal next to edges and bisectors.
+
+        >>> import blum
+        >>> field = blum.distance_field(blum.generate("sphere"), resolution=64)
+        >>> round(float(field.interpolate([0.5, 0, 0])), 2)
+        -0.5
+        """
+        rows, shape = points_and_shape(points, "points")
+        with reporting(progress) as report:
+            values: FloatArray = self._core.interpolate(rows, integer(threads, "threads"), report)
+        return values.reshape(shape)
+
+    def zero_surface(self, level: float = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
+        """The surface where the distance equals `level` (mesh units), facing larger values.
+
+        >>> import blum
+        >>> field = blum.distance_field(blum.generate("torus"), resolution=32)
+        >>> blum.topology(field.zero_surface()).betti
+        (1, 1, 0)
+        """
+        with reporting(progress) as report:
+            return mesh_of_arrays(self._core.zero_surface(number(level, "level"), integer(threads, "threads"), report))
+
+    def write(self, path: PathLike, *, progress: Progress = False) -> None:
+        """Writes .nrrd (sites beside it), .npz or .vti; the files appear complete or not at all."""
+        with reporting(progress) as report:
+            arrays = None if self.mesh is None else self.mesh._arrays
+            _core.write_field(Path(os.fspath(path)), self._core, arrays, self.source, self._space, 0, report)
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.ImageData with the point data `distance` and `site`; a dict of arrays where PyVista is missing."""
+        try:
+            import pyvista
+        except ImportError:
+            return {
+                "distance": self.distance,
+                "site": self.site,
+                "origin": self.origin,
+                "spacing": self.spacing,
+                "direction": self.grid.direction,
+            }
+        grid = self.grid
+        out = pyvista.ImageData(
+            dimensions=grid.size, spacing=grid.spacing, origin=grid.origin, direction_matrix=grid.direction
+        )
+        out.point_data["distance"] = self.distance.ravel()
+        if self.site is not None:
+            out.point_data["site"] = self.site.ravel()
+        return out
+
+    def __repr__(self) -> str:
+        return f"Field({self.distance.shape}, spacing={self.spacing}, sign_rule={self.sign_rule!r})"
+
+
+def distance_field(
+    mesh: Any,
+    triangles: Any = None,
+    *,
+    resolution: int = 256,
+    spacing: float | None = None,
+    padding: float = 0.1,
+    bounds: Any = None,
+    grid: Grid | None = None,
+    sign: Sign = "auto",
+    band: float | None = None,
+    site_ids: SiteIds = "features",
+    threads: int = 0,
+    progress: Progress = False,
+) -> Field:
+    """Exact distance and closest site at every node of a grid.
+
+    Parameters
+    ----------
+    mesh, triangles
+        Vertices (n, 3) and triangles (m, 3); or one argument: a :class:`Mesh`, a path, an object of trimesh, Open3D,
+        meshio or PyVista. Any soup will do.
+    resolution : int
+        Nodes along the longest side of the padded box around the mesh.
+    spacing : float, optional
+        Distance between nodes, mesh units; instead of `resolution`.
+    padding : float
+        Added to the box on each side, as a fraction of its longest side.
+    bounds : ((x0, y0, z0), (x1, y1, z1)), optional
+        The grid covers exactly this box instead.
+    grid : Grid, optional
+        The grid itself.
+    sign : "auto", "normals", "winding" or "none"
+        Inside is negative. "auto" goes by orientation where the mesh is closed and simple, else by winding numbers.
+    band : float, optional
+        Half-width of a narrow band, mesh units. Beyond it nodes get +-band and no site.
+    site_ids : "features" or "triangles"
+        What `Field.site` counts: vertices, edges and faces (see :class:`Sites`), or triangles.
+    threads : int
+        0: all cores. Results do not depend on it.
+    progress : bool or function
+        True: a bar of tqdm. A function is called with (fraction, phase).
+
+    Returns
+    -------
+    Field
+        Distances within 1e-6 of the diagonal of mesh and grid of exact, as float32.
+
+    Raises
+    ------
+    InvalidMesh, InvalidGrid, InvalidOption (all ValueError), TypeError, OutOfMemory, KeyboardInterrupt
+
+    >>> import blum
+    >>> field = blum.distance_field(blum.generate("box"), resolution=32)
+    >>> field.distance.shape, field.sign_rule
+    ((32, 32, 32), 'normals')
+    """
+    shape = as_mesh(mesh, triangles)
+    nodes = grid_for(shape, grid, bounds, resolution, spacing, padding)
+    with reporting(progress) as report:
+        core = _core.distance_field(
+            shape._arrays,
+            nodes._spec,
+            one_of(sign, "sign", _SIGNS),
+            optional_number(band, "band"),
+            one_of(site_ids, "site_ids", _SITE_IDS),
+            integer(threads, "threads"),
+            report,
+        )
+    return Field._of(core, shape, shape.source)
+
+
+class FieldSolver:
+    """Fields of a deforming mesh on one grid, frame after frame.
+
+    Parameters
+    ----------
+    grid : Grid
+    sign, band, site_ids
+        As for :func:`distance_field`.
+    reuse : bool
+        Write every frame into the same arrays: faster, but a frame's arrays then change with the next one. Without it
+        each frame has its own.
+
+    >>> import numpy as np, blum
+    >>> mesh = blum.generate("sphere", frequency=4)
+    >>> solver = blum.FieldSolver(blum.Grid.around(mesh, resolution=16, padding=0.5))
+    >>> smaller = solver.compute(mesh.vertices * 0.5, mesh.triangles)
+    >>> bool(np.all(smaller.distance >= solver.compute(mesh).distance - 1e-6))
+    True
+    """
+
+    def __init__(
+        self,
+        grid: Grid,
+        *,
+        sign: Sign = "auto",
+        band: float | None = None,
+        site_ids: SiteIds = "features",
+        reuse: bool = False,
+    ) -> None:
+        if not isinstance(grid, Grid):
+            raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
+        self._solver = _core.FieldSolver(
+            grid._spec,
+            one_of(sign, "sign", _SIGNS),
+            optional_number(band, "band"),
+            one_of(site_ids, "site_ids", _SITE_IDS),
+        )
+        self._reuse = bool(reuse)
+        self._busy = threading.Lock()
+
+    def compute(self, mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> Field:
+        """The field of this frame's mesh. Threads that share a solver wait for each other."""
+        shape = as_mesh(mesh, triangles)
+        compute = self._solver.compute_in_place if self._reuse else self._solver.compute
+        with self._busy, reporting(progress) as report:
+            return Field._of(compute(shape._arrays, integer(threads, "threads"), report), shape, shape.source)
+
+
+def distance_transform(
+    image: Any,
+    *,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    label: int | None = None,
+    threshold: float | None = None,
+    signed: bool = True,
+    band: float | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+) -> Field:
+    """Exact Euclidean distance and closest voxel at every voxel of an image, from centre to centre.
+
+    Parameters
+    ----------
+    image : (z, y, x) array, Image, or path
+        Booleans or numbers; selected are the voxels that are not zero, unless `label` or `threshold` says otherwise.
+    spacing, origin, direction
+        As for :class:`Image`, in x, y, z order: the reverse of the array's axes.
+    label : int, optional
+        Select the voxels of this value.
+    threshold : float, optional
+        Select the voxels of at least this value.
+    signed : bool
+        True: distance to the nearest voxel of the other kind, negative at selected voxels. False: distance to the
+        nearest selected voxel, as ``scipy.ndimage.distance_transform_edt(~mask)``.
+    band : float, optional
+        Half-width of a band, in the units of the spacing.
+
+    Returns
+    -------
+    Field
+        `Field.site` holds flat indices of the closest voxels.
+
+    >>> import numpy as np, blum
+    >>> mask = np.zeros((3, 3, 3), dtype=bool)
+    >>> mask[1, 1, 1] = True
+    >>> blum.distance_transform(mask, signed=False).distance[1, 1].tolist()
+    [1.0, 0.0, 1.0]
+    """
+    labels = [] if label is None else [integer(label, "label")]
+    return _transforms(image, spacing, origin, direction, labels, threshold, signed, band, threads, progress)[0]
+
+
+def distance_transforms(
+    image: Any,
+    labels: Sequence[int],
+    *,
+    spacing: Any = None,
+    origin: Any = None,
+    direction: Any = None,
+    signed: bool = True,
+    band: float | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+) -> list[Field]:
+    """One :func:`distance_transform` for each label, checked once and with shared working memory."""
+    wanted = [integer(label, "labels") for label in labels]
+    if not wanted:
+        return []
+    return _transforms(image, spacing, origin, direction, wanted, None, signed, band, threads, progress)
+
+
+def _transforms(
+    image: Any,
+    spacing: Any,
+    origin: Any,
+    direction: Any,
+    labels: list[int],
+    threshold: float | None,
+    signed: bool,
+    band: float | None,
+    threads: int,
+    progress: Progress,
+) -> list[Field]:
+    if labels and threshold is not None:
+        raise InvalidOption("label and threshold exclude each other")
+    voxels = as_image(image, spacing, origin, direction)
+    with reporting(progress) as report:
+        fields = _core.distance_transforms(
+            voxels._arrays,
+            labels,
+            optional_number(threshold, "threshold"),
+            bool(signed),
+            optional_number(band, "band"),
+            integer(threads, "threads"),
+            report,
+        )
+    return [Field._of(field, None, voxels.source, voxels.space) for field in fields]
+
+
+@dataclass(frozen=True)
+class VoxelTopology:
+    """The topology of the union of closed voxels."""
+
+    betti: Betti  #: components (26-connected), tunnels, voids
+    euler_characteristic: int
+
+
+def selected_voxels(
+    image: Any,
+    *,
+    label: int | None = None,
+    threshold: float | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+) -> npt.NDArray[np.bool_]:
+    """The mask of the voxels that are not zero, of a label, or of at least a threshold."""
+    if label is not None and threshold is not None:
+        raise InvalidOption("label and threshold exclude each other")
+    with reporting(progress) as report:
+        mask: npt.NDArray[np.uint8] = _core.selected_voxels(
+            as_image(image)._arrays,
+            None if label is None else integer(label, "label"),
+            optional_number(threshold, "threshold"),
+            integer(threads, "threads"),
+            report,
+        )
+    return mask.view(np.bool_)
+
+
+def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -> VoxelTopology:
+    """Betti numbers of the voxels of a mask [z, y, x].
+
+    >>> import blum
+    >>> blum.voxel_topology(blum.generate("tube_image", nodes=2).values).betti
+    (1, 5, 0)
+    """
+    with reporting(progress) as report:
+        betti, euler = _core.voxel_topology(mask_array(mask, "mask"), integer(threads, "threads"), report)
+    return VoxelTopology((betti[0], betti[1], betti[2]), euler)
+
+
+@dataclass(frozen=True)
+class ClosestPoints:
+    """What :func:`closest_points` finds; all arrays have the shape of the queries without the last axis."""
+
+    points: FloatArray  #: (..., 3): on the mesh; the query itself where nothing is within max_distance
+    distance: FloatArray  #: mesh units, negative inside when signed; infinite where nothing is within max_distance
+    site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
+    triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
+
+
+class ClosestPointQuery:
+    """Closest-point queries on one mesh, exact; may be called from many threads at once.
+
+    Parameters
+    ----------
+    mesh, triangles
+        As for :func:`distance_field`.
+    sign : "auto", "normals", "winding" or "none"
+        "none" is cheapest.
+    max_distance : float, optional
+        Nothing further than this is looked for, mesh units.
+
+    >>> import blum
+    >>> query = blum.ClosestPointQuery(blum.generate("box"))
+    >>> query([[0, 0, 5]]).points.tolist()
+    [[0.0, 0.0, 0.5]]
+    """
+
+    def __init__(
+        self,
+        mesh: Any,
+        triangles: Any = None,
+        *,
+        sign: Sign = "auto",
+        max_distance: float | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> None:
+        with reporting(progress) as report:
+            self._query = _core.ClosestPointQuery(
+                as_mesh(mesh, triangles)._arrays,
+                one_of(sign, "sign", _SIGNS),
+                optional_number(max_distance, "max_distance"),
+                integer(threads, "threads"),
+                report,
+            )
+
+    @property
+    def sign_rule(self) -> str:
+        return str(self._query.sign_rule)
+
+    @property
+    def sign_reason(self) -> str:
+        return str(self._query.sign_reason)
+
+    def __call__(self, points: Any, *, threads: int = 0, progress: Progress = False) -> ClosestPoints:
+        """Queries of the shape (..., 3)."""
+        rows, shape = points_and_shape(points, "points")
+        with reporting(progress) as report:
+            found, distance, site, triangle = self._query.nearest(rows, integer(threads, "threads"), report)
+        return ClosestPoints(
+            found.reshape((*shape, 3)), distance.reshape(shape), site.reshape(shape), triangle.reshape(shape)
+        )
+
+
+def closest_points(
+    mesh: Any,
+    points: Any,
+    *,
+    sign: Sign = "auto",
+    max_distance: float | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+) -> ClosestPoints:
+    """The closest point of a mesh, its distance, site and triangle for every query; exact, not interpolated.
+
+    >>> import blum
+    >>> found = blum.closest_points(blum.generate("sphere"), [[0, 0, 3], [0, 0, 0.2]])
+    >>> [round(distance, 2) for distance in found.distance.tolist()]
+    [2.0, -0.8]
+    """
+    return ClosestPointQuery(mesh, sign=sign, max_distance=max_distance, threads=threads, progress=progress)(
+        points, threads=threads, progress=progress
+    )
+
+
+def read_field(path: PathLike) -> Field:
+    """Reads a field of .nrrd (sites beside it), .npz or .vti."""
+    return Field._of(_core.read_field(existing_file(path)), None, os.fspath(path))

@@ -1,0 +1,111 @@
+"""Voxel images: what Blum takes as one."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arguments import PathLike, as_array, existing_file
+from ._errors import InvalidOption
+from ._grid import Grid, image_grid
+
+_EXTENSIONS = (".nrrd", ".nhdr", ".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".npy", ".vol")
+
+
+class Image:
+    """A 3D image of numbers, and where its voxel centres lie.
+
+    Parameters
+    ----------
+    values : (z, y, x) array
+        Booleans, integers or floats. C-contiguous arrays are used as they are, without a copy. An array of two axes is
+        one layer.
+    spacing, origin : three numbers, optional
+        In x, y, z order: the reverse of the array's axes. A single number stands for all three.
+    direction : (3, 3) array, optional
+        Orthonormal; column a is the direction of index axis a (0: x, the array's last axis).
+
+    >>> import numpy as np, blum
+    >>> blum.Image(np.zeros((4, 5, 6), dtype=np.uint8), spacing=(0.5, 0.5, 2)).grid.size
+    (6, 5, 4)
+    """
+
+    def __init__(
+        self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, direction: Any = None, *, space: str = ""
+    ) -> None:
+        array = as_array(values, "image")
+        if array.dtype.kind not in "biuf" or array.dtype == np.float16:
+            if array.dtype != np.float16:
+                raise TypeError(f"image must hold numbers or booleans, not {array.dtype}")
+            array = array.astype(np.float32)
+        if array.dtype.kind == "f" and array.dtype.itemsize > 8:
+            raise TypeError(f"image must hold at most 64 bits a voxel, not {array.dtype}")
+        if array.ndim == 2:
+            array = array[np.newaxis]
+        if array.ndim != 3:
+            raise ValueError(f"image has {array.ndim} axes, but must have 3: [z, y, x]")
+        array = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("="))
+        #: The voxels, [z, y, x].
+        self.values: npt.NDArray[Any] = array
+        self.grid = image_grid(array.shape, spacing, origin, direction)
+        #: What the world axes are, as NRRD names it: "left-posterior-superior", ...; empty where that is not known.
+        self.space = space
+        #: Where the image came from, for the metadata of files.
+        self.source: str = ""
+        self._arrays = _core.ImageArrays(
+            array.view(np.uint8) if array.dtype == np.bool_ else array, self.grid._spec, space
+        )
+
+    @property
+    def spacing(self) -> tuple[float, float, float]:
+        return self.grid.spacing
+
+    def write(self, path: PathLike) -> None:
+        """Writes .nrrd (with the grid) or .npy (values only)."""
+        _core.write_image(Path(os.fspath(path)), self._arrays)
+
+    def __repr__(self) -> str:
+        return f"Image({self.values.dtype} {self.values.shape}, spacing={self.spacing})"
+
+
+def read_image(path: PathLike) -> Image:
+    """Reads .nrrd, .nhdr, .nii, .nii.gz, .hdr with .img, .npy or .vol; spacing, origin and direction are the file's."""
+    image = image_of_parts(*_core.read_image(existing_file(path)))
+    image.source = os.fspath(path)
+    return image
+
+
+def image_of_parts(values: npt.NDArray[Any], spec: _core.GridSpec, space: str) -> Image:
+    """An image of what the library hands over."""
+    grid = Grid._of(spec)
+    return Image(values, grid.spacing, grid.origin, grid.direction, space=space)
+
+
+def is_image_path(value: Any) -> bool:
+    return isinstance(value, (str, os.PathLike)) and os.fspath(value).lower().endswith(_EXTENSIONS)
+
+
+def is_image(value: Any) -> bool:
+    """Whether something stands for an image rather than for a mesh."""
+    return isinstance(value, Image) or is_image_path(value) or (hasattr(value, "ndim") and value.ndim == 3)
+
+
+def as_image(image: Any, spacing: Any = None, origin: Any = None, direction: Any = None) -> Image:
+    """Anything that stands for an image: an Image, a path, an array [z, y, x]."""
+    told = [
+        name
+        for name, value in (("spacing", spacing), ("origin", origin), ("direction", direction))
+        if value is not None
+    ]
+    if isinstance(image, (str, os.PathLike)):
+        image = read_image(image)
+    if isinstance(image, Image):
+        if told:
+            raise InvalidOption(f"{told[0]} is given, but the image has its own")
+        return image
+    return Image(image, 1.0 if spacing is None else spacing, 0.0 if origin is None else origin, direction)

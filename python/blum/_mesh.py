@@ -1,0 +1,436 @@
+"""Meshes: what Blum takes as one, and what is asked of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arguments import (
+    FloatArray,
+    IntArray,
+    PathLike,
+    existing_file,
+    float_rows,
+    indices,
+    integer,
+    number,
+    optional_number,
+    points_and_shape,
+)
+from ._progress import Progress, reporting
+
+Betti = tuple[int, int, int]
+Bounds = tuple[tuple[float, float, float], tuple[float, float, float]]
+
+
+class Mesh:
+    """A set of triangles, segments and points over shared vertices; nothing is assumed of it.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Positions, in mesh units. C-contiguous float64 is used as it is, without a copy; anything else is converted.
+    triangles : (m, 3) array of integers, optional
+        Vertices of each triangle, counter-clockwise as seen from outside. C-contiguous int32 and uint32 are used as
+        they are; int64 is converted.
+    segments : (s, 2) array of integers, optional
+    points : (p,) array of integers, optional
+        Vertices that are part of the shape by themselves. Without triangles, segments and points, all are.
+
+    The arrays must not change while a call runs; between calls they may (see :class:`FieldSolver`).
+
+    >>> import blum
+    >>> tetrahedron = blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    ...                         [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> tetrahedron
+    Mesh(4 vertices, 4 triangles)
+    >>> blum.topology(tetrahedron).betti
+    (1, 0, 0)
+    """
+
+    def __init__(self, vertices: Any, triangles: Any = None, segments: Any = None, points: Any = None) -> None:
+        self.vertices: FloatArray = float_rows(vertices, "vertices")
+        count = len(self.vertices)
+        is_cloud = triangles is None and segments is None and points is None
+        if is_cloud:
+            points = np.arange(count, dtype=np.int32)
+        none: tuple[int, ...] = ()
+        self.triangles: IntArray = indices(none if triangles is None else triangles, "triangles", 3, count)
+        self.segments: IntArray = indices(none if segments is None else segments, "segments", 2, count)
+        self.points: IntArray = indices(none if points is None else points, "points", None, count)
+        #: Facts of the file that the mesh was read from: format, counts before Blum changed anything, what was welded.
+        self.file_info: dict[str, Any] = {}
+        #: Where the mesh came from, for the metadata of files.
+        self.source: str = ""
+        self._weld: float | None = None
+        self._arrays = _core.MeshArrays(self.vertices, self.triangles, self.segments, self.points)
+
+    @property
+    def bounds(self) -> Bounds:
+        """The box around all vertices that are named, as (lower, upper)."""
+        return cast(Bounds, self._arrays.bounds())
+
+    def write(self, path: PathLike) -> None:
+        """Writes .obj, .off, .stl or .ply; the file appears complete or not at all."""
+        _core.write_mesh(Path(os.fspath(path)), self._arrays)
+
+    def to_trimesh(self) -> Any:
+        """A trimesh.Trimesh of the triangles, unprocessed; (vertices, triangles) where trimesh is not installed."""
+        try:
+            import trimesh
+        except ImportError:
+            return self.vertices, self.triangles
+        return trimesh.Trimesh(self.vertices, self.triangles, process=False)
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.PolyData of triangles, segments and points; a dict of the arrays where PyVista is not installed."""
+        try:
+            import pyvista
+        except ImportError:
+            return {
+                "vertices": self.vertices,
+                "triangles": self.triangles,
+                "segments": self.segments,
+                "points": self.points,
+            }
+        return pyvista.PolyData(
+            self.vertices,
+            faces=_padded(self.triangles),
+            lines=_padded(self.segments),
+            verts=_padded(self.points.reshape(-1, 1)),
+        )
+
+    def __repr__(self) -> str:
+        parts = [f"{len(self.vertices):,} vertices"]
+        for name in ("triangles", "segments", "points"):
+            if len(getattr(self, name)):
+                parts.append(f"{len(getattr(self, name)):,} {name}")
+        return f"Mesh({', '.join(parts)})"
+
+
+def _padded(cells: IntArray) -> npt.NDArray[Any] | None:
+    """Cells as VTK lists them, each after its number of corners; None where there are none."""
+    if len(cells) == 0:
+        return None
+    width = np.full((len(cells), 1), cells.shape[1], dtype=np.int64)
+    return np.hstack([width, cells]).ravel()
+
+
+def mesh_of_arrays(arrays: tuple[Any, Any, Any, Any]) -> Mesh:
+    """A mesh of what the library hands over."""
+    vertices, triangles, segments, points = arrays
+    return Mesh(vertices, triangles, segments, points)
+
+
+def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh") -> Mesh:
+    """Anything that stands for a mesh, as a Mesh.
+
+    Mesh; a path; vertices with triangles, apart or as a pair; an object with ``vertices`` and ``faces`` or
+    ``triangles`` (trimesh, Open3D); a meshio mesh (triangles, quads, lines and vertices of it); a PyVista dataset.
+    """
+    if triangles is not None:
+        return Mesh(mesh, triangles)
+    if isinstance(mesh, Mesh):
+        return mesh
+    if isinstance(mesh, (str, os.PathLike)):
+        return read_mesh(mesh)
+    if isinstance(mesh, (tuple, list)) and len(mesh) == 2 and np.ndim(mesh[0]) == 2:
+        return Mesh(mesh[0], mesh[1])
+    if hasattr(mesh, "vertices"):
+        for faces in ("faces", "triangles"):
+            if hasattr(mesh, faces):
+                return Mesh(np.asarray(mesh.vertices), np.asarray(getattr(mesh, faces)))
+    if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
+        return _of_meshio(mesh)
+    if hasattr(mesh, "extract_surface") and hasattr(mesh, "points"):
+        return _of_pyvista(mesh)
+    raise TypeError(
+        f"{name} is a {type(mesh).__name__}, but must be a blum.Mesh, a path, a pair (vertices, triangles), or an "
+        "object of trimesh, Open3D, meshio or PyVista"
+    )
+
+
+def _of_meshio(mesh: Any) -> Mesh:
+    cells: Mapping[str, Any] = mesh.cells_dict
+    triangles = [np.asarray(cells["triangle"])] if "triangle" in cells else []
+    if "quad" in cells:
+        quads = np.asarray(cells["quad"])
+        triangles += [quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]
+    points = np.asarray(mesh.points, dtype=np.float64)
+    if points.shape[1] == 2:
+        points = np.hstack([points, np.zeros((len(points), 1))])
+    vertex = cells.get("vertex")
+    return Mesh(
+        points,
+        np.vstack(triangles) if triangles else (),
+        cells.get("line", ()),
+        () if vertex is None else np.asarray(vertex).ravel(),
+    )
+
+
+def _of_pyvista(mesh: Any) -> Mesh:
+    surface = mesh if hasattr(mesh, "is_all_triangles") else mesh.extract_surface()
+    if not surface.is_all_triangles:
+        surface = surface.triangulate()
+    lines = np.asarray(surface.lines).ravel()
+    segments: list[tuple[int, int]] = []
+    at = 0
+    while at < len(lines):  # each line is its number of points, then these
+        line = lines[at + 1 : at + 1 + lines[at]]
+        segments += [(int(a), int(b)) for a, b in pairwise(line)]
+        at += 1 + int(lines[at])
+    faces = np.asarray(surface.faces).reshape(-1, 4)[:, 1:]
+    is_cloud = len(faces) == 0 and len(segments) == 0
+    return Mesh(np.asarray(surface.points), None if is_cloud else faces, None if is_cloud else np.array(segments))
+
+
+def read_mesh(path: PathLike, *, weld: float | None = None) -> Mesh:
+    """Reads .obj, .off, .stl (text, binary) or .ply (text, binary).
+
+    Parameters
+    ----------
+    path : path
+    weld : float, optional
+        Merge vertices closer than this (mesh units); 0: equal ones. Default: equal ones for .stl, none for the others.
+
+    Raises
+    ------
+    FileNotFoundError, FileError, FormatError
+        The latter two name the file and where it is wrong.
+    """
+    tolerance = optional_number(weld, "weld")
+    arrays, info = _core.read_mesh(existing_file(path), tolerance)
+    mesh = mesh_of_arrays(arrays)
+    mesh.file_info = dict(info)
+    mesh.source = os.fspath(path)
+    mesh._weld = tolerance
+    return mesh
+
+
+def weld(mesh: Any, tolerance: float = 0.0) -> Mesh:
+    """Merges vertices at the same place, or that steps no longer than `tolerance` (mesh units) join.
+
+    >>> import blum
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    >>> blum.weld((corners, [[0, 1, 2], [3, 4, 5]]))
+    Mesh(4 vertices, 2 triangles)
+    """
+    return mesh_of_arrays(_core.weld(as_mesh(mesh)._arrays, number(tolerance, "tolerance")))
+
+
+def weld_clusters(vertices: Any, tolerance: float = 0.0) -> IntArray:
+    """For each of (n, 3) vertices, the smallest index of those that :func:`weld` would merge it with."""
+    found: IntArray = _core.weld_clusters(float_rows(vertices, "vertices"), number(tolerance, "tolerance"))
+    return found
+
+
+@dataclass(frozen=True)
+class Shell:
+    """A closed, consistently oriented component of a surface."""
+
+    triangles: int
+    bounds: Bounds
+    signed_volume: float  #: cubic mesh units; positive where it faces away from what it encloses
+    area: float  #: square mesh units
+    euler_characteristic: int
+    genus: int  #: number of handles
+    depth: int  #: number of other shells that it lies in
+    parent: int | None  #: the innermost of these
+    faces_outwards: bool  #: away from the solid
+
+
+@dataclass(frozen=True)
+class Topology:
+    """Counts and facts of a mesh, as ``blum info`` prints them."""
+
+    vertices: int
+    named_vertices: int  #: those that a triangle, segment or point names
+    edges: int
+    triangles: int
+    segments: int
+    points: int
+    bounds: Bounds | None
+    pieces: int  #: sets connected through shared vertices
+    surface_components: int  #: sets of triangles connected through shared edges
+    closed_components: int
+    boundary_edges: int  #: edges with one triangle
+    boundary_loops: int  #: holes
+    nonmanifold_edges: int  #: edges with more than two triangles
+    nonmanifold_vertices: int
+    inconsistent_edges: int  #: traversed in the same direction by both triangles
+    degenerate_triangles: int
+    duplicate_triangles: int
+    closed: bool
+    oriented: bool
+    manifold: bool
+    faces_outwards: bool
+    area: float  #: square mesh units
+    signed_volume: float  #: cubic mesh units
+    euler_characteristic: int
+    shells: tuple[Shell, ...]
+    betti: Betti | None  #: components, tunnels, voids of the solid; None where the mesh bounds none
+
+
+def topology(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> Topology:
+    """What a mesh is as a surface and as a solid. Crossings are not looked for: :func:`self_intersections`.
+
+    >>> import blum
+    >>> blum.topology(blum.generate("torus")).betti
+    (1, 1, 0)
+    """
+    with reporting(progress) as report:
+        found = _core.topology(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
+    shells = tuple(Shell(**shell) for shell in found.pop("shells"))
+    return Topology(shells=shells, **found)
+
+
+@dataclass(frozen=True)
+class SelfIntersections:
+    """Pairs of triangles that have more in common than a corner or an edge."""
+
+    pairs: IntArray  #: (n, 2), the smaller triangle first, rising
+    crosses: npt.NDArray[np.bool_]  #: (n,): whether they cross; else they touch
+    complete: bool  #: False where there are more than the limit
+
+
+def self_intersections(
+    mesh: Any, triangles: Any = None, *, limit: int = 100000, threads: int = 0, progress: Progress = False
+) -> SelfIntersections:
+    """Where a mesh crosses or touches itself; exact for the coordinates as they are.
+
+    >>> import blum
+    >>> len(blum.self_intersections(blum.generate("sphere")).pairs)
+    0
+    """
+    most = integer(limit, "limit")
+    if most < 0:
+        raise ValueError(f"limit is {most}, but must be at least 0")
+    with reporting(progress) as report:
+        pairs, crosses, complete = _core.self_intersections(
+            as_mesh(mesh, triangles)._arrays, most, integer(threads, "threads"), report
+        )
+    return SelfIntersections(pairs, crosses.view(np.bool_), complete)
+
+
+class Sites:
+    """The vertices, open edges and open faces of a mesh, numbered as the sites of its fields are.
+
+    Ids [0, V) are the vertices, [V, V + E) the distinct edges in rising order of (smaller, larger vertex), and
+    [V + E, V + E + F) the triangles.
+
+    >>> import blum
+    >>> sites = blum.Sites(blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+    >>> len(sites), sites.kind([0, 4, 6]).tolist()
+    (7, ['vertex', 'edge', 'face'])
+    >>> sites.vertices([4]).tolist()
+    [[0, 2, -1]]
+    """
+
+    def __init__(self, mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> None:
+        with reporting(progress) as report:
+            self._table = _core.SiteTable(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
+
+    @property
+    def vertex_count(self) -> int:
+        return int(self._table.vertex_count)
+
+    @property
+    def edges(self) -> IntArray:
+        """(E, 2): the vertices of each edge, the smaller one first."""
+        found: IntArray = self._table.edges
+        return found
+
+    @property
+    def triangle_edges(self) -> IntArray:
+        """(F, 3): entry k is the edge between corners k and (k + 1) % 3, counted among the edges."""
+        found: IntArray = self._table.triangle_edges
+        return found
+
+    def __len__(self) -> int:
+        return self.vertex_count + len(self.edges) + int(self._table.face_count)
+
+    def kind(self, ids: Any) -> npt.NDArray[np.str_]:
+        """'vertex', 'edge' or 'face' for each id."""
+        found = self._checked(ids)
+        names = np.array(["vertex", "edge", "face"])
+        return names[np.searchsorted([self.vertex_count, self.vertex_count + len(self.edges)], found, side="right")]
+
+    def index(self, ids: Any) -> IntArray:
+        """What each id counts within its kind: the vertex, the edge, the triangle."""
+        found = self._checked(ids)
+        edges_from, faces_from = self.vertex_count, self.vertex_count + len(self.edges)
+        return np.where(
+            found < edges_from, found, np.where(found < faces_from, found - edges_from, found - faces_from)
+        ).astype(np.int32)
+
+    def vertices(self, ids: Any) -> IntArray:
+        """(n, 3): the one, two or three vertices of each site, padded with -1."""
+        found: IntArray = self._table.vertices(self._checked(ids))
+        return found
+
+    def triangles(self, ids: Any) -> IntArray:
+        """(n,): the smallest triangle that each site lies on; -1 where there is none."""
+        found: IntArray = self._table.triangles(self._checked(ids))
+        return found
+
+    def _checked(self, ids: Any) -> IntArray:
+        return indices(np.atleast_1d(np.asarray(ids)), "ids", None, len(self))
+
+
+def pseudonormals(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> FloatArray:
+    """(sites, 3): angle-weighted normals of all sites, not normalised; zero where a site lies on no triangle."""
+    with reporting(progress) as report:
+        found: FloatArray = _core.pseudonormals(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
+    return found
+
+
+class WindingNumber:
+    """The generalized winding number of the triangles of a mesh: 1 inside of a closed surface, 0 outside.
+
+    >>> import blum
+    >>> inside = blum.WindingNumber(blum.generate("box"))
+    >>> inside([[0, 0, 0], [5, 5, 5]]).round(6).tolist()
+    [1.0, 0.0]
+    """
+
+    def __init__(self, mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> None:
+        with reporting(progress) as report:
+            self._winding = _core.WindingNumber(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
+
+    def __call__(
+        self, points: Any, *, approximate: float | None = None, threads: int = 0, progress: Progress = False
+    ) -> FloatArray:
+        """The number at points of the shape (..., 3).
+
+        Parameters
+        ----------
+        approximate : float, optional
+            Above 1: replace triangles further away than this many times the size of their cluster by a series; 2 gives
+            errors of about 1e-3. Default: the full sum, good to about 1e-12.
+        """
+        beta = -1.0 if approximate is None else number(approximate, "approximate")
+        if approximate is not None and not beta > 1:
+            raise ValueError(f"approximate is {beta}, but must be above 1")
+        rows, shape = points_and_shape(points, "points")
+        if not np.isfinite(rows).all():
+            raise ValueError("points must be finite")
+        with reporting(progress) as report:
+            values: FloatArray = self._winding.values(rows, beta, integer(threads, "threads"), report)
+        return values.reshape(shape)
+
+    def is_inside(self, points: Any, *, threads: int = 0, progress: Progress = False) -> npt.NDArray[np.bool_]:
+        """Whether the number is above 1/2 at points of the shape (..., 3), as the full sum decides it."""
+        rows, shape = points_and_shape(points, "points")
+        if not np.isfinite(rows).all():
+            raise ValueError("points must be finite")
+        with reporting(progress) as report:
+            inside: npt.NDArray[np.uint8] = self._winding.is_inside(rows, integer(threads, "threads"), report)
+        return inside.view(np.bool_).reshape(shape)
