@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `make lint`: format, clang-tidy, shell scripts, layer rules, text rules and links, each counted as one check.
-#   tools/lint.sh [CHECK ...]   only these: format includes text links shell tidy
+#   tools/lint.sh [CHECK ...]   only these: format includes text links shell python tidy
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -29,6 +29,14 @@ shell_scripts() {
   shellcheck "${files[@]}"
 }
 
+# The Python package, its tests and its examples: ruff's rules and form.
+python_sources() {
+  local files
+  mapfile -t files < <(git ls-files --cached --others --exclude-standard -- 'python/*.py' 'examples/python/*.py' \
+    'tests/python/test_package_*.py' tests/python/conftest.py tests/python/wheel_smoke.py)
+  build/venv/bin/ruff check --quiet "${files[@]}" && build/venv/bin/ruff format --check "${files[@]}"
+}
+
 run() {
   case $1 in
     format) tools/format.sh --check ;;
@@ -36,6 +44,7 @@ run() {
     text) tools/check_text.py ;;
     links) tools/check_links.py ;;
     shell) shell_scripts ;;
+    python) python_sources ;;
     tidy) tidy ;;
     *)
       echo "lint: unknown check $1" >&2
@@ -50,7 +59,7 @@ if [[ ${1:-} == --run ]]; then
 fi
 results=${RESULTS:-build/results/lint}
 [[ -n ${RESULTS:-} ]] || rm -rf "$results"
-[[ $# -gt 0 ]] || set -- format includes text links shell tidy
+[[ $# -gt 0 ]] || set -- format includes text links shell python tidy
 for name in "$@"; do
   tools/results.py check "$results" "lint-$name" -- "$0" --run "$name"
 done

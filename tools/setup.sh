@@ -8,10 +8,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(make g++ cmake ninja-build libtbb-dev libhwy-dev zlib1g-dev libpng-dev libcli11-dev nlohmann-json3-dev)
-tests=(libgtest-dev python3 python3-venv ca-certificates)
+tests=(libgtest-dev python3-dev python3-venv ca-certificates)
 bench=(libbenchmark-dev libembree-dev libcgal-dev libopenvdb-dev python3 python3-venv ca-certificates)
 docs=(doxygen python3)
-lint=(clang-format-19 clang-tidy-19 shellcheck python3)
+lint=(clang-format-19 clang-tidy-19 shellcheck python3 python3-venv ca-certificates)
 fuzz=(clang-19 libclang-rt-19-dev)
 ci=(ccache)
 
@@ -25,7 +25,10 @@ for option in "$@"; do
       requirement_files+=(tests/python/requirements.txt bench/requirements.txt)
       ;;
     --docs) packages+=("${docs[@]}") ;;
-    --lint) packages+=("${lint[@]}") ;;
+    --lint)
+      packages+=("${lint[@]}")
+      requirement_files+=(tests/python/requirements.txt)
+      ;;
     --fuzz) packages+=("${fuzz[@]}") ;;
     --ci) packages+=("${ci[@]}") ;;
     --all)

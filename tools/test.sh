@@ -9,7 +9,7 @@ tools/setup.sh --tests
 results=${RESULTS:-build/results/test}
 [[ -n ${RESULTS:-} ]] || rm -rf "$results"
 
-options=()
+options=(-DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/venv/bin/python")
 [[ -n ${CI:-} ]] && options+=(-DBLUM_WERROR=ON)
 tools/results.py check "$results" build -- tools/build.sh release "${options[@]}"
 if [[ -f build/release/build.ninja ]]; then
@@ -17,6 +17,8 @@ if [[ -f build/release/build.ninja ]]; then
   tools/ctest.sh "$results" ctest build/release
   if compgen -G 'tests/*/test_*.py' >/dev/null; then
     echo "--- pytest: tests/python, tests/cli"
+    # The package as the build made it; that a wheel of it works elsewhere is shown by tools/check_wheel.sh.
+    export PYTHONPATH=$PWD/build/release/python
     rm -f build/pytest.xml
     bin=$PWD/build/release/bin
     BLUM=$bin/blum BLUM_CLI=$bin/blum BLUM_BIN_DIR=$bin BLUM_DISTANCE_TRANSFORM_SAMPLE=$bin/distance_transform_sample \

@@ -121,6 +121,9 @@ def box(value: Any, name: str) -> tuple[tuple[float, float, float], tuple[float,
     """A box as (lower, upper)."""
     if not isinstance(value, (Sequence, np.ndarray)) or isinstance(value, (str, bytes)) or len(value) != 2:
         raise ValueError(f"{name} must be a pair of corners, ((x0, y0, z0), (x1, y1, z1))")
+    for corner in value:
+        if np.ndim(corner) != 1:
+            raise ValueError(f"{name} must be a pair of corners, ((x0, y0, z0), (x1, y1, z1))")
     return triple(value[0], f"{name}[0]"), triple(value[1], f"{name}[1]")
 
 

@@ -510,4 +510,4 @@ def closest_points(
 
 def read_field(path: PathLike) -> Field:
     """Reads a field of .nrrd (sites beside it), .npz or .vti."""
-    return Field._of(_core.read_field(existing_file(path)), None, os.fspath(path))
+    return Field._of(_core.read_field(existing_file(path)), None, Path(path).name)

@@ -76,7 +76,7 @@ class Image:
 def read_image(path: PathLike) -> Image:
     """Reads .nrrd, .nhdr, .nii, .nii.gz, .hdr with .img, .npy or .vol; spacing, origin and direction are the file's."""
     image = image_of_parts(*_core.read_image(existing_file(path)))
-    image.source = os.fspath(path)
+    image.source = Path(path).name
     return image
 
 

@@ -250,7 +250,7 @@ class MedialComplex:
 
     @property
     def grid(self) -> Grid | None:
-        """Voxel centres, where the solid is only known as voxels of a mesh."""
+        """Voxel centres: of the first body, or of the image; None where that is not known."""
         return self._origin.grid
 
     @cached_property
@@ -437,7 +437,7 @@ class MedialAxis:
             self._origin.lambda_,
             min((body.spacing for body in report.bodies), default=None),
             report.rule,
-            report.grid if report.rule == "winding" else None,
+            report.grid,
             self._origin.source,
             self._origin.weld,
             "voxels" if is_image else "features",

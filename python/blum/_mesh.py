@@ -148,10 +148,10 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh") -> Mesh:
         for faces in ("faces", "triangles"):
             if hasattr(mesh, faces):
                 return Mesh(np.asarray(mesh.vertices), np.asarray(getattr(mesh, faces)))
+    if hasattr(mesh, "extract_geometry") and hasattr(mesh, "points"):
+        return _of_pyvista(mesh)
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
         return _of_meshio(mesh)
-    if hasattr(mesh, "extract_surface") and hasattr(mesh, "points"):
-        return _of_pyvista(mesh)
     raise TypeError(
         f"{name} is a {type(mesh).__name__}, but must be a blum.Mesh, a path, a pair (vertices, triangles), or an "
         "object of trimesh, Open3D, meshio or PyVista"
@@ -177,7 +177,7 @@ def _of_meshio(mesh: Any) -> Mesh:
 
 
 def _of_pyvista(mesh: Any) -> Mesh:
-    surface = mesh if hasattr(mesh, "is_all_triangles") else mesh.extract_surface()
+    surface = mesh if hasattr(mesh, "is_all_triangles") else mesh.extract_geometry()
     if not surface.is_all_triangles:
         surface = surface.triangulate()
     lines = np.asarray(surface.lines).ravel()
@@ -210,7 +210,7 @@ def read_mesh(path: PathLike, *, weld: float | None = None) -> Mesh:
     arrays, info = _core.read_mesh(existing_file(path), tolerance)
     mesh = mesh_of_arrays(arrays)
     mesh.file_info = dict(info)
-    mesh.source = os.fspath(path)
+    mesh.source = Path(path).name
     mesh._weld = tolerance
     return mesh
 

@@ -1,0 +1,52 @@
+"""How far a point robot stays from the obstacles of a scene on its way: exact closest points, not a grid's.
+
+    python clearance_of_scene.py [MESH] [-o CLEARANCE.csv] [--steps N]
+
+Without a mesh, a chain of linked rings that Blum generates. The way is a helix through the scene.
+"""
+
+import argparse
+import pathlib
+
+import blum
+import numpy as np
+
+
+def helix(bounds, steps):
+    """(steps, 3): a way of three turns around the middle of a box, from end to end of its longest axis."""
+    lower, upper = np.array(bounds)
+    size = upper - lower
+    axis = int(np.argmax(size))
+    part = np.linspace(0, 1, steps)
+    turn = 6 * np.pi * part
+    way = np.tile((lower + upper) / 2, (steps, 1))
+    way[:, axis] = lower[axis] + part * size[axis]
+    way[:, (axis + 1) % 3] += 0.3 * size[(axis + 1) % 3] * np.cos(turn)
+    way[:, (axis + 2) % 3] += 0.3 * size[(axis + 2) % 3] * np.sin(turn)
+    return way
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("mesh", nargs="?")
+    parser.add_argument("-o", "--output", default="clearance.csv")
+    parser.add_argument("--steps", type=int, default=1000)
+    arguments = parser.parse_args()
+
+    scene = blum.read_mesh(arguments.mesh) if arguments.mesh else blum.generate("linked_tori", count=3)
+    way = helix(scene.bounds, arguments.steps)
+    found = blum.closest_points(scene, way)
+    closest = int(np.argmin(found.distance))
+    print(
+        f"{scene}: clearance {found.distance[closest]:.4g} at {way[closest].round(3).tolist()}, "
+        f"{np.mean(found.distance < 0):.1%} of the way in an obstacle"
+    )
+    header = "x,y,z,clearance,closest x,closest y,closest z,triangle"
+    rows = np.column_stack([way, found.distance, found.points, found.triangle])
+    lines = [header, *(",".join(f"{value:.9g}" for value in row) for row in rows)]
+    pathlib.Path(arguments.output).write_text("\n".join(lines) + "\n")
+    print(f"wrote {arguments.output}")
+
+
+if __name__ == "__main__":
+    main()

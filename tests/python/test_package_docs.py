@@ -1,0 +1,92 @@
+"""Proves that the examples in docstrings and in examples/python run, and that the package is typed."""
+
+import doctest
+import importlib
+import os
+import pathlib
+import pkgutil
+import subprocess
+import sys
+
+import pytest
+
+blum = pytest.importorskip("blum")
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MODULES = [module.name for module in pkgutil.iter_modules(blum.__path__) if module.name != "_core"]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_docstrings_are_true(module):
+    result = doctest.testmod(importlib.import_module(f"blum.{module}"))
+    assert result.failed == 0
+
+
+def test_every_public_name_has_a_docstring():
+    public = {
+        name: getattr(blum, name) for name in blum.__all__ if name not in ("ROLES", "__version__", "thread_count")
+    }
+    assert not [name for name, value in public.items() if not value.__doc__]
+    for name, value in public.items():
+        if isinstance(value, type):
+            methods = {key: member for key, member in vars(value).items() if callable(member) and key[0] != "_"}
+            assert not [f"{name}.{key}" for key, member in methods.items() if not member.__doc__]
+
+
+@pytest.mark.parametrize("example", sorted(path.name for path in (ROOT / "examples/python").glob("*.py")))
+def test_examples_run(example, tmp_path):
+    if example == "field_slices.py":
+        pytest.importorskip("matplotlib")
+    out = (
+        tmp_path
+        / {
+            "field_slices.py": "out.png",
+            "medial_axis_of_part.py": "out.vtp",
+            "thickness_of_image.py": "out.nrrd",
+            "clearance_of_scene.py": "out.csv",
+        }[example]
+    )
+    smaller = ["--resolution", "64"] if example in ("field_slices.py", "medial_axis_of_part.py") else []
+    done = subprocess.run(
+        [sys.executable, ROOT / "examples/python" / example, "-o", out, *smaller],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert out.stat().st_size > 1000 and f"wrote {out}" in done.stdout
+
+
+def test_types_hold_under_mypy_strict(tmp_path):
+    pytest.importorskip("mypy")
+    user = tmp_path / "user.py"
+    user.write_text(
+        "import blum\nimport numpy as np\n"
+        "field: blum.Field = blum.distance_field(np.zeros((3, 3)), np.zeros((1, 3), dtype=int), resolution=8)\n"
+        "inside: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = field.distance < 0\n"
+        "piece: blum.MedialComplex = blum.medial_axis('part.stl').simplify(60)\n"
+        "holds: bool = piece.certificate.holds\n"
+        "wrong: int = piece.radius  # type: ignore[assignment]\n"
+    )
+    package = pathlib.Path(blum.__file__).parent
+    environment = {**os.environ, "MYPYPATH": str(package.parent)}
+    for arguments in (["-p", "blum"], [str(user)]):
+        done = subprocess.run(
+            [
+                sys.executable,
+                "-m",
+                "mypy",
+                "--strict",
+                "--cache-dir",
+                str(tmp_path / "cache"),
+                "--config-file",
+                str(ROOT / "pyproject.toml"),
+                *arguments,
+            ],
+            capture_output=True,
+            text=True,
+            check=False,
+            env=environment,
+            cwd=tmp_path,
+        )
+        assert done.returncode == 0, done.stdout

@@ -1,0 +1,202 @@
+"""Proves that the Python package's fields, closest points and transforms are those of brute force, SciPy and the
+command-line tool, for any kind of input, and that arrays are shared where that is promised."""
+
+import threading
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy import ndimage
+
+blum = pytest.importorskip("blum")
+
+
+@pytest.fixture(scope="module")
+def torus():
+    return blum.generate("torus", ring_segments=24, tube_segments=12)
+
+
+def soup(seed, triangles=20):
+    random = np.random.default_rng(seed)
+    vertices = random.uniform(-1, 1, (3 * triangles, 3))
+    return vertices, np.arange(3 * triangles, dtype=np.int32).reshape(-1, 3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_field_equals_brute_force(seed):
+    vertices, triangles = soup(seed)
+    field = blum.distance_field(vertices, triangles, resolution=20, sign="none")
+    expected, _ = blum.reference.nearest((vertices, triangles), field.grid.positions())
+    extent = np.linalg.norm(np.ptp(vertices, axis=0))
+    assert np.abs(field.distance - expected).max() <= 1e-6 * 2 * extent
+    # The site that is named is as close as the closest one.
+    sites = blum.Sites(vertices, triangles)
+    assert set(sites.kind(np.unique(field.site))) <= {"vertex", "edge", "face"}
+
+
+def test_all_defaults_are_those_of_the_tool(torus, tmp_path):
+    import tool
+
+    torus.write(tmp_path / "torus.ply")
+    tool.run("field", tmp_path / "torus.ply", "-o", tmp_path / "field.npz", "--resolution", 40)
+    theirs, ours = blum.read_field(tmp_path / "field.npz"), blum.distance_field(torus, resolution=40)
+    assert np.array_equal(theirs.distance, ours.distance) and np.array_equal(theirs.site, ours.site)
+    assert theirs.grid == ours.grid and theirs.sign_rule == ours.sign_rule == "normals"
+
+
+def test_arrays_are_shared_both_ways(torus):
+    mesh = blum.Mesh(torus.vertices, torus.triangles)
+    assert mesh.vertices is torus.vertices and mesh.triangles is torus.triangles
+    field = blum.distance_field(mesh, resolution=16)
+    assert field.distance is field.distance and field.distance.flags.c_contiguous
+    assert np.shares_memory(np.from_dlpack(field.distance), field.distance)
+    distance, expected = field.distance, field.distance.copy()
+    del field
+    for _ in range(3):
+        blum.distance_field(mesh, resolution=16, sign="none")
+    assert np.array_equal(distance, expected), "an array must outlive its field"
+    image = np.zeros((4, 5, 6), dtype=np.float32)
+    assert np.shares_memory(blum.Image(image).values, image)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int64])
+@pytest.mark.parametrize("index", [np.int32, np.uint32, np.int64, np.uint8])
+def test_every_dtype_and_order_gives_the_same_field(dtype, index):
+    vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]])
+    triangles = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    expected = blum.distance_field(vertices.astype(float), triangles.astype(np.int32), resolution=12)
+    given_vertices = np.asfortranarray(vertices.astype(dtype))
+    field = blum.distance_field(given_vertices, triangles.astype(index)[::-1][::-1], resolution=12)
+    assert np.array_equal(field.distance, expected.distance)
+
+
+def test_objects_of_other_packages(torus, tmp_path):
+    trimesh, meshio = pytest.importorskip("trimesh"), pytest.importorskip("meshio")
+    pyvista = pytest.importorskip("pyvista")
+    torus.write(tmp_path / "torus.ply")
+    inputs = [
+        trimesh.Trimesh(torus.vertices, torus.triangles, process=False),
+        meshio.Mesh(torus.vertices, [("triangle", torus.triangles)]),
+        torus.to_pyvista(),
+        torus.to_pyvista().cast_to_unstructured_grid(),
+        tmp_path / "torus.ply",
+        str(tmp_path / "torus.ply"),
+        (torus.vertices, torus.triangles),
+    ]
+    expected = blum.distance_field(torus, resolution=16).distance
+    for value in inputs:
+        field = blum.distance_field(value, resolution=16)
+        assert np.abs(field.distance - expected).max() < 1e-6, type(value)
+    assert torus.to_trimesh().is_watertight
+    assert isinstance(torus.to_pyvista(), pyvista.PolyData)
+    grid = blum.distance_field(torus, resolution=16).to_pyvista()
+    assert np.array_equal(grid.point_data["distance"], expected.ravel())
+
+
+def test_signed_distances_agree_with_trimesh(torus):
+    trimesh = pytest.importorskip("trimesh")
+    points = np.random.default_rng(3).uniform(-1.2, 1.2, (300, 3))
+    found = blum.closest_points(torus, points)
+    mesh = torus.to_trimesh()
+    closest, distance, _ = trimesh.proximity.closest_point_naive(mesh, points)
+    assert np.abs(np.abs(found.distance) - distance).max() < 1e-9
+    assert np.abs(found.points - closest).max() < 1e-6
+    assert np.array_equal(found.distance < 0, blum.WindingNumber(torus).is_inside(points))
+
+
+@settings(max_examples=40, deadline=None)
+@given(arrays(np.bool_, st.tuples(*[st.integers(1, 7)] * 3)), st.tuples(*[st.sampled_from([0.5, 1.0, 3.0])] * 3))
+def test_transforms_equal_scipy(mask, spacing):
+    if not mask.any():
+        with pytest.raises(ValueError, match="no voxel"):
+            blum.distance_transform(mask, spacing=spacing, signed=False)
+        return
+    field = blum.distance_transform(mask, spacing=spacing, signed=False)
+    expected = ndimage.distance_transform_edt(~mask, sampling=spacing[::-1])
+    assert np.allclose(field.distance, expected, rtol=1e-6, atol=0)
+    assert mask.ravel()[field.site].all()
+    squared, _ = blum.reference.nearest_voxel(mask, np.arange(mask.size), grid=field.grid)
+    assert np.allclose(field.distance.ravel() ** 2, squared, rtol=1e-6)
+
+
+def test_labels_thresholds_and_bands():
+    image = blum.generate("balls_image", count=3)
+    one, two = blum.distance_transforms(image, [1, 2])
+    assert np.array_equal(one.distance, blum.distance_transform(image, label=1).distance)
+    assert np.array_equal(two.distance < 0, image.values == 2)
+    above = blum.distance_transform(image, threshold=2)
+    assert np.array_equal(above.distance < 0, image.values >= 2)
+    band = blum.distance_transform(image, band=2.0)
+    assert band.band == 2.0 and np.abs(band.distance).max() == 2.0 and (band.site == -1).any()
+    assert np.array_equal(blum.selected_voxels(image, label=3), image.values == 3)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_interpolation_is_right_at_nodes_and_nan_outside(seed):
+    vertices, triangles = soup(seed, 3)
+    field = blum.distance_field(vertices, triangles, resolution=8)
+    values = field.interpolate(field.grid.positions())
+    assert np.abs(values - field.distance).max() < 1e-6
+    assert np.isnan(field.interpolate(np.array(field.grid.bounds[1]) + 1))
+
+
+def test_a_solver_follows_a_deforming_mesh(torus):
+    grid = blum.Grid.around(torus, resolution=24, padding=0.5)
+    own, reused = blum.FieldSolver(grid), blum.FieldSolver(grid, reuse=True)
+    for scale in (1.0, 0.7, 1.3):
+        vertices = torus.vertices * scale
+        expected = blum.distance_field(vertices, torus.triangles, grid=grid)
+        for solver in (own, reused):
+            frame = solver.compute(vertices, torus.triangles)
+            assert np.array_equal(frame.distance, expected.distance) and np.array_equal(frame.site, expected.site)
+    first = own.compute(torus).distance.copy()
+    kept = own.compute(torus).distance
+    own.compute(torus.vertices * 0.5, torus.triangles)
+    assert np.array_equal(kept, first), "without reuse each frame has its own arrays"
+
+
+def test_threads_call_at_once(torus):
+    grid, expected = blum.Grid.around(torus, resolution=32), blum.distance_field(torus, resolution=32).distance
+    solver, wrong = blum.FieldSolver(grid, reuse=False), []
+
+    def work():
+        for _ in range(5):
+            if not np.array_equal(blum.distance_field(torus, grid=grid, threads=1).distance, expected):
+                wrong.append("field")
+            if not np.array_equal(solver.compute(torus, threads=1).distance, expected):
+                wrong.append("solver")
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_files_go_round(torus, tmp_path):
+    field = blum.distance_field(torus, resolution=12)
+    for name in ("field.nrrd", "field.npz", "field.vti"):
+        field.write(tmp_path / name)
+        back = blum.read_field(tmp_path / name)
+        assert np.array_equal(back.distance, field.distance) and np.array_equal(back.site, field.site)
+    torus.write(tmp_path / "torus.off")
+    assert np.array_equal(blum.read_mesh(tmp_path / "torus.off").vertices, torus.vertices)
+    image = blum.Image(np.arange(24, dtype=np.int16).reshape(2, 3, 4), spacing=(1, 2, 3), origin=(4, 5, 6))
+    image.write(tmp_path / "image.nrrd")
+    again = blum.read_image(tmp_path / "image.nrrd")
+    assert np.array_equal(again.values, image.values) and again.grid == image.grid
+
+
+def test_level_surfaces_and_topology(torus):
+    surface = blum.distance_field(torus, resolution=48).zero_surface()
+    facts = blum.topology(surface)
+    assert facts.betti == (1, 1, 0) and facts.closed and facts.manifold and facts.shells[0].genus == 1
+    assert not len(blum.self_intersections(surface).pairs)
+    crossing = blum.self_intersections(
+        np.array([[0, 0, -1], [0, 0, 1], [0, 1, 0], [-1, 0.2, 0], [1, 0.2, 0], [0, 0.4, 1.0]]), [[0, 1, 2], [3, 4, 5]]
+    )
+    assert crossing.pairs.tolist() == [[0, 1]] and crossing.crosses.tolist() == [True]

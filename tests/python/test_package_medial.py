@@ -1,0 +1,125 @@
+"""Proves that medial axes of the Python package are those of the tool, are certified, and that a wrong axis is not."""
+
+import numpy as np
+import pytest
+
+blum = pytest.importorskip("blum")
+
+
+@pytest.fixture(scope="module")
+def plate():
+    return blum.generate("plate", holes_x=2, holes_y=1)
+
+
+@pytest.fixture(scope="module")
+def axis(plate):
+    return blum.medial_axis(plate, resolution=64)
+
+
+@pytest.mark.parametrize("theta", [0, 20, 60, 120])
+def test_axes_are_certified_at_every_angle(axis, plate, theta):
+    piece = axis.simplify(theta)
+    certificate = piece.certificate
+    assert certificate and certificate.axis == certificate.solid == (1, 2, 0) == blum.known_betti(
+        "plate", holes_x=2, holes_y=1
+    )
+    assert certificate.geometry.radius_error <= certificate.geometry.tolerance
+    assert blum.homology(len(piece.vertices), piece.edges, piece.triangles) == (1, 2, 0)
+    found = blum.closest_points(plate, piece.vertices)
+    assert np.abs(-found.distance - piece.radius).max() < 1e-9
+    assert np.abs(np.linalg.norm(piece.footprints[:, 0] - piece.vertices, axis=1) - piece.radius).max() < 1e-9
+
+
+def test_larger_angles_give_parts_of_smaller_ones(axis):
+    def keys(piece):
+        corners = np.sort(piece.vertices[piece.triangles].round(9), axis=1)
+        return {triangle.tobytes() for triangle in corners}
+
+    assert keys(axis.simplify(120)) <= keys(axis.simplify(60)) <= keys(axis.simplify(20))
+
+
+def test_defaults_are_those_of_the_tool(plate, tmp_path):
+    import tool
+
+    plate.write(tmp_path / "plate.ply")
+    tool.run("medial", tmp_path / "plate.ply", "-o", tmp_path / "axis.npz", "--resolution", 64)
+    theirs, ours = (
+        blum.read_medial(tmp_path / "axis.npz"),
+        blum.medial_axis(tmp_path / "plate.ply", resolution=64).simplify(),
+    )
+    for name in ("vertices", "radius", "footprints", "sites", "role", "edges", "triangles", "triangle_sheet"):
+        assert np.array_equal(getattr(theirs, name), getattr(ours, name)), name
+    for end in ("vtp", "ply", "obj", "ma", "npz"):
+        ours.write(tmp_path / f"ours.{end}")
+        tool.run("verify", tmp_path / "plate.ply", tmp_path / f"ours.{end}")
+    assert (tmp_path / "ours.npz").read_bytes() == (tmp_path / "axis.npz").read_bytes()
+
+
+def test_a_wrong_axis_is_not_certified(axis, plate):
+    piece = axis.simplify(60)
+    parts = {
+        name: np.array(getattr(piece, name))
+        for name in (
+            "radius",
+            "footprints",
+            "sites",
+            "separation_angle",
+            "role",
+            "edges",
+            "edge_angle",
+            "edge_role",
+            "triangles",
+            "triangle_angle",
+            "triangle_sheet",
+        )
+    }
+    assert blum.certify(blum.MedialComplex(piece.vertices, **parts), plate)
+    wrong = blum.certify(blum.MedialComplex(piece.vertices, **{**parts, "radius": parts["radius"] * 1.01}), plate)
+    assert not wrong and "NOT certified" in str(wrong)
+    torn = blum.certify(
+        blum.MedialComplex(
+            piece.vertices,
+            **{
+                **parts,
+                "triangles": parts["triangles"][:-1],
+                "triangle_angle": parts["triangle_angle"][:-1],
+                "triangle_sheet": parts["triangle_sheet"][:-1],
+            },
+        ),
+        plate,
+    )
+    assert not torn.topology_holds or torn.mismatches
+    with pytest.raises(ValueError, match="certify"):
+        _ = blum.MedialComplex(piece.vertices).certificate
+
+
+def test_images_and_open_meshes():
+    tubes = blum.generate("tube_image", nodes=2)
+    piece = blum.medial_axis(tubes).simplify(60)
+    assert piece.certificate and piece.certificate.against == "voxels" and piece.certificate.axis == (1, 5, 0)
+    array = blum.medial_axis(tubes.values, spacing=(1, 1, 2)).simplify(60)
+    assert array.certificate and array.certificate.axis == (1, 5, 0)
+    box = blum.generate("box")
+    piece = blum.medial_axis(box.vertices, box.triangles[1:], resolution=24).simplify(60)
+    assert piece.certificate and piece.certificate.against == "winding" and piece.grid is not None
+    assert blum.solid_rule(box.vertices, box.triangles[1:]).rule == "winding"
+
+
+def test_reconstruction_pruning_and_conversions(axis, plate):
+    piece = axis.simplify(20)
+    ball = piece.reconstruct(resolution=48)
+    assert ball.sign_rule == "balls"
+    solid = blum.distance_field(plate, grid=ball.grid)
+    assert (ball.distance >= solid.distance - 1e-6).all(), "balls lie in the solid"
+    assert blum.certify(piece.prune_sheets(100), plate).topology_holds
+    trimesh, pyvista = pytest.importorskip("trimesh"), pytest.importorskip("pyvista")
+    assert isinstance(piece.to_trimesh(), trimesh.Trimesh)
+    out = piece.to_pyvista()
+    assert isinstance(out, pyvista.PolyData) and out.n_cells == len(piece.edges) + len(piece.triangles)
+
+
+def test_skeletons_of_scikit_image_agree_in_topology():
+    morphology = pytest.importorskip("skimage.morphology")
+    tubes = blum.generate("tube_image", nodes=2).values
+    theirs = blum.voxel_topology(morphology.skeletonize(tubes > 0)).betti
+    assert theirs == blum.medial_axis(tubes).simplify(60).certificate.axis
