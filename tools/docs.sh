@@ -8,4 +8,12 @@ tools/check_links.py
 rm -rf build/docs
 mkdir -p build/docs
 doxygen docs/Doxyfile
-echo "docs: build/docs/html/index.html"
+# The Python package's pages, from its docstrings; a warning is an error here, too.
+tools/build.sh release -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$PWD/build/venv/bin/python" -- blum_python >/dev/null
+warnings=$(PYTHONPATH=$PWD/build/release/python build/venv/bin/pdoc --docformat numpy --no-show-source \
+  -o build/docs/html/python blum 2>&1)
+if [[ -n $warnings ]]; then
+  echo "$warnings" >&2
+  exit 1
+fi
+echo "docs: build/docs/html/index.html, build/docs/html/python/blum.html"

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 packages=(make g++ cmake ninja-build libtbb-dev libhwy-dev zlib1g-dev libpng-dev libcli11-dev nlohmann-json3-dev)
 tests=(libgtest-dev python3-dev python3-venv ca-certificates)
 bench=(libbenchmark-dev libembree-dev libcgal-dev libopenvdb-dev python3 python3-venv ca-certificates)
-docs=(doxygen python3)
+docs=(doxygen python3-dev python3-venv ca-certificates)
 lint=(clang-format-19 clang-tidy-19 shellcheck python3 python3-venv ca-certificates)
 fuzz=(clang-19 libclang-rt-19-dev)
 ci=(ccache)
@@ -24,7 +24,10 @@ for option in "$@"; do
       packages+=("${bench[@]}")
       requirement_files+=(tests/python/requirements.txt bench/requirements.txt)
       ;;
-    --docs) packages+=("${docs[@]}") ;;
+    --docs)
+      packages+=("${docs[@]}")
+      requirement_files+=(tests/python/requirements.txt)
+      ;;
     --lint)
       packages+=("${lint[@]}")
       requirement_files+=(tests/python/requirements.txt)

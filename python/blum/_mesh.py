@@ -148,7 +148,7 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh") -> Mesh:
         for faces in ("faces", "triangles"):
             if hasattr(mesh, faces):
                 return Mesh(np.asarray(mesh.vertices), np.asarray(getattr(mesh, faces)))
-    if hasattr(mesh, "extract_geometry") and hasattr(mesh, "points"):
+    if hasattr(mesh, "extract_surface") and hasattr(mesh, "points"):
         return _of_pyvista(mesh)
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
         return _of_meshio(mesh)
@@ -177,7 +177,12 @@ def _of_meshio(mesh: Any) -> Mesh:
 
 
 def _of_pyvista(mesh: Any) -> Mesh:
-    surface = mesh if hasattr(mesh, "is_all_triangles") else mesh.extract_geometry()
+    surface = mesh
+    if not hasattr(mesh, "is_all_triangles"):
+        try:
+            surface = mesh.extract_surface(algorithm=None)
+        except TypeError:  # PyVista before 0.47
+            surface = mesh.extract_surface()
     if not surface.is_all_triangles:
         surface = surface.triangulate()
     lines = np.asarray(surface.lines).ravel()

@@ -5,6 +5,7 @@ import importlib
 import os
 import pathlib
 import pkgutil
+import re
 import subprocess
 import sys
 
@@ -55,6 +56,24 @@ def test_examples_run(example, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert out.stat().st_size > 1000 and f"wrote {out}" in done.stdout
+
+
+def test_the_code_of_the_guide_runs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    pieces = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs/guide/python.md").read_text(), re.MULTILINE | re.DOTALL)
+    names = {}
+    for piece in pieces:
+        exec(compile(piece, "docs/guide/python.md", "exec"), names)
+    assert len(pieces) > 5
+    assert "triangles[0, 2] is 7, but must be 0 to 3" in capsys.readouterr().out
+
+
+def test_the_table_of_verbs_names_what_there_is():
+    text = (ROOT / "docs/guide/verbs.md").read_text()
+    named = set(re.findall(r"`blum\.(\w+)", text))
+    assert not {name for name in named if not hasattr(blum, name)}
+    verbs = {name for name in blum.__all__ if callable(getattr(blum, name)) and name[0].islower()}
+    assert not verbs - named - {"thread_count"}
 
 
 def test_types_hold_under_mypy_strict(tmp_path):
