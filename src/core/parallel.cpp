@@ -4,7 +4,10 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <map>
+#include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -21,12 +24,66 @@
 namespace blum {
 namespace {
 
+#if defined(BLUM_THREADS_TBB)
+/// Arenas that no call uses now, by their number of slots. oneTBB keeps memory of each arena that is destroyed (7 KB in
+/// 2021.8), which calls of every frame would add up; so arenas are used again.
+class ArenaPool {
+ public:
+  /// An arena for as long as the lease lives.
+  class Lease {
+   public:
+    Lease(ArenaPool& pool, int slots) : pool_(pool), slots_(slots), arena_(pool.take(slots)) {}
+    ~Lease() { pool_.give_back(slots_, std::move(arena_)); }
+    Lease(const Lease&) = delete;
+    Lease& operator=(const Lease&) = delete;
+    [[nodiscard]] tbb::task_arena& arena() { return *arena_; }
+
+   private:
+    ArenaPool& pool_;
+    int slots_;
+    std::unique_ptr<tbb::task_arena> arena_;
+  };
+
+  /// Never destroyed: oneTBB may be gone when static objects are.
+  static ArenaPool& instance() {
+    static ArenaPool& pool = *new ArenaPool;
+    return pool;
+  }
+
+ private:
+  struct Arenas {
+    std::vector<std::unique_ptr<tbb::task_arena>> free;
+    std::size_t made = 0;
+  };
+
+  std::unique_ptr<tbb::task_arena> take(int slots) {
+    const std::scoped_lock lock(mutex_);
+    Arenas& arenas = arenas_[slots];
+    if (arenas.free.empty()) {
+      arenas.free.reserve(++arenas.made);  // so that giving it back needs no memory
+      return std::make_unique<tbb::task_arena>(slots);
+    }
+    std::unique_ptr<tbb::task_arena> arena = std::move(arenas.free.back());
+    arenas.free.pop_back();
+    return arena;
+  }
+  void give_back(int slots, std::unique_ptr<tbb::task_arena> arena) noexcept {
+    const std::scoped_lock lock(mutex_);
+    arenas_[slots].free.push_back(std::move(arena));
+  }
+
+  std::mutex mutex_;
+  std::map<int, Arenas> arenas_;
+};
+#endif
+
 /// Starts run(0) .. run(workers-1), as concurrently as the back end can, and waits for all of them.
 void run_workers(int workers, const std::function<void(int)>& run) {
 #if defined(BLUM_THREADS_TBB)
   // More slots than TBB has threads would only make it print a warning; idle workers' shares go to the others.
-  tbb::task_arena arena(std::min(workers, tbb::info::default_concurrency()));
-  arena.execute([&] { tbb::parallel_for(0, workers, [&](int worker) { run(worker); }, tbb::simple_partitioner()); });
+  ArenaPool::Lease lease(ArenaPool::instance(), std::min(workers, tbb::info::default_concurrency()));
+  lease.arena().execute(
+      [&] { tbb::parallel_for(0, workers, [&](int worker) { run(worker); }, tbb::simple_partitioner()); });
 #elif defined(BLUM_THREADS_STD)
   std::vector<std::jthread> threads;
   threads.reserve(static_cast<std::size_t>(workers - 1));

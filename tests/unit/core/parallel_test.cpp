@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <fstream>
 #include <new>
 #include <stop_token>
+#include <string_view>
+#include <thread>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -51,6 +54,44 @@ TEST(ParallelFor, ReportsRisingProgressThatEndsAtOne) {
   };
   parallel_for(context, 100, 1, "work", [](const WorkRange&) {});
   EXPECT_EQ(last, 1.0);
+}
+
+// Smallest case of a leak: an arena of oneTBB for each loop, 7 KB of which stayed.
+TEST(ParallelFor, KeepsNoMemoryFromLoopToLoop) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers keep memory of their own";
+#endif
+  if (!std::ifstream("/proc/self/statm")) GTEST_SKIP() << "no /proc/self/statm here";
+  const auto resident_pages = [] {
+    std::ifstream file("/proc/self/statm");
+    long size = 0;
+    long resident = 0;
+    file >> size >> resident;
+    return resident;
+  };
+  const auto loops = [](int count) {
+    for (int n = 0; n < count; ++n) parallel_for({.threads = 2}, 2, 1, "", [](const WorkRange&) {});
+  };
+  loops(100);
+  const long before = resident_pages();
+  loops(2000);
+  EXPECT_LT(resident_pages() - before, 1000) << "pages; 2000 arenas would be 3500";
+}
+
+TEST(ParallelFor, MayRunInManyThreadsAtOnceAndWithinItself) {
+  std::atomic<int> visits{0};
+  std::vector<std::jthread> callers;
+  for (int caller = 0; caller < 4; ++caller) {
+    callers.emplace_back([&] {
+      for (int n = 0; n < 50; ++n) {
+        parallel_for({.threads = 2}, 4, 1, "", [&](const WorkRange&) {
+          parallel_for({.threads = 2}, 3, 1, "", [&](const WorkRange&) { ++visits; });
+        });
+      }
+    });
+  }
+  callers.clear();
+  EXPECT_EQ(visits, 4 * 50 * 4 * 3);
 }
 
 TEST(ThreadCount, RefusesNonsense) {
