@@ -1,10 +1,7 @@
 #include "axis_info.hpp"
 
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/certificate.hpp"
@@ -14,14 +11,6 @@
 
 namespace blum::cli {
 namespace {
-
-BettiNumbers betti_of(const MedialComplex& axis, const Context& context) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const MedialEdge& edge : axis.edges) edges.push_back(edge.vertices);
-  for (const MedialTriangle& triangle : axis.triangles) triangles.push_back(triangle.vertices);
-  return homology({axis.vertices.size(), edges, triangles}, context);
-}
 
 template <class T>
 Json or_null(const std::optional<T>& value) {

@@ -25,6 +25,7 @@ constexpr const char* examples = R"(Examples:
   blum slice knot.nrrd -o knot.png                 a picture of it
   blum slice knot.nrrd -o cells.png --show sites   the Voronoi diagram
   blum medial knot.ply -o axis.vtp                 its medial axis, certified
+  blum view knot.ply knot.nrrd axis.vtp --open     all of it in a browser
 
 `blum COMMAND --help` says more. Exit status: 0 done, 2 bad usage, 3 not certified, 1 any
 other failure.
@@ -95,6 +96,7 @@ void add_commands(CLI::App& app, std::vector<std::string>& arguments) {
   add_medial_command(app);
   add_verify_command(app);
   add_reconstruct_command(app);
+  add_view_command(app);
 }
 
 int run(std::vector<std::string> arguments) {

@@ -42,6 +42,7 @@ struct Arguments {
   std::optional<std::string> resolution, spacing, theta, lambda, prune, threshold, max_resolution, weld, threads;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
+  bool nested = false;
   ReportOptions report;
 };
 
@@ -54,6 +55,7 @@ struct Request {
   Selections selections;
   std::optional<double> weld;
   bool allow_uncertified = false;
+  bool nested = false;
   int threads = 0;
   ReportOptions report;
 };
@@ -88,6 +90,14 @@ Request parse(const Arguments& a) {
   }
   if (a.theta) r.thetas = parse_thetas(*a.theta);
   if (a.prune) r.prunes_sheets = parse_choice<bool>("--prune", *a.prune, {{"sheets", true}});
+  r.nested = a.nested;
+  if (r.nested && extension(r.output) != ".npz") {
+    throw UsageError("--nested needs an output with the extension .npz: the other formats hold the axis of one angle");
+  }
+  if (r.nested && r.thetas.size() > 1) {
+    throw UsageError("--nested keeps the axes of all angles from --theta on in one file: give one angle");
+  }
+  exclude(r.nested, "--nested", r.prunes_sheets, "--prune", "sheets that go whole have no order to keep");
   if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
   // Sheets are pruned whole, so they must be whole first.
   r.options.least_theta = r.prunes_sheets ? 0 : *std::min_element(r.thetas.begin(), r.thetas.end());
@@ -243,8 +253,9 @@ void add_report(Run& run, const MedialAxisReport& report, std::optional<double> 
 
 /// Writes, reads again and certifies an axis at one angle.
 void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
-              const MedialAxisReport& report, const MedialComplex& complex, double theta, const fs::path& name,
-              Json& axes, const Context& context) {
+              const MedialAxis& axis, const MedialComplex& complex, double theta, const fs::path& name, Json& axes,
+              const Context& context) {
+  const MedialAxisReport& report = axis.report();
   Stopwatch watch;
   MedialMetadata metadata;
   metadata.source = r.input.filename().string();
@@ -257,7 +268,11 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   metadata.grid = report.grid;
   record(selection, r.weld, input.kind, metadata);
   run.drafts.emplace_back(name);
-  write_medial(run.drafts.back().path(), complex, metadata, context);
+  if (r.nested) {
+    write_medial(run.drafts.back().path(), complex, axis.nested(), metadata, context);
+  } else {
+    write_medial(run.drafts.back().path(), complex, metadata, context);
+  }
   run.phases.push_back({"write", watch.lap()});
   MedialFile written = read_medial(run.drafts.back().path());
   if (written.metadata.solid_rule.empty()) {  // .obj and .ma say nothing of it
@@ -328,7 +343,7 @@ void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelS
     if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
     const MedialComplex cut = r.prunes_sheets ? MedialComplex{} : axis.extract(theta);
     run.phases.push_back({"extract", watch.lap()});
-    add_axis(run, r, input, selection, report, r.prunes_sheets ? whole : cut, theta, name, axes, context);
+    add_axis(run, r, input, selection, axis, r.prunes_sheets ? whole : cut, theta, name, axes, context);
   }
   json["axes"] = axes;
   run.solids.push_back(json);
@@ -433,6 +448,8 @@ void add_medial_command(CLI::App& app) {
        "Mesh: halve the voxels where the topology needs it, to at most N along the longest side (default 512)");
   add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  command->add_flag("--nested", a->nested,
+                    "Keep the axes of all angles from --theta on as well (.npz), for `blum view`");
   command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the axis even where it is not certified");
   add_weld_option(*command, a->weld);
   add_threads_option(*command, a->threads);

@@ -98,6 +98,14 @@ NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std
         return "NOT certified: " + all + rest;
       }()) {}
 
+BettiNumbers betti_of(const MedialComplex& axis, const Context& context) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const MedialEdge& edge : axis.edges) edges.push_back(edge.vertices);
+  for (const MedialTriangle& triangle : axis.triangles) triangles.push_back(triangle.vertices);
+  return homology({axis.vertices.size(), edges, triangles}, context);
+}
+
 Json to_json(const BettiNumbers& betti) {
   return Json::array({betti[0], betti[1], betti[2]});
 }

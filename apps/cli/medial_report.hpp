@@ -18,6 +18,8 @@ namespace blum::cli {
 [[nodiscard]] Certificate certificate_of(const MedialFile& file, const SolidInput& input,
                                          const LabelSelection& selection, const Context& context);
 
+/// Those of an axis as it is, by homology(). @throws as that.
+[[nodiscard]] BettiNumbers betti_of(const MedialComplex& axis, const Context& context);
 [[nodiscard]] Json to_json(const BettiNumbers& betti);
 [[nodiscard]] Json to_json(const Certificate& certificate);
 /// Where the file of an axis holds no labels, what they would say is null. Edges are then those of no triangle.

@@ -23,8 +23,9 @@ void write_ply(const std::filesystem::path& path, const MedialComplex& complex, 
                const Context& context);
 void write_obj(const std::filesystem::path& path, const MedialComplex& complex, const Context& context);
 void write_ma(const std::filesystem::path& path, const MedialComplex& complex, const Context& context);
-void write_npz(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata,
-               const Context& context);
+/// @param nested  may be null.
+void write_npz(const std::filesystem::path& path, const MedialComplex& complex, const NestedComplex* nested,
+               const MedialMetadata& metadata, const Context& context);
 
 // The readers check whatever they need to be safe; problem_of is asked afterwards. All throw FormatError.
 [[nodiscard]] MedialFile read_vtp(const volume_io::ByteSource& source);
@@ -37,6 +38,10 @@ void write_npz(const std::filesystem::path& path, const MedialComplex& complex, 
 /// triangles name each only once, all numbers are finite, no radius is negative, sheets are numbered from 0 and no more
 /// than there are triangles, and sites are none or fit a file.
 [[nodiscard]] std::string problem_of(const MedialComplex& complex);
+
+/// The same of a nested complex, whose edges are curves, rims and seams, and whose angles `from` and `until` are
+/// numbers.
+[[nodiscard]] std::string problem_of(const NestedComplex& nested);
 
 /// One more than the largest sheet; 0 without triangles.
 [[nodiscard]] std::uint32_t sheet_count(const MedialComplex& complex);

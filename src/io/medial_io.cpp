@@ -81,6 +81,31 @@ std::string problem_of(const MedialComplex& complex) {
   return problem.empty() ? problem_of_sheets(complex) : problem;
 }
 
+std::string problem_of(const NestedComplex& nested) {
+  const std::size_t count = nested.vertices.size();
+  if (count > max_id_count) return "there are more than 2^31 - 1 vertices";
+  if (!(nested.least_theta >= 0 && nested.least_theta <= 180)) return "the least theta is not between 0 and 180";
+  if (nested.vertex_until.size() != count) return "not every vertex has an angle";
+  for (std::size_t i = 0; i < count; ++i) {
+    if (const char* problem = vertex_problem(nested.vertices[i])) return place("vertex", i) + " " + problem;
+    if (std::isnan(nested.vertex_until[i])) return place("vertex", i) + " has an angle that is not a number";
+  }
+  std::string problem = problem_of_cells(nested.edges, "edge", count);
+  if (problem.empty()) problem = problem_of_cells(nested.triangles, "triangle", count);
+  if (!problem.empty()) return problem;
+  for (std::size_t i = 0; i < nested.edges.size(); ++i) {
+    const NestedEdge& edge = nested.edges[i];
+    if (std::isnan(edge.from) || std::isnan(edge.until)) return place("edge", i) + " has an angle that is not a number";
+    const bool is_line =
+        edge.role == MedialRole::curve || edge.role == MedialRole::rim || edge.role == MedialRole::seam;
+    if (!is_line) return place("edge", i) + " is neither curve nor rim nor seam";
+  }
+  for (std::size_t i = 0; i < nested.triangles.size(); ++i) {
+    if (std::isnan(nested.triangles[i].until)) return place("triangle", i) + " has an angle that is not a number";
+  }
+  return nested.sheet_count > nested.triangles.size() ? "there are more sheets than triangles" : "";
+}
+
 std::uint32_t sheet_count(const MedialComplex& complex) {
   std::uint32_t count = 0;
   for (const MedialTriangle& t : complex.triangles) count = std::max(count, t.sheet + 1);
@@ -150,7 +175,8 @@ MedialFile checked(const std::string& name, Read read) {
   try {
     MedialFile file = read();
     file.complex.sheet_count = medial_files::sheet_count(file.complex);
-    const std::string problem = medial_files::problem_of(file.complex);
+    std::string problem = medial_files::problem_of(file.complex);
+    if (problem.empty() && file.nested) problem = medial_files::problem_of(*file.nested);
     if (!problem.empty()) throw FormatError(name + ": " + problem);
     return file;
   } catch (const std::bad_alloc&) {
@@ -160,11 +186,17 @@ MedialFile checked(const std::string& name, Read read) {
 
 }  // namespace
 
-void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata,
-                  const Context& context) {
+namespace {
+
+void write(const std::filesystem::path& path, const MedialComplex& complex, const NestedComplex* nested,
+           const MedialMetadata& metadata, const Context& context) {
   const MedialFormat format = format_of(path);
   check_metadata(metadata);
-  const std::string problem = medial_files::problem_of(complex);
+  if (nested != nullptr && format != MedialFormat::npz) {
+    throw InvalidOption("'" + path.string() + "': axes of all angles are kept in .npz files only");
+  }
+  std::string problem = medial_files::problem_of(complex);
+  if (problem.empty() && nested != nullptr) problem = medial_files::problem_of(*nested);
   if (!problem.empty()) throw InvalidMesh("a medial axis that cannot be written: " + problem);
   throw_if_cancelled(context);
   switch (format) {
@@ -177,8 +209,20 @@ void write_medial(const std::filesystem::path& path, const MedialComplex& comple
     case MedialFormat::ma:
       return medial_files::write_ma(path, complex, context);
     case MedialFormat::npz:
-      return medial_files::write_npz(path, complex, metadata, context);
+      return medial_files::write_npz(path, complex, nested, metadata, context);
   }
+}
+
+}  // namespace
+
+void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata,
+                  const Context& context) {
+  write(path, complex, nullptr, metadata, context);
+}
+
+void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const NestedComplex& nested,
+                  const MedialMetadata& metadata, const Context& context) {
+  write(path, complex, &nested, metadata, context);
 }
 
 MedialFile read_medial(const std::filesystem::path& path) {

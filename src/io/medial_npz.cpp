@@ -1,6 +1,8 @@
 // Indices are int32: Blum's ids fit it, NumPy indexes with any integer type, and unlike unsigned ones differences of
 // them are what they should be.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -36,37 +38,55 @@ void add_column(NpzWriter& npz, const std::string& name, std::string_view dtype,
   npz.add(name, dtype, shape, std::span<const T>(values));
 }
 
-void add_vertices(NpzWriter& npz, const std::vector<MedialVertex>& vertices) {
+void add_vertices(NpzWriter& npz, const std::string& prefix, const std::vector<MedialVertex>& vertices) {
   using V = MedialVertex;
-  add_column<double>(npz, "vertices", "f8", vertices, {3}, [](const V& v, std::size_t c) { return v.position[c]; });
-  add_column<double>(npz, "radius", "f8", vertices, {}, [](const V& v, std::size_t) { return v.radius; });
-  add_column<double>(npz, "separation_angle", "f8", vertices, {},
+  add_column<double>(npz, prefix + "vertices", "f8", vertices, {3},
+                     [](const V& v, std::size_t c) { return v.position[c]; });
+  add_column<double>(npz, prefix + "radius", "f8", vertices, {}, [](const V& v, std::size_t) { return v.radius; });
+  add_column<double>(npz, prefix + "separation_angle", "f8", vertices, {},
                      [](const V& v, std::size_t) { return v.separation_angle; });
-  add_column<std::uint8_t>(npz, "role", "u1", vertices, {},
+  add_column<std::uint8_t>(npz, prefix + "role", "u1", vertices, {},
                            [](const V& v, std::size_t) { return static_cast<std::uint8_t>(v.role); });
-  add_column<double>(npz, "footprints", "f8", vertices, {2, 3},
+  add_column<double>(npz, prefix + "footprints", "f8", vertices, {2, 3},
                      [](const V& v, std::size_t c) { return v.footprints[c / 3][c % 3]; });
-  add_column<std::int32_t>(npz, "sites", "i4", vertices, {2},
+  add_column<std::int32_t>(npz, prefix + "sites", "i4", vertices, {2},
                            [](const V& v, std::size_t c) { return v.sites[c].to_file(); });
 }
 
-void add_edges(NpzWriter& npz, const std::vector<MedialEdge>& edges) {
-  using E = MedialEdge;
-  add_column<std::int32_t>(npz, "edges", "i4", edges, {2},
+template <class E>
+void add_edges(NpzWriter& npz, const std::string& prefix, const std::vector<E>& edges) {
+  add_column<std::int32_t>(npz, prefix + "edges", "i4", edges, {2},
                            [](const E& e, std::size_t c) { return static_cast<std::int32_t>(e.vertices[c]); });
-  add_column<float>(npz, "edge_angle", "f4", edges, {}, [](const E& e, std::size_t) { return e.separation_angle; });
-  add_column<std::uint8_t>(npz, "edge_role", "u1", edges, {},
+  add_column<float>(npz, prefix + "edge_angle", "f4", edges, {},
+                    [](const E& e, std::size_t) { return e.separation_angle; });
+  add_column<std::uint8_t>(npz, prefix + "edge_role", "u1", edges, {},
                            [](const E& e, std::size_t) { return static_cast<std::uint8_t>(e.role); });
 }
 
-void add_triangles(NpzWriter& npz, const std::vector<MedialTriangle>& triangles) {
-  using T = MedialTriangle;
-  add_column<std::int32_t>(npz, "triangles", "i4", triangles, {3},
+template <class T>
+void add_triangles(NpzWriter& npz, const std::string& prefix, const std::vector<T>& triangles) {
+  add_column<std::int32_t>(npz, prefix + "triangles", "i4", triangles, {3},
                            [](const T& t, std::size_t c) { return static_cast<std::int32_t>(t.vertices[c]); });
-  add_column<float>(npz, "triangle_angle", "f4", triangles, {},
+  add_column<float>(npz, prefix + "triangle_angle", "f4", triangles, {},
                     [](const T& t, std::size_t) { return t.separation_angle; });
-  add_column<std::int32_t>(npz, "triangle_sheet", "i4", triangles, {},
+  add_column<std::int32_t>(npz, prefix + "triangle_sheet", "i4", triangles, {},
                            [](const T& t, std::size_t) { return static_cast<std::int32_t>(t.sheet); });
+}
+
+void add_nested(NpzWriter& npz, const NestedComplex& nested) {
+  const std::array<double, 1> theta{nested.least_theta};
+  npz.add("nested_theta", "f8", {1}, std::span<const double>(theta));
+  add_vertices(npz, "nested_", nested.vertices);
+  add_edges(npz, "nested_", nested.edges);
+  add_triangles(npz, "nested_", nested.triangles);
+  using E = NestedEdge;
+  using T = NestedTriangle;
+  add_column<float>(npz, "nested_vertex_until", "f4", nested.vertex_until, {},
+                    [](float until, std::size_t) { return until; });
+  add_column<float>(npz, "nested_edge_from", "f4", nested.edges, {}, [](const E& e, std::size_t) { return e.from; });
+  add_column<float>(npz, "nested_edge_until", "f4", nested.edges, {}, [](const E& e, std::size_t) { return e.until; });
+  add_column<float>(npz, "nested_triangle_until", "f4", nested.triangles, {},
+                    [](const T& t, std::size_t) { return t.until; });
 }
 
 std::string shape_text(const std::vector<std::uint64_t>& shape) {
@@ -87,6 +107,7 @@ class MedialNpzReader {
     read_vertices();
     read_edges();
     read_triangles();
+    read_nested();
     if (!has_roles_) keep_curves_only(file_.complex);
     if (npz_.has("metadata")) {
       file_.metadata = from_pairs(volume_io::from_json(npz_.text("metadata"), source_.name()), source_.name());
@@ -140,33 +161,46 @@ class MedialNpzReader {
   }
 
   void read_vertices() {
-    const VoxelImage::Values places = items("vertices", 3);
-    const std::size_t count = std::visit([](const auto& v) { return v.size(); }, places) / 3;
-    if (count > max_id_count) fail("vertices", "too many vertices: 2^31 - 1 are the most");
-    std::vector<MedialVertex>& vertices = file_.complex.vertices;
-    vertices.resize(count);
-    for_each_number(places, [&](std::size_t i, double value) { vertices[i / 3].position[i % 3] = value; });
-    file_.has_radii = numbers("radius", {count}, [&](std::size_t i, double value) { vertices[i].radius = value; });
-    file_.has_angles = numbers("separation_angle", {count},
-                               [&](std::size_t i, double value) { vertices[i].separation_angle = value; });
-    file_.has_labels = integers("role", {count}, [&](std::size_t i, std::int64_t value, const auto& bad) {
-      vertices[i].role = role_from_file(value, bad);
-    });
-    file_.has_footprints = numbers("footprints", {count, 2, 3}, [&](std::size_t i, double value) {
-      vertices[i / 6].footprints[i / 3 % 2][i % 3] = value;
-    });
-    file_.has_sites = integers("sites", {count, 2}, [&](std::size_t i, std::int64_t value, const auto& bad) {
-      vertices[i / 2].sites[i % 2] = site_from_file(value, bad);
-    });
+    const Found found = read_vertices("", file_.complex.vertices);
+    file_.has_radii = found.radii;
+    file_.has_angles = found.angles;
+    file_.has_labels = found.roles;
+    file_.has_footprints = found.footprints;
+    file_.has_sites = found.sites;
   }
 
-  /// The corners of cells, of which an array may hold none.
+  /// Which attributes vertices have.
+  struct Found {
+    bool radii = false, angles = false, roles = false, footprints = false, sites = false;
+  };
+  Found read_vertices(const std::string& prefix, std::vector<MedialVertex>& vertices) {
+    const VoxelImage::Values places = items(prefix + "vertices", 3);
+    const std::size_t count = std::visit([](const auto& v) { return v.size(); }, places) / 3;
+    if (count > max_id_count) fail(prefix + "vertices", "too many vertices: 2^31 - 1 are the most");
+    vertices.resize(count);
+    for_each_number(places, [&](std::size_t i, double value) { vertices[i / 3].position[i % 3] = value; });
+    Found found;
+    found.radii = numbers(prefix + "radius", {count}, [&](std::size_t i, double value) { vertices[i].radius = value; });
+    found.angles = numbers(prefix + "separation_angle", {count},
+                           [&](std::size_t i, double value) { vertices[i].separation_angle = value; });
+    found.roles = integers(prefix + "role", {count}, [&](std::size_t i, std::int64_t value, const auto& bad) {
+      vertices[i].role = role_from_file(value, bad);
+    });
+    found.footprints = numbers(prefix + "footprints", {count, 2, 3}, [&](std::size_t i, double value) {
+      vertices[i / 6].footprints[i / 3 % 2][i % 3] = value;
+    });
+    found.sites = integers(prefix + "sites", {count, 2}, [&](std::size_t i, std::int64_t value, const auto& bad) {
+      vertices[i / 2].sites[i % 2] = site_from_file(value, bad);
+    });
+    return found;
+  }
+
+  /// The corners of cells among so many vertices, of which an array may hold none.
   template <std::size_t corners, class Cell>
-  void read_cells(const std::string& array, std::vector<Cell>& cells) {
+  void read_cells(const std::string& array, std::vector<Cell>& cells, std::size_t count) {
     if (!npz_.has(array)) return;
     const VoxelImage::Values values = items(array, corners);
     cells.resize(std::visit([](const auto& v) { return v.size(); }, values) / corners);
-    const std::size_t count = file_.complex.vertices.size();
     for_each_integer(values, where(array), [&](std::size_t i, std::int64_t vertex) {
       if (vertex < 0 || std::cmp_greater_equal(vertex, count)) {
         fail(array, "vertex " + std::to_string(vertex) + " is named, but there are only " + std::to_string(count));
@@ -177,28 +211,73 @@ class MedialNpzReader {
 
   void read_edges() {
     std::vector<MedialEdge>& edges = file_.complex.edges;
-    read_cells<2>("edges", edges);
-    const bool angles = numbers("edge_angle", {edges.size()}, [&](std::size_t i, double value) {
-      edges[i].separation_angle = angle_from_file(value);
-    });
-    has_roles_ = integers("edge_role", {edges.size()}, [&](std::size_t i, std::int64_t value, const auto& bad) {
-      edges[i].role = role_from_file(value, bad);
-    });
+    read_cells<2>("edges", edges, file_.complex.vertices.size());
+    const bool angles = read_edge_angles("", edges);
+    has_roles_ = read_edge_roles("", edges);
     file_.has_angles = file_.has_angles && (angles || edges.empty());
     file_.has_labels = file_.has_labels && (has_roles_ || edges.empty());
+  }
+  template <class Edge>
+  bool read_edge_angles(const std::string& prefix, std::vector<Edge>& edges) {
+    return numbers(prefix + "edge_angle", {edges.size()},
+                   [&](std::size_t i, double value) { edges[i].separation_angle = angle_from_file(value); });
+  }
+  template <class Edge>
+  bool read_edge_roles(const std::string& prefix, std::vector<Edge>& edges) {
+    return integers(prefix + "edge_role", {edges.size()}, [&](std::size_t i, std::int64_t value, const auto& bad) {
+      edges[i].role = role_from_file(value, bad);
+    });
   }
 
   void read_triangles() {
     std::vector<MedialTriangle>& triangles = file_.complex.triangles;
-    read_cells<3>("triangles", triangles);
-    const bool angles = numbers("triangle_angle", {triangles.size()}, [&](std::size_t i, double value) {
-      triangles[i].separation_angle = angle_from_file(value);
-    });
-    const bool sheets = integers(
-        "triangle_sheet", {triangles.size()},
-        [&](std::size_t i, std::int64_t value, const auto& bad) { triangles[i].sheet = sheet_from_file(value, bad); });
+    read_cells<3>("triangles", triangles, file_.complex.vertices.size());
+    const bool angles = read_triangle_angles("", triangles);
+    const bool sheets = read_sheets("", triangles);
     file_.has_angles = file_.has_angles && (angles || triangles.empty());
     file_.has_labels = file_.has_labels && (sheets || triangles.empty());
+  }
+  template <class Cell>
+  bool read_triangle_angles(const std::string& prefix, std::vector<Cell>& triangles) {
+    return numbers(prefix + "triangle_angle", {triangles.size()},
+                   [&](std::size_t i, double value) { triangles[i].separation_angle = angle_from_file(value); });
+  }
+  template <class Cell>
+  bool read_sheets(const std::string& prefix, std::vector<Cell>& triangles) {
+    return integers(
+        prefix + "triangle_sheet", {triangles.size()},
+        [&](std::size_t i, std::int64_t value, const auto& bad) { triangles[i].sheet = sheet_from_file(value, bad); });
+  }
+
+  /// The axes of all angles, of which a file has all arrays or none.
+  void read_nested() {
+    if (!npz_.has("nested_theta")) return;
+    NestedComplex& nested = file_.nested.emplace();
+    numbers("nested_theta", {1}, [&](std::size_t, double value) { nested.least_theta = value; });
+    const Found found = read_vertices("nested_", nested.vertices);
+    const std::size_t count = nested.vertices.size();
+    nested.vertex_until.resize(count);
+    read_cells<2>("nested_edges", nested.edges, count);
+    read_cells<3>("nested_triangles", nested.triangles, count);
+    const auto levels = [&](const std::string& array, std::size_t size, const auto& set) {
+      return numbers(array, {size}, [&](std::size_t i, double value) {
+        if (std::isnan(value)) fail(array, "a value is not a number");
+        set(i, angle_from_file(value));
+      });
+    };
+    const bool is_whole =
+        found.radii && found.angles && found.roles && found.footprints && found.sites &&
+        levels("nested_vertex_until", count, [&](std::size_t i, float value) { nested.vertex_until[i] = value; }) &&
+        read_edge_angles("nested_", nested.edges) && read_edge_roles("nested_", nested.edges) &&
+        levels("nested_edge_from", nested.edges.size(),
+               [&](std::size_t i, float value) { nested.edges[i].from = value; }) &&
+        levels("nested_edge_until", nested.edges.size(),
+               [&](std::size_t i, float value) { nested.edges[i].until = value; }) &&
+        read_triangle_angles("nested_", nested.triangles) && read_sheets("nested_", nested.triangles) &&
+        levels("nested_triangle_until", nested.triangles.size(),
+               [&](std::size_t i, float value) { nested.triangles[i].until = value; });
+    if (!is_whole) fail("nested_theta", "other arrays whose names begin with 'nested_' are missing");
+    for (const NestedTriangle& t : nested.triangles) nested.sheet_count = std::max(nested.sheet_count, t.sheet + 1);
   }
 
   const volume_io::ByteSource& source_;
@@ -209,19 +288,24 @@ class MedialNpzReader {
 
 }  // namespace
 
-void write_npz(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata,
-               const Context& context) {
+void write_npz(const std::filesystem::path& path, const MedialComplex& complex, const NestedComplex* nested,
+               const MedialMetadata& metadata, const Context& context) {
   constexpr std::uint64_t vertex_bytes = 24 + 8 + 8 + 1 + 48 + 8;
   constexpr std::uint64_t edge_bytes = 8 + 4 + 1;
   constexpr std::uint64_t triangle_bytes = 12 + 4 + 4;
+  std::uint64_t bytes = vertex_bytes * complex.vertices.size() + edge_bytes * complex.edges.size() +
+                        triangle_bytes * complex.triangles.size();
+  if (nested != nullptr) {
+    bytes += 8 + (vertex_bytes + 4) * nested->vertices.size() + (edge_bytes + 8) * nested->edges.size() +
+             (triangle_bytes + 4) * nested->triangles.size();
+  }
   AtomicFile file(path);
-  volume_io::FieldSink sink(vertex_bytes * complex.vertices.size() + edge_bytes * complex.edges.size() +
-                                triangle_bytes * complex.triangles.size(),
-                            context);
+  volume_io::FieldSink sink(bytes, context);
   NpzWriter npz(file, sink, context);
-  add_vertices(npz, complex.vertices);
-  add_edges(npz, complex.edges);
-  add_triangles(npz, complex.triangles);
+  add_vertices(npz, "", complex.vertices);
+  add_edges(npz, "", complex.edges);
+  add_triangles(npz, "", complex.triangles);
+  if (nested != nullptr) add_nested(npz, *nested);
   npz.add_text("metadata", volume_io::to_json(to_pairs(metadata)));
   npz.finish();
   file.commit();

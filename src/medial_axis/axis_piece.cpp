@@ -32,11 +32,6 @@ std::size_t index_of(const std::vector<AxisCell>& cells, Cell cell) {
   return static_cast<std::size_t>(at - cells.begin());
 }
 
-std::size_t place_of(const std::vector<std::uint32_t>& nodes, std::size_t node) {
-  return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), static_cast<std::uint32_t>(node)) -
-                                  nodes.begin());
-}
-
 /// Makes ends of edges that are as good as at the same place the same: those of a ribbon around a curve, say.
 void make_equal(AxisPiece& piece, double tolerance) {
   detail::UnionFind joined(piece.nodes.size());
@@ -44,8 +39,8 @@ void make_equal(AxisPiece& piece, double tolerance) {
     if (dimension_of(cell.cell) != 1) continue;
     const std::size_t node = node_of(cell.cell);
     const std::size_t step = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes_of(cell.cell))));
-    const std::size_t a = place_of(piece.nodes, node);
-    const std::size_t b = place_of(piece.nodes, node + step);
+    const std::size_t a = piece.place_of(node);
+    const std::size_t b = piece.place_of(node + step);
     if (squared_length(piece.vertices[a].position - piece.vertices[b].position) > tolerance * tolerance) continue;
     joined.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
   }
@@ -75,37 +70,24 @@ class Remainder {
   }
 
  private:
-  [[nodiscard]] std::size_t place_of(std::size_t node) const { return blum::place_of(piece_.nodes, node); }
-
   void append_vertex(std::size_t node) {
-    const std::size_t place = place_of(node);
+    const std::size_t place = piece_.place_of(node);
     vertex_[place] = static_cast<std::uint32_t>(complex_.vertices.size());
     complex_.vertices.push_back(piece_.vertices[place]);
   }
 
   void append_square(const AxisCell& square) {
-    const CellAxes axes = axes_of(square.cell);
-    const std::size_t node = node_of(square.cell);
-    const std::size_t u = piece_.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes)));
-    const std::size_t v = piece_.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes & (axes - 1))));
-    const std::array<std::uint32_t, 4> corners{vertex_[place_of(node)], vertex_[place_of(node + u)],
-                                               vertex_[place_of(node + u + v)], vertex_[place_of(node + v)]};
-    const auto squared = [&](std::size_t a, std::size_t b) {
-      return squared_length(complex_.vertices[corners[a]].position - complex_.vertices[corners[b]].position);
-    };
-    // The shorter diagonal, so that no triangle is needlessly thin.
-    const std::size_t first = squared(0, 2) <= squared(1, 3) ? 0 : 1;
-    const auto corner = [&](std::size_t k) { return corners[(first + k) % 4]; };
-    complex_.triangles.push_back({{corner(0), corner(1), corner(2)}, square.angle, 0});
-    complex_.triangles.push_back({{corner(0), corner(2), corner(3)}, square.angle, 0});
+    for (std::array<std::uint32_t, 3> places : triangles_of(piece_, square.cell)) {
+      for (std::uint32_t& v : places) v = vertex_[v];
+      complex_.triangles.push_back({places, square.angle, 0});
+    }
     piece_.lattice.for_each_face(square.cell, [&](Cell edge) { in_square_[index_of(piece_.cells, edge)] = true; });
   }
 
   void append_curve(const AxisCell& edge) {
-    const std::size_t node = node_of(edge.cell);
-    const std::size_t step = piece_.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes_of(edge.cell))));
-    complex_.edges.push_back(
-        {{vertex_[place_of(node)], vertex_[place_of(node + step)]}, edge.angle, MedialRole::curve});
+    std::array<std::uint32_t, 2> ends = ends_of(piece_, edge.cell);
+    for (std::uint32_t& v : ends) v = vertex_[v];
+    complex_.edges.push_back({ends, edge.angle, MedialRole::curve});
   }
 
   const AxisPiece& piece_;
@@ -116,6 +98,33 @@ class Remainder {
 };
 
 }  // namespace
+
+std::size_t AxisPiece::place_of(std::size_t node) const {
+  return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), static_cast<std::uint32_t>(node)) -
+                                  nodes.begin());
+}
+
+std::array<std::uint32_t, 2> ends_of(const AxisPiece& piece, Cell edge) {
+  const std::size_t node = node_of(edge);
+  const std::size_t step = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes_of(edge))));
+  return {static_cast<std::uint32_t>(piece.place_of(node)), static_cast<std::uint32_t>(piece.place_of(node + step))};
+}
+
+std::array<std::array<std::uint32_t, 3>, 2> triangles_of(const AxisPiece& piece, Cell square) {
+  const CellAxes axes = axes_of(square);
+  const std::size_t node = node_of(square);
+  const std::size_t u = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes)));
+  const std::size_t v = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes & (axes - 1))));
+  const std::array<std::size_t, 4> corners{piece.place_of(node), piece.place_of(node + u), piece.place_of(node + u + v),
+                                           piece.place_of(node + v)};
+  const auto squared = [&](std::size_t a, std::size_t b) {
+    return squared_length(piece.vertices[corners[a]].position - piece.vertices[corners[b]].position);
+  };
+  // The shorter diagonal, so that no triangle is needlessly thin.
+  const std::size_t first = squared(0, 2) <= squared(1, 3) ? 0 : 1;
+  const auto corner = [&](std::size_t k) { return static_cast<std::uint32_t>(corners[(first + k) % 4]); };
+  return {{{corner(0), corner(1), corner(2)}, {corner(0), corner(2), corner(3)}}};
+}
 
 AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor, std::vector<PhaseTime>& phases,
                           const Context& context) {

@@ -11,6 +11,7 @@
 #include "medial_axis/contract_points.hpp"
 #include "medial_axis/label_sheets.hpp"
 #include "medial_axis/mesh_surface.hpp"
+#include "medial_axis/nest_pieces.hpp"
 #include "medial_axis/solid_bodies.hpp"
 #include "medial_axis/voxel_surface.hpp"
 #include "medial_axis/voxelize.hpp"
@@ -183,6 +184,10 @@ MedialComplex MedialAxis::extract(double theta) const {
   contract_points(complex);
   label_sheets(complex);
   return complex;
+}
+
+NestedComplex MedialAxis::nested() const {
+  return nest_pieces(data_->pieces, data_->least_theta);
 }
 
 MedialAxis medial_axis(const MeshView& mesh, const MedialAxisOptions& options, const Context& context) {

@@ -13,6 +13,7 @@
 #include "blum/field/field.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/medial_axis/medial_complex.hpp"
+#include "blum/medial_axis/nested_complex.hpp"
 
 namespace blum {
 
@@ -38,6 +39,7 @@ struct MedialMetadata {
 struct MedialFile {
   MedialComplex complex;
   MedialMetadata metadata;
+  std::optional<NestedComplex> nested = {};  ///< the axes of all angles, where the file holds them (.npz)
   bool has_radii = false;
   bool has_footprints = false;
   bool has_sites = false;
@@ -69,6 +71,14 @@ enum class MedialFormat : std::uint8_t { vtp, ply, obj, ma, npz };
 /// numbers that are not finite, a negative radius, or a sheet beyond its count; FileError; Cancelled.
 void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata = {},
                   const Context& context = {});
+
+/// The same with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files hold them, in arrays like
+/// those above whose names begin with `nested_`, and: `nested_theta` [1], the least angle; `nested_vertex_until`,
+/// `nested_triangle_until`, at which theta a vertex or triangle is gone (inf: at none); `nested_edge_from` and
+/// `nested_edge_until`, between which an edge has its role.
+/// @throws InvalidOption for other formats.
+void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const NestedComplex& nested,
+                  const MedialMetadata& metadata = {}, const Context& context = {});
 
 /// Reads a file that write_medial wrote, or one of the same form by another program: with only some of the attributes,
 /// with polygons (.ply, .obj), with other numeric types and byte orders (.vtp, .ply, .npz). .vtp, .ply and .npz give

@@ -16,6 +16,7 @@
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/voxel_image.hpp"
 #include "blum/medial_axis/medial_complex.hpp"
+#include "blum/medial_axis/nested_complex.hpp"
 
 namespace blum {
 
@@ -86,6 +87,10 @@ class MedialAxis {
   /// @param theta  degrees, MedialAxisOptions::least_theta to 180.
   /// @throws InvalidOption. Cost: linear in the result.
   [[nodiscard]] MedialComplex extract(double theta) const;
+
+  /// What extract() gives for all angles from MedialAxisOptions::least_theta on, in one complex.
+  /// Cost: near-linear in the axis at the least angle.
+  [[nodiscard]] NestedComplex nested() const;
 
   [[nodiscard]] const MedialAxisReport& report() const;
 

@@ -1,0 +1,115 @@
+#include <spawn.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "commands.hpp"
+#include "common_options.hpp"
+#include "files.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "summary.hpp"
+#include "view_page.hpp"
+#include "view_scene.hpp"
+#include "view_server.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum view part.stl                              serves the page until Ctrl-C; its address is printed
+  blum view part.ply part.nrrd axis.npz --open    a mesh, its field and its medial axis, in the browser
+  blum view part.ply axis.npz -o part.html        one file, for a browser without a network
+
+Files that cannot be read are named in the page. Exit status 1 where none could be read.
+The server answers this machine only, and gives out the page and the named files' contents, nothing else.)";
+
+struct Arguments {
+  std::vector<std::string> inputs;
+  std::optional<std::string> output, port, weld;
+  bool open = false;
+  bool quiet = false;
+};
+
+void check(const Arguments& a) {
+  for (const std::string& input : a.inputs) {
+    if (input.empty()) throw UsageError("FILE needs a file name");
+  }
+  exclude(a.output.has_value(), "--output", a.port.has_value(), "--port", "the page is written or served");
+  exclude(a.output.has_value(), "--output", a.open, "--open", "only a page that is served is opened");
+  if (!a.output) return;
+  check_extension("--output", *a.output, {".html", ".htm"});
+  check_outputs({*a.output}, {a.inputs.begin(), a.inputs.end()});
+}
+
+/// Shows a page in the desktop's browser; where there is none, its address is on the terminal.
+void open_browser(const std::string& url) {
+  std::string program = "xdg-open";
+  std::string address = url;
+  char* const arguments[] = {program.data(), address.data(), nullptr};
+  pid_t child = 0;
+  if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
+    warn({"no browser could be opened (xdg-open is not there): open " + url});
+  }
+}
+
+std::string shown_text(const Scene& scene) {
+  std::string names;
+  for (const Json& item : scene.header["items"]) {
+    if (item["kind"] == "error") continue;
+    names += (names.empty() ? "" : ", ") + item["name"].get<std::string>() + " (" +
+             (item["kind"] == "axis" ? "medial axis" : item["kind"].get<std::string>()) + ")";
+  }
+  return names;
+}
+
+void run(const Arguments& a) {
+  check(a);
+  const std::optional<std::uint16_t> port =
+      a.port ? std::optional(static_cast<std::uint16_t>(parse_integer("--port", *a.port, 0, 65535))) : std::nullopt;
+  const std::optional<double> weld = parse_weld(a.weld);
+  Progress progress(!a.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(0, progress, interrupt);
+  std::optional<ViewServer> server;
+  if (!a.output) server.emplace(port.value_or(0));  // before the work is done, lest the port is taken
+  const Scene scene = [&] {
+    const Unattended reading;
+    return make_scene({a.inputs.begin(), a.inputs.end()}, weld, a.output.has_value(), context);
+  }();
+  progress.clear();
+  if (scene.problems.size() == a.inputs.size()) throw FileError(join_words(scene.problems));
+  warn(scene.problems);
+  if (a.output) {
+    write_page(*a.output, scene);
+    if (!a.quiet) print("wrote " + *a.output + ": " + shown_text(scene) + "\n");
+    return;
+  }
+  print("serving " + shown_text(scene) + "\nopen " + server->url() + " in a browser; Ctrl-C ends this\n");
+  if (a.open) open_browser(server->url());
+  server->serve(scene, interrupt.token());
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("view", "Shows files in a browser: meshes, images, fields, medial axes");
+  command->add_option("FILE", a->inputs, "Meshes, images, fields and medial axes, any mixture")->required();
+  add_text_option(*command, "-o,--output", a->output, "HTML", "Write the page to a file, with all that it shows");
+  add_text_option(*command, "--port", a->port, "P", "Serve the page on this port (default: one that is free)");
+  command->add_flag("--open", a->open, "Open the served page in the desktop's browser");
+  add_weld_option(*command, a->weld);
+  command->add_flag("--quiet", a->quiet, "Say nothing but errors, and where the page is served");
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,100 @@
+#include "view_page.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/io/atomic_file.hpp"
+
+// The page lies in the read-only part of the program. CMake names the file, and compiles this again when it changes.
+#if defined(__APPLE__)
+#define BLUM_READ_ONLY ".const_data"
+#define BLUM_SYMBOL "_blum_viewer_page"
+#else
+#define BLUM_READ_ONLY ".section .rodata"
+#define BLUM_SYMBOL "blum_viewer_page"
+#endif
+// clang-format off
+asm(BLUM_READ_ONLY "\n"
+    ".globl " BLUM_SYMBOL "\n"
+    ".globl " BLUM_SYMBOL "_end\n"
+    BLUM_SYMBOL ":\n"
+    ".incbin \"" BLUM_VIEWER_PAGE "\"\n"
+    BLUM_SYMBOL "_end:\n"
+    ".byte 0\n"
+    ".text\n");
+// clang-format on
+extern "C" const char blum_viewer_page[];      // NOLINT(readability-redundant-declaration)
+extern "C" const char blum_viewer_page_end[];  // NOLINT(readability-redundant-declaration)
+
+namespace blum::cli {
+namespace {
+
+/// Where the scene goes.
+constexpr std::string_view mark = "<!--scene-->";
+constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+/// Browsers hold texts of half a GiB at most: a scene goes into elements of less. A multiple of 3.
+constexpr std::size_t most_in_element = std::size_t{48} << 20U;
+
+/// Bytes as base64 in elements of the page.
+class SceneElements {
+ public:
+  explicit SceneElements(AtomicFile& file) : file_(file) {}
+
+  void write(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const std::size_t now = std::min(bytes.size(), most_in_element - waiting_.size());
+      waiting_ += bytes.substr(0, now);
+      bytes.remove_prefix(now);
+      if (waiting_.size() == most_in_element) flush();
+    }
+  }
+  void flush() {
+    if (waiting_.empty()) return;
+    file_.write(R"(<script type="application/octet-stream" class="scene">)");
+    file_.write(base64(waiting_));
+    file_.write("</script>\n");
+    waiting_.clear();
+  }
+
+ private:
+  static std::string base64(std::string_view bytes) {
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+      std::uint32_t three = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        three = three << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+      }
+      for (unsigned shift = 24; shift > 0; shift -= 6) text += digits[three >> (shift - 6) & 63U];
+      for (std::size_t k = bytes.size(); k < i + 3; ++k) text[text.size() - (i + 3 - k)] = '=';
+    }
+    return text;
+  }
+
+  AtomicFile& file_;
+  std::string waiting_;
+};
+
+}  // namespace
+
+std::string_view viewer_page() {
+  return {blum_viewer_page, static_cast<std::size_t>(blum_viewer_page_end - blum_viewer_page)};
+}
+
+void write_page(const std::filesystem::path& path, const Scene& scene) {
+  const std::string_view page = viewer_page();
+  const std::size_t at = page.find(mark);
+  if (at == std::string_view::npos) throw Error("the viewer's page has no place for a scene");
+  AtomicFile file(path);
+  file.write(page.substr(0, at));
+  SceneElements elements(file);
+  scene.blob.finish(scene.header, [&](std::string_view bytes) { elements.write(bytes); });
+  elements.flush();
+  file.write(page.substr(at + mark.size()));
+  file.commit();
+}
+
+}  // namespace blum::cli

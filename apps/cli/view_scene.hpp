@@ -1,0 +1,26 @@
+// Blum: what files look like in the viewer. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "scene_blob.hpp"
+
+namespace blum::cli {
+
+/// Files as the viewer shows them: one item each, in their order.
+struct Scene {
+  Json header;
+  SceneBlob blob;
+  std::vector<std::string> problems;  ///< of the files that could not be read
+};
+
+/// Reads meshes, images, fields and medial axes. A file that cannot be read becomes an item with its message.
+/// @param weld  of meshes.
+/// @throws Cancelled.
+[[nodiscard]] Scene make_scene(const std::vector<std::filesystem::path>& files, std::optional<double> weld,
+                               bool compresses, const Context& context);
+
+}  // namespace blum::cli

@@ -1,0 +1,14 @@
+// Blum: pieces of a medial axis at all angles, as one complex. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "blum/medial_axis/nested_complex.hpp"
+#include "medial_axis/axis_piece.hpp"
+
+namespace blum {
+
+/// What append_at() and contract_points() make of pieces at the angles from `least_theta` on.
+[[nodiscard]] NestedComplex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta);
+
+}  // namespace blum
