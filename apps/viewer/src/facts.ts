@@ -1,0 +1,39 @@
+// The key facts of everything on the page, as text: for screen readers, and where nothing can be drawn.
+import { place } from "./format.ts";
+import type { Fact, Item } from "./scene.ts";
+import { element } from "./widgets.ts";
+
+const kinds: Record<Item["kind"], string> = {
+  mesh: "mesh",
+  field: "distance field",
+  image: "image",
+  axis: "medial axis",
+  error: "not read",
+};
+
+export function kindName(item: Item): string {
+  return kinds[item.kind];
+}
+
+export function factsOf(item: Item): Fact[] {
+  if (item.kind === "error") return [["problem", item.message]];
+  const facts = [...item.facts];
+  if (item.bounds) facts.push(["bounds", `${place(item.bounds.lower)} to ${place(item.bounds.upper)}`]);
+  facts.push(["units", item.units]);
+  return facts;
+}
+
+function listOf(facts: Fact[]): HTMLElement {
+  const list = element("dl");
+  for (const [label, text] of facts) list.append(element("dt", "", label), element("dd", "", text));
+  return list;
+}
+
+/** All facts below each other; `live` has what controls change. */
+export function factsElement(items: Item[], live: (item: Item) => Fact[]): HTMLElement {
+  const root = element("div");
+  for (const item of items) {
+    root.append(element("h3", "", `${item.name}: ${kindName(item)}`), listOf([...factsOf(item), ...live(item)]));
+  }
+  return root;
+}

@@ -1,0 +1,122 @@
+// Rays and triangles, in plain numbers: what a click hits, and what is closest to a point.
+import type { Triple } from "./scene.ts";
+
+export type Ray = { origin: Triple; direction: Triple }; // of length 1
+
+export const sub = (a: ArrayLike<number>, b: ArrayLike<number>): Triple => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const add = (a: ArrayLike<number>, b: ArrayLike<number>): Triple => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const scale = (a: ArrayLike<number>, s: number): Triple => [a[0] * s, a[1] * s, a[2] * s];
+export const dot = (a: ArrayLike<number>, b: ArrayLike<number>): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const distance = (a: ArrayLike<number>, b: ArrayLike<number>): number => Math.hypot(...sub(a, b));
+export const along = (ray: Ray, t: number): Triple => add(ray.origin, scale(ray.direction, t));
+/** One of many triples that lie behind each other. */
+export const tripleAt = (numbers: ArrayLike<number>, i: number): Triple => [
+  numbers[3 * i],
+  numbers[3 * i + 1],
+  numbers[3 * i + 2],
+];
+
+/** The first of the triangles that a ray hits, from either side (Moeller, Trumbore 1997). */
+export function firstHit(
+  ray: Ray,
+  positions: ArrayLike<number>,
+  triangles: ArrayLike<number> | undefined, // undefined: corners lie one after the other
+  count: number,
+): { triangle: number; t: number } | undefined {
+  const [ox, oy, oz] = ray.origin;
+  const [dx, dy, dz] = ray.direction;
+  let best = Infinity;
+  let triangle = -1;
+  for (let i = 0; i < count; ++i) {
+    const a = 3 * (triangles ? triangles[3 * i] : 3 * i);
+    const b = 3 * (triangles ? triangles[3 * i + 1] : 3 * i + 1);
+    const c = 3 * (triangles ? triangles[3 * i + 2] : 3 * i + 2);
+    const ax = positions[a];
+    const ay = positions[a + 1];
+    const az = positions[a + 2];
+    const e1x = positions[b] - ax;
+    const e1y = positions[b + 1] - ay;
+    const e1z = positions[b + 2] - az;
+    const e2x = positions[c] - ax;
+    const e2y = positions[c + 1] - ay;
+    const e2z = positions[c + 2] - az;
+    const px = dy * e2z - dz * e2y;
+    const py = dz * e2x - dx * e2z;
+    const pz = dx * e2y - dy * e2x;
+    const determinant = e1x * px + e1y * py + e1z * pz;
+    if (determinant === 0) continue;
+    const sx = ox - ax;
+    const sy = oy - ay;
+    const sz = oz - az;
+    const u = (sx * px + sy * py + sz * pz) / determinant;
+    if (!(u >= 0 && u <= 1)) continue;
+    const qx = sy * e1z - sz * e1y;
+    const qy = sz * e1x - sx * e1z;
+    const qz = sx * e1y - sy * e1x;
+    const v = (dx * qx + dy * qy + dz * qz) / determinant;
+    if (!(v >= 0 && u + v <= 1)) continue;
+    const t = (e2x * qx + e2y * qy + e2z * qz) / determinant;
+    if (t > 0 && t < best) {
+      best = t;
+      triangle = i;
+    }
+  }
+  return triangle < 0 ? undefined : { triangle, t: best };
+}
+
+/** The closest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5). */
+export function closestOnTriangle(p: Triple, a: Triple, b: Triple, c: Triple): Triple {
+  const ab = sub(b, a);
+  const ac = sub(c, a);
+  const ap = sub(p, a);
+  const d1 = dot(ab, ap);
+  const d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const bp = sub(p, b);
+  const d3 = dot(ab, bp);
+  const d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return add(a, scale(ab, d1 / (d1 - d3)));
+  const cp = sub(p, c);
+  const d5 = dot(ab, cp);
+  const d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return add(a, scale(ac, d2 / (d2 - d6)));
+  const va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return add(b, scale(sub(c, b), (d4 - d3) / (d4 - d3 + (d5 - d6))));
+  }
+  const sum = va + vb + vc;
+  return sum === 0 ? a : add(a, add(scale(ab, vb / sum), scale(ac, vc / sum)));
+}
+
+/** The closest point of a mesh, by looking at every triangle. */
+export function closestOnMesh(p: Triple, positions: ArrayLike<number>, triangles: ArrayLike<number>): Triple | undefined {
+  let best: Triple | undefined;
+  let least = Infinity;
+  for (let i = 0; i < triangles.length / 3; ++i) {
+    const corner = (k: number): Triple => tripleAt(positions, triangles[3 * i + k]);
+    const a = corner(0);
+    const b = corner(1);
+    const c = corner(2);
+    // A triangle whose box is further than the best point needs no closer look.
+    let bound = 0;
+    for (let x = 0; x < 3; ++x) {
+      const below = Math.min(a[x], b[x], c[x]) - p[x];
+      const above = p[x] - Math.max(a[x], b[x], c[x]);
+      const gap = Math.max(below, above, 0);
+      bound += gap * gap;
+    }
+    if (bound >= least) continue;
+    const q = closestOnTriangle(p, a, b, c);
+    const d = sub(q, p);
+    const squared = dot(d, d);
+    if (squared < least) {
+      least = squared;
+      best = q;
+    }
+  }
+  return best;
+}

@@ -1,0 +1,121 @@
+// A mesh on the stage.
+import * as THREE from "three";
+import { plural } from "./format.ts";
+import { add, along, distance, firstHit, sub, tripleAt, type Ray } from "./geometry.ts";
+import type { Fact, MeshItem, Triple } from "./scene.ts";
+import { dotMaterial, lineGeometry, lineMaterial, setColor, setStyle, surfaceMaterial, type Style } from "./shaders.ts";
+import type { Hit, Legend, Surroundings, View } from "./view.ts";
+import { choice, element } from "./widgets.ts";
+
+const light: Triple = [0.66, 0.72, 0.79];
+const dark: Triple = [0.62, 0.68, 0.76];
+
+export class MeshView implements View {
+  readonly item: MeshItem;
+  readonly object = new THREE.Group();
+  readonly controls: HTMLElement;
+  readonly #offset: Triple; // of its own origin in the drawn world
+  readonly #material = surfaceMaterial();
+  readonly #lines = lineMaterial([0.35, 0.4, 0.46], 2);
+  readonly #dots = dotMaterial([0.35, 0.4, 0.46], 5);
+  #style: Style;
+
+  /** @param isAlone  nothing is inside that one would want to see. */
+  constructor(item: MeshItem, around: Surroundings, isAlone: boolean) {
+    this.item = item;
+    this.#offset = sub(item.origin, around.center);
+    this.#style = isAlone ? "solid" : "translucent";
+    this.object.position.set(...this.#offset);
+    this.object.add(...this.#parts());
+    setStyle(this.#material, this.#style);
+    this.controls = element("div", "controls");
+    if (item.triangles.length > 0) {
+      this.controls.append(
+        choice<Style>(
+          "Surface",
+          [
+            ["solid", "solid"],
+            ["translucent", "translucent"],
+            ["wire", "wire"],
+          ],
+          this.#style,
+          (style) => {
+            this.#style = style;
+            setStyle(this.#material, style);
+            this.#orderDrawing();
+            around.changed();
+          },
+        ),
+      );
+    }
+    this.#orderDrawing();
+  }
+
+  pick(ray: Ray): Hit | undefined {
+    const { positions, triangles } = this.item;
+    const own: Ray = { origin: sub(ray.origin, this.#offset), direction: ray.direction };
+    const hit = firstHit(own, positions, triangles, triangles.length / 3);
+    if (hit === undefined) return undefined;
+    const at = along(own, hit.t);
+    const corners = [0, 1, 2].map((k) => triangles[3 * hit.triangle + k]);
+    const nearest = corners.reduce((a, b) =>
+      distance(at, tripleAt(positions, a)) <= distance(at, tripleAt(positions, b)) ? a : b,
+    );
+    return {
+      t: hit.t,
+      title: this.item.name,
+      facts: [
+        ["triangle", `${hit.triangle} (corners ${corners.join(", ")})`],
+        ["nearest vertex", String(nearest)],
+      ],
+      at: add(at, this.item.origin),
+      footprints: [],
+    };
+  }
+
+  /** What is seen through does not stand before what is inside. */
+  get isSeenThrough(): boolean {
+    return this.#style !== "solid";
+  }
+
+  legends(): Legend[] {
+    return [];
+  }
+
+  liveFacts(): Fact[] {
+    return [["shown", `${plural(this.item.counts.triangles, "triangle")}, ${this.#style}`]];
+  }
+
+  setTheme(isDark: boolean): void {
+    setColor(this.#material, isDark ? dark : light);
+  }
+
+  #orderDrawing(): void {
+    this.object.traverse((part) => (part.renderOrder = this.#style === "translucent" ? 10 : 0));
+  }
+
+  #parts(): THREE.Object3D[] {
+    const { positions, triangles, segments, points } = this.item;
+    const parts: THREE.Object3D[] = [];
+    const attribute = new THREE.BufferAttribute(positions, 3);
+    if (triangles.length > 0) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", attribute);
+      geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+      parts.push(new THREE.Mesh(geometry, this.#material));
+    }
+    if (segments.length > 0) {
+      const ends = new Float32Array(3 * segments.length);
+      segments.forEach((vertex, i) => ends.set(tripleAt(positions, vertex), 3 * i));
+      parts.push(new THREE.Mesh(lineGeometry(ends), this.#lines));
+    }
+    if (points.length > 0) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", attribute);
+      geometry.setIndex(new THREE.BufferAttribute(points, 1));
+      parts.push(new THREE.Points(geometry, this.#dots));
+    }
+    for (const part of parts) part.frustumCulled = false;
+    return parts;
+  }
+}

@@ -1,0 +1,54 @@
+// What a click found, as text; and footprints on the meshes of the page.
+import { place } from "./format.ts";
+import { closestOnMesh, distance, sub } from "./geometry.ts";
+import type { Fact, MeshItem } from "./scene.ts";
+import type { Hit } from "./view.ts";
+import { button, element } from "./widgets.ts";
+
+/** A field names its closest sites by number only: where a mesh of the page is as far away, its closest point is it. */
+export function withFootprint(hit: Hit, meshes: MeshItem[]): Hit {
+  if (hit.reach === undefined) return hit;
+  for (const mesh of meshes) {
+    const closest = closestOnMesh(sub(hit.at, mesh.origin), mesh.positions, mesh.triangles);
+    if (closest === undefined) continue;
+    const foot = [0, 1, 2].map((a) => closest[a] + mesh.origin[a]) as typeof closest;
+    const slack = 1e-3 * Math.max(hit.reach, ...mesh.positions.subarray(0, 3).map(Math.abs)) + 1e-6;
+    if (Math.abs(distance(foot, hit.at) - hit.reach) > slack) continue;
+    const { about: _, ...rest } = hit;
+    return { ...rest, footprints: [foot], facts: [...hit.facts, ["footprint is on", mesh.name]] };
+  }
+  return hit;
+}
+
+export function readoutFacts(hit: Hit): Fact[] {
+  const facts: Fact[] = [...hit.facts, ["place", place(hit.at)]];
+  hit.footprints.forEach((p, i) => facts.push([hit.footprints.length > 1 ? `footprint ${i + 1}` : "footprint", place(p)]));
+  if (hit.footprints.length === 0 && hit.about) facts.push(["footprint", `about ${place(hit.about)}`]);
+  return facts;
+}
+
+export class Readout {
+  readonly root = element("section", "card readout");
+
+  constructor(onClose: () => void) {
+    this.root.setAttribute("aria-live", "polite");
+    this.root.setAttribute("aria-label", "Under the pointer");
+    this.root.hidden = true;
+    this.#onClose = onClose;
+  }
+  readonly #onClose: () => void;
+
+  show(hit: Hit | undefined): void {
+    this.root.hidden = hit === undefined;
+    if (hit === undefined) return this.root.replaceChildren();
+    const list = element("dl");
+    for (const [label, text] of readoutFacts(hit)) {
+      const value = element("dd", "", text);
+      value.dataset.fact = label;
+      list.append(element("dt", "", label), value);
+    }
+    const close = button("×", "Close", this.#onClose);
+    this.root.replaceChildren(element("header", "", element("h2", "", hit.title), close), list);
+  }
+}
+

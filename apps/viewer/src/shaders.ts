@@ -1,0 +1,358 @@
+// What draws surfaces, lines, dots and slices. Colours are what the screen shows: no conversion follows.
+import * as THREE from "three";
+import { divergingColor, paletteHues, paletteRows, regionPalette, sequentialColor, type Color } from "./colors.ts";
+
+const rampSize = 512;
+
+function colorTexture(colors: Color[], width: number, height: number, filter: THREE.MagnificationTextureFilter) {
+  const bytes = new Uint8Array(colors.flatMap((c) => [...c.map((part) => Math.round(255 * part)), 255]));
+  const texture = new THREE.DataTexture(bytes, width, height);
+  texture.magFilter = filter;
+  texture.minFilter = filter;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+const ramp = (color: (t: number) => Color, from: number) =>
+  colorTexture(
+    Array.from({ length: rampSize }, (_, i) => color(from + ((1 - from) * i) / (rampSize - 1))),
+    rampSize,
+    1,
+    THREE.LinearFilter,
+  );
+
+const shared = {
+  diverging: { value: ramp(divergingColor, -1) },
+  sequential: { value: ramp(sequentialColor, 0) },
+  palette: { value: colorTexture(regionPalette(), paletteHues, paletteRows, THREE.NearestFilter) },
+};
+
+const regionColor = /* glsl */ `
+  uniform sampler2D palette;
+  vec3 regionColor(int id) {
+    uint x = uint(id) + 0x9e3779b9u;
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    x = x ^ (x >> 16);
+    return texelFetch(palette, ivec2(int(x >> 24), int(x & 15u)), 0).rgb;
+  }
+`;
+
+/** How a surface is coloured. */
+export const Coloring = { plain: 0, scalar: 1, angle: 2, region: 3 } as const;
+
+const surfaceVertex = /* glsl */ `
+  precision highp float;
+  uniform mat4 modelViewMatrix, projectionMatrix;
+  uniform mat3 normalMatrix;
+  in vec3 position;
+  #ifdef CELLS
+    in vec3 cell; // radius, angle, sheet
+    out vec3 vCell;
+  #endif
+  #ifdef NORMALS
+    in vec3 normal;
+    out vec3 vNormal;
+  #endif
+  out vec3 vView;
+  void main() {
+    vec4 view = modelViewMatrix * vec4(position, 1.0);
+    vView = view.xyz;
+    #ifdef CELLS
+      vCell = cell;
+    #endif
+    #ifdef NORMALS
+      vNormal = normalMatrix * normal;
+    #endif
+    gl_Position = projectionMatrix * view;
+  }
+`;
+
+const surfaceFragment = /* glsl */ `
+  precision highp float;
+  precision highp int;
+  uniform vec3 color;
+  uniform float opacity;
+  uniform int coloring;
+  uniform vec2 range;
+  uniform bool isWire;
+  uniform sampler2D sequential;
+  ${regionColor}
+  #ifdef CELLS
+    in vec3 vCell;
+  #endif
+  #ifdef NORMALS
+    in vec3 vNormal;
+  #endif
+  in vec3 vView;
+  out vec4 outColor;
+  void main() {
+    vec3 base = color;
+    #ifdef CELLS
+      float span = max(range.y - range.x, 1e-30);
+      if (coloring == 1) base = texture(sequential, vec2((vCell.x - range.x) / span, 0.5)).rgb;
+      if (coloring == 2) base = texture(sequential, vec2((vCell.y - range.x) / span, 0.5)).rgb;
+      if (coloring == 3) base = regionColor(int(vCell.z + 0.5));
+    #endif
+    if (isWire) {
+      outColor = vec4(base, opacity);
+      return;
+    }
+    #ifdef NORMALS
+      vec3 n = normalize(vNormal);
+    #else
+      vec3 n = normalize(cross(dFdx(vView), dFdy(vView)));
+    #endif
+    vec3 eye = normalize(-vView);
+    if (dot(n, eye) < 0.0) n = -n;
+    float key = max(dot(n, normalize(vec3(0.35, 0.6, 0.75))), 0.0);
+    float fill = max(dot(n, normalize(vec3(-0.6, -0.25, 0.6))), 0.0);
+    float facing = dot(n, eye);
+    vec3 lit = base * (0.42 + 0.5 * key + 0.18 * fill) + 0.06 * pow(key, 24.0);
+    // What is seen through is denser where it is seen from the side, so that its shape shows.
+    float alpha = opacity < 1.0 ? mix(min(opacity * 3.2, 1.0), opacity, clamp(facing * 1.25, 0.0, 1.0)) : 1.0;
+    outColor = vec4(lit, alpha);
+  }
+`;
+
+export type SurfaceOptions = { hasCells?: boolean; hasNormals?: boolean };
+
+export function surfaceMaterial(options: SurfaceOptions = {}): THREE.RawShaderMaterial {
+  const defines: Record<string, string> = {};
+  if (options.hasCells === true) defines.CELLS = "";
+  if (options.hasNormals === true) defines.NORMALS = "";
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    vertexShader: surfaceVertex,
+    fragmentShader: surfaceFragment,
+    defines,
+    side: THREE.DoubleSide,
+    uniforms: {
+      ...shared,
+      color: { value: new THREE.Vector3(0.7, 0.75, 0.8) },
+      opacity: { value: 1 },
+      coloring: { value: Coloring.plain as number },
+      range: { value: new THREE.Vector2(0, 1) },
+      isWire: { value: false },
+    },
+  });
+}
+
+export type Style = "solid" | "translucent" | "wire";
+
+export function setStyle(material: THREE.RawShaderMaterial, style: Style, translucency = 0.16): void {
+  material.wireframe = style === "wire";
+  material.uniforms.isWire.value = style === "wire";
+  material.uniforms.opacity.value = style === "translucent" ? translucency : 1;
+  material.transparent = style === "translucent";
+  material.depthWrite = style !== "translucent";
+}
+
+export function setColor(material: THREE.RawShaderMaterial, color: Color): void {
+  (material.uniforms.color.value as THREE.Vector3).set(...color);
+}
+
+/** The size of the picture in pixels, halved, and how many of them a line is wide by: set by the stage. */
+export const viewport = { value: new THREE.Vector2(1, 1) };
+export const pixelRatio = { value: 1 };
+
+// Lines as strips of quads, wide in pixels.
+const lineVertex = /* glsl */ `
+  precision highp float;
+  uniform mat4 modelViewMatrix, projectionMatrix;
+  uniform vec2 viewport;
+  uniform float width, pixelRatio;
+  in vec2 position; // end, side
+  in vec3 from, to;
+  in vec2 values;
+  out float vValue;
+  void main() {
+    // A little nearer, so that it is before the surface that it lies on: along the view, which moves nothing aside.
+    vec4 a = projectionMatrix * vec4((modelViewMatrix * vec4(from, 1.0)).xyz * 0.9985, 1.0);
+    vec4 b = projectionMatrix * vec4((modelViewMatrix * vec4(to, 1.0)).xyz * 0.9985, 1.0);
+    vec2 direction = (b.xy / b.w - a.xy / a.w) * viewport;
+    direction = length(direction) > 1e-6 ? normalize(direction) : vec2(1.0, 0.0);
+    vec2 across = vec2(-direction.y, direction.x);
+    vec4 at = position.x < 0.5 ? a : b;
+    vec2 offset = across * position.y + direction * (position.x - 0.5); // square caps: no gaps at bends
+    at.xy += offset * 0.5 * width * pixelRatio / viewport * at.w;
+    vValue = position.x < 0.5 ? values.x : values.y;
+    gl_Position = at;
+  }
+`;
+
+const lineFragment = /* glsl */ `
+  precision highp float;
+  uniform vec3 color;
+  uniform float opacity;
+  uniform int coloring;
+  uniform vec2 range;
+  uniform sampler2D sequential;
+  in float vValue;
+  out vec4 outColor;
+  void main() {
+    vec3 base = color;
+    if (coloring != 0) base = texture(sequential, vec2((vValue - range.x) / max(range.y - range.x, 1e-30), 0.5)).rgb;
+    outColor = vec4(base, opacity);
+  }
+`;
+
+export function lineMaterial(color: Color, width: number): THREE.RawShaderMaterial {
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    vertexShader: lineVertex,
+    fragmentShader: lineFragment,
+    side: THREE.DoubleSide,
+    uniforms: {
+      ...shared,
+      color: { value: new THREE.Vector3(...color) },
+      opacity: { value: 1 },
+      width: { value: width },
+      viewport,
+      pixelRatio,
+      coloring: { value: 0 },
+      range: { value: new THREE.Vector2(0, 1) },
+    },
+  });
+}
+
+/** Lines between pairs of places; `values` has one number for each end. */
+export function lineGeometry(ends: Float32Array, values?: Float32Array): THREE.InstancedBufferGeometry {
+  const geometry = new THREE.InstancedBufferGeometry();
+  const quad = new Float32Array([0, -1, 0, 1, 1, -1, 1, 1]);
+  geometry.setAttribute("position", new THREE.BufferAttribute(quad, 2));
+  geometry.setIndex([0, 2, 1, 1, 2, 3]);
+  const pairs = new THREE.InstancedInterleavedBuffer(ends, 6);
+  geometry.setAttribute("from", new THREE.InterleavedBufferAttribute(pairs, 3, 0));
+  geometry.setAttribute("to", new THREE.InterleavedBufferAttribute(pairs, 3, 3));
+  const count = ends.length / 6;
+  geometry.setAttribute("values", new THREE.InstancedBufferAttribute(values ?? new Float32Array(2 * count), 2));
+  geometry.instanceCount = count;
+  geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), Infinity); // `position` is none
+  return geometry;
+}
+
+export function dotMaterial(color: Color, size: number): THREE.RawShaderMaterial {
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    vertexShader: /* glsl */ `
+      precision highp float;
+      uniform mat4 modelViewMatrix, projectionMatrix;
+      uniform float size, pixelRatio;
+      in vec3 position;
+      void main() {
+        gl_Position = projectionMatrix * vec4((modelViewMatrix * vec4(position, 1.0)).xyz * 0.997, 1.0);
+        gl_PointSize = size * pixelRatio;
+      }
+    `,
+    fragmentShader: /* glsl */ `
+      precision highp float;
+      uniform vec3 color;
+      out vec4 outColor;
+      void main() {
+        if (length(gl_PointCoord - 0.5) > 0.5) discard;
+        outColor = vec4(color, 1.0);
+      }
+    `,
+    uniforms: { color: { value: new THREE.Vector3(...color) }, size: { value: size }, pixelRatio },
+  });
+}
+
+/** How a slice shows its values. */
+export const SliceMode = { distance: 0, sites: 1, labels: 2, grey: 3 } as const;
+
+const sliceFragment = /* glsl */ `
+  precision highp float;
+  precision highp int;
+  precision highp sampler2D;
+  precision highp isampler2D;
+  uniform sampler2D values;
+  uniform isampler2D sites;
+  uniform ivec2 size;
+  uniform int mode;
+  uniform bool isLinear, hasSign;
+  uniform vec2 range;     // of the values
+  uniform vec2 extremes;  // inside, outside
+  uniform float band;     // 0: none
+  uniform float contour;  // 0: none
+  uniform sampler2D diverging, sequential;
+  ${regionColor}
+  in vec2 vAt; // index coordinates
+  out vec4 outColor;
+  const vec3 ink = vec3(0.09, 0.10, 0.13);
+  const vec3 nothing = vec3(0.72);
+  float valueAt(ivec2 at) { return texelFetch(values, clamp(at, ivec2(0), size - 1), 0).r; }
+  float interpolated(vec2 at) {
+    vec2 low = floor(at);
+    vec2 f = at - low;
+    ivec2 i = ivec2(low);
+    return mix(mix(valueAt(i), valueAt(i + ivec2(1, 0)), f.x),
+               mix(valueAt(i + ivec2(0, 1)), valueAt(i + ivec2(1, 1)), f.x), f.y);
+  }
+  void main() {
+    ivec2 nearest = clamp(ivec2(floor(vAt + 0.5)), ivec2(0), size - 1);
+    float smoothValue = interpolated(vAt);
+    float slope = fwidth(smoothValue);
+    float value = isLinear && mode != ${SliceMode.labels} ? smoothValue : valueAt(nearest);
+    vec3 color;
+    if (mode == ${SliceMode.sites}) {
+      int site = texelFetch(sites, nearest, 0).r;
+      color = site < 0 ? nothing : regionColor(site);
+    } else if (mode == ${SliceMode.labels}) {
+      color = value == 0.0 ? vec3(0.93) : regionColor(int(value));
+    } else if (mode == ${SliceMode.grey}) {
+      color = vec3(mix(0.06, 0.96, clamp((value - range.x) / max(range.y - range.x, 1e-30), 0.0, 1.0)));
+    } else {
+      bool isBeyond = band > 0.0 && abs(value) >= band * (1.0 - 1e-6);
+      float t = value < 0.0 ? -min(value / extremes.x, 1.0) : min(value / extremes.y, 1.0);
+      color = hasSign ? texture(diverging, vec2(0.5 + 0.5 * t * ${(rampSize - 1) / rampSize}, 0.5)).rgb
+                      : texture(sequential, vec2(t, 0.5)).rgb;
+      if (isBeyond) color = nothing;
+    }
+    if (mode == ${SliceMode.distance} && slope > 0.0 && !(band > 0.0 && abs(smoothValue) >= band * (1.0 - 1e-6))) {
+      if (contour > 0.0) {
+        float level = round(smoothValue / contour);
+        bool isStrong = mod(abs(level), 5.0) == 0.0;
+        float pixels = abs(smoothValue - level * contour) / slope;
+        float room = clamp(contour / slope / 3.0 - 1.0, 0.0, 1.0);
+        float cover = clamp((isStrong ? 1.25 : 1.0) - pixels, 0.0, 1.0) * room;
+        if (level != 0.0) color = mix(color, ink, cover * (isStrong ? 0.6 : 0.33));
+      }
+      if (hasSign) color = mix(color, ink, clamp(1.8 - abs(smoothValue) / slope, 0.0, 1.0));
+    }
+    if (!(value == value)) color = nothing;
+    outColor = vec4(color, 1.0);
+  }
+`;
+
+export function sliceMaterial(): THREE.RawShaderMaterial {
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    vertexShader: /* glsl */ `
+      precision highp float;
+      uniform mat4 modelViewMatrix, projectionMatrix;
+      in vec3 position;
+      in vec2 at;
+      out vec2 vAt;
+      void main() {
+        vAt = at;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }
+    `,
+    fragmentShader: sliceFragment,
+    side: THREE.DoubleSide,
+    uniforms: {
+      ...shared,
+      values: { value: null },
+      sites: { value: null },
+      size: { value: [1, 1] },
+      mode: { value: SliceMode.distance as number },
+      isLinear: { value: true },
+      hasSign: { value: true },
+      range: { value: new THREE.Vector2(0, 1) },
+      extremes: { value: new THREE.Vector2(1, 1) },
+      band: { value: 0 },
+      contour: { value: 0 },
+    },
+  });
+}

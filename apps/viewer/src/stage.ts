@@ -1,0 +1,161 @@
+// The canvas: renderer, camera and controls. Pictures are drawn when something changed, and not else.
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Ray } from "./geometry.ts";
+import type { Box, Triple } from "./scene.ts";
+import { pixelRatio, viewport } from "./shaders.ts";
+
+export class Stage {
+  readonly scene = new THREE.Scene();
+  readonly camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
+  readonly canvas: HTMLCanvasElement;
+  /** Called before a picture is drawn. */
+  onDraw: () => void = () => undefined;
+  readonly #renderer: THREE.WebGLRenderer;
+  readonly #controls: OrbitControls;
+  readonly #center: Triple;
+  readonly #radius: number;
+  #isAsked = false;
+
+  /** Throws where the browser has no WebGL 2. */
+  constructor(canvas: HTMLCanvasElement, bounds: Box) {
+    this.canvas = canvas;
+    this.#renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.#center = bounds.lower.map((low, a) => (low + bounds.upper[a]) / 2) as Triple;
+    this.#radius = Math.max(Math.hypot(...bounds.lower.map((low, a) => bounds.upper[a] - low)) / 2, 1e-12);
+    this.#controls = new OrbitControls(this.camera, canvas);
+    this.#controls.rotateSpeed = 0.8;
+    this.#controls.zoomToCursor = true;
+    this.#controls.addEventListener("change", () => this.draw());
+    this.look([0.55, -0.75, 0.42]);
+    new ResizeObserver(() => this.#resize()).observe(canvas.parentElement as HTMLElement);
+    canvas.addEventListener("webglcontextrestored", () => this.draw());
+    this.#resize();
+  }
+
+  /** Everything is drawn as seen from here, as single precision needs. */
+  get center(): Triple {
+    return this.#center;
+  }
+  get radius(): number {
+    return this.#radius;
+  }
+
+  setBackground(color: string): void {
+    this.#renderer.setClearColor(new THREE.Color(color));
+    this.draw();
+  }
+
+  /** Looks at everything from a direction. */
+  look(from: Triple): void {
+    const direction = new THREE.Vector3(...from).normalize();
+    const isVertical = Math.abs(direction.z) > 0.999;
+    this.camera.up.set(0, isVertical ? 1 : 0, isVertical ? 0 : 1);
+    const half = Math.min(this.camera.fov, 2 * this.#halfAngleAcross()) / 2;
+    const away = this.#radius / Math.sin((half * Math.PI) / 180);
+    this.camera.position.copy(direction.multiplyScalar(1.02 * away));
+    this.camera.near = this.#radius / 500;
+    this.camera.far = away + 40 * this.#radius;
+    this.camera.updateProjectionMatrix();
+    this.#controls.object.up.copy(this.camera.up);
+    this.#controls.target.set(0, 0, 0);
+    this.#controls.minDistance = this.#radius / 100;
+    this.#controls.maxDistance = 30 * this.#radius;
+    this.#controls.update();
+    this.draw();
+  }
+
+  /** Turns the view by angles, as arrow keys do. */
+  turn(around: number, over: number): void {
+    const offset = this.camera.position.clone().sub(this.#controls.target);
+    const toUp = new THREE.Quaternion().setFromUnitVectors(this.camera.up, new THREE.Vector3(0, 1, 0));
+    offset.applyQuaternion(toUp);
+    const spherical = new THREE.Spherical().setFromVector3(offset);
+    spherical.theta += around;
+    spherical.phi += over;
+    spherical.makeSafe();
+    offset.setFromSpherical(spherical).applyQuaternion(toUp.invert());
+    this.camera.position.copy(this.#controls.target).add(offset);
+    this.#controls.update();
+    this.draw();
+  }
+
+  zoom(factor: number): void {
+    const offset = this.camera.position.clone().sub(this.#controls.target).multiplyScalar(factor);
+    const length = offset.length();
+    if (length < this.#controls.minDistance || length > this.#controls.maxDistance) return;
+    this.camera.position.copy(this.#controls.target).add(offset);
+    this.#controls.update();
+    this.draw();
+  }
+
+  /** Whether dragging turns the view; not while something else is dragged. */
+  set isTurnedByDragging(value: boolean) {
+    this.#controls.enabled = value;
+  }
+
+  /** Asks for a picture. */
+  draw(): void {
+    if (this.#isAsked) return;
+    this.#isAsked = true;
+    requestAnimationFrame(() => this.drawNow());
+  }
+
+  drawNow(): void {
+    this.#isAsked = false;
+    this.onDraw();
+    this.#renderer.render(this.scene, this.camera);
+  }
+
+  /** The picture as a PNG. */
+  async picture(): Promise<Blob> {
+    this.drawNow();
+    return new Promise((resolve, reject) => {
+      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture could be made"))), "image/png");
+    });
+  }
+
+  /** The ray under a place of the canvas, in pixels of the page. */
+  ray(x: number, y: number): Ray {
+    const box = this.canvas.getBoundingClientRect();
+    const caster = new THREE.Raycaster();
+    this.camera.updateMatrixWorld();
+    caster.setFromCamera(
+      new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2),
+      this.camera,
+    );
+    return { origin: caster.ray.origin.toArray() as Triple, direction: caster.ray.direction.toArray() as Triple };
+  }
+
+  /** Where a place of the drawn world is on the page; `isBehind` the camera it is nowhere. */
+  project(p: Triple): { x: number; y: number; isBehind: boolean } {
+    const box = this.canvas.getBoundingClientRect();
+    this.camera.updateMatrixWorld();
+    const at = new THREE.Vector3(...p).project(this.camera);
+    return {
+      x: box.left + ((at.x + 1) / 2) * box.width,
+      y: box.top + ((1 - at.y) / 2) * box.height,
+      isBehind: at.z > 1,
+    };
+  }
+
+  #halfAngleAcross(): number {
+    const half = (this.camera.fov * Math.PI) / 360;
+    return (Math.atan(Math.tan(half) * this.camera.aspect) * 180) / Math.PI;
+  }
+
+  #resize(): void {
+    const parent = this.canvas.parentElement as HTMLElement;
+    const [width, height] = [Math.max(parent.clientWidth, 1), Math.max(parent.clientHeight, 1)];
+    const before = this.camera.aspect;
+    this.#renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    pixelRatio.value = this.#renderer.getPixelRatio();
+    viewport.value.set((width * pixelRatio.value) / 2, (height * pixelRatio.value) / 2);
+    // What was in the picture stays in it when it becomes narrow.
+    if (this.camera.aspect < 1 && before >= 1) this.zoom(1 / this.camera.aspect);
+    this.drawNow();
+  }
+}

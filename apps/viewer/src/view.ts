@@ -1,0 +1,43 @@
+// What all things on the stage have in common.
+import type * as THREE from "three";
+import type { Ray } from "./geometry.ts";
+import type { Fact, Item, Triple } from "./scene.ts";
+
+/** What a click hit. */
+export type Hit = {
+  t: number; // along the ray
+  title: string;
+  facts: Fact[];
+  at: Triple; // in the world of the files
+  footprints: Triple[];
+  radius?: number; // of a ball around `at`
+  about?: Triple; // about where the footprint is, where it is not known
+  reach?: number; // how far away it is
+};
+
+export type Legend = { title: string; units: string } & (
+  | { kind: "ramp"; scale: "diverging" | "sequential"; from: number; to: number; middle?: number }
+  | { kind: "regions"; note: string }
+);
+
+export interface View {
+  readonly item: Exclude<Item, { kind: "error" }>;
+  readonly object: THREE.Object3D;
+  /** Controls of its own, below its name. */
+  readonly controls: HTMLElement;
+  /** @param ray  in the drawn world. */
+  pick(ray: Ray): Hit | undefined;
+  legends(): Legend[];
+  /** What changes with the controls, for the text. */
+  liveFacts(): Fact[];
+  /** Called before a picture is drawn. */
+  beforeDraw?(): void;
+  setTheme?(isDark: boolean): void;
+}
+
+/** What a view needs of the page. */
+export type Surroundings = {
+  center: Triple; // of the drawn world, in that of the files
+  radius: number;
+  changed: () => void; // something looks different now
+};
