@@ -1,7 +1,7 @@
 # Blum: the commands of everyday work. `make` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build test demo format lint bench docs asan tsan fuzz configurations install clean
+.PHONY: help setup build test demo format lint bench docs asan tsan fuzz configurations install viewer clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
@@ -37,6 +37,12 @@ lint: ## Check format, clang-tidy, shell scripts, layer rules, words and links
 
 bench: ## Build and run the benchmarks, with their peers
 	@tools/bench.sh
+
+viewer: ## Build the page of blum view, apps/viewer/dist/viewer.html, from its sources, and test it (Node, Chromium)
+	@tools/setup.sh --viewer
+	@tools/viewer.sh install
+	@tools/viewer.sh build
+	@tools/viewer.sh all
 
 docs: ## Build the API pages and check the documents' links: build/docs/html/index.html
 	@tools/setup.sh --docs

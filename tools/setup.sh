@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Blum needs on Debian 12 (and its kin), or says what is missing.
-#   tools/setup.sh [--tests] [--bench] [--docs] [--lint] [--fuzz] [--ci] [--all] [--check]
+#   tools/setup.sh [--tests] [--bench] [--docs] [--lint] [--fuzz] [--viewer] [--ci] [--all] [--check]
 # Without options: what the library and the command-line tool need. --check only looks, and installs nothing.
 # As root, or where sudo works, apt installs what is missing; anyone else gets the command to run, and exit status 1.
 # Running it again does nothing. BLUM_SETUP=skip in the environment: trust that everything is there.
@@ -14,6 +14,13 @@ docs=(doxygen python3-dev python3-venv ca-certificates)
 lint=(clang-format-19 clang-tidy-19 shellcheck python3 python3-venv ca-certificates)
 fuzz=(clang-19 libclang-rt-19-dev)
 ci=(ccache)
+
+# What the page of `blum view` is built and tested with, where there is none of it yet, or too old a one.
+viewer=(ca-certificates)
+if ! command -v npm >/dev/null || ! node -e 'process.exit(process.versions.node.split(".")[0] < 18)' 2>/dev/null; then
+  viewer+=(nodejs npm)
+fi
+command -v chromium >/dev/null || viewer+=(chromium)
 
 check_only=false
 requirement_files=()
@@ -33,9 +40,10 @@ for option in "$@"; do
       requirement_files+=(tests/python/requirements.txt)
       ;;
     --fuzz) packages+=("${fuzz[@]}") ;;
+    --viewer) packages+=("${viewer[@]}") ;;
     --ci) packages+=("${ci[@]}") ;;
     --all)
-      packages+=("${tests[@]}" "${bench[@]}" "${docs[@]}" "${lint[@]}" "${fuzz[@]}")
+      packages+=("${tests[@]}" "${bench[@]}" "${docs[@]}" "${lint[@]}" "${fuzz[@]}" "${viewer[@]}")
       requirement_files+=(tests/python/requirements.txt bench/requirements.txt)
       ;;
     --check) check_only=true ;;

@@ -178,8 +178,7 @@ void accept_into(std::vector<Connection>& connections, int listener) {
 
 }  // namespace
 
-ViewServer::ViewServer(std::uint16_t port) {
-  listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+ViewServer::ViewServer(std::uint16_t port) : listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (listener_ < 0) fail("no socket can be made");
   const int yes = 1;
   setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);

@@ -41,6 +41,7 @@ export class AxisView implements View {
   readonly #radii: [number, number];
   readonly #counts = element("p", "counts");
   #theta: number;
+  #slider: Slider | undefined;
   #part: AxisPart;
   #colorBy: ColorBy = "radius";
 
@@ -76,6 +77,7 @@ export class AxisView implements View {
 
   setTheta(theta: number): void {
     this.#theta = theta;
+    this.#slider?.set(theta);
     this.#part = this.#model.at(theta);
     this.#showPart();
     this.#around.changed();
@@ -145,7 +147,7 @@ export class AxisView implements View {
     const changed = this.#around.changed;
     if (this.#model.isNested) {
       const least = this.item.leastTheta ?? 0;
-      const slider = new Slider("Theta", { min: least, max: 180, step: 0.5 }, this.#theta, (t) => this.setTheta(t), "°");
+      const slider = (this.#slider = new Slider("Theta", { min: least, max: 180, step: 0.5 }, this.#theta, (t) => this.setTheta(t), "°"));
       slider.root.classList.add("theta");
       this.controls.append(slider.root);
     }

@@ -2,7 +2,7 @@
 import type { Triple } from "./scene.ts";
 import type { Stage } from "./stage.ts";
 
-const directions: Record<string, Triple> = {
+const directions: Partial<Record<string, Triple>> = {
   "0": [0.55, -0.75, 0.42],
   "1": [1, 0, 0],
   "2": [0, 1, 0],
@@ -18,7 +18,7 @@ const clickSlack = 5; // pixels between press and release
 export function listen(stage: Stage, onClick: (x: number, y: number) => void): void {
   stage.canvas.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const actions: Record<string, () => void> = {
+    const actions: Partial<Record<string, () => void>> = {
       ArrowLeft: () => stage.turn(-turn, 0),
       ArrowRight: () => stage.turn(turn, 0),
       ArrowUp: () => stage.turn(0, -turn),

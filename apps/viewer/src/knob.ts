@@ -38,7 +38,7 @@ export class Knob {
 
   #onKey(event: KeyboardEvent): void {
     const { layer, layers } = this.#view.slice;
-    const targets: Record<string, number> = {
+    const targets: Partial<Record<string, number>> = {
       ArrowUp: layer + 1,
       ArrowRight: layer + 1,
       ArrowDown: layer - 1,

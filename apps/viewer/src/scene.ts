@@ -80,7 +80,17 @@ export type Scene = { version: string; items: Item[] };
 
 export class SceneError extends Error {}
 
-const constructors = {
+type Constructor =
+  | Float32ArrayConstructor
+  | Float64ArrayConstructor
+  | Int8ArrayConstructor
+  | Uint8ArrayConstructor
+  | Int16ArrayConstructor
+  | Uint16ArrayConstructor
+  | Int32ArrayConstructor
+  | Uint32ArrayConstructor;
+
+const constructors: Partial<Record<string, Constructor>> = {
   f4: Float32Array,
   f8: Float64Array,
   i1: Int8Array,
@@ -89,7 +99,7 @@ const constructors = {
   u2: Uint16Array,
   i4: Int32Array,
   u4: Uint32Array,
-} as const;
+};
 
 /** Reads a scene. Throws SceneError where the bytes are none. */
 export async function readScene(bytes: Uint8Array): Promise<Scene> {
@@ -184,7 +194,7 @@ async function readItem(raw: Raw, read: (entry: ArrayEntry) => Promise<Numbers>)
 async function readArray(body: Uint8Array, entry: ArrayEntry): Promise<Numbers> {
   const stored = body.subarray(entry.offset, entry.offset + entry.bytes);
   if (stored.length !== entry.bytes) throw new SceneError("the scene is cut off");
-  const make = constructors[entry.type as keyof typeof constructors];
+  const make = constructors[entry.type];
   if (make === undefined) throw new SceneError(`the scene holds numbers of an unknown type, '${entry.type}'`);
   let bytes: Uint8Array;
   if (entry.coding === "raw") {

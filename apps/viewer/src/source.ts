@@ -4,7 +4,7 @@ import { SceneError } from "./scene.ts";
 export async function sceneBytes(): Promise<Uint8Array> {
   const elements = [...document.querySelectorAll<HTMLScriptElement>("script.scene")];
   if (elements.length > 0) {
-    const bytes = joined(elements.map((element) => fromBase64(element.textContent ?? "")));
+    const bytes = joined(elements.map((element) => fromBase64(element.textContent)));
     for (const element of elements) element.remove(); // its text is as large again
     return bytes;
   }

@@ -15,6 +15,7 @@ export class Stage {
   readonly #controls: OrbitControls;
   readonly #center: Triple;
   readonly #radius: number;
+  readonly #corners: Triple[]; // of the box around everything
   #isAsked = false;
 
   /** Throws where the browser has no WebGL 2. */
@@ -24,14 +25,17 @@ export class Stage {
     this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.#center = bounds.lower.map((low, a) => (low + bounds.upper[a]) / 2) as Triple;
     this.#radius = Math.max(Math.hypot(...bounds.lower.map((low, a) => bounds.upper[a] - low)) / 2, 1e-12);
+    this.#corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
+      (c) => [0, 1, 2].map((a) => ((c >> a) & 1 ? bounds.upper : bounds.lower)[a] - this.#center[a]) as Triple,
+    );
     this.#controls = new OrbitControls(this.camera, canvas);
     this.#controls.rotateSpeed = 0.8;
     this.#controls.zoomToCursor = true;
     this.#controls.addEventListener("change", () => this.draw());
+    this.#resize();
     this.look([0.55, -0.75, 0.42]);
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement as HTMLElement);
     canvas.addEventListener("webglcontextrestored", () => this.draw());
-    this.#resize();
   }
 
   /** Everything is drawn as seen from here, as single precision needs. */
@@ -52,9 +56,8 @@ export class Stage {
     const direction = new THREE.Vector3(...from).normalize();
     const isVertical = Math.abs(direction.z) > 0.999;
     this.camera.up.set(0, isVertical ? 1 : 0, isVertical ? 0 : 1);
-    const half = Math.min(this.camera.fov, 2 * this.#halfAngleAcross()) / 2;
-    const away = this.#radius / Math.sin((half * Math.PI) / 180);
-    this.camera.position.copy(direction.multiplyScalar(1.02 * away));
+    const away = this.#distanceToSeeAll(direction);
+    this.camera.position.copy(direction).multiplyScalar(away);
     this.camera.near = this.#radius / 500;
     this.camera.far = away + 40 * this.#radius;
     this.camera.updateProjectionMatrix();
@@ -125,7 +128,7 @@ export class Stage {
       new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2),
       this.camera,
     );
-    return { origin: caster.ray.origin.toArray() as Triple, direction: caster.ray.direction.toArray() as Triple };
+    return { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() };
   }
 
   /** Where a place of the drawn world is on the page; `isBehind` the camera it is nowhere. */
@@ -140,22 +143,27 @@ export class Stage {
     };
   }
 
-  #halfAngleAcross(): number {
-    const half = (this.camera.fov * Math.PI) / 360;
-    return (Math.atan(Math.tan(half) * this.camera.aspect) * 180) / Math.PI;
+  /** How far away all corners of the box are in the picture, with some room. */
+  #distanceToSeeAll(direction: THREE.Vector3): number {
+    const right = new THREE.Vector3().crossVectors(this.camera.up, direction).normalize();
+    const up = new THREE.Vector3().crossVectors(direction, right);
+    const high = Math.tan((this.camera.fov * Math.PI) / 360);
+    const wide = high * this.camera.aspect;
+    const distances = this.#corners.map((corner) => {
+      const p = new THREE.Vector3(...corner);
+      return p.dot(direction) + Math.max(Math.abs(p.dot(right)) / wide, Math.abs(p.dot(up)) / high);
+    });
+    return Math.max(1.08 * Math.max(...distances), 0.1 * this.#radius);
   }
 
   #resize(): void {
     const parent = this.canvas.parentElement as HTMLElement;
     const [width, height] = [Math.max(parent.clientWidth, 1), Math.max(parent.clientHeight, 1)];
-    const before = this.camera.aspect;
     this.#renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     pixelRatio.value = this.#renderer.getPixelRatio();
     viewport.value.set((width * pixelRatio.value) / 2, (height * pixelRatio.value) / 2);
-    // What was in the picture stays in it when it becomes narrow.
-    if (this.camera.aspect < 1 && before >= 1) this.zoom(1 / this.camera.aspect);
     this.drawNow();
   }
 }

@@ -345,6 +345,6 @@ export class VolumeView implements View {
 export function extremes(least: number, most: number): [inside: number, outside: number] {
   const deepest = Math.max(0, -least);
   const farthest = Math.max(0, most);
-  const largest = Math.max(deepest, farthest, Number.MIN_VALUE);
+  const largest = Math.max(deepest, farthest, 1e-30);
   return [Math.max(deepest, largest / 4), Math.max(farthest, largest / 4)];
 }

@@ -1,0 +1,90 @@
+// Proves which part of an axis is there at an angle, and where junctions are.
+import { describe, expect, it } from "vitest";
+import { AxisModel, isJunctionOf, Role } from "../src/axismodel.ts";
+import type { AxisItem } from "../src/scene.ts";
+
+// Two triangles at a common side, of which the first goes at 30 and the second at 60; then a curve is left until 90, and
+// then a vertex. A third triangle has no extent: two of its corners are at the same place.
+const item: AxisItem = {
+  kind: "axis",
+  name: "axis.npz",
+  units: "mesh units",
+  facts: [],
+  bounds: null,
+  siteIds: "features",
+  hasLabels: true,
+  theta: 10,
+  leastTheta: 10,
+  betti: [1, 0, 0],
+  positions: Float64Array.from([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0]),
+  roles: Uint8Array.from([0, 0, 0, 0, 0]),
+  radii: undefined,
+  angles: undefined,
+  footprints: undefined,
+  sites: undefined,
+  vertexUntil: Float32Array.from([Infinity, 90, 30, 60, Infinity]),
+  edges: Uint32Array.from([0, 1, 0, 1, 0, 2, 0, 4]),
+  edgeRoles: Uint8Array.from([Role.rim, Role.curve, Role.rim, Role.curve]),
+  edgeFrom: Float32Array.from([30, 60, 0, 0]),
+  edgeUntil: Float32Array.from([60, 90, 30, Infinity]),
+  triangles: Uint32Array.from([0, 1, 2, 0, 3, 1, 0, 4, 1]),
+  triangleAngles: Float32Array.from([30, 60, 180]),
+  triangleUntil: Float32Array.from([30, 60, Infinity]),
+  sheets: Int32Array.from([0, 1, 2]),
+};
+
+describe("AxisModel", () => {
+  const model = new AxisModel(item);
+
+  it("sorts triangles with extent, those that stay longest first", () => {
+    expect([...model.order]).toEqual([1, 0]);
+    expect([...model.triangles]).toEqual([0, 3, 1, 0, 1, 2]);
+  });
+
+  it.each([
+    [10, 2, 2, 0, 1],
+    [29.9, 2, 2, 0, 1],
+    [30, 1, 1, 0, 1],
+    [59, 1, 1, 0, 1],
+    [60, 0, 0, 1, 0],
+    [90, 0, 0, 0, 0],
+    [180, 0, 0, 0, 0],
+  ])("at theta %d has %d triangles in %d sheets, %d curves and %d rims", (theta, triangles, sheets, curves, rims) => {
+    expect(model.at(theta).counts).toEqual({ triangles, sheets, curves, rims, seams: 0 });
+  });
+
+  it("knows vertices of nothing", () => {
+    expect([...model.at(60).loose]).toEqual([4]);
+    expect([...model.at(90).loose]).toEqual([0, 4]);
+  });
+
+  it("shows all of a file of one angle, whatever theta is", () => {
+    const { vertexUntil: _v, leastTheta: _l, ...rest } = item;
+    const plain = new AxisModel({
+      ...rest,
+      vertexUntil: undefined,
+      leastTheta: undefined,
+      edgeFrom: new Float32Array(4),
+      edgeUntil: new Float32Array(4).fill(Infinity),
+      triangleUntil: new Float32Array(3).fill(Infinity),
+    });
+    expect(plain.at(170).counts).toMatchObject({ triangles: 2, curves: 1, rims: 2 });
+  });
+});
+
+describe("isJunctionOf", () => {
+  it.each([
+    [0, 0, 0, true, false], // inside of a sheet
+    [2, 0, 0, true, false], // on a rim
+    [4, 0, 0, true, true], // sheets touch
+    [0, 2, 0, true, false], // on a seam
+    [1, 2, 0, true, true], // a rim ends at a seam
+    [0, 3, 0, true, true], // seams meet
+    [0, 0, 2, false, false], // on a curve
+    [0, 0, 1, false, false], // at its end
+    [0, 0, 3, false, true], // curves meet
+    [0, 0, 1, true, true], // a curve ends at a sheet
+  ])("%d rims, %d seams, %d curves, on a triangle: %s", (rims, seams, curves, isOnTriangle, expected) => {
+    expect(isJunctionOf(rims, seams, curves, isOnTriangle)).toBe(expected);
+  });
+});

@@ -1,0 +1,115 @@
+// Proves that scenes read back as blum writes them, and that broken ones give a message.
+import { deflateSync } from "node:zlib";
+import { describe, expect, it } from "vitest";
+import { readScene, undoDelta, type MeshItem } from "../src/scene.ts";
+import { fromBase64 } from "../src/source.ts";
+
+type Part = { numbers: Float32Array | Uint32Array; coding: "raw" | "deflate" | "delta" };
+
+function delta(numbers: Float32Array | Uint32Array): Uint8Array {
+  const bits = new Uint32Array(numbers.buffer.slice(0));
+  const out = new Uint8Array(4 * bits.length);
+  bits.forEach((value, i) => {
+    const difference = (value - (i > 0 ? bits[i - 1] : 0)) >>> 0;
+    for (let b = 0; b < 4; ++b) out[b * bits.length + i] = difference >>> (8 * b);
+  });
+  return out;
+}
+
+/** A scene as apps/cli/scene_blob.cpp lays it out. */
+function sceneOf(header: (entries: object[]) => object, parts: Part[]): Uint8Array {
+  const stored: Uint8Array[] = [];
+  let offset = 0;
+  const entries = parts.map(({ numbers, coding }) => {
+    const bytes = new Uint8Array(numbers.buffer);
+    const data = coding === "raw" ? bytes : deflateSync(coding === "delta" ? delta(numbers) : bytes);
+    const type = numbers instanceof Float32Array ? "f4" : "u4";
+    const entry = { type, count: numbers.length, offset, bytes: data.length, coding };
+    const padded = new Uint8Array(Math.ceil(data.length / 8) * 8);
+    padded.set(data);
+    stored.push(padded);
+    offset += padded.length;
+    return entry;
+  });
+  let text = JSON.stringify(header(entries));
+  while (text.length % 8 !== 0) text += " ";
+  const out = new Uint8Array(16 + text.length + offset);
+  out.set(new TextEncoder().encode("BLUMVIEW"));
+  new DataView(out.buffer).setUint32(8, 1, true);
+  new DataView(out.buffer).setUint32(12, text.length, true);
+  out.set(new TextEncoder().encode(text), 16);
+  let at = 16 + text.length;
+  for (const part of stored) {
+    out.set(part, at);
+    at += part.length;
+  }
+  return out;
+}
+
+const positions = Float32Array.from({ length: 300 }, (_, i) => Math.sin(i) * 1e3);
+const triangles = Uint32Array.from({ length: 300 }, (_, i) => (i * 7) % 100);
+const meshScene = (coding: Part["coding"]) =>
+  sceneOf(
+    ([p, t, s, d]) => ({
+      blum: "1.2.3",
+      items: [
+        { kind: "mesh", name: "a.ply", units: "mesh units", facts: [], bounds: null, origin: [1, 2, 3], positions: p, triangles: t, segments: s, points: d },
+        { kind: "error", name: "b.ply", message: "'b.ply': broken" },
+        { kind: "hat", name: "c" },
+      ],
+    }),
+    [
+      { numbers: positions, coding },
+      { numbers: triangles, coding },
+      { numbers: new Uint32Array(0), coding: "raw" },
+      { numbers: new Uint32Array(0), coding: "raw" },
+    ],
+  );
+
+describe("readScene", () => {
+  it.each(["raw", "deflate", "delta"] as const)("reads arrays that are %s, bit by bit", async (coding) => {
+    const scene = await readScene(meshScene(coding));
+    expect(scene.version).toBe("1.2.3");
+    const mesh = scene.items[0] as MeshItem;
+    expect(mesh.positions).toEqual(positions);
+    expect(mesh.triangles).toEqual(triangles);
+    expect(mesh.segments.length).toBe(0);
+  });
+
+  it("reads a scene that does not begin at a multiple of anything", async () => {
+    const bytes = meshScene("raw");
+    const shifted = new Uint8Array(bytes.length + 1);
+    shifted.set(bytes, 1);
+    expect(((await readScene(shifted.subarray(1))).items[0] as MeshItem).positions).toEqual(positions);
+  });
+
+  it("keeps messages, and has one for what it does not know", async () => {
+    const [, error, unknown] = (await readScene(meshScene("raw"))).items;
+    expect(error).toEqual({ kind: "error", name: "b.ply", message: "'b.ply': broken" });
+    expect(unknown).toMatchObject({ kind: "error", message: expect.stringContaining("hat") as string });
+  });
+
+  it("refuses what is no scene, or is cut off, or of another version", async () => {
+    await expect(readScene(new Uint8Array(4))).rejects.toThrow("no scene");
+    await expect(readScene(new TextEncoder().encode("something else altogether"))).rejects.toThrow("no scene");
+    const bytes = meshScene("delta");
+    await expect(readScene(bytes.slice(0, bytes.length - 600))).rejects.toThrow("cut off");
+    await expect(readScene(bytes.slice(0, 40))).rejects.toThrow("cut off");
+    bytes[8] = 2;
+    await expect(readScene(bytes)).rejects.toThrow("version");
+  });
+});
+
+describe("codings", () => {
+  it("undoes differences of any bit patterns", () => {
+    const numbers = Float32Array.from([0, -0, NaN, Infinity, 1e-45, -3.4e38, 5]);
+    expect(new Float32Array(undoDelta(delta(numbers)).buffer)).toEqual(numbers);
+  });
+
+  it("reads base64 of every length", () => {
+    for (const length of [0, 1, 2, 3, 4, 5, 255, 256, 257]) {
+      const bytes = Uint8Array.from({ length }, (_, i) => (i * 37) & 255);
+      expect(fromBase64(Buffer.from(bytes).toString("base64"))).toEqual(bytes);
+    }
+  });
+});

@@ -1,0 +1,104 @@
+// Proves that axes of all angles read back from .npz files as they were, that no other format takes them, and that
+// broken ones are refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "blum/core/error.hpp"
+#include "blum/io/medial_io.hpp"
+#include "support/medial_sample.hpp"
+#include "unit/io/temporary_folder.hpp"
+
+namespace blum {
+namespace {
+
+using namespace test;
+
+NestedComplex sample_nested() {
+  const MedialComplex complex = sample_complex();
+  NestedComplex nested;
+  nested.least_theta = 12.5;
+  nested.vertices = complex.vertices;
+  for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+    nested.vertex_until.push_back(v == 0 ? std::numeric_limits<float>::infinity() : 20.1F + static_cast<float>(v));
+  }
+  for (const MedialEdge& e : complex.edges) {
+    nested.edges.push_back({e.vertices, e.separation_angle, e.role, 1.1F, 33.3F});
+  }
+  for (const MedialTriangle& t : complex.triangles) {
+    nested.triangles.push_back({t.vertices, t.separation_angle, 77.7F, t.sheet});
+  }
+  nested.sheet_count = complex.sheet_count;
+  return nested;
+}
+
+TEST(MedialNested, ReadsBackAsWritten) {
+  const TemporaryFolder folder;
+  const auto path = folder / "axis.npz";
+  const NestedComplex nested = sample_nested();
+  write_medial(path, sample_complex(), nested, sample_metadata());
+  const MedialFile file = read_medial(path);
+  ASSERT_TRUE(file.nested.has_value());
+  const NestedComplex& read = *file.nested;
+  EXPECT_EQ(read.least_theta, nested.least_theta);
+  EXPECT_EQ(read.vertex_until, nested.vertex_until);
+  EXPECT_EQ(read.sheet_count, nested.sheet_count);
+  ASSERT_EQ(read.vertices.size(), nested.vertices.size());
+  for (std::size_t v = 0; v < read.vertices.size(); ++v) {
+    EXPECT_EQ(read.vertices[v].position, nested.vertices[v].position);
+    EXPECT_EQ(read.vertices[v].radius, nested.vertices[v].radius);
+    EXPECT_EQ(read.vertices[v].footprints, nested.vertices[v].footprints);
+    EXPECT_EQ(read.vertices[v].sites, nested.vertices[v].sites);
+    EXPECT_EQ(read.vertices[v].separation_angle, nested.vertices[v].separation_angle);
+    EXPECT_EQ(read.vertices[v].role, nested.vertices[v].role);
+  }
+  ASSERT_EQ(read.edges.size(), nested.edges.size());
+  for (std::size_t e = 0; e < read.edges.size(); ++e) {
+    EXPECT_EQ(read.edges[e].vertices, nested.edges[e].vertices);
+    EXPECT_EQ(read.edges[e].separation_angle, nested.edges[e].separation_angle);
+    EXPECT_EQ(read.edges[e].role, nested.edges[e].role);
+    EXPECT_EQ(read.edges[e].from, nested.edges[e].from);
+    EXPECT_EQ(read.edges[e].until, nested.edges[e].until);
+  }
+  ASSERT_EQ(read.triangles.size(), nested.triangles.size());
+  for (std::size_t t = 0; t < read.triangles.size(); ++t) {
+    EXPECT_EQ(read.triangles[t].vertices, nested.triangles[t].vertices);
+    EXPECT_EQ(read.triangles[t].separation_angle, nested.triangles[t].separation_angle);
+    EXPECT_EQ(read.triangles[t].until, nested.triangles[t].until);
+    EXPECT_EQ(read.triangles[t].sheet, nested.triangles[t].sheet);
+  }
+  write_medial(path, sample_complex());
+  EXPECT_FALSE(read_medial(path).nested.has_value());
+}
+
+TEST(MedialNested, OtherFormatsTakeNone) {
+  const TemporaryFolder folder;
+  for (const char* name : {"axis.vtp", "axis.ply", "axis.obj", "axis.ma"}) {
+    EXPECT_THROW(write_medial(folder / name, sample_complex(), sample_nested()), InvalidOption) << name;
+  }
+}
+
+TEST(MedialNested, BrokenOnesAreRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder / "axis.npz";
+  const auto refuses = [&](const char* what, const std::function<void(NestedComplex&)>& spoil) {
+    NestedComplex nested = sample_nested();
+    spoil(nested);
+    EXPECT_THROW(write_medial(path, sample_complex(), nested), InvalidMesh) << what;
+  };
+  refuses("least theta", [](NestedComplex& n) { n.least_theta = 181; });
+  refuses("vertex angles", [](NestedComplex& n) { n.vertex_until.pop_back(); });
+  refuses("vertex angle", [](NestedComplex& n) { n.vertex_until[1] = std::nanf(""); });
+  refuses("position", [](NestedComplex& n) { n.vertices[1].position.x = std::nan(""); });
+  refuses("edge's vertex", [](NestedComplex& n) { n.edges[0].vertices[1] = 99; });
+  refuses("edge's angle", [](NestedComplex& n) { n.edges[0].from = std::nanf(""); });
+  refuses("edge's role", [](NestedComplex& n) { n.edges[0].role = MedialRole::junction; });
+  refuses("triangle's vertex", [](NestedComplex& n) { n.triangles[0].vertices[1] = 99; });
+  refuses("triangle's angle", [](NestedComplex& n) { n.triangles[0].until = std::nanf(""); });
+  refuses("sheets", [](NestedComplex& n) { n.sheet_count = 99; });
+}
+
+}  // namespace
+}  // namespace blum

@@ -1,0 +1,169 @@
+// Proves that the axes of all angles in one complex are those that extract() gives, angle by angle: the same triangles
+// and lines at the same places, and the same components of them.
+#include "blum/medial_axis/nested_complex.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "blum/core/union_find.hpp"
+#include "blum/geometry/shape_catalog.hpp"
+#include "blum/grid/image_generators.hpp"
+#include "blum/medial_axis/certificate.hpp"
+#include "blum/medial_axis/medial_axis.hpp"
+
+namespace blum {
+namespace {
+
+using Place = std::array<double, 3>;
+using Line = std::array<Place, 2>;
+
+Place place_of(const MedialVertex& v) {
+  return {v.position.x, v.position.y, v.position.z};
+}
+
+Line line_between(const Place& a, const Place& b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// A complex as places: nothing without extent counts but for its sides and corners.
+struct Places {
+  std::set<std::array<Place, 3>> triangles;  ///< corners rising
+  std::set<Line> curves;                     ///< on no triangle
+  std::map<Line, int> sides;                 ///< with how many triangles they have
+  std::set<Place> vertices;
+
+  void add_triangle(std::array<Place, 3> corners) {
+    std::sort(corners.begin(), corners.end());
+    if (corners[0] == corners[1] || corners[1] == corners[2]) {
+      add_curve(corners[0], corners[2]);
+      return;
+    }
+    triangles.insert(corners);
+    for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 2)}) ++sides[{corners[a], corners[b]}];
+  }
+  void add_curve(const Place& a, const Place& b) {
+    if (a != b) curves.insert(line_between(a, b));
+  }
+  void finish() {
+    std::erase_if(curves, [&](const Line& line) { return sides.contains(line); });
+  }
+  [[nodiscard]] std::set<Line> lines_with(int least, int most) const {
+    std::set<Line> out;
+    for (const auto& [line, count] : sides) {
+      if (count >= least && count <= most) out.insert(line);
+    }
+    return out;
+  }
+};
+
+Places places_of(const MedialComplex& complex) {
+  Places out;
+  const auto at = [&](std::uint32_t v) { return place_of(complex.vertices[v]); };
+  for (const MedialVertex& v : complex.vertices) out.vertices.insert(place_of(v));
+  for (const MedialTriangle& t : complex.triangles) {
+    out.add_triangle({at(t.vertices[0]), at(t.vertices[1]), at(t.vertices[2])});
+  }
+  for (const MedialEdge& e : complex.edges) out.add_curve(at(e.vertices[0]), at(e.vertices[1]));
+  out.finish();
+  return out;
+}
+
+std::set<Line> lines_at(const NestedComplex& nested, MedialRole role, double theta) {
+  std::set<Line> out;
+  for (const NestedEdge& e : nested.edges) {
+    if (e.role != role || !(e.from <= theta && theta < e.until)) continue;
+    const bool is_new =
+        out.insert(line_between(place_of(nested.vertices[e.vertices[0]]), place_of(nested.vertices[e.vertices[1]])))
+            .second;
+    EXPECT_TRUE(is_new) << "an edge has one role at a time";
+  }
+  return out;
+}
+
+void expect_same(const NestedComplex& nested, const MedialComplex& complex, double theta) {
+  SCOPED_TRACE("theta " + std::to_string(theta));
+  const Places expected = places_of(complex);
+  Places found;
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::size_t v = 0; v < nested.vertices.size(); ++v) {
+    if (nested.vertex_until[v] > theta) EXPECT_TRUE(found.vertices.insert(place_of(nested.vertices[v])).second);
+  }
+  for (const NestedTriangle& t : nested.triangles) {
+    if (!(t.until > theta)) continue;
+    found.add_triangle({place_of(nested.vertices[t.vertices[0]]), place_of(nested.vertices[t.vertices[1]]),
+                        place_of(nested.vertices[t.vertices[2]])});
+    triangles.push_back(t.vertices);
+  }
+  EXPECT_EQ(found.vertices, expected.vertices);
+  EXPECT_EQ(found.triangles, expected.triangles);
+  EXPECT_EQ(lines_at(nested, MedialRole::curve, theta), expected.curves);
+  EXPECT_EQ(lines_at(nested, MedialRole::rim, theta), found.lines_with(1, 1));
+  EXPECT_EQ(lines_at(nested, MedialRole::seam, theta), found.lines_with(3, 1000000));
+}
+
+/// Components of what is there at an angle.
+std::size_t components_at(const NestedComplex& nested, double theta) {
+  detail::UnionFind joined(nested.vertices.size());
+  for (const NestedEdge& e : nested.edges) {
+    if (e.from <= theta && theta < e.until) joined.join(e.vertices[0], e.vertices[1]);
+  }
+  for (const NestedTriangle& t : nested.triangles) {
+    if (!(t.until > theta)) continue;
+    joined.join(t.vertices[0], t.vertices[1]);
+    joined.join(t.vertices[0], t.vertices[2]);
+  }
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < nested.vertices.size(); ++v) {
+    if (nested.vertex_until[v] > theta && joined.find(v) == v) ++count;
+  }
+  return count;
+}
+
+TEST(NestedComplex, IsWhatExtractGivesAtEveryAngle) {
+  for (const std::string name : {"bracket", "plate", "box", "void_cube", "torus", "gear", "sphere", "torus_knot"}) {
+    SCOPED_TRACE(name);
+    for (const double least : {0.0, 40.0}) {
+      MedialAxisOptions options;
+      options.resolution = 40;
+      options.least_theta = least;
+      const MedialAxis axis = medial_axis(make_shape(name), options);
+      const NestedComplex nested = axis.nested();
+      EXPECT_EQ(nested.least_theta, least);
+      for (const double theta : {0.0, 9.5, 20.0, 40.0, 60.0, 119.0, 170.0, 180.0}) {
+        if (theta >= least) expect_same(nested, axis.extract(theta), theta);
+      }
+      // An angle at which something goes counts as above it, in both.
+      for (std::size_t t = 0; t < nested.triangles.size(); t += 1 + nested.triangles.size() / 3) {
+        const double until = nested.triangles[t].until;
+        if (until <= 180) expect_same(nested, axis.extract(until), until);
+      }
+    }
+  }
+}
+
+TEST(NestedComplex, OfPartsThatLieApartHasAsManyComponents) {
+  const VoxelImage image = make_image("balls", {{"count", 3}});
+  const MedialAxis axis = medial_axis(image);
+  const NestedComplex nested = axis.nested();
+  for (const double theta : {0.0, 60.0, 180.0}) {
+    expect_same(nested, axis.extract(theta), theta);
+    EXPECT_EQ(components_at(nested, theta), static_cast<std::size_t>(axis.report().solid[0])) << theta;
+  }
+}
+
+TEST(NestedComplex, SheetsAreThoseOfTheLeastAngle) {
+  MedialAxisOptions options;
+  options.resolution = 48;
+  const MedialAxis axis = medial_axis(make_shape("box"), options);
+  EXPECT_EQ(axis.nested().sheet_count, axis.extract(0).sheet_count);
+}
+
+}  // namespace
+}  // namespace blum
