@@ -25,7 +25,8 @@ install() {
   mkdir -p "$out"
   # Installed already, as the lock file says?
   sha256sum --status -c "$out/installed.sha256" 2>/dev/null && [[ -d apps/viewer/node_modules ]] && return
-  in_viewer npm ci --no-audit --no-fund --ignore-scripts
+  # As the lock file says. Not `npm ci`, which also wants the native parts of all other systems to be in it.
+  in_viewer npm install --no-save --no-audit --no-fund --ignore-scripts
   sha256sum apps/viewer/package-lock.json >"$out/installed.sha256"
 }
 

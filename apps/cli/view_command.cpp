@@ -21,8 +21,6 @@
 namespace blum::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr const char* examples = R"(Examples:
   blum view part.stl                              serves the page until Ctrl-C; its address is printed
   blum view part.ply part.nrrd axis.npz --open    a mesh, its field and its medial axis, in the browser

@@ -149,7 +149,7 @@ TEST(NestedComplex, IsWhatExtractGivesAtEveryAngle) {
 }
 
 TEST(NestedComplex, OfPartsThatLieApartHasAsManyComponents) {
-  const VoxelImage image = make_image("balls", {{"count", 3}});
+  const VoxelImage image = make_image("balls_image", {{"count", 3}});
   const MedialAxis axis = medial_axis(image);
   const NestedComplex nested = axis.nested();
   for (const double theta : {0.0, 60.0, 180.0}) {
