@@ -64,6 +64,21 @@ export async function pixels(page: Page): Promise<number> {
   });
 }
 
+/** The colour of the picture at a place of the window. */
+export async function colorAt(page: Page, at: { x: number; y: number }): Promise<number[]> {
+  await settled(page);
+  return page.evaluate(({ x, y }) => {
+    const canvas = document.getElementById("canvas") as HTMLCanvasElement;
+    const box = canvas.getBoundingClientRect();
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const context = copy.getContext("2d") as CanvasRenderingContext2D;
+    context.drawImage(canvas, 0, 0);
+    const scale = canvas.width / box.width;
+    return [...context.getImageData(Math.round((x - box.left) * scale), Math.round((y - box.top) * scale), 1, 1).data];
+  }, at);
+}
+
 export const fileUrl = (name: string): string => `file://${file(name)}`;
 
 /** Runs the server; `stop` ends it as Ctrl-C does, and tells its status. */

@@ -6,7 +6,7 @@ import { request } from "node:http";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { blum, file, fileUrl, folder, launch, open, pixels, serve, settled } from "./browser.ts";
+import { blum, colorAt, file, fileUrl, folder, launch, open, pixels, serve, settled } from "./browser.ts";
 import { readNpz } from "./npz.ts";
 
 const thetas = [10, 60, 120];
@@ -153,6 +153,28 @@ describe("a page in a file", () => {
     }
     await page.getByLabel("Close").click();
     expect(await page.locator(".readout").isVisible()).toBe(false);
+    await page.close();
+  });
+
+  it("the inside is warm and the outside is blue", async () => {
+    blum("view", "field.npz", "-o", "field.html");
+    const { page } = await open(browser, fileUrl("field.html"));
+    const { distance } = readNpz(file("field.npz"));
+    const [nz, ny, nx] = distance.shape;
+    await page.locator('input[value="x"]').check();
+    await page.locator("#canvas").focus();
+    await page.keyboard.press("1");
+    const i = Math.floor((nx - 1) / 2);
+    const nodes = [];
+    for (let k = 1; k < nz - 1; ++k) for (let j = 1; j < ny - 1; ++j) nodes.push([i, j, k]);
+    const value = ([x, y, z]: number[]) => distance.values[(z * ny + y) * nx + x];
+    nodes.sort((a, b) => value(a) - value(b));
+    const [deepest, farthest] = [nodes[0], nodes[nodes.length - 1]];
+    expect(value(deepest)).toBeLessThan(0);
+    const [inR, , inB] = await colorAt(page, await nodeOnPage(page, deepest));
+    expect(inR).toBeGreaterThan(inB + 20);
+    const [outR, , outB] = await colorAt(page, await nodeOnPage(page, farthest));
+    expect(outB).toBeGreaterThan(outR + 20);
     await page.close();
   });
 

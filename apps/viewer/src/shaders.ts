@@ -304,7 +304,7 @@ const sliceFragment = /* glsl */ `
       color = vec3(mix(0.06, 0.96, clamp((value - range.x) / max(range.y - range.x, 1e-30), 0.0, 1.0)));
     } else {
       bool isBeyond = band > 0.0 && abs(value) >= band * (1.0 - 1e-6);
-      float t = value < 0.0 ? -min(value / extremes.x, 1.0) : min(value / extremes.y, 1.0);
+      float t = value < 0.0 ? max(value / extremes.x, -1.0) : min(value / extremes.y, 1.0);
       color = hasSign ? texture(diverging, vec2(0.5 + 0.5 * t * ${(rampSize - 1) / rampSize}, 0.5)).rgb
                       : texture(sequential, vec2(t, 0.5)).rgb;
       if (isBeyond) color = nothing;

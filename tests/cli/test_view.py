@@ -1,0 +1,222 @@
+# Proves that `blum view` hands over what its files hold, exactly, names what it cannot read, and serves this machine
+# the page and the scene and nothing else.
+import base64
+import http.client
+import json
+import re
+import signal
+import socket
+import struct
+import subprocess
+import zlib
+
+import numpy as np
+import pytest
+
+from tool import BLUM, run
+
+pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
+
+
+class Scene:
+    """The scene of a page or a server, as apps/cli/scene_blob.hpp lays it out."""
+
+    def __init__(self, data):
+        assert data[:8] == b"BLUMVIEW"
+        version, length = struct.unpack("<II", data[8:16])
+        assert version == 1 and length % 8 == 0
+        self.header = json.loads(data[16:16 + length])
+        self.body = data[16 + length:]
+
+    def array(self, entry):
+        assert entry["offset"] % 8 == 0
+        stored = self.body[entry["offset"]:entry["offset"] + entry["bytes"]]
+        assert len(stored) == entry["bytes"]
+        raw = stored if entry["coding"] == "raw" else zlib.decompress(stored)
+        if entry["coding"] == "delta":
+            planes = np.frombuffer(raw, dtype=np.uint8).reshape(4, -1).astype(np.uint32)
+            differences = planes[0] | planes[1] << 8 | planes[2] << 16 | planes[3] << 24
+            raw = np.cumsum(differences, dtype=np.uint32).tobytes()
+        values = np.frombuffer(raw, dtype="<" + entry["type"])
+        assert len(values) == entry["count"]
+        return values
+
+
+def scene_of_page(path):
+    text = path.read_text(encoding="utf-8")
+    parts = re.findall(r'<script type="application/octet-stream" class="scene">([^<]*)</script>', text)
+    assert parts
+    return Scene(b"".join(base64.b64decode(part, validate=True) for part in parts))
+
+
+def test_help_says_what_it_does():
+    out, _ = run("view", "--help")
+    for words in ("--output", "--port", "--open", "this machine only", "Exit status 1"):
+        assert words in out
+
+
+def test_a_page_holds_a_mesh_and_a_field_exactly(tmp_path, shapes):
+    page = tmp_path / "page.html"
+    out, _ = run("view", shapes / "sphere.ply", shapes / "sphere.npz", shapes / "ball.nrrd", "-o", page)
+    assert "sphere.ply (mesh), sphere.npz (field), ball.nrrd (image)" in out
+    scene = scene_of_page(page)
+    mesh, field, image = scene.header["items"]
+    assert mesh["kind"] == "mesh" and mesh["closed"] and mesh["name"] == "sphere.ply"
+    positions = scene.array(mesh["positions"]).reshape(-1, 3) + mesh["origin"]
+    assert np.allclose(np.linalg.norm(positions, axis=1), 1, atol=1e-6)
+    assert scene.array(mesh["triangles"]).max() == len(positions) - 1
+    with np.load(shapes / "sphere.npz") as file:
+        assert np.array_equal(scene.array(field["distance"]), file["distance"].ravel())
+        assert np.array_equal(scene.array(field["sites"]), file["site"].ravel())
+        assert field["grid"]["size"] == list(file["distance"].shape[::-1])
+        assert field["grid"]["origin"] == file["origin"].tolist()
+    assert field["signed"] and field["band"] > 0 and field["units"] == "mesh units"
+    assert image["labels"] and set(np.unique(scene.array(image["values"]))) == {0, 1}
+
+
+def test_field_without_a_band_from_nrrd_and_its_sites_alone(tmp_path, shapes):
+    run("view", shapes / "sphere.nrrd", shapes / "sphere.site.nrrd", "-o", tmp_path / "page.html")
+    scene = scene_of_page(tmp_path / "page.html")
+    field, sites = scene.header["items"]
+    assert field["band"] is None
+    assert sites["kind"] == "image" and np.array_equal(scene.array(sites["values"]), scene.array(field["sites"]))
+
+
+def test_a_page_holds_an_axis_exactly(tmp_path, axes):
+    run("view", axes / "torus.npz", *(axes / f"box.{end}" for end in ("vtp", "ma")), "-o", tmp_path / "page.html")
+    scene = scene_of_page(tmp_path / "page.html")
+    torus, box, plain = scene.header["items"]
+    with np.load(axes / "torus.npz") as file:
+        assert np.array_equal(scene.array(torus["vertices"]["positions"]), file["vertices"].ravel())
+        assert np.array_equal(scene.array(torus["vertices"]["radii"]), file["radius"])
+        assert np.array_equal(scene.array(torus["vertices"]["footprints"]), file["footprints"].ravel())
+        assert np.array_equal(scene.array(torus["triangles"]), file["triangles"].ravel())
+        assert np.array_equal(scene.array(torus["edge_roles"]), file["edge_role"])
+    assert torus["betti"] == [1, 1, 0] and box["betti"] == [1, 0, 0]
+    assert "least_theta" not in torus
+    assert "radii" in plain["vertices"] and "footprints" not in plain["vertices"]
+
+
+def test_nested_axes(tmp_path, solids):
+    run("medial", solids / "box.obj", "-o", tmp_path / "box.npz", "--theta", 10, "--nested", "--resolution", 24)
+    run("medial", solids / "box.obj", "-o", tmp_path / "cut.npz", "--theta", "10,100", "--resolution", 24)
+    run("verify", solids / "box.obj", tmp_path / "box.npz")
+    run("view", tmp_path / "box.npz", "-o", tmp_path / "page.html")
+    scene = scene_of_page(tmp_path / "page.html")
+    axis = scene.header["items"][0]
+    assert axis["least_theta"] == 10
+    until = scene.array(axis["triangle_until"])
+    for theta in (10, 100):
+        with np.load(tmp_path / f"cut-theta{theta}.npz") as file:
+            corners = file["vertices"][file["triangles"]]
+            flat = [(corners[:, a] == corners[:, b]).all(axis=1) for a, b in ((0, 1), (1, 2), (2, 0))]
+            assert (until > theta).sum() == (~np.any(flat, axis=0)).sum()
+
+
+@pytest.mark.parametrize("arguments", [("-o", "axis.vtp"), ("-o", "axis.npz", "--theta", "20,60"),
+                                       ("-o", "axis.npz", "--prune", "sheets")])
+def test_nested_is_refused_where_it_makes_no_sense(tmp_path, solids, arguments):
+    arguments = [tmp_path / word if word.startswith("axis") else word for word in arguments]
+    _, err = run("medial", solids / "box.obj", "--nested", *arguments, status=2)
+    assert "--nested" in err
+
+
+def test_files_that_cannot_be_read_are_named_in_the_page(tmp_path, shapes):
+    broken = tmp_path / "broken.ply"
+    broken.write_text("ply\nformat nonsense\n")
+    page = tmp_path / "page.html"
+    _, err = run("view", broken, shapes / "sphere.ply", tmp_path / "gone.nrrd", "-o", page, warns=True)
+    assert "broken.ply" in err and "gone.nrrd" in err
+    first, mesh, last = scene_of_page(page).header["items"]
+    assert first["kind"] == "error" and "broken.ply" in first["message"]
+    assert mesh["kind"] == "mesh"
+    assert last["kind"] == "error" and "gone.nrrd" in last["message"]
+
+
+def test_where_nothing_can_be_read_nothing_is_written(tmp_path):
+    page = tmp_path / "page.html"
+    page.write_text("before")
+    _, err = run("view", tmp_path / "gone.ply", "-o", page, status=1)
+    assert "gone.ply" in err and page.read_text() == "before"
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (("-o", "page.txt"), ".html"),
+    (("-o", "page.html", "--port", "8000"), "--port"),
+    (("-o", "page.html", "--open"), "--open"),
+    (("--port", "70000"), "65535"),
+    (("--port", "x"), "--port"),
+])
+def test_bad_usage(tmp_path, shapes, arguments, words):
+    arguments = [tmp_path / word if word.startswith("page") else word for word in arguments]
+    _, err = run("view", shapes / "sphere.ply", *arguments, status=2)
+    assert words in err
+
+
+@pytest.fixture
+def server(shapes):
+    process = subprocess.Popen([BLUM, "view", shapes / "sphere.ply"], stdout=subprocess.PIPE, text=True)
+    text = process.stdout.readline() + process.stdout.readline()
+    port = int(re.search(r"http://127\.0\.0\.1:(\d+)/", text)[1])
+    yield port
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=10) == 0, "Ctrl-C ends it cleanly"
+
+
+def ask(port, path, method="GET", host=None):
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    connection.putrequest(method, path, skip_host=True)
+    connection.putheader("Host", host or f"127.0.0.1:{port}")
+    connection.endheaders()
+    answer = connection.getresponse()
+    body = answer.read()
+    connection.close()
+    return answer, body
+
+
+def test_the_server_serves_the_page_and_the_scene(server):
+    answer, page = ask(server, "/")
+    assert answer.status == 200 and page.startswith(b"<!doctype html>")
+    assert answer.headers["Content-Type"].startswith("text/html")
+    assert "default-src 'none'" in answer.headers["Content-Security-Policy"]
+    answer, data = ask(server, "/scene.bin?again", host=f"localhost:{server}")
+    assert answer.status == 200 and Scene(data).header["items"][0]["name"] == "sphere.ply"
+    answer, body = ask(server, "/scene.bin", method="HEAD")
+    assert answer.status == 200 and body == b"" and int(answer.headers["Content-Length"]) == len(data)
+
+
+@pytest.mark.parametrize("path", ["/sphere.ply", "/../sphere.ply", "//etc/passwd", "/%2e%2e/sphere.ply", "/scene.bin/..",
+                                  "/index.html", "/favicon.ico", "scene.bin", "*"])
+def test_the_server_serves_nothing_else(server, path):
+    assert ask(server, path)[0].status == 404
+
+
+def test_the_server_answers_no_other_host_and_no_other_method(server):
+    for host in ("evil.example", f"evil.example:{server}", "127.0.0.1", f"127.0.0.1.evil.example:{server}"):
+        assert ask(server, "/", host=host)[0].status == 403
+    for method in ("POST", "PUT", "DELETE", "OPTIONS"):
+        assert ask(server, "/", method=method)[0].status == 405
+
+
+def test_the_server_stands_what_is_no_request(server):
+    for data in (b"", b"nonsense\r\n\r\n", b"GET / HTTP/1.1\r\n\r\n", b"\0" * 20000, b"GET  HTTP/1.1\r\nHost: x\r\n\r\n",
+                 b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nHost: evil\r\n\r\n" % server):
+        with socket.create_connection(("127.0.0.1", server), timeout=10) as connection:
+            connection.sendall(data)
+            if data:
+                head = connection.recv(100)
+                assert head == b"" or re.match(rb"HTTP/1.1 4\d\d", head)
+    assert ask(server, "/")[0].status == 200
+
+
+def test_the_server_is_on_the_loopback_only(server):
+    address = "".join(f"{part:02X}" for part in (1, 0, 0, 127))
+    with open("/proc/net/tcp", encoding="ascii") as table:
+        listening = [line.split()[1] for line in table if line.split()[3] == "0A"]
+    assert f"{address}:{server:04X}" in listening
+    assert f"00000000:{server:04X}" not in listening
+
+
+def test_a_port_that_is_taken_is_said_so(server, shapes):
+    _, err = run("view", shapes / "sphere.ply", "--port", server, status=1)
+    assert f"port {server}" in err
