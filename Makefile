@@ -23,7 +23,7 @@ build: setup ## Build the library and the tool: build/release/bin/blum
 test: ## Install what the tests need, build, and run every test
 	@tools/test.sh
 
-demo: setup ## Build the tool and run the main job on a generated shape: a field, pictures and a medial axis in out/demo
+demo: setup ## Build the tool and run the main job on a generated shape: a field, pictures, a medial axis and a page in out/demo
 	@tools/build.sh release $(configure_options) -- blum
 	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
 

@@ -18,6 +18,10 @@ step "$blum" slice "$out/knot.nrrd" -o "$out/distance.png" --axis z --show dista
 step "$blum" slice "$out/knot.nrrd" -o "$out/sites.png" --axis z --show sites
 step "$blum" medial "$out/knot.ply" -o "$out/axis.vtp" --theta 60 --resolution 128
 step "$blum" verify "$out/knot.ply" "$out/axis.vtp"
+# A coarser field, and the axes of all angles, for a page that is small.
+step "$blum" field "$out/knot.ply" -o "$out/view.npz" --resolution 128 --quiet
+step "$blum" medial "$out/knot.ply" -o "$out/angles.npz" --theta 10 --nested --resolution 128 --quiet
+step "$blum" view "$out/knot.ply" "$out/view.npz" "$out/angles.npz" -o "$out/page.html"
 
 cat <<END
 
@@ -29,4 +33,5 @@ demo: done. In $out:
   distance.png    a slice through the distance, with contour lines
   sites.png       the same slice, one colour per Voronoi region
   axis.vtp        the medial axis of the knot, certified (ParaView opens it; colour by radius)
+  page.html       all of it to look at: open it in a browser (view.npz and angles.npz are in it)
 END
