@@ -1,6 +1,7 @@
 // A medial axis on the stage.
 import * as THREE from "three";
 import { AxisModel, Role, type AxisPart } from "./axismodel.ts";
+import { coarsen, keptBelow, worthCoarsening, type Coarse } from "./coarse.ts";
 import { counted, plural, rounded } from "./format.ts";
 import { add, along, distance, dot, firstHit, sub, tripleAt, type Ray } from "./geometry.ts";
 import type { AxisItem, Fact, Triple } from "./scene.ts";
@@ -31,6 +32,9 @@ export class AxisView implements View {
   readonly #corners: Float32Array; // of the model's triangles
   readonly #surface = surfaceMaterial({ hasCells: true });
   readonly #geometry = new THREE.BufferGeometry();
+  readonly #sheets = new THREE.Mesh(this.#geometry, this.#surface);
+  readonly #coarseGeometry = new THREE.BufferGeometry();
+  #coarse: Coarse | undefined;
   readonly #lines = {
     rims: new THREE.Mesh(new THREE.BufferGeometry(), lineMaterial([0.5, 0.5, 0.5], 1)),
     seams: new THREE.Mesh(new THREE.BufferGeometry(), lineMaterial([0.1, 0.1, 0.1], 2.2)),
@@ -58,12 +62,12 @@ export class AxisView implements View {
     if (item.radii === undefined) this.#colorBy = "sheet";
     this.#fillGeometry();
     this.#part = this.#model.at(this.#theta);
-    const parts = [new THREE.Mesh(this.#geometry, this.#surface), ...Object.values(this.#lines), this.#junctions, this.#loose];
+    const parts = [this.#sheets, ...Object.values(this.#lines), this.#junctions, this.#loose];
     for (const part of parts) part.frustumCulled = false;
     this.object.add(...parts);
     this.#junctions.renderOrder = this.#loose.renderOrder = 3;
     this.#lines.rims.visible = false;
-    this.#makeControls(parts[0]);
+    this.#makeControls(this.#sheets);
     this.#applyColors();
     this.#showPart();
   }
@@ -124,6 +128,19 @@ export class AxisView implements View {
     const dots: Triple = isDark ? [1, 0.45, 0.45] : [0.78, 0.13, 0.22];
     setColor(this.#junctions.material, dots);
     setColor(this.#loose.material, dots);
+  }
+
+  setMoving(isMoving: boolean): void {
+    if (this.#model.order.length < worthCoarsening) return;
+    if (this.#coarse === undefined) {
+      this.#coarse = coarsen(this.#corners, undefined, this.#model.order.length);
+      for (const name of ["position", "cell"]) {
+        this.#coarseGeometry.setAttribute(name, this.#geometry.attributes[name]);
+      }
+      this.#coarseGeometry.setIndex(new THREE.BufferAttribute(this.#coarse.index, 1));
+    }
+    this.#coarseGeometry.setDrawRange(0, 3 * keptBelow(this.#coarse, this.#part.triangles));
+    this.#sheets.geometry = isMoving ? this.#coarseGeometry : this.#geometry;
   }
 
   #fillGeometry(): void {

@@ -9,35 +9,50 @@ export type Coarse = {
 /** Below so many triangles, nothing is gained. */
 export const worthCoarsening = 100_000;
 const cellsAlong = 80;
+const across = cellsAlong + 1;
 
 /** @param triangles  undefined where corners lie one after the other. */
 export function coarsen(positions: Float32Array, triangles: Uint32Array | undefined, count: number): Coarse {
-  const least = [Infinity, Infinity, Infinity];
-  const most = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < positions.length; ++i) {
-    if (positions[i] < least[i % 3]) least[i % 3] = positions[i];
-    if (positions[i] > most[i % 3]) most[i % 3] = positions[i];
-  }
-  const side = Math.max(...most.map((m, a) => m - least[a])) / cellsAlong || 1;
-  const across = cellsAlong + 1;
+  const cells = cellsOf(positions);
   const first = new Int32Array(across ** 3).fill(-1); // vertex of each cell
-  const cellOf = (v: number): number => {
-    const cell = (a: number): number => Math.floor((positions[3 * v + a] - least[a]) / side);
-    return (cell(2) * across + cell(1)) * across + cell(0);
+  const vertexIn = (cell: number, v: number): number => {
+    if (first[cell] < 0) first[cell] = v;
+    return first[cell];
   };
   const index: number[] = [];
   const kept: number[] = [];
   for (let t = 0; t < count; ++t) {
-    const corner = (k: number): number => (triangles ? triangles[3 * t + k] : 3 * t + k);
-    const cells = [cellOf(corner(0)), cellOf(corner(1)), cellOf(corner(2))];
-    if (cells[0] === cells[1] || cells[1] === cells[2] || cells[2] === cells[0]) continue;
+    const u = triangles ? triangles[3 * t] : 3 * t;
+    const v = triangles ? triangles[3 * t + 1] : 3 * t + 1;
+    const w = triangles ? triangles[3 * t + 2] : 3 * t + 2;
+    const [a, b, c] = [cells[u], cells[v], cells[w]];
+    if (a === b || b === c || c === a) continue;
     kept.push(t);
-    for (let k = 0; k < 3; ++k) {
-      if (first[cells[k]] < 0) first[cells[k]] = corner(k);
-      index.push(first[cells[k]]);
-    }
+    index.push(vertexIn(a, u), vertexIn(b, v), vertexIn(c, w));
   }
   return { index: Uint32Array.from(index), kept: Uint32Array.from(kept) };
+}
+
+/** The cell of each vertex. */
+function cellsOf(positions: Float32Array): Int32Array {
+  const least = [Infinity, Infinity, Infinity];
+  const most = [-Infinity, -Infinity, -Infinity];
+  for (let v = 0; v < positions.length; v += 3) {
+    for (let a = 0; a < 3; ++a) {
+      const x = positions[v + a];
+      if (x < least[a]) least[a] = x;
+      if (x > most[a]) most[a] = x;
+    }
+  }
+  const side = Math.max(...most.map((m, a) => m - least[a])) / cellsAlong || 1;
+  const cells = new Int32Array(positions.length / 3);
+  for (let v = 0; v < cells.length; ++v) {
+    const x = Math.floor((positions[3 * v] - least[0]) / side);
+    const y = Math.floor((positions[3 * v + 1] - least[1]) / side);
+    const z = Math.floor((positions[3 * v + 2] - least[2]) / side);
+    cells[v] = (z * across + y) * across + x;
+  }
+  return cells;
 }
 
 /** How many of the first triangles are left: of those with a number below `count`. */

@@ -75,6 +75,9 @@ class Page {
     stage.onDraw = () => {
       for (const knob of this.#knobs) knob.place();
     };
+    stage.onMoving = (isMoving) => {
+      for (const view of this.#views) view.setMoving?.(isMoving);
+    };
     listen(stage, (x, y) => this.click(x, y));
     onTheme((isDark) => {
       for (const view of this.#views) view.setTheme?.(isDark);
@@ -214,7 +217,7 @@ function showScene(scene: Scene): void {
   status.hidden = names.length > 0;
   status.textContent = "None of the files could be read.";
   const page = new Page(scene, stage);
-  stage.drawNow();
+  stage.begin();
   window.blum.page = page;
 }
 

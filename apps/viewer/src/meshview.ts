@@ -1,5 +1,6 @@
 // A mesh on the stage.
 import * as THREE from "three";
+import { coarsen, worthCoarsening } from "./coarse.ts";
 import { plural } from "./format.ts";
 import { add, along, distance, firstHit, sub, tripleAt, type Ray } from "./geometry.ts";
 import type { Fact, MeshItem, Triple } from "./scene.ts";
@@ -18,6 +19,9 @@ export class MeshView implements View {
   readonly #material = surfaceMaterial();
   readonly #lines = lineMaterial([0.35, 0.4, 0.46], 2);
   readonly #dots = dotMaterial([0.35, 0.4, 0.46], 5);
+  readonly #whole = new THREE.BufferGeometry();
+  readonly #surface = new THREE.Mesh(this.#whole, this.#material);
+  #coarse: THREE.BufferGeometry | undefined;
   #style: Style;
 
   /** @param isAlone  nothing is inside that one would want to see. */
@@ -90,6 +94,18 @@ export class MeshView implements View {
     setColor(this.#material, isDark ? dark : light);
   }
 
+  setMoving(isMoving: boolean): void {
+    const { positions, triangles } = this.item;
+    if (triangles.length < 3 * worthCoarsening) return;
+    if (this.#coarse === undefined) {
+      this.#coarse = new THREE.BufferGeometry();
+      this.#coarse.setAttribute("position", this.#whole.attributes.position);
+      const { index } = coarsen(positions, triangles, triangles.length / 3);
+      this.#coarse.setIndex(new THREE.BufferAttribute(index, 1));
+    }
+    this.#surface.geometry = isMoving ? this.#coarse : this.#whole;
+  }
+
   #orderDrawing(): void {
     this.object.traverse((part) => (part.renderOrder = this.#style === "translucent" ? 10 : 0));
   }
@@ -99,10 +115,9 @@ export class MeshView implements View {
     const parts: THREE.Object3D[] = [];
     const attribute = new THREE.BufferAttribute(positions, 3);
     if (triangles.length > 0) {
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute("position", attribute);
-      geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
-      parts.push(new THREE.Mesh(geometry, this.#material));
+      this.#whole.setAttribute("position", attribute);
+      this.#whole.setIndex(new THREE.BufferAttribute(triangles, 1));
+      parts.push(this.#surface);
     }
     if (segments.length > 0) {
       const ends = new Float32Array(3 * segments.length);

@@ -5,18 +5,25 @@ import type { Ray } from "./geometry.ts";
 import type { Box, Triple } from "./scene.ts";
 import { pixelRatio, viewport } from "./shaders.ts";
 
+const slowPicture = 120; // milliseconds
+const restAfter = 250;
+
 export class Stage {
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
   readonly canvas: HTMLCanvasElement;
   /** Called before a picture is drawn. */
   onDraw: () => void = () => undefined;
+  /** Called when the view begins to move and when it rests, where whole pictures take long. */
+  onMoving: (isMoving: boolean) => void = () => undefined;
   readonly #renderer: THREE.WebGLRenderer;
   readonly #controls: OrbitControls;
   readonly #center: Triple;
   readonly #radius: number;
   readonly #corners: Triple[]; // of the box around everything
   #isAsked = false;
+  #isSlow = false;
+  #rest: ReturnType<typeof setTimeout> | undefined;
 
   /** Throws where the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement, bounds: Box) {
@@ -31,7 +38,7 @@ export class Stage {
     this.#controls = new OrbitControls(this.camera, canvas);
     this.#controls.rotateSpeed = 0.8;
     this.#controls.zoomToCursor = true;
-    this.#controls.addEventListener("change", () => this.draw());
+    this.#controls.addEventListener("change", () => this.#moved());
     this.#resize();
     this.look([0.55, -0.75, 0.42]);
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement as HTMLElement);
@@ -81,7 +88,7 @@ export class Stage {
     offset.setFromSpherical(spherical).applyQuaternion(toUp.invert());
     this.camera.position.copy(this.#controls.target).add(offset);
     this.#controls.update();
-    this.draw();
+    this.#moved();
   }
 
   zoom(factor: number): void {
@@ -90,7 +97,7 @@ export class Stage {
     if (length < this.#controls.minDistance || length > this.#controls.maxDistance) return;
     this.camera.position.copy(this.#controls.target).add(offset);
     this.#controls.update();
-    this.draw();
+    this.#moved();
   }
 
   /** Whether dragging turns the view; not while something else is dragged. */
@@ -103,6 +110,20 @@ export class Stage {
     if (this.#isAsked) return;
     this.#isAsked = true;
     requestAnimationFrame(() => this.drawNow());
+  }
+
+  /** Draws the first picture. Where that takes long, less is drawn while the view moves. */
+  begin(): void {
+    this.#isSlow = this.measure() > slowPicture;
+  }
+
+  /** Draws a picture and waits for it. Returns how many milliseconds that took. */
+  measure(): number {
+    const start = performance.now();
+    this.drawNow();
+    const context = this.#renderer.getContext();
+    context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4));
+    return performance.now() - start;
   }
 
   drawNow(): void {
@@ -141,6 +162,19 @@ export class Stage {
       y: box.top + ((1 - at.y) / 2) * box.height,
       isBehind: at.z > 1,
     };
+  }
+
+  #moved(): void {
+    if (this.#isSlow) {
+      if (this.#rest === undefined) this.onMoving(true);
+      else clearTimeout(this.#rest);
+      this.#rest = setTimeout(() => {
+        this.#rest = undefined;
+        this.onMoving(false);
+        this.draw();
+      }, restAfter);
+    }
+    this.draw();
   }
 
   /** How far away all corners of the box are in the picture, with some room. */

@@ -30,9 +30,9 @@ export interface View {
   legends(): Legend[];
   /** What changes with the controls, for the text. */
   liveFacts(): Fact[];
-  /** Called before a picture is drawn. */
-  beforeDraw?(): void;
   setTheme?(isDark: boolean): void;
+  /** Draws less while the view moves. */
+  setMoving?(isMoving: boolean): void;
 }
 
 /** What a view needs of the page. */

@@ -1,5 +1,6 @@
 // A field or an image on the stage: a slice that moves, and a level surface.
 import * as THREE from "three";
+import { coarsen, worthCoarsening } from "./coarse.ts";
 import { exactFloat32, plural, rounded, roundStep } from "./format.ts";
 import { dot, firstHit, scale, sub, type Ray } from "./geometry.ts";
 import { nodeIndex, toWorld } from "./grid.ts";
@@ -25,6 +26,8 @@ export class VolumeView implements View {
   readonly #layerSlider: Slider;
   readonly #isoSlider: Slider;
   readonly #iso = new THREE.Mesh(new THREE.BufferGeometry(), surfaceMaterial({ hasNormals: true }));
+  #whole = new THREE.BufferGeometry();
+  #coarse: THREE.BufferGeometry | undefined;
   #surfaces: IsoSurfaces | undefined;
   #show: Show;
   #level: number;
@@ -128,7 +131,7 @@ export class VolumeView implements View {
       facts.push(["slice", `layer ${this.slice.layer} across ${axes[this.slice.axis]}, at ${rounded(position[this.slice.axis])}`]);
     }
     if (this.#iso.visible) {
-      const triangles = (this.#iso.geometry.index?.count ?? 0) / 3;
+      const triangles = (this.#whole.index?.count ?? 0) / 3;
       facts.push(["surface", `at ${rounded(this.#level)}: ${plural(triangles, "triangle")}`]);
     }
     return facts;
@@ -137,6 +140,19 @@ export class VolumeView implements View {
   setTheme(isDark: boolean): void {
     setColor(this.#iso.material, isDark ? isoDark : isoLight);
     setColor(this.slice.frame, isDark ? [0.55, 0.6, 0.66] : [0.4, 0.45, 0.5]);
+  }
+
+  setMoving(isMoving: boolean): void {
+    const { index, attributes } = this.#whole;
+    if (index === null || index.count < 3 * worthCoarsening) return;
+    if (this.#coarse === undefined) {
+      const positions = attributes.position.array as Float32Array;
+      this.#coarse = new THREE.BufferGeometry();
+      for (const name of ["position", "normal"]) this.#coarse.setAttribute(name, attributes[name]);
+      const coarse = coarsen(positions, index.array as Uint32Array, index.count / 3);
+      this.#coarse.setIndex(new THREE.BufferAttribute(coarse.index, 1));
+    }
+    this.#iso.geometry = isMoving ? this.#coarse : this.#whole;
   }
 
   /** The frame of the grid, in which level surfaces are, in the drawn world. */
@@ -271,11 +287,14 @@ export class VolumeView implements View {
   }
 
   #showSurface(surface: Surface): void {
-    this.#iso.geometry.dispose();
+    this.#whole.dispose();
+    this.#coarse?.dispose();
+    this.#coarse = undefined;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(surface.positions, 3));
     geometry.setAttribute("normal", new THREE.BufferAttribute(surface.normals, 3));
     geometry.setIndex(new THREE.BufferAttribute(surface.triangles, 1));
+    this.#whole = geometry;
     this.#iso.geometry = geometry;
     this.#around.changed();
     this.#onSurface?.();
@@ -283,7 +302,7 @@ export class VolumeView implements View {
   }
 
   #pickSurface(ray: Ray): number | undefined {
-    const { index, attributes } = this.#iso.geometry;
+    const { index, attributes } = this.#whole;
     if (!this.#iso.visible || index === null) return undefined;
     const { direction, origin } = this.item.grid;
     const from = sub(ray.origin, sub(origin, this.#around.center));
