@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/union_find.hpp"
@@ -45,7 +46,9 @@ struct Places {
       return;
     }
     triangles.insert(corners);
-    for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 2)}) ++sides[{corners[a], corners[b]}];
+    for (const auto& [a, b] : {std::pair(0U, 1U), std::pair(1U, 2U), std::pair(0U, 2U)}) {
+      ++sides[{corners[a], corners[b]}];
+    }
   }
   void add_curve(const Place& a, const Place& b) {
     if (a != b) curves.insert(line_between(a, b));
@@ -93,7 +96,8 @@ void expect_same(const NestedComplex& nested, const MedialComplex& complex, doub
   std::vector<std::array<std::uint32_t, 2>> edges;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (std::size_t v = 0; v < nested.vertices.size(); ++v) {
-    if (nested.vertex_until[v] > theta) EXPECT_TRUE(found.vertices.insert(place_of(nested.vertices[v])).second);
+    if (!(nested.vertex_until[v] > theta)) continue;
+    EXPECT_TRUE(found.vertices.insert(place_of(nested.vertices[v])).second);
   }
   for (const NestedTriangle& t : nested.triangles) {
     if (!(t.until > theta)) continue;
