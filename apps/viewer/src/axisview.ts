@@ -72,13 +72,6 @@ export class AxisView implements View {
     this.#showPart();
   }
 
-  get theta(): number {
-    return this.#theta;
-  }
-  get counts(): AxisPart["counts"] {
-    return this.#part.counts;
-  }
-
   setTheta(theta: number): void {
     this.#theta = theta;
     this.#slider?.set(theta);

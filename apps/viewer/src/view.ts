@@ -16,7 +16,7 @@ export type Hit = {
 };
 
 export type Legend = { title: string; units: string } & (
-  | { kind: "ramp"; scale: "diverging" | "sequential"; from: number; to: number; middle?: number }
+  | { kind: "ramp"; scale: "diverging" | "sequential"; from: number; to: number }
   | { kind: "regions"; note: string }
 );
 

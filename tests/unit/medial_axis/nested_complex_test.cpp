@@ -93,8 +93,6 @@ void expect_same(const NestedComplex& nested, const MedialComplex& complex, doub
   SCOPED_TRACE("theta " + std::to_string(theta));
   const Places expected = places_of(complex);
   Places found;
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
   for (std::size_t v = 0; v < nested.vertices.size(); ++v) {
     if (!(nested.vertex_until[v] > theta)) continue;
     EXPECT_TRUE(found.vertices.insert(place_of(nested.vertices[v])).second);
@@ -103,7 +101,6 @@ void expect_same(const NestedComplex& nested, const MedialComplex& complex, doub
     if (!(t.until > theta)) continue;
     found.add_triangle({place_of(nested.vertices[t.vertices[0]]), place_of(nested.vertices[t.vertices[1]]),
                         place_of(nested.vertices[t.vertices[2]])});
-    triangles.push_back(t.vertices);
   }
   EXPECT_EQ(found.vertices, expected.vertices);
   EXPECT_EQ(found.triangles, expected.triangles);
