@@ -20,6 +20,7 @@ import { checkbox, choice, element, Slider } from "./widgets.ts";
 
 type ColorBy = "radius" | "angle" | "sheet";
 const coloringOf = { radius: Coloring.scalar, angle: Coloring.angle, sheet: Coloring.region };
+const firstTheta = 60; // as of blum medial
 const curveReach = 0.012; // how far beside a curve a click still hits it, as a part of the scene's radius
 
 export class AxisView implements View {
@@ -53,7 +54,7 @@ export class AxisView implements View {
     this.item = item;
     this.#around = around;
     this.#model = new AxisModel(item);
-    this.#theta = Math.max(item.leastTheta ?? 0, item.theta ?? 0);
+    this.#theta = Math.max(item.leastTheta ?? 0, this.#model.isNested ? firstTheta : (item.theta ?? 0));
     this.#places = new Float32Array(item.positions.length);
     for (let i = 0; i < this.#places.length; ++i) this.#places[i] = item.positions[i] - around.center[i % 3];
     this.#corners = new Float32Array(3 * this.#model.triangles.length);
