@@ -17,7 +17,7 @@ ci=(ccache)
 
 # What the page of `blum view` is built and tested with, where there is none of it yet, or too old a one.
 viewer=(ca-certificates)
-if ! command -v npm >/dev/null || ! node -e 'process.exit(process.versions.node.split(".")[0] < 18)' 2>/dev/null; then
+if ! command -v npm >/dev/null || ! node -e 'process.exit(process.versions.node.split(".")[0] < 18 ? 1 : 0)' 2>/dev/null; then
   viewer+=(nodejs npm)
 fi
 command -v chromium >/dev/null || viewer+=(chromium)
