@@ -10,9 +10,11 @@ python=${1:-python3}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 # The compiler by the name that the other builds use, so that they share a compiler cache.
+options=()
+[[ -n ${CI:-} ]] && options+=(--config-settings=cmake.define.BLUM_WERROR=ON)
 "$python" -m venv "$folder/venv"
 CC=${CC:-cc} CXX=${CXX:-c++} "$folder/venv/bin/pip" wheel . --no-deps --quiet --disable-pip-version-check \
-  --wheel-dir "$folder" --config-settings=build-dir=build/wheel
+  --wheel-dir "$folder" --config-settings=build-dir=build/wheel "${options[@]}"
 "$folder/venv/bin/pip" install --quiet --disable-pip-version-check "$folder"/blum-*.whl
 cp examples/python/medial_axis_of_part.py tests/python/wheel_smoke.py "$folder"
 cd "$folder"
