@@ -9,9 +9,5 @@ if [[ ${1:-} == --check ]]; then
 else
   clang-format-19 -i "${files[@]}"
 fi
-if [[ ${1:-} != --check && -x build/venv/bin/ruff ]]; then
-  mapfile -t python_files < <(git ls-files --cached --others --exclude-standard -- 'python/*.py' 'examples/python/*.py' \
-    'tests/python/test_package_*.py' tests/python/conftest.py tests/python/wheel_smoke.py)
-  build/venv/bin/ruff format --quiet "${python_files[@]}"
-fi
+if [[ ${1:-} != --check && -x build/venv/bin/ruff ]]; then build/venv/bin/ruff format --quiet; fi
 echo "format: ${#files[@]} files"

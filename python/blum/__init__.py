@@ -31,7 +31,6 @@ from ._errors import (
     InvalidImage,
     InvalidMesh,
     InvalidOption,
-    NotCertified,
     OutOfMemory,
 )
 from ._field import (
@@ -101,7 +100,6 @@ __all__ = [
     "MedialAxisReport",
     "MedialComplex",
     "Mesh",
-    "NotCertified",
     "OutOfMemory",
     "SelfIntersections",
     "ShapeInfo",

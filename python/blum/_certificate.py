@@ -13,7 +13,7 @@ from ._errors import InvalidMesh
 from ._field import distance_field, selected_voxels
 from ._grid import Grid
 from ._image import as_image, is_image
-from ._mesh import Betti, Mesh, as_mesh
+from ._mesh import Betti, Mesh, as_mesh, betti_of
 from ._progress import Progress, reporting
 
 if TYPE_CHECKING:
@@ -98,16 +98,12 @@ def _of(cls: Any, values: dict[str, Any]) -> Any:
     )
 
 
-def _betti(values: Any) -> Betti:
-    return int(values[0]), int(values[1]), int(values[2])
-
-
 def _certificate(found: dict[str, Any]) -> Certificate:
     return Certificate(
         found["against"],
-        _betti(found["solid"]),
-        _betti(found["axis"]),
-        tuple((_betti(solid), _betti(axis)) for solid, axis in found["bodies"]),
+        betti_of(found["solid"]),
+        betti_of(found["axis"]),
+        tuple((betti_of(solid), betti_of(axis)) for solid, axis in found["bodies"]),
         found["topology_holds"],
         _of(GeometryCheck, found["geometry"]),
         _of(EdgeCheck, found["edges"]),
@@ -240,7 +236,7 @@ def homology(
     if count < 0:
         raise ValueError(f"vertex_count is {count}, but must be at least 0")
     with reporting(progress) as report:
-        return _betti(
+        return betti_of(
             _core.homology(
                 count,
                 indices(edges, "edges", 2, count),

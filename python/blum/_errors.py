@@ -35,7 +35,3 @@ class FileError(Error, OSError):
 
 class FormatError(FileError, ValueError):
     """A file whose content is not what its format asks for."""
-
-
-class NotCertified(Error):
-    """An axis that does not have the topology or the geometry that it should have."""

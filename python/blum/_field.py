@@ -28,7 +28,7 @@ from ._arguments import (
 from ._errors import InvalidOption
 from ._grid import Grid, grid_for, mask_array
 from ._image import as_image
-from ._mesh import Betti, Mesh, as_mesh, mesh_of_arrays
+from ._mesh import Betti, Mesh, as_mesh, betti_of, mesh_of_arrays
 from ._progress import Progress, reporting
 
 Sign = Literal["auto", "normals", "winding", "none"]
@@ -419,7 +419,7 @@ def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -
     """
     with reporting(progress) as report:
         betti, euler = _core.voxel_topology(mask_array(mask, "mask"), integer(threads, "threads"), report)
-    return VoxelTopology((betti[0], betti[1], betti[2]), euler)
+    return VoxelTopology(betti_of(betti), euler)
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from ._errors import InvalidOption
 from ._field import Field
 from ._grid import Grid, grid_for
 from ._image import Image, as_image, is_image
-from ._mesh import Betti, Bounds, Mesh, as_mesh
+from ._mesh import Betti, Bounds, Mesh, as_mesh, betti_of
 from ._progress import Progress, reporting
 
 #: What the numbers in `MedialComplex.role` and `edge_role` stand for.
@@ -406,15 +406,15 @@ class MedialAxis:
     def report(self) -> MedialAxisReport:
         found = self._core.report
         bodies = tuple(
-            BodyReport(**{**body, "solid": _betti(body["solid"]), "voxels": _betti(body["voxels"])})
+            BodyReport(**{**body, "solid": betti_of(body["solid"]), "voxels": betti_of(body["voxels"])})
             for body in found["bodies"]
         )
         return MedialAxisReport(
             found["rule"],
             found["reason"],
             found["turned_shells"],
-            _betti(found["solid"]),
-            _betti(found["voxels"]),
+            betti_of(found["solid"]),
+            betti_of(found["voxels"]),
             found["is_right"],
             Grid._of(found["grid"]),
             bodies,
@@ -447,10 +447,6 @@ class MedialAxis:
     def __repr__(self) -> str:
         components, tunnels, voids = self.report.voxels
         return f"MedialAxis(components={components}, tunnels={tunnels}, voids={voids}, rule={self.report.rule!r})"
-
-
-def _betti(values: Any) -> Betti:
-    return int(values[0]), int(values[1]), int(values[2])
 
 
 def _summed(phases: Sequence[tuple[str, float]]) -> dict[str, float]:

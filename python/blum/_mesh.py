@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -29,6 +29,12 @@ from ._progress import Progress, reporting
 
 Betti = tuple[int, int, int]
 Bounds = tuple[tuple[float, float, float], tuple[float, float, float]]
+
+
+def betti_of(values: Sequence[int]) -> Betti:
+    """Betti numbers of what the library hands over."""
+    components, tunnels, voids = values
+    return int(components), int(tunnels), int(voids)
 
 
 class Mesh:

@@ -37,12 +37,9 @@ void make_equal(AxisPiece& piece, double tolerance) {
   detail::UnionFind joined(piece.nodes.size());
   for (const AxisCell& cell : piece.cells) {
     if (dimension_of(cell.cell) != 1) continue;
-    const std::size_t node = node_of(cell.cell);
-    const std::size_t step = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes_of(cell.cell))));
-    const std::size_t a = piece.place_of(node);
-    const std::size_t b = piece.place_of(node + step);
+    const auto [a, b] = ends_of(piece, cell.cell);
     if (squared_length(piece.vertices[a].position - piece.vertices[b].position) > tolerance * tolerance) continue;
-    joined.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+    joined.join(a, b);
   }
   for (std::uint32_t v = 0; v < piece.vertices.size(); ++v) piece.vertices[v] = piece.vertices[joined.find(v)];
 }
