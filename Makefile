@@ -31,8 +31,8 @@ format: ## Bring the sources into the project's format (clang-format 19)
 	@tools/setup.sh --lint
 	@tools/format.sh
 
-lint: ## Check format, clang-tidy, shell scripts, layer rules, words and links
-	@tools/setup.sh --lint
+lint: ## Check format, clang-tidy, shell scripts, layer rules, words, links, Python and the viewer
+	@tools/setup.sh --lint --viewer
 	@tools/lint.sh
 
 bench: ## Build and run the benchmarks, with their peers
@@ -42,6 +42,7 @@ viewer: ## Build the page of blum view, apps/viewer/dist/viewer.html, from its s
 	@tools/setup.sh --viewer
 	@tools/viewer.sh install
 	@tools/viewer.sh build
+	@tools/lint.sh viewer
 	@tools/viewer.sh all
 
 docs: ## Build the API pages and check the documents' links: build/docs/html/index.html

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# `make lint`: format, clang-tidy, shell scripts, layer rules, text rules and links, each counted as one check.
-#   tools/lint.sh [CHECK ...]   only these: format includes text links shell python tidy
+# `make lint`: format, clang-tidy, shell scripts, layer rules, text rules, links, Python (ruff) and the viewer (tsc,
+# ESLint), each counted as one check.
+#   tools/lint.sh [CHECK ...]   only these: format includes text links shell python viewer tidy
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# clang-tidy over the library, the tool and the examples; headers are checked where they are included.
+# clang-tidy over the library, the tool, the examples and, where they are configured, the Python bindings; headers are checked where they are included.
 tidy() {
   [[ -f build/release/compile_commands.json ]] || cmake --preset release >/dev/null
   local files
@@ -15,7 +16,7 @@ here = pathlib.Path.cwd()
 commands = json.loads((here / "build/release/compile_commands.json").read_text())
 names = {pathlib.Path(command["file"]) for command in commands}
 print(*sorted(str(name.relative_to(here)) for name in names
-              if name.is_file() and any(name.is_relative_to(here / folder) for folder in ("src", "apps", "examples"))),
+              if name.is_file() and any(name.is_relative_to(here / folder) for folder in ("src", "apps", "examples", "python"))),
       sep="\n")
 PYTHON
   )
@@ -42,6 +43,7 @@ run() {
     links) tools/check_links.py ;;
     shell) shell_scripts ;;
     python) python_sources ;;
+    viewer) tools/viewer.sh install && tools/viewer.sh lint ;;
     tidy) tidy ;;
     *)
       echo "lint: unknown check $1" >&2
@@ -56,7 +58,7 @@ if [[ ${1:-} == --run ]]; then
 fi
 results=${RESULTS:-build/results/lint}
 [[ -n ${RESULTS:-} ]] || rm -rf "$results"
-[[ $# -gt 0 ]] || set -- format includes text links shell python tidy
+[[ $# -gt 0 ]] || set -- format includes text links shell python viewer tidy
 for name in "$@"; do
   tools/results.py check "$results" "lint-$name" -- "$0" --run "$name"
 done

@@ -4,29 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "blum/field/field.hpp"
 #include "commands.hpp"
 #include "files.hpp"
 
 namespace blum::cli {
 namespace {
-
-/// Voxels of a grid whose centre has a winding number above 1/2.
-VoxelSet voxels_inside(const MeshView& mesh, const GridSpec& grid, const Context& context) {
-  FieldOptions options;
-  options.sign = SignMode::winding;
-  const Field field = distance_field(mesh, grid, options, context);
-  VoxelSet voxels(grid.size);
-  std::size_t node = 0;
-  for (std::int64_t k = 0; k < grid.size[2]; ++k) {
-    for (std::int64_t j = 0; j < grid.size[1]; ++j) {
-      for (std::int64_t i = 0; i < grid.size[0]; ++i, ++node) {
-        if (field.distance[node] < 0) voxels.insert(i, j, k);
-      }
-    }
-  }
-  return voxels;
-}
 
 /// What a file says of itself that is not so.
 std::vector<std::string> false_claims(const MedialFile& file, SolidRule rule) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -53,15 +54,42 @@ template <class T>
   return Out<T>(start, shape.size(), shape.begin(), owner, strides.size() == 0 ? nullptr : strides.begin());
 }
 
-/// Hands a vector over to Python, without a copy. @param width  elements T per entry; 0: an array of one axis.
+/// A list that Python keeps alive for as long as an array shows a part of it.
+template <class Entry>
+struct Held {
+  std::vector<Entry>* entries;  ///< never nullptr
+  nb::capsule owner;
+};
+template <class Entry>
+[[nodiscard]] Held<Entry> held(std::vector<Entry> entries) {
+  auto kept = std::make_unique<std::vector<Entry>>(std::move(entries));
+  std::vector<Entry>* const list = kept.get();
+  nb::capsule owner(list, [](void* memory) noexcept { delete static_cast<std::vector<Entry>*>(memory); });
+  (void)kept.release();  // the capsule's from here on
+  return {list, std::move(owner)};
+}
+
+/// Hands a list over to Python, without a copy. @param width  elements T per entry; 0: an array of one axis.
 template <class T, class Entry>
 [[nodiscard]] Out<T> handed_over(std::vector<Entry> entries, std::size_t width = 0) {
   static_assert(sizeof(Entry) % sizeof(T) == 0);
-  auto* held = new std::vector<Entry>(std::move(entries));
-  const nb::capsule owner(held, [](void* memory) noexcept { delete static_cast<std::vector<Entry>*>(memory); });
-  T* const data = reinterpret_cast<T*>(held->data());
-  const std::size_t length = held->size();
-  return width == 0 ? view_of<T>(data, {length}, owner) : view_of<T>(data, {length, width}, owner);
+  const Held<Entry> kept = held(std::move(entries));
+  T* const data = reinterpret_cast<T*>(kept.entries->data());
+  const std::size_t length = kept.entries->size();
+  return width == 0 ? view_of<T>(data, {length}, kept.owner) : view_of<T>(data, {length, width}, kept.owner);
+}
+
+/// Values at the nodes of a grid as an array [z, y, x]. @param size  nodes along x, y, z.
+template <class T>
+[[nodiscard]] Out<T> grid_view(T* data, const std::array<std::int64_t, 3>& size, nb::handle owner) {
+  return view_of<T>(
+      data, {static_cast<std::size_t>(size[2]), static_cast<std::size_t>(size[1]), static_cast<std::size_t>(size[0])},
+      owner);
+}
+template <class T>
+[[nodiscard]] Out<T> grid_handed_over(std::vector<T> values, const std::array<std::int64_t, 3>& size) {
+  const Held<T> kept = held(std::move(values));
+  return grid_view<T>(kept.entries->data(), size, kept.owner);
 }
 
 /// The arrays of a mesh, seen by Blum without a copy.

@@ -72,10 +72,6 @@ nb::dict certificate_of(const Certificate& certificate) {
   return out;
 }
 
-CertificateOptions options_of(bool positions, bool radii, bool footprints, bool angles, bool sites, bool balls) {
-  return {positions, radii, footprints, angles, sites, balls};
-}
-
 }  // namespace
 
 void bind_certificate(nb::module_& m) {
@@ -102,7 +98,7 @@ void bind_certificate(nb::module_& m) {
       [](const MedialComplex& complex, const MeshArrays& mesh, bool positions, bool radii, bool footprints, bool angles,
          bool sites, bool balls, int threads, nb::object progress) {
         const MeshView view = mesh.view();
-        const CertificateOptions options = options_of(positions, radii, footprints, angles, sites, balls);
+        const CertificateOptions options{positions, radii, footprints, angles, sites, balls};
         return certificate_of(run({threads, std::move(progress)},
                                   [&](const Context& context) { return certify(complex, view, options, context); }));
       },
@@ -110,17 +106,29 @@ void bind_certificate(nb::module_& m) {
       nb::arg("angles"), nb::arg("sites"), nb::arg("balls"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
       "certify_voxels",
-      [](const MedialComplex& complex, const MaskIn& mask, const GridSpec& grid, const MeshArrays* mesh, bool positions,
-         bool radii, bool footprints, bool angles, bool sites, bool balls, int threads, nb::object progress) {
-        const std::optional<MeshView> view = mesh == nullptr ? std::nullopt : std::optional(mesh->view());
-        const CertificateOptions options = options_of(positions, radii, footprints, angles, sites, balls);
+      [](const MedialComplex& complex, const MaskIn& mask, const GridSpec& grid, bool positions, bool radii,
+         bool footprints, bool angles, bool sites, bool balls, int threads, nb::object progress) {
+        const CertificateOptions options{positions, radii, footprints, angles, sites, balls};
         return certificate_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return certify(complex, voxel_set(mask), grid, view ? &*view : nullptr, options, context);
+          return certify(complex, voxel_set(mask), grid, nullptr, options, context);
         }));
       },
-      nb::arg("complex"), nb::arg("mask").noconvert(), nb::arg("grid"), nb::arg("mesh").none(), nb::arg("positions"),
-      nb::arg("radii"), nb::arg("footprints"), nb::arg("angles"), nb::arg("sites"), nb::arg("balls"),
-      nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("complex"), nb::arg("mask").noconvert(), nb::arg("grid"), nb::arg("positions"), nb::arg("radii"),
+      nb::arg("footprints"), nb::arg("angles"), nb::arg("sites"), nb::arg("balls"), nb::arg("threads"),
+      nb::arg("progress").none());
+  m.def(
+      "certify_winding",
+      [](const MedialComplex& complex, const MeshArrays& mesh, const GridSpec& grid, bool positions, bool radii,
+         bool footprints, bool angles, bool sites, bool balls, int threads, nb::object progress) {
+        const MeshView view = mesh.view();
+        const CertificateOptions options{positions, radii, footprints, angles, sites, balls};
+        return certificate_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return certify(complex, voxels_inside(view, grid, context), grid, &view, options, context);
+        }));
+      },
+      nb::arg("complex"), nb::arg("mesh"), nb::arg("grid"), nb::arg("positions"), nb::arg("radii"),
+      nb::arg("footprints"), nb::arg("angles"), nb::arg("sites"), nb::arg("balls"), nb::arg("threads"),
+      nb::arg("progress").none());
 }
 
 }  // namespace blum::python

@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "call.hpp"
+#include "columns.hpp"
 #include "fields.hpp"
 
 namespace blum::python {
@@ -17,19 +18,10 @@ namespace {
 
 /// (points, distances, sites, triangles), views of one block of memory.
 nb::tuple columns_of(std::vector<ClosestPoint> found) {
-  static_assert(sizeof(ClosestPoint) % sizeof(double) == 0);
-  constexpr auto doubles = static_cast<std::int64_t>(sizeof(ClosestPoint) / sizeof(double));
-  constexpr auto ints = static_cast<std::int64_t>(sizeof(ClosestPoint) / sizeof(std::int32_t));
-  auto* held = new std::vector<ClosestPoint>(std::move(found));
-  const nb::capsule owner(held, [](void* memory) noexcept { delete static_cast<std::vector<ClosestPoint>*>(memory); });
-  static ClosestPoint nowhere;
-  ClosestPoint& first = held->empty() ? nowhere : held->front();
-  const std::size_t count = held->size();
-  return nb::make_tuple(
-      view_of<double>(&first.point.x, {count, 3}, owner, {doubles, 1}),
-      view_of<double>(&first.distance, {count}, owner, {doubles}),
-      view_of<std::int32_t>(reinterpret_cast<std::int32_t*>(&first.site), {count}, owner, {ints}),
-      view_of<std::int32_t>(reinterpret_cast<std::int32_t*>(&first.triangle), {count}, owner, {ints}));
+  const Held<ClosestPoint> kept = held(std::move(found));
+  const auto shown = [&](auto member) { return column(*kept.entries, member, kept.owner); };
+  return nb::make_tuple(shown(&ClosestPoint::point), shown(&ClosestPoint::distance), shown(&ClosestPoint::site),
+                        shown(&ClosestPoint::triangle));
 }
 
 }  // namespace

@@ -19,14 +19,6 @@ namespace {
 
 using FloatsIn = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
-template <class T>
-Out<T> grid_view(nb::pointer_and_handle<Field> self, T* data) {
-  const auto& size = self.p->grid.size;
-  return view_of<T>(
-      data, {static_cast<std::size_t>(size[2]), static_cast<std::size_t>(size[1]), static_cast<std::size_t>(size[0])},
-      self.h);
-}
-
 Field field_of(const FloatsIn& distance, const GridSpec& grid) {
   Field field;
   field.grid = grid;
@@ -52,11 +44,14 @@ void bind_field_class(nb::module_& m) {
           },
           nb::arg("distance").noconvert(), nb::arg("grid"))
       .def_prop_ro("distance",
-                   [](nb::pointer_and_handle<Field> self) { return grid_view(self, self.p->distance.data()); })
+                   [](nb::pointer_and_handle<Field> self) {
+                     return grid_view(self.p->distance.data(), self.p->grid.size, self.h);
+                   })
       .def_prop_ro("site",
                    [](nb::pointer_and_handle<Field> self) -> nb::object {
                      if (self.p->site.empty()) return nb::none();
-                     return nb::cast(grid_view(self, reinterpret_cast<std::int32_t*>(self.p->site.data())));
+                     auto* const sites = reinterpret_cast<std::int32_t*>(self.p->site.data());
+                     return nb::cast(grid_view(sites, self.p->grid.size, self.h));
                    })
       .def_ro("grid", &Field::grid)
       .def_prop_ro("site_ids", [](const Field& field) { return std::string(to_string(field.site_ids)); })

@@ -109,15 +109,15 @@ void bind_medial_files(nb::module_& m) {
       [](const Path& path) {
         MedialFile file = run({0, nb::none()}, [&](const Context&) { return read_medial(path); });
         nb::dict metadata = metadata_of(file);
-        return nb::make_tuple(std::move(file.complex), metadata);
+        return nb::make_tuple(std::move(file.complex), std::move(file.nested), metadata);
       },
       nb::arg("path"));
   m.def(
       "write_medial",
-      [](const Path& path, const MedialComplex& complex, const std::string& source, const std::string& site_ids,
-         const std::string& solid_rule, std::optional<double> theta, std::optional<double> lambda,
-         std::optional<double> spacing, const GridSpec* grid, std::optional<std::int64_t> label,
-         std::optional<double> threshold, std::optional<double> weld) {
+      [](const Path& path, const MedialComplex& complex, const NestedComplex* nested, const std::string& source,
+         const std::string& site_ids, const std::string& solid_rule, std::optional<double> theta,
+         std::optional<double> lambda, std::optional<double> spacing, const GridSpec* grid,
+         std::optional<std::int64_t> label, std::optional<double> threshold, std::optional<double> weld) {
         MedialMetadata metadata;
         metadata.source = source;
         metadata.version = BLUM_VERSION;
@@ -130,11 +130,14 @@ void bind_medial_files(nb::module_& m) {
         metadata.label = label;
         metadata.threshold = threshold;
         metadata.weld = weld;
-        run_call({0, nb::none()}, [&](const Context& context) { write_medial(path, complex, metadata, context); });
+        run_call({0, nb::none()}, [&](const Context& context) {
+          if (nested != nullptr) return write_medial(path, complex, *nested, metadata, context);
+          write_medial(path, complex, metadata, context);
+        });
       },
-      nb::arg("path"), nb::arg("complex"), nb::arg("source"), nb::arg("site_ids"), nb::arg("solid_rule"),
-      nb::arg("theta").none(), nb::arg("lambda_").none(), nb::arg("spacing").none(), nb::arg("grid").none(),
-      nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("weld").none());
+      nb::arg("path"), nb::arg("complex"), nb::arg("nested").none(), nb::arg("source"), nb::arg("site_ids"),
+      nb::arg("solid_rule"), nb::arg("theta").none(), nb::arg("lambda_").none(), nb::arg("spacing").none(),
+      nb::arg("grid").none(), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("weld").none());
 }
 
 }  // namespace

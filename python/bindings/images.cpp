@@ -6,7 +6,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -110,18 +109,8 @@ ImageArrays image_arrays(ValuesIn values, const GridSpec& grid, std::string spac
 }
 
 nb::tuple image_of(VoxelImage image) {
-  const auto& size = image.grid.size;
   nb::object values = std::visit(
-      [&]<class T>(std::vector<T>& entries) {
-        auto held = std::make_unique<std::vector<T>>(std::move(entries));
-        T* const data = held->data();
-        const nb::capsule owner(held.release(),
-                                [](void* memory) noexcept { delete static_cast<std::vector<T>*>(memory); });
-        return nb::cast(view_of<T>(
-            data,
-            {static_cast<std::size_t>(size[2]), static_cast<std::size_t>(size[1]), static_cast<std::size_t>(size[0])},
-            owner));
-      },
+      [&]<class T>(std::vector<T>& entries) { return nb::cast(grid_handed_over(std::move(entries), image.grid.size)); },
       image.values);
   return nb::make_tuple(std::move(values), image.grid, image.space);
 }
@@ -142,19 +131,14 @@ VoxelSet voxel_set(const MaskIn& mask) {
 
 Out<std::uint8_t> mask_of(const VoxelSet& voxels) {
   const auto& size = voxels.size();
-  auto held = std::make_unique<std::vector<std::uint8_t>>();
-  held->reserve(static_cast<std::size_t>(size[0] * size[1] * size[2]));
+  std::vector<std::uint8_t> mask;
+  mask.reserve(static_cast<std::size_t>(size[0] * size[1] * size[2]));
   for (std::int64_t k = 0; k < size[2]; ++k) {
     for (std::int64_t j = 0; j < size[1]; ++j) {
-      for (std::int64_t i = 0; i < size[0]; ++i) held->push_back(voxels.contains(i, j, k) ? 1 : 0);
+      for (std::int64_t i = 0; i < size[0]; ++i) mask.push_back(voxels.contains(i, j, k) ? 1 : 0);
     }
   }
-  std::uint8_t* const data = held->data();
-  const nb::capsule owner(held.release(),
-                          [](void* memory) noexcept { delete static_cast<std::vector<std::uint8_t>*>(memory); });
-  return view_of<std::uint8_t>(
-      data, {static_cast<std::size_t>(size[2]), static_cast<std::size_t>(size[1]), static_cast<std::size_t>(size[0])},
-      owner);
+  return grid_handed_over(std::move(mask), size);
 }
 
 void bind_images(nb::module_& m) {

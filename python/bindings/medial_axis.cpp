@@ -14,6 +14,7 @@
 #include "blum/medial_axis/ball_union.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "call.hpp"
+#include "columns.hpp"
 #include "fields.hpp"
 #include "images.hpp"
 
@@ -23,30 +24,6 @@ namespace {
 using AnglesIn = In<float, nb::shape<-1>>;
 using RolesIn = In<std::uint8_t, nb::shape<-1>>;
 using NumbersIn = In<double, nb::shape<-1>>;
-
-/// Steps between entries, in elements of a member's type.
-template <class Entry, class T>
-constexpr std::int64_t step = sizeof(Entry) / sizeof(T);
-static_assert(sizeof(MedialVertex) % sizeof(double) == 0 && sizeof(MedialEdge) % sizeof(float) == 0 &&
-              sizeof(MedialTriangle) % sizeof(float) == 0);
-
-/// The first of some entries, or one that stands for it where there are none.
-template <class Entry>
-const Entry& first_of(const std::vector<Entry>& entries) {
-  static const Entry none{};
-  return entries.empty() ? none : entries.front();
-}
-
-/// A view of one number of every entry.
-template <class T, class Entry, class Member>
-Out<const T> column(const std::vector<Entry>& entries, const Member& first, nb::handle owner) {
-  return view_of(reinterpret_cast<const T*>(&first), {entries.size()}, owner, {step<Entry, T>});
-}
-/// A view of several numbers of every entry, which follow each other.
-template <class T, class Entry, class Member>
-Out<const T> columns(const std::vector<Entry>& entries, const Member& first, std::size_t count, nb::handle owner) {
-  return view_of(reinterpret_cast<const T*>(&first), {entries.size(), count}, owner, {step<Entry, T>, 1});
-}
 
 void check_length(const char* name, std::size_t length, std::size_t wanted) {
   if (length == wanted) return;
@@ -75,9 +52,43 @@ std::vector<MedialVertex> vertices_of(const PointsIn& positions, const NumbersIn
   return out;
 }
 
+/// What complexes of one angle and of all have in common.
+template <class Complex>
+void bind_columns(nb::class_<Complex>& complex) {
+  using Edge = typename decltype(Complex::edges)::value_type;
+  using Face = typename decltype(Complex::triangles)::value_type;
+  bind_column(complex, "vertices", &Complex::vertices, &MedialVertex::position);
+  bind_column(complex, "radius", &Complex::vertices, &MedialVertex::radius);
+  bind_column(complex, "footprints", &Complex::vertices, &MedialVertex::footprints);
+  bind_column(complex, "sites", &Complex::vertices, &MedialVertex::sites);
+  bind_column(complex, "separation_angle", &Complex::vertices, &MedialVertex::separation_angle);
+  bind_column(complex, "role", &Complex::vertices, &MedialVertex::role);
+  bind_column(complex, "edges", &Complex::edges, &Edge::vertices);
+  bind_column(complex, "edge_angle", &Complex::edges, &Edge::separation_angle);
+  bind_column(complex, "edge_role", &Complex::edges, &Edge::role);
+  bind_column(complex, "triangles", &Complex::triangles, &Face::vertices);
+  bind_column(complex, "triangle_angle", &Complex::triangles, &Face::separation_angle);
+  bind_column(complex, "triangle_sheet", &Complex::triangles, &Face::sheet);
+  complex.def_ro("sheet_count", &Complex::sheet_count);
+}
+
+void bind_nested(nb::module_& m) {
+  nb::class_<NestedComplex> nested(m, "NestedComplex");
+  bind_columns(nested);
+  nested.def_ro("least_theta", &NestedComplex::least_theta);
+  nested.def_prop_ro("vertex_until", [](nb::pointer_and_handle<NestedComplex> self) {
+    const std::vector<float>& all = self.p->vertex_until;
+    return view_of(all.data(), {all.size()}, self.h);
+  });
+  bind_column(nested, "edge_from", &NestedComplex::edges, &NestedEdge::from);
+  bind_column(nested, "edge_until", &NestedComplex::edges, &NestedEdge::until);
+  bind_column(nested, "triangle_until", &NestedComplex::triangles, &NestedTriangle::until);
+}
+
 void bind_complex(nb::module_& m) {
-  using Self = nb::pointer_and_handle<MedialComplex>;
-  nb::class_<MedialComplex>(m, "MedialComplex")
+  nb::class_<MedialComplex> complex(m, "MedialComplex");
+  bind_columns(complex);
+  complex
       .def(
           "__init__",
           [](MedialComplex* self, const PointsIn& positions, const NumbersIn& radius, const PointsIn& footprints,
@@ -108,68 +119,6 @@ void bind_complex(nb::module_& m) {
           nb::arg("edges").noconvert(), nb::arg("edge_angle").noconvert(), nb::arg("edge_role").noconvert(),
           nb::arg("triangles").noconvert(), nb::arg("triangle_angle").noconvert(),
           nb::arg("triangle_sheet").noconvert(), nb::arg("sheet_count"))
-      .def_prop_ro("vertices",
-                   [](Self self) {
-                     const auto& all = self.p->vertices;
-                     return columns<double>(all, first_of(all).position, 3, self.h);
-                   })
-      .def_prop_ro("radius",
-                   [](Self self) {
-                     const auto& all = self.p->vertices;
-                     return column<double>(all, first_of(all).radius, self.h);
-                   })
-      .def_prop_ro("footprints",
-                   [](Self self) {
-                     const auto& all = self.p->vertices;
-                     return view_of(&first_of(all).footprints[0].x, {all.size(), 2, 3}, self.h,
-                                    {step<MedialVertex, double>, 3, 1});
-                   })
-      .def_prop_ro("sites",
-                   [](Self self) {
-                     const auto& all = self.p->vertices;
-                     return columns<std::int32_t>(all, first_of(all).sites, 2, self.h);
-                   })
-      .def_prop_ro("separation_angle",
-                   [](Self self) {
-                     const auto& all = self.p->vertices;
-                     return column<double>(all, first_of(all).separation_angle, self.h);
-                   })
-      .def_prop_ro("role",
-                   [](Self self) {
-                     const auto& all = self.p->vertices;
-                     return column<std::uint8_t>(all, first_of(all).role, self.h);
-                   })
-      .def_prop_ro("edges",
-                   [](Self self) {
-                     const auto& all = self.p->edges;
-                     return columns<std::int32_t>(all, first_of(all).vertices, 2, self.h);
-                   })
-      .def_prop_ro("edge_angle",
-                   [](Self self) {
-                     const auto& all = self.p->edges;
-                     return column<float>(all, first_of(all).separation_angle, self.h);
-                   })
-      .def_prop_ro("edge_role",
-                   [](Self self) {
-                     const auto& all = self.p->edges;
-                     return column<std::uint8_t>(all, first_of(all).role, self.h);
-                   })
-      .def_prop_ro("triangles",
-                   [](Self self) {
-                     const auto& all = self.p->triangles;
-                     return columns<std::int32_t>(all, first_of(all).vertices, 3, self.h);
-                   })
-      .def_prop_ro("triangle_angle",
-                   [](Self self) {
-                     const auto& all = self.p->triangles;
-                     return column<float>(all, first_of(all).separation_angle, self.h);
-                   })
-      .def_prop_ro("triangle_sheet",
-                   [](Self self) {
-                     const auto& all = self.p->triangles;
-                     return column<std::int32_t>(all, first_of(all).sheet, self.h);
-                   })
-      .def_ro("sheet_count", &MedialComplex::sheet_count)
       .def("counts", [](const MedialComplex& complex) {
         const MedialCounts counts = count(complex);
         nb::dict out;
@@ -221,6 +170,8 @@ void bind_axis(nb::module_& m) {
             return run({0, nb::none()}, [&](const Context&) { return axis.extract(theta); });
           },
           nb::arg("theta"))
+      .def("nested",
+           [](const MedialAxis& axis) { return run({0, nb::none()}, [&](const Context&) { return axis.nested(); }); })
       .def_prop_ro("report", [](const MedialAxis& axis) { return report_of(axis.report()); });
   m.def(
       "medial_axis_of_mesh",
@@ -258,6 +209,7 @@ void bind_axis(nb::module_& m) {
 
 void bind_medial_axis(nb::module_& m) {
   bind_complex(m);
+  bind_nested(m);
   bind_axis(m);
   m.def(
       "prune_sheets",

@@ -20,6 +20,7 @@ from ._certificate import (
     homology,
     solid_rule,
 )
+from ._complex import ROLES, MedialComplex, NestedComplex, Present, ball_union_field, read_medial
 from ._core import thread_count
 from ._core import version as __version__
 from ._errors import (
@@ -49,16 +50,7 @@ from ._field import (
 )
 from ._grid import Grid
 from ._image import Image, read_image
-from ._medial import (
-    ROLES,
-    BodyReport,
-    MedialAxis,
-    MedialAxisReport,
-    MedialComplex,
-    ball_union_field,
-    medial_axis,
-    read_medial,
-)
+from ._medial import BodyReport, MedialAxis, MedialAxisReport, medial_axis
 from ._mesh import (
     Mesh,
     SelfIntersections,
@@ -74,6 +66,7 @@ from ._mesh import (
     weld_clusters,
 )
 from ._shapes import ShapeInfo, ShapeParameter, generate, known_betti, shapes
+from ._view import view
 
 __all__ = [
     "ROLES",
@@ -100,7 +93,9 @@ __all__ = [
     "MedialAxisReport",
     "MedialComplex",
     "Mesh",
+    "NestedComplex",
     "OutOfMemory",
+    "Present",
     "SelfIntersections",
     "ShapeInfo",
     "ShapeParameter",
@@ -133,6 +128,7 @@ __all__ = [
     "solid_rule",
     "thread_count",
     "topology",
+    "view",
     "voxel_topology",
     "weld",
     "weld_clusters",

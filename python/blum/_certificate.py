@@ -10,14 +10,14 @@ import numpy as np
 from . import _core
 from ._arguments import indices, integer
 from ._errors import InvalidMesh
-from ._field import distance_field, selected_voxels
+from ._field import selected_voxels
 from ._grid import Grid
 from ._image import as_image, is_image
 from ._mesh import Betti, Mesh, as_mesh, betti_of
 from ._progress import Progress, reporting
 
 if TYPE_CHECKING:
-    from ._medial import MedialComplex
+    from ._complex import MedialComplex
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ def certify(
         with reporting(progress) as report:
             return _certificate(
                 _core.certify_voxels(
-                    axis._core, mask.view(np.uint8), image.grid._spec, None, *checks, threads=count, progress=report
+                    axis._core, mask.view(np.uint8), image.grid._spec, *checks, threads=count, progress=report
                 )
             )
     mesh = as_mesh(shape, triangles, "shape")
@@ -195,12 +195,9 @@ def _against_winding(
         raise InvalidMesh(
             f"the mesh bounds no polyhedron ({reason}), so its axis is that of voxels: give grid, that of their centres"
         )
-    inside = distance_field(mesh, grid=nodes, sign="winding", threads=threads).distance < 0
     with reporting(progress) as report:
         return _certificate(
-            _core.certify_voxels(
-                axis._core, inside.view(np.uint8), nodes._spec, mesh._arrays, *checks, threads=threads, progress=report
-            )
+            _core.certify_winding(axis._core, mesh._arrays, nodes._spec, *checks, threads=threads, progress=report)
         )
 
 

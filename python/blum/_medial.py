@@ -2,41 +2,19 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from . import _core
-from ._arguments import (
-    FloatArray,
-    IntArray,
-    PathLike,
-    existing_file,
-    float_list,
-    float_rows,
-    indices,
-    integer,
-    number,
-    optional_number,
-)
-from ._certificate import Certificate, certify
+from ._arguments import PathLike, integer, number, optional_number
+from ._complex import EVERYTHING, MedialComplex, NestedComplex, Origin, write_complex
 from ._errors import InvalidOption
-from ._field import Field
-from ._grid import Grid, grid_for
+from ._grid import Grid
 from ._image import Image, as_image, is_image
-from ._mesh import Betti, Bounds, Mesh, as_mesh, betti_of
+from ._mesh import Betti, as_mesh, betti_of
 from ._progress import Progress, reporting
-
-#: What the numbers in `MedialComplex.role` and `edge_role` stand for.
-ROLES = ("sheet", "rim", "seam", "curve", "junction")
-
-_EVERYTHING = {"radii": True, "footprints": True, "angles": True, "sites": True, "labels": True}
 
 
 @dataclass(frozen=True)
@@ -68,327 +46,6 @@ class MedialAxisReport:
     seconds: dict[str, float]  #: wall-clock, of each phase
 
 
-@dataclass(frozen=True)
-class _Origin:
-    """What a complex was made from, for its certificate and its files."""
-
-    shape: Mesh | Image | None = None
-    label: int | None = None
-    threshold: float | None = None
-    theta: float | None = None
-    lambda_: float | None = None
-    spacing: float | None = None
-    rule: str = ""
-    grid: Grid | None = None
-    source: str = ""
-    weld: float | None = None
-    site_ids: str = "features"
-
-
-class MedialComplex:
-    """A medial axis as vertices, edges and triangles. Arrays are read-only views of the library's memory.
-
-    Made by :meth:`MedialAxis.simplify`, :func:`read_medial`, or from arrays: ``MedialComplex(vertices, radius=...,
-    edges=..., triangles=...)``.
-
-    >>> import blum
-    >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).simplify(60)
-    >>> axis.counts["sheets"] > 0, axis.certificate.holds
-    (True, True)
-    """
-
-    def __init__(
-        self,
-        vertices: Any,
-        *,
-        radius: Any = None,
-        footprints: Any = None,
-        sites: Any = None,
-        separation_angle: Any = None,
-        role: Any = None,
-        edges: Any = (),
-        edge_angle: Any = None,
-        edge_role: Any = None,
-        triangles: Any = (),
-        triangle_angle: Any = None,
-        triangle_sheet: Any = None,
-    ) -> None:
-        positions = float_rows(vertices, "vertices")
-        count = len(positions)
-        lines = indices(edges, "edges", 2, count)
-        faces = indices(triangles, "triangles", 3, count)
-        feet = np.zeros((2 * count, 3)) if footprints is None else _footprint_rows(footprints)
-        names = np.full((count, 2), -1, dtype=np.int32) if sites is None else _site_rows(sites)
-        sheet = (
-            np.zeros(len(faces), dtype=np.int32)
-            if triangle_sheet is None
-            else indices(triangle_sheet, "triangle_sheet", None)
-        )
-        self._take(
-            _core.MedialComplex(
-                positions,
-                _numbers(radius, "radius", count),
-                feet,
-                names,
-                _numbers(separation_angle, "separation_angle", count),
-                _roles(role, "role", count, 0),
-                lines,
-                _numbers(edge_angle, "edge_angle", len(lines)).astype(np.float32),
-                _roles(edge_role, "edge_role", len(lines), 3),
-                faces,
-                _numbers(triangle_angle, "triangle_angle", len(faces)).astype(np.float32),
-                sheet,
-                int(sheet.max()) + 1 if len(sheet) else 0,
-            ),
-            {
-                "radii": radius is not None,
-                "footprints": footprints is not None,
-                "angles": separation_angle is not None,
-                "sites": sites is not None,
-                "labels": triangle_sheet is not None,
-            },
-            _Origin(),
-        )
-
-    @classmethod
-    def _of(cls, core: _core.MedialComplex, has: dict[str, bool], origin: _Origin) -> MedialComplex:
-        out = cls.__new__(cls)
-        out._take(core, has, origin)
-        return out
-
-    def _take(self, core: _core.MedialComplex, has: dict[str, bool], origin: _Origin) -> None:
-        self._core = core
-        self._origin = origin
-        #: Which attributes the complex has: radii, footprints, angles, sites, labels (roles and sheets).
-        self.has = dict(has)
-
-    @property
-    def vertices(self) -> FloatArray:
-        """(n, 3): positions, mesh units."""
-        found: FloatArray = self._core.vertices
-        return found
-
-    @property
-    def radius(self) -> FloatArray:
-        """(n,): exact distance from each vertex to the surface, mesh units."""
-        found: FloatArray = self._core.radius
-        return found
-
-    @property
-    def footprints(self) -> FloatArray:
-        """(n, 2, 3): the closest point of the surface, and that of the other wall."""
-        found: FloatArray = self._core.footprints
-        return found
-
-    @property
-    def sites(self) -> IntArray:
-        """(n, 2): the sites that the footprints lie on: of the mesh (:class:`Sites`), or flat indices of voxels."""
-        found: IntArray = self._core.sites
-        return found
-
-    @property
-    def separation_angle(self) -> FloatArray:
-        """(n,): between the footprints as the vertex sees them, degrees."""
-        found: FloatArray = self._core.separation_angle
-        return found
-
-    @property
-    def role(self) -> npt.NDArray[np.uint8]:
-        """(n,): see ROLES."""
-        found: npt.NDArray[np.uint8] = self._core.role
-        return found
-
-    @property
-    def edges(self) -> IntArray:
-        """(e, 2): curves, rims and seams; inner edges of sheets are not listed."""
-        found: IntArray = self._core.edges
-        return found
-
-    @property
-    def edge_angle(self) -> npt.NDArray[np.float32]:
-        """(e,): degrees; 0 where only homotopy keeps an edge."""
-        found: npt.NDArray[np.float32] = self._core.edge_angle
-        return found
-
-    @property
-    def edge_role(self) -> npt.NDArray[np.uint8]:
-        """(e,): rim, seam or curve, see ROLES."""
-        found: npt.NDArray[np.uint8] = self._core.edge_role
-        return found
-
-    @property
-    def triangles(self) -> IntArray:
-        """(m, 3)."""
-        found: IntArray = self._core.triangles
-        return found
-
-    @property
-    def triangle_angle(self) -> npt.NDArray[np.float32]:
-        """(m,): degrees; 0 where only homotopy keeps a triangle."""
-        found: npt.NDArray[np.float32] = self._core.triangle_angle
-        return found
-
-    @property
-    def triangle_sheet(self) -> IntArray:
-        """(m,): the sheet that each triangle is part of, 0 to sheet_count - 1."""
-        found: IntArray = self._core.triangle_sheet
-        return found
-
-    @property
-    def sheet_count(self) -> int:
-        return int(self._core.sheet_count)
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """Vertices, triangles, sheets, curve, rim and seam edges, junctions."""
-        return dict(self._core.counts())
-
-    @property
-    def theta(self) -> float | None:
-        """Degrees, if known."""
-        return self._origin.theta
-
-    @property
-    def grid(self) -> Grid | None:
-        """Voxel centres: of the first body, or of the image; None where that is not known."""
-        return self._origin.grid
-
-    @cached_property
-    def certificate(self) -> Certificate:
-        """The certificate against the shape that the axis was made from; see :func:`certify`."""
-        shape = self._origin.shape
-        if shape is None:
-            raise InvalidOption("what this axis was made from is not known here: use blum.certify(axis, shape)")
-        return certify(self, shape, label=self._origin.label, threshold=self._origin.threshold)
-
-    def prune_sheets(self, theta: float, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
-        """Drops whole sheets whose largest separation angle is at most theta (degrees), smallest first."""
-        with reporting(progress) as report:
-            core = _core.prune_sheets(self._core, number(theta, "theta"), integer(threads, "threads"), report)
-        return MedialComplex._of(core, self.has, self._origin)
-
-    def reconstruct(
-        self,
-        *,
-        resolution: int = 256,
-        spacing: float | None = None,
-        padding: float = 0.1,
-        bounds: Any = None,
-        grid: Grid | None = None,
-        threads: int = 0,
-        progress: Progress = False,
-    ) -> Field:
-        """The union of the medial balls as a signed field; `.zero_surface()` is its boundary.
-
-        >>> import blum
-        >>> ball = blum.medial_axis(blum.generate("sphere"), resolution=32).simplify(60).reconstruct(resolution=32)
-        >>> blum.topology(ball.zero_surface()).betti
-        (1, 0, 0)
-        """
-        box: Bounds | None = None
-        if grid is None and bounds is None:
-            if len(self.vertices) == 0:
-                raise InvalidOption("the axis has no vertices, so there are no balls")
-            lower = (self.vertices - self.radius[:, None]).min(axis=0)
-            upper = (self.vertices + self.radius[:, None]).max(axis=0)
-            box = (tuple(map(float, lower)), tuple(map(float, upper)))  # type: ignore[assignment]
-        return ball_union_field(
-            self.vertices,
-            self.radius,
-            grid_for(box, grid, bounds, resolution, spacing, padding),
-            threads=threads,
-            progress=progress,
-        )
-
-    def write(self, path: PathLike) -> None:
-        """Writes .vtp, .ply, .obj, .ma or .npz; the file appears complete or not at all."""
-        origin = self._origin
-        _core.write_medial(
-            Path(os.fspath(path)),
-            self._core,
-            origin.source,
-            origin.site_ids,
-            origin.rule,
-            origin.theta,
-            origin.lambda_,
-            origin.spacing,
-            None if origin.grid is None else origin.grid._spec,
-            origin.label,
-            origin.threshold,
-            origin.weld,
-        )
-
-    def to_trimesh(self) -> Any:
-        """A trimesh.Trimesh of the triangles with vertex attributes; (vertices, triangles) where it is missing."""
-        vertices, triangles = np.ascontiguousarray(self.vertices), np.ascontiguousarray(self.triangles)
-        try:
-            import trimesh
-        except ImportError:
-            return vertices, triangles
-        return trimesh.Trimesh(
-            vertices,
-            triangles,
-            process=False,
-            vertex_attributes={"radius": np.array(self.radius), "separation_angle": np.array(self.separation_angle)},
-        )
-
-    def to_pyvista(self) -> Any:
-        """A pyvista.PolyData of triangles and edges with all attributes; a dict of arrays where PyVista is missing.
-
-        Cell data list the edges before the triangles, as PolyData does; `sheet` is -1 and `role` -1 where they do not
-        apply.
-        """
-        try:
-            import pyvista
-        except ImportError:
-            names = ("vertices", "radius", "separation_angle", "role", "edges", "triangles", "triangle_sheet")
-            return {name: getattr(self, name) for name in names}
-        from ._mesh import _padded
-
-        out = pyvista.PolyData(
-            np.ascontiguousarray(self.vertices),
-            faces=_padded(np.ascontiguousarray(self.triangles)),
-            lines=_padded(np.ascontiguousarray(self.edges)),
-        )
-        out.point_data["radius"] = np.array(self.radius)
-        out.point_data["separation_angle"] = np.array(self.separation_angle)
-        out.point_data["role"] = np.array(self.role)
-        lines, faces = len(self.edges), len(self.triangles)
-        out.cell_data["separation_angle"] = np.concatenate([self.edge_angle, self.triangle_angle])
-        out.cell_data["role"] = np.concatenate([self.edge_role.astype(np.int16), np.full(faces, -1, dtype=np.int16)])
-        out.cell_data["sheet"] = np.concatenate([np.full(lines, -1, dtype=np.int32), self.triangle_sheet])
-        return out
-
-    def __repr__(self) -> str:
-        counts = self.counts
-        parts = ", ".join(f"{counts[name]:,} {name}" for name in ("vertices", "triangles", "sheets"))
-        return f"MedialComplex({parts}{'' if self.theta is None else f', theta={self.theta:g}'})"
-
-
-def _numbers(value: Any, name: str, count: int) -> FloatArray:
-    return np.zeros(count) if value is None else float_list(value, name)
-
-
-def _roles(value: Any, name: str, count: int, default: int) -> npt.NDArray[np.uint8]:
-    if value is None:
-        return np.full(count, default, dtype=np.uint8)
-    return indices(value, name, None, len(ROLES)).astype(np.uint8)
-
-
-def _footprint_rows(value: Any) -> FloatArray:
-    array = np.asarray(value)
-    if array.ndim != 3 or array.shape[1:] != (2, 3):
-        raise ValueError(f"footprints has the shape {array.shape}, but must have (n, 2, 3)")
-    return float_rows(array.reshape(-1, 3), "footprints")
-
-
-def _site_rows(value: Any) -> IntArray:
-    array = np.asarray(value)
-    if array.dtype.kind not in "iu" or array.ndim != 2 or array.shape[1] != 2:
-        raise ValueError("sites must be integers of the shape (n, 2)")
-    return np.ascontiguousarray(array, dtype=np.int32)
-
-
 class MedialAxis:
     """The medial axis of a solid for all angles theta at once; made by :func:`medial_axis`.
 
@@ -398,9 +55,11 @@ class MedialAxis:
     True
     """
 
-    def __init__(self, core: _core.MedialAxis, origin: _Origin) -> None:
+    def __init__(self, core: _core.MedialAxis, origin: Origin, least_theta: float) -> None:
         self._core = core
         self._origin = origin
+        #: The smallest angle that can be asked for, degrees.
+        self.least_theta = least_theta
 
     @cached_property
     def report(self) -> MedialAxisReport:
@@ -429,7 +88,7 @@ class MedialAxis:
         angle = number(theta, "theta")
         report = self.report
         is_image = isinstance(self._origin.shape, Image)
-        origin = _Origin(
+        origin = Origin(
             self._origin.shape,
             self._origin.label,
             self._origin.threshold,
@@ -442,7 +101,21 @@ class MedialAxis:
             self._origin.weld,
             "voxels" if is_image else "features",
         )
-        return MedialComplex._of(self._core.extract(angle), _EVERYTHING, origin)
+        return MedialComplex._of(self._core.extract(angle), EVERYTHING, origin)
+
+    def nested(self) -> NestedComplex:
+        """What simplify() gives for all angles from `least_theta` on, in one complex: the data of a slider.
+
+        Cost: near-linear in the axis at the least angle.
+        """
+        return NestedComplex(self._core.nested())
+
+    def write(self, path: PathLike) -> None:
+        """Writes the axis at the least angle with those of all larger ones, as `blum medial --nested` does: .npz.
+
+        `blum view` and :func:`view` then have a slider for theta.
+        """
+        write_complex(path, self.simplify(self.least_theta), self.nested())
 
     def __repr__(self) -> str:
         components, tunnels, voids = self.report.voxels
@@ -515,7 +188,7 @@ def medial_axis(
         least_value = optional_number(threshold, "threshold")
         with reporting(progress) as report:
             core = _core.medial_axis_of_image(image._arrays, chosen, least_value, smallest, least, count, report)
-        return MedialAxis(core, _Origin(image, chosen, least_value, lambda_=smallest, source=image.source))
+        return MedialAxis(core, Origin(image, chosen, least_value, lambda_=smallest, source=image.source), least)
     if label is not None or threshold is not None:
         raise InvalidOption("label and threshold select voxels of an image, and shape is a mesh")
     mesh = as_mesh(shape, triangles, "shape")
@@ -530,47 +203,4 @@ def medial_axis(
             count,
             report,
         )
-    return MedialAxis(core, _Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld))
-
-
-def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, progress: Progress = False) -> Field:
-    """The smallest distance to any of some balls at every node of a grid, negative inside.
-
-    Parameters
-    ----------
-    centres : (n, 3) array
-    radii : (n,) array
-        Mesh units, >= 0.
-    """
-    if not isinstance(grid, Grid):
-        raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
-    with reporting(progress) as report:
-        return Field._of(
-            _core.ball_union_field(
-                float_rows(centres, "centres"),
-                float_list(radii, "radii"),
-                grid._spec,
-                integer(threads, "threads"),
-                report,
-            )
-        )
-
-
-def read_medial(path: PathLike) -> MedialComplex:
-    """Reads an axis of .vtp, .ply, .obj, .ma or .npz; `.has` tells which attributes the file holds."""
-    core, metadata = _core.read_medial(existing_file(path))
-    grid = metadata.get("grid")
-    origin = _Origin(
-        None,
-        metadata.get("label"),
-        metadata.get("threshold"),
-        metadata.get("theta"),
-        metadata.get("lambda"),
-        metadata.get("spacing"),
-        metadata["solid_rule"],
-        None if grid is None else Grid._of(grid),
-        metadata["source"],
-        metadata.get("weld"),
-        metadata["site_ids"],
-    )
-    return MedialComplex._of(core, {name: metadata[f"has_{name}"] for name in _EVERYTHING}, origin)
+    return MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), least)

@@ -126,6 +126,12 @@ struct MeshSolidRule {
 /// validate() refuses, Cancelled.
 [[nodiscard]] MeshSolidRule solid_rule(const MeshView& mesh, const Context& context = {});
 
+/// The solid of a mesh that is no polyhedron (SolidRule::winding): the voxels whose centre has a winding number above
+/// 1/2, by the field's own signs.
+/// @param grid  of the voxels' centres: the axis's own, MedialAxisReport::grid.
+/// @throws as distance_field(). Cost: that of a field with SignMode::winding; 16 bytes per voxel.
+[[nodiscard]] VoxelSet voxels_inside(const MeshView& mesh, const GridSpec& grid, const Context& context = {});
+
 /// Checks an axis against the closed, manifold mesh whose solid it is said to have. Nothing of the
 /// construction is used: Betti numbers come from the homology of the surface and the nesting of its components by
 /// counting crossings of lines; distances from a search of its own. Shells may face either way, and touch. Triangles

@@ -1,0 +1,77 @@
+// Blum: columns of lists of structures, as arrays. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "blum/core/ids.hpp"
+
+namespace blum::python {
+
+/// What a member of a structure is as part of an array: elements of one type, along some axes. Ids and counts show as
+/// int32, as they do in files: none() as -1.
+template <class Member>
+struct Layout {
+  using Element = Member;
+  static constexpr std::array<std::size_t, 0> extents{};
+};
+template <>
+struct Layout<std::uint32_t> : Layout<std::int32_t> {};
+template <class Tag>
+struct Layout<Id<Tag>> : Layout<std::int32_t> {};
+template <class Member>
+  requires std::is_enum_v<Member>
+struct Layout<Member> : Layout<std::underlying_type_t<Member>> {};
+template <>
+struct Layout<Vec3d> {
+  using Element = double;
+  static constexpr std::array<std::size_t, 1> extents{3};
+};
+template <class Part, std::size_t count>
+struct Layout<std::array<Part, count>> {
+  using Element = typename Layout<Part>::Element;
+  static constexpr auto extents = [] {
+    std::array<std::size_t, Layout<Part>::extents.size() + 1> all{count};
+    for (std::size_t a = 1; a < all.size(); ++a) all[a] = Layout<Part>::extents[a - 1];
+    return all;
+  }();
+};
+
+/// One member of every entry of a list, seen without a copy; read-only where the list is.
+/// @param owner  what keeps the list alive.
+template <class List, class Entry, class Member>
+[[nodiscard]] auto column(List& entries, Member Entry::* member, nb::handle owner) {
+  using Plain = typename Layout<Member>::Element;
+  using Element = std::conditional_t<std::is_const_v<List>, const Plain, Plain>;
+  constexpr auto extents = Layout<Member>::extents;
+  static_assert(sizeof(Entry) % sizeof(Plain) == 0);
+  std::array<std::size_t, extents.size() + 1> shape{entries.size()};
+  std::array<std::int64_t, extents.size() + 1> strides{sizeof(Entry) / sizeof(Plain)};
+  std::int64_t step = 1;
+  for (std::size_t a = extents.size(); a > 0; --a) {
+    shape[a] = extents[a - 1];
+    strides[a] = step;
+    step *= static_cast<std::int64_t>(extents[a - 1]);
+  }
+  static Entry nowhere{};  // an empty array needs a place, too
+  auto& first = entries.empty() ? nowhere : entries.front();
+  return Out<Element>(reinterpret_cast<Element*>(&(first.*member)), shape.size(), shape.data(), owner, strides.data());
+}
+
+/// A read-only property of a class that holds a list: one member of its entries.
+template <class Class, class Entry, class Member>
+void bind_column(nb::class_<Class>& bound, const char* name, std::vector<Entry> Class::* list, Member Entry::* member) {
+  bound.def_prop_ro(name, [list, member](nb::pointer_and_handle<Class> self) {
+    return column(std::as_const(self.p->*list), member, self.h);
+  });
+}
+
+}  // namespace blum::python

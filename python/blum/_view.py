@@ -1,0 +1,114 @@
+"""Pages for a browser: what `blum view` makes, of objects in memory."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+from ._arguments import PathLike, existing_file
+from ._complex import MedialComplex
+from ._errors import Error, FileError, InvalidOption
+from ._field import Field
+from ._image import Image, as_image, is_image
+from ._medial import MedialAxis
+from ._mesh import Mesh, as_mesh
+
+_TOOL = Path(__file__).parent / "_bin" / "blum"
+_UNREADABLE = 1  # exit status
+
+
+def view(*things: Any, output: PathLike | None = None, show: bool | None = None) -> Path:
+    """Writes one HTML page that shows meshes, images, fields and medial axes, in any mixture, and opens it.
+
+    The page is one file that needs neither a network nor this process: slices and isosurfaces of fields, a slider for
+    theta (for a :class:`MedialAxis`), and what lies under the pointer.
+
+    Parameters
+    ----------
+    things
+        Meshes as for :func:`distance_field` (as one object each), :class:`Field`, :class:`MedialAxis`,
+        :class:`MedialComplex`, :class:`Image`, arrays [z, y, x], and paths of files that `blum view` shows.
+    output : path, optional
+        The page, .html. Default: a file of a new temporary folder, which stays until somebody removes it.
+    show : bool, optional
+        Whether to open it in the desktop's browser. Default: if `output` is not given.
+
+    Returns
+    -------
+    Path
+        Of the page.
+
+    Raises
+    ------
+    InvalidOption, TypeError, FileError (also where one of several files cannot be read; the page then shows the
+    others, and names it), KeyboardInterrupt
+
+    >>> import blum, pathlib, tempfile
+    >>> part = blum.generate("bracket")
+    >>> axis = blum.medial_axis(part, resolution=32)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     page = blum.view(part, axis, output=pathlib.Path(folder) / "part.html")
+    ...     page.name, page.stat().st_size > 100_000
+    ('part.html', True)
+    """
+    if not things:
+        raise InvalidOption("nothing was given to view")
+    if output is not None and Path(os.fspath(output)).suffix.lower() not in (".html", ".htm"):
+        raise InvalidOption(f"output is '{os.fspath(output)}', but must end in .html or .htm")
+    page = Path(tempfile.mkdtemp(prefix="blum-"), "page.html") if output is None else Path(os.fspath(output))
+    with tempfile.TemporaryDirectory(prefix="blum-") as folder:
+        names: set[str] = set()
+        files = [_file_of(thing, f"things[{place}]", Path(folder), names) for place, thing in enumerate(things)]
+        _make_page(files, page)
+    if output is None if show is None else show:
+        webbrowser.open(page.absolute().as_uri())
+    return page
+
+
+def _make_page(files: list[Path], page: Path) -> None:
+    if not _TOOL.exists():
+        raise Error(f"the command-line tool, which makes the page, is not installed with this package: {_TOOL}")
+    done = subprocess.run(
+        [_TOOL, "view", "--quiet", "--output", page, "--", *files], capture_output=True, text=True, check=False
+    )
+    told = done.stderr.strip().removeprefix("error: ").removeprefix("warning: ")
+    if done.returncode == 0 and not told:
+        return
+    if done.returncode in (0, _UNREADABLE):  # 0: some could be read; a script should not find that in the page alone
+        raise FileError(told)
+    raise InvalidOption(told)
+
+
+def _file_of(thing: Any, argument: str, folder: Path, names: set[str]) -> Path:
+    """The file that shows something: its own, or one that is written."""
+    if isinstance(thing, (str, os.PathLike)):
+        return existing_file(thing).absolute()
+    if isinstance(thing, (MedialAxis, MedialComplex)):
+        path = _fresh(folder, names, "axis", ".npz")
+        thing.write(path)
+    elif isinstance(thing, Field):
+        path = _fresh(folder, names, "field", ".npz")
+        thing.write(path)
+    elif is_image(thing):
+        path = _fresh(folder, names, "image", ".nrrd")
+        image: Image = as_image(thing)
+        image.write(path)
+    else:
+        mesh: Mesh = as_mesh(thing, None, argument)
+        path = _fresh(folder, names, Path(mesh.source).stem or "mesh", ".ply")
+        mesh.write(path)
+    return path
+
+
+def _fresh(folder: Path, names: set[str], stem: str, extension: str) -> Path:
+    """A name that the page can show, and that is not taken."""
+    name, number = stem, 1
+    while name + extension in names:
+        number += 1
+        name = f"{stem} {number}"
+    names.add(name + extension)
+    return folder / (name + extension)

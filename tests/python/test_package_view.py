@@ -1,0 +1,84 @@
+"""Proves that blum.view makes the page that the tool makes, and says which argument it cannot show."""
+
+import webbrowser
+
+import numpy as np
+import pytest
+
+blum = pytest.importorskip("blum")
+
+
+@pytest.fixture(scope="module")
+def part():
+    return blum.generate("bracket")
+
+
+def items(page):
+    """What a page says that it shows."""
+    import scene
+
+    return [(item["name"], item["kind"]) for item in scene.scene_of_page(page).header["items"]]
+
+
+def test_a_page_shows_everything_that_blum_makes(part, tmp_path):
+    axis = blum.medial_axis(part, resolution=24)
+    part.write(tmp_path / "part of mine.stl")
+    page = blum.view(
+        part,
+        (part.vertices, part.triangles),
+        blum.distance_field(part, resolution=24),
+        axis,
+        axis.simplify(60),
+        np.ones((4, 4, 4), dtype=np.uint8),
+        tmp_path / "part of mine.stl",
+        output=tmp_path / "page.html",
+    )
+    assert page == tmp_path / "page.html"
+    assert items(page) == [
+        ("mesh.ply", "mesh"),
+        ("mesh 2.ply", "mesh"),
+        ("field.npz", "field"),
+        ("axis.npz", "axis"),
+        ("axis 2.npz", "axis"),
+        ("image.nrrd", "image"),
+        ("part of mine.stl", "mesh"),
+    ]
+
+
+def test_a_page_is_opened_only_where_that_is_meant(part, tmp_path, monkeypatch):
+    opened = []
+    monkeypatch.setattr(webbrowser, "open", opened.append)
+    blum.view(part, output=tmp_path / "page.html")
+    assert opened == []
+    blum.view(part, output=tmp_path / "page.html", show=True)
+    page = blum.view(part)
+    assert opened == [(tmp_path / "page.html").as_uri(), page.as_uri()] and page.exists()
+
+
+@pytest.mark.parametrize(
+    ("things", "error", "text"),
+    [
+        ((), ValueError, "nothing"),
+        ((3,), TypeError, r"things\[0\]"),
+        (("there is no such.ply",), FileNotFoundError, "no such"),
+        ((np.full((2, 2, 2), "a"),), TypeError, "image"),
+    ],
+)
+def test_what_cannot_be_shown_is_named(things, error, text, tmp_path):
+    with pytest.raises(error, match=text):
+        blum.view(*things, output=tmp_path / "page.html")
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_a_broken_file_is_named_and_a_page_replaced_by_a_whole_one_only(part, tmp_path):
+    (tmp_path / "broken.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
+    page = tmp_path / "page.html"
+    page.write_text("mine")
+    with pytest.raises(OSError, match=r"broken\.ply"):
+        blum.view(tmp_path / "broken.ply", output=page)
+    assert page.read_text() == "mine"
+    for wrong in ("page.txt", "page"):
+        with pytest.raises(ValueError, match="output"):
+            blum.view(part, output=tmp_path / wrong)
+    with pytest.raises(OSError, match="folder"):
+        blum.view(part, output=tmp_path / "no folder" / "page.html")
