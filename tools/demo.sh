@@ -11,27 +11,28 @@ step() {
   echo "demo: $*"
   "$@"
 }
-step "$blum" make torus-knot -o "$out/knot.ply" --curve-segments 60 --tube-segments 8
-step "$blum" info "$out/knot.ply"
-step "$blum" field "$out/knot.ply" -o "$out/knot.nrrd" --resolution 256 --json "$out/knot.json"
-step "$blum" slice "$out/knot.nrrd" -o "$out/distance.png" --axis z --show distance
-step "$blum" slice "$out/knot.nrrd" -o "$out/sites.png" --axis z --show sites
-step "$blum" medial "$out/knot.ply" -o "$out/axis.vtp" --theta 60 --resolution 128
-step "$blum" verify "$out/knot.ply" "$out/axis.vtp"
+step "$blum" make bracket -o "$out/bracket.ply"
+step "$blum" info "$out/bracket.ply"
+step "$blum" field "$out/bracket.ply" -o "$out/bracket.nrrd" --resolution 256 --json "$out/bracket.json"
+step "$blum" slice "$out/bracket.nrrd" -o "$out/distance.png" --axis z --show distance
+step "$blum" slice "$out/bracket.nrrd" -o "$out/sites.png" --axis z --show sites
+step "$blum" medial "$out/bracket.ply" -o "$out/axis.vtp" --theta 60 --resolution 160
+step "$blum" verify "$out/bracket.ply" "$out/axis.vtp"
 # A coarser field, and the axes of all angles, for a page that is small.
-step "$blum" field "$out/knot.ply" -o "$out/view.npz" --resolution 128 --quiet
-step "$blum" medial "$out/knot.ply" -o "$out/angles.npz" --theta 10 --nested --resolution 128 --quiet
-step "$blum" view "$out/knot.ply" "$out/view.npz" "$out/angles.npz" -o "$out/page.html"
+step "$blum" field "$out/bracket.ply" -o "$out/field.npz" --resolution 128 --quiet
+step "$blum" medial "$out/bracket.ply" -o "$out/angles.npz" --theta 10 --nested --resolution 160 --quiet
+step "$blum" view "$out/bracket.ply" "$out/field.npz" "$out/angles.npz" -o "$out/page.html"
 
 cat <<END
 
 demo: done. In $out:
-  knot.ply        the shape: a torus knot
-  knot.nrrd       its signed distance on a grid (3D Slicer, ParaView, SimpleITK, pynrrd open it)
-  knot.site.nrrd  the closest site at every node
-  knot.json       what was computed, and how fast
-  distance.png    a slice through the distance, with contour lines
-  sites.png       the same slice, one colour per Voronoi region
-  axis.vtp        the medial axis of the knot, certified (ParaView opens it; colour by radius)
-  page.html       all of it to look at: open it in a browser (view.npz and angles.npz are in it)
+  page.html          look at this first: all of it, in a browser
+  bracket.ply        the shape: a bracket with four holes
+  bracket.nrrd       its signed distance on a grid (3D Slicer, ParaView, SimpleITK, pynrrd open it)
+  bracket.site.nrrd  the closest site at every node
+  bracket.json       what was computed, and how fast
+  distance.png       a slice through the distance, with contour lines
+  sites.png          the same slice, one colour per Voronoi region
+  axis.vtp           the medial axis of the bracket, certified (ParaView opens it; colour by radius)
+  field.npz, angles.npz   what the page shows: a coarser field, and the axes of all angles (NumPy reads them)
 END

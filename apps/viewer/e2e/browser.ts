@@ -3,11 +3,18 @@ import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { chromium, type Browser, type Page } from "playwright-core";
 
 const tool = process.env.BLUM_CLI ?? "blum";
 export const folder = mkdtempSync(join(tmpdir(), "blum-viewer-"));
 export const file = (name: string): string => join(folder, name);
+
+/** Runs `make demo` with the tool, into a folder. */
+export function demo(out: string): void {
+  const script = fileURLToPath(new URL("../../../tools/demo.sh", import.meta.url));
+  execFileSync("bash", [script, tool, out], { stdio: ["ignore", "pipe", "pipe"] });
+}
 
 export function blum(...args: string[]): string {
   return execFileSync(tool, args, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });

@@ -6,7 +6,7 @@ import { request } from "node:http";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { blum, colorAt, file, fileUrl, folder, launch, open, pixels, serve, settled } from "./browser.ts";
+import { blum, colorAt, demo, file, fileUrl, folder, launch, open, pixels, serve, settled } from "./browser.ts";
 import { readNpz } from "./npz.ts";
 
 const thetas = [10, 60, 120];
@@ -378,6 +378,11 @@ describe.runIf(process.env.VIEWER_PICTURES)("pictures", () => {
     await settled(cut.page);
     await cut.page.screenshot({ path: join(out, "viewer-theta.png") });
     await cut.page.close();
+    demo(file("demo"));
+    const shown = await open(browser, fileUrl("demo/page.html"), { width: 1200, height: 760 });
+    await settled(shown.page);
+    await shown.page.screenshot({ path: join(out, "demo-page.png") });
+    await shown.page.close();
     expect(execFileSync("ls", [out], { encoding: "utf8" })).toContain("viewer.png");
   });
 });

@@ -254,8 +254,11 @@ export class AxisView implements View {
   #countsText(): string {
     const { triangles, sheets, curves, seams } = this.#part.counts;
     const junctions = this.#part.junctions.length;
+    // Sheets keep their numbers while theta moves, and so are not told apart anew at each angle.
+    const { leastTheta } = this.item;
+    const told = leastTheta === undefined ? "" : ` (as they are at ${leastTheta}°)`;
     return (
-      `${plural(triangles, "triangle")}${triangles > 0 && this.item.hasLabels ? ` in ${plural(sheets, "sheet")}` : ""}, ` +
+      `${plural(triangles, "triangle")}${triangles > 0 && this.item.hasLabels ? ` in ${plural(sheets, "sheet")}${told}` : ""}, ` +
       `${plural(curves, "edge")} of curves, ${counted(seams)} of seams, ${plural(junctions, "junction")}`
     );
   }
