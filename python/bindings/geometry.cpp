@@ -3,12 +3,16 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/field/reference.hpp"
+#include "blum/geometry/generators.hpp"
 #include "blum/geometry/pseudonormals.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/shape_catalog.hpp"
@@ -190,6 +194,40 @@ nb::object betti_of(const std::optional<std::array<std::int64_t, 3>>& betti) {
   return nb::make_tuple((*betti)[0], (*betti)[1], (*betti)[2]);
 }
 
+using OutlineIn = In<double, nb::shape<-1, 2>>;
+
+std::span<const Point2> polygon(const OutlineIn& points) {
+  return rows<Point2>(points);
+}
+
+/// Meshes made of others, and of polygons.
+void bind_makers(nb::module_& m) {
+  m.def(
+      "extrusion",
+      [](const OutlineIn& outline, const std::vector<OutlineIn>& holes, double thickness, int stacks) {
+        std::vector<std::vector<Point2>> inner;
+        for (const OutlineIn& hole : holes) inner.emplace_back(polygon(hole).begin(), polygon(hole).end());
+        const ExtrusionOptions options{thickness, stacks};
+        return arrays_of(
+            run({0, nb::none()}, [&](const Context&) { return make_extrusion(polygon(outline), inner, options); }));
+      },
+      nb::arg("outline").noconvert(), nb::arg("holes"), nb::arg("thickness"), nb::arg("stacks"));
+  m.def(
+      "noisy",
+      [](const MeshArrays& mesh, double amplitude, std::uint64_t seed) {
+        const MeshView view = mesh.view();
+        return arrays_of(run({0, nb::none()}, [&](const Context&) { return make_noisy(view, amplitude, seed); }));
+      },
+      nb::arg("mesh"), nb::arg("amplitude"), nb::arg("seed"));
+  m.def(
+      "subdivided",
+      [](const MeshArrays& mesh, int levels) {
+        const MeshView view = mesh.view();
+        return arrays_of(run({0, nb::none()}, [&](const Context&) { return make_subdivided(view, levels); }));
+      },
+      nb::arg("mesh"), nb::arg("levels"));
+}
+
 void bind_shapes(nb::module_& m) {
   m.def("catalogue", [] {
     nb::list out;
@@ -316,6 +354,7 @@ void bind_geometry(nb::module_& m) {
   bind_winding(m);
   bind_sites(m);
   bind_shapes(m);
+  bind_makers(m);
   bind_reference(m);
 }
 

@@ -65,7 +65,7 @@ from ._mesh import (
     weld,
     weld_clusters,
 )
-from ._shapes import ShapeInfo, ShapeParameter, generate, known_betti, shapes
+from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
 from ._view import view
 
 __all__ = [
@@ -112,10 +112,12 @@ __all__ = [
     "distance_field",
     "distance_transform",
     "distance_transforms",
+    "extrusion",
     "generate",
     "homology",
     "known_betti",
     "medial_axis",
+    "noisy",
     "pseudonormals",
     "read_field",
     "read_image",
@@ -126,6 +128,7 @@ __all__ = [
     "self_intersections",
     "shapes",
     "solid_rule",
+    "subdivided",
     "thread_count",
     "topology",
     "view",

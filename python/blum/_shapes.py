@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, cast
+from typing import Any, Literal, cast, overload
 
 from . import _core
-from ._arguments import number
+from ._arguments import float_rows, integer, number
 from ._errors import InvalidOption
 from ._image import Image, image_of_parts
-from ._mesh import Betti, Mesh, mesh_of_arrays
+from ._mesh import Betti, Mesh, as_mesh, mesh_of_arrays
+
+
+_ImageName = Literal["ball_image", "balls_image", "noise_image", "tube_image"]
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,10 @@ def _arguments(name: str, parameters: dict[str, Any]) -> tuple[ShapeInfo, dict[s
     return known[name], {key: number(value, key) for key, value in parameters.items()}
 
 
+@overload
+def generate(name: _ImageName, **parameters: float) -> Image: ...  # type: ignore[overload-overlap]
+@overload
+def generate(name: str, **parameters: float) -> Mesh: ...
 def generate(name: str, **parameters: float) -> Mesh | Image:
     """Makes the shape of a name: a :class:`Mesh`, or an :class:`Image` for those whose name ends in ``_image``.
 
@@ -85,3 +92,60 @@ def known_betti(name: str, **parameters: float) -> Betti | None:
     """
     shape, given = _arguments(name, parameters)
     return cast("Betti | None", _core.known_betti(name, shape.kind, given))
+
+
+def extrusion(outline: Any, holes: Any = (), *, thickness: float = 1.0, stacks: int = 1) -> Mesh:
+    """Extrudes a polygon with holes along z, from -thickness / 2 to thickness / 2.
+
+    Parameters
+    ----------
+    outline : (n, 2) array
+        A simple polygon, in either direction.
+    holes : list of (k, 2) arrays
+        Simple polygons inside of it that touch neither it nor each other, in either direction.
+    stacks : int
+        Bands along the thickness.
+
+    >>> import blum
+    >>> frame = blum.extrusion([[0, 0], [4, 0], [4, 3], [0, 3]], [[[1, 1], [3, 1], [3, 2], [1, 2]]])
+    >>> blum.topology(frame).betti
+    (1, 1, 0)
+    """
+    return mesh_of_arrays(
+        _core.extrusion(
+            float_rows(outline, "outline", 2),
+            [float_rows(hole, f"holes[{place}]", 2) for place, hole in enumerate(holes)],
+            number(thickness, "thickness"),
+            integer(stacks, "stacks"),
+        )
+    )
+
+
+def noisy(mesh: Any, amplitude: float, *, seed: int = 1) -> Mesh:
+    """A copy whose vertices are each moved by a random vector, uniform in a ball of this radius; it may cross itself.
+
+    >>> import blum, numpy as np
+    >>> box = blum.generate("box")
+    >>> moved = blum.noisy(box, 0.01).vertices - box.vertices
+    >>> bool(np.linalg.norm(moved, axis=1).max() <= 0.01)
+    True
+    """
+    chosen = integer(seed, "seed")
+    if not 0 <= chosen < 2**64:
+        raise InvalidOption(f"seed is {chosen}, but must be 0 to 2^64 - 1")
+    return mesh_of_arrays(_core.noisy(as_mesh(mesh)._arrays, number(amplitude, "amplitude"), chosen))
+
+
+def subdivided(mesh: Any, levels: int = 1) -> Mesh:
+    """The same shape with each triangle cut into four at the midpoints of its edges, and each segment into two.
+
+    Parameters
+    ----------
+    levels : int
+        How often, 0 to 12.
+
+    >>> import blum
+    >>> blum.subdivided(blum.generate("box"), 2)
+    Mesh(98 vertices, 192 triangles)
+    """
+    return mesh_of_arrays(_core.subdivided(as_mesh(mesh)._arrays, integer(levels, "levels")))

@@ -200,3 +200,37 @@ def test_level_surfaces_and_topology(torus):
         np.array([[0, 0, -1], [0, 0, 1], [0, 1, 0], [-1, 0.2, 0], [1, 0.2, 0], [0, 0.4, 1.0]]), [[0, 1, 2], [3, 4, 5]]
     )
     assert crossing.pairs.tolist() == [[0, 1]] and crossing.crosses.tolist() == [True]
+
+
+def test_image_names_that_types_know_are_those_that_there_are():
+    from typing import get_args
+
+    from blum._shapes import _ImageName
+
+    assert set(get_args(_ImageName)) == {name for name, shape in blum.shapes().items() if shape.kind == "image"}
+
+
+def volume(mesh):
+    return np.linalg.det(mesh.vertices[mesh.triangles]).sum() / 6
+
+
+def test_meshes_made_of_polygons_and_of_meshes():
+    square = np.array([[0, 0], [4, 0], [4, 3], [0, 3]])
+    frame = blum.extrusion(square, [[[1, 1], [3, 1], [3, 2], [1, 2]]], thickness=0.5, stacks=2)
+    assert blum.topology(frame).betti == (1, 1, 0) and np.isclose(volume(frame), (12 - 2) * 0.5)
+    assert frame.bounds == ((0, 0, -0.25), (4, 3, 0.25))
+    fine = blum.subdivided(frame, 2)
+    assert len(fine.triangles) == 16 * len(frame.triangles) and np.isclose(volume(fine), 5)
+    assert np.array_equal(blum.noisy(frame, 0).vertices, frame.vertices)
+    moved = [np.linalg.norm(blum.noisy(frame, 0.1, seed=seed).vertices - frame.vertices, axis=1) for seed in (1, 2)]
+    assert all(0.02 < found.max() <= 0.1 for found in moved) and not np.array_equal(*moved)
+    for call, name in (
+        (lambda: blum.extrusion(square[:, :1]), "outline"),
+        (lambda: blum.extrusion(square, [[[1, 1], [3, np.nan], [3, 2]]]), r"holes\[0\]|finite"),
+        (lambda: blum.extrusion(square, thickness=0), "thickness"),
+        (lambda: blum.noisy(frame, -1), "amplitude"),
+        (lambda: blum.noisy(frame, 1, seed=-1), "seed"),
+        (lambda: blum.subdivided(frame, 13), "levels"),
+    ):
+        with pytest.raises(ValueError, match=name):
+            call()
