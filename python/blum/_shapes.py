@@ -11,7 +11,6 @@ from ._errors import InvalidOption
 from ._image import Image, image_of_parts
 from ._mesh import Betti, Mesh, as_mesh, mesh_of_arrays
 
-
 _ImageName = Literal["ball_image", "balls_image", "noise_image", "tube_image"]
 
 
