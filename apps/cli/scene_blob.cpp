@@ -62,16 +62,6 @@ std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
   return out;
 }
 
-std::string head_of(const Json& header) {
-  std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-  text.resize(aligned(text.size()), ' ');
-  std::string head = "BLUMVIEW";
-  for (const std::uint32_t number : {std::uint32_t{1}, static_cast<std::uint32_t>(text.size())}) {
-    for (unsigned shift = 0; shift < 32; shift += 8) head += static_cast<char>(number >> shift & 0xffU);
-  }
-  return head + text;
-}
-
 }  // namespace
 
 Json SceneBlob::add_bytes(std::span<const std::byte> bytes, const char* type, std::size_t count, std::size_t width) {
@@ -91,15 +81,23 @@ Json SceneBlob::add_bytes(std::span<const std::byte> bytes, const char* type, st
   return entry;
 }
 
-void SceneBlob::finish(const Json& header, const std::function<void(std::string_view)>& write) const {
-  write(head_of(header));
-  for (const std::vector<std::byte>& array : arrays_) {
-    write({reinterpret_cast<const char*>(array.data()), array.size()});
+std::string SceneBlob::head(const Json& header) {
+  std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.resize(aligned(text.size()), ' ');
+  std::string head = "BLUMVIEW";
+  for (const std::uint32_t number : {std::uint32_t{1}, static_cast<std::uint32_t>(text.size())}) {
+    for (unsigned shift = 0; shift < 32; shift += 8) head += static_cast<char>(number >> shift & 0xffU);
   }
+  return head + text;
 }
 
-std::size_t SceneBlob::size(const Json& header) const {
-  return head_of(header).size() + size_;
+std::vector<std::string_view> SceneBlob::arrays() const {
+  std::vector<std::string_view> out;
+  out.reserve(arrays_.size());
+  for (const std::vector<std::byte>& array : arrays_) {
+    out.emplace_back(reinterpret_cast<const char*>(array.data()), array.size());
+  }
+  return out;
 }
 
 }  // namespace blum::cli

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -41,10 +41,10 @@ class SceneBlob {
     return add(std::span<const T>(values));
   }
 
-  /// Ends the scene: calls write(bytes) for its parts, first to last.
-  void finish(const Json& header, const std::function<void(std::string_view)>& write) const;
-  /// How many bytes finish() writes.
-  [[nodiscard]] std::size_t size(const Json& header) const;
+  /// What a scene begins with.
+  [[nodiscard]] static std::string head(const Json& header);
+  /// What follows it, first to last; as long as nothing is added.
+  [[nodiscard]] std::vector<std::string_view> arrays() const;
 
  private:
   template <class T>

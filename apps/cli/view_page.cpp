@@ -91,7 +91,8 @@ void write_page(const std::filesystem::path& path, const Scene& scene) {
   AtomicFile file(path);
   file.write(page.substr(0, at));
   SceneElements elements(file);
-  scene.blob.finish(scene.header, [&](std::string_view bytes) { elements.write(bytes); });
+  elements.write(SceneBlob::head(scene.header));
+  for (const std::string_view bytes : scene.blob.arrays()) elements.write(bytes);
   elements.flush();
   file.write(page.substr(at + mark.size()));
   file.commit();

@@ -25,8 +25,11 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t longest_request = 16384;  // bytes, without a body: none is read
 constexpr std::size_t most_connections = 64;
-constexpr auto patience = 10s;          // for a request to come in
-constexpr int poll_milliseconds = 200;  // how long Ctrl-C waits at most
+constexpr auto patience = 10s;                                 // for a request to come in
+constexpr auto reading_patience = 30s;                         // for the other side to take a part of its answer
+constexpr std::size_t most_at_a_time = std::size_t{4} << 20U;  // bytes to one, before the others get theirs
+constexpr int poll_milliseconds = 200;                         // how long Ctrl-C waits at most
+constexpr auto rest = 500ms;                                   // where the system has no descriptor for one more
 
 constexpr std::string_view policy =
     "Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
@@ -82,17 +85,6 @@ Request parse(std::string_view text) {
   return request;
 }
 
-/// Sends all of it; false where the other side has gone.
-bool send_all(int socket, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t sent = send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(sent));
-  }
-  return true;
-}
-
 std::string head(std::string_view status, std::string_view type, std::size_t length) {
   return "HTTP/1.1 " + std::string(status) + "\r\nContent-Type: " + std::string(type) +
          "\r\nContent-Length: " + std::to_string(length) +
@@ -101,24 +93,33 @@ std::string head(std::string_view status, std::string_view type, std::size_t len
          std::string(policy) + "\r\n";
 }
 
-void refuse(int socket, std::string_view status) {
-  const std::string text = std::string(status) + "\n";
-  send_all(socket, head(status, "text/plain; charset=utf-8", text.size()) + text);
-}
-
-/// One request that comes in.
+/// One request that comes in, then its answer that goes out. The socket never blocks.
 struct Connection {
   int socket;
-  Clock::time_point until;
+  Clock::time_point until;  ///< it is closed then, if nothing comes or goes
   std::string received = {};
+  std::string head = {};                      ///< of the answer
+  std::vector<std::string_view> answer = {};  ///< what follows the head
+  std::size_t sent = 0;                       ///< bytes of what goes out now: the head, or a part of the answer
+  std::size_t parts_sent = 0;                 ///< of the answer
+
+  [[nodiscard]] bool is_answered() const { return !head.empty() || parts_sent < answer.size(); }
 };
 
 class Session {
  public:
-  Session(const Scene& scene, std::uint16_t port) : scene_(scene), port_(std::to_string(port)) {}
+  Session(const Scene& scene, std::uint16_t port)
+      : port_(std::to_string(port)), scene_head_(SceneBlob::head(scene.header)), scene_{scene_head_} {
+    for (const std::string_view array : scene.blob.arrays()) scene_.push_back(array);
+    for (const std::string_view part : scene_) scene_size_ += part.size();
+  }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+  ~Session() = default;
 
-  /// Reads what there is; true where the connection is done with.
+  /// Reads or sends what can be now; true where the connection is done with.
   bool advance(Connection& connection) const {
+    if (connection.is_answered()) return send_some(connection);
     std::string part(4096, '\0');
     const ssize_t count = recv(connection.socket, part.data(), part.size(), 0);
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) return false;
@@ -126,54 +127,97 @@ class Session {
     connection.received.append(part, 0, static_cast<std::size_t>(count));
     const std::size_t end = connection.received.find("\r\n\r\n");
     if (end != std::string::npos) {
-      answer(connection.socket, parse(std::string_view(connection.received).substr(0, end)));
-      return true;
+      answer(connection, parse(std::string_view(connection.received).substr(0, end)));
+    } else if (connection.received.size() > longest_request) {
+      refuse(connection, "431 Request Header Fields Too Large");
+    } else {
+      return false;
     }
-    if (connection.received.size() <= longest_request) return false;
-    refuse(connection.socket, "431 Request Header Fields Too Large");
-    return true;
+    connection.until = Clock::now() + reading_patience;
+    return send_some(connection);
   }
 
  private:
-  void answer(int socket, const Request& request) const {
-    if (request.host != "127.0.0.1:" + port_ && request.host != "localhost:" + port_) {
-      return refuse(socket, "403 Forbidden");
-    }
-    const bool is_head = request.method == "HEAD";
-    if (request.method != "GET" && !is_head) return refuse(socket, "405 Method Not Allowed");
-    if (request.path == "/") {
-      const std::string_view page = viewer_page();
-      if (send_all(socket, head("200 OK", "text/html; charset=utf-8", page.size())) && !is_head) send_all(socket, page);
-    } else if (request.path == "/scene.bin") {
-      bool is_there =
-          send_all(socket, head("200 OK", "application/octet-stream", scene_.blob.size(scene_.header))) && !is_head;
-      scene_.blob.finish(scene_.header,
-                         [&](std::string_view bytes) { is_there = is_there && send_all(socket, bytes); });
-    } else {
-      refuse(socket, "404 Not Found");
-    }
+  static void refuse(Connection& connection, std::string_view status) {
+    const std::string text = std::string(status) + "\n";
+    connection.head = head(status, "text/plain; charset=utf-8", text.size()) + text;
   }
 
-  const Scene& scene_;
+  void answer(Connection& connection, const Request& request) const {
+    if (request.host != "127.0.0.1:" + port_ && request.host != "localhost:" + port_) {
+      return refuse(connection, "403 Forbidden");
+    }
+    const bool is_head = request.method == "HEAD";
+    if (request.method != "GET" && !is_head) return refuse(connection, "405 Method Not Allowed");
+    if (request.path == "/") {
+      connection.answer = {viewer_page()};
+      connection.head = head("200 OK", "text/html; charset=utf-8", viewer_page().size());
+    } else if (request.path == "/scene.bin") {
+      connection.answer = scene_;
+      connection.head = head("200 OK", "application/octet-stream", scene_size_);
+    } else {
+      return refuse(connection, "404 Not Found");
+    }
+    if (is_head) connection.answer.clear();
+  }
+
+  /// True where all is sent, or the other side has gone.
+  static bool send_some(Connection& connection) {
+    for (std::size_t budget = most_at_a_time; connection.is_answered() && budget > 0;) {
+      const bool is_head = !connection.head.empty();
+      const std::string_view part =
+          (is_head ? std::string_view(connection.head) : connection.answer[connection.parts_sent])
+              .substr(connection.sent);
+      const ssize_t sent =
+          part.empty() ? 0 : send(connection.socket, part.data(), std::min(part.size(), budget), MSG_NOSIGNAL);
+      if (sent < 0 && errno == EINTR) continue;
+      if (sent < 0) return errno != EAGAIN;
+      connection.sent += static_cast<std::size_t>(sent);
+      budget -= static_cast<std::size_t>(sent);
+      connection.until = Clock::now() + reading_patience;
+      if (static_cast<std::size_t>(sent) < part.size()) continue;
+      connection.sent = 0;
+      if (is_head) {
+        connection.head.clear();
+      } else {
+        ++connection.parts_sent;
+      }
+    }
+    return !connection.is_answered();
+  }
+
   std::string port_;
+  std::string scene_head_;
+  std::vector<std::string_view> scene_;
+  std::size_t scene_size_ = 0;
 };
 
-/// Lets the other side read what it got before the connection goes.
+/// Lets the other side read what it got before the connection goes: what nobody read would make it go at once.
 void close_connection(int socket) {
   shutdown(socket, SHUT_WR);
+  std::string unread(longest_request, '\0');
+  for (int k = 0; k < 16 && recv(socket, unread.data(), unread.size(), MSG_DONTWAIT) > 0; ++k) {
+  }
   close(socket);
 }
 
-void accept_into(std::vector<Connection>& connections, int listener) {
-  const int socket = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
-  if (socket < 0) return;
-  const timeval longest_send{30, 0};
-  setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &longest_send, sizeof longest_send);
-  if (connections.size() >= most_connections) {
-    close(socket);
-  } else {
-    connections.push_back({socket, Clock::now() + patience});
-  }
+/// Those that send no request go first, then those that take nothing.
+void make_room(std::vector<Connection>& connections) {
+  const auto is_worse = [](const Connection& a, const Connection& b) {
+    return a.is_answered() != b.is_answered() ? b.is_answered() : a.until < b.until;
+  };
+  const auto worst = std::min_element(connections.begin(), connections.end(), is_worse);
+  close_connection(worst->socket);
+  connections.erase(worst);
+}
+
+/// False where the system has no room for one more.
+bool accept_into(std::vector<Connection>& connections, int listener) {
+  const int socket = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+  if (socket < 0) return errno == EINTR || errno == EAGAIN || errno == ECONNABORTED;
+  if (connections.size() >= most_connections) make_room(connections);
+  connections.push_back({socket, Clock::now() + patience});
+  return true;
 }
 
 }  // namespace
@@ -208,10 +252,17 @@ std::string ViewServer::url() const {
 void ViewServer::serve(const Scene& scene, const std::stop_token& stop) {
   const Session session(scene, port_);
   std::vector<Connection> connections;
+  Clock::time_point rests_until = {};
   while (!stop.stop_requested()) {
-    std::vector<pollfd> waiting{{listener_, POLLIN, 0}};
-    for (const Connection& c : connections) waiting.push_back({c.socket, POLLIN, 0});
-    if (poll(waiting.data(), waiting.size(), poll_milliseconds) < 0 && errno != EINTR) fail("waiting for requests");
+    const bool accepts = Clock::now() >= rests_until;
+    std::vector<pollfd> waiting{{listener_, static_cast<short>(accepts ? POLLIN : 0), 0}};
+    for (const Connection& c : connections) {
+      waiting.push_back({c.socket, static_cast<short>(c.is_answered() ? POLLOUT : POLLIN), 0});
+    }
+    if (poll(waiting.data(), waiting.size(), poll_milliseconds) < 0) {
+      if (errno != EINTR) fail("waiting for requests");
+      continue;
+    }
     std::vector<Connection> left;
     for (std::size_t i = 0; i < connections.size(); ++i) {
       Connection& connection = connections[i];
@@ -223,7 +274,7 @@ void ViewServer::serve(const Scene& scene, const std::stop_token& stop) {
       }
     }
     connections = std::move(left);
-    if ((waiting[0].revents & POLLIN) != 0) accept_into(connections, listener_);
+    if ((waiting[0].revents & POLLIN) != 0 && !accept_into(connections, listener_)) rests_until = Clock::now() + rest;
   }
   for (const Connection& c : connections) close_connection(c.socket);
 }

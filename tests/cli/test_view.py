@@ -1,10 +1,13 @@
 # Proves that `blum view` hands over what its files hold, exactly, names what it cannot read, and serves this machine
 # the page and the scene and nothing else.
 import http.client
+import os
 import re
+import resource
 import signal
 import socket
 import subprocess
+import time
 
 import numpy as np
 import pytest
@@ -119,11 +122,15 @@ def test_bad_usage(tmp_path, shapes, arguments, words):
     assert words in err
 
 
+def serve(*files, **options):
+    process = subprocess.Popen([BLUM, "view", *files], stdout=subprocess.PIPE, text=True, **options)
+    text = process.stdout.readline() + process.stdout.readline()
+    return process, int(re.search(r"http://127\.0\.0\.1:(\d+)/", text)[1])
+
+
 @pytest.fixture
 def server(shapes):
-    process = subprocess.Popen([BLUM, "view", shapes / "sphere.ply"], stdout=subprocess.PIPE, text=True)
-    text = process.stdout.readline() + process.stdout.readline()
-    port = int(re.search(r"http://127\.0\.0\.1:(\d+)/", text)[1])
+    process, port = serve(shapes / "sphere.ply")
     yield port
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=10) == 0, "Ctrl-C ends it cleanly"
@@ -173,6 +180,45 @@ def test_the_server_stands_what_is_no_request(server):
                 head = connection.recv(100)
                 assert head == b"" or re.match(rb"HTTP/1.1 4\d\d", head)
     assert ask(server, "/")[0].status == 200
+
+
+def test_who_reads_nothing_keeps_nobody_waiting(shapes, tmp_path):
+    np.save(tmp_path / "big.npy", np.random.default_rng(1).random((200, 200, 200), dtype=np.float32))
+    process, port = serve(tmp_path / "big.npy")
+    with socket.socket() as lazy:
+        lazy.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        lazy.connect(("127.0.0.1", port))
+        lazy.sendall(b"GET /scene.bin HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n" % port)
+        answer, body = ask(port, "/scene.bin")
+        assert answer.status == 200 and len(body) == int(answer.headers["Content-Length"]) > 32_000_000
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=10) == 0
+
+
+def test_idle_connections_shut_nobody_out(server):
+    idle = [socket.create_connection(("127.0.0.1", server), timeout=10) for _ in range(80)]
+    assert ask(server, "/")[0].status == 200
+    for connection in idle:
+        connection.close()
+
+
+def test_without_descriptors_the_server_waits(shapes):
+    process, port = serve(shapes / "sphere.ply", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (12, 12)))
+    idle = [socket.create_connection(("127.0.0.1", port), timeout=10) for _ in range(20)]
+    before = cpu_seconds(process)
+    time.sleep(1)
+    assert cpu_seconds(process) - before < 0.3, "it does not spin"
+    for connection in idle:
+        connection.close()
+    assert ask(port, "/")[0].status == 200
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=10) == 0
+
+
+def cpu_seconds(process):
+    with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def test_the_server_is_on_the_loopback_only(server):
