@@ -1,11 +1,14 @@
 #include "call.hpp"
 
 #include <nanobind/stl/string.h>
+#include <pthread.h>
 
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <list>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -62,11 +65,90 @@ class Shared {
   std::exception_ptr failure_;
 };
 
+/// The calls that run, so that the interpreter can end: a thread that then waits for the interpreter's lock is ended
+/// with force, and the process with it where C++ is on the thread's stack.
+class RunningCalls {
+ public:
+  /// Counts a call while it is alive.
+  class Entry {
+   public:
+    Entry(RunningCalls& all, std::stop_source& stop) : all_(&all) {
+      const std::scoped_lock lock(all.mutex_);
+      place_ = all.stops_.insert(all.stops_.end(), &stop);
+    }
+    ~Entry() { leave(); }
+    Entry(const Entry&) = delete;
+    Entry& operator=(const Entry&) = delete;
+
+    void leave() {
+      if (all_ == nullptr) return;
+      const std::scoped_lock lock(all_->mutex_);
+      all_->stops_.erase(place_);
+      all_->changed_.notify_all();
+      all_ = nullptr;
+    }
+
+   private:
+    RunningCalls* all_;
+    std::list<std::stop_source*>::iterator place_;
+  };
+
+  /// Whether this thread must not go back to Python any more.
+  [[nodiscard]] bool is_over() {
+    const std::scoped_lock lock(mutex_);
+    return exiting_ && *exiting_ != std::this_thread::get_id();
+  }
+
+  /// Stops the calls of all threads but this one, and waits until they have ended.
+  void end() {
+    std::unique_lock lock(mutex_);
+    exiting_ = std::this_thread::get_id();
+    for (std::stop_source* stop : stops_) stop->request_stop();
+    changed_.wait_for(lock, longest_end, [&] { return stops_.empty(); });
+  }
+
+ private:
+  /// Python code that is told the progress may take any time.
+  static constexpr std::chrono::seconds longest_end{10};
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::list<std::stop_source*> stops_;
+  std::optional<std::thread::id> exiting_;
+};
+
+/// Never destroyed: threads may use it until the process ends.
+RunningCalls*& running_calls() {
+  static auto* all = new RunningCalls;
+  return all;
+}
+
+/// What is left to a thread that Python has no place for any more.
+[[noreturn]] void park() {
+  nb::set_leak_warnings(false);  // its arguments stay, and that is meant
+  for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
 }  // namespace
+
+void end_calls_at_exit() {
+  // The child of a fork has none of its parent's threads.
+  pthread_atfork(nullptr, nullptr, [] { running_calls() = new RunningCalls; });
+  nb::module_::import_("atexit").attr("register")(nb::cpp_function([] {
+    const nb::gil_scoped_release release;
+    running_calls()->end();
+  }));
+}
 
 void run_call(const Call& call, const std::function<void(const Context&)>& work) {
   Shared shared;
+  RunningCalls& calls = *running_calls();
+  if (calls.is_over()) {
+    const nb::gil_scoped_release release;
+    park();
+  }
   std::stop_source stop;
+  RunningCalls::Entry entry(calls, stop);
   Context context{call.threads, {}, stop.get_token()};
   const bool tells = !call.progress.is_none();
   if (tells) {
@@ -97,6 +179,11 @@ void run_call(const Call& call, const std::function<void(const Context&)>& work)
     {
       const nb::gil_scoped_release release;
       is_done = shared.wait();
+      if (calls.is_over()) {
+        worker.join();
+        entry.leave();
+        park();
+      }
     }
     look();
   }

@@ -22,7 +22,10 @@ struct Call {
 /// here once that has ended.
 void run_call(const Call& call, const std::function<void(const Context&)>& work);
 
-/// The same for work with a result.
+/// Registers with Python's atexit what ends the calls of other threads when the interpreter ends: they never return.
+void end_calls_at_exit();
+
+/// run_call() for work with a result.
 template <class Work>
 auto run(const Call& call, const Work& work) {
   using Result = decltype(work(std::declval<const Context&>()));

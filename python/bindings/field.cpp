@@ -19,11 +19,37 @@ namespace {
 
 using FloatsIn = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
-Field field_of(const FloatsIn& distance, const GridSpec& grid) {
+using SitesIn = nb::ndarray<const std::int32_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+
+template <class T, class Array>
+Buffer<T> copied(const Array& array) {
+  Buffer<T> out(array.size());
+  const auto* first = reinterpret_cast<const T*>(array.data());
+  std::copy(first, first + array.size(), out.begin());
+  return out;
+}
+
+/// One of some values by its name, as to_string() gives it.
+template <class Value>
+Value named(const std::string& name, std::initializer_list<Value> values) {
+  for (const Value value : values) {
+    if (name == to_string(value)) return value;
+  }
+  throw InvalidOption("'" + name + "' is not known");
+}
+
+Field field_of(const FloatsIn& distance, const GridSpec& grid, const std::optional<SitesIn>& site,
+               const std::string& site_ids, std::optional<double> band, const std::string& sign_rule,
+               std::string sign_reason) {
   Field field;
   field.grid = grid;
-  field.distance = Buffer<float>(distance.size());
-  std::copy(distance.data(), distance.data() + distance.size(), field.distance.begin());
+  field.distance = copied<float>(distance);
+  if (site) field.site = copied<SiteId>(*site);
+  field.site_ids = named(site_ids, {SiteIds::features, SiteIds::triangles, SiteIds::voxels});
+  field.band = band;
+  field.sign_rule =
+      named(sign_rule, {SignRule::none, SignRule::normals, SignRule::winding, SignRule::label, SignRule::balls});
+  field.sign_reason = std::move(sign_reason);
   return field;
 }
 
@@ -39,10 +65,13 @@ void bind_field_class(nb::module_& m) {
   nb::class_<Field>(m, "Field")
       .def(
           "__init__",
-          [](Field* self, const FloatsIn& distance, const GridSpec& grid) {
-            new (self) Field(field_of(distance, grid));
+          [](Field* self, const FloatsIn& distance, const GridSpec& grid, const std::optional<SitesIn>& site,
+             const std::string& site_ids, std::optional<double> band, const std::string& sign_rule,
+             std::string sign_reason) {
+            new (self) Field(field_of(distance, grid, site, site_ids, band, sign_rule, std::move(sign_reason)));
           },
-          nb::arg("distance").noconvert(), nb::arg("grid"))
+          nb::arg("distance").noconvert(), nb::arg("grid"), nb::arg("site").none(), nb::arg("site_ids"),
+          nb::arg("band").none(), nb::arg("sign_rule"), nb::arg("sign_reason"))
       .def_prop_ro("distance",
                    [](nb::pointer_and_handle<Field> self) {
                      return grid_view(self.p->distance.data(), self.p->grid.size, self.h);

@@ -3,16 +3,22 @@
 #include <nanobind/stl/string.h>
 
 #include <exception>
+#include <string_view>
 
 #include "bindings.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
+#include "call.hpp"
 
 namespace blum::python {
 namespace {
 
 void raise(const char* name, const std::exception& error) {
-  PyErr_SetString(nb::module_::import_("blum._errors").attr(name).ptr(), error.what());
+  // Messages name files, whose names may be any bytes.
+  const std::string_view text = error.what();
+  const auto message =
+      nb::steal(PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
+  PyErr_SetObject(nb::module_::import_("blum._errors").attr(name).ptr(), message.ptr());
 }
 
 /// Blum's exceptions become those of the same name in blum._errors.
@@ -48,6 +54,7 @@ NB_MODULE(_core, m) {
   using namespace blum::python;
   m.doc() = "The C++ library on arrays. Private to the package.";
   nb::register_exception_translator(translate);
+  end_calls_at_exit();
   m.attr("version") = BLUM_VERSION;
   m.def("thread_count", [](int threads) { return blum::thread_count({.threads = threads}); }, nb::arg("threads") = 0);
   bind_grid(m);

@@ -30,14 +30,16 @@ def existing_file(path: PathLike) -> Path:
 
 def as_array(value: Any, name: str) -> npt.NDArray[Any]:
     """Any array-like on the CPU as a NumPy array, without a copy where that can be."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise TypeError(f"{name} is a masked array, and Blum knows no masks: fill it first, with .filled(...)")
     if isinstance(value, np.ndarray):
-        return value
+        return np.asarray(value)  # subclasses may answer questions for themselves
     try:
         if hasattr(value, "__dlpack__") and hasattr(value, "__dlpack_device__"):
             return np.from_dlpack(value)
         array = np.asarray(value)
     except Exception as error:
-        raise TypeError(f"{name} cannot be used as an array on the CPU: {error}") from error
+        raise TypeError(f"{name} cannot be used as an array: {error}") from error
     return array
 
 
@@ -98,7 +100,7 @@ def indices(value: Any, name: str, width: int | None, count: int | None = None) 
 
 def triple(value: Any, name: str) -> tuple[float, float, float]:
     """Three numbers in x, y, z order; a single number stands for all three."""
-    array = np.asarray(value)
+    array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must be numbers, not {type(value).__name__}")
     if array.shape == ():
@@ -109,7 +111,7 @@ def triple(value: Any, name: str) -> tuple[float, float, float]:
 
 
 def matrix(value: Any, name: str) -> FloatArray:
-    array = np.asarray(value)
+    array = as_array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must hold numbers, not {array.dtype}")
     if array.shape != (3, 3):
@@ -121,23 +123,23 @@ def box(value: Any, name: str) -> tuple[tuple[float, float, float], tuple[float,
     """A box as (lower, upper)."""
     if not isinstance(value, (Sequence, np.ndarray)) or isinstance(value, (str, bytes)) or len(value) != 2:
         raise ValueError(f"{name} must be a pair of corners, ((x0, y0, z0), (x1, y1, z1))")
-    for corner in value:
-        if np.ndim(corner) != 1:
+    for place, corner in enumerate(value):
+        if as_array(corner, f"{name}[{place}]").ndim != 1:
             raise ValueError(f"{name} must be a pair of corners, ((x0, y0, z0), (x1, y1, z1))")
     return triple(value[0], f"{name}[0]"), triple(value[1], f"{name}[1]")
 
 
 def one_of(value: Any, name: str, allowed: Sequence[str]) -> str:
-    if value in allowed:
+    if isinstance(value, str) and value in allowed:
         return str(value)
     raise InvalidOption(f"{name} is {value!r}, but must be one of {', '.join(map(repr, allowed))}")
 
 
-def integer(value: Any, name: str) -> int:
-    """An integer of Python or NumPy that fits the library's 32 bits."""
+def integer(value: Any, name: str, bits: int = 32) -> int:
+    """An integer of Python or NumPy that fits the library's bits."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise TypeError(f"{name} must be an integer, not {type(value).__name__}")
-    if not -(2**31) <= int(value) < 2**31:
+    if not -(2 ** (bits - 1)) <= int(value) < 2 ** (bits - 1):
         raise InvalidOption(f"{name} is {int(value)}, which is out of range")
     return int(value)
 
@@ -145,7 +147,30 @@ def integer(value: Any, name: str) -> int:
 def number(value: Any, name: str) -> float:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise TypeError(f"{name} must be a number, not {type(value).__name__}")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise InvalidOption(f"{name} is too large") from None
+
+
+def label_of(value: Any, name: str) -> int:
+    """A value of an image's voxels."""
+    return integer(value, name, bits=64)
+
+
+def site_ids(value: Any, name: str, width: int) -> IntArray:
+    """Sites as files have them, (n, width): -1 where there is none."""
+    array = as_array(value, name)
+    if array.dtype.kind not in "iu" or array.ndim != 2 or array.shape[1] != width:
+        raise ValueError(f"{name} must be integers of the shape (n, {width})")
+    if array.size and (int(array.min()) < -1 or int(array.max()) >= _LARGEST_INDEX):
+        raise ValueError(f"{name} must be -1 to {_LARGEST_INDEX - 1}")
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def source_name(path: PathLike) -> str:
+    """The name of a file for metadata, which are UTF-8, as names of files need not be."""
+    return os.fsencode(Path(os.fspath(path)).name).decode("utf-8", "replace")
 
 
 def optional_number(value: Any, name: str) -> float | None:

@@ -156,6 +156,12 @@ def certify(
     >>> print(blum.certify(axis.simplify(60), torus))
     certified against the polyhedron: components, tunnels, voids (1, 1, 0)
     """
+    from ._complex import MedialComplex
+
+    if not isinstance(axis, MedialComplex):
+        raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
+    if grid is not None and not isinstance(grid, Grid):
+        raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
     has = axis.has
 
     def chosen(asked: bool | None, attribute: str) -> bool:

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,12 +16,14 @@ from ._arguments import (
     FloatArray,
     IntArray,
     PathLike,
+    as_array,
     existing_file,
     float_list,
     float_rows,
     indices,
     integer,
     number,
+    site_ids,
 )
 from ._certificate import Certificate, certify
 from ._errors import InvalidOption
@@ -138,10 +140,12 @@ class _Columns:
 
     @property
     def sheet_count(self) -> int:
+        """How many sheets there are."""
         return int(self._core.sheet_count)
 
 
-class Present(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Present:
     """What of a :class:`NestedComplex` is there at an angle: True or False for each."""
 
     vertices: npt.NDArray[np.bool_]  #: (n,)
@@ -250,11 +254,11 @@ class MedialComplex(_Columns):
         lines = indices(edges, "edges", 2, count)
         faces = indices(triangles, "triangles", 3, count)
         feet = np.zeros((2 * count, 3)) if footprints is None else _footprint_rows(footprints)
-        names = np.full((count, 2), -1, dtype=np.int32) if sites is None else _site_rows(sites)
+        names = np.full((count, 2), -1, dtype=np.int32) if sites is None else site_ids(sites, "sites", 2)
         sheet = (
             np.zeros(len(faces), dtype=np.int32)
             if triangle_sheet is None
-            else indices(triangle_sheet, "triangle_sheet", None)
+            else indices(triangle_sheet, "triangle_sheet", None, len(faces))
         )
         self._take(
             _core.MedialComplex(
@@ -298,6 +302,10 @@ class MedialComplex(_Columns):
         self.has = dict(has)
         #: The axes of all angles, where a file that was read holds them (:meth:`MedialAxis.write`).
         self.nested: NestedComplex | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        names = ("vertices", *_ATTRIBUTES)
+        return _restored, ({name: np.array(getattr(self, name)) for name in names}, self.has, self._origin)
 
     @property
     def counts(self) -> dict[str, int]:
@@ -362,8 +370,12 @@ class MedialComplex(_Columns):
         )
 
     def write(self, path: PathLike) -> None:
-        """Writes .vtp, .ply, .obj, .ma or .npz; the file appears complete or not at all."""
-        write_complex(path, self, None)
+        """Writes .vtp, .ply, .obj, .ma or .npz; the file appears complete or not at all.
+
+        .npz files keep the axes of all angles, `nested`, where there are any.
+        """
+        is_npz = os.fspath(path).lower().endswith(".npz")
+        write_complex(path, self, self.nested if is_npz else None)
 
     def to_trimesh(self) -> Any:
         """A trimesh.Trimesh of the triangles with vertex attributes; (vertices, triangles) where it is missing."""
@@ -412,6 +424,25 @@ class MedialComplex(_Columns):
         return f"MedialComplex({parts}{'' if self.theta is None else f', theta={self.theta:g}'})"
 
 
+_ATTRIBUTES = (
+    "radius",
+    "footprints",
+    "sites",
+    "separation_angle",
+    "role",
+    "edges",
+    "edge_angle",
+    "edge_role",
+    "triangles",
+    "triangle_angle",
+    "triangle_sheet",
+)
+
+
+def _restored(arrays: dict[str, Any], has: dict[str, bool], origin: Origin) -> MedialComplex:
+    return MedialComplex._of(MedialComplex(**arrays)._core, has, origin)
+
+
 def _numbers(value: Any, name: str, count: int) -> FloatArray:
     return np.zeros(count) if value is None else float_list(value, name)
 
@@ -423,17 +454,10 @@ def _roles(value: Any, name: str, count: int, default: int) -> npt.NDArray[np.ui
 
 
 def _footprint_rows(value: Any) -> FloatArray:
-    array = np.asarray(value)
+    array = as_array(value, "footprints")
     if array.ndim != 3 or array.shape[1:] != (2, 3):
         raise ValueError(f"footprints has the shape {array.shape}, but must have (n, 2, 3)")
     return float_rows(array.reshape(-1, 3), "footprints")
-
-
-def _site_rows(value: Any) -> IntArray:
-    array = np.asarray(value)
-    if array.dtype.kind not in "iu" or array.ndim != 2 or array.shape[1] != 2:
-        raise ValueError("sites must be integers of the shape (n, 2)")
-    return np.ascontiguousarray(array, dtype=np.int32)
 
 
 def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, progress: Progress = False) -> Field:

@@ -5,6 +5,10 @@ class Error(Exception):
     """Base of everything that Blum raises on purpose; its text says what was wrong, where, and what to do."""
 
 
+class InputWarning(UserWarning):
+    """An input that can be used, but looks as if something else were meant: `warnings.filterwarnings` silences it."""
+
+
 class InvalidMesh(Error, ValueError):
     """A mesh that cannot be used: nothing in it, coordinates that are not finite, indices out of range."""
 

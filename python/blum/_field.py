@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +21,14 @@ from ._arguments import (
     as_array,
     existing_file,
     integer,
+    label_of,
     number,
     one_of,
     optional_number,
     points_and_shape,
+    source_name,
 )
-from ._errors import InvalidOption
+from ._errors import InputWarning, InvalidOption
 from ._grid import Grid, grid_for, mask_array
 from ._image import as_image
 from ._mesh import Betti, Mesh, as_mesh, betti_of, mesh_of_arrays
@@ -46,11 +49,14 @@ class Field:
 
     def __init__(self, distance: Any, grid: Grid) -> None:
         array = as_array(distance, "distance")
+        if not isinstance(grid, Grid):
+            raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
         if array.dtype.kind not in "fiu":
             raise TypeError(f"distance must hold real numbers, not {array.dtype}")
         if array.shape != grid.shape:
             raise ValueError(f"distance has the shape {array.shape}, but the grid's is {grid.shape}")
-        self._take(_core.Field(np.ascontiguousarray(array, dtype=np.float32), grid._spec))
+        values = np.ascontiguousarray(array, dtype=np.float32)
+        self._take(_core.Field(values, grid._spec, None, "features", None, "none", ""))
 
     @classmethod
     def _of(cls, core: _core.Field, mesh: Mesh | None = None, source: str = "", space: str = "") -> Field:
@@ -65,14 +71,32 @@ class Field:
         self.mesh = mesh
         #: Where the shape came from, for the metadata of files.
         self.source = source
-        #: float32 (z, y, x): distance in mesh units, negative inside when signed; +-band beyond a band.
-        self.distance: npt.NDArray[np.float32] = core.distance
-        #: int32 (z, y, x): the closest site, -1 where there is none; None for a field without sites.
-        self.site: IntArray | None = cast("IntArray | None", core.site)
+        self._distance: npt.NDArray[np.float32] = core.distance
+        self._site = cast("IntArray | None", core.site)
+        # Now rather than when they are asked for: a solver that reuses its field may be writing it then.
+        self._grid = Grid._of(core.grid)
+        self._seconds = dict(core.phases)
+        self._sign_rule, self._sign_reason = str(core.sign_rule), str(core.sign_reason)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        told = (self.site_ids, self.band, self.sign_rule, self.sign_reason)
+        arrays = (self.distance, self.grid, self.site)
+        return _restored, (*arrays, *told, self.mesh, self.source, self._space)
+
+    @property
+    def distance(self) -> npt.NDArray[np.float32]:
+        """float32 (z, y, x): distance in mesh units, negative inside when signed; +-band beyond a band."""
+        return self._distance
+
+    @property
+    def site(self) -> IntArray | None:
+        """int32 (z, y, x): the closest site, -1 where there is none; None for a field without sites."""
+        return self._site
 
     @property
     def grid(self) -> Grid:
-        return Grid._of(self._core.grid)
+        """Where the nodes lie."""
+        return self._grid
 
     @property
     def origin(self) -> tuple[float, float, float]:
@@ -98,17 +122,17 @@ class Field:
     @property
     def sign_rule(self) -> str:
         """How signs were found: "normals", "winding", "label", "balls" or "none"."""
-        return str(self._core.sign_rule)
+        return self._sign_rule
 
     @property
     def sign_reason(self) -> str:
         """Why, in one sentence."""
-        return str(self._core.sign_reason)
+        return self._sign_reason
 
     @property
     def seconds(self) -> dict[str, float]:
         """Wall-clock seconds of each phase."""
-        return dict(self._core.phases)
+        return dict(self._seconds)
 
     def interpolate(self, points: Any, *, threads: int = 0, progress: Progress = False) -> FloatArray:
         """The distance at points of the shape (..., 3), trilinear between nodes; NaN outside of the grid.
@@ -164,7 +188,23 @@ class Field:
         return out
 
     def __repr__(self) -> str:
-        return f"Field({self.distance.shape}, spacing={self.spacing}, sign_rule={self.sign_rule!r})"
+        return f"Field({self.distance.shape}, {self.grid!r}, sign_rule={self.sign_rule!r})"
+
+
+def _restored(
+    distance: Any,
+    grid: Grid,
+    site: Any,
+    site_ids: str,
+    band: float | None,
+    sign_rule: str,
+    sign_reason: str,
+    mesh: Mesh | None,
+    source: str,
+    space: str,
+) -> Field:
+    core = _core.Field(distance, grid._spec, site, site_ids, band, sign_rule, sign_reason)
+    return Field._of(core, mesh, source, space)
 
 
 def distance_field(
@@ -236,7 +276,15 @@ def distance_field(
             integer(threads, "threads"),
             report,
         )
-    return Field._of(core, shape, shape.source)
+    field = Field._of(core, shape, shape.source)
+    if field.sign_rule != "none" and not field.distance.min() < 0:
+        warnings.warn(
+            "no node is inside: the shape encloses nothing, faces inwards, lies elsewhere than the grid, or is too "
+            "thin for it (sign='none' makes a field without signs)",
+            InputWarning,
+            stacklevel=2,
+        )
+    return field
 
 
 class FieldSolver:
@@ -276,15 +324,27 @@ class FieldSolver:
             optional_number(band, "band"),
             one_of(site_ids, "site_ids", _SITE_IDS),
         )
+        self._grid = grid
         self._reuse = bool(reuse)
         self._busy = threading.Lock()
+        self._owner: int | None = None  # the thread that computes
+
+    def __repr__(self) -> str:
+        return f"FieldSolver({self._grid!r}{', reuse=True' if self._reuse else ''})"
 
     def compute(self, mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> Field:
         """The field of this frame's mesh. Threads that share a solver wait for each other."""
         shape = as_mesh(mesh, triangles)
         compute = self._solver.compute_in_place if self._reuse else self._solver.compute
+        count = integer(threads, "threads")
+        if self._owner == threading.get_ident():
+            raise RuntimeError("this solver is computing: its progress and signal handlers cannot ask it for a field")
         with self._busy, reporting(progress) as report:
-            return Field._of(compute(shape._arrays, integer(threads, "threads"), report), shape, shape.source)
+            self._owner = threading.get_ident()
+            try:
+                return Field._of(compute(shape._arrays, count, report), shape, shape.source)
+            finally:
+                self._owner = None
 
 
 def distance_transform(
@@ -329,7 +389,7 @@ def distance_transform(
     >>> blum.distance_transform(mask, signed=False).distance[1, 1].tolist()
     [1.0, 0.0, 1.0]
     """
-    labels = [] if label is None else [integer(label, "label")]
+    labels = [] if label is None else [label_of(label, "label")]
     return _transforms(image, spacing, origin, direction, labels, threshold, signed, band, threads, progress)[0]
 
 
@@ -346,10 +406,16 @@ def distance_transforms(
     progress: Progress = False,
 ) -> list[Field]:
     """One :func:`distance_transform` for each label, checked once and with shared working memory."""
-    wanted = [integer(label, "labels") for label in labels]
+    wanted = [label_of(label, "labels") for label in _several(labels)]
     if not wanted:
         return []
     return _transforms(image, spacing, origin, direction, wanted, None, signed, band, threads, progress)
+
+
+def _several(labels: Any) -> list[Any]:
+    if isinstance(labels, (Sequence, np.ndarray)) and not isinstance(labels, (str, bytes)) and np.ndim(labels) == 1:
+        return list(labels)
+    raise TypeError(f"labels must be a list of integers, not {type(labels).__name__}")
 
 
 def _transforms(
@@ -402,7 +468,7 @@ def selected_voxels(
     with reporting(progress) as report:
         mask: npt.NDArray[np.uint8] = _core.selected_voxels(
             as_image(image)._arrays,
-            None if label is None else integer(label, "label"),
+            None if label is None else label_of(label, "label"),
             optional_number(threshold, "threshold"),
             integer(threads, "threads"),
             report,
@@ -422,7 +488,7 @@ def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -
     return VoxelTopology(betti_of(betti), euler)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ClosestPoints:
     """What :func:`closest_points` finds; all arrays have the shape of the queries without the last axis."""
 
@@ -460,21 +526,27 @@ class ClosestPointQuery:
         threads: int = 0,
         progress: Progress = False,
     ) -> None:
+        self._mesh = as_mesh(mesh, triangles)
         with reporting(progress) as report:
             self._query = _core.ClosestPointQuery(
-                as_mesh(mesh, triangles)._arrays,
+                self._mesh._arrays,
                 one_of(sign, "sign", _SIGNS),
                 optional_number(max_distance, "max_distance"),
                 integer(threads, "threads"),
                 report,
             )
 
+    def __repr__(self) -> str:
+        return f"ClosestPointQuery({self._mesh!r}, sign_rule={self.sign_rule!r})"
+
     @property
     def sign_rule(self) -> str:
+        """How signs are found: "normals", "winding" or "none"."""
         return str(self._query.sign_rule)
 
     @property
     def sign_reason(self) -> str:
+        """Why, in one sentence."""
         return str(self._query.sign_reason)
 
     def __call__(self, points: Any, *, threads: int = 0, progress: Progress = False) -> ClosestPoints:
@@ -510,4 +582,4 @@ def closest_points(
 
 def read_field(path: PathLike) -> Field:
     """Reads a field of .nrrd (sites beside it), .npz or .vti."""
-    return Field._of(_core.read_field(existing_file(path)), None, Path(path).name)
+    return Field._of(_core.read_field(existing_file(path)), None, source_name(path))

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import FloatArray, box, integer, matrix, number, triple
+from ._arguments import FloatArray, as_array, box, integer, matrix, number, triple
 from ._errors import InvalidOption
 from ._mesh import Bounds, as_mesh
 
@@ -37,7 +37,7 @@ class Grid:
     """
 
     def __init__(self, origin: Any, spacing: Any, size: Any, direction: Any = None) -> None:
-        counts = np.asarray(size)
+        counts = as_array(size, "size")
         if counts.ndim != 1 or counts.size != 3 or counts.dtype.kind not in "iu":
             raise ValueError("size must be three integers, the nodes along x, y, z")
         columns = np.eye(3) if direction is None else matrix(direction, "direction")
@@ -77,6 +77,9 @@ class Grid:
         grid = cls.__new__(cls)
         grid._spec = spec
         return grid
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Grid, (self.origin, self.spacing, self.size, self.direction)
 
     @property
     def origin(self) -> tuple[float, float, float]:
@@ -134,7 +137,13 @@ class Grid:
         return self.origin, self.spacing, self.size, tuple(map(tuple, self._spec.columns))
 
     def __repr__(self) -> str:
-        return f"Grid(origin={self.origin}, spacing={self.spacing}, size={self.size})"
+        axes = self.direction
+        turned = "" if np.array_equal(axes, np.eye(3)) else f", direction={axes.round(6).tolist()}"
+        return f"Grid(origin={_short(self.origin)}, spacing={_short(self.spacing)}, size={self.size}{turned})"
+
+
+def _short(values: tuple[float, float, float]) -> str:
+    return f"({', '.join(f'{value:.6g}' for value in values)})"
 
 
 def bounds_of(shape: Any) -> Bounds:
@@ -166,7 +175,7 @@ def image_grid(shape: tuple[int, ...], spacing: Any, origin: Any, direction: Any
 
 def mask_array(value: Any, name: str) -> npt.NDArray[np.uint8]:
     """A mask [z, y, x] as bytes, without a copy where it is one already."""
-    array = np.asarray(value)
+    array = as_array(value, name)
     if array.dtype.kind not in "biu":
         raise TypeError(f"{name} must hold booleans, not {array.dtype}")
     if array.ndim != 3:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import PathLike, as_array, existing_file
+from ._arguments import PathLike, as_array, existing_file, source_name
 from ._errors import InvalidOption
 from ._grid import Grid, image_grid
 
@@ -23,8 +23,8 @@ class Image:
     Parameters
     ----------
     values : (z, y, x) array
-        Booleans, integers or floats. C-contiguous arrays are used as they are, without a copy. An array of two axes is
-        one layer.
+        Booleans, integers or floats. C-contiguous arrays are used as they are, without a copy. A picture of two
+        axes is one layer, ``picture[None]``.
     spacing, origin : three numbers, optional
         In x, y, z order: the reverse of the array's axes. A single number stands for all three.
     direction : (3, 3) array, optional
@@ -45,24 +45,42 @@ class Image:
             array = array.astype(np.float32)
         if array.dtype.kind == "f" and array.dtype.itemsize > 8:
             raise TypeError(f"image must hold at most 64 bits a voxel, not {array.dtype}")
-        if array.ndim == 2:
-            array = array[np.newaxis]
         if array.ndim != 3:
-            raise ValueError(f"image has {array.ndim} axes, but must have 3: [z, y, x]")
+            layer = "; one layer is image[None]" if array.ndim == 2 else ""
+            raise ValueError(f"image has {array.ndim} axes, but must have 3: [z, y, x]{layer}")
         array = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("="))
-        #: The voxels, [z, y, x].
-        self.values: npt.NDArray[Any] = array
-        self.grid = image_grid(array.shape, spacing, origin, direction)
-        #: What the world axes are, as NRRD names it: "left-posterior-superior", ...; empty where that is not known.
-        self.space = space
+        if not isinstance(space, str):
+            raise TypeError(f"space must be a string, not {type(space).__name__}")
+        self._values: npt.NDArray[Any] = array
+        self._grid = image_grid(array.shape, spacing, origin, direction)
+        self._space = space
         #: Where the image came from, for the metadata of files.
         self.source: str = ""
         self._arrays = _core.ImageArrays(
-            array.view(np.uint8) if array.dtype == np.bool_ else array, self.grid._spec, space
+            array.view(np.uint8) if array.dtype == np.bool_ else array, self._grid._spec, space
         )
 
     @property
+    def values(self) -> npt.NDArray[Any]:
+        """The voxels, [z, y, x]. They may be changed in place between calls; another array makes another Image."""
+        return self._values
+
+    @property
+    def grid(self) -> Grid:
+        """Where the voxels' centres lie."""
+        return self._grid
+
+    @property
+    def space(self) -> str:
+        """What the world axes are, as NRRD names it: "left-posterior-superior", ...; empty where that is not known."""
+        return self._space
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._values, self._grid, self._space, self.source)
+
+    @property
     def spacing(self) -> tuple[float, float, float]:
+        """Between voxel centres, in x, y, z order."""
         return self.grid.spacing
 
     def write(self, path: PathLike) -> None:
@@ -70,13 +88,19 @@ class Image:
         _core.write_image(Path(os.fspath(path)), self._arrays)
 
     def __repr__(self) -> str:
-        return f"Image({self.values.dtype} {self.values.shape}, spacing={self.spacing})"
+        return f"Image({self.values.dtype} {self.values.shape}, {self.grid!r})"
 
 
 def read_image(path: PathLike) -> Image:
     """Reads .nrrd, .nhdr, .nii, .nii.gz, .hdr with .img, .npy or .vol; spacing, origin and direction are the file's."""
     image = image_of_parts(*_core.read_image(existing_file(path)))
-    image.source = Path(path).name
+    image.source = source_name(path)
+    return image
+
+
+def _restored(values: npt.NDArray[Any], grid: Grid, space: str, source: str) -> Image:
+    image = Image(values, grid.spacing, grid.origin, grid.direction, space=space)
+    image.source = source
     return image
 
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from . import _core
-from ._arguments import PathLike, integer, number, optional_number
+from ._arguments import PathLike, integer, label_of, number, optional_number
 from ._complex import EVERYTHING, MedialComplex, NestedComplex, Origin, write_complex
-from ._errors import InvalidOption
+from ._errors import InputWarning, InvalidOption
 from ._grid import Grid
 from ._image import Image, as_image, is_image
 from ._mesh import Betti, as_mesh, betti_of
@@ -63,6 +64,7 @@ class MedialAxis:
 
     @cached_property
     def report(self) -> MedialAxisReport:
+        """What was taken as the solid, and what became of it."""
         found = self._core.report
         bodies = tuple(
             BodyReport(**{**body, "solid": betti_of(body["solid"]), "voxels": betti_of(body["voxels"])})
@@ -184,7 +186,7 @@ def medial_axis(
         if label is not None and threshold is not None:
             raise InvalidOption("label and threshold exclude each other")
         image = as_image(shape, spacing)
-        chosen = None if label is None else integer(label, "label")
+        chosen = None if label is None else label_of(label, "label")
         least_value = optional_number(threshold, "threshold")
         with reporting(progress) as report:
             core = _core.medial_axis_of_image(image._arrays, chosen, least_value, smallest, least, count, report)
@@ -203,4 +205,13 @@ def medial_axis(
             count,
             report,
         )
-    return MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), least)
+    axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), least)
+    turned = axis.report.turned_shells
+    if turned:
+        text = (
+            f"{turned} shell{'s' if turned > 1 else ''} faced the solid, and {'were' if turned > 1 else 'was'} turned"
+        )
+        warnings.warn(text, InputWarning, stacklevel=2)
+    if axis.report.rule == "winding":
+        warnings.warn(f"{axis.report.reason}, as voxels", InputWarning, stacklevel=2)
+    return axis

@@ -17,6 +17,7 @@ from ._arguments import (
     FloatArray,
     IntArray,
     PathLike,
+    as_array,
     existing_file,
     float_rows,
     indices,
@@ -24,6 +25,7 @@ from ._arguments import (
     number,
     optional_number,
     points_and_shape,
+    source_name,
 )
 from ._progress import Progress, reporting
 
@@ -63,21 +65,45 @@ class Mesh:
     """
 
     def __init__(self, vertices: Any, triangles: Any = None, segments: Any = None, points: Any = None) -> None:
-        self.vertices: FloatArray = float_rows(vertices, "vertices")
-        count = len(self.vertices)
+        self._vertices = float_rows(vertices, "vertices")
+        count = len(self._vertices)
         is_cloud = triangles is None and segments is None and points is None
         if is_cloud:
             points = np.arange(count, dtype=np.int32)
         none: tuple[int, ...] = ()
-        self.triangles: IntArray = indices(none if triangles is None else triangles, "triangles", 3, count)
-        self.segments: IntArray = indices(none if segments is None else segments, "segments", 2, count)
-        self.points: IntArray = indices(none if points is None else points, "points", None, count)
+        self._triangles = indices(none if triangles is None else triangles, "triangles", 3, count)
+        self._segments = indices(none if segments is None else segments, "segments", 2, count)
+        self._points = indices(none if points is None else points, "points", None, count)
         #: Facts of the file that the mesh was read from: format, counts before Blum changed anything, what was welded.
         self.file_info: dict[str, Any] = {}
         #: Where the mesh came from, for the metadata of files.
         self.source: str = ""
         self._weld: float | None = None
-        self._arrays = _core.MeshArrays(self.vertices, self.triangles, self.segments, self.points)
+        self._arrays = _core.MeshArrays(self._vertices, self._triangles, self._segments, self._points)
+
+    @property
+    def vertices(self) -> FloatArray:
+        """(n, 3): positions. Their numbers may be changed in place between calls; other arrays make another Mesh."""
+        return self._vertices
+
+    @property
+    def triangles(self) -> IntArray:
+        """(m, 3): indices of vertices."""
+        return self._triangles
+
+    @property
+    def segments(self) -> IntArray:
+        """(k, 2): free segments, as indices of vertices."""
+        return self._segments
+
+    @property
+    def points(self) -> IntArray:
+        """(l,): free points, as indices of vertices."""
+        return self._points
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        told = {"source": self.source, "file_info": self.file_info, "_weld": self._weld}
+        return Mesh, (self._vertices, self._triangles, self._segments, self._points), told
 
     @property
     def bounds(self) -> Bounds:
@@ -153,7 +179,7 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh") -> Mesh:
     if hasattr(mesh, "vertices"):
         for faces in ("faces", "triangles"):
             if hasattr(mesh, faces):
-                return Mesh(np.asarray(mesh.vertices), np.asarray(getattr(mesh, faces)))
+                return Mesh(mesh.vertices, getattr(mesh, faces))
     if hasattr(mesh, "extract_surface") and hasattr(mesh, "points"):
         return _of_pyvista(mesh)
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
@@ -221,7 +247,7 @@ def read_mesh(path: PathLike, *, weld: float | None = None) -> Mesh:
     arrays, info = _core.read_mesh(existing_file(path), tolerance)
     mesh = mesh_of_arrays(arrays)
     mesh.file_info = dict(info)
-    mesh.source = Path(path).name
+    mesh.source = source_name(path)
     mesh._weld = tolerance
     return mesh
 
@@ -303,7 +329,7 @@ def topology(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Pr
     return Topology(shells=shells, **found)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SelfIntersections:
     """Pairs of triangles that have more in common than a corner or an edge."""
 
@@ -349,8 +375,13 @@ class Sites:
         with reporting(progress) as report:
             self._table = _core.SiteTable(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
 
+    def __repr__(self) -> str:
+        faces = len(self) - self.vertex_count - len(self.edges)
+        return f"Sites({self.vertex_count:,} vertices, {len(self.edges):,} edges, {faces:,} faces)"
+
     @property
     def vertex_count(self) -> int:
+        """How many of the ids are vertices: the first ones."""
         return int(self._table.vertex_count)
 
     @property
@@ -393,7 +424,7 @@ class Sites:
         return found
 
     def _checked(self, ids: Any) -> IntArray:
-        return indices(np.atleast_1d(np.asarray(ids)), "ids", None, len(self))
+        return indices(np.atleast_1d(as_array(ids, "ids")), "ids", None, len(self))
 
 
 def pseudonormals(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> FloatArray:
@@ -413,8 +444,12 @@ class WindingNumber:
     """
 
     def __init__(self, mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> None:
+        self._mesh = as_mesh(mesh, triangles)
         with reporting(progress) as report:
-            self._winding = _core.WindingNumber(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
+            self._winding = _core.WindingNumber(self._mesh._arrays, integer(threads, "threads"), report)
+
+    def __repr__(self) -> str:
+        return f"WindingNumber({self._mesh!r})"
 
     def __call__(
         self, points: Any, *, approximate: float | None = None, threads: int = 0, progress: Progress = False
@@ -428,8 +463,8 @@ class WindingNumber:
             errors of about 1e-3. Default: the full sum, good to about 1e-12.
         """
         beta = -1.0 if approximate is None else number(approximate, "approximate")
-        if approximate is not None and not beta > 1:
-            raise ValueError(f"approximate is {beta}, but must be above 1")
+        if approximate is not None and not 1 < beta < float("inf"):
+            raise ValueError(f"approximate is {beta}, but must be above 1, and finite")
         rows, shape = points_and_shape(points, "points")
         if not np.isfinite(rows).all():
             raise ValueError("points must be finite")

@@ -73,8 +73,8 @@ def generate(name: str, **parameters: float) -> Mesh | Image:
     >>> import blum
     >>> blum.generate("sphere", frequency=4)
     Mesh(162 vertices, 320 triangles)
-    >>> blum.generate("ball_image", size=16)
-    Image(uint8 (16, 16, 16), spacing=(1.0, 1.0, 1.0))
+    >>> blum.generate("ball_image", size=16).values.shape
+    (16, 16, 16)
     """
     shape, given = _arguments(name, parameters)
     if shape.kind == "image":

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import shutil
 import subprocess
 import tempfile
 import webbrowser
@@ -10,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ._arguments import PathLike, existing_file
-from ._complex import MedialComplex
+from ._complex import MedialComplex, NestedComplex
 from ._errors import Error, FileError, InvalidOption
 from ._field import Field
 from ._image import Image, as_image, is_image
@@ -19,9 +21,10 @@ from ._mesh import Mesh, as_mesh
 
 _TOOL = Path(__file__).parent / "_bin" / "blum"
 _UNREADABLE = 1  # exit status
+_PREFIX = re.compile(r"^blum: (?:error|warning): ")
 
 
-def view(*things: Any, output: PathLike | None = None, show: bool | None = None) -> Path:
+def view(*things: Any, output: PathLike | None = None, show: bool | None = None, **named: Any) -> Path:
     """Writes one HTML page that shows meshes, images, fields and medial axes, in any mixture, and opens it.
 
     The page is one file that needs neither a network nor this process: slices and isosurfaces of fields, a slider for
@@ -32,6 +35,8 @@ def view(*things: Any, output: PathLike | None = None, show: bool | None = None)
     things
         Meshes as for :func:`distance_field` (as one object each), :class:`Field`, :class:`MedialAxis`,
         :class:`MedialComplex`, :class:`Image`, arrays [z, y, x], and paths of files that `blum view` shows.
+    named
+        The same with names of your own: ``view(part=mesh, distance=field)``.
     output : path, optional
         The page, .html. Default: a file of a new temporary folder, which stays until somebody removes it.
     show : bool, optional
@@ -55,15 +60,23 @@ def view(*things: Any, output: PathLike | None = None, show: bool | None = None)
     ...     page.name, page.stat().st_size > 100_000
     ('part.html', True)
     """
-    if not things:
+    shown = [(f"things[{place}]", "", thing) for place, thing in enumerate(things)]
+    shown += [(name, name, thing) for name, thing in named.items()]
+    if not shown:
         raise InvalidOption("nothing was given to view")
-    if output is not None and Path(os.fspath(output)).suffix.lower() not in (".html", ".htm"):
+    if output is not None and not os.fspath(output).lower().endswith((".html", ".htm")):
         raise InvalidOption(f"output is '{os.fspath(output)}', but must end in .html or .htm")
-    page = Path(tempfile.mkdtemp(prefix="blum-"), "page.html") if output is None else Path(os.fspath(output))
     with tempfile.TemporaryDirectory(prefix="blum-") as folder:
         names: set[str] = set()
-        files = [_file_of(thing, f"things[{place}]", Path(folder), names) for place, thing in enumerate(things)]
-        _make_page(files, page)
+        files = [_file_of(thing, argument, name, Path(folder), names) for argument, name, thing in shown]
+        if output is not None:
+            page = Path(os.fspath(output))
+            _make_page(files, page)
+        else:
+            made = Path(folder, "page", "page.html")
+            made.parent.mkdir()
+            _make_page(files, made)
+            page = Path(shutil.move(made, Path(tempfile.mkdtemp(prefix="blum-"), "page.html")))
     if output is None if show is None else show:
         webbrowser.open(page.absolute().as_uri())
     return page
@@ -72,34 +85,39 @@ def view(*things: Any, output: PathLike | None = None, show: bool | None = None)
 def _make_page(files: list[Path], page: Path) -> None:
     if not _TOOL.exists():
         raise Error(f"the command-line tool, which makes the page, is not installed with this package: {_TOOL}")
-    done = subprocess.run(
-        [_TOOL, "view", "--quiet", "--output", page, "--", *files], capture_output=True, text=True, check=False
-    )
-    told = done.stderr.strip().removeprefix("error: ").removeprefix("warning: ")
+    done = subprocess.run([_TOOL, "view", "--quiet", "--output", page, "--", *files], capture_output=True, check=False)
+    lines = done.stderr.decode("utf-8", "backslashreplace").strip().splitlines()
+    told = "\n".join(_PREFIX.sub("", line) for line in lines)
     if done.returncode == 0 and not told:
         return
+    if done.returncode < 0:
+        raise Error(
+            f"the tool that makes the page was ended by signal {-done.returncode} (9: too little memory, maybe)"
+        )
     if done.returncode in (0, _UNREADABLE):  # 0: some could be read; a script should not find that in the page alone
         raise FileError(told)
     raise InvalidOption(told)
 
 
-def _file_of(thing: Any, argument: str, folder: Path, names: set[str]) -> Path:
+def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]) -> Path:
     """The file that shows something: its own, or one that is written."""
     if isinstance(thing, (str, os.PathLike)):
         return existing_file(thing).absolute()
     if isinstance(thing, (MedialAxis, MedialComplex)):
-        path = _fresh(folder, names, "axis", ".npz")
+        path = _fresh(folder, names, name or "axis", ".npz")
         thing.write(path)
+    elif isinstance(thing, NestedComplex):
+        raise TypeError(f"{argument} is a NestedComplex: give the MedialAxis that it is of")
     elif isinstance(thing, Field):
-        path = _fresh(folder, names, "field", ".npz")
+        path = _fresh(folder, names, name or "field", ".npz")
         thing.write(path)
     elif is_image(thing):
-        path = _fresh(folder, names, "image", ".nrrd")
+        path = _fresh(folder, names, name or "image", ".nrrd")
         image: Image = as_image(thing)
         image.write(path)
     else:
         mesh: Mesh = as_mesh(thing, None, argument)
-        path = _fresh(folder, names, Path(mesh.source).stem or "mesh", ".ply")
+        path = _fresh(folder, names, name or Path(mesh.source).stem or "mesh", ".ply")
         mesh.write(path)
     return path
 

@@ -67,7 +67,8 @@ BLUM_LANE_LOOPS void add_clusters_beyond(const MultipoleBlock& block, const Vec3
     const double z = block.center[2][i] - query.z;
     const double inverse = 1 / std::sqrt(std::max(x * x + y * y + z * z, 1e-60));
     const double value = series(block, i, x, y, z, inverse * inverse, inverse);
-    const double taken = block.radius[i] * beta * inverse < 1 ? 1.0 : 0.0;
+    // Lanes without a cluster have no radius, and are taken whatever beta is.
+    const double taken = block.radius[i] * beta * inverse >= 1 ? 0.0 : 1.0;
     sum.solid_angle[i] += taken * value;
     others.open[i] = 1 - taken;
   }

@@ -35,6 +35,15 @@ SiteVertices site_vertices(const Field& field, const FieldFileInfo& info) {
   return out;
 }
 
+/// Whether the mesh can be the one whose sites the field names.
+void check_sites(const Field& field, std::size_t site_count) {
+  for (const SiteId site : field.site) {
+    if (!site.has_value() || site.value < site_count) continue;
+    throw InvalidMesh("the field names site " + std::to_string(site.value) + ", but the mesh given with it has only " +
+                      std::to_string(site_count) + ": it is not the mesh that the field is of");
+  }
+}
+
 void add_direction(NpzWriter& npz, const Mat3& direction) {
   std::array<double, 9> rows{};
   for (std::size_t row = 0; row < 3; ++row) {
@@ -64,7 +73,9 @@ void read_geometry(NpzReader& npz, const std::string& name, GridSpec& grid) {
 void write_field_npz(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
                      const Context& context) {
   const bool has_mesh = info.mesh != nullptr && field.site_ids != SiteIds::voxels;
+  if (has_mesh) validate(*info.mesh);
   const SiteVertices corners = has_mesh ? site_vertices(field, info) : SiteVertices{};
+  if (has_mesh) check_sites(field, corners.size());
   AtomicFile file(path);
   FieldSink sink(distance_bytes(field).size() + site_bytes(field).size() + 12 * corners.size() +
                      (has_mesh ? 24 * info.mesh->vertices.size() : 0),

@@ -74,11 +74,35 @@ def test_a_broken_file_is_named_and_a_page_replaced_by_a_whole_one_only(part, tm
     (tmp_path / "broken.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
     page = tmp_path / "page.html"
     page.write_text("mine")
-    with pytest.raises(OSError, match=r"broken\.ply"):
+    with pytest.raises(OSError, match=r"broken\.ply") as caught:
         blum.view(tmp_path / "broken.ply", output=page)
+    assert str(caught.value).startswith("'") and "error:" not in str(caught.value)
     assert page.read_text() == "mine"
     for wrong in ("page.txt", "page"):
         with pytest.raises(ValueError, match="output"):
             blum.view(part, output=tmp_path / wrong)
     with pytest.raises(OSError, match="folder"):
         blum.view(part, output=tmp_path / "no folder" / "page.html")
+
+
+def test_things_have_the_names_that_they_are_given(part, tmp_path):
+    page = blum.view(part, part=part, distance=blum.distance_field(part, resolution=16), output=tmp_path / "page.html")
+    assert items(page) == [("mesh.ply", "mesh"), ("part.ply", "mesh"), ("distance.npz", "field")]
+    with pytest.raises(TypeError, match="wrong is a int"):
+        blum.view(wrong=3, output=page)
+    with pytest.raises(TypeError, match="MedialAxis"):
+        blum.view(blum.medial_axis(part, resolution=16).nested(), output=page)
+
+
+def test_a_tool_that_is_killed_is_told(part, tmp_path, monkeypatch):
+    import blum._view
+
+    killed = tmp_path / "blum"
+    killed.write_text("#!/bin/sh\nkill -9 $$\n")
+    killed.chmod(0o755)
+    monkeypatch.setattr(blum._view, "_TOOL", killed)
+    with pytest.raises(blum.Error, match="signal 9"):
+        blum.view(part, output=tmp_path / "page.html")
+    monkeypatch.setattr(blum._view, "_TOOL", tmp_path / "missing")
+    with pytest.raises(blum.Error, match="not installed"):
+        blum.view(part, output=tmp_path / "page.html")

@@ -45,7 +45,8 @@ struct FieldFileInfo {
 ///
 /// A file appears under its name only when it is complete; for .nrrd both are complete before either appears.
 /// @throws InvalidOption for another extension; FileError when the system refuses; InvalidGrid when the field does not
-/// fit its grid; Cancelled.
+/// fit its grid; InvalidMesh for a mesh (.npz files hold it) that validate() refuses or that lacks sites of the field;
+/// Cancelled.
 /// Cost: the speed of the disk; no copy of the arrays.
 void write_field(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info = {},
                  const Context& context = {});

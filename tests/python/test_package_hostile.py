@@ -1,0 +1,237 @@
+"""Proves, by its smallest case each, that what once broke the package does not: masked arrays, processes that end while
+threads compute, pickles, arrays that change, solvers that are asked again, and names that are not UTF-8."""
+
+import copy
+import pickle
+import subprocess
+import sys
+import threading
+import time
+import warnings
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+
+blum = pytest.importorskip("blum")
+
+
+@pytest.fixture(scope="module")
+def box():
+    return blum.generate("box")
+
+
+def test_masked_arrays_are_refused_everywhere(box):
+    masked = np.ma.masked_array([[0, 1, 10**9]], mask=[[0, 0, 1]])
+    points = np.ma.masked_array(np.zeros((3, 3)), mask=True)
+    image = np.ma.masked_array(np.ones((2, 2, 2)), mask=True)
+    for call, name in (
+        (lambda: blum.MedialComplex(np.zeros((3, 3)), triangles=masked), "triangles"),
+        (lambda: blum.Mesh(np.zeros((3, 3)), masked), "triangles"),
+        (lambda: blum.Mesh(points, [[0, 1, 2]]), "vertices"),
+        (lambda: blum.closest_points(box, points), "points"),
+        (lambda: blum.distance_transform(image), "image"),
+        (lambda: blum.voxel_topology(image > 0), "mask"),
+        (lambda: blum.reference.nearest_voxel(np.ones((3, 3, 3), bool), masked[0]), "voxels"),
+        (lambda: blum.Grid(points[0], 1, (2, 2, 2)), "origin"),
+    ):
+        with pytest.raises(TypeError, match=f"{name} is a masked array"):
+            call()
+
+
+def test_subclasses_cannot_answer_for_their_numbers():
+    class Liar(np.ndarray):
+        def min(self, *_args, **_kwargs):
+            return 0
+
+        max = min
+
+    with pytest.raises(ValueError, match=r"triangles\[0, 2\]"):
+        blum.Mesh(np.zeros((3, 3)), np.array([[0, 1, 10**9]]).view(Liar))
+
+
+def test_sheets_and_sites_of_an_axis_are_checked():
+    corners = np.eye(3)
+    with pytest.raises(ValueError, match=r"triangle_sheet\[0\]"):
+        blum.MedialComplex(corners, triangles=[[0, 1, 2]], triangle_sheet=[2**31 - 2])
+    for wrong in (2**32 + 1, -7):
+        with pytest.raises(ValueError, match="sites"):
+            blum.MedialComplex(corners, sites=[[wrong, 0]] * 3)
+
+
+@pytest.mark.parametrize("beta", [1.0, 0.0, -2.0, float("inf"), float("nan")])
+def test_winding_numbers_refuse_a_beta_that_is_none(box, beta):
+    for mesh in (box, blum.generate("sphere")):
+        with pytest.raises(ValueError, match="approximate"):
+            blum.WindingNumber(mesh)([[0, 0, 0.0]], approximate=beta)
+
+
+def test_fields_are_not_written_with_a_mesh_that_is_not_theirs(tmp_path, box):
+    vertices, triangles = box.vertices.copy(), box.triangles.copy()
+    field = blum.distance_field(vertices, triangles, resolution=8)
+    kept = triangles[0, 0]
+    triangles[0, 0] = 10**9
+    with pytest.raises(ValueError, match="triangle 0"):
+        field.write(tmp_path / "field.npz")
+    triangles[0, 0] = kept
+    field.write(tmp_path / "field.npz")
+    field.mesh = blum.Mesh(np.eye(3), [[0, 1, 2]])
+    with pytest.raises(ValueError, match="not the mesh that the field is of"):
+        field.write(tmp_path / "other.npz")
+    assert not (tmp_path / "other.npz").exists()
+
+
+def test_arrays_are_changed_in_place_or_not_at_all(box):
+    mesh = blum.Mesh(box.vertices.copy(), box.triangles)
+    image = blum.Image(np.zeros((2, 2, 2), dtype=np.uint8))
+    field = blum.distance_field(mesh, resolution=8)
+    for thing, names in (
+        (mesh, ("vertices", "triangles", "segments", "points")),
+        (image, ("values", "grid", "space")),
+        (field, ("distance", "site", "grid")),
+    ):
+        for name in names:
+            with pytest.raises(AttributeError):
+                setattr(thing, name, getattr(thing, name))
+    mesh.vertices[:] *= 2
+    assert blum.closest_points(mesh, [[0, 0, 5.0]]).distance[0] == 4
+    image.values[0] = 1
+    assert blum.selected_voxels(image).sum() == 4
+
+
+def test_what_holds_numbers_can_be_pickled_and_copied(box):
+    named = copy.copy(box)
+    named.source = "box.ply"
+    image = blum.Image(np.arange(8).reshape(2, 2, 2), (1, 2, 3), (4, 5, 6), [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    field = blum.distance_field(named, resolution=8, band=0.3)
+    piece = blum.medial_axis(named, resolution=16).simplify(60)
+    for again in (lambda thing: pickle.loads(pickle.dumps(thing)), copy.deepcopy):
+        mesh = again(named)
+        assert np.array_equal(mesh.vertices, named.vertices) and mesh.source == "box.ply"
+        assert again(image).grid == image.grid and np.array_equal(again(image).values, image.values)
+        other = again(field)
+        assert np.array_equal(other.distance, field.distance) and np.array_equal(other.site, field.site)
+        for name in ("grid", "band", "sign_rule", "sign_reason", "site_ids", "source"):
+            assert getattr(other, name) == getattr(field, name), name
+        axis = again(piece)
+        assert axis.certificate and axis.theta == 60 and axis.counts == piece.counts
+        for name in ("vertices", "footprints", "sites", "edge_role", "triangle_sheet", "triangle_angle"):
+            assert np.array_equal(getattr(axis, name), getattr(piece, name)), name
+
+
+def test_processes_hand_over_meshes_and_fields(box):
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        field = pool.submit(blum.distance_field, box, resolution=8).result(timeout=120)
+    assert np.array_equal(field.distance, blum.distance_field(box, resolution=8).distance)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_python_ends_while_daemon_threads_compute(threads):
+    program = (
+        "import blum, threading, time\n"
+        "mesh = blum.generate('sphere', frequency=32)\n"
+        "def work():\n"
+        "    while True:\n"
+        "        blum.distance_field(mesh, resolution=128)\n"
+        f"for _ in range({threads}):\n"
+        "    threading.Thread(target=work, daemon=True).start()\n"
+        "time.sleep(0.5)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_a_solver_that_computes_cannot_be_asked_again(box):
+    solver = blum.FieldSolver(blum.Grid.around(box, resolution=64))
+    with pytest.raises(RuntimeError, match="computing"):
+        solver.compute(box, progress=lambda _fraction, _phase: solver.compute(box))
+    assert solver.compute(box).distance.min() < 0
+
+
+def test_facts_of_a_frame_stay_while_the_next_is_computed(box):
+    solver = blum.FieldSolver(blum.Grid.around(box, resolution=24), reuse=True)
+    frame = solver.compute(box)
+    facts = (frame.seconds, frame.sign_reason, frame.grid)
+    ends = threading.Event()
+
+    def compute():
+        while not ends.is_set():
+            solver.compute(box)
+
+    thread = threading.Thread(target=compute)
+    thread.start()
+    until = time.monotonic() + 0.5
+    while time.monotonic() < until:
+        assert (frame.seconds, frame.sign_reason, frame.grid) == facts
+    ends.set()
+    thread.join()
+
+
+def test_labels_have_64_bits(box):
+    for dtype, label in ((np.uint32, 2**32 - 1), (np.int64, -(2**62))):
+        image = np.zeros((2, 2, 2), dtype=dtype)
+        image[0] = label
+        assert blum.selected_voxels(image, label=label).sum() == 4
+        assert blum.distance_transforms(image, [label])[0].distance.min() < 0
+    for wrong in (3, "12", None):
+        with pytest.raises(TypeError, match="labels"):
+            blum.distance_transforms(np.ones((2, 2, 2), int), wrong)
+
+
+def test_names_of_files_may_be_any_bytes(tmp_path, box):
+    broken, whole = (tmp_path / name for name in ("bad\udcff.ply", "good\udcff.ply"))
+    try:
+        broken.write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
+    except OSError:
+        pytest.skip("this file system has no such names")
+    with pytest.raises(blum.FormatError, match=r"bad\\xff"):
+        blum.read_mesh(broken)
+    with pytest.raises(OSError, match="bad"):
+        blum.view(broken, output=tmp_path / "page.html")
+    box.write(whole)
+    blum.distance_field(whole, resolution=8).write(tmp_path / "field.npz")
+    blum.medial_axis(whole, resolution=16).simplify(60).write(tmp_path / "axis.npz")
+    assert blum.read_medial(tmp_path / "axis.npz").theta == 60
+
+
+def test_numbers_that_are_too_large_and_lists_that_are_ragged_are_named(box):
+    for call, name in (
+        (lambda: blum.distance_field(box, padding=10**400), "padding"),
+        (lambda: blum.Grid([[1, 2], [3]], 1, (2, 2, 2)), "origin"),
+        (lambda: blum.distance_field(box, bounds=([[1, 2], [3]], (1, 1, 1))), "bounds"),
+        (lambda: blum.distance_field(box, sign=np.array(["auto", "none"])), "sign"),
+        (lambda: blum.Field(np.zeros((2, 2, 2)), None), "grid"),
+        (lambda: blum.certify(None, box), "axis"),
+        (lambda: blum.Image(np.zeros((2, 2, 2)), space=5), "space"),
+        (lambda: blum.distance_transform(np.eye(5)), r"image\[None\]"),
+    ):
+        with pytest.raises((TypeError, ValueError), match=name):
+            call()
+
+
+def test_what_looks_wrong_is_warned_of(box):
+    with pytest.warns(blum.InputWarning, match="no node is inside"):
+        blum.distance_field(box.vertices, box.triangles[:, ::-1], resolution=8)
+    with pytest.warns(blum.InputWarning, match="open"):
+        blum.medial_axis(box.vertices, box.triangles[1:], resolution=16)
+    with pytest.warns(blum.InputWarning, match="1 shell faced the solid, and was turned"):
+        blum.medial_axis(box.vertices, box.triangles[:, ::-1], resolution=16)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        blum.distance_field(box, resolution=8)
+        blum.distance_field(box.vertices, box.triangles[:, ::-1], resolution=8, sign="none")
+        blum.medial_axis(box, resolution=16)
+
+
+def test_representations_tell_what_matters(box):
+    turned = blum.Grid((0.1 + 0.2, 0, 0), 1, (2, 2, 2), [[-1, 0, 0], [0, -1, 0], [0, 0, 1]])
+    assert repr(turned) == (
+        "Grid(origin=(0.3, 0, 0), spacing=(1, 1, 1), size=(2, 2, 2), "
+        "direction=[[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]])"
+    )
+    mesh = "Mesh(8 vertices, 12 triangles)"
+    assert repr(blum.Sites(box)) == "Sites(8 vertices, 18 edges, 12 faces)"
+    assert repr(blum.WindingNumber(box)) == f"WindingNumber({mesh})"
+    assert repr(blum.ClosestPointQuery(box)) == f"ClosestPointQuery({mesh}, sign_rule='normals')"
+    assert repr(blum.FieldSolver(turned, reuse=True)) == f"FieldSolver({turned!r}, reuse=True)"
