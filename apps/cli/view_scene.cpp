@@ -5,6 +5,7 @@
 #include <cmath>
 #include <exception>
 #include <new>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -143,6 +144,37 @@ Json field_item(SceneBlob& blob, const fs::path& path) {
   return item;
 }
 
+/// Whether whole numbers name things rather than measure something: there are few of them, or neighbours are alike
+/// where they are not the background.
+template <class T>
+bool are_labels(const std::vector<T>& values, std::int64_t row) {
+  if constexpr (!std::is_integral_v<T>) return false;
+  constexpr std::size_t few = 32;
+  std::set<T> distinct;
+  for (std::size_t i = 0; i < values.size() && distinct.size() <= few; ++i) distinct.insert(values[i]);
+  if (distinct.size() <= few) return true;
+  const T background = *std::min_element(values.begin(), values.end());
+  std::size_t pairs = 0;
+  std::size_t alike = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (i % static_cast<std::size_t>(row) == 0 || values[i - 1] == background || values[i] == background) continue;
+    ++pairs;
+    if (values[i - 1] == values[i]) ++alike;
+  }
+  return 2 * alike > pairs;
+}
+
+/// The viewer's numbers are doubles.
+template <class T>
+void check_exact(const std::vector<T>& values, const fs::path& path) {
+  constexpr std::int64_t most = std::int64_t{1} << 53U;
+  for (const T value : values) {
+    if (std::cmp_less_equal(value, most) && std::cmp_greater_equal(value, -most)) continue;
+    throw FileError("'" + path.string() + "' holds " + std::to_string(value) +
+                    ": whole numbers beyond 2^53 are not shown, as a browser would round them");
+  }
+}
+
 Json image_item(SceneBlob& blob, const fs::path& path) {
   const VoxelImage image = load_image(path);
   validate(image);
@@ -152,8 +184,9 @@ Json image_item(SceneBlob& blob, const fs::path& path) {
   item["bounds"] = to_json(bounds(image.grid));
   std::visit(
       [&]<class T>(const std::vector<T>& values) {
-        item["labels"] = std::is_integral_v<T>;
+        item["labels"] = are_labels(values, image.grid.size[0]);
         if constexpr (sizeof(T) == 8) {
+          if constexpr (std::is_integral_v<T>) check_exact(values, path);
           item["values"] = blob.add(std::vector<double>(values.begin(), values.end()));
         } else {
           item["values"] = blob.add(values);
@@ -171,6 +204,26 @@ Json image_item(SceneBlob& blob, const fs::path& path) {
 /// The sites of a field, as an image of labels: OUT.site.nrrd, which is no field by itself.
 bool is_site_file(const fs::path& path) {
   return extension(path) == ".nrrd" && extension(path.stem()) == ".site";
+}
+
+/// Browsers draw in single precision.
+void check_extent(const Json& item, const fs::path& path) {
+  if (item["bounds"].is_null()) return;
+  double extent = 0;
+  double farthest = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto lower = item["bounds"]["lower"][a].get<double>();
+    const auto upper = item["bounds"]["upper"][a].get<double>();
+    extent = std::max(extent, upper - lower);
+    farthest = std::max({farthest, std::abs(lower), std::abs(upper)});
+  }
+  constexpr double least = 1e-12;
+  constexpr double most = 1e30;
+  if ((extent == 0 || extent >= least) && farthest <= most) return;
+  throw FileError(
+      "'" + path.string() + "' cannot be drawn: " +
+      (farthest > most ? "it reaches to " + rounded_text(farthest) : "its longest side is " + rounded_text(extent)) +
+      ", and browsers draw what is between 1e-12 and 1e30; scale it");
 }
 
 Json item_of(SceneBlob& blob, const fs::path& path, std::optional<double> weld, const Context& context) {
@@ -196,6 +249,7 @@ Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld,
     std::string message;
     try {
       Json item = item_of(scene.blob, path, weld, context);
+      check_extent(item, path);
       item["name"] = path.filename().string();
       items.push_back(std::move(item));
       continue;

@@ -90,6 +90,36 @@ def test_nested_is_refused_where_it_makes_no_sense(tmp_path, solids, arguments):
     assert "--nested" in err
 
 
+def test_whole_numbers_are_labels_where_they_name_things(tmp_path):
+    rng = np.random.default_rng(1)
+    few = rng.integers(0, 5, (8, 8, 8)).astype(np.uint8)
+    grey = rng.integers(0, 4000, (16, 16, 16)).astype(np.int16)
+    grey[:8] = 0
+    many = np.kron(np.arange(1, 513, dtype=np.int32).reshape(8, 8, 8), np.ones((4, 4, 4), np.int32))
+    for name, values, labels in (("few", few, True), ("grey", grey, False), ("many", many, True),
+                                 ("real", few.astype(np.float32), False)):
+        np.save(tmp_path / f"{name}.npy", values)
+        run("view", tmp_path / f"{name}.npy", "-o", tmp_path / "page.html")
+        item = scene_of_page(tmp_path / "page.html").header["items"][0]
+        assert item["labels"] == labels, name
+
+
+@pytest.mark.parametrize(("size", "shown"), [(1e-30, False), (1e-11, True), (1e29, True), (1e31, False)])
+def test_what_browsers_cannot_draw_is_said_so(tmp_path, size, shown):
+    (tmp_path / "part.obj").write_text(f"v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n")
+    if shown:
+        run("view", tmp_path / "part.obj", "-o", tmp_path / "page.html")
+    else:
+        _, err = run("view", tmp_path / "part.obj", "-o", tmp_path / "page.html", status=1)
+        assert "cannot be drawn" in err and "scale it" in err
+
+
+def test_whole_numbers_that_doubles_do_not_hold_are_not_shown(tmp_path):
+    np.save(tmp_path / "big.npy", np.full((2, 2, 2), 2**53 + 1, dtype=np.int64))
+    _, err = run("view", tmp_path / "big.npy", "-o", tmp_path / "page.html", status=1)
+    assert "2^53" in err
+
+
 def test_files_that_cannot_be_read_are_named_in_the_page(tmp_path, shapes):
     broken = tmp_path / "broken.ply"
     broken.write_text("ply\nformat nonsense\n")

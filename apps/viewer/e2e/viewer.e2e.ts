@@ -240,10 +240,44 @@ describe("a page in a file", () => {
   it("saves the picture", async () => {
     const { page } = await open(browser, fileUrl("all.html"));
     const [download] = await Promise.all([page.waitForEvent("download"), page.getByLabel("Save the picture").click()]);
-    expect(download.suggestedFilename()).toBe("blum.png");
+    expect(download.suggestedFilename()).toBe("bracket.png");
     const bytes = readFileSync(await download.path());
     expect(bytes.subarray(1, 4).toString()).toBe("PNG");
     expect(bytes.readUInt32BE(16)).toBe(await page.evaluate(() => (document.getElementById("canvas") as HTMLCanvasElement).width));
+    await page.close();
+  });
+
+  it("fits what is shown, and not what is hidden", async () => {
+    writeFileSync(file("far.obj"), "v 90 0 0\nv 91 0 0\nv 90 1 0\nf 1 2 3\n");
+    blum("view", "bracket.ply", "far.obj", "-o", "far.html");
+    const { page } = await open(browser, fileUrl("far.html"));
+    const width = async () => {
+      const [left, right] = await page.evaluate(() => {
+        const { stage, views } = window.blum.page!;
+        const { lower, upper } = views[0].item.bounds!;
+        return [lower, upper].map((p) => stage.project([0, 1, 2].map((a) => p[a] - stage.center[a]) as never).x);
+      });
+      return Math.abs(right - left);
+    };
+    const small = await width();
+    await page.locator(".item").nth(1).locator("h2 input").setChecked(false);
+    await page.getByLabel("Look at all").click();
+    expect(await width()).toBeGreaterThan(10 * small);
+    await page.close();
+  });
+
+  it("forgets what was clicked when that is hidden", async () => {
+    const { page } = await open(browser, fileUrl("all.html"));
+    const at = await nodeOnPage(page, [20, 20, await page.evaluate(() => {
+      const view = window.blum.page!.views.find((v) => v.item.kind === "field") as never as { slice: { layer: number } };
+      return view.slice.layer;
+    })]);
+    await page.mouse.click(at.x, at.y);
+    expect(await page.locator(".readout").isVisible()).toBe(true);
+    await page.locator(".item").nth(1).getByLabel("slice", { exact: true }).setChecked(false);
+    const isSlice = (await page.locator(".readout").count()) === 0 || !(await page.locator(".readout").isVisible());
+    expect(isSlice).toBe(true);
+    expect(await page.locator(".legend").count()).toBe(1);
     await page.close();
   });
 

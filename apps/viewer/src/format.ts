@@ -10,9 +10,9 @@ export function exactFloat32(value: number): string {
   return String(Number(value.toPrecision(9)));
 }
 
-/** Six digits, for people. */
-export function rounded(value: number): string {
-  return Number.isFinite(value) ? String(Number(value.toPrecision(6))) : String(value);
+/** A few digits, for people. */
+export function rounded(value: number, digits = 6): string {
+  return Number.isFinite(value) ? String(Number(value.toPrecision(digits))) : String(value);
 }
 
 export function counted(count: number): string {

@@ -1,41 +1,62 @@
-// Legends of what is coloured, with units.
+// Legends of what is coloured, with units: on the page, and in saved pictures.
 import { cssColor, divergingColor, paletteIndex, regionPalette, sequentialColor } from "./colors.ts";
 import { rounded } from "./format.ts";
 import type { Legend } from "./view.ts";
 import { element } from "./widgets.ts";
 
 const steps = 24;
+const regions = 12;
+const digits = 4;
 
-export function legendElement(legend: Legend): HTMLElement {
-  const root = element("figure", "legend");
-  const title = legend.units ? `${legend.title} (${legend.units})` : legend.title;
-  root.append(element("figcaption", "", title));
-  const bar = element("div", "bar");
+export const titleOf = (legend: Legend): string => (legend.units ? `${legend.title} (${legend.units})` : legend.title);
+
+/** The colours from end to end; those of regions have sharp borders. */
+export function colorsOf(legend: Legend): string[] {
   if (legend.kind === "regions") {
     const palette = regionPalette();
-    const colors = Array.from({ length: 12 }, (_, i) => cssColor(palette[paletteIndex(i)]));
-    const stops = colors.map((color, i) => `${color} ${(100 * i) / 12}% ${(100 * (i + 1)) / 12}%`);
-    bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
-    root.append(bar, element("div", "ends", element("span", "", legend.note)));
-    return root;
+    return Array.from({ length: regions }, (_, i) => cssColor(palette[paletteIndex(i)]));
   }
+  return Array.from({ length: steps + 1 }, (_, i) => colorAt(legend, i / steps));
+}
+
+function colorAt(legend: Extract<Legend, { kind: "ramp" }>, t: number): string {
+  switch (legend.scale) {
+    case "grey":
+      return `hsl(0 0% ${6 + 90 * t}%)`;
+    case "sequential":
+      return cssColor(sequentialColor(t));
+    case "diverging": {
+      const value = legend.from + (legend.to - legend.from) * t;
+      const [inside, outside] = legend.extremes;
+      return cssColor(divergingColor(value < 0 ? value / inside : value / outside));
+    }
+  }
+}
+
+/** Texts below the bar, and where: 0 is its left end, 1 its right. */
+export function marksOf(legend: Legend): [text: string, at: number][] {
+  if (legend.kind === "regions") return [[legend.note, 0]];
   const { from, to } = legend;
-  const isGrey = legend.title.includes("grey");
-  const stops = Array.from({ length: steps + 1 }, (_, i) => {
-    const value = from + ((to - from) * i) / steps;
-    if (isGrey) return `hsl(0 0% ${6 + (90 * i) / steps}%)`;
-    if (legend.scale === "sequential") return cssColor(sequentialColor(i / steps));
-    return cssColor(divergingColor(value < 0 ? -value / from : value / to));
-  });
+  const marks: [string, number][] = [[rounded(from, digits), 0]];
+  const zero = -from / (to - from);
+  if (legend.scale === "diverging" && zero > 0.25 && zero < 0.75) marks.push(["0", zero]);
+  marks.push([rounded(to, digits), 1]);
+  return marks;
+}
+
+export function legendElement(legend: Legend): HTMLElement {
+  const bar = element("div", "bar");
+  const colors = colorsOf(legend);
+  const stops =
+    legend.kind === "regions"
+      ? colors.map((color, i) => `${color} ${(100 * i) / regions}% ${(100 * (i + 1)) / regions}%`)
+      : colors;
   bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
-  const ends = element("div", "ends", element("span", "", rounded(from)));
-  const middle = -from / (to - from);
-  if (legend.scale === "diverging" && middle > 0.25 && middle < 0.75) {
-    const zero = element("span", "zero", "0");
-    zero.style.left = `${100 * middle}%`;
-    ends.append(zero);
+  const ends = element("div", "ends");
+  for (const [text, at] of marksOf(legend)) {
+    const mark = element("span", at > 0 && at < 1 ? "zero" : "", text);
+    if (at > 0 && at < 1) mark.style.left = `${100 * at}%`;
+    ends.append(mark);
   }
-  ends.append(element("span", "", rounded(to)));
-  root.append(bar, ends);
-  return root;
+  return element("figure", "legend", element("figcaption", "", titleOf(legend)), bar, ends);
 }

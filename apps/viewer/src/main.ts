@@ -6,11 +6,12 @@ import { Knob } from "./knob.ts";
 import { legendElement } from "./legend.ts";
 import { Marker } from "./marker.ts";
 import { MeshView } from "./meshview.ts";
+import { pictureName, pictureWithLegends } from "./picture.ts";
 import { Readout, withFootprint } from "./readout.ts";
 import { readScene, type Box, type ErrorItem, type Item, type Scene, type Triple } from "./scene.ts";
 import { sceneBytes } from "./source.ts";
 import { Stage } from "./stage.ts";
-import { ground, onTheme, toggleTheme } from "./theme.ts";
+import { ground, isDark, onTheme, toggleTheme } from "./theme.ts";
 import type { Hit, Surroundings, View } from "./view.ts";
 import { VolumeView } from "./volumeview.ts";
 import { button, checkbox, element } from "./widgets.ts";
@@ -19,7 +20,7 @@ const byId = (id: string): HTMLElement => document.getElementById(id) as HTMLEle
 const panel = byId("panel");
 const status = byId("status");
 
-function boundsOf(items: Item[]): Box {
+function boundsOf(items: readonly Item[]): Box | undefined {
   const box: Box = { lower: [Infinity, Infinity, Infinity], upper: [-Infinity, -Infinity, -Infinity] };
   for (const item of items) {
     if (item.kind === "error" || item.bounds === null) continue;
@@ -28,7 +29,7 @@ function boundsOf(items: Item[]): Box {
       box.upper[a] = Math.max(box.upper[a], item.bounds.upper[a]);
     }
   }
-  return box.lower[0] <= box.upper[0] ? box : { lower: [-1, -1, -1], upper: [1, 1, 1] };
+  return box.lower[0] <= box.upper[0] ? box : undefined;
 }
 
 function makeView(item: Exclude<Item, ErrorItem>, around: Surroundings, isAlone: boolean): View {
@@ -51,11 +52,13 @@ class Page {
   readonly #marker: Marker;
   readonly #readout = new Readout(() => this.#showHit(undefined));
   readonly #facts = element("div");
+  #hitView: View | undefined; // what the last click hit
 
   constructor(scene: Scene, stage: Stage) {
     this.#scene = scene;
     this.#stage = stage;
     this.#marker = new Marker(stage.center);
+    stage.shown = () => boundsOf(this.#visible().map((view) => view.item));
     const items = scene.items.filter((item): item is Exclude<Item, ErrorItem> => item.kind !== "error");
     const around: Surroundings = { center: stage.center, radius: stage.radius, changed: () => this.#changed() };
     for (const item of items) {
@@ -98,10 +101,12 @@ class Page {
     const ray = this.#stage.ray(x, y);
     let best: Hit | undefined;
     let seenThrough: Hit | undefined;
+    const views = new Map<Hit, View>();
     for (const view of this.#views) {
       if (!view.object.visible) continue;
       const hit = view.pick(ray);
       if (hit === undefined) continue;
+      views.set(hit, view);
       if (view instanceof MeshView && view.isSeenThrough) {
         if (seenThrough === undefined || hit.t < seenThrough.t) seenThrough = hit;
       } else if (best === undefined || hit.t < best.t) {
@@ -111,6 +116,22 @@ class Page {
     best ??= seenThrough;
     const meshes = this.#scene.items.filter((item) => item.kind === "mesh");
     this.#showHit(best && withFootprint(best, meshes));
+    this.#hitView = best && views.get(best);
+  }
+
+  /** Saves what is seen, with its legends. */
+  async savePicture(): Promise<void> {
+    this.#stage.drawNow();
+    const legends = this.#visible().flatMap((view) => view.legends());
+    const link = element("a");
+    link.href = URL.createObjectURL(await pictureWithLegends(this.#stage.canvas, legends, isDark()));
+    link.download = pictureName(this.#visible().map((view) => view.item.name));
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  #visible(): View[] {
+    return this.#views.filter((view) => view.object.visible && view.isEmpty !== true);
   }
 
   #showHit(hit: Hit | undefined): void {
@@ -130,7 +151,11 @@ class Page {
   }
 
   #changed(): void {
-    const visible = this.#views.filter((view) => view.object.visible);
+    const visible = this.#visible();
+    if (this.#hitView !== undefined && !visible.includes(this.#hitView)) {
+      this.#hitView = undefined;
+      this.#showHit(undefined);
+    }
     byId("legends").replaceChildren(...visible.flatMap((view) => view.legends()).map(legendElement));
     const live = (item: Item) => this.#views.find((view) => view.item === item)?.liveFacts() ?? [];
     this.#facts.replaceChildren(factsElement(this.#scene.items, live));
@@ -173,14 +198,6 @@ function errorsElement(messages: string[]): HTMLElement {
   return root;
 }
 
-async function savePicture(stage: Stage): Promise<void> {
-  const link = element("a");
-  link.href = URL.createObjectURL(await stage.picture());
-  link.download = "blum.png";
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-}
-
 /** What tests may ask the page. */
 type Api = { isReady: boolean; milliseconds: number; page?: Page; scene?: Scene };
 declare global {
@@ -196,7 +213,10 @@ function showScene(scene: Scene): void {
   if (names.length > 0) document.title = `${names.join(", ")} – Blum`;
   let stage: Stage;
   try {
-    stage = new Stage(byId("canvas") as HTMLCanvasElement, boundsOf(scene.items));
+    stage = new Stage(
+      byId("canvas") as HTMLCanvasElement,
+      boundsOf(scene.items) ?? { lower: [-1, -1, -1], upper: [1, 1, 1] },
+    );
   } catch (error) {
     problems.push(`This browser draws nothing here, as it has no WebGL 2 (${messageOf(error)}). The facts are below.`);
     panel.append(header(undefined, undefined), errorsElement(problems));
@@ -207,16 +227,17 @@ function showScene(scene: Scene): void {
     onTheme(() => undefined);
     return;
   }
+  let page: Page | undefined = undefined;
   panel.append(
     header(
-      () => void savePicture(stage),
+      () => void page?.savePicture(),
       () => stage.look([0.55, -0.75, 0.42] as Triple),
     ),
   );
   if (problems.length > 0) panel.append(errorsElement(problems));
   status.hidden = names.length > 0;
   status.textContent = "None of the files could be read.";
-  const page = new Page(scene, stage);
+  page = new Page(scene, stage);
   stage.begin();
   window.blum.page = page;
 }

@@ -15,9 +15,17 @@ export function withFootprint(hit: Hit, meshes: MeshItem[]): Hit {
     const slack = 1e-3 * Math.max(hit.reach, ...mesh.positions.subarray(0, 3).map(Math.abs)) + 1e-6;
     if (Math.abs(distance(foot, hit.at) - hit.reach) > slack) continue;
     const { about: _, ...rest } = hit;
-    return { ...rest, footprints: [foot], facts: [...hit.facts, ["footprint is on", mesh.name]] };
+    const kind: Fact[] = hit.feature === undefined ? [] : [["which is", featureName(hit.feature, mesh)]];
+    return { ...rest, footprints: [foot], facts: [...hit.facts, ...kind, ["footprint is on", mesh.name]] };
   }
   return hit;
+}
+
+/** What a site is: vertices come first, then edges, then faces. */
+export function featureName(site: number, mesh: MeshItem): string {
+  const { vertices, edges } = mesh.counts;
+  if (site < vertices) return `vertex ${site}`;
+  return site < vertices + edges ? `edge ${site - vertices}` : `face ${site - vertices - edges}`;
 }
 
 export function readoutFacts(hit: Hit): Fact[] {

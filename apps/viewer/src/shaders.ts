@@ -341,6 +341,10 @@ export function sliceMaterial(): THREE.RawShaderMaterial {
     `,
     fragmentShader: sliceFragment,
     side: THREE.DoubleSide,
+    // Behind what lies in its plane, as sheets of a plate's axis do.
+    polygonOffset: true,
+    polygonOffsetFactor: 2,
+    polygonOffsetUnits: 8,
     uniforms: {
       ...shared,
       values: { value: null },

@@ -8,10 +8,16 @@ import { pixelRatio, viewport } from "./shaders.ts";
 const slowPicture = 120; // milliseconds
 const restAfter = 250;
 
+const middle = (box: Box): Triple => box.lower.map((low, a) => (low + box.upper[a]) / 2) as Triple;
+const radiusOf = (box: Box): number =>
+  Math.max(Math.hypot(...box.lower.map((low, a) => box.upper[a] - low)) / 2, 1e-12);
+
 export class Stage {
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
   readonly canvas: HTMLCanvasElement;
+  /** The box around what is shown; undefined where that is nothing. */
+  shown: () => Box | undefined = () => undefined;
   /** Called before a picture is drawn. */
   onDraw: () => void = () => undefined;
   /** Called when the view begins to move and when it rests, where whole pictures take long. */
@@ -20,7 +26,8 @@ export class Stage {
   readonly #controls: OrbitControls;
   readonly #center: Triple;
   readonly #radius: number;
-  readonly #corners: Triple[]; // of the box around everything
+  readonly #everything: Box;
+  #fitted: Triple | undefined; // the direction of look(), until somebody moves the view
   #isAsked = false;
   #isSlow = false;
   #rest: ReturnType<typeof setTimeout> | undefined;
@@ -30,15 +37,14 @@ export class Stage {
     this.canvas = canvas;
     this.#renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
     this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.#center = bounds.lower.map((low, a) => (low + bounds.upper[a]) / 2) as Triple;
-    this.#radius = Math.max(Math.hypot(...bounds.lower.map((low, a) => bounds.upper[a] - low)) / 2, 1e-12);
-    this.#corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
-      (c) => [0, 1, 2].map((a) => ((c >> a) & 1 ? bounds.upper : bounds.lower)[a] - this.#center[a]) as Triple,
-    );
+    this.#everything = bounds;
+    this.#center = middle(bounds);
+    this.#radius = radiusOf(bounds);
     this.#controls = new OrbitControls(this.camera, canvas);
     this.#controls.rotateSpeed = 0.8;
     this.#controls.zoomToCursor = true;
     this.#controls.addEventListener("change", () => this.#moved());
+    this.#controls.addEventListener("start", () => (this.#fitted = undefined));
     this.#resize();
     this.look([0.55, -0.75, 0.42]);
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement as HTMLElement);
@@ -58,26 +64,31 @@ export class Stage {
     this.draw();
   }
 
-  /** Looks at everything from a direction. */
+  /** Looks at all that is shown from a direction. */
   look(from: Triple): void {
+    const box = this.shown() ?? this.#everything;
+    const radius = radiusOf(box);
+    const target = middle(box).map((p, a) => p - this.#center[a]) as Triple;
     const direction = new THREE.Vector3(...from).normalize();
     const isVertical = Math.abs(direction.z) > 0.999;
     this.camera.up.set(0, isVertical ? 1 : 0, isVertical ? 0 : 1);
-    const away = this.#distanceToSeeAll(direction);
-    this.camera.position.copy(direction).multiplyScalar(away);
-    this.camera.near = this.#radius / 500;
+    const away = this.#distanceToSeeAll(direction, box);
+    this.camera.position.copy(direction).multiplyScalar(away).add(new THREE.Vector3(...target));
+    this.camera.near = radius / 500;
     this.camera.far = away + 40 * this.#radius;
     this.camera.updateProjectionMatrix();
     this.#controls.object.up.copy(this.camera.up);
-    this.#controls.target.set(0, 0, 0);
-    this.#controls.minDistance = this.#radius / 100;
+    this.#controls.target.set(...target);
+    this.#controls.minDistance = radius / 100;
     this.#controls.maxDistance = 30 * this.#radius;
     this.#controls.update();
+    this.#fitted = from;
     this.draw();
   }
 
   /** Turns the view by angles, as arrow keys do. */
   turn(around: number, over: number): void {
+    this.#fitted = undefined;
     const offset = this.camera.position.clone().sub(this.#controls.target);
     const toUp = new THREE.Quaternion().setFromUnitVectors(this.camera.up, new THREE.Vector3(0, 1, 0));
     offset.applyQuaternion(toUp);
@@ -92,6 +103,7 @@ export class Stage {
   }
 
   zoom(factor: number): void {
+    this.#fitted = undefined;
     const offset = this.camera.position.clone().sub(this.#controls.target).multiplyScalar(factor);
     const length = offset.length();
     if (length < this.#controls.minDistance || length > this.#controls.maxDistance) return;
@@ -132,14 +144,6 @@ export class Stage {
     this.#renderer.render(this.scene, this.camera);
   }
 
-  /** The picture as a PNG. */
-  async picture(): Promise<Blob> {
-    this.drawNow();
-    return new Promise((resolve, reject) => {
-      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture could be made"))), "image/png");
-    });
-  }
-
   /** The ray under a place of the canvas, in pixels of the page. */
   ray(x: number, y: number): Ray {
     const box = this.canvas.getBoundingClientRect();
@@ -178,16 +182,18 @@ export class Stage {
   }
 
   /** How far away all corners of the box are in the picture, with some room. */
-  #distanceToSeeAll(direction: THREE.Vector3): number {
+  #distanceToSeeAll(direction: THREE.Vector3, box: Box): number {
     const right = new THREE.Vector3().crossVectors(this.camera.up, direction).normalize();
     const up = new THREE.Vector3().crossVectors(direction, right);
     const high = Math.tan((this.camera.fov * Math.PI) / 360);
     const wide = high * this.camera.aspect;
-    const distances = this.#corners.map((corner) => {
+    const center = middle(box);
+    const distances = [0, 1, 2, 3, 4, 5, 6, 7].map((c) => {
+      const corner = [0, 1, 2].map((a) => ((c >> a) & 1 ? box.upper : box.lower)[a] - center[a]) as Triple;
       const p = new THREE.Vector3(...corner);
       return p.dot(direction) + Math.max(Math.abs(p.dot(right)) / wide, Math.abs(p.dot(up)) / high);
     });
-    return Math.max(1.08 * Math.max(...distances), 0.1 * this.#radius);
+    return Math.max(1.08 * Math.max(...distances), 0.1 * radiusOf(box));
   }
 
   #resize(): void {
@@ -196,6 +202,7 @@ export class Stage {
     this.#renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (this.#fitted !== undefined) this.look(this.#fitted);
     pixelRatio.value = this.#renderer.getPixelRatio();
     viewport.value.set((width * pixelRatio.value) / 2, (height * pixelRatio.value) / 2);
     this.drawNow();

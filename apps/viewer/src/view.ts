@@ -13,18 +13,25 @@ export type Hit = {
   radius?: number; // of a ball around `at`
   about?: Triple; // about where the footprint is, where it is not known
   reach?: number; // how far away it is
+  feature?: number; // the site, where sites are vertices, edges and faces
 };
 
-export type Legend = { title: string; units: string } & (
-  | { kind: "ramp"; scale: "diverging" | "sequential"; from: number; to: number }
-  | { kind: "regions"; note: string }
-);
+type Titled = { title: string; units: string };
+type Ramp = Titled & { kind: "ramp"; from: number; to: number };
+export type Legend =
+  | (Ramp & { scale: "sequential" })
+  | (Ramp & { scale: "grey" })
+  // Colours go to `extremes`, and the data from `from` to `to`.
+  | (Ramp & { scale: "diverging"; extremes: [inside: number, outside: number] })
+  | (Titled & { kind: "regions"; note: string });
 
 export interface View {
   readonly item: Exclude<Item, { kind: "error" }>;
   readonly object: THREE.Object3D;
   /** Controls of its own, below its name. */
   readonly controls: HTMLElement;
+  /** Whether any of it is seen, where its object is visible. */
+  readonly isEmpty?: boolean;
   /** @param ray  in the drawn world. */
   pick(ray: Ray): Hit | undefined;
   legends(): Legend[];

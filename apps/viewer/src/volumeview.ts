@@ -45,6 +45,10 @@ export class VolumeView implements View {
     this.#level = item.kind === "field" ? (least < 0 && most > 0 ? 0 : (least + most) / 2) : (least + most) / 2;
     this.#contour = item.kind === "field" ? roundStep(most - least, 16) : 0;
     this.#iso.frustumCulled = false;
+    // Behind the mesh that the field is of, where it is the same surface.
+    this.#iso.material.polygonOffset = true;
+    this.#iso.material.polygonOffsetFactor = 1;
+    this.#iso.material.polygonOffsetUnits = 4;
     this.#iso.visible = false;
     this.#iso.matrixAutoUpdate = false;
     this.#iso.matrix.copy(this.#frame());
@@ -63,6 +67,10 @@ export class VolumeView implements View {
     );
     this.#setUniforms(least, most);
     this.#makeControls();
+  }
+
+  get isEmpty(): boolean {
+    return !this.slice.object.visible && !this.#iso.visible;
   }
 
   /** Moves the slice. */
@@ -108,19 +116,17 @@ export class VolumeView implements View {
     const [from, to] = item.range ?? [0, 1];
     switch (this.#show) {
       case "distance": {
-        const scale = item.kind === "field" && item.signed ? "diverging" : "sequential";
-        const [inside, outside] = extremes(from, to);
-        const band = item.kind === "field" ? item.band : null;
-        const low = scale === "diverging" ? -inside : 0;
         const title = this.#contour > 0 ? `distance, lines every ${rounded(this.#contour)}` : "distance";
-        return [{ kind: "ramp", scale, title, units: item.units, from: low, to: band ?? outside }];
+        const common = { kind: "ramp", title, units: item.units, to } as const;
+        if (item.kind !== "field" || !item.signed) return [{ ...common, scale: "sequential", from: 0 }];
+        return [{ ...common, scale: "diverging", from, extremes: extremes(from, to) }];
       }
       case "sites":
         return [{ kind: "regions", title: "closest site", units: "", note: "one colour for each site" }];
       case "labels":
         return [{ kind: "regions", title: "label", units: "", note: "one colour for each value; 0 is pale" }];
       case "grey":
-        return [{ kind: "ramp", scale: "sequential", title: "value (grey)", units: "", from, to }];
+        return [{ kind: "ramp", scale: "grey", title: "value", units: "", from, to }];
     }
   }
 
@@ -184,6 +190,7 @@ export class VolumeView implements View {
     this.controls.append(
       checkbox("slice", true, (isOn) => {
         slice.object.visible = isOn;
+        inSlice.hidden = !isOn;
         changed();
       }),
     );
@@ -332,6 +339,8 @@ export class VolumeView implements View {
       }
     }
     const hit: Hit = { t, title: item.name, facts, at, footprints };
+    const site = item.kind === "field" && item.siteIds === "features" ? (item.sites?.[index] ?? -1) : -1;
+    if (site >= 0) hit.feature = site;
     return item.kind === "field" && footprints.length === 0 ? { ...hit, ...this.#estimate(node, index) } : hit;
   }
 
