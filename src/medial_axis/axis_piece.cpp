@@ -5,6 +5,7 @@
 
 #include "blum/core/union_find.hpp"
 #include "blum/field/phase_timer.hpp"
+#include "medial_axis/keep_edges_inside.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/thin_voxels.hpp"
 
@@ -148,6 +149,7 @@ AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floo
     if (dimension_of(cell.cell) == 0) piece.nodes.push_back(static_cast<std::uint32_t>(node_of(cell.cell)));
   }
   piece.vertices = place_vertices(governors, piece.lattice, piece.nodes, context);
+  if (solid.is_exact) keep_edges_inside(piece, governors, context);
   make_equal(piece, same_place * governors.voxel());
   timer.lap("vertices");
   return piece;

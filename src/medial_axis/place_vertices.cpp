@@ -22,6 +22,7 @@ constexpr std::size_t most_walls = 16;
 constexpr double most_moved = 0.7;
 /// Two distances count as equal from here on, in voxels.
 constexpr double equal_distances = 1e-9;
+constexpr double on_surface = 1e-9;    ///< voxels
 constexpr double least_radius = 1e-6;  ///< voxels
 /// Squared difference of the directions to two footprints from which they count as two walls: 6 degrees.
 constexpr double two_walls = 0.01;
@@ -45,6 +46,25 @@ bool are_joined_by_faces(unsigned voxels) {
     }
   }
   return reached == voxels;
+}
+
+Vec3d corner_at(const GridSpec& grid, const std::array<std::int64_t, 3>& node) {
+  return grid.position(node[0], node[1], node[2]) - grid.direction * (grid.spacing * 0.5);
+}
+
+MedialVertex vertex_of_one_wall(const Vec3d& x, const SurfacePoint& nearest) {
+  MedialVertex vertex;
+  vertex.position = x;
+  vertex.radius = nearest.distance;
+  vertex.footprints = {nearest.point, nearest.point};
+  vertex.sites = {nearest.site, nearest.site};
+  return vertex;
+}
+
+MedialVertex vertex_on_surface(const SurfacePoint& nearest) {
+  MedialVertex vertex = vertex_of_one_wall(nearest.point, nearest);
+  vertex.radius = 0;
+  return vertex;
 }
 
 /// The walls around a point, and what is closest to it on each.
@@ -113,7 +133,7 @@ class Placer {
   [[nodiscard]] MedialVertex place(const std::array<std::int64_t, 3>& node) const {
     const GridSpec& grid = governors_.solid().grid;
     const GovernorsAround around = governors_.around(node);
-    const Vec3d corner = grid.position(node[0], node[1], node[2]) - grid.direction * (grid.spacing * 0.5);
+    const Vec3d corner = corner_at(grid, node);
     if (const auto joint = joint_at(around, corner)) return *joint;
     // Seams and axes first: a point that all footprints agree on; else the nearest sheet.
     std::array<Vec3d, 8> feet;
@@ -144,10 +164,8 @@ class Placer {
     for (unsigned v = 0; v < 8; ++v) inside |= around[v].is_inside ? 1U << v : 0U;
     if (are_joined_by_faces(inside)) return std::nullopt;
     const SurfacePoint nearest = surface_.nearest(corner, around[0].foot);
-    if (nearest.distance > 1e-9 * governors_.voxel()) return std::nullopt;
-    MedialVertex vertex = one_wall(nearest.point, nearest);
-    vertex.radius = 0;
-    return vertex;
+    if (nearest.distance > on_surface * governors_.voxel()) return std::nullopt;
+    return vertex_on_surface(nearest);
   }
 
   /// Newton steps to the nearest point between the closest wall and another one.
@@ -202,7 +220,7 @@ class Placer {
                                                       const GovernorsAround& around) const {
     // On the surface, at a convex edge say, directions are rounding.
     if (!placed || placed->nearest.distance < least_radius * governors_.voxel()) return std::nullopt;
-    MedialVertex vertex = one_wall(placed->x, placed->nearest);
+    MedialVertex vertex = vertex_of_one_wall(placed->x, placed->nearest);
     if (!is_inside(around, placed->x, placed->nearest)) return std::nullopt;
     const double limit = vertex.radius + 1e-6 * governors_.voxel() + 1e-9 * vertex.radius;
     for (const Footprint& foot : {placed->p, placed->q}) {
@@ -217,22 +235,14 @@ class Placer {
   }
 
   [[nodiscard]] MedialVertex one_wall(const Vec3d& x, const Footprint& near) const {
-    return one_wall(x, surface_.nearest(x, near));
-  }
-  [[nodiscard]] static MedialVertex one_wall(const Vec3d& x, const SurfacePoint& nearest) {
-    MedialVertex vertex;
-    vertex.position = x;
-    vertex.radius = nearest.distance;
-    vertex.footprints = {nearest.point, nearest.point};
-    vertex.sites = {nearest.site, nearest.site};
-    return vertex;
+    return vertex_of_one_wall(x, surface_.nearest(x, near));
   }
 
   /// The middle of a thin part next to a corner beyond the surface.
   [[nodiscard]] std::optional<MedialVertex> in_thin_part(const SurfacePoint& touched, const Vec3d& corner) const {
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, touched, corner, 2 * governors_.longest_voxel());
     if (!ball) return std::nullopt;
-    MedialVertex vertex = one_wall(ball->centre, ball->nearest);
+    MedialVertex vertex = vertex_of_one_wall(ball->centre, ball->nearest);
     vertex.footprints[1] = ball->other.point;
     vertex.sites[1] = ball->other.site;
     vertex.separation_angle = ball->angle;
@@ -243,7 +253,7 @@ class Placer {
   /// else at the deepest voxel's centre; on the surface where that is outside, too.
   [[nodiscard]] MedialVertex without_bisector(const GovernorsAround& around, const Vec3d& corner) const {
     const SurfacePoint nearest = surface_.nearest(corner, around[0].foot);
-    if (is_inside(around, corner, nearest)) return one_wall(corner, nearest);
+    if (is_inside(around, corner, nearest)) return vertex_of_one_wall(corner, nearest);
     if (const auto vertex = in_thin_part(nearest, corner)) return *vertex;
     const auto depth = [](const Governor& g) {
       const double distance = length(g.centre - g.foot.point);
@@ -252,10 +262,10 @@ class Placer {
     const Governor& deepest = *std::max_element(
         around.begin(), around.end(), [&](const Governor& a, const Governor& b) { return depth(a) < depth(b); });
     if (deepest.is_inside) return one_wall(deepest.centre, deepest.foot);
-    MedialVertex on_surface = one_wall(deepest.foot.point, deepest.foot);
-    on_surface.position = on_surface.footprints[0];
-    on_surface.radius = 0;
-    return on_surface;
+    MedialVertex touching = one_wall(deepest.foot.point, deepest.foot);
+    touching.position = touching.footprints[0];
+    touching.radius = 0;
+    return touching;
   }
 
   const GovernorField& governors_;
@@ -263,6 +273,13 @@ class Placer {
 };
 
 }  // namespace
+
+MedialVertex vertex_at_corner(const GovernorField& governors, const std::array<std::int64_t, 3>& node) {
+  const Vec3d corner = corner_at(governors.solid().grid, node);
+  const SurfacePoint nearest = governors.surface().nearest(corner, governors.around(node)[0].foot);
+  return nearest.distance > on_surface * governors.voxel() ? vertex_of_one_wall(corner, nearest)
+                                                           : vertex_on_surface(nearest);
+}
 
 std::vector<MedialVertex> place_vertices(const GovernorField& governors, const CellLattice& lattice,
                                          const std::vector<std::uint32_t>& nodes, const Context& context) {

@@ -1,6 +1,7 @@
 // Blum: where the vertices of a medial axis lie. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -16,5 +17,8 @@ namespace blum {
 /// where only one wall is near. Radius and first footprint are those of an exact query.
 [[nodiscard]] std::vector<MedialVertex> place_vertices(const GovernorField& governors, const CellLattice& lattice,
                                                        const std::vector<std::uint32_t>& nodes, const Context& context);
+
+/// A vertex at the corner of the lattice itself, which must lie in the solid.
+[[nodiscard]] MedialVertex vertex_at_corner(const GovernorField& governors, const std::array<std::int64_t, 3>& node);
 
 }  // namespace blum

@@ -11,10 +11,11 @@ namespace blum {
 /// The voxels of a solid, and for each voxel of the box the closest site of the surface. The outermost voxels of the
 /// box are not in the solid.
 struct VoxelSolid {
-  GridSpec grid;        ///< its nodes are the voxel centres
-  VoxelSet voxels;      ///< those that make the solid
-  Buffer<float> depth;  ///< distance to the surface, positive inside; mesh units
-  Buffer<SiteId> site;  ///< the closest one
+  GridSpec grid;          ///< its nodes are the voxel centres
+  VoxelSet voxels;        ///< those that make the solid
+  Buffer<float> depth;    ///< distance to the surface, positive inside; mesh units
+  Buffer<SiteId> site;    ///< the closest one
+  bool is_exact = false;  ///< whether the solid is the union of the closed voxels, as those of images are
 };
 
 }  // namespace blum

@@ -153,6 +153,7 @@ Voxelized voxelize_image(const VoxelImageView& image, const LabelSelection& sele
   out.solid.voxels = selected_voxels(cut, {}, context);
   VoxelSet voxels = std::move(out.solid.voxels);
   out.solid = solid_of(distance_transform(cut, {}, context));
+  out.solid.is_exact = true;
   out.solid.voxels = std::move(voxels);
   out.report = report_of(out.solid, context);
   return out;

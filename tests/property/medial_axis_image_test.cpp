@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "blum/core/random.hpp"
 #include "blum/grid/image_generators.hpp"
 #include "blum/grid/voxel_topology.hpp"
 #include "blum/io/image_io.hpp"
@@ -104,6 +105,33 @@ TEST(MedialImage, OfRandomVoxelsHasTheirTopology) {
     SCOPED_TRACE(density);
     const VoxelImage image = make_noise_image({.size = 8, .density = density, .spacing = {1, 0.8, 1.3}, .seed = 5});
     expect_axis(image, betti_numbers(selected_voxels(image, {})));
+  }
+}
+
+TEST(MedialImage, NoEdgeCrossesTheGapOfAU) {
+  // The tips of a U of voxels, in both layers of an image; its middle is in the upper one only.
+  const VoxelImage u = image_of(
+      {3, 2, 2}, {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {2, 1, 0}, {0, 0, 1}, {2, 0, 1}, {0, 1, 1}, {1, 1, 1}, {2, 1, 1}});
+  expect_axis(u, {1, 0, 0});
+}
+
+TEST(MedialImage, OfRandomVoxelsIsCertifiedForAnySpacing) {
+  Random random(20261122);
+  const auto side = [&] { return static_cast<std::int64_t>(2 + random.below(3)); };
+  for (int round = 0; round < 40; ++round) {
+    const Size size{side(), side(), side()};
+    VoxelImage image = empty_image(size);
+    const double share = random.uniform(0.3, 0.9);
+    set(image, 0, 0, 0);
+    for (std::uint8_t& value : std::get<std::vector<std::uint8_t>>(image.values)) {
+      if (random.uniform() < share) value = 1;
+    }
+    for (const double ratio : {1.0, 1.5, 2.0, 3.0}) {
+      SCOPED_TRACE("round " + std::to_string(round) + ", spacing " + std::to_string(ratio));
+      image.grid.spacing = {1, 1, 1};
+      image.grid.spacing[static_cast<std::size_t>(round % 3)] = ratio;
+      expect_axis(image, betti_numbers(selected_voxels(image, {})));
+    }
   }
 }
 
