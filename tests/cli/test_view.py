@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from scene import Scene, scene_of_page
-from tool import BLUM, run
+from tool import BLUM, run, run_json
 
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
@@ -68,6 +68,8 @@ def test_a_page_holds_an_axis_exactly(tmp_path, axes):
 
 def test_nested_axes(tmp_path, solids):
     run("medial", solids / "box.obj", "-o", tmp_path / "box.npz", "--theta", 10, "--nested", "--resolution", 24)
+    assert "all from 10 degrees on" in run("info", tmp_path / "box.npz")[0]
+    assert run_json("info", tmp_path / "box.npz")["nested_theta"] == 10
     run("medial", solids / "box.obj", "-o", tmp_path / "cut.npz", "--theta", "10,100", "--resolution", 24)
     run("verify", solids / "box.obj", tmp_path / "box.npz")
     run("view", tmp_path / "box.npz", "-o", tmp_path / "page.html")
