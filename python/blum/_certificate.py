@@ -78,6 +78,7 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
+        """Whether nothing differs: topology, geometry, edges."""
         return not self.mismatches
 
     def __bool__(self) -> bool:

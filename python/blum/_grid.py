@@ -83,11 +83,13 @@ class Grid:
 
     @property
     def origin(self) -> tuple[float, float, float]:
+        """Position of node (0, 0, 0): x, y, z."""
         x, y, z = self._spec.origin
         return x, y, z
 
     @property
     def spacing(self) -> tuple[float, float, float]:
+        """Between neighbours along the index axes x, y, z."""
         x, y, z = self._spec.spacing
         return x, y, z
 
@@ -105,6 +107,7 @@ class Grid:
 
     @property
     def direction(self) -> FloatArray:
+        """(3, 3): column a is the direction of index axis a (0: x)."""
         return np.array(self._spec.columns).T
 
     @property

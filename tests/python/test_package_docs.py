@@ -1,6 +1,7 @@
 """Proves that the examples in docstrings and in examples/python run, and that the package is typed."""
 
 import doctest
+import functools
 import importlib
 import os
 import pathlib
@@ -32,6 +33,12 @@ def test_every_public_name_has_a_docstring():
         if isinstance(value, type):
             methods = {key: member for key, member in vars(value).items() if callable(member) and key[0] != "_"}
             assert not [f"{name}.{key}" for key, member in methods.items() if not member.__doc__]
+            getters = {
+                key: getattr(member, "fget", None) or getattr(member, "func", None)
+                for key, member in vars(value).items()
+                if isinstance(member, (property, functools.cached_property)) and key[0] != "_"
+            }
+            assert not [f"{name}.{key}" for key, getter in getters.items() if not getter.__doc__]
 
 
 @pytest.mark.parametrize("example", sorted(path.name for path in (ROOT / "examples/python").glob("*.py")))
