@@ -16,6 +16,9 @@ from ._errors import InvalidMesh, InvalidOption
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int32]
 PathLike = str | os.PathLike[str]
+#: Numbers of Python and of NumPy.
+Integer = int | np.integer[Any]
+Real = float | np.floating[Any] | np.integer[Any]
 
 _LARGEST_INDEX = np.iinfo(np.int32).max
 

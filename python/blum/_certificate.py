@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arguments import indices, integer
+from ._arguments import Integer, Real, indices, integer
 from ._errors import InvalidMesh
 from ._field import selected_voxels
 from ._grid import Grid
@@ -122,8 +122,8 @@ def certify(
     shape: Any,
     triangles: Any = None,
     *,
-    label: int | None = None,
-    threshold: float | None = None,
+    label: Integer | None = None,
+    threshold: Real | None = None,
     grid: Grid | None = None,
     positions: bool = True,
     radii: bool | None = None,

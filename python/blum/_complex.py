@@ -15,7 +15,9 @@ from . import _core
 from ._arguments import (
     FloatArray,
     IntArray,
+    Integer,
     PathLike,
+    Real,
     as_array,
     existing_file,
     float_list,
@@ -201,7 +203,7 @@ class NestedComplex(_Columns):
         found: npt.NDArray[np.float32] = self._core.triangle_until
         return found
 
-    def at(self, theta: float) -> Present:
+    def at(self, theta: Real) -> Present:
         """What is there at an angle, degrees, `least_theta` to 180: it covers what simplify(theta) gives."""
         angle = number(theta, "theta")
         if not self.least_theta <= angle <= 180:
@@ -330,7 +332,7 @@ class MedialComplex(_Columns):
             raise InvalidOption("what this axis was made from is not known here: use blum.certify(axis, shape)")
         return certify(self, shape, label=self._origin.label, threshold=self._origin.threshold)
 
-    def prune_sheets(self, theta: float, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
+    def prune_sheets(self, theta: Real, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
         """Drops whole sheets whose largest separation angle is at most theta (degrees), smallest first."""
         with reporting(progress) as report:
             core = _core.prune_sheets(self._core, number(theta, "theta"), integer(threads, "threads"), report)
@@ -339,9 +341,9 @@ class MedialComplex(_Columns):
     def reconstruct(
         self,
         *,
-        resolution: int = 256,
-        spacing: float | None = None,
-        padding: float = 0.1,
+        resolution: Integer = 256,
+        spacing: Real | None = None,
+        padding: Real = 0.1,
         bounds: Any = None,
         grid: Grid | None = None,
         threads: int = 0,

@@ -17,7 +17,9 @@ from . import _core
 from ._arguments import (
     FloatArray,
     IntArray,
+    Integer,
     PathLike,
+    Real,
     as_array,
     existing_file,
     integer,
@@ -149,7 +151,7 @@ class Field:
             values: FloatArray = self._core.interpolate(rows, integer(threads, "threads"), report)
         return values.reshape(shape)
 
-    def zero_surface(self, level: float = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
+    def zero_surface(self, level: Real = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
         """The surface where the distance equals `level` (mesh units), facing larger values.
 
         >>> import blum
@@ -211,13 +213,13 @@ def distance_field(
     mesh: Any,
     triangles: Any = None,
     *,
-    resolution: int = 256,
-    spacing: float | None = None,
-    padding: float = 0.1,
+    resolution: Integer = 256,
+    spacing: Real | None = None,
+    padding: Real = 0.1,
     bounds: Any = None,
     grid: Grid | None = None,
     sign: Sign = "auto",
-    band: float | None = None,
+    band: Real | None = None,
     site_ids: SiteIds = "features",
     threads: int = 0,
     progress: Progress = False,
@@ -312,7 +314,7 @@ class FieldSolver:
         grid: Grid,
         *,
         sign: Sign = "auto",
-        band: float | None = None,
+        band: Real | None = None,
         site_ids: SiteIds = "features",
         reuse: bool = False,
     ) -> None:
@@ -353,10 +355,10 @@ def distance_transform(
     spacing: Any = None,
     origin: Any = None,
     direction: Any = None,
-    label: int | None = None,
-    threshold: float | None = None,
+    label: Integer | None = None,
+    threshold: Real | None = None,
     signed: bool = True,
-    band: float | None = None,
+    band: Real | None = None,
     threads: int = 0,
     progress: Progress = False,
 ) -> Field:
@@ -395,13 +397,13 @@ def distance_transform(
 
 def distance_transforms(
     image: Any,
-    labels: Sequence[int],
+    labels: Sequence[Integer] | npt.NDArray[Any],
     *,
     spacing: Any = None,
     origin: Any = None,
     direction: Any = None,
     signed: bool = True,
-    band: float | None = None,
+    band: Real | None = None,
     threads: int = 0,
     progress: Progress = False,
 ) -> list[Field]:
@@ -424,9 +426,9 @@ def _transforms(
     origin: Any,
     direction: Any,
     labels: list[int],
-    threshold: float | None,
+    threshold: Real | None,
     signed: bool,
-    band: float | None,
+    band: Real | None,
     threads: int,
     progress: Progress,
 ) -> list[Field]:
@@ -457,8 +459,8 @@ class VoxelTopology:
 def selected_voxels(
     image: Any,
     *,
-    label: int | None = None,
-    threshold: float | None = None,
+    label: Integer | None = None,
+    threshold: Real | None = None,
     threads: int = 0,
     progress: Progress = False,
 ) -> npt.NDArray[np.bool_]:
@@ -522,7 +524,7 @@ class ClosestPointQuery:
         triangles: Any = None,
         *,
         sign: Sign = "auto",
-        max_distance: float | None = None,
+        max_distance: Real | None = None,
         threads: int = 0,
         progress: Progress = False,
     ) -> None:
@@ -564,7 +566,7 @@ def closest_points(
     points: Any,
     *,
     sign: Sign = "auto",
-    max_distance: float | None = None,
+    max_distance: Real | None = None,
     threads: int = 0,
     progress: Progress = False,
 ) -> ClosestPoints:

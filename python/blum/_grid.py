@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import FloatArray, as_array, box, integer, matrix, number, triple
+from ._arguments import FloatArray, Integer, Real, as_array, box, integer, matrix, number, triple
 from ._errors import InvalidOption
 from ._mesh import Bounds, as_mesh
 
@@ -46,7 +46,7 @@ class Grid:
         )
 
     @classmethod
-    def around(cls, shape: Any, *, resolution: int = 256, spacing: float | None = None, padding: float = 0.1) -> Grid:
+    def around(cls, shape: Any, *, resolution: Integer = 256, spacing: Real | None = None, padding: Real = 0.1) -> Grid:
         """The default grid around a mesh, or a pair of corners of a box.
 
         Parameters
@@ -65,7 +65,7 @@ class Grid:
         return cls._of(_core.grid_around_with_spacing(lower, upper, number(spacing, "spacing"), margin))
 
     @classmethod
-    def within(cls, bounds: Any, *, resolution: int = 256, spacing: float | None = None) -> Grid:
+    def within(cls, bounds: Any, *, resolution: Integer = 256, spacing: Real | None = None) -> Grid:
         """A grid over exactly a box, given as a pair of corners, without padding."""
         lower, upper = box(bounds, "bounds")
         if spacing is None:
@@ -157,7 +157,7 @@ def bounds_of(shape: Any) -> Bounds:
 
 
 def grid_for(
-    shape: Any, grid: Grid | None, bounds: Any, resolution: int, spacing: float | None, padding: float
+    shape: Any, grid: Grid | None, bounds: Any, resolution: Integer, spacing: Real | None, padding: Real
 ) -> Grid:
     """The grid that the arguments of a field ask for."""
     if grid is not None:

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from . import _core
-from ._arguments import PathLike, integer, label_of, number, optional_number
+from ._arguments import Integer, PathLike, Real, integer, label_of, number, optional_number
 from ._complex import EVERYTHING, MedialComplex, NestedComplex, Origin, write_complex
 from ._errors import InputWarning, InvalidOption
 from ._grid import Grid
@@ -56,7 +56,7 @@ class MedialAxis:
     True
     """
 
-    def __init__(self, core: _core.MedialAxis, origin: Origin, least_theta: float) -> None:
+    def __init__(self, core: _core.MedialAxis, origin: Origin, least_theta: Real) -> None:
         self._core = core
         self._origin = origin
         #: The smallest angle that can be asked for, degrees.
@@ -82,7 +82,7 @@ class MedialAxis:
             dict(_summed(found["phases"])),
         )
 
-    def simplify(self, theta: float = 60.0) -> MedialComplex:
+    def simplify(self, theta: Real = 60.0) -> MedialComplex:
         """The part where two footprints are seen at more than theta degrees apart, and what homotopy needs to join it.
 
         What a larger theta gives is part of what a smaller one gives. Cost: linear in the result.
@@ -136,13 +136,13 @@ def medial_axis(
     shape: Any,
     triangles: Any = None,
     *,
-    resolution: int = 256,
+    resolution: Integer = 256,
     spacing: Any = None,
-    max_resolution: int = 512,
-    lambda_: float = 0.0,
-    least_theta: float = 0.0,
-    label: int | None = None,
-    threshold: float | None = None,
+    max_resolution: Integer = 512,
+    lambda_: Real = 0.0,
+    least_theta: Real = 0.0,
+    label: Integer | None = None,
+    threshold: Real | None = None,
     threads: int = 0,
     progress: Progress = False,
 ) -> MedialAxis:

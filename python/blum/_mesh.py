@@ -17,6 +17,7 @@ from ._arguments import (
     FloatArray,
     IntArray,
     PathLike,
+    Real,
     as_array,
     existing_file,
     float_rows,
@@ -252,7 +253,7 @@ def read_mesh(path: PathLike, *, weld: float | None = None) -> Mesh:
     return mesh
 
 
-def weld(mesh: Any, tolerance: float = 0.0) -> Mesh:
+def weld(mesh: Any, tolerance: Real = 0.0) -> Mesh:
     """Merges vertices at the same place, or that steps no longer than `tolerance` (mesh units) join.
 
     >>> import blum
@@ -263,7 +264,7 @@ def weld(mesh: Any, tolerance: float = 0.0) -> Mesh:
     return mesh_of_arrays(_core.weld(as_mesh(mesh)._arrays, number(tolerance, "tolerance")))
 
 
-def weld_clusters(vertices: Any, tolerance: float = 0.0) -> IntArray:
+def weld_clusters(vertices: Any, tolerance: Real = 0.0) -> IntArray:
     """For each of (n, 3) vertices, the smallest index of those that :func:`weld` would merge it with."""
     found: IntArray = _core.weld_clusters(float_rows(vertices, "vertices"), number(tolerance, "tolerance"))
     return found
@@ -452,7 +453,7 @@ class WindingNumber:
         return f"WindingNumber({self._mesh!r})"
 
     def __call__(
-        self, points: Any, *, approximate: float | None = None, threads: int = 0, progress: Progress = False
+        self, points: Any, *, approximate: Real | None = None, threads: int = 0, progress: Progress = False
     ) -> FloatArray:
         """The number at points of the shape (..., 3).
 

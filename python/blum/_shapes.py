@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, cast, overload
 
 from . import _core
-from ._arguments import float_rows, integer, number
+from ._arguments import Integer, Real, float_rows, integer, number
 from ._errors import InvalidOption
 from ._image import Image, image_of_parts
 from ._mesh import Betti, Mesh, as_mesh, mesh_of_arrays
@@ -62,10 +62,10 @@ def _arguments(name: str, parameters: dict[str, Any]) -> tuple[ShapeInfo, dict[s
 
 
 @overload
-def generate(name: _ImageName, **parameters: float) -> Image: ...  # type: ignore[overload-overlap]
+def generate(name: _ImageName, **parameters: Real) -> Image: ...  # type: ignore[overload-overlap]
 @overload
-def generate(name: str, **parameters: float) -> Mesh: ...
-def generate(name: str, **parameters: float) -> Mesh | Image:
+def generate(name: str, **parameters: Real) -> Mesh: ...
+def generate(name: str, **parameters: Real) -> Mesh | Image:
     """Makes the shape of a name: a :class:`Mesh`, or an :class:`Image` for those whose name ends in ``_image``.
 
     Parameters are those that ``blum make NAME --help`` lists, and :func:`shapes`.
@@ -82,7 +82,7 @@ def generate(name: str, **parameters: float) -> Mesh | Image:
     return mesh_of_arrays(_core.make_shape(name, given))
 
 
-def known_betti(name: str, **parameters: float) -> Betti | None:
+def known_betti(name: str, **parameters: Real) -> Betti | None:
     """Components, tunnels and voids of a shape, from its construction; None where it bounds no solid.
 
     >>> import blum
@@ -93,7 +93,7 @@ def known_betti(name: str, **parameters: float) -> Betti | None:
     return cast("Betti | None", _core.known_betti(name, shape.kind, given))
 
 
-def extrusion(outline: Any, holes: Any = (), *, thickness: float = 1.0, stacks: int = 1) -> Mesh:
+def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: Integer = 1) -> Mesh:
     """Extrudes a polygon with holes along z, from -thickness / 2 to thickness / 2.
 
     Parameters
@@ -120,7 +120,7 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: float = 1.0, stacks: 
     )
 
 
-def noisy(mesh: Any, amplitude: float, *, seed: int = 1) -> Mesh:
+def noisy(mesh: Any, amplitude: Real, *, seed: Integer = 1) -> Mesh:
     """A copy whose vertices are each moved by a random vector, uniform in a ball of this radius; it may cross itself.
 
     >>> import blum, numpy as np
@@ -135,7 +135,7 @@ def noisy(mesh: Any, amplitude: float, *, seed: int = 1) -> Mesh:
     return mesh_of_arrays(_core.noisy(as_mesh(mesh)._arrays, number(amplitude, "amplitude"), chosen))
 
 
-def subdivided(mesh: Any, levels: int = 1) -> Mesh:
+def subdivided(mesh: Any, levels: Integer = 1) -> Mesh:
     """The same shape with each triangle cut into four at the midpoints of its edges, and each segment into two.
 
     Parameters
