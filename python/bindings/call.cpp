@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <exception>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -118,9 +119,9 @@ class RunningCalls {
 };
 
 /// Never destroyed: threads may use it until the process ends.
-RunningCalls*& running_calls() {
-  static auto* all = new RunningCalls;
-  return all;
+RunningCalls& running_calls() {
+  static auto* const all = new RunningCalls;
+  return *all;
 }
 
 /// What is left to a thread that Python has no place for any more.
@@ -132,17 +133,17 @@ RunningCalls*& running_calls() {
 }  // namespace
 
 void end_calls_at_exit() {
-  // The child of a fork has none of its parent's threads.
-  pthread_atfork(nullptr, nullptr, [] { running_calls() = new RunningCalls; });
+  // The child of a fork has none of its parent's threads, and begins anew: a lock may be held by one of them.
+  pthread_atfork(nullptr, nullptr, [] { std::construct_at(&running_calls()); });
   nb::module_::import_("atexit").attr("register")(nb::cpp_function([] {
     const nb::gil_scoped_release release;
-    running_calls()->end();
+    running_calls().end();
   }));
 }
 
 void run_call(const Call& call, const std::function<void(const Context&)>& work) {
   Shared shared;
-  RunningCalls& calls = *running_calls();
+  RunningCalls& calls = running_calls();
   if (calls.is_over()) {
     const nb::gil_scoped_release release;
     park();
