@@ -142,6 +142,21 @@ def test_python_ends_while_daemon_threads_compute(threads):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+def test_the_child_of_a_fork_computes_and_ends():
+    program = (
+        "import blum, os, sys, threading, time\n"
+        "mesh = blum.generate('sphere', frequency=32)\n"
+        "threading.Thread(target=blum.distance_field, args=(mesh,), kwargs={'resolution': 200}, daemon=True).start()\n"
+        "time.sleep(0.05)\n"
+        "child = os.fork()\n"
+        "if child == 0:\n"
+        "    sys.exit(0 if blum.topology(mesh).betti == (1, 0, 0) else 1)\n"
+        "sys.exit(os.waitpid(child, 0)[1])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
 def test_a_solver_that_computes_cannot_be_asked_again(box):
     solver = blum.FieldSolver(blum.Grid.around(box, resolution=64))
     with pytest.raises(RuntimeError, match="computing"):
