@@ -93,9 +93,31 @@ TEST_P(FieldFiles, ReadBackAsWritten) {
   for (const SiteIds ids : {SiteIds::features, SiteIds::triangles, SiteIds::voxels}) {
     Field field = sample_field();
     field.site_ids = ids;
+    const std::size_t count = ids == SiteIds::features ? sites.size() : mesh.triangles.size();
+    for (SiteId& site : field.site) {
+      // Of this mesh, as files tell the vertices of each; voxels are of none.
+      if (ids != SiteIds::voxels && site.has_value()) site = SiteId(static_cast<std::uint32_t>(site.value % count));
+    }
     write_field(path, field, {&view, &sites, "models/\xC3\xA9t\xC3\xA9.obj", "1.2.3"});
     expect_same(read_field(path), field);
   }
+}
+
+TEST_P(FieldFiles, OfAnotherMeshAreRefusedWhereFilesHoldIt) {
+  const TriangleMesh mesh = sample_mesh();
+  const MeshView view = mesh;
+  Field field = sample_field();
+  field.site_ids = SiteIds::triangles;
+  field.site[0] = SiteId(static_cast<std::uint32_t>(mesh.triangles.size()));
+  const auto write = [&] { write_field(path, field, {&view, nullptr, "mesh.obj", "1.2.3"}); };
+  if (std::string(GetParam()) != ".npz") return write();
+  EXPECT_THROW(write(), InvalidMesh);
+  TriangleMesh broken = mesh;
+  broken.triangles[0][0] = 1000000000;
+  const MeshView broken_view = broken;
+  field.site[0] = SiteId(0);
+  EXPECT_THROW(write_field(path, field, {&broken_view, nullptr, "mesh.obj", "1.2.3"}), InvalidMesh);
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST_P(FieldFiles, OneLayerOneNodeAndNoBand) {
