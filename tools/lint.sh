@@ -6,7 +6,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# clang-tidy over the library, the tool, the examples and, where they are configured, the Python bindings; headers are checked where they are included.
+# clang-tidy over the library, the tool, the examples and, where they are configured, the Python bindings; headers are
+# checked where they are included.
 tidy() {
   [[ -f build/release/compile_commands.json ]] || cmake --preset release >/dev/null
   local files
@@ -16,7 +17,8 @@ here = pathlib.Path.cwd()
 commands = json.loads((here / "build/release/compile_commands.json").read_text())
 names = {pathlib.Path(command["file"]) for command in commands}
 print(*sorted(str(name.relative_to(here)) for name in names
-              if name.is_file() and any(name.is_relative_to(here / folder) for folder in ("src", "apps", "examples", "python"))),
+              if name.is_file() and any(name.is_relative_to(here / folder)
+                                        for folder in ("src", "apps", "examples", "python"))),
       sep="\n")
 PYTHON
   )

@@ -82,7 +82,7 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
   table.add("radii", has_radii ? rounded_text(least) + " to " + rounded_text(most) : "none in the file");
   table.add("footprints", file.has_footprints ? "two at each vertex" : "none in the file");
   if (!box.is_empty()) table.add("bounds", vector_text(box.lower) + " to " + vector_text(box.upper));
-  if (file.nested) table.add("angles", "all from " + rounded_text(file.nested->least_theta) + " degrees on");
+  if (file.nested) table.add("angles", angles_text(*file.nested));
   table.add("of", source_text(m));
   table.add("made with", made_text(m));
   report(options, json, table.text());

@@ -97,7 +97,7 @@ void add_facts(Json& item, const MedialFile& file, const BettiNumbers& betti) {
   if (m.theta) add("theta", rounded_text(*m.theta) + " degrees");
   if (m.lambda && *m.lambda > 0) add("lambda", rounded_text(*m.lambda));
   if (m.spacing) add("voxels", "of side " + rounded_text(*m.spacing));
-  if (file.nested) add("angles", "all from " + rounded_text(file.nested->least_theta) + " degrees on");
+  if (file.nested) add("angles", angles_text(*file.nested));
   item["facts"] = facts;
 }
 

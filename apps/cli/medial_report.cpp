@@ -161,6 +161,10 @@ std::string counts_text(const MedialCounts& counts, bool has_labels) {
          plural(counts.junctions, "junction", "junctions");
 }
 
+std::string angles_text(const NestedComplex& nested) {
+  return "all from " + rounded_text(nested.least_theta) + " degrees on";
+}
+
 void add_certificate(TextTable& table, const Certificate& c) {
   const std::string axis = "the axis has " + betti_text(c.axis);
   if (c.holds()) {

@@ -28,6 +28,8 @@ namespace blum::cli {
 [[nodiscard]] std::string betti_text(const BettiNumbers& betti);
 /// The same as text, without what the file does not tell.
 [[nodiscard]] std::string counts_text(const MedialCounts& counts, bool has_labels);
+/// Which angles a file holds the axes of.
+[[nodiscard]] std::string angles_text(const NestedComplex& nested);
 /// Whether it holds, against what, and how precisely. Why not is left to NotCertified.
 void add_certificate(TextTable& table, const Certificate& certificate);
 

@@ -234,10 +234,6 @@ class Placer {
     return vertex.separation_angle > 0 ? std::optional(vertex) : std::nullopt;
   }
 
-  [[nodiscard]] MedialVertex one_wall(const Vec3d& x, const Footprint& near) const {
-    return vertex_of_one_wall(x, surface_.nearest(x, near));
-  }
-
   /// The middle of a thin part next to a corner beyond the surface.
   [[nodiscard]] std::optional<MedialVertex> in_thin_part(const SurfacePoint& touched, const Vec3d& corner) const {
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, touched, corner, 2 * governors_.longest_voxel());
@@ -261,11 +257,8 @@ class Placer {
     };
     const Governor& deepest = *std::max_element(
         around.begin(), around.end(), [&](const Governor& a, const Governor& b) { return depth(a) < depth(b); });
-    if (deepest.is_inside) return one_wall(deepest.centre, deepest.foot);
-    MedialVertex touching = one_wall(deepest.foot.point, deepest.foot);
-    touching.position = touching.footprints[0];
-    touching.radius = 0;
-    return touching;
+    if (deepest.is_inside) return vertex_of_one_wall(deepest.centre, surface_.nearest(deepest.centre, deepest.foot));
+    return vertex_on_surface(surface_.nearest(deepest.foot.point, deepest.foot));
   }
 
   const GovernorField& governors_;
