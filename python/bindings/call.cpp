@@ -124,9 +124,16 @@ RunningCalls& running_calls() {
   return *all;
 }
 
+/// Whether Python ends beside threads that hold on to what they have: it ends them between two steps of theirs, and
+/// never clears their frames.
+bool other_threads_run() {
+  const auto frames = nb::cast<nb::dict>(nb::module_::import_("sys").attr("_current_frames")());
+  const auto own = nb::int_(PyThread_get_thread_ident());
+  return nb::len(frames) > (frames.contains(own) ? 1U : 0U);
+}
+
 /// What is left to a thread that Python has no place for any more.
 [[noreturn]] void park() {
-  nb::set_leak_warnings(false);  // its arguments stay, and that is meant
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
@@ -136,6 +143,7 @@ void end_calls_at_exit() {
   // The child of a fork has none of its parent's threads, and begins anew: a lock may be held by one of them.
   pthread_atfork(nullptr, nullptr, [] { std::construct_at(&running_calls()); });
   nb::module_::import_("atexit").attr("register")(nb::cpp_function([] {
+    if (other_threads_run()) nb::set_leak_warnings(false);
     const nb::gil_scoped_release release;
     running_calls().end();
   }));

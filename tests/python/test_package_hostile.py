@@ -142,6 +142,22 @@ def test_python_ends_while_daemon_threads_compute(threads):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+def test_python_ends_while_a_daemon_thread_holds_a_result():
+    program = (
+        "import blum, threading, time\n"
+        "def work():\n"
+        "    field = blum.distance_field(blum.generate('box'), resolution=8)\n"
+        "    held.set()\n"
+        "    while field:\n"
+        "        pass\n"
+        "held = threading.Event()\n"
+        "threading.Thread(target=work, daemon=True).start()\n"
+        "held.wait()\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
 def test_the_child_of_a_fork_computes_and_ends():
     program = (
         "import blum, os, sys, threading, time\n"
