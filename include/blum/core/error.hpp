@@ -42,6 +42,12 @@ class OutOfMemory : public Error {
   using Error::Error;
 };
 
+/// A device that was asked for is not there, or failed; the message says which and what to do.
+class DeviceError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// The caller asked to stop (Context::cancel).
 class Cancelled : public Error {
  public:

@@ -1,17 +1,14 @@
-#include <cmath>
+#include <array>
 #include <utility>
 
 #include "field/cpu/record_build.hpp"
 #include "field/cpu/record_geometry.hpp"
+#include "field/kernels/site_shapes.hpp"
 
 namespace blum::cpu {
 namespace {
 
-Vec3d any_perpendicular(const Vec3d& t) {
-  const Vec3d axis = std::abs(t.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d b = cross(t, axis);
-  return b / length(b);
-}
+using kernels::EdgeShape;
 
 /// Unit direction that leaves an edge into one of its triangles; false if the triangle is too flat to have one.
 bool in_face_direction(const RecordInput& input, const FaceFacts& facts, std::uint32_t triangle, const Segment& edge,
@@ -22,73 +19,49 @@ bool in_face_direction(const RecordInput& input, const FaceFacts& facts, std::ui
   const Triangle& t = input.mesh.triangles[triangle];
   const bool is_forward = (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||
                           (t[2] == edge[0] && t[0] == edge[1]);
-  direction = is_forward ? cross(normal, tangent) : cross(tangent, normal);
+  direction = kernels::in_face_direction(normal, tangent, is_forward);
   return true;
 }
 
-/// The directions between which an edge's domain lies: perpendicular to each of its faces, away from the other.
-/// A zero direction stands for a domain without such bounds, whose reach is unlimited.
-void set_edge_reach(bool has_both, const Vec3d& first, const Vec3d& second, const Vec3d& tangent, std::size_t lane,
-                    ClusterBuild& cluster) {
-  const Vec3d first_normal = has_both ? cross(tangent, first) : Vec3d{};
-  const Vec3d second_normal = has_both ? cross(tangent, second) : Vec3d{};
-  // Of the two perpendiculars of a face, the domain's border is the one that does not lead into the other face. Where
-  // the faces are nearly in one plane both may pass in rounding: then the domain may be a half-plane or more.
-  const double side = dot(first_normal, second);
-  const bool is_clear = has_both && std::abs(side) > 1e-5;
-  if (!is_clear) {
-    cluster.set_direction(lane, 0, {});
-    cluster.set_direction(lane, 1, {});
+/// The directions between which an edge's domain lies. A zero direction stands for a domain without such bounds, whose
+/// reach is unlimited.
+void set_edge_reach(const EdgeShape& edge, std::size_t lane, ClusterBuild& cluster) {
+  Vec3d border[2];
+  const bool is_clear = kernels::edge_borders(edge, border);
+  cluster.set_direction(lane, 0, is_clear ? border[0] : Vec3d{});
+  cluster.set_direction(lane, 1, is_clear ? border[1] : Vec3d{});
+  if (is_clear) {
+    cluster.directions.add(std::array{to_float(border[0]), to_float(border[1])});
+  } else {
     cluster.directions.add({});
-    return;
   }
-  const std::array<Vec3d, 2> border{side < 0 ? first_normal : -first_normal,
-                                    dot(second_normal, first) < 0 ? second_normal : -second_normal};
-  cluster.set_direction(lane, 0, border[0]);
-  cluster.set_direction(lane, 1, border[1]);
-  cluster.directions.add(std::array{to_float(border[0]), to_float(border[1])});
 }
 
 void build_edge(const RecordInput& input, const FaceFacts& facts, std::uint32_t index, std::size_t lane, Record& record,
                 ClusterBuild& cluster) {
-  const Segment& edge = input.sites.edges()[index];
-  const Vec3d& start = input.positions[edge[0]];
-  const Vec3d& end = input.positions[edge[1]];
-  const double length_of_edge = length(end - start);
-  if (!(length_of_edge > negligible_length)) return;
-  const Vec3d tangent = unit(end - start, length_of_edge);
+  const Segment& ends = input.sites.edges()[index];
+  EdgeShape edge;
+  edge.start = input.positions[ends[0]];
+  edge.end = input.positions[ends[1]];
+  edge.length = length(edge.end - edge.start);
+  if (!(edge.length > negligible_length)) return;
+  edge.tangent = unit(edge.end - edge.start, edge.length);
 
-  Vec3d first;
-  Vec3d second;
   const auto& faces = input.adjacency.edge_faces[index];
-  bool has_first = in_face_direction(input, facts, faces[0], edge, tangent, first);
-  bool has_second = in_face_direction(input, facts, faces[1], edge, tangent, second);
-  if (has_second && !has_first) {
-    std::swap(first, second);
-    std::swap(has_first, has_second);
+  edge.has_first = in_face_direction(input, facts, faces[0], ends, edge.tangent, edge.first);
+  edge.has_second = in_face_direction(input, facts, faces[1], ends, edge.tangent, edge.second);
+  if (edge.has_second && !edge.has_first) {
+    std::swap(edge.first, edge.second);
+    std::swap(edge.has_first, edge.has_second);
   }
-  if (!has_first) first = any_perpendicular(tangent);
-  const Vec3d n = cross(tangent, first);
-
-  store(record, EdgeColumns::midpoint, (start + end) * 0.5);
-  store(record, EdgeColumns::tangent, tangent);
-  store(record, EdgeColumns::half_length, 0.5 * length_of_edge);
-  store(record, EdgeColumns::binormal, first);
-  store(record, EdgeColumns::first_limit, has_first ? plane_slack : 1e30);
-  if (has_second) {
-    store(record, EdgeColumns::second_b, dot(second, first));
-    store(record, EdgeColumns::second_n, dot(second, n));
-    // Between faces that nearly fold together float32 cannot tell the pseudonormal: left to exact queries.
-    const bool is_folded = 1 - dot(second, first) < 1e-5;
-    store(record, EdgeColumns::side, is_folded ? 0.0 : dot(facts.normals[faces[0]], n) > 0 ? 1.0 : -1.0);
-  }
+  kernels::write_edge(edge, edge.has_second ? facts.normals[faces[0]] : Vec3d{}, record);
   record.id = static_cast<std::uint32_t>(input.mesh.vertices.size()) + index;
-  cluster.box.extend(start);
-  cluster.box.extend(end);
-  set_edge_reach(has_first && has_second, first, second, tangent, lane, cluster);
-  cluster.set_corner(lane, 0, start);
-  cluster.set_corner(lane, 1, end);
-  cluster.set_corner(lane, 2, end);
+  cluster.box.extend(edge.start);
+  cluster.box.extend(edge.end);
+  set_edge_reach(edge, lane, cluster);
+  cluster.set_corner(lane, 0, edge.start);
+  cluster.set_corner(lane, 1, edge.end);
+  cluster.set_corner(lane, 2, edge.end);
 }
 
 }  // namespace

@@ -9,31 +9,13 @@
 #include "field/cpu/direction_cone.hpp"
 #include "field/cpu/reach.hpp"
 #include "field/cpu/site_records.hpp"
+#include "field/kernels/site_shapes.hpp"
 
 namespace blum::cpu {
 
-/// Shorter or flatter than this, in a frame whose diagonal is about one, float32 cannot tell a site from its border.
-inline constexpr double negligible_length = 1e-12;
-
-inline void store(Record& record, int column, const Vec3f& v) {
-  const auto at = static_cast<std::size_t>(column);
-  record.column[at] = v.x;
-  record.column[at + 1] = v.y;
-  record.column[at + 2] = v.z;
-}
-
-inline void store(Record& record, int column, const Vec3d& v) {
-  store(record, column, Vec3f{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
-}
-
-inline void store(Record& record, int column, double x) {
-  record.column[static_cast<std::size_t>(column)] = static_cast<float>(x);
-}
-
-/// One division for three.
-inline Vec3d unit(const Vec3d& v, double length_of_v) {
-  return v * (1 / length_of_v);
-}
+using kernels::negligible_length;
+using kernels::store;
+using kernels::unit;
 
 /// What is learned of each triangle when its record is built, and read when those of its edges are.
 struct FaceFacts {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "field/cpu/vertex_cone.hpp"
+#include "field/kernels/vertex_cone.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "field/cpu/vertex_fans.cpp"
@@ -42,12 +42,12 @@ class FanLanes {
       const M exists = hn::RebindMask(d, hn::Gt(counts_, hn::Set(di, static_cast<std::uint32_t>(j))));
       for (std::size_t i = 0; i < j; ++i) {
         const Vec w = cross(e_[i], e_[j]);
-        const M parallel = hn::And(exists, hn::Lt(dot(w, w), set(VertexCone::parallel)));
+        const M parallel = hn::And(exists, hn::Lt(dot(w, w), set(kernels::VertexCone::parallel)));
         uncertain = hn::Or(uncertain, parallel);
         const M asked = hn::AndNot(parallel, exists);
         const Extremes at = extremes(w);
-        const M is_above = hn::And(asked, hn::Le(at.largest, set(VertexCone::tolerance)));
-        const M is_below = hn::And(asked, hn::Ge(at.smallest, set(-VertexCone::tolerance)));
+        const M is_above = hn::And(asked, hn::Le(at.largest, set(kernels::VertexCone::tolerance)));
+        const M is_below = hn::And(asked, hn::Ge(at.smallest, set(-kernels::VertexCone::tolerance)));
         const M is_extreme = hn::Or(is_above, is_below);
         if (hn::AllFalse(d, is_extreme)) continue;
         facets = hn::Or(facets, hn::IfThenElseZero(hn::RebindMask(di, is_extreme), hn::Set(di, (1U << i) | (1U << j))));

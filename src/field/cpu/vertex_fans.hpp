@@ -30,7 +30,7 @@ struct alignas(64) VertexFanCones {
   std::uint32_t is_uncertain = 0;
 };
 
-/// What VertexCone::find_facets does for one vertex, for sixteen, up to rounding.
+/// What kernels::VertexCone::find_facets does for one vertex, for sixteen, up to rounding.
 void find_fan_cones(const VertexFans& fans, VertexFanCones& out);
 
 }  // namespace blum::cpu

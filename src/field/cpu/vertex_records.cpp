@@ -1,9 +1,12 @@
 #include "field/cpu/record_build.hpp"
-#include "field/cpu/vertex_cone.hpp"
 #include "field/cpu/vertex_fans.hpp"
+#include "field/kernels/vertex_cone.hpp"
 
 namespace blum::cpu {
 namespace {
+
+using kernels::ChosenPlanes;
+using kernels::VertexCone;
 
 std::span<const std::uint32_t> neighbours_of(const RecordInput& input, std::uint32_t vertex) {
   const std::uint32_t first = input.adjacency.first_neighbour[vertex];

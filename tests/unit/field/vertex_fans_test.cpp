@@ -11,7 +11,7 @@
 
 #include "blum/core/random.hpp"
 #include "field/cpu/tile_kernel.hpp"
-#include "field/cpu/vertex_cone.hpp"
+#include "field/kernels/vertex_cone.hpp"
 
 namespace blum::cpu {
 namespace {
@@ -64,7 +64,7 @@ TEST(VertexFans, AgreeWithSingleConesOnEveryTarget) {
       find_fan_cones(fans, cones);
       for (std::size_t lane = 0; lane < cluster_size; ++lane) {
         if (input[lane].empty()) continue;
-        VertexCone cone;
+        kernels::VertexCone cone;
         for (const Vec3d& e : input[lane]) cone.add(e / length(e));
         const bool exists = cone.find_facets();
         const bool is_certain = ((cones.is_uncertain >> lane) & 1U) == 0;

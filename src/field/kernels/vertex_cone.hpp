@@ -1,16 +1,14 @@
 // Blum: the cone in which a vertex is closest. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include "blum/core/vec3.hpp"
+#include "field/kernels/host_device.hpp"
 
-namespace blum::cpu {
+namespace blum::kernels {
 
 /// Which directions of a vertex are kept as planes of its domain.
 struct ChosenPlanes {
@@ -21,25 +19,25 @@ struct ChosenPlanes {
   /// Picks up to four of the directions whose bit is set in `open`, each as far from the picked ones as can be.
   /// @param direction  callable: index -> unit Vec3f.
   template <class Direction>
-  void choose(std::uint32_t open, Direction direction) {
+  BLUM_HD void choose(std::uint32_t open, Direction direction) {
     count = 0;
-    if (static_cast<std::size_t>(std::popcount(open)) <= most) {
-      for (; open != 0; open &= open - 1) index[count++] = static_cast<std::size_t>(std::countr_zero(open));
+    if (count_bits(open) <= most) {
+      for (; open != 0; open &= open - 1) index[count++] = lowest_bit(open);
       return;
     }
     std::array<float, 32> largest_cosine;
     largest_cosine.fill(-2);
     while (count < most) {
-      auto best = static_cast<std::size_t>(std::countr_zero(open));
+      std::size_t best = lowest_bit(open);
       for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
-        const auto k = static_cast<std::size_t>(std::countr_zero(rest));
+        const std::size_t k = lowest_bit(rest);
         if (largest_cosine[k] < largest_cosine[best]) best = k;
       }
       open &= ~(1U << best);
       index[count++] = best;
       for (std::uint32_t rest = open; rest != 0; rest &= rest - 1) {
-        const auto k = static_cast<std::size_t>(std::countr_zero(rest));
-        largest_cosine[k] = std::max(largest_cosine[k], dot(direction(k), direction(best)));
+        const std::size_t k = lowest_bit(rest);
+        largest_cosine[k] = larger(largest_cosine[k], dot(direction(k), direction(best)));
       }
     }
   }
@@ -56,7 +54,7 @@ class VertexCone {
   /// More edges than this are left out, which only widens the cone.
   static constexpr std::size_t max_directions = 16;
 
-  void add(const Vec3d& unit_direction) {
+  BLUM_HD void add(const Vec3d& unit_direction) {
     if (count_ == max_directions) return;
     x_[count_] = static_cast<float>(unit_direction.x);
     y_[count_] = static_cast<float>(unit_direction.y);
@@ -65,7 +63,7 @@ class VertexCone {
   }
 
   /// Finds the cone's extreme rays; false if the cone {w : w . e <= 0 for all e} is provably just its apex.
-  bool find_facets() {
+  BLUM_HD bool find_facets() {
     if (count_ < 3) {
       choose(all());
       return true;
@@ -95,15 +93,15 @@ class VertexCone {
   }
 
   /// Up to four directions whose planes hold the cone.
-  [[nodiscard]] const ChosenPlanes& planes() const { return chosen_; }
-  [[nodiscard]] Vec3f direction(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
+  [[nodiscard]] BLUM_HD const ChosenPlanes& planes() const { return chosen_; }
+  [[nodiscard]] BLUM_HD Vec3f direction(std::size_t k) const { return {x_[k], y_[k], z_[k]}; }
 
   /// The unit extreme rays; empty where they are too many or not known for certain.
-  [[nodiscard]] std::span<const Vec3f> rays() const { return {rays_.data(), are_rays_known_ ? ray_count_ : 0}; }
+  [[nodiscard]] BLUM_HD std::span<const Vec3f> rays() const { return {rays_.data(), are_rays_known_ ? ray_count_ : 0}; }
 
  private:
   /// Bit 0: w (no longer than one) lies in the cone, up to rounding; bit 1: -w does. In doubt they do.
-  [[nodiscard]] int extreme_ray(const Vec3f& w) const {
+  [[nodiscard]] BLUM_HD int extreme_ray(const Vec3f& w) const {
     const std::size_t end = count_ <= 8 ? 8 : max_directions;
     int beyond = 0;
     int before = 0;
@@ -115,14 +113,14 @@ class VertexCone {
     return (beyond == 0 ? 1 : 0) + (before == 0 ? 2 : 0);
   }
 
-  void add_ray(const Vec3f& w, int sign) {
-    const Vec3f unit = w / length(w);
+  BLUM_HD void add_ray(const Vec3f& w, int sign) {
+    const Vec3f unit = w / norm(w);
     if ((sign & 1) != 0 && ++ray_count_ <= max_rays) rays_[ray_count_ - 1] = unit;
     if ((sign & 2) != 0 && ++ray_count_ <= max_rays) rays_[ray_count_ - 1] = -unit;
   }
 
-  [[nodiscard]] std::uint32_t all() const { return (1U << count_) - 1; }
-  void choose(std::uint32_t open) {
+  [[nodiscard]] BLUM_HD std::uint32_t all() const { return (1U << count_) - 1; }
+  BLUM_HD void choose(std::uint32_t open) {
     chosen_.choose(open, [this](std::size_t k) { return direction(k); });
   }
 
@@ -134,4 +132,4 @@ class VertexCone {
   bool are_rays_known_ = false;
 };
 
-}  // namespace blum::cpu
+}  // namespace blum::kernels

@@ -1,0 +1,176 @@
+// Blum: launches kernels and keeps memory on a CUDA device. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cuda_runtime.h>
+#include <thrust/iterator/counting_iterator.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_reduce.cuh>
+#include <cub/device/device_scan.cuh>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "field/cuda/cuda_block.cuh"
+#include "field/cuda/cuda_check.cuh"
+#include "field/kernels/host_device.hpp"
+
+namespace blum::cuda {
+
+/// Memory of the current device. It grows, and shrinks no more: frames that follow each other allocate nothing.
+template <class T>
+class CudaArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  CudaArray() = default;
+  CudaArray(CudaArray&& other) noexcept { swap(other); }
+  CudaArray& operator=(CudaArray&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  CudaArray(const CudaArray&) = delete;
+  CudaArray& operator=(const CudaArray&) = delete;
+  ~CudaArray() { (void)cudaFree(data_); }
+
+  /// What was there is lost where the array grows. @throws OutOfMemory.
+  void resize(std::size_t count) {
+    if (count > capacity_) {
+      (void)cudaFree(std::exchange(data_, nullptr));
+      capacity_ = 0;
+      size_ = 0;
+      check(cudaMalloc(reinterpret_cast<void**>(&data_), count * sizeof(T)),
+            ("allocating " + std::to_string(count * sizeof(T)) + " bytes").c_str());
+      capacity_ = count;
+    }
+    size_ = count;
+  }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] T* data() { return data_; }
+  [[nodiscard]] const T* data() const { return data_; }
+
+  void swap(CudaArray& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+template <class T>
+struct FillArray {
+  T* data;
+  T value;
+  __device__ void operator()(std::size_t k) const { data[k] = value; }
+};
+
+template <class Body>
+__global__ void for_each_kernel(const __grid_constant__ Body body, const std::size_t count) {
+  const std::size_t index = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (index < count) body(index);
+}
+
+template <class Body>
+__global__ void __launch_bounds__(Body::threads, Body::blocks_per_processor) block_kernel(const __grid_constant__ Body body) {
+  extern __shared__ __align__(16) unsigned char storage[];
+  auto& shared = *reinterpret_cast<typename Body::Shared*>(storage);
+  body(CudaBlock<Body::threads>{}, shared, blockIdx.x);
+}
+
+/// Everything is queued on one stream; only download() and wait() wait for it.
+class CudaDevice {
+ public:
+  template <class T>
+  using Array = CudaArray<T>;
+
+  explicit CudaDevice(cudaStream_t stream) : stream_(stream) {}
+  [[nodiscard]] cudaStream_t stream() const { return stream_; }
+
+  template <class T>
+  void upload(std::span<const T> from, Array<T>& to) const {
+    to.resize(from.size());
+    if (from.empty()) return;
+    check(cudaMemcpyAsync(to.data(), from.data(), from.size_bytes(), cudaMemcpyHostToDevice, stream_), "upload");
+  }
+  template <class T>
+  void download(const T* from, std::size_t count, T* to) const {
+    check(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, stream_), "download");
+    wait();
+  }
+  template <class T>
+  void fill(Array<T>& array, const T& value) const {
+    for_each(array.size(), FillArray<T>{array.data(), value});
+  }
+
+  template <class Body>
+  void for_each(std::size_t count, const Body& body) const {
+    constexpr unsigned threads = 256;
+    if (count == 0) return;
+    for_each_kernel<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream_>>>(body, count);
+    check(cudaGetLastError(), "launching a kernel");
+  }
+  template <class Body>
+  void run_blocks(std::size_t count, const Body& body) const {
+    if (count == 0) return;
+    constexpr std::size_t shared = sizeof(typename Body::Shared);
+    check(cudaFuncSetAttribute(block_kernel<Body>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                               static_cast<int>(shared)),
+          "asking for shared memory");
+    block_kernel<Body><<<static_cast<unsigned>(count), Body::threads, shared, stream_>>>(body);
+    check(cudaGetLastError(), "launching a kernel");
+  }
+
+  template <class Key>
+  void sort_pairs(Array<Key>& keys, Array<std::uint32_t>& values, int bits) {
+    Array<Key>& sorted_keys = sorted_keys_of(Key{});
+    sorted_keys.resize(keys.size());
+    sorted_values_.resize(keys.size());
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceRadixSort::SortPairs(scratch, bytes, keys.data(), sorted_keys.data(), values.data(),
+                                             sorted_values_.data(), keys.size(), 0, bits, stream_);
+    });
+    keys.swap(sorted_keys);
+    values.swap(sorted_values_);
+  }
+  void exclusive_sum(const Array<std::uint32_t>& in, Array<std::uint32_t>& out) {
+    out.resize(in.size());
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceScan::ExclusiveSum(scratch, bytes, in.data(), out.data(), in.size(), stream_);
+    });
+  }
+  template <class T, class Load, class Combine>
+  void reduce(std::size_t count, const Load& load, const T& first, const Combine& combine, T* out) {
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceReduce::TransformReduce(scratch, bytes, thrust::counting_iterator<std::size_t>(0), out, count,
+                                                combine, load, first, stream_);
+    });
+  }
+  void wait() const { check(cudaStreamSynchronize(stream_), "waiting for the device"); }
+
+ private:
+  /// Calls work twice, as CUB wants it: to learn how much scratch memory it needs, and with that much.
+  template <class Work>
+  void with_scratch(const Work& work) {
+    std::size_t bytes = 0;
+    check(work(nullptr, bytes), "asking for scratch memory");
+    scratch_.resize(bytes == 0 ? 1 : bytes);
+    check(work(scratch_.data(), bytes), "a parallel primitive");
+  }
+  Array<std::uint32_t>& sorted_keys_of(std::uint32_t) { return sorted_short_keys_; }
+  Array<std::uint64_t>& sorted_keys_of(std::uint64_t) { return sorted_long_keys_; }
+
+  cudaStream_t stream_;
+  Array<unsigned char> scratch_;
+  Array<std::uint32_t> sorted_values_;
+  Array<std::uint32_t> sorted_short_keys_;
+  Array<std::uint64_t> sorted_long_keys_;
+};
+
+}  // namespace blum::cuda

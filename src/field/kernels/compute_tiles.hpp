@@ -1,0 +1,421 @@
+// Blum: the kernel that computes tiles of a field. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "field/kernels/domain_tests.hpp"
+#include "field/kernels/leaf.hpp"
+#include "field/kernels/nearest.hpp"
+#include "field/kernels/tile_grid.hpp"
+
+namespace blum::kernels {
+
+/// A record in shared memory: 80 bytes apart, so that the lanes of a warp read from different banks.
+struct alignas(16) PackedRecord {
+  float column[15];
+  std::uint32_t id;
+  float padding[4];
+
+  BLUM_HD void set(const Record& record) {
+    for (std::size_t k = 0; k < 15; ++k) column[k] = record.column[k];
+    id = record.id;
+  }
+  [[nodiscard]] BLUM_HD Record get() const {
+    Record record;
+    for (std::size_t k = 0; k < 15; ++k) record.column[k] = column[k];
+    record.id = id;
+    return record;
+  }
+};
+
+/// Where a field goes.
+struct FieldOutput {
+  double band = 0;            ///< half-width in mesh units; 0: the full grid
+  float* distance = nullptr;  ///< of the slab's nodes, mesh units
+  std::uint32_t* site = nullptr;
+};
+
+/// One block per tile of 8^3 nodes. Its warps search the trees for sites that can matter to the tile, from a stack that
+/// they share, and collect their records; then each warp takes one leaf of 4^3 nodes, drops what cannot matter to it,
+/// and evaluates the rest at two nodes per lane. Where more sites matter than there is room for, the collected ones are
+/// evaluated before the search goes on, so that no list can overflow. A field does not depend on the order in which
+/// sites are met.
+struct ComputeTiles {
+  static constexpr std::uint32_t threads = 256;
+  static constexpr std::uint32_t blocks_per_processor = 3;  ///< at least, by registers
+  static constexpr std::uint32_t warps = threads / warp_size;
+  static constexpr std::int32_t side = 8;
+  static constexpr std::int32_t leaf_side = 4;
+  static constexpr std::uint32_t list_capacity = 512;
+  static constexpr std::uint32_t stack_capacity = 1024;
+  /// What one entry taken at a time can add to the stack, all the way down a tree.
+  static constexpr std::uint32_t stack_reserve = (warp_size - 1) * (Tree::most_levels + 1);
+  /// With fewer sites, to evaluate them costs less than to know the surface point that would beat some of them.
+  static constexpr std::uint32_t fewest_worth_dominating = 24;
+  static_assert(warps * warp_size <= list_capacity && stack_reserve + warps * warp_size <= stack_capacity);
+
+  struct Shared {
+    std::uint32_t stack[stack_capacity];
+    std::uint32_t top;
+    std::uint32_t taken[warps];
+    std::uint32_t taken_count;
+    std::uint32_t list_count;
+    std::uint32_t kind_count_of[kind_count];
+    std::uint16_t place[kind_count][list_capacity];  ///< of the records of each kind
+    SurfacePoint leaf_point[warps];
+    CenteredBox box;  ///< of the tile, widened
+    TileTest test;
+    Domination domination;
+    CenteredBox leaf_boxes[warps];
+    Domination leaf_domination[warps];
+    union {
+      PackedRecord list[list_capacity];
+      SearchStack search[warps];
+    };
+  };
+
+  Forest forest;
+  const NormalFrame* frame;
+  TileGrid tiles;
+  const SurfacePoint* tile_points;
+  FieldOutput output;
+
+  template <class Block>
+  BLUM_HD void operator()(const Block& block, Shared& shared, std::size_t index) const {
+    Run<Block>(*this, block, shared, static_cast<std::uint32_t>(index)).run();
+  }
+
+ private:
+  /// The nodes of a lane, two of a leaf, and what they know.
+  struct LaneNodes {
+    Vec3f node[2];
+    Winner winner[2];
+  };
+
+  /// The work of one block.
+  template <class Block>
+  class Run {
+    using Warp = typename Block::Warp;
+
+   public:
+    BLUM_HD Run(const ComputeTiles& job, const Block& block, Shared& shared, std::uint32_t tile)
+        : job_(job),
+          block_(block),
+          shared_(shared),
+          tile_(tile),
+          nodes_(job.tiles.box(tile)),
+          box_(centered(*job.frame, nodes_).widened()),
+          nearest_(job.tile_points[tile]) {}
+
+    BLUM_HD void run() {
+      if (is_beyond_band()) {
+        fill();
+        return;
+      }
+      start();
+      for (bool is_done = false; !is_done;) {
+        is_done = !take();
+        block_.each_warp([&](const Warp& warp) {
+          if (warp.index() >= shared_.taken_count) return;
+          const Entry entry{shared_.taken[warp.index()]};
+          if (entry.level() == 0) {
+            collect(warp, entry);
+          } else {
+            descend(warp, entry);
+          }
+        });
+        if (is_done || block_.read(shared_.list_count) > list_capacity - warps * warp_size) evaluate();
+      }
+      write();
+    }
+
+   private:
+    [[nodiscard]] BLUM_HD double scale() const { return job_.frame->scale; }
+
+    [[nodiscard]] BLUM_HD bool is_beyond_band() const {
+      if (!(job_.output.band > 0)) return false;
+      const float distance = root(squared_length(box_.center - nearest_.point));
+      return distance - norm(box_.half) * 1.0001F - box_slack > static_cast<float>(job_.output.band * scale());
+    }
+
+    /// The points of this tile and of those next door, which are the best at beating what lies beyond them.
+    [[nodiscard]] BLUM_HD Dominators tile_dominators() const {
+      Dominators out;
+      out.point[0] = nearest_.point;
+      for (int axis = 0; axis < 3; ++axis) {
+        Place next = job_.tiles.place(tile_);
+        next.at[axis] = smaller(next.at[axis] ^ 1, job_.tiles.tiles[axis] - 1);
+        out.point[axis + 1] = job_.tile_points[job_.tiles.index(next)].point;
+      }
+      return out;
+    }
+
+    [[nodiscard]] BLUM_HD NodeBox leaf_box(std::uint32_t leaf) const {
+      NodeBox out{};
+      for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const std::int32_t offset = ((leaf >> axis) & 1U) != 0 ? leaf_side : 0;
+        out.first[axis] = nodes_.first[axis] + offset;
+        out.count[axis] = smaller(leaf_side, nodes_.count[axis] - offset);
+      }
+      return out;
+    }
+
+    BLUM_HD void start() {
+      block_.once([&] {
+        shared_.top = 0;
+        for (std::uint32_t kind = 0; kind < kind_count; ++kind) {
+          const std::uint32_t levels = job_.forest.trees[kind].levels;
+          if (levels > 0) shared_.stack[shared_.top++] = Entry::make(kind, levels, 0).code;
+          shared_.kind_count_of[kind] = 0;
+        }
+        shared_.list_count = 0;
+        shared_.box = box_;
+        shared_.test = TileTest(box_, nearest_.point);
+        shared_.domination = Domination(box_, tile_dominators());
+      });
+      block_.each_warp([&](const Warp& warp) {
+        const NodeBox leaf = leaf_box(warp.index());
+        const Vec3f center = leaf.is_empty() ? box_.center : centered(*job_.frame, leaf).center;
+        warp.each([&](std::uint32_t lane) {
+          LaneNodes& mine = lanes_.at(warp, lane);
+          for (std::uint32_t k = 0; k < 2; ++k) {
+            const Place place = place_in(leaf, lane, k);
+            mine.node[k] = {coordinate(0, place), coordinate(1, place), coordinate(2, place)};
+            mine.winner[k] = Winner{};
+          }
+          if (lane == 0) {
+            shared_.leaf_point[warp.index()] = {nearest_.point, squared_length(center - nearest_.point), nearest_.id};
+          }
+        });
+      });
+    }
+
+    /// Takes entries off the stack, one for each warp where the stack has room for what they may add; false where
+    /// there are none.
+    BLUM_HD bool take() {
+      const std::uint32_t top = block_.read(shared_.top);
+      const std::uint32_t room = stack_capacity - stack_reserve;
+      const std::uint32_t fitting = top < room ? (room - top) / (warp_size - 1) : 0;
+      const std::uint32_t count = smaller(top, larger(1U, smaller(warps, fitting)));
+      block_.once([&] {
+        for (std::uint32_t w = 0; w < count; ++w) shared_.taken[w] = shared_.stack[top - 1 - w];
+        shared_.taken_count = count;
+        shared_.top = top - count;
+      });
+      return count > 0;
+    }
+
+    /// Puts the children of a box that can matter to the tile on the stack.
+    BLUM_HD void descend(const Warp& warp, const Entry& entry) {
+      const Tree& tree = job_.forest.trees[entry.kind()];
+      const std::uint32_t level = entry.level() - 1;
+      const std::uint32_t first = entry.index() * warp_size;
+      const std::uint32_t kept = warp.ballot([&](std::uint32_t lane) {
+        return first + lane < tree.box_count[level] && shared_.test.keeps(tree.boxes[level][first + lane]);
+      });
+      if (kept == 0) return;
+      const std::uint32_t place = warp.claim(shared_.top, count_bits(kept));
+      warp.each([&](std::uint32_t lane) {
+        if (((kept >> lane) & 1U) == 0) return;
+        shared_.stack[place + bits_below(kept, lane)] = Entry::make(entry.kind(), level, first + lane).code;
+      });
+    }
+
+    /// Lists the records of a cluster that can matter to the tile.
+    BLUM_HD void collect(const Warp& warp, const Entry& entry) {
+      const std::uint32_t kind = entry.kind();
+      const Tree& tree = job_.forest.trees[kind];
+      typename Warp::template Lanes<Record> record;
+      const std::uint32_t kept = warp.ballot([&](std::uint32_t lane) {
+        const std::uint32_t at = entry.index() * warp_size + lane;
+        if (at >= tree.record_count) return false;
+        record[lane] = tree.records[at];
+        return record[lane].id != dead_record && site_matters(kind, record[lane], shared_.box, shared_.domination);
+      });
+      if (kept == 0) return;
+      const std::uint32_t slot = warp.claim(shared_.list_count, count_bits(kept));
+      const std::uint32_t place = warp.claim(shared_.kind_count_of[kind], count_bits(kept));
+      warp.each([&](std::uint32_t lane) {
+        if (((kept >> lane) & 1U) == 0) return;
+        const std::uint32_t rank = bits_below(kept, lane);
+        shared_.list[slot + rank].set(record[lane]);
+        shared_.place[kind][place + rank] = static_cast<std::uint16_t>(slot + rank);
+      });
+    }
+
+    /// Evaluates the listed sites and empties the list.
+    BLUM_HD void evaluate() {
+      if (block_.read(shared_.list_count) >= fewest_worth_dominating) {
+        block_.each_warp([&](const Warp& warp) { find_leaf_point(warp); });
+      }
+      block_.each_warp([&](const Warp& warp) { evaluate_leaf(warp); });
+      block_.once([&] {
+        shared_.list_count = 0;
+        for (std::uint32_t kind = 0; kind < kind_count; ++kind) shared_.kind_count_of[kind] = 0;
+      });
+    }
+
+    /// Looks for a surface point closer to the leaf's centre among the listed sites.
+    BLUM_HD void find_leaf_point(const Warp& warp) {
+      const NodeBox leaf = leaf_box(warp.index());
+      if (leaf.is_empty()) return;
+      const Vec3f center = centered(*job_.frame, leaf).center;
+      typename Warp::template Lanes<SurfacePoint> best;
+      warp.each([&](std::uint32_t lane) {
+        best[lane] = SurfacePoint{};
+        for (std::uint32_t kind = 0; kind < kind_count; ++kind) {
+          for (std::uint32_t k = lane; k < shared_.kind_count_of[kind]; k += warp_size) {
+            const Record record = shared_.list[shared_.place[kind][k]].get();
+            Vec3f point;
+            if (!closest_on_record(kind, record, center, point)) continue;
+            const float squared = squared_length(center - point);
+            if (squared < best[lane].squared_distance) best[lane] = {point, squared, record.id};
+          }
+        }
+      });
+      const std::uint64_t smallest = warp.smallest([&](std::uint32_t lane) {
+        return (static_cast<std::uint64_t>(bits_of(best[lane].squared_distance)) << 32) | lane;
+      });
+      const auto winner = static_cast<std::uint32_t>(smallest);
+      warp.each([&](std::uint32_t lane) {
+        SurfacePoint& known = shared_.leaf_point[warp.index()];
+        if (lane == winner && best[lane].squared_distance < known.squared_distance) known = best[lane];
+      });
+    }
+
+    BLUM_HD void set_leaf_domination(const Warp& warp, const NodeBox& leaf) {
+      warp.each([&](std::uint32_t lane) {
+        if (lane != 0) return;
+        Dominators dominators;
+        dominators.point[0] = shared_.leaf_point[warp.index()].point;
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+          dominators.point[axis + 1] = shared_.leaf_point[warp.index() ^ (1U << axis)].point;
+        }
+        const CenteredBox box = centered(*job_.frame, leaf).widened();
+        shared_.leaf_boxes[warp.index()] = box;
+        shared_.leaf_domination[warp.index()] = Domination(box, dominators);
+      });
+    }
+
+    BLUM_HD void evaluate_leaf(const Warp& warp) {
+      const NodeBox leaf = leaf_box(warp.index());
+      if (leaf.is_empty()) return;
+      set_leaf_domination(warp, leaf);
+      const CenteredBox& box = shared_.leaf_boxes[warp.index()];
+      const Domination& domination = shared_.leaf_domination[warp.index()];
+      for (std::uint32_t kind = 0; kind < kind_count; ++kind) {
+        const std::uint32_t count = shared_.kind_count_of[kind];
+        for (std::uint32_t first = 0; first < count; first += warp_size) {
+          std::uint32_t kept = warp.ballot([&](std::uint32_t lane) {
+            return first + lane < count &&
+                   site_matters(kind, shared_.list[shared_.place[kind][first + lane]].get(), box, domination);
+          });
+          for (; kept != 0; kept &= kept - 1) {
+            const Record record = shared_.list[shared_.place[kind][first + lowest_bit(kept)]].get();
+            warp.each([&](std::uint32_t lane) {
+              LaneNodes& mine = lanes_.at(warp, lane);
+              for (int k = 0; k < 2; ++k) offer_site(kind, record, mine.node[k], mine.winner[k]);
+            });
+          }
+        }
+      }
+    }
+
+    /// Rounding can leave a node between the domains of all sites: it gets the closest of the closed sites.
+    BLUM_HD void settle(const Warp& warp, const NodeBox& leaf) {
+      for (std::uint32_t k = 0; k < 2; ++k) {
+        std::uint32_t open = warp.ballot([&](std::uint32_t lane) {
+          return is_in(leaf, place_in(leaf, lane, k)) && lanes_.at(warp, lane).winner[k].id == dead_record;
+        });
+        for (; open != 0; open &= open - 1) {
+          const std::uint32_t owner = lowest_bit(open);
+          typename Warp::template Lanes<Vec3f> node;
+          warp.each([&](std::uint32_t lane) { node[lane] = lanes_.at(warp, lane).node[k]; });
+          const Vec3f query = warp.broadcast(node, owner);
+          const SurfacePoint best = search(warp, job_.forest, query, nearest_, shared_.search[warp.index()]);
+          warp.each([&](std::uint32_t lane) {
+            if (lane == owner) lanes_.at(warp, lane).winner[k] = {best.squared_distance, best.id};
+          });
+        }
+      }
+    }
+
+    /// Rare, so it must not cost the others registers.
+    BLUM_HD BLUM_NOINLINE static SurfacePoint search(const Warp& warp, const Forest& forest, const Vec3f& query,
+                                                     SurfacePoint best, SearchStack& stack) {
+      best.squared_distance = squared_length(query - best.point);
+      NearestSearch<Warp>(warp, forest, stack).run(query, best);
+      return best;
+    }
+
+    /// The k-th node of a lane: x and y differ from lane to lane, z too, and by two within a lane.
+    [[nodiscard]] BLUM_HD static Place place_in(const NodeBox& leaf, std::uint32_t lane, std::uint32_t k) {
+      return {{leaf.first[0] + static_cast<std::int32_t>(lane % 4),
+               leaf.first[1] + static_cast<std::int32_t>(lane / 4 % 4),
+               leaf.first[2] + static_cast<std::int32_t>(lane / 16 + 2 * k)}};
+    }
+    [[nodiscard]] BLUM_HD static bool is_in(const NodeBox& box, const Place& place) {
+      bool is_in = true;
+      for (int axis = 0; axis < 3; ++axis) is_in = is_in && place.at[axis] < box.first[axis] + box.count[axis];
+      return is_in;
+    }
+    [[nodiscard]] BLUM_HD float coordinate(int axis, const Place& place) const {
+      return static_cast<float>(job_.frame->at(axis, static_cast<double>(place.at[axis])));
+    }
+    /// Where a node is in the output.
+    [[nodiscard]] BLUM_HD std::size_t offset(const Place& place) const {
+      const auto slice = static_cast<std::size_t>(place.at[2] - job_.tiles.first_slice);
+      const auto row = slice * static_cast<std::size_t>(job_.tiles.size[1]) + static_cast<std::size_t>(place.at[1]);
+      return row * static_cast<std::size_t>(job_.tiles.size[0]) + static_cast<std::size_t>(place.at[0]);
+    }
+
+    BLUM_HD void write() {
+      const auto to_world = static_cast<float>(1 / scale());
+      const float band = job_.output.band > 0 ? static_cast<float>(job_.output.band) : far_away * far_away;
+      block_.each_warp([&](const Warp& warp) {
+        const NodeBox leaf = leaf_box(warp.index());
+        if (leaf.is_empty()) return;
+        settle(warp, leaf);
+        warp.each([&](std::uint32_t lane) {
+          const LaneNodes& mine = lanes_.at(warp, lane);
+          for (std::uint32_t k = 0; k < 2; ++k) {
+            const Place place = place_in(leaf, lane, k);
+            if (!is_in(leaf, place)) continue;
+            const std::size_t at = offset(place);
+            const float distance = root(mine.winner[k].squared) * to_world;
+            const bool is_beyond = distance > band;
+            job_.output.distance[at] = is_beyond ? band : distance;
+            job_.output.site[at] = is_beyond ? dead_record : mine.winner[k].id;
+          }
+        });
+      });
+    }
+
+    /// Gives all nodes the band's distance and no site.
+    BLUM_HD void fill() {
+      block_.each_warp([&](const Warp& warp) {
+        warp.each([&](std::uint32_t lane) {
+          for (std::uint32_t k = 0; k < 2; ++k) {
+            const Place place = place_in(leaf_box(warp.index()), lane, k);
+            if (!is_in(nodes_, place)) continue;
+            const std::size_t at = offset(place);
+            job_.output.distance[at] = static_cast<float>(job_.output.band);
+            job_.output.site[at] = dead_record;
+          }
+        });
+      });
+    }
+
+    const ComputeTiles& job_;
+    const Block& block_;
+    Shared& shared_;
+    std::uint32_t tile_;
+    NodeBox nodes_;
+    CenteredBox box_;  ///< widened
+    SurfacePoint nearest_;
+    typename Block::template PerThread<LaneNodes> lanes_;
+  };
+};
+
+}  // namespace blum::kernels

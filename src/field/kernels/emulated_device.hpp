@@ -1,0 +1,177 @@
+// Blum: runs kernels on the host, for the tests. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "field/kernels/host_device.hpp"
+
+namespace blum::kernels {
+
+/// The lanes of a warp, one after the other. A kernel is a sequence of steps that all lanes take together, and of
+/// questions to all of them (ballot, smallest); what a lane keeps from step to step is in Lanes.
+class EmulatedWarp {
+ public:
+  template <class T>
+  class Lanes {
+   public:
+    T& operator[](std::uint32_t lane) { return value_[lane]; }
+    const T& operator[](std::uint32_t lane) const { return value_[lane]; }
+
+   private:
+    std::array<T, warp_size> value_{};
+  };
+
+  explicit EmulatedWarp(std::uint32_t index) : index_(index) {}
+  [[nodiscard]] std::uint32_t index() const { return index_; }
+
+  template <class Step>
+  void each(const Step& step) const {
+    for (std::uint32_t lane = 0; lane < warp_size; ++lane) step(lane);
+  }
+  template <class Question>
+  [[nodiscard]] std::uint32_t ballot(const Question& question) const {
+    std::uint32_t result = 0;
+    for (std::uint32_t lane = 0; lane < warp_size; ++lane) result |= question(lane) ? 1U << lane : 0U;
+    return result;
+  }
+  /// The smallest of all lanes' values.
+  template <class Value>
+  [[nodiscard]] std::uint64_t smallest(const Value& value) const {
+    std::uint64_t result = value(0);
+    for (std::uint32_t lane = 1; lane < warp_size; ++lane) result = std::min<std::uint64_t>(result, value(lane));
+    return result;
+  }
+  template <class T>
+  [[nodiscard]] T broadcast(const Lanes<T>& values, std::uint32_t lane) const {
+    return values[lane];
+  }
+  /// Adds to a counter in shared memory; returns what it was.
+  [[nodiscard]] std::uint32_t claim(std::uint32_t& counter, std::uint32_t count) const {
+    return std::exchange(counter, counter + count);
+  }
+
+ private:
+  std::uint32_t index_;
+};
+
+/// The threads of a block, warp after warp. Everything between two steps of a block must be the same for all threads.
+template <std::uint32_t threads>
+class EmulatedBlock {
+ public:
+  using Warp = EmulatedWarp;
+  static constexpr std::uint32_t warps = threads / warp_size;
+
+  /// What each thread keeps from step to step.
+  template <class T>
+  class PerThread {
+   public:
+    T& at(const Warp& warp, std::uint32_t lane) { return value_[warp.index() * warp_size + lane]; }
+
+   private:
+    std::array<T, threads> value_{};
+  };
+
+  template <class Step>
+  void each_warp(const Step& step) const {
+    for (std::uint32_t w = 0; w < warps; ++w) step(Warp(w));
+  }
+  /// One thread does something for all.
+  template <class Step>
+  void once(const Step& step) const {
+    step();
+  }
+  /// A value in shared memory, read by all threads before any goes on to change it.
+  template <class T>
+  [[nodiscard]] T read(const T& shared) const {
+    return shared;
+  }
+};
+
+/// Memory of a device, here the host's.
+template <class T>
+class EmulatedArray {
+ public:
+  void resize(std::size_t count) { value_.resize(count); }
+  [[nodiscard]] std::size_t size() const { return value_.size(); }
+  [[nodiscard]] T* data() { return value_.data(); }
+  [[nodiscard]] const T* data() const { return value_.data(); }
+
+ private:
+  std::vector<T> value_;
+};
+
+/// A device that launches kernels as loops: the same bodies, blocks and lists as on a graphics processor.
+class EmulatedDevice {
+ public:
+  template <class T>
+  using Array = EmulatedArray<T>;
+
+  template <class T>
+  void upload(std::span<const T> from, Array<T>& to) const {
+    to.resize(from.size());
+    std::copy(from.begin(), from.end(), to.data());
+  }
+  template <class T>
+  void download(const T* from, std::size_t count, T* to) const {
+    std::copy_n(from, count, to);
+  }
+  template <class T>
+  void fill(Array<T>& array, const T& value) const {
+    std::fill_n(array.data(), array.size(), value);
+  }
+
+  /// Calls body(index) for all indices below count, in any order.
+  template <class Body>
+  void for_each(std::size_t count, const Body& body) const {
+    for (std::size_t k = 0; k < count; ++k) body(k);
+  }
+  /// Runs `count` blocks of Body::threads threads: body(block, shared, index).
+  template <class Body>
+  void run_blocks(std::size_t count, const Body& body) const {
+    const auto shared = std::make_unique<typename Body::Shared>();
+    for (std::size_t k = 0; k < count; ++k) body(EmulatedBlock<Body::threads>{}, *shared, k);
+  }
+
+  /// Sorts by the lowest `bits` bits of the keys; equal keys keep their order.
+  template <class Key>
+  void sort_pairs(Array<Key>& keys, Array<std::uint32_t>& values, int bits) const {
+    const Key mask = bits >= static_cast<int>(8 * sizeof(Key)) ? ~Key{0} : (Key{1} << bits) - 1;
+    std::vector<std::size_t> order(keys.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return (keys.data()[a] & mask) < (keys.data()[b] & mask); });
+    Array<Key> sorted_keys;
+    Array<std::uint32_t> sorted_values;
+    sorted_keys.resize(keys.size());
+    sorted_values.resize(keys.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      sorted_keys.data()[k] = keys.data()[order[k]];
+      sorted_values.data()[k] = values.data()[order[k]];
+    }
+    std::swap(keys, sorted_keys);
+    std::swap(values, sorted_values);
+  }
+  /// out[k] = in[0] + ... + in[k - 1].
+  void exclusive_sum(const Array<std::uint32_t>& in, Array<std::uint32_t>& out) const {
+    out.resize(in.size());
+    std::exclusive_scan(in.data(), in.data() + in.size(), out.data(), std::uint32_t{0});
+  }
+  /// *out = first combined with load(0), ..., load(count - 1), in any order and grouping.
+  template <class T, class Load, class Combine>
+  void reduce(std::size_t count, const Load& load, const T& first, const Combine& combine, T* out) const {
+    T result = first;
+    for (std::size_t k = 0; k < count; ++k) result = combine(result, load(k));
+    *out = result;
+  }
+  void wait() const {}
+};
+
+}  // namespace blum::kernels

@@ -1,0 +1,116 @@
+// Blum: fields on a device, from vertices to distances. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "blum/core/error.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "field/kernels/build_records.hpp"
+#include "field/kernels/compute_tiles.hpp"
+#include "field/kernels/tile_points.hpp"
+
+namespace blum::kernels {
+
+/// The box around a named vertex, in the grid's axes.
+struct VertexBounds {
+  const Vec3d* vertices;
+  const std::uint32_t* named;
+  Mat3 direction;
+  BLUM_HD Bounds operator()(std::size_t k) const {
+    Bounds box;
+    box.extend(direction.transposed_times(vertices[named[k]]));
+    return box;
+  }
+};
+
+struct JoinBounds {
+  BLUM_HD Bounds operator()(const Bounds& a, const Bounds& b) const {
+    Bounds box;
+    box.lower = min(a.lower, b.lower);
+    box.upper = max(a.upper, b.upper);
+    return box;
+  }
+};
+
+/// Finds the frame on the device, so that no step waits for the host.
+struct MakeFrame {
+  const Bounds* bounds;
+  GridSpec grid;
+  NormalFrame* frame;
+  BLUM_HD void operator()(std::size_t) const { *frame = make_normal_frame(*bounds, grid); }
+};
+
+/// Unsigned fields of a mesh in a device's memory. Device is CudaDevice, or EmulatedDevice in the tests.
+///
+/// Once per connectivity: set_connectivity(). Once per frame: prepare(). Then compute() for slabs of the grid, in any
+/// order.
+template <class Device>
+class FieldPipeline {
+ public:
+  explicit FieldPipeline(Device& device) : device_(device) {}
+
+  /// Waits for the device (the number of edges decides the sizes of what follows).
+  void set_connectivity(const DeviceMesh& mesh) { build_connectivity(device_, mesh, connectivity_); }
+  [[nodiscard]] ConnectivityView connectivity() const { return connectivity_.view(); }
+
+  /// Builds records and trees of this frame's vertices.
+  void prepare(const DeviceMesh& mesh, const GridSpec& grid) {
+    grid_ = grid;
+    bounds_.resize(1);
+    frame_.resize(1);
+    device_.reduce(connectivity_.named_count,
+                   VertexBounds{mesh.vertices, connectivity_.named_vertices.data(), grid.direction}, Bounds{},
+                   JoinBounds{}, bounds_.data());
+    device_.for_each(1, MakeFrame{bounds_.data(), grid, frame_.data()});
+    order_sites(device_, mesh, connectivity_.view(), frame_.data(), order_);
+    forest_ = build_records(device_, mesh, connectivity_.view(), order_, records_);
+  }
+
+  /// @throws InvalidGrid where mesh and grid are too large or small for 32-bit distances. Waits for the device.
+  void check_frame() {
+    NormalFrame frame;
+    device_.download(frame_.data(), 1, &frame);
+    if (frame.fault == NormalFrame::Fault::too_large) {
+      throw InvalidGrid("mesh and grid span more than 1e37, too far for 32-bit distances: scale them down");
+    }
+    if (frame.fault == NormalFrame::Fault::too_small) {
+      throw InvalidGrid("mesh and grid span less than 1e-36, too little for 32-bit distances: scale them up");
+    }
+  }
+
+  /// Writes the slices [first_slice, last_slice) of the grid to a device's memory.
+  void compute(std::int64_t first_slice, std::int64_t last_slice, const FieldOutput& output) {
+    const TileGrid coarse{grid_.size, first_slice, last_slice, 4 * ComputeTiles::side};
+    const TileGrid tiles{grid_.size, first_slice, last_slice, ComputeTiles::side};
+    find_points({forest_, frame_.data(), coarse, nullptr, coarse, 0, nullptr}, coarse_points_);
+    find_points({forest_, frame_.data(), tiles, coarse_points_.data(), coarse, 0, nullptr}, points_);
+    device_.run_blocks(tiles.count(), ComputeTiles{forest_, frame_.data(), tiles, points_.data(), output});
+  }
+
+ private:
+  using Points = typename Device::template Array<SurfacePoint>;
+
+  void find_points(FindTilePoints body, Points& out) {
+    const std::size_t count = body.tiles.count();
+    out.resize(count);
+    body.count = static_cast<std::uint32_t>(count);
+    body.out = out.data();
+    device_.run_blocks((count + FindTilePoints::warps - 1) / FindTilePoints::warps, body);
+  }
+
+  Device& device_;
+  GridSpec grid_;
+  Connectivity<Device> connectivity_;
+  typename Device::template Array<Bounds> bounds_;
+  typename Device::template Array<NormalFrame> frame_;
+  SiteOrder<Device> order_;
+  SiteRecords<Device> records_;
+  Forest forest_;
+  Points coarse_points_;
+  Points points_;
+};
+
+}  // namespace blum::kernels

@@ -1,0 +1,93 @@
+// Blum: what the bodies of kernels are written with, for host and device alike. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "blum/core/vec3.hpp"
+
+// Functions of kernels run on the host too: there the tests run them through EmulatedDevice (emulated_device.hpp).
+// Constexpr functions of the standard library and of Vec3 may be used as they are (nvcc --expt-relaxed-constexpr).
+#if defined(__CUDACC__)
+#define BLUM_HD __host__ __device__
+#define BLUM_NOINLINE __noinline__
+#else
+#define BLUM_HD
+#define BLUM_NOINLINE
+#endif
+
+namespace blum::kernels {
+
+/// Lanes of a warp; also how many sites a cluster has, and how many children a box.
+inline constexpr std::uint32_t warp_size = 32;
+
+template <class T>
+BLUM_HD constexpr T smaller(T a, T b) {
+  return b < a ? b : a;
+}
+template <class T>
+BLUM_HD constexpr T larger(T a, T b) {
+  return a < b ? b : a;
+}
+template <class T>
+BLUM_HD constexpr T clamped(T x, T low, T high) {
+  return smaller(larger(x, low), high);
+}
+BLUM_HD inline float root(float x) {
+  return sqrtf(x);
+}
+BLUM_HD inline double root(double x) {
+  return sqrt(x);
+}
+BLUM_HD inline float magnitude(float x) {
+  return fabsf(x);
+}
+BLUM_HD inline double magnitude(double x) {
+  return fabs(x);
+}
+template <class T>
+BLUM_HD T norm(const Vec3<T>& v) {
+  return root(squared_length(v));
+}
+BLUM_HD constexpr Vec3f to_float(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+BLUM_HD constexpr Vec3d to_double(const Vec3f& v) {
+  return {v.x, v.y, v.z};
+}
+/// The largest value of v . x over the box |x| <= half.
+BLUM_HD inline float support(const Vec3f& v, const Vec3f& half) {
+  return magnitude(v.x) * half.x + magnitude(v.y) * half.y + magnitude(v.z) * half.z;
+}
+
+BLUM_HD inline std::uint32_t count_bits(std::uint32_t x) {
+#if defined(__CUDA_ARCH__)
+  return static_cast<std::uint32_t>(__popc(x));
+#else
+  return static_cast<std::uint32_t>(std::popcount(x));
+#endif
+}
+/// The index of the lowest set bit of x, which is not 0.
+BLUM_HD inline std::uint32_t lowest_bit(std::uint32_t x) {
+#if defined(__CUDA_ARCH__)
+  return static_cast<std::uint32_t>(__ffs(static_cast<int>(x)) - 1);
+#else
+  return static_cast<std::uint32_t>(std::countr_zero(x));
+#endif
+}
+/// Set bits below bit `lane`.
+BLUM_HD inline std::uint32_t bits_below(std::uint32_t mask, std::uint32_t lane) {
+  return count_bits(mask & ((1U << lane) - 1U));
+}
+/// The bits of a float that is not negative: they are in the same order.
+BLUM_HD inline std::uint32_t bits_of(float x) {
+#if defined(__CUDA_ARCH__)
+  return __float_as_uint(x);
+#else
+  return std::bit_cast<std::uint32_t>(x);
+#endif
+}
+
+}  // namespace blum::kernels

@@ -1,0 +1,67 @@
+// Blum: the coordinates in which fields are computed. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "blum/grid/grid_spec.hpp"
+#include "field/kernels/host_device.hpp"
+
+namespace blum::kernels {
+
+/// Maps the world so that float32 loses nothing: the grid's axes become x, y, z, the box around mesh and grid is
+/// centred on the origin, and its diagonal lies in (1/2, 1]. The scale is a power of two, so that it is exact.
+struct NormalFrame {
+  enum class Fault : std::uint8_t { none, too_large, too_small };
+
+  Mat3 direction;
+  Vec3d center;      ///< of the common box, in grid axes
+  double scale = 1;  ///< normalised = world * scale
+  Vec3d first_node;  ///< normalised position of node (0, 0, 0)
+  Vec3d spacing;     ///< normalised
+  Fault fault = Fault::none;
+
+  [[nodiscard]] BLUM_HD Vec3d to_normal(const Vec3d& world) const {
+    return (direction.transposed_times(world) - center) * scale;
+  }
+  /// Normalised coordinate of the nodes with this index along an axis; halves lie between two nodes.
+  [[nodiscard]] BLUM_HD double at(int axis, double index) const {
+    const auto a = static_cast<std::size_t>(axis);
+    return first_node[a] + spacing[a] * index;
+  }
+};
+
+/// Lower and upper corner.
+struct Bounds {
+  Vec3d lower{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  Vec3d upper{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+  BLUM_HD void extend(const Vec3d& p) {
+    lower = min(lower, p);
+    upper = max(upper, p);
+  }
+};
+
+/// @param box  around the mesh, in the grid's axes.
+BLUM_HD inline NormalFrame make_normal_frame(Bounds box, const GridSpec& grid) {
+  NormalFrame frame;
+  frame.direction = grid.direction;
+  const Vec3d first = grid.direction.transposed_times(grid.origin);
+  const Vec3d last = first + Vec3d{static_cast<double>(grid.size[0] - 1) * grid.spacing.x,
+                                   static_cast<double>(grid.size[1] - 1) * grid.spacing.y,
+                                   static_cast<double>(grid.size[2] - 1) * grid.spacing.z};
+  box.extend(first);
+  box.extend(last);
+  const Vec3d size = box.upper - box.lower;  // the diagonal's squares may underflow
+  const double diagonal = norm(size);
+  if (!(diagonal < 1e37)) frame.fault = NormalFrame::Fault::too_large;
+  if (larger(larger(size.x, size.y), size.z) > 0 && diagonal < 1e-36) frame.fault = NormalFrame::Fault::too_small;
+  int exponent = 0;
+  if (diagonal > 0 && frame.fault == NormalFrame::Fault::none) (void)frexp(diagonal, &exponent);
+  frame.scale = ldexp(1.0, -exponent);
+  frame.center = (box.lower + box.upper) * 0.5;
+  frame.first_node = (first - frame.center) * frame.scale;
+  frame.spacing = grid.spacing * frame.scale;
+  return frame;
+}
+
+}  // namespace blum::kernels

@@ -1,0 +1,90 @@
+// Blum: sites as the kernels see them. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "field/kernels/host_device.hpp"
+
+namespace blum::kernels {
+
+/// One site with its domain, in one cache line; all lengths in the normalised frame. What the columns mean depends on
+/// the kind (see the structs below).
+struct alignas(64) Record {
+  std::array<float, 15> column{};
+  std::uint32_t id = 0;  ///< SiteId
+};
+static_assert(sizeof(Record) == 64);
+
+/// Vertex: its position and up to four directions e of the edges that bound its domain, (q - p) . e <= 0. Unused: 0.
+struct VertexColumns {
+  static constexpr int position = 0;   // 3
+  static constexpr int direction = 3;  // 4 x 3
+};
+
+/// Edge: midpoint m, unit direction t, half-length, and an orthonormal frame (t, b, n = t x b). b leaves the edge
+/// into its first face, whose half-space is (q - m) . b <= first_limit (+huge where there is no face); the second
+/// face's is second_b * [(q - m) . b] + second_n * [(q - m) . n] <= 0 (both 0 where there is none). side is +-1
+/// where both faces agree that their side of n points out of (or into) a closed solid, see edge_side(); else 0. The
+/// site is beaten everywhere further than reach from it.
+struct EdgeColumns {
+  static constexpr int midpoint = 0;  // 3
+  static constexpr int tangent = 3;   // 3
+  static constexpr int half_length = 6;
+  static constexpr int binormal = 7;  // 3
+  static constexpr int second_b = 10;
+  static constexpr int second_n = 11;
+  static constexpr int first_limit = 12;
+  static constexpr int side = 13;
+  static constexpr int reach = 14;
+};
+
+/// Face: anchor (the corner opposite the longest edge, so that slivers do not amplify errors), unit normal, and the
+/// negated gradients of the barycentric coordinates u and v of the two other corners: the face is -u, -v < 0, u + v
+/// < 1.
+struct FaceColumns {
+  static constexpr int anchor = 0;   // 3
+  static constexpr int normal = 3;   // 3
+  static constexpr int minus_u = 6;  // 3
+  static constexpr int minus_v = 9;  // 3
+  static constexpr int reach_above = 12;
+  static constexpr int reach_below = 13;
+  static constexpr int is_sliver = 14;  ///< not 0: the columns are SliverColumns (device only)
+};
+
+/// A face too flat for float32 barycentrics: its three corners. Evaluated as a closed triangle in double.
+struct SliverColumns {
+  static constexpr int corners = 0;  // 3 x 3
+};
+
+inline constexpr std::uint32_t dead_record = 0xffffffff;
+
+/// Stands for no distance: what lies this far away matters to nothing.
+inline constexpr float far_away = 1e18F;
+
+/// Rounding of normalised positions and of affine functions of them stays below this; planes are widened by it where
+/// widening is harmless (vertices, sides of edges), so that no node falls between two domains.
+inline constexpr float plane_slack = 1e-6F;
+
+BLUM_HD inline Vec3f vec_at(const Record& record, int column) {
+  const auto at = static_cast<std::size_t>(column);
+  return {record.column[at], record.column[at + 1], record.column[at + 2]};
+}
+BLUM_HD inline float value_at(const Record& record, int column) {
+  return record.column[static_cast<std::size_t>(column)];
+}
+BLUM_HD inline void store(Record& record, int column, const Vec3f& v) {
+  const auto at = static_cast<std::size_t>(column);
+  record.column[at] = v.x;
+  record.column[at + 1] = v.y;
+  record.column[at + 2] = v.z;
+}
+BLUM_HD inline void store(Record& record, int column, const Vec3d& v) {
+  store(record, column, to_float(v));
+}
+BLUM_HD inline void store(Record& record, int column, double x) {
+  record.column[static_cast<std::size_t>(column)] = static_cast<float>(x);
+}
+
+}  // namespace blum::kernels

@@ -1,0 +1,117 @@
+// Blum: records of single faces and edges. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "field/kernels/record.hpp"
+
+namespace blum::kernels {
+
+/// Shorter or flatter than this, in a frame whose diagonal is about one, float32 cannot tell a site from its border.
+inline constexpr double negligible_length = 1e-12;
+inline constexpr double negligible_altitude = 1e-7;
+/// Above this, rounding of a face's barycentrics would reach beyond its corners (docs/theory/fields.md).
+inline constexpr double largest_condition = 64;
+/// A normal is trusted only if rounding in double cannot have turned it by more than about 1e-9.
+inline constexpr double smallest_relative_altitude = 1e-7;
+
+/// One division for three.
+BLUM_HD inline Vec3d unit(const Vec3d& v, double length_of_v) {
+  return v * (1 / length_of_v);
+}
+
+/// A face's shape as its record needs it: corners with the anchor first, and how well-conditioned they are.
+struct FaceShape {
+  Vec3d anchor, to_u, to_v, normal;
+  double doubled_area = 0;
+  bool is_negligible = true;
+  bool is_sliver = false;
+  bool has_normal = false;
+
+  [[nodiscard]] BLUM_HD bool has_record() const { return !is_negligible && !is_sliver; }
+};
+
+BLUM_HD inline FaceShape shape_of_face(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d corner[3] = {a, b, c};
+  const double squared_side[3] = {squared_length(c - b), squared_length(a - c), squared_length(b - a)};
+  int opposite = squared_side[0] < squared_side[1] ? 1 : 0;
+  if (squared_side[opposite] < squared_side[2]) opposite = 2;
+  FaceShape shape;
+  shape.anchor = corner[opposite];
+  shape.to_u = corner[(opposite + 1) % 3] - shape.anchor;
+  shape.to_v = corner[(opposite + 2) % 3] - shape.anchor;
+  const Vec3d area_normal = cross(shape.to_u, shape.to_v);
+  const double squared_longest = squared_side[opposite];
+  const double squared_area = squared_length(area_normal);
+  if (!(squared_area > 0)) return shape;
+  shape.doubled_area = root(squared_area);
+  shape.normal = unit(area_normal, shape.doubled_area);
+  shape.has_normal = shape.doubled_area > smallest_relative_altitude * squared_longest;
+  shape.is_negligible = !(squared_area > negligible_altitude * negligible_altitude * squared_longest);
+  // |grad u| |to_u| + |grad v| |to_v|, with |grad u| = |to_v| / doubled area and the other way round.
+  const double squared_sides = squared_side[(opposite + 1) % 3] * squared_side[(opposite + 2) % 3];
+  shape.is_sliver = 4 * squared_sides > largest_condition * largest_condition * squared_area;
+  return shape;
+}
+
+/// All columns but the reaches and the id.
+BLUM_HD inline void write_face(const FaceShape& shape, Record& record) {
+  store(record, FaceColumns::anchor, shape.anchor);
+  store(record, FaceColumns::normal, shape.normal);
+  store(record, FaceColumns::minus_u, unit(cross(shape.normal, shape.to_v), shape.doubled_area));
+  store(record, FaceColumns::minus_v, unit(cross(shape.to_u, shape.normal), shape.doubled_area));
+}
+
+/// An edge and the directions in which up to two faces leave it.
+struct EdgeShape {
+  Vec3d start, end, tangent;
+  double length = 0;
+  Vec3d first, second;  ///< unit; second only beside first
+  bool has_first = false;
+  bool has_second = false;
+};
+
+BLUM_HD inline Vec3d any_perpendicular(const Vec3d& t) {
+  const Vec3d axis = magnitude(t.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d b = cross(t, axis);
+  return b / norm(b);
+}
+
+/// Unit direction that leaves an edge with this tangent into a triangle on its left (`is_forward`) or right.
+BLUM_HD inline Vec3d in_face_direction(const Vec3d& normal, const Vec3d& tangent, bool is_forward) {
+  return is_forward ? cross(normal, tangent) : cross(tangent, normal);
+}
+
+/// All columns but the reach and the id.
+/// @param normal  of the edge's first triangle.
+BLUM_HD inline void write_edge(const EdgeShape& edge, const Vec3d& normal, Record& record) {
+  const Vec3d b = edge.has_first ? edge.first : any_perpendicular(edge.tangent);
+  const Vec3d n = cross(edge.tangent, b);
+  store(record, EdgeColumns::midpoint, (edge.start + edge.end) * 0.5);
+  store(record, EdgeColumns::tangent, edge.tangent);
+  store(record, EdgeColumns::half_length, 0.5 * edge.length);
+  store(record, EdgeColumns::binormal, b);
+  store(record, EdgeColumns::first_limit, edge.has_first ? plane_slack : 1e30);
+  if (edge.has_second) {
+    store(record, EdgeColumns::second_b, dot(edge.second, b));
+    store(record, EdgeColumns::second_n, dot(edge.second, n));
+    // Between faces that nearly fold together float32 cannot tell the pseudonormal: left to exact queries.
+    const bool is_folded = 1 - dot(edge.second, b) < 1e-5;
+    store(record, EdgeColumns::side, is_folded ? 0.0 : dot(normal, n) > 0 ? 1.0 : -1.0);
+  }
+}
+
+/// The two unit directions between which an edge's domain lies: perpendicular to each of its faces, away from the
+/// other. False where it may be a half-plane or more.
+BLUM_HD inline bool edge_borders(const EdgeShape& edge, Vec3d borders[2]) {
+  if (!edge.has_first || !edge.has_second) return false;
+  const Vec3d first_normal = cross(edge.tangent, edge.first);
+  const Vec3d second_normal = cross(edge.tangent, edge.second);
+  // Of the two perpendiculars of a face, the domain's border is the one that does not lead into the other face. Where
+  // the faces are nearly in one plane both may pass in rounding: then the domain may be a half-plane or more.
+  const double side = dot(first_normal, edge.second);
+  if (!(magnitude(side) > 1e-5)) return false;
+  borders[0] = side < 0 ? first_normal : -first_normal;
+  borders[1] = dot(second_normal, edge.first) < 0 ? second_normal : -second_normal;
+  return true;
+}
+
+}  // namespace blum::kernels
