@@ -19,6 +19,11 @@ void add_threads_option(CLI::App& command, std::optional<std::string>& threads) 
   add_text_option(command, "--threads", threads, "T", "Number of threads (default: one per core)");
 }
 
+void add_device_option(CLI::App& command, std::optional<std::string>& device) {
+  add_text_option(command, "--device", device, "DEV",
+                  "Where distances are computed: cpu, auto, cuda or cuda:K (default cpu)");
+}
+
 void add_report_options(CLI::App& command, ReportOptions& report, const char* json_help) {
   add_text_option(command, "--json", report.json, "FILE", json_help);
   command.add_flag("--quiet", report.quiet, "Say nothing but errors");

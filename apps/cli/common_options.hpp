@@ -25,6 +25,7 @@ void add_weld_option(CLI::App& command, std::optional<std::string>& weld,
 constexpr const char* weld_of_axis_help = "Mesh: merge equal vertices, or those within TOL (default: as AXIS tells)";
 
 void add_threads_option(CLI::App& command, std::optional<std::string>& threads);
+void add_device_option(CLI::App& command, std::optional<std::string>& device);
 
 /// --json and --quiet.
 void add_report_options(CLI::App& command, ReportOptions& report,

@@ -40,7 +40,8 @@ constexpr const char* examples = R"(Examples:
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> resolution, spacing, bounds, padding, sign, band, site_ids, threshold, weld, threads;
+  std::optional<std::string> resolution, spacing, bounds, padding, sign, band, site_ids, threshold, weld, threads,
+      device;
   std::vector<std::string> labels;
   ReportOptions report;
 };
@@ -58,6 +59,7 @@ struct Request {
   Selections selections;
   std::optional<double> weld;
   int threads = 0;
+  Device device;
   ReportOptions report;
 };
 
@@ -90,6 +92,7 @@ Request parse(const Arguments& a) {
   if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);
   r.weld = parse_weld(a.weld);
   r.threads = parse_threads(a.threads);
+  if (a.device) r.device = parse_device(*a.device);
   r.report = a.report;
   return r;
 }
@@ -161,6 +164,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   }
   json["files"] = names;
   json["sign"] = {{"rule", to_string(field.sign_rule)}, {"reason", field.sign_reason}};
+  json["device"] = to_string(field.device);
   json["band"] = field.band ? Json(*field.band) : Json(nullptr);
   json["distance"] = {{"minimum", s.minimum}, {"maximum", s.maximum}, {"inside_nodes", s.inside_nodes}};
   json["sites"] = sites_json(s, field.site_ids);
@@ -169,6 +173,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   if (label) run.table.add("label", std::to_string(*label));
   run.table.add("sign",
                 std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
+  if (field.device != Device::cpu()) run.table.add("device", to_string(field.device));
   run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
                                 (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
   run.table.add("sites", sites_text(s, field.site_ids));
@@ -250,7 +255,8 @@ void add_grid_text(Run& run, const GridSpec& grid) {
 }
 
 void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) {
-  const Context context = make_context(r.threads, progress, interrupt);
+  Context context = make_context(r.threads, progress, interrupt);
+  context.device = r.device;
   check_outputs(
       [&] {
         std::vector<fs::path> files = field_files(r.output);
@@ -300,7 +306,8 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
 }
 
 void run_image(const Request& r, Progress& progress, const Interrupt& interrupt) {
-  const Context context = make_context(r.threads, progress, interrupt);
+  Context context = make_context(r.threads, progress, interrupt);
+  context.device = r.device;
   std::vector<fs::path> names;
   if (r.selections.labels.size() < 2) names.push_back(r.output);
   if (r.selections.labels.size() >= 2) {
@@ -390,6 +397,7 @@ void add_field_command(CLI::App& app) {
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
   add_weld_option(*command, a->weld);
   add_threads_option(*command, a->threads);
+  add_device_option(*command, a->device);
   add_report_options(*command, a->report);
   command->footer(examples);
   command->callback([a] { run(*a); });

@@ -158,7 +158,7 @@ void run_call(const Call& call, const std::function<void(const Context&)>& work)
   }
   std::stop_source stop;
   RunningCalls::Entry entry(calls, stop);
-  Context context{call.threads, {}, stop.get_token()};
+  Context context{call.threads, {}, stop.get_token(), call.device};
   const bool tells = !call.progress.is_none();
   if (tells) {
     context.progress = [&](double fraction, std::string_view phase) { shared.report(fraction, phase); };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "blum/core/context.hpp"
+#include "blum/core/device.hpp"
 
 namespace blum::python {
 
@@ -15,6 +16,7 @@ namespace blum::python {
 struct Call {
   int threads = 0;            ///< as Context::threads
   nanobind::object progress;  ///< None, or called with (fraction, phase) in the thread that called
+  Device device = {};         ///< as Context::device
 };
 
 /// Runs work in a thread of its own, without the interpreter's lock. Meanwhile the calling thread looks after signals

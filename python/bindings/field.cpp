@@ -8,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/core/device.hpp"
 #include "blum/field/field.hpp"
 #include "blum/field/interpolate.hpp"
 #include "blum/field/zero_surface.hpp"
@@ -87,6 +88,7 @@ void bind_field_class(nb::module_& m) {
       .def_ro("band", &Field::band)
       .def_prop_ro("sign_rule", [](const Field& field) { return std::string(to_string(field.sign_rule)); })
       .def_ro("sign_reason", &Field::sign_reason)
+      .def_prop_ro("device", [](const Field& field) { return to_string(field.device); })
       .def_prop_ro("phases", [](const Field& field) { return phases_of(field.phases); })
       .def(
           "interpolate",
@@ -111,8 +113,10 @@ void bind_solver(nb::module_& m) {
       .def(
           "__init__",
           [](FieldSolver* self, const GridSpec& grid, const std::string& sign, std::optional<double> band,
-             const std::string& site_ids) { new (self) FieldSolver(grid, options_of(sign, band, site_ids)); },
-          nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"))
+             const std::string& site_ids, const std::string& device) {
+            new (self) FieldSolver(grid, options_of(sign, band, site_ids), {.device = parse_device(device)});
+          },
+          nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"), nb::arg("device"))
       .def(
           "compute",
           [](FieldSolver& solver, const MeshArrays& mesh, int threads, nb::object progress) {
@@ -162,14 +166,14 @@ void bind_field(nb::module_& m) {
   m.def(
       "distance_field",
       [](const MeshArrays& mesh, const GridSpec& grid, const std::string& sign, std::optional<double> band,
-         const std::string& site_ids, int threads, nb::object progress) {
+         const std::string& site_ids, int threads, const std::string& device, nb::object progress) {
         const MeshView view = mesh.view();
         const FieldOptions options = options_of(sign, band, site_ids);
-        return run({threads, std::move(progress)},
+        return run({threads, std::move(progress), parse_device(device)},
                    [&](const Context& context) { return distance_field(view, grid, options, context); });
       },
       nb::arg("mesh"), nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"),
-      nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("threads"), nb::arg("device"), nb::arg("progress").none());
 }
 
 }  // namespace blum::python

@@ -35,6 +35,8 @@ void translate(const std::exception_ptr& thrown, void* /*payload*/) {
     raise("InvalidOption", error);
   } catch (const OutOfMemory& error) {
     raise("OutOfMemory", error);
+  } catch (const DeviceError& error) {
+    raise("DeviceError", error);
   } catch (const Cancelled& error) {
     raise("Cancelled", error);
   } catch (const FormatError& error) {

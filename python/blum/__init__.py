@@ -25,6 +25,7 @@ from ._core import thread_count
 from ._core import version as __version__
 from ._errors import (
     Cancelled,
+    DeviceError,
     Error,
     FileError,
     FormatError,
@@ -77,6 +78,7 @@ __all__ = [
     "Certificate",
     "ClosestPointQuery",
     "ClosestPoints",
+    "DeviceError",
     "EdgeCheck",
     "Error",
     "Field",

@@ -138,6 +138,13 @@ def one_of(value: Any, name: str, allowed: Sequence[str]) -> str:
     raise InvalidOption(f"{name} is {value!r}, but must be one of {', '.join(map(repr, allowed))}")
 
 
+def device_name(value: Any) -> str:
+    """A device by its name, which the library reads."""
+    if not isinstance(value, str):
+        raise TypeError(f"device must be a string, not {type(value).__name__}")
+    return value
+
+
 def integer(value: Any, name: str, bits: int = 32) -> int:
     """An integer of Python or NumPy that fits the library's bits."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):

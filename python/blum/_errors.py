@@ -29,6 +29,10 @@ class OutOfMemory(Error, MemoryError):
     """The memory that a call needs is not there; the text says how much it asked for."""
 
 
+class DeviceError(Error, RuntimeError):
+    """A device that was asked for is not there, or failed; the text says which and what to do."""
+
+
 class Cancelled(Error):
     """The call was asked to stop."""
 

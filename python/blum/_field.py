@@ -21,6 +21,7 @@ from ._arguments import (
     PathLike,
     Real,
     as_array,
+    device_name,
     existing_file,
     integer,
     label_of,
@@ -78,6 +79,7 @@ class Field:
         # Now rather than when they are asked for: a solver that reuses its field may be writing it then.
         self._grid = Grid._of(core.grid)
         self._seconds = dict(core.phases)
+        self._device = str(core.device)
         self._sign_rule, self._sign_reason = str(core.sign_rule), str(core.sign_reason)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -125,6 +127,11 @@ class Field:
     def sign_rule(self) -> str:
         """How signs were found: "normals", "winding", "label", "balls" or "none"."""
         return self._sign_rule
+
+    @property
+    def device(self) -> str:
+        """Where the field was computed: "cpu" or "cuda:K"."""
+        return self._device
 
     @property
     def sign_reason(self) -> str:
@@ -222,6 +229,7 @@ def distance_field(
     band: Real | None = None,
     site_ids: SiteIds = "features",
     threads: int = 0,
+    device: str = "cpu",
     progress: Progress = False,
 ) -> Field:
     """Exact distance and closest site at every node of a grid.
@@ -249,6 +257,9 @@ def distance_field(
         What `Field.site` counts: vertices, edges and faces (see :class:`Sites`), or triangles.
     threads : int
         0: all cores. Results do not depend on it.
+    device : "cpu", "auto", "cuda" or "cuda:K"
+        Where distances are computed. "auto" takes the first CUDA device where there is one that works. Devices agree
+        within the precision below.
     progress : bool or function
         True: a bar of tqdm. A function is called with (fraction, phase).
 
@@ -259,7 +270,7 @@ def distance_field(
 
     Raises
     ------
-    InvalidMesh, InvalidGrid, InvalidOption (all ValueError), TypeError, OutOfMemory, KeyboardInterrupt
+    InvalidMesh, InvalidGrid, InvalidOption (all ValueError), TypeError, OutOfMemory, DeviceError, KeyboardInterrupt
 
     >>> import blum
     >>> field = blum.distance_field(blum.generate("box"), resolution=32)
@@ -276,6 +287,7 @@ def distance_field(
             optional_number(band, "band"),
             one_of(site_ids, "site_ids", _SITE_IDS),
             integer(threads, "threads"),
+            device_name(device),
             report,
         )
     field = Field._of(core, shape, shape.source)
@@ -295,7 +307,7 @@ class FieldSolver:
     Parameters
     ----------
     grid : Grid
-    sign, band, site_ids
+    sign, band, site_ids, device
         As for :func:`distance_field`.
     reuse : bool
         Write every frame into the same arrays: faster, but a frame's arrays then change with the next one. Without it
@@ -316,6 +328,7 @@ class FieldSolver:
         sign: Sign = "auto",
         band: Real | None = None,
         site_ids: SiteIds = "features",
+        device: str = "cpu",
         reuse: bool = False,
     ) -> None:
         if not isinstance(grid, Grid):
@@ -325,6 +338,7 @@ class FieldSolver:
             one_of(sign, "sign", _SIGNS),
             optional_number(band, "band"),
             one_of(site_ids, "site_ids", _SITE_IDS),
+            device_name(device),
         )
         self._grid = grid
         self._reuse = bool(reuse)

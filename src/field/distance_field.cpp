@@ -1,6 +1,8 @@
 // Fields of meshes: decides the sign rule, runs the back end, settles what it leaves open.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -10,7 +12,7 @@
 #include "blum/field/phase_timer.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/pseudonormals.hpp"
-#include "field/cpu/engine.hpp"
+#include "field/backend.hpp"
 #include "field/sign.hpp"
 #include "field/sign_scan.hpp"
 
@@ -115,7 +117,7 @@ void show_triangles(const SiteTable& sites, const Context& context, Field& field
 struct FieldSolver::State {
   FieldOptions options;
   Context context;
-  cpu::Engine engine;
+  std::unique_ptr<FieldBackend> engine;
   Field field;
 
   void compute(const MeshView& mesh, const Context& frame_context);
@@ -131,23 +133,28 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   if (field.site.size() != nodes) field.site = Buffer<SiteId>(nodes);
   field.band = options.band;
   field.site_ids = SiteIds::features;
+  field.device = engine->device();
   field.phases.clear();
 
   PhaseTimer connectivity_timer(field.phases);
-  engine.set_mesh(mesh, frame_context);
-  const SignChoice choice = choose_sign_rule(options.sign, mesh, engine.sites());
+  engine->set_mesh(mesh, frame_context);
+  const SignChoice choice = choose_sign_rule(options.sign, mesh, engine->sites());
   connectivity_timer.lap("connectivity");
   const bool with_sides = choice.rule == SignRule::normals && !choice.level;
-  const std::vector<std::size_t> unsettled =
-      engine.compute({field.grid, options.band, with_sides}, frame_context, field);
+  std::vector<std::size_t> unsettled =
+      engine->compute({field.grid, options.band, with_sides && engine->can_tell_sides()}, frame_context, field);
   PhaseTimer sign_timer(field.phases);
-  settle_nodes(unsettled, mesh, engine.sites(), with_sides, frame_context, field);
+  if (with_sides && !engine->can_tell_sides()) {
+    unsettled.resize(nodes);
+    std::iota(unsettled.begin(), unsettled.end(), std::size_t{0});
+  }
+  settle_nodes(unsettled, mesh, engine->sites(), with_sides, frame_context, field);
   field.sign_rule = choice.rule;
   field.sign_reason = choice.reason;
-  if (choice.rule == SignRule::winding) sign_by_winding(mesh, engine.sites(), frame_context, field);
-  if (choice.level) sign_by_orientation(mesh, engine.sites(), choice, frame_context, field);
+  if (choice.rule == SignRule::winding) sign_by_winding(mesh, engine->sites(), frame_context, field);
+  if (choice.level) sign_by_orientation(mesh, engine->sites(), choice, frame_context, field);
   sign_timer.lap("sign");
-  if (options.site_ids == SiteIds::triangles) show_triangles(engine.sites(), frame_context, field);
+  if (options.site_ids == SiteIds::triangles) show_triangles(engine->sites(), frame_context, field);
 }
 
 FieldSolver::FieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context)
@@ -155,6 +162,7 @@ FieldSolver::FieldSolver(const GridSpec& grid, const FieldOptions& options, cons
   validate(grid);
   check_options(options);
   (void)thread_count(context);
+  state_->engine = make_field_backend(context);
   state_->options = options;
   state_->context = context;
   state_->field.grid = grid;

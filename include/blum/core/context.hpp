@@ -1,9 +1,11 @@
-// Blum: how a call runs (threads, progress, cancellation). SPDX-License-Identifier: Apache-2.0
+// Blum: how a call runs (threads, progress, cancellation, device). SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
 #include <stop_token>
 #include <string_view>
+
+#include "blum/core/device.hpp"
 
 namespace blum {
 
@@ -18,6 +20,10 @@ struct Context {
 
   /// Asks running work to stop; the call then throws Cancelled, within 200 ms.
   std::stop_token cancel = {};
+
+  /// Where fields of meshes are computed (distance_field, FieldSolver). distance_transform() has no CUDA path yet and
+  /// refuses `cuda`; everything else computes on the CPU whatever this says.
+  Device device = {};
 };
 
 /// The number of threads that a context stands for: context.threads, or the number of usable cores when that is 0.

@@ -11,6 +11,7 @@
 
 #include "blum/core/buffer.hpp"
 #include "blum/core/context.hpp"
+#include "blum/core/device.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -75,6 +76,7 @@ struct Field {
   std::optional<double> band = {};  ///< half-width, mesh units
   SignRule sign_rule = SignRule::none;
   std::string sign_reason;  ///< one sentence: why this rule
+  Device device;            ///< where it was computed: never `automatic`
   std::vector<PhaseTime> phases;
 };
 
@@ -87,7 +89,8 @@ struct Field {
 ///              those of the winding number (of `normals`, those of the orientation: inverted for meshes that are
 ///              inside out, and not defined where closed shells neither all face the solid nor all face away from it,
 ///              or cross). The same bytes for any number of threads.
-/// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, Cancelled.
+///              Devices agree within these bounds.
+/// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, DeviceError, Cancelled.
 /// Cost: about O(nodes + sites log sites); 8 bytes per node. Method: docs/theory/fields.md (Sud 2006, ch. 2).
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {},
                                    const Context& context = {});
@@ -97,7 +100,7 @@ struct Field {
 /// the edge list, which is reused while the connectivity stays the same.
 class FieldSolver {
  public:
-  /// @throws InvalidGrid, InvalidOption, OutOfMemory.
+  /// @throws InvalidGrid, InvalidOption, OutOfMemory, DeviceError.
   explicit FieldSolver(const GridSpec& grid, const FieldOptions& options = {}, const Context& context = {});
   FieldSolver(FieldSolver&&) noexcept;
   FieldSolver& operator=(FieldSolver&&) noexcept;
@@ -106,7 +109,7 @@ class FieldSolver {
   /// The field of this frame's mesh; valid until the next call. Equal, byte for byte, to distance_field's.
   /// @throws as distance_field; the solver stays usable.
   const Field& compute(const MeshView& mesh);
-  /// The same with a context for this frame alone, which it can be cancelled by.
+  /// The same with a context for this frame alone, which it can be cancelled by. Its device is not looked at.
   const Field& compute(const MeshView& mesh, const Context& context);
 
   /// Moves the last computed field out of the solver; the next frame gets new buffers.

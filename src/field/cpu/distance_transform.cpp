@@ -294,6 +294,9 @@ VoxelSet selected_voxels(const VoxelImageView& image, const LabelSelection& sele
 std::vector<Field> distance_transforms(const VoxelImageView& image, std::span<const LabelSelection> selections,
                                        const DistanceTransformOptions& options, const Context& context) {
   validate(image);
+  if (context.device.kind == DeviceKind::cuda) {
+    throw InvalidOption("distance transforms of images are computed on the CPU only: ask for the device cpu or auto");
+  }
   const TransformPlan plan = make_plan(image.grid, options, context);
   Workspace work(plan, thread_count(context));
   std::vector<Field> fields;

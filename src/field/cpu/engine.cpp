@@ -1,7 +1,6 @@
 #include "field/cpu/engine.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "blum/core/parallel.hpp"
 #include "blum/field/phase_timer.hpp"
@@ -12,11 +11,6 @@ namespace {
 
 /// Fields above 16 MB are not expected to stay in the caches.
 constexpr std::size_t fewest_streamed_nodes = std::size_t{1} << 21;
-
-template <class T>
-bool same_bytes(std::span<const T> a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
-}
 
 /// Unit vertex pseudonormals in the grid's axes.
 std::vector<Vec3f> vertex_sides(const MeshView& mesh, const SiteTable& sites, const NormalFrame& frame,
@@ -62,21 +56,14 @@ struct Tiling {
 
 void Engine::set_mesh(const MeshView& mesh, const Context& context) {
   mesh_ = mesh;
-  const bool is_same = has_mesh_ && last_vertex_count_ == mesh.vertices.size() &&
-                       same_bytes(mesh.triangles, last_triangles_) && same_bytes(mesh.segments, last_segments_) &&
-                       same_bytes(mesh.points, last_points_);
-  if (is_same) return;
-  has_mesh_ = false;
+  if (connectivity_.holds(mesh)) return;
+  connectivity_.clear();
   sites_ = SiteTable(mesh, context);
   build_adjacency(mesh, sites_, context, adjacency_);
-  last_vertex_count_ = mesh.vertices.size();
-  last_triangles_.assign(mesh.triangles.begin(), mesh.triangles.end());
-  last_segments_.assign(mesh.segments.begin(), mesh.segments.end());
-  last_points_.assign(mesh.points.begin(), mesh.points.end());
-  has_mesh_ = true;
+  connectivity_.store(mesh);
 }
 
-void Engine::build_records(const Request& request, const Context& context) {
+void Engine::build_records(const FieldRequest& request, const Context& context) {
   frame_ = make_normal_frame(mesh_, adjacency_.named_vertices, request.grid);
   positions_.resize(mesh_.vertices.size());
   const auto& named = adjacency_.named_vertices;
@@ -90,7 +77,7 @@ void Engine::build_records(const Request& request, const Context& context) {
   build_cluster_forest(records_, context, forest_);
 }
 
-std::vector<std::size_t> Engine::compute(const Request& request, const Context& context, Field& field) {
+std::vector<std::size_t> Engine::compute(const FieldRequest& request, const Context& context, Field& field) {
   PhaseTimer timer(field.phases);
   build_records(request, context);
   FieldJob job;

@@ -5,6 +5,8 @@
 
 #include "blum/field/field.hpp"
 #include "blum/geometry/sites.hpp"
+#include "field/backend.hpp"
+#include "field/connectivity_cache.hpp"
 #include "field/cpu/adjacency.hpp"
 #include "field/cpu/cluster_forest.hpp"
 #include "field/cpu/normal_frame.hpp"
@@ -13,34 +15,21 @@
 
 namespace blum::cpu {
 
-/// Computes fields; keeps connectivity and memory from one to the next.
-class Engine {
+/// Computes fields on the CPU.
+class Engine final : public FieldBackend {
  public:
-  /// Makes `mesh` the current one: site numbering and adjacency, reused when the connectivity is the last one's.
-  /// The mesh must stay alive until compute() returns.
-  void set_mesh(const MeshView& mesh, const Context& context);
-  [[nodiscard]] const SiteTable& sites() const { return sites_; }
-
-  struct Request {
-    GridSpec grid;
-    std::optional<double> band = {};
-    /// Signs by pseudonormals, of a closed, consistently oriented mesh.
-    bool with_sides = false;
-  };
-  /// Fills distance and site (as feature ids) of a field whose buffers have the grid's size, and appends phase times.
-  /// Returns nodes that are left to exact queries: those that no site claimed in float32, and those whose side is too
-  /// close to call; rising.
-  [[nodiscard]] std::vector<std::size_t> compute(const Request& request, const Context& context, Field& field);
+  [[nodiscard]] Device device() const override { return Device::cpu(); }
+  [[nodiscard]] bool can_tell_sides() const override { return true; }
+  void set_mesh(const MeshView& mesh, const Context& context) override;
+  [[nodiscard]] const SiteTable& sites() const override { return sites_; }
+  [[nodiscard]] std::vector<std::size_t> compute(const FieldRequest& request, const Context& context,
+                                                 Field& field) override;
 
  private:
-  void build_records(const Request& request, const Context& context);
+  void build_records(const FieldRequest& request, const Context& context);
 
   MeshView mesh_;
-  std::vector<Triangle> last_triangles_;
-  std::vector<Segment> last_segments_;
-  std::vector<std::uint32_t> last_points_;
-  std::size_t last_vertex_count_ = 0;
-  bool has_mesh_ = false;
+  ConnectivityCache connectivity_;
 
   SiteTable sites_;
   Adjacency adjacency_;

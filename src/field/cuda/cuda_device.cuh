@@ -90,7 +90,16 @@ class CudaDevice {
   template <class T>
   using Array = CudaArray<T>;
 
-  explicit CudaDevice(cudaStream_t stream) : stream_(stream) {}
+  explicit CudaDevice(cudaStream_t stream) : stream_(stream) {
+    check(cudaStreamCreateWithFlags(&copies_, cudaStreamNonBlocking), "making a stream");
+    for (cudaEvent_t& mark : marks_) check(cudaEventCreateWithFlags(&mark, cudaEventDisableTiming), "making an event");
+  }
+  CudaDevice(const CudaDevice&) = delete;
+  CudaDevice& operator=(const CudaDevice&) = delete;
+  ~CudaDevice() {
+    for (const cudaEvent_t mark : marks_) (void)cudaEventDestroy(mark);
+    (void)cudaStreamDestroy(copies_);
+  }
   [[nodiscard]] cudaStream_t stream() const { return stream_; }
 
   template <class T>
@@ -153,6 +162,13 @@ class CudaDevice {
     });
   }
   void wait() const { check(cudaStreamSynchronize(stream_), "waiting for the device"); }
+  void mark(int which) const { check(cudaEventRecord(marks_[which], stream_), "marking"); }
+  void await(int which) const { check(cudaEventSynchronize(marks_[which]), "waiting for the device"); }
+  template <class T>
+  void fetch(const T* from, std::size_t count, T* to) const {
+    check(cudaMemcpyAsync(to, from, count * sizeof(T), cudaMemcpyDeviceToHost, copies_), "download");
+    check(cudaStreamSynchronize(copies_), "download");
+  }
 
  private:
   /// Calls work twice, as CUB wants it: to learn how much scratch memory it needs, and with that much.
@@ -167,6 +183,8 @@ class CudaDevice {
   Array<std::uint64_t>& sorted_keys_of(std::uint64_t) { return sorted_long_keys_; }
 
   cudaStream_t stream_;
+  cudaStream_t copies_ = nullptr;
+  cudaEvent_t marks_[2] = {};
   Array<unsigned char> scratch_;
   Array<std::uint32_t> sorted_values_;
   Array<std::uint32_t> sorted_short_keys_;

@@ -172,6 +172,14 @@ class EmulatedDevice {
     *out = result;
   }
   void wait() const {}
+  /// Marks a place in the queue of work, and waits until the device has reached it.
+  void mark(int) const {}
+  void await(int) const {}
+  /// Copies to the host what is complete, past the queue of work.
+  template <class T>
+  void fetch(const T* from, std::size_t count, T* to) const {
+    download(from, count, to);
+  }
 };
 
 }  // namespace blum::kernels

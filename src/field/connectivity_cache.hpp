@@ -1,0 +1,27 @@
+// Blum: whether a mesh has the connectivity of the one before it. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum {
+
+/// Remembers the indices of a mesh.
+class ConnectivityCache {
+ public:
+  [[nodiscard]] bool holds(const MeshView& mesh) const;
+  void store(const MeshView& mesh);
+  void clear() { has_mesh_ = false; }
+
+ private:
+  std::vector<Triangle> triangles_;
+  std::vector<Segment> segments_;
+  std::vector<std::uint32_t> points_;
+  std::size_t vertex_count_ = 0;
+  bool has_mesh_ = false;
+};
+
+}  // namespace blum

@@ -1,0 +1,51 @@
+// Blum: what the library and its CUDA module know of each other. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
+
+// The module is a shared library of its own, loaded when a CUDA device is first asked for, so that one binary runs with
+// and without one. Nothing is thrown across its border.
+namespace blum::cuda {
+
+/// To be raised with every change of this file.
+inline constexpr std::uint32_t module_version = 1;
+inline constexpr const char* module_symbol = "blum_cuda_module";
+inline constexpr const char* module_file = "libblum_cuda.so";
+
+enum class Status : std::uint8_t { done, device_error, out_of_memory, invalid_grid, cancelled };
+
+/// How a call runs and what it says.
+struct Call {
+  const void* context = nullptr;
+  bool (*is_cancelled)(const void* context) = nullptr;
+  void (*report)(const void* context, double fraction) = nullptr;
+  char message[512] = {};
+};
+
+/// A field without signs, to be written. Sites are feature ids; 0xffffffff beyond the band.
+struct FieldMemory {
+  const GridSpec* grid = nullptr;
+  double band = 0;  ///< half-width; 0: the full grid
+  float* distance = nullptr;
+  std::uint32_t* site = nullptr;
+};
+
+/// The functions of the module.
+struct Module {
+  std::uint32_t version = module_version;
+  /// Makes an engine on the device with this index.
+  Status (*create)(int device, void** engine, Call* call) = nullptr;
+  void (*destroy)(void* engine) = nullptr;
+  /// Uploads a mesh's indices and finds its edges.
+  Status (*set_connectivity)(void* engine, const MeshView* mesh, Call* call) = nullptr;
+  /// Computes the field of the mesh's vertices.
+  Status (*compute)(void* engine, const MeshView* mesh, const FieldMemory* field, Call* call) = nullptr;
+};
+
+using ModuleFunction = const Module* (*)();
+
+}  // namespace blum::cuda

@@ -1,0 +1,54 @@
+// Blum: the CUDA back end's kernels, run on the host. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "field/backend.hpp"
+#include "field/kernels/emulated_device.hpp"
+#include "field/kernels/field_engine.hpp"
+
+namespace blum::test {
+
+/// What CudaBackend does, with EmulatedDevice in place of the device.
+class EmulatedBackend final : public FieldBackend {
+ public:
+  explicit EmulatedBackend(std::size_t slab_nodes) : fields_(device_, slab_nodes) {}
+
+  [[nodiscard]] Device device() const override { return Device::cuda(); }
+  [[nodiscard]] bool can_tell_sides() const override { return false; }
+  void set_mesh(const MeshView& mesh, const Context& context) override {
+    mesh_ = mesh;
+    sites_ = SiteTable(mesh, context);
+    fields_.set_connectivity(mesh);
+  }
+  [[nodiscard]] const SiteTable& sites() const override { return sites_; }
+  [[nodiscard]] std::vector<std::size_t> compute(const FieldRequest& request, const Context& context,
+                                                 Field& field) override {
+    fields_.compute(
+        mesh_, request.grid, request.band.value_or(0), field.distance.data(), &field.site.data()->value,
+        [&] { return context.cancel.stop_requested(); }, [](double) {});
+    return {};
+  }
+
+ private:
+  kernels::EmulatedDevice device_;
+  kernels::FieldEngine<kernels::EmulatedDevice> fields_;
+  MeshView mesh_;
+  SiteTable sites_;
+};
+
+/// Lets Device::cuda() stand for EmulatedBackend while it is alive.
+class EmulatedCuda {
+ public:
+  explicit EmulatedCuda(std::size_t slab_nodes = kernels::FieldEngine<kernels::EmulatedDevice>::default_slab_nodes) {
+    replace_cuda_backend([=](int) { return std::make_unique<EmulatedBackend>(slab_nodes); });
+  }
+  EmulatedCuda(const EmulatedCuda&) = delete;
+  EmulatedCuda& operator=(const EmulatedCuda&) = delete;
+  ~EmulatedCuda() { replace_cuda_backend(nullptr); }
+};
+
+}  // namespace blum::test

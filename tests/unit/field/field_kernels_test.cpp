@@ -1,0 +1,203 @@
+// Proves the kernels of the CUDA back end on the host: the bodies, blocks and lists that a device runs, by loops. They
+// keep the precision promise on every generated shape and on soups made to break float32, whatever the slabs, bands and
+// list sizes; connectivity is SiteTable's.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "blum/core/random.hpp"
+#include "blum/field/field.hpp"
+#include "blum/geometry/generators.hpp"
+#include "blum/geometry/shape_catalog.hpp"
+#include "support/emulated_backend.hpp"
+#include "support/field_check.hpp"
+#include "support/nasty_soup.hpp"
+
+namespace blum {
+namespace {
+
+GridSpec grid_for(const MeshView& mesh, int nodes) {
+  return grid_around(bounds(mesh), nodes, 0.1);
+}
+
+Field emulated(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {.sign = SignMode::none}) {
+  const test::EmulatedCuda cuda;
+  return distance_field(mesh, grid, options, {.threads = 2, .device = Device::cuda()});
+}
+
+void expect_exact(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {.sign = SignMode::none}) {
+  const Field field = emulated(mesh, grid, options);
+  EXPECT_EQ(field.device, Device::cuda());
+  expect_promise(test::compare_with_bvh(field, mesh, test::all_nodes(grid)));
+  expect_promise(test::compare_with_brute_force(field, mesh, test::random_nodes(grid, 50)));
+}
+
+bool same_bytes(const Field& a, const Field& b) {
+  return a.distance.size() == b.distance.size() &&
+         std::memcmp(a.distance.data(), b.distance.data(), a.distance.span().size_bytes()) == 0 &&
+         std::memcmp(a.site.data(), b.site.data(), a.site.span().size_bytes()) == 0;
+}
+
+TEST(FieldKernels, KeepThePromiseOnEveryGeneratedShape) {
+  for (const ShapeInfo& shape : shape_catalog()) {
+    SCOPED_TRACE(shape.name);
+    const TriangleMesh mesh = make_shape(shape.name);
+    const bool is_solid = shape.betti(complete_parameters(shape, {})).has_value();
+    expect_exact(mesh, grid_for(mesh, 24), {.sign = is_solid ? SignMode::automatic : SignMode::none});
+  }
+}
+
+TEST(FieldKernels, KeepThePromiseOnNastySoups) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const TriangleMesh mesh = test::nasty_soup(seed, 40 * seed);
+    expect_exact(mesh, grid_for(mesh, 32));
+  }
+}
+
+TEST(FieldKernels, KeepThePromiseOnPointsAndSegments) {
+  const TriangleMesh points = make_points();
+  const TriangleMesh segments = make_segments();
+  expect_exact(points, grid_for(points, 32));
+  expect_exact(segments, grid_for(segments, 32));
+  TriangleMesh mixed = make_box({});
+  mixed.vertices.push_back({3, 0, 0});
+  mixed.vertices.push_back({0, 3, 0});
+  mixed.segments.push_back({0, static_cast<std::uint32_t>(mixed.vertices.size() - 1)});
+  mixed.points.push_back(static_cast<std::uint32_t>(mixed.vertices.size() - 2));
+  expect_exact(mixed, grid_for(mixed, 32));
+}
+
+TEST(FieldKernels, OnePointIsEnough) {
+  TriangleMesh mesh;
+  mesh.vertices = {{1, 2, 3}};
+  mesh.points = {0};
+  expect_exact(mesh, {.origin = {0, 0, 0}, .spacing = {1, 1, 1}, .size = {5, 9, 17}});
+}
+
+TEST(FieldKernels, VerticesThatNothingNamesAreNoSites) {
+  TriangleMesh mesh = make_sphere({.frequency = 4});
+  mesh.vertices.insert(mesh.vertices.begin(), {0, 0, 0});
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) ++v;
+  }
+  expect_exact(mesh, grid_for(mesh, 24));
+}
+
+TEST(FieldKernels, SignsAreThoseOfEveryRule) {
+  TriangleMesh open = make_sphere({.frequency = 6});
+  std::erase_if(open.triangles, [&](const Triangle& t) { return open.vertices[t[0]].z > 0.2; });
+  expect_exact(open, grid_for(open, 20), {.sign = SignMode::winding});
+  const TriangleMesh closed = make_gear({});
+  expect_exact(closed, grid_for(closed, 24), {.sign = SignMode::normals});
+  // Shells that face different ways leave signs to the pseudonormals alone.
+  TriangleMesh shells = make_box({.size = {2, 2, 2}});
+  const TriangleMesh inner = make_box({.size = {1, 1, 1}});
+  const auto first = static_cast<std::uint32_t>(shells.vertices.size());
+  shells.vertices.insert(shells.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+  for (const Triangle& t : inner.triangles) shells.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  const GridSpec grid = grid_for(shells, 20);
+  const Field cpu = distance_field(shells, grid, {.sign = SignMode::normals});
+  const Field device = emulated(shells, grid, {.sign = SignMode::normals});
+  for (std::size_t k = 0; k < cpu.distance.size(); ++k) {
+    ASSERT_EQ(std::signbit(cpu.distance[k]), std::signbit(device.distance[k])) << k;
+  }
+}
+
+TEST(FieldKernels, GridsOfAnyShapeAndDirection) {
+  const TriangleMesh mesh = make_torus({});
+  const GridSpec cube = grid_for(mesh, 24);
+  for (const std::array<std::int64_t, 3>& size :
+       std::vector<std::array<std::int64_t, 3>>{{1, 1, 1}, {40, 1, 1}, {1, 33, 7}, {8, 8, 8}, {9, 17, 5}, {3, 2, 65}}) {
+    GridSpec grid = cube;
+    grid.size = size;
+    grid.spacing = {0.07, 0.11, 0.05};
+    expect_exact(mesh, grid);
+    grid.direction = {{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
+    expect_exact(mesh, grid);
+  }
+}
+
+TEST(FieldKernels, BandsCutOff) {
+  const TriangleMesh mesh = make_torus_knot({});
+  const GridSpec grid = grid_for(mesh, 48);
+  for (const double band : {0.01, 0.2, 100.0}) {
+    expect_exact(mesh, grid, {.sign = SignMode::automatic, .band = band});
+  }
+}
+
+TEST(FieldKernels, SlabsDoNotChangeABit) {
+  const TriangleMesh mesh = make_torus_knot({});
+  const GridSpec grid = grid_for(mesh, 80);
+  const Field whole = emulated(mesh, grid);
+  const test::EmulatedCuda cuda(1);  // 32 slices at a time
+  const Field slabs = distance_field(mesh, grid, {.sign = SignMode::none}, {.device = Device::cuda()});
+  EXPECT_TRUE(same_bytes(whole, slabs));
+}
+
+TEST(FieldKernels, MoreSitesThanAListHolds) {
+  // All of 80,000 triangles matter to the tile in the middle of a sphere, and a list holds 512.
+  const TriangleMesh mesh = make_sphere({.frequency = 64});
+  const GridSpec grid = grid_in({{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}}, 12);
+  expect_exact(mesh, grid);
+}
+
+TEST(FieldKernels, TiesGoToTheSmallerSite) {
+  TriangleMesh mesh;
+  mesh.vertices = {{-1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.points = {3, 2, 1, 0};
+  const GridSpec grid{.origin = {0, 0, 0}, .spacing = {0.25, 1, 1}, .size = {5, 1, 1}};
+  const Field field = emulated(mesh, grid);
+  EXPECT_EQ(field.site[0].value, 0U);
+  EXPECT_EQ(field.site[4].value, 1U);
+}
+
+TEST(FieldKernels, ExtentsThatFloatsDoNotHoldAreRefused) {
+  const TriangleMesh mesh = make_box({});
+  GridSpec grid = grid_for(mesh, 8);
+  grid.spacing = {1e37, 1e37, 1e37};
+  EXPECT_THROW((void)emulated(mesh, grid), InvalidGrid);
+}
+
+TEST(FieldKernels, CancelledWhereAskedTo) {
+  const test::EmulatedCuda cuda;
+  std::stop_source stop;
+  stop.request_stop();
+  const TriangleMesh mesh = make_box({});
+  EXPECT_THROW(
+      (void)distance_field(mesh, grid_for(mesh, 8), {}, {.cancel = stop.get_token(), .device = Device::cuda()}),
+      Cancelled);
+}
+
+TEST(FieldKernels, ConnectivityIsThatOfSiteTable) {
+  for (const TriangleMesh& mesh : {make_gear({}), test::nasty_soup(3, 60), make_segments()}) {
+    kernels::EmulatedDevice device;
+    kernels::Connectivity<kernels::EmulatedDevice> found;
+    kernels::build_connectivity(
+        device,
+        {mesh.vertices.data(), mesh.triangles.data(), mesh.segments.data(), mesh.points.data(),
+         static_cast<std::uint32_t>(mesh.vertices.size()), static_cast<std::uint32_t>(mesh.triangles.size()),
+         static_cast<std::uint32_t>(mesh.segments.size()), static_cast<std::uint32_t>(mesh.points.size())},
+        found);
+    const SiteTable sites(mesh);
+    ASSERT_EQ(found.edge_count, sites.edge_count());
+    for (std::size_t e = 0; e < sites.edge_count(); ++e) ASSERT_EQ(found.edges.data()[e], sites.edges()[e]);
+  }
+}
+
+TEST(FieldKernels, SolverFollowsADeformingMeshAndANewOne) {
+  const test::EmulatedCuda cuda;
+  TriangleMesh mesh = make_torus_knot({});
+  const GridSpec grid = grid_around(bounds(mesh), 24, 0.3);
+  FieldSolver solver(grid, {}, {.device = Device::cuda()});
+  for (int frame = 0; frame < 3; ++frame) {
+    for (Vec3d& v : mesh.vertices) v.x *= 1.1;
+    expect_promise(test::compare_with_bvh(solver.compute(mesh), mesh, test::all_nodes(grid)));
+  }
+  const TriangleMesh other = make_gear({});
+  expect_promise(test::compare_with_bvh(solver.compute(other), other, test::all_nodes(grid)));
+}
+
+}  // namespace
+}  // namespace blum
