@@ -19,6 +19,18 @@ struct FieldRequest {
   std::optional<double> band = {};
   /// Signs by pseudonormals, of a closed, consistently oriented mesh. Only where the back end can_tell_sides().
   bool with_sides = false;
+  /// Signs by counted crossings: nodes with a winding number above this are inside. Of a mesh that is_balanced(), and
+  /// only where the back end can_count_crossings().
+  std::optional<int> level = {};
+};
+
+struct FieldResult {
+  /// Nodes that are left to exact queries: those that no site claimed in float32, and those whose side is too close to
+  /// call; rising.
+  std::vector<std::size_t> unsettled;
+  /// With a level: whether every node has the winding number level or level + 1, as those of a mesh that does not cross
+  /// itself have.
+  bool is_simple = false;
 };
 
 /// Computes fields on one device; keeps connectivity and memory from one to the next.
@@ -31,6 +43,7 @@ class FieldBackend {
 
   [[nodiscard]] virtual Device device() const = 0;
   [[nodiscard]] virtual bool can_tell_sides() const = 0;
+  [[nodiscard]] virtual bool can_count_crossings() const = 0;
 
   /// Makes `mesh` the current one; what depends on its connectivity alone is kept while that stays the same. The mesh
   /// must stay alive until compute() returns.
@@ -38,10 +51,7 @@ class FieldBackend {
   [[nodiscard]] virtual const SiteTable& sites() const = 0;
 
   /// Fills distance and site (as feature ids) of a field whose buffers have the grid's size, and appends phase times.
-  /// Returns nodes that are left to exact queries: those that no site claimed in float32, and those whose side is too
-  /// close to call; rising.
-  [[nodiscard]] virtual std::vector<std::size_t> compute(const FieldRequest& request, const Context& context,
-                                                         Field& field) = 0;
+  [[nodiscard]] virtual FieldResult compute(const FieldRequest& request, const Context& context, Field& field) = 0;
 };
 
 /// The back end of context.device. @throws DeviceError.

@@ -61,8 +61,9 @@ void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, c
 }
 
 /// Signs an unsigned field by winding numbers: counted along rows where they are whole, else summed.
-void sign_by_winding(const MeshView& mesh, const SiteTable& sites, const Context& context, Field& field) {
-  if (is_balanced(mesh, sites)) {
+void sign_by_winding(const MeshView& mesh, const SiteTable& sites, bool is_whole, const Context& context,
+                     Field& field) {
+  if (is_whole) {
     if (const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, context)) {
       (void)scan->apply(field, 0, context);
       return;
@@ -81,19 +82,24 @@ void invert_signs(const Context& context, Field& field) {
 
 /// Signs an unsigned field of a closed mesh as its normals do. Its winding numbers tell the same sides, without being
 /// misled where the mesh crosses itself or where float32 cannot tell which of two sheets is the closer one.
-void sign_by_orientation(const MeshView& mesh, const SiteTable& sites, const SignChoice& choice, const Context& context,
+/// @return  whether the mesh is known not to cross itself.
+bool sign_by_orientation(const MeshView& mesh, const SiteTable& sites, int level, const Context& context,
                          Field& field) {
-  bool is_simple = false;
   if (const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, context)) {
-    is_simple = scan->apply(field, *choice.level, context);
-  } else if (*choice.level == 0) {
+    return scan->apply(field, level, context);
+  }
+  if (level == 0) {
     (void)apply_winding_sign(field, mesh, sites, context);
   } else {
     const std::vector<Triangle> turned = turned_triangles(mesh.triangles);
     (void)apply_winding_sign(field, {mesh.vertices, turned, {}, {}}, sites, context);
     invert_signs(context, field);
   }
-  if (is_simple) return;
+  return false;
+}
+
+/// Says of a field signed by orientation that its mesh crosses itself.
+void tell_crossing(const SignChoice& choice, Field& field) {
   if (choice.is_automatic) {
     field.sign_rule = SignRule::winding;
     field.sign_reason = "winding number above 1/2: the mesh is closed and oriented, but it crosses itself";
@@ -141,18 +147,27 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   const SignChoice choice = choose_sign_rule(options.sign, mesh, engine->sites());
   connectivity_timer.lap("connectivity");
   const bool with_sides = choice.rule == SignRule::normals && !choice.level;
-  std::vector<std::size_t> unsettled =
-      engine->compute({field.grid, options.band, with_sides && engine->can_tell_sides()}, frame_context, field);
+  const bool is_whole = choice.rule == SignRule::winding && is_balanced(mesh, engine->sites());
+  FieldRequest request{field.grid, options.band, with_sides && engine->can_tell_sides()};
+  if (engine->can_count_crossings()) request.level = is_whole ? std::optional<int>(0) : choice.level;
+  FieldResult result = engine->compute(request, frame_context, field);
   PhaseTimer sign_timer(field.phases);
   if (with_sides && !engine->can_tell_sides()) {
-    unsettled.resize(nodes);
-    std::iota(unsettled.begin(), unsettled.end(), std::size_t{0});
+    result.unsettled.resize(nodes);
+    std::iota(result.unsettled.begin(), result.unsettled.end(), std::size_t{0});
   }
-  settle_nodes(unsettled, mesh, engine->sites(), with_sides, frame_context, field);
+  settle_nodes(result.unsettled, mesh, engine->sites(), with_sides, frame_context, field);
   field.sign_rule = choice.rule;
   field.sign_reason = choice.reason;
-  if (choice.rule == SignRule::winding) sign_by_winding(mesh, engine->sites(), frame_context, field);
-  if (choice.level) sign_by_orientation(mesh, engine->sites(), choice, frame_context, field);
+  if (choice.rule == SignRule::winding && !request.level) {
+    sign_by_winding(mesh, engine->sites(), is_whole, frame_context, field);
+  }
+  if (choice.level) {
+    const bool is_simple = request.level
+                               ? result.is_simple
+                               : sign_by_orientation(mesh, engine->sites(), *choice.level, frame_context, field);
+    if (!is_simple) tell_crossing(choice, field);
+  }
   sign_timer.lap("sign");
   if (options.site_ids == SiteIds::triangles) show_triangles(engine->sites(), frame_context, field);
 }

@@ -19,18 +19,18 @@ class EmulatedBackend final : public FieldBackend {
 
   [[nodiscard]] Device device() const override { return Device::cuda(); }
   [[nodiscard]] bool can_tell_sides() const override { return false; }
+  [[nodiscard]] bool can_count_crossings() const override { return true; }
   void set_mesh(const MeshView& mesh, const Context& context) override {
     mesh_ = mesh;
     sites_ = SiteTable(mesh, context);
     fields_.set_connectivity(mesh);
   }
   [[nodiscard]] const SiteTable& sites() const override { return sites_; }
-  [[nodiscard]] std::vector<std::size_t> compute(const FieldRequest& request, const Context& context,
-                                                 Field& field) override {
-    fields_.compute(
-        mesh_, request.grid, request.band.value_or(0), field.distance.data(), &field.site.data()->value,
-        [&] { return context.cancel.stop_requested(); }, [](double) {});
-    return {};
+  [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context, Field& field) override {
+    const bool is_simple = fields_.compute(
+        mesh_, {request.grid, request.band.value_or(0), request.level}, field.distance.data(),
+        &field.site.data()->value, [&] { return context.cancel.stop_requested(); }, [](double) {});
+    return {{}, is_simple};
   }
 
  private:

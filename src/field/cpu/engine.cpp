@@ -77,7 +77,7 @@ void Engine::build_records(const FieldRequest& request, const Context& context) 
   build_cluster_forest(records_, context, forest_);
 }
 
-std::vector<std::size_t> Engine::compute(const FieldRequest& request, const Context& context, Field& field) {
+FieldResult Engine::compute(const FieldRequest& request, const Context& context, Field& field) {
   PhaseTimer timer(field.phases);
   build_records(request, context);
   FieldJob job;
@@ -106,13 +106,14 @@ std::vector<std::size_t> Engine::compute(const FieldRequest& request, const Cont
       compute_tile(job, tiling.box(tile), scratch_[static_cast<std::size_t>(range.worker)]);
     }
   });
-  std::vector<std::size_t> unsettled;
+  FieldResult result;
+  std::vector<std::size_t>& unsettled = result.unsettled;
   for (const TileScratch& scratch : scratch_) {
     unsettled.insert(unsettled.end(), scratch.unsettled.begin(), scratch.unsettled.end());
   }
   std::sort(unsettled.begin(), unsettled.end());
   timer.lap("field");
-  return unsettled;
+  return result;
 }
 
 }  // namespace blum::cpu

@@ -51,6 +51,7 @@ class CudaBackend final : public FieldBackend {
 
   [[nodiscard]] Device device() const override { return Device::cuda(index_); }
   [[nodiscard]] bool can_tell_sides() const override { return false; }
+  [[nodiscard]] bool can_count_crossings() const override { return true; }
 
   void set_mesh(const MeshView& mesh, const Context& context) override {
     mesh_ = mesh;
@@ -63,15 +64,17 @@ class CudaBackend final : public FieldBackend {
   }
   [[nodiscard]] const SiteTable& sites() const override { return sites_; }
 
-  [[nodiscard]] std::vector<std::size_t> compute(const FieldRequest& request, const Context& context,
-                                                 Field& field) override {
+  [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context, Field& field) override {
     PhaseTimer timer(field.phases);
     Call call = call_of(context);
-    const FieldMemory memory{&request.grid, request.band.value_or(0), field.distance.data(),
-                             reinterpret_cast<std::uint32_t*>(field.site.data())};
+    FieldMemory memory{&request.grid, request.band.value_or(0), field.distance.data(), &field.site.data()->value};
+    if (request.level) {
+      memory.is_signed = true;
+      memory.level = *request.level;
+    }
     check(module_.compute(engine_, &mesh_, &memory, &call), call);
     timer.lap("field");
-    return {};
+    return {{}, memory.is_simple};
   }
 
  private:

@@ -52,6 +52,15 @@ class CudaWarp {
     }
     return result;
   }
+  template <class T>
+  __device__ void add_up(Lanes<T>& values) const {
+    T sum = values[lane()];
+    for (unsigned step = 1; step < kernels::warp_size; step *= 2) {
+      const T other = __shfl_up_sync(whole_warp, sum, step);
+      if (lane() >= step) sum += other;
+    }
+    values[lane()] = sum;
+  }
   [[nodiscard]] __device__ std::uint32_t claim(std::uint32_t& counter, std::uint32_t count) const {
     std::uint32_t before = 0;
     if (lane() == 0) before = atomicAdd(&counter, count);

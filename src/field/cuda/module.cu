@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
 
 #include "blum/core/error.hpp"
@@ -92,11 +93,12 @@ Status set_connectivity(void* engine, const MeshView* mesh, Call* call) {
   return guarded(own.index, call, [&] { own.fields.set_connectivity(*mesh); });
 }
 
-Status compute(void* engine, const MeshView* mesh, const FieldMemory* field, Call* call) {
+Status compute(void* engine, const MeshView* mesh, FieldMemory* field, Call* call) {
   auto& own = *static_cast<Engine*>(engine);
   return guarded(own.index, call, [&] {
-    own.fields.compute(
-        *mesh, *field->grid, field->band, field->distance, field->site,
+    const auto level = field->is_signed ? std::optional<std::int32_t>(field->level) : std::nullopt;
+    field->is_simple = own.fields.compute(
+        *mesh, {*field->grid, field->band, level}, field->distance, field->site,
         [&] { return call->is_cancelled(call->context); },
         [&](double fraction) { call->report(call->context, fraction); });
   });

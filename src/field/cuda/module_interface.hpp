@@ -26,12 +26,17 @@ struct Call {
   char message[512] = {};
 };
 
-/// A field without signs, to be written. Sites are feature ids; 0xffffffff beyond the band.
+/// A field to be written. Sites are feature ids; 0xffffffff beyond the band.
 struct FieldMemory {
   const GridSpec* grid = nullptr;
   double band = 0;  ///< half-width; 0: the full grid
   float* distance = nullptr;
   std::uint32_t* site = nullptr;
+  /// Whether nodes with a winding number above `level` get negative distances, and whether all winding numbers were
+  /// level or level + 1.
+  bool is_signed = false;
+  int level = 0;
+  bool is_simple = false;
 };
 
 /// The functions of the module.
@@ -43,7 +48,7 @@ struct Module {
   /// Uploads a mesh's indices and finds its edges.
   Status (*set_connectivity)(void* engine, const MeshView* mesh, Call* call) = nullptr;
   /// Computes the field of the mesh's vertices.
-  Status (*compute)(void* engine, const MeshView* mesh, const FieldMemory* field, Call* call) = nullptr;
+  Status (*compute)(void* engine, const MeshView* mesh, FieldMemory* field, Call* call) = nullptr;
 };
 
 using ModuleFunction = const Module* (*)();

@@ -53,6 +53,11 @@ class EmulatedWarp {
   [[nodiscard]] T broadcast(const Lanes<T>& values, std::uint32_t lane) const {
     return values[lane];
   }
+  /// Replaces each lane's value by the sum of those of the lanes up to it.
+  template <class T>
+  void add_up(Lanes<T>& values) const {
+    for (std::uint32_t lane = 1; lane < warp_size; ++lane) values[lane] += values[lane - 1];
+  }
   /// Adds to a counter in shared memory; returns what it was.
   [[nodiscard]] std::uint32_t claim(std::uint32_t& counter, std::uint32_t count) const {
     return std::exchange(counter, counter + count);

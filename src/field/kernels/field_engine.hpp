@@ -6,12 +6,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "blum/core/error.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "field/kernels/crossings.hpp"
 #include "field/kernels/field_pipeline.hpp"
 
 namespace blum::kernels {
+
+/// What a field is asked for.
+struct EngineRequest {
+  GridSpec grid;
+  double band = 0;                         ///< half-width, mesh units; 0: the full grid
+  std::optional<std::int32_t> level = {};  ///< nodes with a winding number above it get negative distances
+};
 
 /// Keeps a mesh's connectivity and its memory from frame to frame.
 template <class Device>
@@ -21,7 +30,7 @@ class FieldEngine {
   static constexpr std::size_t default_slab_nodes = std::size_t{1} << 23;
 
   explicit FieldEngine(Device& device, std::size_t slab_nodes = default_slab_nodes)
-      : device_(device), slab_nodes_(slab_nodes), pipeline_(device) {}
+      : device_(device), slab_nodes_(slab_nodes), pipeline_(device), signs_(device) {}
 
   void set_connectivity(const MeshView& mesh) {
     device_.upload(mesh.triangles, triangles_);
@@ -30,14 +39,15 @@ class FieldEngine {
     pipeline_.set_connectivity(on_device(mesh));
   }
 
-  /// Computes the unsigned field of a mesh with the current connectivity.
-  /// @param band        half-width; 0: the full grid.
+  /// Computes the field of a mesh with the current connectivity.
+  /// @return            with a level: whether every node has the winding number level or level + 1.
   /// @param is_stopped  callable: whether to give up.
   /// @param report      callable: fraction done.
   /// @throws InvalidGrid, Cancelled, and what the device throws.
   template <class IsStopped, class Report>
-  void compute(const MeshView& mesh, const GridSpec& grid, double band, float* distance, std::uint32_t* site,
+  bool compute(const MeshView& mesh, const EngineRequest& request, float* distance, std::uint32_t* site,
                const IsStopped& is_stopped, const Report& report) {
+    const GridSpec& grid = request.grid;
     for (const std::int64_t size : grid.size) {
       if (size > std::numeric_limits<std::int32_t>::max()) {
         throw InvalidGrid("a device holds at most 2^31 - 1 nodes along an axis");
@@ -46,6 +56,7 @@ class FieldEngine {
     device_.upload(mesh.vertices, vertices_);
     pipeline_.prepare(on_device(mesh), grid);
     pipeline_.check_frame();
+    if (request.level) signs_.prepare(on_device(mesh), grid);
     const auto per_slice = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
     const std::int64_t slices = slab_slices(per_slice);
     const std::int64_t slabs = (grid.size[2] + slices - 1) / slices;
@@ -64,7 +75,8 @@ class FieldEngine {
       to.nodes = static_cast<std::size_t>(last - first) * per_slice;
       to.distance.resize(to.nodes);
       to.site.resize(to.nodes);
-      pipeline_.compute(first, last, {band, to.distance.data(), to.site.data()});
+      pipeline_.compute(first, last, {request.band, to.distance.data(), to.site.data()});
+      if (request.level) signs_.apply(first, last, *request.level, to.distance.data());
       device_.mark(static_cast<int>(slab % 2));
       // The slab before this one travels while this one is computed.
       if (slab > 0) {
@@ -74,6 +86,7 @@ class FieldEngine {
     }
     device_.wait();
     fetch(slabs - 1);
+    return request.level && signs_.is_simple();
   }
 
  private:
@@ -104,6 +117,7 @@ class FieldEngine {
   Device& device_;
   std::size_t slab_nodes_;
   FieldPipeline<Device> pipeline_;
+  CrossingSigns<Device> signs_;
   typename Device::template Array<Vec3d> vertices_;
   typename Device::template Array<Triangle> triangles_;
   typename Device::template Array<Segment> segments_;

@@ -1,0 +1,321 @@
+// Blum: winding numbers of a closed mesh at the nodes of a slab, by scan conversion. SPDX-License-Identifier:
+// Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "field/kernels/connectivity.hpp"
+#include "field/kernels/tile_grid.hpp"
+
+// The same exact counting as SignScan (field/sign_scan.hpp), with the crossings added up at the nodes behind them
+// instead of sorted: whole numbers, so that the order does not matter.
+namespace blum::kernels {
+
+/// A product that is rounded by itself: a fused one would let the two triangles of an edge disagree on where it is cut.
+BLUM_HD inline double rounded_product(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a, b);
+#else
+  return a * b;
+#endif
+}
+
+template <class T>
+BLUM_HD void add_atomically(T& sum, T value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(&sum, value);
+#else
+  sum += value;
+#endif
+}
+
+/// Adds one and returns the sum before.
+BLUM_HD inline std::uint32_t take_number(std::uint32_t& counter) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(&counter, 1U);
+#else
+  return counter++;
+#endif
+}
+
+/// Positions in units of the grid's spacings, from node (0, 0, 0).
+struct NodeUnits {
+  Vec3d origin;
+  Mat3 inverse;
+  bool is_mirrored = false;
+
+  NodeUnits() = default;
+  explicit NodeUnits(const GridSpec& grid) : origin(grid.origin) {
+    // The inverse proper, not the transpose: the direction is orthonormal to 1e-6 only.
+    const Vec3d* axis = grid.direction.columns;
+    const double determinant = dot(axis[0], cross(axis[1], axis[2]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      inverse.columns[k] = cross(axis[(k + 1) % 3], axis[(k + 2) % 3]) / (determinant * grid.spacing[k]);
+    }
+    is_mirrored = determinant < 0;
+  }
+};
+
+/// Once per vertex, so that all its triangles see the same numbers.
+struct PlaceInNodes {
+  NodeUnits units;
+  const Vec3d* vertices;
+  Vec3d* places;
+  BLUM_HD void operator()(std::size_t v) const {
+    places[v] = units.inverse.transposed_times(vertices[v] - units.origin);
+  }
+};
+
+/// Whole numbers k of [0, size) with from <= k < to: the slices (or rows) that have one end at or below, one above.
+struct Cuts {
+  std::int32_t begin, end;
+
+  BLUM_HD Cuts(double from, double to, std::int32_t size)
+      : begin(clamped_to(ceil(from), size)), end(clamped_to(ceil(to), size)) {}
+
+ private:
+  /// 0 where the value is not a number: absurdly small spacings overflow.
+  BLUM_HD static std::int32_t clamped_to(double value, std::int32_t size) {
+    if (!(value > 0)) return 0;
+    return value < static_cast<double>(size) ? static_cast<std::int32_t>(value) : size;
+  }
+};
+
+/// A point of a slice.
+struct SlicePoint {
+  double x, y;
+};
+
+/// Where a slice cuts a triangle, and whether the rows that cross the cut go into the solid there.
+struct SliceCut {
+  SlicePoint p{}, q{};
+  bool goes_in = false;
+};
+
+/// Counts crossings of triangles with rows.
+struct CrossingCount {
+  const Triangle* triangles;
+  const Vec3d* places;  ///< of the vertices, in nodes
+  bool is_mirrored;
+  std::int32_t size[3];
+  std::int32_t first_slice;
+  std::int32_t last_slice;
+  std::int32_t* change;  ///< of the winding number, at each node of the slab; to be added up along rows
+
+  /// Slices of the slab that cut a triangle.
+  [[nodiscard]] BLUM_HD Cuts slices(std::uint32_t t) const {
+    const double z[3] = {corner(t, 0).z, corner(t, 1).z, corner(t, 2).z};
+    Cuts cuts(smaller(smaller(z[0], z[1]), z[2]), larger(larger(z[0], z[1]), z[2]), size[2]);
+    cuts.begin = larger(cuts.begin, first_slice);
+    cuts.end = smaller(cuts.end, last_slice);
+    return cuts;
+  }
+  /// An upper bound on how many rows of a slice cross a triangle.
+  [[nodiscard]] BLUM_HD Cuts rows(std::uint32_t t) const {
+    const double y[3] = {corner(t, 0).y, corner(t, 1).y, corner(t, 2).y};
+    return Cuts(smaller(smaller(y[0], y[1]), y[2]), larger(larger(y[0], y[1]), y[2]), size[1]);
+  }
+
+  [[nodiscard]] BLUM_HD SliceCut cut(std::uint32_t t, std::int32_t slice) const {
+    const auto z = static_cast<double>(slice);
+    const bool above[3] = {corner(t, 0).z > z, corner(t, 1).z > z, corner(t, 2).z > z};
+    // The corner that is alone on its side comes first.
+    const std::size_t first = above[1] == above[2] ? 0 : above[2] == above[0] ? 1 : 2;
+    const Vec3d alone = corner(t, first);
+    const Vec3d next = corner(t, (first + 1) % 3);
+    const Vec3d last = corner(t, (first + 2) % 3);
+    SliceCut out;
+    const bool is_above = above[first];
+    out.p = is_above ? edge_point(next, alone, z) : edge_point(alone, next, z);
+    out.q = is_above ? edge_point(last, alone, z) : edge_point(alone, last, z);
+    // With its corner alone above and q at larger y, the triangle faces along x, so that its rows leave the solid.
+    out.goes_in = (out.q.y > out.p.y) != (is_above != is_mirrored);
+    return out;
+  }
+
+  [[nodiscard]] BLUM_HD Cuts rows(const SliceCut& cut) const {
+    return Cuts(smaller(cut.p.y, cut.q.y), larger(cut.p.y, cut.q.y), size[1]);
+  }
+  BLUM_HD void cross_row(const SliceCut& cut, std::int32_t slice, std::int32_t row) const {
+    const double t = (static_cast<double>(row) - cut.p.y) / (cut.q.y - cut.p.y);
+    const double next = floor(cut.p.x + rounded_product(t, cut.q.x - cut.p.x)) + 1;
+    if (!(next < static_cast<double>(size[0]))) return;
+    const auto line = static_cast<std::size_t>(slice - first_slice) * static_cast<std::size_t>(size[1]) +
+                      static_cast<std::size_t>(row);
+    const auto node = static_cast<std::size_t>(larger(next, 0.0));
+    add_atomically(change[line * static_cast<std::size_t>(size[0]) + node], cut.goes_in ? 1 : -1);
+  }
+
+ private:
+  [[nodiscard]] BLUM_HD const Vec3d& corner(std::uint32_t t, std::size_t k) const { return places[triangles[t][k]]; }
+
+  /// Where an edge meets a slice. From its lower to its upper end, so that both of its triangles find the same point.
+  BLUM_HD static SlicePoint edge_point(const Vec3d& lower, const Vec3d& upper, double z) {
+    const double t = (z - lower.z) / (upper.z - lower.z);
+    return {lower.x + rounded_product(t, upper.x - lower.x), lower.y + rounded_product(t, upper.y - lower.y)};
+  }
+};
+
+/// One thread per triangle; triangles with many crossings are left to CrossLargeTriangles.
+struct CrossTriangles {
+  static constexpr std::int64_t most_rows = 256;
+
+  CrossingCount count;
+  std::uint32_t* large;
+  std::uint32_t* large_count;
+
+  BLUM_HD void operator()(std::size_t index) const {
+    const auto t = static_cast<std::uint32_t>(index);
+    const Cuts slices = count.slices(t);
+    if (slices.begin >= slices.end) return;
+    const Cuts all_rows = count.rows(t);
+    if (std::int64_t{slices.end - slices.begin} * (all_rows.end - all_rows.begin) > most_rows) {
+      large[take_number(*large_count)] = t;
+      return;
+    }
+    for (std::int32_t slice = slices.begin; slice < slices.end; ++slice) {
+      const SliceCut cut = count.cut(t, slice);
+      const Cuts rows = count.rows(cut);
+      for (std::int32_t row = rows.begin; row < rows.end; ++row) count.cross_row(cut, slice, row);
+    }
+  }
+};
+
+/// The slices of each large triangle are shared out among all warps, its rows among the lanes.
+struct CrossLargeTriangles {
+  static constexpr std::uint32_t threads = 256;
+  static constexpr std::uint32_t blocks_per_processor = 2;
+  static constexpr std::uint32_t blocks = 1024;
+  struct Shared {};
+
+  CrossingCount count;
+  const std::uint32_t* large;
+  const std::uint32_t* large_count;
+
+  template <class Block>
+  BLUM_HD void operator()(const Block& block, Shared&, std::size_t index) const {
+    block.each_warp([&](const typename Block::Warp& warp) {
+      const auto own = static_cast<std::int32_t>(index * (threads / warp_size) + warp.index());
+      constexpr auto step = static_cast<std::int32_t>(blocks * (threads / warp_size));
+      for (std::uint32_t k = 0; k < *large_count; ++k) {
+        const std::uint32_t t = large[k];
+        const Cuts slices = count.slices(t);
+        for (std::int32_t slice = slices.begin + own; slice < slices.end; slice += step) {
+          const SliceCut cut = count.cut(t, slice);
+          const Cuts rows = count.rows(cut);
+          warp.each([&](std::uint32_t lane) {
+            for (std::int32_t row = rows.begin + static_cast<std::int32_t>(lane); row < rows.end;
+                 row += static_cast<std::int32_t>(warp_size)) {
+              count.cross_row(cut, slice, row);
+            }
+          });
+        }
+      }
+    });
+  }
+};
+
+/// Negates the distances of nodes whose winding number is above `level`. One warp per row.
+struct ApplyWinding {
+  static constexpr std::uint32_t threads = 256;
+  static constexpr std::uint32_t blocks_per_processor = 4;
+  static constexpr std::uint32_t warps = threads / warp_size;
+  struct Shared {};
+
+  const std::int32_t* change;
+  std::size_t rows;
+  std::int32_t width;
+  std::int32_t level;
+  float* distance;
+  /// Set where a winding number is neither level nor level + 1, as those of a mesh that does not cross itself are.
+  std::uint32_t* is_crossed;
+
+  template <class Block>
+  BLUM_HD void operator()(const Block& block, Shared&, std::size_t index) const {
+    block.each_warp([&](const typename Block::Warp& warp) {
+      const std::size_t row = index * warps + warp.index();
+      if (row >= rows) return;
+      const std::size_t line = row * static_cast<std::size_t>(width);
+      std::int32_t before = 0;
+      for (std::int32_t first = 0; first < width; first += static_cast<std::int32_t>(warp_size)) {
+        typename Block::Warp::template Lanes<std::int32_t> winding;
+        warp.each([&](std::uint32_t lane) {
+          const std::int32_t x = first + static_cast<std::int32_t>(lane);
+          winding[lane] = x < width ? change[line + static_cast<std::size_t>(x)] : 0;
+        });
+        warp.add_up(winding);
+        warp.each([&](std::uint32_t lane) {
+          const std::int32_t x = first + static_cast<std::int32_t>(lane);
+          if (x >= width) return;
+          const std::int32_t own = before + winding[lane];
+          float& value = distance[line + static_cast<std::size_t>(x)];
+          if (own > level && value > 0) value = -value;
+          if (own != level && own != level + 1) *is_crossed = 1;
+        });
+        before += warp.broadcast(winding, warp_size - 1);
+      }
+    });
+  }
+};
+
+/// Signs of slabs by counted crossings.
+template <class Device>
+class CrossingSigns {
+ public:
+  explicit CrossingSigns(Device& device) : device_(device) {}
+
+  /// Once per frame.
+  void prepare(const DeviceMesh& mesh, const GridSpec& grid) {
+    mesh_ = mesh;
+    grid_ = grid;
+    units_ = NodeUnits(grid);
+    places_.resize(mesh.vertex_count);
+    large_.resize(mesh.triangle_count);
+    large_count_.resize(1);
+    is_crossed_.resize(1);
+    device_.fill(is_crossed_, 0U);
+    device_.for_each(mesh.vertex_count, PlaceInNodes{units_, mesh.vertices, places_.data()});
+  }
+
+  /// Negates the unsigned distances of a slab inside: where the winding number is above `level`.
+  void apply(std::int64_t first_slice, std::int64_t last_slice, std::int32_t level, float* distance) {
+    const auto rows = static_cast<std::size_t>(last_slice - first_slice) * static_cast<std::size_t>(grid_.size[1]);
+    change_.resize(rows * static_cast<std::size_t>(grid_.size[0]));
+    device_.fill(change_, std::int32_t{0});
+    device_.fill(large_count_, 0U);
+    const CrossingCount count{mesh_.triangles,
+                              places_.data(),
+                              units_.is_mirrored,
+                              {static_cast<std::int32_t>(grid_.size[0]), static_cast<std::int32_t>(grid_.size[1]),
+                               static_cast<std::int32_t>(grid_.size[2])},
+                              static_cast<std::int32_t>(first_slice),
+                              static_cast<std::int32_t>(last_slice),
+                              change_.data()};
+    device_.for_each(mesh_.triangle_count, CrossTriangles{count, large_.data(), large_count_.data()});
+    device_.run_blocks(CrossLargeTriangles::blocks, CrossLargeTriangles{count, large_.data(), large_count_.data()});
+    device_.run_blocks((rows + ApplyWinding::warps - 1) / ApplyWinding::warps,
+                       ApplyWinding{change_.data(), rows, static_cast<std::int32_t>(grid_.size[0]), level, distance,
+                                    is_crossed_.data()});
+  }
+
+  /// Whether every node so far has the winding number level or level + 1. Waits for the device.
+  [[nodiscard]] bool is_simple() {
+    std::uint32_t flag = 0;
+    device_.download(is_crossed_.data(), 1, &flag);
+    return flag == 0;
+  }
+
+ private:
+  Device& device_;
+  DeviceMesh mesh_;
+  GridSpec grid_;
+  NodeUnits units_;
+  typename Device::template Array<Vec3d> places_;
+  typename Device::template Array<std::uint32_t> large_;
+  typename Device::template Array<std::uint32_t> large_count_;
+  typename Device::template Array<std::uint32_t> is_crossed_;
+  typename Device::template Array<std::int32_t> change_;
+};
+
+}  // namespace blum::kernels
