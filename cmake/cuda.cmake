@@ -25,21 +25,37 @@ if(NOT BLUM_CUDA STREQUAL "OFF")
 endif()
 message(STATUS "CUDA module: ${BLUM_HAS_CUDA}")
 
+# blum_set_cuda(TARGET): what every target with .cu files needs.
+function(blum_set_cuda target)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  # A toolkit from PyPI keeps CUB and Thrust where nvcc does not look.
+  foreach(folder IN LISTS CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES)
+    if(EXISTS ${folder}/cccl)
+      target_include_directories(${target} SYSTEM PRIVATE ${folder}/cccl)
+    endif()
+  endforeach()
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr
+                                           $<$<BOOL:${BLUM_WERROR}>:-Werror=all-warnings>>)
+  set_target_properties(${target} PROPERTIES CUDA_STANDARD 20 CUDA_STANDARD_REQUIRED ON CUDA_EXTENSIONS OFF
+                                             CUDA_RUNTIME_LIBRARY Static)
+endfunction()
+
 # blum_add_cuda_module(): target blum_cuda, libblum_cuda.so beside the programs.
 function(blum_add_cuda_module)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/field/cuda/*.cu)
   add_library(blum_cuda MODULE ${sources})
-  target_include_directories(blum_cuda PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
-  # A toolkit from PyPI keeps CUB and Thrust where nvcc does not look.
-  foreach(folder IN LISTS CMAKE_CUDA_TOOLKIT_INCLUDE_DIRECTORIES)
-    if(EXISTS ${folder}/cccl)
-      target_include_directories(blum_cuda SYSTEM PRIVATE ${folder}/cccl)
-    endif()
-  endforeach()
-  target_compile_options(blum_cuda PRIVATE $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr
-                                           $<$<BOOL:${BLUM_WERROR}>:-Werror=all-warnings>>)
+  blum_set_cuda(blum_cuda)
   set_target_properties(blum_cuda PROPERTIES
-    CUDA_STANDARD 20 CUDA_STANDARD_REQUIRED ON CUDA_EXTENSIONS OFF CUDA_RUNTIME_LIBRARY Static
     CUDA_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+endfunction()
+
+# The programs of bench/gpu: they need a compiler and CUDA, and nothing else.
+function(blum_add_gpu_programs)
+  foreach(name check_gpu time_gpu)
+    add_executable(${name} ${PROJECT_SOURCE_DIR}/bench/gpu/${name}.cu)
+    blum_set_cuda(${name})
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/bench)
+    target_link_libraries(${name} PRIVATE blum_field_reference blum_geometry blum_grid blum_core)
+  endforeach()
 endfunction()

@@ -7,6 +7,7 @@ cmake_dependent_option(BLUM_CLI "Build the command-line tool (needs CLI11, nlohm
 option(BLUM_TESTS "Build the tests and the examples (needs GoogleTest)" ${PROJECT_IS_TOP_LEVEL})
 cmake_dependent_option(BLUM_PYTHON "Build the Python extension module (needs Python 3.11, nanobind)" OFF BLUM_IO OFF)
 option(BLUM_BENCH "Build the benchmarks (needs Google Benchmark)" OFF)
+option(BLUM_GPU_BENCH "Build the programs of bench/gpu (needs a CUDA compiler, and no other package)" OFF)
 option(BLUM_FUZZ "Build the libFuzzer targets (needs clang)" OFF)
 option(BLUM_INSTALL "Write install rules" ${PROJECT_IS_TOP_LEVEL})
 option(BLUM_WERROR "Treat warnings as errors" OFF)

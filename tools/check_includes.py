@@ -6,7 +6,7 @@
   tests and benchmarks may look inside.
 - Public headers name nothing but the standard library and Blum.
 - One file starts threads (src/core/parallel.cpp); SIMD is in src/field/cpu and src/core/simd*; compression is in src/io.
-- field/cpu and field/cuda do not see each other.
+- field/cpu and field/cuda do not see each other; CUDA is in src/field/cuda.
 """
 
 import pathlib
@@ -26,7 +26,7 @@ LOWER["medial_axis"] = LOWER["voronoi"] | {"voronoi"}
 LOWER["io"] = set(LOWER)
 
 STANDARD = re.compile(r"[a-z_]+")  # <vector>, <stop_token>: no dot, no slash
-SYSTEM = re.compile(r"(sys/\w+|unistd|fcntl|linux/\w+|sched)\.h")  # what the C++ standard library lacks; sources only
+SYSTEM = re.compile(r"(sys/\w+|unistd|fcntl|linux/\w+|sched|dlfcn)\.h")  # what the C++ standard library lacks; sources only
 STARTS_THREADS = {"thread", "future", "execution", "pthread.h", "omp.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:<([^>]+)>|"([^"]+)")')
 
@@ -45,6 +45,8 @@ def third_party_rule(source: str, name: str) -> str | None:
     if name.startswith("hwy/"):
         allowed = source.startswith(("src/field/cpu/", "src/core/simd"))
         return None if allowed else "SIMD belongs in src/field/cpu and src/core/simd*"
+    if name == "cuda_runtime.h" or name.startswith(("cub/", "thrust/")):
+        return None if source.startswith("src/field/cuda/") else "CUDA belongs in src/field/cuda"
     if name in ("zlib.h", "png.h"):
         return None if source.startswith("src/io/") else "only src/io reads and writes compressed files"
     if STANDARD.fullmatch(name) or SYSTEM.fullmatch(name):

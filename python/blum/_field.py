@@ -258,8 +258,7 @@ def distance_field(
     threads : int
         0: all cores. Results do not depend on it.
     device : "cpu", "auto", "cuda" or "cuda:K"
-        Where distances are computed. "auto" takes the first CUDA device where there is one that works. Devices agree
-        within the precision below.
+        Where distances are computed; "auto": on the first CUDA device if that works, else on the CPU.
     progress : bool or function
         True: a bar of tqdm. A function is called with (fraction, phase).
 

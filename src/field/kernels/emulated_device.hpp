@@ -22,44 +22,44 @@ class EmulatedWarp {
   template <class T>
   class Lanes {
    public:
-    T& operator[](std::uint32_t lane) { return value_[lane]; }
-    const T& operator[](std::uint32_t lane) const { return value_[lane]; }
+    BLUM_HD T& operator[](std::uint32_t lane) { return value_[lane]; }
+    BLUM_HD const T& operator[](std::uint32_t lane) const { return value_[lane]; }
 
    private:
     std::array<T, warp_size> value_{};
   };
 
-  explicit EmulatedWarp(std::uint32_t index) : index_(index) {}
-  [[nodiscard]] std::uint32_t index() const { return index_; }
+  BLUM_HD explicit EmulatedWarp(std::uint32_t index) : index_(index) {}
+  [[nodiscard]] BLUM_HD std::uint32_t index() const { return index_; }
 
   template <class Step>
-  void each(const Step& step) const {
+  BLUM_HD void each(const Step& step) const {
     for (std::uint32_t lane = 0; lane < warp_size; ++lane) step(lane);
   }
   template <class Question>
-  [[nodiscard]] std::uint32_t ballot(const Question& question) const {
+  [[nodiscard]] BLUM_HD std::uint32_t ballot(const Question& question) const {
     std::uint32_t result = 0;
     for (std::uint32_t lane = 0; lane < warp_size; ++lane) result |= question(lane) ? 1U << lane : 0U;
     return result;
   }
   /// The smallest of all lanes' values.
   template <class Value>
-  [[nodiscard]] std::uint64_t smallest(const Value& value) const {
+  [[nodiscard]] BLUM_HD std::uint64_t smallest(const Value& value) const {
     std::uint64_t result = value(0);
     for (std::uint32_t lane = 1; lane < warp_size; ++lane) result = std::min<std::uint64_t>(result, value(lane));
     return result;
   }
   template <class T>
-  [[nodiscard]] T broadcast(const Lanes<T>& values, std::uint32_t lane) const {
+  [[nodiscard]] BLUM_HD T broadcast(const Lanes<T>& values, std::uint32_t lane) const {
     return values[lane];
   }
   /// Replaces each lane's value by the sum of those of the lanes up to it.
   template <class T>
-  void add_up(Lanes<T>& values) const {
+  BLUM_HD void add_up(Lanes<T>& values) const {
     for (std::uint32_t lane = 1; lane < warp_size; ++lane) values[lane] += values[lane - 1];
   }
   /// Adds to a counter in shared memory; returns what it was.
-  [[nodiscard]] std::uint32_t claim(std::uint32_t& counter, std::uint32_t count) const {
+  [[nodiscard]] BLUM_HD std::uint32_t claim(std::uint32_t& counter, std::uint32_t count) const {
     return std::exchange(counter, counter + count);
   }
 
@@ -78,24 +78,24 @@ class EmulatedBlock {
   template <class T>
   class PerThread {
    public:
-    T& at(const Warp& warp, std::uint32_t lane) { return value_[warp.index() * warp_size + lane]; }
+    BLUM_HD T& at(const Warp& warp, std::uint32_t lane) { return value_[warp.index() * warp_size + lane]; }
 
    private:
     std::array<T, threads> value_{};
   };
 
   template <class Step>
-  void each_warp(const Step& step) const {
+  BLUM_HD void each_warp(const Step& step) const {
     for (std::uint32_t w = 0; w < warps; ++w) step(Warp(w));
   }
   /// One thread does something for all.
   template <class Step>
-  void once(const Step& step) const {
+  BLUM_HD void once(const Step& step) const {
     step();
   }
   /// A value in shared memory, read by all threads before any goes on to change it.
   template <class T>
-  [[nodiscard]] T read(const T& shared) const {
+  [[nodiscard]] BLUM_HD T read(const T& shared) const {
     return shared;
   }
 };

@@ -55,6 +55,9 @@ class FieldPipeline {
   /// Waits for the device (the number of edges decides the sizes of what follows).
   void set_connectivity(const DeviceMesh& mesh) { build_connectivity(device_, mesh, connectivity_); }
   [[nodiscard]] ConnectivityView connectivity() const { return connectivity_.view(); }
+  /// Of the last prepare(), in the device's memory.
+  [[nodiscard]] const Forest& forest() const { return forest_; }
+  [[nodiscard]] const NormalFrame* frame() const { return frame_.data(); }
 
   /// Builds records and trees of this frame's vertices.
   void prepare(const DeviceMesh& mesh, const GridSpec& grid) {

@@ -1,0 +1,156 @@
+// Compares fields of a CUDA device with brute force in double and with the same kernels run on the host: promise, signs,
+// bands, slabs, determinism. Needs a compiler and CUDA alone; prints a line per case, exits with 1 where one fails.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/random.hpp"
+#include "blum/field/reference.hpp"
+#include "blum/geometry/generators.hpp"
+#include "field/cuda/cuda_device.cuh"
+#include "field/kernels/emulated_device.hpp"
+#include "field/kernels/field_engine.hpp"
+#include "gpu/meshes.hpp"
+
+namespace blum::bench {
+namespace {
+
+struct Result {
+  std::vector<float> distance;
+  std::vector<std::uint32_t> site;
+
+  [[nodiscard]] bool operator==(const Result& other) const {
+    return distance.size() == other.distance.size() &&
+           std::memcmp(distance.data(), other.distance.data(), distance.size() * sizeof(float)) == 0 &&
+           site == other.site;
+  }
+};
+
+template <class Device>
+Result compute(Device& device, const TriangleMesh& mesh, const kernels::EngineRequest& request,
+               std::size_t slab_nodes = std::size_t{1} << 23) {
+  kernels::FieldEngine<Device> engine(device, slab_nodes);
+  Result out;
+  out.distance.resize(request.grid.node_count());
+  out.site.resize(request.grid.node_count());
+  engine.set_connectivity(mesh);
+  (void)engine.compute(
+      mesh, request, out.distance.data(), out.site.data(), [] { return false; }, [](double) {});
+  return out;
+}
+
+struct Case {
+  std::string name;
+  TriangleMesh mesh;
+  int resolution = 40;
+  double band = 0;
+  bool is_closed = false;
+};
+
+/// Errors as fractions of the diagonal of mesh and grid.
+struct Errors {
+  double distance = 0;
+  double site = 0;
+  double from_host = 0;
+  std::size_t signs = 0;
+};
+
+Errors measure(const Case& c, const kernels::EngineRequest& request, const Result& device, const Result& host) {
+  const GridSpec& grid = request.grid;
+  Box3 box = bounds(c.mesh);
+  box.extend(bounds(grid));
+  const double diagonal = box.diagonal();
+  const reference::BruteForce brute(c.mesh);
+  Errors errors;
+  Random random(7);
+  const std::size_t sample = 200'000'000 / (200 * (brute.sites().size() + 1)) + 50;
+  for (std::size_t k = 0; k < sample; ++k) {
+    const auto node = static_cast<std::int64_t>(random.below(grid.node_count()));
+    const Vec3d query =
+        grid.position(node % grid.size[0], node / grid.size[0] % grid.size[1], node / (grid.size[0] * grid.size[1]));
+    const double truth = brute.nearest(query).distance;
+    const double expected = c.band > 0 ? std::min(truth, c.band) : truth;
+    const auto at = static_cast<std::size_t>(node);
+    errors.distance = std::max(errors.distance, std::abs(std::abs(device.distance[at]) - expected) / diagonal);
+    if (device.site[at] != kernels::dead_record) {
+      errors.site =
+          std::max(errors.site, (brute.site_distance(SiteId(device.site[at]), query) - truth) / diagonal);
+    }
+    if (c.is_closed && truth > 1e-6 * diagonal) {
+      errors.signs += std::signbit(device.distance[at]) != (reference::winding_number(c.mesh, query) > 0.5) ? 1 : 0;
+    }
+  }
+  for (std::size_t k = 0; k < device.distance.size(); ++k) {
+    const double off = std::abs(static_cast<double>(device.distance[k]) - host.distance[k]) / diagonal;
+    errors.from_host = std::max(errors.from_host, std::abs(off));
+  }
+  return errors;
+}
+
+bool run(cuda::CudaDevice& device, const Case& c) {
+  kernels::EngineRequest request;
+  request.grid = grid_around(bounds(c.mesh), c.resolution, 0.1);
+  request.band = c.band;
+  if (c.is_closed) request.level = 0;
+  const Result first = compute(device, c.mesh, request);
+  const Result again = compute(device, c.mesh, request);
+  const Result slabs = compute(device, c.mesh, request, 1);
+  kernels::EmulatedDevice emulated;
+  const Result host = compute(emulated, c.mesh, request);
+  const Errors errors = measure(c, request, first, host);
+  const bool is_same = first == again && first == slabs;
+  const bool is_good =
+      errors.distance <= 1e-6 && errors.site <= 1e-6 && errors.from_host <= 2e-6 && errors.signs == 0 && is_same;
+  std::printf("%-4s %-22s %8zu triangles %4d^3: distance %.1e, site %.1e, from the host's %.1e, %zu wrong signs, %s\n",
+              is_good ? "ok" : "FAIL", c.name.c_str(), c.mesh.triangles.size(), c.resolution, errors.distance,
+              errors.site, errors.from_host, errors.signs, is_same ? "same bytes" : "NOT THE SAME BYTES");
+  return is_good;
+}
+
+/// @param is_quick  few and small, for compute-sanitizer.
+std::vector<Case> cases(bool is_quick) {
+  SoupOptions soup;
+  soup.triangles = 500;
+  soup.awkward = 0.5;
+  if (is_quick) {
+    return {{"box", make_box({}), 20, 0, true},
+            {"knot in a band", noisy_knot(4'000), 24, 0.2, true},
+            {"soup", make_soup(soup), 16}};
+  }
+  return {{"box", make_box({}), 40, 0, true},
+          {"sphere", make_sphere({.frequency = 40}), 48, 0, true},
+          {"gear", make_gear({}), 64, 0, true},
+          {"knot", noisy_knot(20'000), 64, 0, true},
+          {"knot in a band", noisy_knot(20'000), 64, 0.05, true},
+          {"soup", make_soup(soup), 40},
+          {"points", make_points(), 40},
+          {"segments", make_segments(), 40}};
+}
+
+int main_of(bool is_quick) {
+  cuda::check(cudaSetDevice(0), "choosing the device");
+  cuda::CudaDevice device(nullptr);
+  int failed = 0;
+  const std::vector<Case> all = cases(is_quick);
+  for (const Case& c : all) failed += run(device, c) ? 0 : 1;
+  std::printf("%zu passed, %d failed\n", all.size() - static_cast<std::size_t>(failed), failed);
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace blum::bench
+
+int main(int count, char** arguments) {
+  try {
+    return blum::bench::main_of(count > 1 && std::string(arguments[1]) == "--quick");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "check_gpu: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Compiles everything that is CUDA: the module and the programs of bench/gpu, with warnings as errors. Where there is no
+# nvcc, its wheels are installed from PyPI into build/cuda-toolkit first (300 MB). Nothing is run: that takes a GPU, and
+# bench/gpu.sh.
+#   tools/cuda.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+toolkit=$PWD/build/cuda-toolkit
+find_nvcc() {
+  command -v "${CUDACXX:-nvcc}" || ls "$toolkit"/lib/python3*/site-packages/nvidia/cu13/bin/nvcc 2>/dev/null
+}
+if ! find_nvcc >/dev/null; then
+  python3 -m venv "$toolkit"
+  "$toolkit/bin/pip" install --quiet -r bench/gpu/requirements.txt
+  # nvcc links with what is in lib64; the wheels have it in lib.
+  for folder in "$toolkit"/lib/python3*/site-packages/nvidia/cu13; do ln -sfn lib "$folder/lib64"; done
+fi
+CUDACXX=$(find_nvcc)
+export CUDACXX
+echo "cuda: $("$CUDACXX" --version | tail -n 1)"
+cmake -S . -B build/cuda -G Ninja -DCMAKE_BUILD_TYPE=Release -DBLUM_CUDA=ON -DBLUM_GPU_BENCH=ON -DBLUM_FIELD_CPU=OFF \
+  -DBLUM_TESTS=OFF -DBLUM_THREADS=STD -DBLUM_WERROR=ON --log-level=WARNING
+cmake --build build/cuda --parallel "${JOBS:-$(nproc)}" --target blum_cuda check_gpu time_gpu
