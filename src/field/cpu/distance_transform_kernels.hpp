@@ -6,38 +6,25 @@
 
 #include "blum/core/buffer.hpp"
 #include "blum/core/context.hpp"
+#include "field/image_plan.hpp"
 
 namespace blum::detail {
 
 /// Columns that one task of a column pass takes: a whole number of cache lines of each array.
 inline constexpr std::size_t tile_width = 64;
 
-/// What all passes of one transform share. Axes of length one are dropped, so that the others come first.
+/// What all passes of one transform share.
 ///
 /// Between passes the site array holds packed partial sites: after the x pass the closest x in the row, after the y
 /// pass `y << x_bits | x` of the closest voxel in the plane; all ones where there is none. Both fit 32 bits, and all
 /// ones is no site, because an image has fewer than 2^31 voxels.
-struct TransformPlan {
-  std::size_t size[3] = {1, 1, 1};
-  bool is_signed = true;
-  unsigned x_bits = 0;  ///< bits that hold an x coordinate
-
-  /// Squared distances are sums of weight * (coordinate difference)^2, in units of unit^2.
-  bool integer = true;          ///< weights are whole numbers, and no sum reaches `far` of the kernels
-  bool exact_in_float = false;  ///< all sums are below 2^24 and the unit is a power of two: float roots are right
-  double weight[3] = {1, 1, 1};
-  double unit = 1;
-
-  bool has_band = false;
-  float band = 0;  ///< largest float that is not above the half-width; what voxels beyond it get
-
+struct TransformPlan : ImagePlan {
+  unsigned x_bits = 0;                  ///< bits that hold an x coordinate
   const std::uint64_t* mask = nullptr;  ///< see MaskBits
   std::size_t mask_words_per_row = 0;
   float* distance = nullptr;
   std::uint32_t* site = nullptr;
   const Context* context = nullptr;  ///< looked at for cancellation inside long tasks
-
-  [[nodiscard]] std::size_t voxel_count() const { return size[0] * size[1] * size[2]; }
 };
 
 /// The squares of an axis: table[n - 1 + k] = weight * k^2 for -n < k < n, as int32 or double.

@@ -4,101 +4,15 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <limits>
 #include <span>
-#include <string>
-#include <type_traits>
-#include <utility>
 #include <variant>
 
-#include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
+#include "field/voxel_test.hpp"
 
 namespace blum::detail {
 namespace {
-
-// A selection in terms of the image's own value type: tests that are a single comparison, so that they vectorise.
-struct Never {
-  template <class T>
-  bool operator()(T) const {
-    return false;
-  }
-};
-struct Always {
-  template <class T>
-  bool operator()(T) const {
-    return true;
-  }
-};
-template <class T>
-struct Nonzero {
-  // Written so that NaN is not selected.
-  bool operator()(T value) const {
-    if constexpr (std::is_floating_point_v<T>) return (value < T(0)) | (value > T(0));
-    return value != T(0);
-  }
-};
-template <class T>
-struct Equal {
-  T label;
-  bool operator()(T value) const { return value == label; }
-};
-template <class T>
-struct AtLeast {
-  T lowest;
-  bool operator()(T value) const { return value >= lowest; }
-};
-
-template <class T>
-using Test = std::variant<Never, Always, Nonzero<T>, Equal<T>, AtLeast<T>>;
-
-template <class T>
-Test<T> label_test(std::int64_t label) {
-  if constexpr (std::is_floating_point_v<T>) {
-    // A label that the type cannot hold exactly is equal to none of its values. (2^63 itself is out of int64's range.)
-    const T nearest = static_cast<T>(label);
-    if (nearest >= T(9223372036854775808.0) || static_cast<std::int64_t>(nearest) != label) return Never{};
-    return Equal<T>{nearest};
-  } else {
-    if (!std::in_range<T>(label)) return Never{};
-    return Equal<T>{static_cast<T>(label)};
-  }
-}
-
-template <class T>
-Test<T> threshold_test(double threshold) {
-  if constexpr (std::is_floating_point_v<T>) {
-    using Limits = std::numeric_limits<T>;
-    if (threshold > static_cast<double>(Limits::max())) return AtLeast<T>{Limits::infinity()};
-    if (std::isinf(threshold)) return AtLeast<T>{-Limits::infinity()};
-    if (threshold < static_cast<double>(Limits::lowest())) return AtLeast<T>{Limits::lowest()};
-    T lowest = static_cast<T>(threshold);
-    if (static_cast<double>(lowest) < threshold) lowest = std::nextafter(lowest, Limits::infinity());
-    return AtLeast<T>{lowest};
-  } else {
-    const double lowest = std::ceil(threshold);
-    // As doubles the limits may round up to the next power of two, which no value of the type reaches.
-    if (lowest <= static_cast<double>(std::numeric_limits<T>::min())) return Always{};
-    if (lowest >= std::ldexp(1.0, std::numeric_limits<T>::digits)) return Never{};
-    return AtLeast<T>{static_cast<T>(lowest)};
-  }
-}
-
-template <class T>
-Test<T> make_test(const LabelSelection& selection) {
-  switch (selection.rule) {
-    case LabelSelection::Rule::nonzero:
-      return Nonzero<T>{};
-    case LabelSelection::Rule::label:
-      return label_test<T>(selection.label);
-    case LabelSelection::Rule::threshold:
-      if (std::isnan(selection.threshold)) throw InvalidOption("the threshold is not a number; give a number");
-      return threshold_test<T>(selection.threshold);
-  }
-  throw InvalidOption("unknown selection rule " + std::to_string(static_cast<int>(selection.rule)));
-}
 
 /// Packs 64 bytes of 0 or 1 into one word, byte i into bit i.
 std::uint64_t pack(const std::uint8_t* flags) {
@@ -164,7 +78,7 @@ std::size_t select_voxels(const VoxelImageView& image, const LabelSelection& sel
                 selected += count;
               });
             },
-            make_test<T>(selection));
+            make_voxel_test<T>(selection));
       },
       image.values);
   return selected;

@@ -77,6 +77,14 @@ BLUM_HD inline std::uint32_t lowest_bit(std::uint32_t x) {
   return static_cast<std::uint32_t>(std::countr_zero(x));
 #endif
 }
+/// The index of the highest set bit of x, which is not 0.
+BLUM_HD inline std::uint32_t highest_bit(std::uint32_t x) {
+#if defined(__CUDA_ARCH__)
+  return static_cast<std::uint32_t>(31 - __clz(static_cast<int>(x)));
+#else
+  return static_cast<std::uint32_t>(31 - std::countl_zero(x));
+#endif
+}
 /// Set bits below bit `lane`.
 BLUM_HD inline std::uint32_t bits_below(std::uint32_t mask, std::uint32_t lane) {
   return count_bits(mask & ((1U << lane) - 1U));
@@ -87,6 +95,31 @@ BLUM_HD inline std::uint32_t bits_of(float x) {
   return __float_as_uint(x);
 #else
   return std::bit_cast<std::uint32_t>(x);
+#endif
+}
+/// A float of these bits, whatever they mean.
+BLUM_HD inline float float_of(std::uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+  return __uint_as_float(bits);
+#else
+  return std::bit_cast<float>(bits);
+#endif
+}
+
+// Sums and products that are rounded by themselves: where a result must be the same on every device, the compiler must
+// not fuse them. (On the host, none of the flags that kernels are tested with allows fused operations.)
+BLUM_HD inline double rounded_sum(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dadd_rn(a, b);
+#else
+  return a + b;
+#endif
+}
+BLUM_HD inline double rounded_product(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a, b);
+#else
+  return a * b;
 #endif
 }
 

@@ -1,0 +1,132 @@
+#include "field/image_plan.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+
+#include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// Spacings as whole multiples of a common unit.
+struct CommonUnit {
+  std::uint64_t multiple[3] = {1, 1, 1};
+  double unit = 1;
+};
+
+/// Any three doubles whose exponents do not differ too much have a common unit: a power of two times the greatest
+/// common divisor of their mantissas. False where the multiples would not fit.
+bool find_common_unit(const double (&spacing)[3], int used, CommonUnit& common) {
+  int lowest_exponent = std::numeric_limits<int>::max();
+  int exponents[3] = {};
+  std::uint64_t mantissas[3] = {};
+  for (int axis = 0; axis < used; ++axis) {
+    mantissas[axis] = static_cast<std::uint64_t>(std::ldexp(std::frexp(spacing[axis], &exponents[axis]), 53));
+    const int zeros = std::countr_zero(mantissas[axis]);
+    mantissas[axis] >>= static_cast<unsigned>(zeros);
+    exponents[axis] += zeros - 53;
+    lowest_exponent = std::min(lowest_exponent, exponents[axis]);
+  }
+  std::uint64_t divisor = 0;
+  for (int axis = 0; axis < used; ++axis) {
+    const int shift = exponents[axis] - lowest_exponent;
+    if (shift > std::countl_zero(mantissas[axis])) return false;
+    common.multiple[axis] = mantissas[axis] << static_cast<unsigned>(shift);
+    divisor = std::gcd(divisor, common.multiple[axis]);
+  }
+  for (int axis = 0; axis < used; ++axis) common.multiple[axis] /= divisor;
+  common.unit = std::ldexp(static_cast<double>(divisor), lowest_exponent);
+  return true;
+}
+
+/// Largest squared distance in the image, in units of the plan.
+double largest_square(const ImagePlan& plan) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto extent = static_cast<double>(plan.size[axis] - 1);
+    sum += plan.weight[axis] * extent * extent;
+  }
+  return sum;
+}
+
+bool is_power_of_two(double value) {
+  int exponent = 0;
+  return std::frexp(value, &exponent) == 0.5;
+}
+
+/// Chooses whole-number arithmetic where the spacings allow it.
+void choose_arithmetic(ImagePlan& plan, const double (&spacing)[3], int used) {
+  constexpr double integer_limit = 1 << 30;
+  constexpr double float_limit = 1 << 24;
+  CommonUnit common;
+  if (find_common_unit(spacing, used, common)) {
+    // A unit that is a power of two keeps the scaled root correctly rounded, so whole numbers stay undivided.
+    const double whole = std::round(common.unit);
+    const bool undivided = whole == common.unit && whole > 1 && whole < 1024 && !is_power_of_two(whole);
+    for (const double factor : {undivided ? whole : 1.0, 1.0}) {
+      for (int axis = 0; axis < used; ++axis) {
+        const double multiple = factor * static_cast<double>(common.multiple[axis]);
+        plan.weight[axis] = multiple * multiple;
+      }
+      plan.unit = common.unit / factor;
+      const double largest = largest_square(plan);
+      plan.integer = largest < integer_limit;
+      plan.exact_in_float =
+          largest < float_limit && is_power_of_two(plan.unit) && plan.unit > 1e-30 && plan.unit < 1e30;
+      if (plan.integer) return;
+    }
+  }
+  plan.integer = false;
+  plan.exact_in_float = false;
+  plan.unit = 1;
+  // Divided by the largest spacing, so that squares neither overflow nor vanish.
+  const double scale = *std::max_element(spacing, spacing + used);
+  for (int axis = 0; axis < used; ++axis) plan.weight[axis] = (spacing[axis] / scale) * (spacing[axis] / scale);
+  plan.unit = scale;
+}
+
+/// Beyond this, float32 would hold infinities, or nothing but zeros.
+void check_extent(const GridSpec& grid) {
+  double longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.size[axis] == 1) continue;
+    longest = std::max(longest, grid.spacing[axis] * static_cast<double>(grid.size[axis]));
+  }
+  if (longest == 0) return;  // a single voxel
+  if (longest >= 1e-36 && longest < 1e37) return;
+  throw InvalidImage("the image spans " + exact_text(longest) +
+                     " units, but 32-bit distances hold 1e-36 to 1e37: give its spacing in other units");
+}
+
+}  // namespace
+
+ImagePlan make_image_plan(const GridSpec& grid, const DistanceTransformOptions& options) {
+  ImagePlan plan;
+  double spacing[3] = {1, 1, 1};
+  int used = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.size[axis] == 1) continue;
+    plan.size[used] = static_cast<std::size_t>(grid.size[axis]);
+    spacing[used] = grid.spacing[axis];
+    ++used;
+  }
+  check_extent(grid);
+  choose_arithmetic(plan, spacing, std::max(used, 1));
+  plan.is_signed = options.is_signed;
+  if (options.band) {
+    const double band = *options.band;
+    if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + exact_text(band));
+    plan.has_band = band < static_cast<double>(std::numeric_limits<float>::max());
+    if (plan.has_band) {
+      plan.band = static_cast<float>(band);  // as distances are rounded, so that one equal to it stays within
+    }
+  }
+  return plan;
+}
+
+}  // namespace blum::detail

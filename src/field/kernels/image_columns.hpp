@@ -1,0 +1,319 @@
+// Blum: the passes along columns of distance transforms of images. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "field/kernels/image_column.hpp"
+
+namespace blum::kernels {
+
+// A column pass (along y or z) asks, for each row r of a column, for the row s that minimises cost(s) + w (r - s)^2:
+// for the lower envelope of parabolas (Maurer, Qi, Raghavan 2003). Of several the lowest row wins.
+//
+// Rows fall into runs of one kind. A voxel next to a run, of the other kind, costs nothing, and hides all that lies
+// beyond it from the run's rows. So each run has an envelope of its own: of its own rows and the voxels at its ends
+// ("walls", which need no memory). Inside and outside of a signed transform thus take one pass, and the work and memory
+// of one. In an unsigned transform the runs of selected voxels are their own sites.
+//
+// A thread takes a column, or where there are few columns one band of it; neighbouring threads take neighbouring
+// columns, so that a warp reads and writes whole lines. As in parallel banding (Cao, Tang, Mohamed, Tan 2010):
+//   BuildEnvelopes  makes the envelopes of each band's rows. Reads 4 + 1/8 bytes per voxel, writes at most 4.
+//   MergeBands      drops parabolas that those of other bands hide. Touches few.
+//   AssignSites     walks down the envelopes. Reads at most 4 + 1/8 bytes per voxel, writes 4.
+// What parabolas stand for is found again from the linear index of their site, so that an entry takes 4 bytes. Sites
+// are read and written in whole lines. Envelopes of neighbouring columns differ in height, so that 32 threads write 1
+// to 4 times the 32-byte sectors that 32 entries fill (counted for balls, noise and sparse points of 128^3 voxels);
+// most meet in the cache.
+//
+// Entries of a run that begins at row a are in slots a, a + 1, ...; where a run ends, or a band cuts it, the last slot
+// of it says where the entries end, unless it is an entry itself.
+
+/// Makes the envelopes of a band of a column.
+template <class Costs, bool along_z>
+struct BuildEnvelopes {
+  ColumnPass<Costs> pass;
+
+  BLUM_HD void operator()(std::size_t index) const {
+    const auto band = pass.bands == 1 ? 0 : static_cast<std::uint32_t>(index / pass.columns);
+    const auto column = static_cast<std::uint32_t>(index - std::size_t{band} * pass.columns);
+    Builder(pass, column).run(band);
+  }
+
+ private:
+  using Entry = Parabola<typename Costs::Value>;
+
+  class Builder {
+   public:
+    BLUM_HD Builder(const ColumnPass<Costs>& pass, std::uint32_t column) : pass_(pass), column_(pass, column) {}
+
+    BLUM_HD void run(std::uint32_t band) {
+      const std::uint32_t begin = pass_.band_begin(band);
+      const std::uint32_t end = pass_.band_end(band);
+      std::uint32_t change = end;
+      kind_ = column_.kind(begin);
+      start(begin, begin > 0 && column_.kind(begin - 1) != kind_);
+      // Rows are read some time before they are needed: a thread has little else to wait with.
+      Rows next = read(begin, end);
+      for (std::uint32_t first = begin; first < end; first += rows_at_once) {
+        const Rows now = next;
+        next = read(first + rows_at_once, end);
+        for (std::uint32_t k = 0; k < rows_at_once; ++k) {
+          const std::uint32_t row = first + k;
+          if (row >= end) break;
+          const bool kind = column_.kind_in(now.mask_word[k]);
+          if (kind != kind_) {
+            change = smaller(change, row);
+            finish(row, true);
+            kind_ = kind;
+            start(row, true);
+          }
+          if (now.site[k] != no_voxel && !column_.is_settled(kind)) push(column_.entry(row, now.site[k]));
+        }
+      }
+      finish(end, end < pass_.length && column_.kind(end) != kind_);
+      if (pass_.bands == 1) return;
+      column_.bottom(band) = begin;
+      column_.change(band) = change;
+    }
+
+   private:
+    static constexpr std::uint32_t rows_at_once = 4;
+    struct Rows {
+      std::uint32_t site[rows_at_once];
+      std::uint32_t mask_word[rows_at_once];
+    };
+
+    [[nodiscard]] BLUM_HD Rows read(std::uint32_t first, std::uint32_t end) const {
+      Rows rows{};
+      for (std::uint32_t k = 0; k < rows_at_once; ++k) {
+        if (first + k >= end) continue;
+        rows.site[k] = pass_.site[column_.voxel(first + k)];
+        rows.mask_word[k] = column_.mask_word(first + k);
+      }
+      return rows;
+    }
+
+    BLUM_HD void start(std::uint32_t row, bool has_wall) {
+      begin_ = row;
+      slot_ = row;
+      depth_ = 0;
+      if (!has_wall) return;
+      top_ = column_.wall(row - 1);
+      depth_ = 1;
+    }
+    /// Drops entries that the wall at the end of a run hides, and says where the others end.
+    BLUM_HD void finish(std::uint32_t row, bool has_wall) {
+      if (has_wall) make_room(column_.wall(row));
+      column_.set_top(row, slot_);
+    }
+    BLUM_HD void push(const Entry& entry) {
+      make_room(entry);
+      second_ = top_;
+      top_ = entry;
+      ++depth_;
+      column_.set_slot(slot_++, entry.site);
+    }
+    /// Drops entries that the one below them and a new one hide.
+    BLUM_HD void make_room(const Entry& entry) {
+      while (depth_ >= 2 && column_.hides(second_, top_, entry)) {
+        top_ = second_;
+        --depth_;
+        --slot_;
+        if (depth_ < 2) return;
+        second_ = slot_ - begin_ >= 2 ? column_.entry_of_slot(slot_ - 2) : column_.wall(begin_ - 1);
+      }
+    }
+
+    const ColumnPass<Costs>& pass_;
+    Column<Costs, along_z> column_;
+    bool kind_ = false;
+    std::uint32_t begin_ = 0;  ///< of the run
+    std::uint32_t slot_ = 0;   ///< after the last entry
+    std::uint32_t depth_ = 0;  ///< entries, the wall counted in
+    Entry top_, second_;
+  };
+};
+
+/// Joins the envelopes of runs that bands cut. One thread per column goes from band to band: it takes entries off the
+/// end of what it has, and off the beginning of what comes next, while others hide them.
+template <class Costs, bool along_z>
+struct MergeBands {
+  ColumnPass<Costs> pass;
+
+  BLUM_HD void operator()(std::size_t index) const {
+    const Column<Costs, along_z> column(pass, static_cast<std::uint32_t>(index));
+    for (std::uint32_t band = 1; band < pass.bands; ++band) {
+      const std::uint32_t begin = pass.band_begin(band);
+      const bool kind = column.kind(begin);
+      if (column.kind(begin - 1) == kind && !column.is_settled(kind)) merge(column, band, begin, kind);
+    }
+  }
+
+ private:
+  using Entry = Parabola<typename Costs::Value>;
+
+  BLUM_HD void merge(const Column<Costs, along_z>& column, std::uint32_t band, std::uint32_t begin, bool kind) const {
+    const std::uint32_t change = column.change(band);
+    const std::uint32_t top = column.top(change);
+    const bool has_wall = change < pass.length && column.kind(change) != kind;
+    // Above: the entries from slot `above` on, then the wall.
+    const auto take = [&](std::uint32_t slot, Entry& out) {
+      if (slot < top) {
+        out = column.entry_of_slot(slot);
+        return true;
+      }
+      if (slot == top && has_wall) out = column.wall(change);
+      return slot == top && has_wall;
+    };
+    std::uint32_t above = begin;
+    Entry b1, b2, a1, a2;
+    if (!take(above, b1)) return;
+    bool has_b2 = take(above + 1, b2);
+    typename Column<Costs, along_z>::Cursor at_a1{begin, band};
+    if (!column.template descend<true>(at_a1, kind, a1)) return;
+    auto at_a2 = at_a1;
+    bool has_a2 = column.template descend<true>(at_a2, kind, a2);
+    for (;;) {
+      if (has_a2 && column.hides(a2, a1, b1)) {
+        column.set_top(pass.band_end(at_a1.band), at_a1.slot);
+        a1 = a2;
+        at_a1 = at_a2;
+        has_a2 = column.template descend<true>(at_a2, kind, a2);
+      } else if (has_b2 && column.hides(a1, b1, b2)) {
+        ++above;
+        b1 = b2;
+        has_b2 = take(above + 1, b2);
+      } else {
+        break;
+      }
+    }
+    column.bottom(band) = above;
+  }
+};
+
+/// Gives each row of a band the lowest entry.
+template <class Costs, bool along_z, bool banded>
+struct AssignSites {
+  ColumnPass<Costs> pass;
+
+  BLUM_HD void operator()(std::size_t index) const {
+    const auto band = banded ? static_cast<std::uint32_t>(index / pass.columns) : 0;
+    Assigner(pass, static_cast<std::uint32_t>(index - std::size_t{band} * pass.columns), band).run();
+  }
+
+ private:
+  using Entry = Parabola<typename Costs::Value>;
+  using Value = typename Costs::Value;
+
+  class Assigner {
+   public:
+    BLUM_HD Assigner(const ColumnPass<Costs>& pass, std::uint32_t column, std::uint32_t band)
+        : pass_(pass), column_(pass, column), band_(band) {}
+
+    BLUM_HD void run() {
+      const std::uint32_t begin = pass_.band_begin(band_);
+      const std::uint32_t end = pass_.band_end(band_);
+      bool kind = column_.kind(end - 1);
+      start(end, kind, end < pass_.length && column_.kind(end) != kind);
+      for (std::uint32_t row = end; row-- > begin;) {
+        const bool row_kind = column_.kind(row);
+        if (row_kind != kind) {
+          kind = row_kind;
+          start(row + 1, kind, true);
+        }
+        const std::uint32_t voxel = column_.voxel(row);
+        if (column_.is_settled(kind)) {
+          pass_.site[voxel] = voxel;
+        } else {
+          go_to(row, kind);
+          pass_.site[voxel] = is_empty_ ? no_voxel : best_.site;
+        }
+      }
+    }
+
+   private:
+    using Cursor = typename Column<Costs, along_z>::Cursor;
+
+    /// Begins with the rows of a run that end before `end`, from its wall, or from the entry that is lowest there.
+    BLUM_HD void start(std::uint32_t end, bool kind, bool has_wall) {
+      if (column_.is_settled(kind)) return;
+      cursor_ = {column_.top(end), band_};
+      if (has_wall) {
+        best_ = column_.wall(end);
+        is_empty_ = false;
+      } else {
+        is_empty_ = !descend(kind, best_);
+        if (banded && end < pass_.length) climb(end - 1, kind);
+      }
+      has_next_ = descend(kind, next_);
+    }
+    BLUM_HD bool descend(bool kind, Entry& out) { return column_.template descend<banded>(cursor_, kind, out); }
+
+    /// Looks for lower entries in the bands that a run goes on to.
+    BLUM_HD void climb(std::uint32_t row, bool kind) {
+      for (std::uint32_t band = band_ + 1; band < pass_.bands; ++band) {
+        const std::uint32_t change = column_.change(band);
+        const std::uint32_t top = column_.top(change);
+        for (std::uint32_t slot = column_.bottom(band); slot < top; ++slot) {
+          if (!offer_from_above(row, column_.entry_of_slot(slot), {slot, band})) return;
+        }
+        if (change == pass_.length) return;
+        if (column_.kind(change) != kind) {
+          offer_from_above(row, column_.wall(change), {top, band});
+          return;
+        }
+      }
+    }
+    /// False where the entry, and so those above it, are higher.
+    BLUM_HD bool offer_from_above(std::uint32_t row, const Entry& entry, const Cursor& below) {
+      const Value height = column_.height(entry, row);
+      const Value lowest = is_empty_ ? height : column_.height(best_, row);
+      if (is_empty_ || height < lowest) {
+        best_ = entry;
+        cursor_ = below;
+        is_empty_ = false;
+        return true;
+      }
+      return height <= lowest + pass_.costs.slack;
+    }
+
+    BLUM_HD void go_to(std::uint32_t row, bool kind) {
+      while (has_next_) {
+        const Value lowest = column_.height(best_, row);
+        const Value height = column_.height(next_, row);
+        if (height > lowest) {
+          if constexpr (Costs::is_exact) return;
+          if (height > lowest + pass_.costs.slack || !look_below(row, kind, lowest)) return;
+        }
+        best_ = next_;
+        has_next_ = descend(kind, next_);
+      }
+    }
+    /// The next entry is higher than the best one by no more than rounding may make it: whether one below is as low as
+    /// the best. It is made the next one.
+    BLUM_HD bool look_below(std::uint32_t row, bool kind, Value lowest) {
+      Cursor cursor = cursor_;
+      Entry entry;
+      while (column_.template descend<banded>(cursor, kind, entry)) {
+        const Value height = column_.height(entry, row);
+        if (height > lowest + pass_.costs.slack) return false;
+        if (height > lowest) continue;
+        next_ = entry;
+        cursor_ = cursor;
+        return true;
+      }
+      return false;
+    }
+
+    const ColumnPass<Costs>& pass_;
+    Column<Costs, along_z> column_;
+    std::uint32_t band_;
+    bool is_empty_ = true;
+    bool has_next_ = false;
+    Entry best_, next_;
+    Cursor cursor_;  ///< below next
+  };
+};
+
+}  // namespace blum::kernels
