@@ -45,20 +45,20 @@ void bind_transforms(nb::module_& m) {
   m.def(
       "distance_transforms",
       [](const ImageArrays& image, const std::vector<std::int64_t>& labels, std::optional<double> threshold,
-         bool is_signed, std::optional<double> band, int threads, nb::object progress) {
+         bool is_signed, std::optional<double> band, int threads, const std::string& device, nb::object progress) {
         std::vector<LabelSelection> selections;
         for (const std::int64_t label : labels) selections.push_back(LabelSelection::of_label(label));
         if (labels.empty()) selections.push_back(selection_of({}, threshold));
         const DistanceTransformOptions options{{}, is_signed, band};
-        std::vector<Field> fields = run({threads, std::move(progress)}, [&](const Context& context) {
-          return distance_transforms(image.view, selections, options, context);
-        });
+        std::vector<Field> fields =
+            run({threads, std::move(progress), parse_device(device)},
+                [&](const Context& context) { return distance_transforms(image.view, selections, options, context); });
         nb::list out;
         for (Field& field : fields) out.append(nb::cast(std::move(field)));
         return out;
       },
       nb::arg("image"), nb::arg("labels"), nb::arg("threshold").none(), nb::arg("is_signed"), nb::arg("band").none(),
-      nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("threads"), nb::arg("device"), nb::arg("progress").none());
   m.def(
       "selected_voxels",
       [](const ImageArrays& image, std::optional<std::int64_t> label, std::optional<double> threshold, int threads,

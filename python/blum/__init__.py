@@ -44,8 +44,6 @@ from ._field import (
     VoxelTopology,
     closest_points,
     distance_field,
-    distance_transform,
-    distance_transforms,
     read_field,
     selected_voxels,
     voxel_topology,
@@ -68,6 +66,7 @@ from ._mesh import (
     weld_clusters,
 )
 from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
+from ._transform import distance_transform, distance_transforms
 from ._view import view
 
 __all__ = [

@@ -11,45 +11,53 @@
 namespace blum {
 namespace {
 
-struct Replacement {
+struct Makers {
   std::mutex mutex;
-  BackendMaker maker;
+  CudaMakers replacement;
 };
 
-Replacement& replacement() {
-  static Replacement value;
+Makers& makers() {
+  static Makers value;
   return value;
 }
 
-std::unique_ptr<FieldBackend> make_cuda(int index) {
-  {
-    const std::scoped_lock lock(replacement().mutex);
-    if (replacement().maker) return replacement().maker(index);
+CudaMakers cuda_makers() {
+  const std::scoped_lock lock(makers().mutex);
+  CudaMakers result = makers().replacement;
+  if (!result.field) result.field = cuda::make_field_backend;
+  if (!result.image) result.image = cuda::make_image_backend;
+  return result;
+}
+
+/// What make_cuda(index) makes where the device is a CUDA device, or may be one and is there; else what make_cpu()
+/// does.
+template <class MakeCuda, class MakeCpu>
+auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& make_cpu) {
+  if (device.kind == DeviceKind::cuda) return make_cuda(device.index);
+  if (device.kind == DeviceKind::automatic) {
+    try {
+      return make_cuda(0);
+    } catch (const DeviceError&) {
+      return make_cpu();
+    }
   }
-  return cuda::make_backend(index);
+  return make_cpu();
 }
 
 }  // namespace
 
 std::unique_ptr<FieldBackend> make_field_backend(const Context& context) {
-  switch (context.device.kind) {
-    case DeviceKind::cuda:
-      return make_cuda(context.device.index);
-    case DeviceKind::automatic:
-      try {
-        return make_cuda(0);
-      } catch (const DeviceError&) {
-        return std::make_unique<cpu::Engine>();
-      }
-    case DeviceKind::cpu:
-      break;
-  }
-  return std::make_unique<cpu::Engine>();
+  return make_on(context.device, cuda_makers().field,
+                 []() -> std::unique_ptr<FieldBackend> { return std::make_unique<cpu::Engine>(); });
 }
 
-void replace_cuda_backend(BackendMaker maker) {
-  const std::scoped_lock lock(replacement().mutex);
-  replacement().maker = std::move(maker);
+std::unique_ptr<ImageBackend> make_image_backend(const Context& context) {
+  return make_on(context.device, cuda_makers().image, []() -> std::unique_ptr<ImageBackend> { return nullptr; });
+}
+
+void replace_cuda(CudaMakers replacement) {
+  const std::scoped_lock lock(makers().mutex);
+  makers().replacement = std::move(replacement);
 }
 
 }  // namespace blum

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/field/distance_transform.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "field/image_plan.hpp"
 
 namespace blum {
 
@@ -54,11 +56,34 @@ class FieldBackend {
   [[nodiscard]] virtual FieldResult compute(const FieldRequest& request, const Context& context, Field& field) = 0;
 };
 
+/// Transforms images on one device that is not the CPU.
+class ImageBackend {
+ public:
+  ImageBackend() = default;
+  ImageBackend(const ImageBackend&) = delete;
+  ImageBackend& operator=(const ImageBackend&) = delete;
+  virtual ~ImageBackend() = default;
+
+  [[nodiscard]] virtual Device device() const = 0;
+  /// Makes a valid image the current one; it must stay alive.
+  virtual void set_image(const VoxelImageView& image, const detail::ImagePlan& plan) = 0;
+  /// How many voxels are selected.
+  [[nodiscard]] virtual std::size_t select(const LabelSelection& selection) = 0;
+  /// Fills distance and site of a field of the last selection, whose buffers have the image's size.
+  virtual void transform(Field& field) = 0;
+};
+
 /// The back end of context.device. @throws DeviceError.
 [[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context);
+/// Likewise; none for the CPU. @throws DeviceError.
+[[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(const Context& context);
 
-/// Puts something in the place of the CUDA back end, for tests; nothing restores it.
-using BackendMaker = std::function<std::unique_ptr<FieldBackend>(int index)>;
-void replace_cuda_backend(BackendMaker maker);
+/// Makes the back ends of the CUDA device with an index.
+struct CudaMakers {
+  std::function<std::unique_ptr<FieldBackend>(int index)> field;
+  std::function<std::unique_ptr<ImageBackend>(int index)> image;
+};
+/// Puts something in the place of the CUDA back ends, for tests; empty functions restore them.
+void replace_cuda(CudaMakers makers);
 
 }  // namespace blum

@@ -9,6 +9,7 @@
 #include "field/backend.hpp"
 #include "field/kernels/emulated_device.hpp"
 #include "field/kernels/field_engine.hpp"
+#include "field/kernels/image_engine.hpp"
 
 namespace blum::test {
 
@@ -40,15 +41,31 @@ class EmulatedBackend final : public FieldBackend {
   SiteTable sites_;
 };
 
-/// Lets Device::cuda() stand for EmulatedBackend while it is alive.
+/// Likewise for images.
+class EmulatedImageBackend final : public ImageBackend {
+ public:
+  [[nodiscard]] Device device() const override { return Device::cuda(); }
+  void set_image(const VoxelImageView& image, const detail::ImagePlan& plan) override {
+    images_.set_image(image, plan);
+  }
+  [[nodiscard]] std::size_t select(const LabelSelection& selection) override { return images_.select(selection); }
+  void transform(Field& field) override { images_.transform(field.distance.data(), &field.site.data()->value); }
+
+ private:
+  kernels::EmulatedDevice device_;
+  kernels::ImageEngine<kernels::EmulatedDevice> images_{device_};
+};
+
+/// Lets Device::cuda() stand for these back ends while it is alive.
 class EmulatedCuda {
  public:
   explicit EmulatedCuda(std::size_t slab_nodes = kernels::FieldEngine<kernels::EmulatedDevice>::default_slab_nodes) {
-    replace_cuda_backend([=](int) { return std::make_unique<EmulatedBackend>(slab_nodes); });
+    replace_cuda({[=](int) { return std::make_unique<EmulatedBackend>(slab_nodes); },
+                  [](int) { return std::make_unique<EmulatedImageBackend>(); }});
   }
   EmulatedCuda(const EmulatedCuda&) = delete;
   EmulatedCuda& operator=(const EmulatedCuda&) = delete;
-  ~EmulatedCuda() { replace_cuda_backend(nullptr); }
+  ~EmulatedCuda() { replace_cuda({}); }
 };
 
 }  // namespace blum::test

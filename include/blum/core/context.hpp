@@ -21,8 +21,8 @@ struct Context {
   /// Asks running work to stop; the call then throws Cancelled, within 200 ms.
   std::stop_token cancel = {};
 
-  /// Where fields of meshes are computed (distance_field, FieldSolver). distance_transform() has no CUDA path yet and
-  /// refuses `cuda`; everything else computes on the CPU whatever this says.
+  /// Where fields are computed (distance_field, FieldSolver, distance_transform); everything else computes on the CPU
+  /// whatever this says.
   Device device = {};
 };
 

@@ -1,4 +1,4 @@
-#include "blum/field/distance_transform.hpp"
+#include "field/cpu/distance_transform.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,11 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "blum/core/error.hpp"
-#include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "field/cpu/distance_transform_kernels.hpp"
 #include "field/cpu/distance_transform_mask.hpp"
+#include "field/image_field.hpp"
 #include "field/image_plan.hpp"
 
 namespace blum {
@@ -118,39 +117,14 @@ void transform_depth(const TransformPlan& plan, Workspace& work, const Context& 
   });
 }
 
-std::string describe(const LabelSelection& selection) {
-  switch (selection.rule) {
-    case LabelSelection::Rule::nonzero:
-      return "is not zero";
-    case LabelSelection::Rule::label:
-      return "equals label " + std::to_string(selection.label);
-    case LabelSelection::Rule::threshold:
-      return "reaches the threshold " + exact_text(selection.threshold);
-  }
-  return "is selected";
-}
-
 Field transform(const VoxelImageView& image, const LabelSelection& selection, const DistanceTransformOptions& options,
                 TransformPlan plan, Workspace& work, const Context& context) {
   Field field;
   PhaseClock clock(field.phases);
   const std::size_t selected = detail::select_voxels(image, selection, plan.size[0], context, work.mask);
-  if (selected == 0) {
-    throw InvalidImage("no voxel of the image " + describe(selection) + ", so there is nothing to measure to");
-  }
-  if (options.is_signed && selected == plan.voxel_count()) {
-    throw InvalidImage("every voxel of the image " + describe(selection) +
-                       ", so a signed field has nothing to measure to; ask for an unsigned one or another selection");
-  }
+  detail::check_selected(selected, plan, selection);
   clock.lap("select voxels");
-  field.grid = image.grid;
-  field.distance = Buffer<float>(plan.voxel_count());
-  field.site = Buffer<SiteId>(plan.voxel_count());
-  field.site_ids = SiteIds::voxels;
-  field.band = options.band;
-  field.sign_rule = options.is_signed ? SignRule::label : SignRule::none;
-  field.sign_reason = options.is_signed ? "a voxel is inside where its value " + describe(selection)
-                                        : "an unsigned field was asked for";
+  detail::begin_field(image, selection, options, field);
   plan.mask = work.mask.words.data();
   plan.mask_words_per_row = work.mask.words_per_row;
   plan.distance = field.distance.data();
@@ -182,12 +156,10 @@ VoxelSet selected_voxels(const VoxelImageView& image, const LabelSelection& sele
   return voxels;
 }
 
+namespace cpu {
+
 std::vector<Field> distance_transforms(const VoxelImageView& image, std::span<const LabelSelection> selections,
                                        const DistanceTransformOptions& options, const Context& context) {
-  validate(image);
-  if (context.device.kind == DeviceKind::cuda) {
-    throw InvalidOption("distance transforms of images are computed on the CPU only: ask for the device cpu or auto");
-  }
   const TransformPlan plan = make_plan(image.grid, options, context);
   Workspace work(plan, thread_count(context));
   std::vector<Field> fields;
@@ -198,8 +170,5 @@ std::vector<Field> distance_transforms(const VoxelImageView& image, std::span<co
   return fields;
 }
 
-Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options, const Context& context) {
-  return std::move(distance_transforms(image, {&options.selection, 1}, options, context).front());
-}
-
+}  // namespace cpu
 }  // namespace blum

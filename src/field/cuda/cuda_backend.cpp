@@ -39,15 +39,32 @@ void check(Status status, const Call& call) {
   throw DeviceError(call.message);
 }
 
-class CudaBackend final : public FieldBackend {
+/// An engine of the module on one device.
+class ModuleEngine {
  public:
-  explicit CudaBackend(int index) : index_(index), module_(load_module()) {
+  explicit ModuleEngine(int index) : module_(load_module()) {
     Call call;
     check(module_.create(index, &engine_, &call), call);
   }
-  CudaBackend(const CudaBackend&) = delete;
-  CudaBackend& operator=(const CudaBackend&) = delete;
-  ~CudaBackend() override { module_.destroy(engine_); }
+  ModuleEngine(const ModuleEngine&) = delete;
+  ModuleEngine& operator=(const ModuleEngine&) = delete;
+  ~ModuleEngine() { module_.destroy(engine_); }
+
+  /// Calls a function of the module with the engine, arguments and a call.
+  template <class Function, class... Arguments>
+  void run(Function function, const Context& context, Arguments... arguments) const {
+    Call call = call_of(context);
+    check((module_.*function)(engine_, arguments..., &call), call);
+  }
+
+ private:
+  const Module& module_;
+  void* engine_ = nullptr;
+};
+
+class CudaFieldBackend final : public FieldBackend {
+ public:
+  explicit CudaFieldBackend(int index) : index_(index), engine_(index) {}
 
   [[nodiscard]] Device device() const override { return Device::cuda(index_); }
   [[nodiscard]] bool can_tell_sides() const override { return false; }
@@ -58,38 +75,61 @@ class CudaBackend final : public FieldBackend {
     if (connectivity_.holds(mesh)) return;
     connectivity_.clear();
     sites_ = SiteTable(mesh, context);
-    Call call = call_of(context);
-    check(module_.set_connectivity(engine_, &mesh, &call), call);
+    engine_.run(&Module::set_connectivity, context, &mesh);
     connectivity_.store(mesh);
   }
   [[nodiscard]] const SiteTable& sites() const override { return sites_; }
 
   [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context, Field& field) override {
     PhaseTimer timer(field.phases);
-    Call call = call_of(context);
     FieldMemory memory{&request.grid, request.band.value_or(0), field.distance.data(), &field.site.data()->value};
     if (request.level) {
       memory.is_signed = true;
       memory.level = *request.level;
     }
-    check(module_.compute(engine_, &mesh_, &memory, &call), call);
+    engine_.run(&Module::compute, context, &mesh_, &memory);
     timer.lap("field");
     return {{}, memory.is_simple};
   }
 
  private:
   int index_;
-  const Module& module_;
-  void* engine_ = nullptr;
+  ModuleEngine engine_;
   MeshView mesh_;
   ConnectivityCache connectivity_;
   SiteTable sites_;
 };
 
+class CudaImageBackend final : public ImageBackend {
+ public:
+  explicit CudaImageBackend(int index) : index_(index), engine_(index) {}
+
+  [[nodiscard]] Device device() const override { return Device::cuda(index_); }
+  void set_image(const VoxelImageView& image, const detail::ImagePlan& plan) override {
+    engine_.run(&Module::set_image, Context{}, &image, &plan);
+  }
+  [[nodiscard]] std::size_t select(const LabelSelection& selection) override {
+    std::size_t selected = 0;
+    engine_.run(&Module::select_voxels, Context{}, &selection, &selected);
+    return selected;
+  }
+  void transform(Field& field) override {
+    engine_.run(&Module::transform_image, Context{}, field.distance.data(), &field.site.data()->value);
+  }
+
+ private:
+  int index_;
+  ModuleEngine engine_;
+};
+
 }  // namespace
 
-std::unique_ptr<FieldBackend> make_backend(int index) {
-  return std::make_unique<CudaBackend>(index);
+std::unique_ptr<FieldBackend> make_field_backend(int index) {
+  return std::make_unique<CudaFieldBackend>(index);
+}
+
+std::unique_ptr<ImageBackend> make_image_backend(int index) {
+  return std::make_unique<CudaImageBackend>(index);
 }
 
 }  // namespace blum::cuda

@@ -7,8 +7,9 @@
 
 namespace blum::cuda {
 
-/// A back end on the CUDA device with this index.
+/// Back ends on the CUDA device with this index.
 /// @throws DeviceError where there is no CUDA module, no driver or no such device.
-[[nodiscard]] std::unique_ptr<FieldBackend> make_backend(int index);
+[[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(int index);
+[[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(int index);
 
 }  // namespace blum::cuda

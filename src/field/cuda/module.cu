@@ -9,6 +9,7 @@
 #include "blum/core/error.hpp"
 #include "field/cuda/cuda_device.cuh"
 #include "field/kernels/field_engine.hpp"
+#include "field/kernels/image_engine.hpp"
 
 namespace blum::cuda {
 namespace {
@@ -28,12 +29,13 @@ class Stream {
 
 /// One device and what it keeps for a solver.
 struct Engine {
-  explicit Engine(int device_index) : index(device_index), device(stream.get()), fields(device) {}
+  explicit Engine(int device_index) : index(device_index), device(stream.get()), fields(device), images(device) {}
 
   int index;
   Stream stream;
   CudaDevice device;
   kernels::FieldEngine<CudaDevice> fields;
+  kernels::ImageEngine<CudaDevice> images;
 };
 
 /// Runs work on a device and turns what it throws into a status. The host's choice of a device is left as it was.
@@ -104,11 +106,27 @@ Status compute(void* engine, const MeshView* mesh, FieldMemory* field, Call* cal
   });
 }
 
+Status set_image(void* engine, const VoxelImageView* image, const detail::ImagePlan* plan, Call* call) {
+  auto& own = *static_cast<Engine*>(engine);
+  return guarded(own.index, call, [&] { own.images.set_image(*image, *plan); });
+}
+
+Status select_voxels(void* engine, const LabelSelection* selection, std::size_t* selected, Call* call) {
+  auto& own = *static_cast<Engine*>(engine);
+  return guarded(own.index, call, [&] { *selected = own.images.select(*selection); });
+}
+
+Status transform_image(void* engine, float* distance, std::uint32_t* site, Call* call) {
+  auto& own = *static_cast<Engine*>(engine);
+  return guarded(own.index, call, [&] { own.images.transform(distance, site); });
+}
+
 }  // namespace
 }  // namespace blum::cuda
 
 extern "C" __attribute__((visibility("default"))) const blum::cuda::Module* blum_cuda_module() {
   using namespace blum::cuda;
-  static const Module module{module_version, create, destroy, set_connectivity, compute};
+  static const Module module{module_version, create,    destroy,       set_connectivity,
+                             compute,        set_image, select_voxels, transform_image};
   return &module;
 }

@@ -6,6 +6,8 @@
 
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
+#include "blum/grid/voxel_image.hpp"
+#include "field/image_plan.hpp"
 
 // The module is a shared library of its own, loaded when a CUDA device is first asked for, so that one binary runs with
 // and without one. Nothing is thrown across its border.
@@ -49,6 +51,12 @@ struct Module {
   Status (*set_connectivity)(void* engine, const MeshView* mesh, Call* call) = nullptr;
   /// Computes the field of the mesh's vertices.
   Status (*compute)(void* engine, const MeshView* mesh, FieldMemory* field, Call* call) = nullptr;
+  /// Uploads an image.
+  Status (*set_image)(void* engine, const VoxelImageView* image, const detail::ImagePlan* plan, Call* call) = nullptr;
+  /// Counts the selected voxels.
+  Status (*select_voxels)(void* engine, const LabelSelection* selection, std::size_t* selected, Call* call) = nullptr;
+  /// Transforms the last selection.
+  Status (*transform_image)(void* engine, float* distance, std::uint32_t* site, Call* call) = nullptr;
 };
 
 using ModuleFunction = const Module* (*)();

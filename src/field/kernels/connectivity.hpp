@@ -178,19 +178,16 @@ struct Connectivity {
   }
 };
 
-namespace detail {
-
+/// The sum of flags from their exclusive sums. Waits for the device.
 template <class Device>
-std::uint32_t total(Device& device, const typename Device::template Array<std::uint32_t>& flags,
-                    const typename Device::template Array<std::uint32_t>& sums) {
+std::uint32_t total_of(Device& device, const typename Device::template Array<std::uint32_t>& flags,
+                       const typename Device::template Array<std::uint32_t>& sums) {
   if (flags.size() == 0) return 0;
   std::uint32_t last[2] = {};
   device.download(flags.data() + flags.size() - 1, 1, &last[0]);
   device.download(sums.data() + sums.size() - 1, 1, &last[1]);
   return last[0] + last[1];
 }
-
-}  // namespace detail
 
 /// Cost: a sort of all sides of triangles and one of all ends of edges.
 template <class Device>
@@ -201,7 +198,7 @@ void build_connectivity(Device& device, const DeviceMesh& mesh, Connectivity<Dev
   device.fill(flags, 0U);
   device.for_each(mesh.corner_count(), MarkNamed{mesh, flags.data()});
   device.exclusive_sum(flags, sums);
-  out.named_count = detail::total(device, flags, sums);
+  out.named_count = total_of(device, flags, sums);
   out.named_vertices.resize(out.named_count);
   device.for_each(mesh.vertex_count, ListNamed{flags.data(), sums.data(), out.named_vertices.data()});
 
@@ -216,7 +213,7 @@ void build_connectivity(Device& device, const DeviceMesh& mesh, Connectivity<Dev
   flags.resize(borders);
   device.for_each(borders, FirstOfKey{key.data(), vertex_bits, flags.data()});
   device.exclusive_sum(flags, sums);
-  out.edge_count = detail::total(device, flags, sums);
+  out.edge_count = total_of(device, flags, sums);
   out.edges.resize(out.edge_count);
   out.edge_faces.resize(out.edge_count);
   device.for_each(borders, WriteEdges{key.data(), border.data(), flags.data(), sums.data(), borders, vertex_bits,

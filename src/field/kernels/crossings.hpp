@@ -12,15 +12,6 @@
 // instead of sorted: whole numbers, so that the order does not matter.
 namespace blum::kernels {
 
-/// A product that is rounded by itself: a fused one would let the two triangles of an edge disagree on where it is cut.
-BLUM_HD inline double rounded_product(double a, double b) {
-#if defined(__CUDA_ARCH__)
-  return __dmul_rn(a, b);
-#else
-  return a * b;
-#endif
-}
-
 template <class T>
 BLUM_HD void add_atomically(T& sum, T value) {
 #if defined(__CUDA_ARCH__)
@@ -150,7 +141,8 @@ struct CrossingCount {
  private:
   [[nodiscard]] BLUM_HD const Vec3d& corner(std::uint32_t t, std::size_t k) const { return places[triangles[t][k]]; }
 
-  /// Where an edge meets a slice. From its lower to its upper end, so that both of its triangles find the same point.
+  /// Where an edge meets a slice. From its lower to its upper end and without fused operations, so that both of its
+  /// triangles find the same point.
   BLUM_HD static SlicePoint edge_point(const Vec3d& lower, const Vec3d& upper, double z) {
     const double t = (z - lower.z) / (upper.z - lower.z);
     return {lower.x + rounded_product(t, upper.x - lower.x), lower.y + rounded_product(t, upper.y - lower.y)};

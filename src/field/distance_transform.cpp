@@ -1,0 +1,52 @@
+// Distance transforms of images on the device that is asked for.
+#include "blum/field/distance_transform.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "blum/core/context.hpp"
+#include "blum/field/phase_timer.hpp"
+#include "field/backend.hpp"
+#include "field/cpu/distance_transform.hpp"
+#include "field/image_field.hpp"
+
+namespace blum {
+namespace {
+
+std::vector<Field> transforms_on(ImageBackend& device, const VoxelImageView& image,
+                                 std::span<const LabelSelection> selections, const DistanceTransformOptions& options,
+                                 const Context& context) {
+  const detail::ImagePlan plan = detail::make_image_plan(image.grid, options);
+  device.set_image(image, plan);
+  std::vector<Field> fields;
+  fields.reserve(selections.size());
+  for (const LabelSelection& selection : selections) {
+    throw_if_cancelled(context);
+    Field& field = fields.emplace_back();
+    PhaseTimer timer(field.phases);
+    detail::check_selected(device.select(selection), plan, selection);
+    timer.lap("select voxels");
+    detail::begin_field(image, selection, options, field);
+    field.device = device.device();
+    device.transform(field);
+    timer.lap("transform");
+  }
+  return fields;
+}
+
+}  // namespace
+
+std::vector<Field> distance_transforms(const VoxelImageView& image, std::span<const LabelSelection> selections,
+                                       const DistanceTransformOptions& options, const Context& context) {
+  validate(image);
+  if (const std::unique_ptr<ImageBackend> device = make_image_backend(context)) {
+    return transforms_on(*device, image, selections, options, context);
+  }
+  return cpu::distance_transforms(image, selections, options, context);
+}
+
+Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options, const Context& context) {
+  return std::move(distance_transforms(image, {&options.selection, 1}, options, context).front());
+}
+
+}  // namespace blum

@@ -1,0 +1,47 @@
+#include "field/image_field.hpp"
+
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
+
+namespace blum::detail {
+namespace {
+
+std::string describe(const LabelSelection& selection) {
+  switch (selection.rule) {
+    case LabelSelection::Rule::nonzero:
+      return "is not zero";
+    case LabelSelection::Rule::label:
+      return "equals label " + std::to_string(selection.label);
+    case LabelSelection::Rule::threshold:
+      return "reaches the threshold " + exact_text(selection.threshold);
+  }
+  return "is selected";
+}
+
+}  // namespace
+
+void check_selected(std::size_t selected, const ImagePlan& plan, const LabelSelection& selection) {
+  if (selected == 0) {
+    throw InvalidImage("no voxel of the image " + describe(selection) + ", so there is nothing to measure to");
+  }
+  if (plan.is_signed && selected == plan.voxel_count()) {
+    throw InvalidImage("every voxel of the image " + describe(selection) +
+                       ", so a signed field has nothing to measure to; ask for an unsigned one or another selection");
+  }
+}
+
+void begin_field(const VoxelImageView& image, const LabelSelection& selection, const DistanceTransformOptions& options,
+                 Field& field) {
+  field.grid = image.grid;
+  field.distance = Buffer<float>(image.grid.node_count());
+  field.site = Buffer<SiteId>(image.grid.node_count());
+  field.site_ids = SiteIds::voxels;
+  field.band = options.band;
+  field.sign_rule = options.is_signed ? SignRule::label : SignRule::none;
+  field.sign_reason = options.is_signed ? "a voxel is inside where its value " + describe(selection)
+                                        : "an unsigned field was asked for";
+}
+
+}  // namespace blum::detail
