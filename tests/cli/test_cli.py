@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tool import BLUM, png_rows, run, run_json
+from tool import BLUM, names, png_rows, run, run_json
 
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
@@ -523,3 +523,15 @@ def test_real_meshes_when_there(tmp_path):
     summary = run_json("field", folder / "spot.obj", "-o", tmp_path / "spot.nrrd", "--resolution", 48)
     low, high = summary["fields"][0]["distance"]["minimum"], summary["fields"][0]["distance"]["maximum"]
     assert low < 0 < high and math.isfinite(high)
+
+
+def test_field_on_a_device(shapes, tmp_path):
+    out = tmp_path / "out.npz"
+    told = run_json("field", shapes / "sphere.ply", "-o", out, "--resolution", 16, "--device", "auto")
+    device = told["fields"][0]["device"]
+    assert device in ("cpu", "cuda:0")
+    for source in ("sphere.ply", "ball.nrrd"):
+        _, err = run("field", shapes / source, "-o", tmp_path / "none.npz", "--device", "cuda:99", status=1)
+        assert "CUDA" in err
+    assert "none.npz" not in names(tmp_path)
+    assert "cuda:K" in run("field", shapes / "sphere.ply", "-o", out, "--device", "gpu", status=2)[1]

@@ -38,16 +38,16 @@ const Module& find_module() {
     // Stays loaded until the process ends, as the CUDA runtime in it must.
     void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
-      reasons += std::string("\n  ") + dlerror();
+      reasons += std::string(reasons.empty() ? "" : "; ") + dlerror();
       continue;
     }
     const auto function = reinterpret_cast<ModuleFunction>(dlsym(library, module_symbol));
     const Module* module = function != nullptr ? function() : nullptr;
     if (module != nullptr && module->version == module_version) return *module;
-    reasons += "\n  " + place + ": belongs to another version of Blum";
+    reasons += (reasons.empty() ? "" : "; ") + place + ": belongs to another version of Blum";
   }
-  throw DeviceError("no CUDA module: build Blum with BLUM_CUDA=ON, or name the file in BLUM_CUDA_MODULE. Tried:" +
-                    reasons);
+  throw DeviceError("no CUDA module: build Blum with BLUM_CUDA=ON, or name the file in BLUM_CUDA_MODULE (" + reasons +
+                    ")");
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
-// Proves the kernels of the CUDA back end on the host: the bodies, blocks and lists that a device runs, by loops. They
-// keep the precision promise on every generated shape and on soups made to break float32, whatever the slabs, bands and
-// list sizes; connectivity is SiteTable's.
+// Proves the CUDA back end: on the first CUDA device where there is one, and anywhere on the host, where the same
+// bodies, blocks and lists run as loops. Fields keep the precision promise on every generated shape and on soups made
+// to break float32, whatever the slabs, bands and list sizes; connectivity is SiteTable's; images are the CPU's, byte
+// for byte.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "blum/core/random.hpp"
+#include "blum/field/distance_transform.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/generators.hpp"
 #include "blum/geometry/shape_catalog.hpp"
@@ -21,17 +24,41 @@ GridSpec grid_for(const MeshView& mesh, int nodes) {
   return grid_around(bounds(mesh), nodes, 0.1);
 }
 
-Field emulated(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {.sign = SignMode::none}) {
-  const test::EmulatedCuda cuda;
-  return distance_field(mesh, grid, options, {.threads = 2, .device = Device::cuda()});
-}
+enum class Where : std::uint8_t { host, device };
 
-void expect_exact(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {.sign = SignMode::none}) {
-  const Field field = emulated(mesh, grid, options);
-  EXPECT_EQ(field.device, Device::cuda());
-  expect_promise(test::compare_with_bvh(field, mesh, test::all_nodes(grid)));
-  expect_promise(test::compare_with_brute_force(field, mesh, test::random_nodes(grid, 50)));
-}
+class FieldKernels : public testing::TestWithParam<Where> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == Where::host) {
+      emulated_.emplace();
+      return;
+    }
+    try {
+      (void)make_field_backend({.device = Device::cuda()});
+    } catch (const DeviceError& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  static Field compute(const MeshView& mesh, const GridSpec& grid,
+                       const FieldOptions& options = {.sign = SignMode::none}) {
+    return distance_field(mesh, grid, options, {.threads = 2, .device = Device::cuda()});
+  }
+
+  static void expect_exact(const MeshView& mesh, const GridSpec& grid,
+                           const FieldOptions& options = {.sign = SignMode::none}) {
+    const Field field = compute(mesh, grid, options);
+    EXPECT_EQ(field.device, Device::cuda());
+    expect_promise(test::compare_with_bvh(field, mesh, test::all_nodes(grid)));
+    expect_promise(test::compare_with_brute_force(field, mesh, test::random_nodes(grid, 50)));
+  }
+
+ private:
+  std::optional<test::EmulatedCuda> emulated_;
+};
+
+INSTANTIATE_TEST_SUITE_P(On, FieldKernels, testing::Values(Where::host, Where::device),
+                         [](const auto& info) { return info.param == Where::host ? "Host" : "Device"; });
 
 bool same_bytes(const Field& a, const Field& b) {
   return a.distance.size() == b.distance.size() &&
@@ -39,7 +66,7 @@ bool same_bytes(const Field& a, const Field& b) {
          std::memcmp(a.site.data(), b.site.data(), a.site.span().size_bytes()) == 0;
 }
 
-TEST(FieldKernels, KeepThePromiseOnEveryGeneratedShape) {
+TEST_P(FieldKernels, KeepThePromiseOnEveryGeneratedShape) {
   for (const ShapeInfo& shape : shape_catalog()) {
     SCOPED_TRACE(shape.name);
     const TriangleMesh mesh = make_shape(shape.name);
@@ -48,7 +75,7 @@ TEST(FieldKernels, KeepThePromiseOnEveryGeneratedShape) {
   }
 }
 
-TEST(FieldKernels, KeepThePromiseOnNastySoups) {
+TEST_P(FieldKernels, KeepThePromiseOnNastySoups) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);
     const TriangleMesh mesh = test::nasty_soup(seed, 40 * seed);
@@ -56,7 +83,7 @@ TEST(FieldKernels, KeepThePromiseOnNastySoups) {
   }
 }
 
-TEST(FieldKernels, KeepThePromiseOnPointsAndSegments) {
+TEST_P(FieldKernels, KeepThePromiseOnPointsAndSegments) {
   const TriangleMesh points = make_points();
   const TriangleMesh segments = make_segments();
   expect_exact(points, grid_for(points, 32));
@@ -69,14 +96,14 @@ TEST(FieldKernels, KeepThePromiseOnPointsAndSegments) {
   expect_exact(mixed, grid_for(mixed, 32));
 }
 
-TEST(FieldKernels, OnePointIsEnough) {
+TEST_P(FieldKernels, OnePointIsEnough) {
   TriangleMesh mesh;
   mesh.vertices = {{1, 2, 3}};
   mesh.points = {0};
   expect_exact(mesh, {.origin = {0, 0, 0}, .spacing = {1, 1, 1}, .size = {5, 9, 17}});
 }
 
-TEST(FieldKernels, VerticesThatNothingNamesAreNoSites) {
+TEST_P(FieldKernels, VerticesThatNothingNamesAreNoSites) {
   TriangleMesh mesh = make_sphere({.frequency = 4});
   mesh.vertices.insert(mesh.vertices.begin(), {0, 0, 0});
   for (Triangle& t : mesh.triangles) {
@@ -85,7 +112,7 @@ TEST(FieldKernels, VerticesThatNothingNamesAreNoSites) {
   expect_exact(mesh, grid_for(mesh, 24));
 }
 
-TEST(FieldKernels, SignsAreThoseOfEveryRule) {
+TEST_P(FieldKernels, SignsAreThoseOfEveryRule) {
   TriangleMesh open = make_sphere({.frequency = 6});
   std::erase_if(open.triangles, [&](const Triangle& t) { return open.vertices[t[0]].z > 0.2; });
   expect_exact(open, grid_for(open, 20), {.sign = SignMode::winding});
@@ -99,7 +126,7 @@ TEST(FieldKernels, SignsAreThoseOfEveryRule) {
   for (const Triangle& t : inner.triangles) shells.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   const GridSpec grid = grid_for(shells, 20);
   const Field cpu = distance_field(shells, grid, {.sign = SignMode::normals});
-  const Field device = emulated(shells, grid, {.sign = SignMode::normals});
+  const Field device = compute(shells, grid, {.sign = SignMode::normals});
   for (std::size_t k = 0; k < cpu.distance.size(); ++k) {
     ASSERT_EQ(std::signbit(cpu.distance[k]), std::signbit(device.distance[k])) << k;
   }
@@ -114,7 +141,7 @@ void add(TriangleMesh& to, const TriangleMesh& mesh, const Vec3d& offset, bool i
   }
 }
 
-TEST(FieldKernels, CountedCrossingsGiveTheSignsOfTheCpu) {
+TEST_P(FieldKernels, CountedCrossingsGiveTheSignsOfTheCpu) {
   std::vector<TriangleMesh> meshes{make_box({}), make_gear({})};
   TriangleMesh inverted;
   add(inverted, make_gear({}), {}, true);
@@ -135,7 +162,7 @@ TEST(FieldKernels, CountedCrossingsGiveTheSignsOfTheCpu) {
         SCOPED_TRACE(testing::Message() << mesh.triangles.size() << " triangles, " << to_string(sign)
                                         << (is_mirrored ? ", mirrored" : ""));
         const Field cpu = distance_field(mesh, grid, {.sign = sign});
-        const Field device = emulated(mesh, grid, {.sign = sign});
+        const Field device = compute(mesh, grid, {.sign = sign});
         EXPECT_EQ(cpu.sign_rule, device.sign_rule);
         EXPECT_EQ(cpu.sign_reason, device.sign_reason);
         const double diagonal = test::common_diagonal(mesh, grid);
@@ -148,7 +175,7 @@ TEST(FieldKernels, CountedCrossingsGiveTheSignsOfTheCpu) {
   }
 }
 
-TEST(FieldKernels, GridsOfAnyShapeAndDirection) {
+TEST_P(FieldKernels, GridsOfAnyShapeAndDirection) {
   const TriangleMesh mesh = make_torus({});
   const GridSpec cube = grid_for(mesh, 24);
   for (const std::array<std::int64_t, 3>& size :
@@ -162,7 +189,7 @@ TEST(FieldKernels, GridsOfAnyShapeAndDirection) {
   }
 }
 
-TEST(FieldKernels, BandsCutOff) {
+TEST_P(FieldKernels, BandsCutOff) {
   const TriangleMesh mesh = make_torus_knot({});
   const GridSpec grid = grid_for(mesh, 48);
   for (const double band : {0.01, 0.2, 100.0}) {
@@ -170,41 +197,41 @@ TEST(FieldKernels, BandsCutOff) {
   }
 }
 
-TEST(FieldKernels, SlabsDoNotChangeABit) {
+TEST_P(FieldKernels, SlabsDoNotChangeABit) {
   const TriangleMesh mesh = make_torus_knot({});
   const GridSpec grid = grid_for(mesh, 80);
-  const Field whole = emulated(mesh, grid);
+  const Field whole = compute(mesh, grid);
+  if (GetParam() == Where::device) GTEST_SKIP() << "slabs of the device have one size; bench/gpu checks others";
   const test::EmulatedCuda cuda(1);  // 32 slices at a time
   const Field slabs = distance_field(mesh, grid, {.sign = SignMode::none}, {.device = Device::cuda()});
   EXPECT_TRUE(same_bytes(whole, slabs));
 }
 
-TEST(FieldKernels, MoreSitesThanAListHolds) {
+TEST_P(FieldKernels, MoreSitesThanAListHolds) {
   // All of 80,000 triangles matter to the tile in the middle of a sphere, and a list holds 512.
   const TriangleMesh mesh = make_sphere({.frequency = 64});
   const GridSpec grid = grid_in({{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}}, 12);
   expect_exact(mesh, grid);
 }
 
-TEST(FieldKernels, TiesGoToTheSmallerSite) {
+TEST_P(FieldKernels, TiesGoToTheSmallerSite) {
   TriangleMesh mesh;
   mesh.vertices = {{-1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.points = {3, 2, 1, 0};
   const GridSpec grid{.origin = {0, 0, 0}, .spacing = {0.25, 1, 1}, .size = {5, 1, 1}};
-  const Field field = emulated(mesh, grid);
+  const Field field = compute(mesh, grid);
   EXPECT_EQ(field.site[0].value, 0U);
   EXPECT_EQ(field.site[4].value, 1U);
 }
 
-TEST(FieldKernels, ExtentsThatFloatsDoNotHoldAreRefused) {
+TEST_P(FieldKernels, ExtentsThatFloatsDoNotHoldAreRefused) {
   const TriangleMesh mesh = make_box({});
   GridSpec grid = grid_for(mesh, 8);
   grid.spacing = {1e37, 1e37, 1e37};
-  EXPECT_THROW((void)emulated(mesh, grid), InvalidGrid);
+  EXPECT_THROW((void)compute(mesh, grid), InvalidGrid);
 }
 
-TEST(FieldKernels, CancelledWhereAskedTo) {
-  const test::EmulatedCuda cuda;
+TEST_P(FieldKernels, CancelledWhereAskedTo) {
   std::stop_source stop;
   stop.request_stop();
   const TriangleMesh mesh = make_box({});
@@ -213,7 +240,34 @@ TEST(FieldKernels, CancelledWhereAskedTo) {
       Cancelled);
 }
 
-TEST(FieldKernels, ConnectivityIsThatOfSiteTable) {
+TEST_P(FieldKernels, TransformsOfImagesAreThoseOfTheCpu) {
+  Random random(5);
+  for (const std::array<std::int64_t, 3>& size : std::vector<std::array<std::int64_t, 3>>{{33, 20, 17}, {70, 1, 5}}) {
+    VoxelImage image;
+    image.grid.size = size;
+    image.grid.spacing = {1, 0.7, 2.1};
+    std::vector<std::int16_t> values(image.grid.node_count());
+    for (auto& value : values) value = static_cast<std::int16_t>(random.below(30) / 9);
+    image.values = std::move(values);
+    const std::vector<LabelSelection> selections{LabelSelection::of_label(3), LabelSelection::at_least(1)};
+    for (const DistanceTransformOptions& options :
+         {DistanceTransformOptions{}, DistanceTransformOptions{.is_signed = false, .band = 1.5}}) {
+      const std::vector<Field> cpu = distance_transforms(image, selections, options);
+      const std::vector<Field> device = distance_transforms(image, selections, options, {.device = Device::cuda()});
+      ASSERT_EQ(cpu.size(), device.size());
+      for (std::size_t k = 0; k < cpu.size(); ++k) {
+        EXPECT_EQ(device[k].device, Device::cuda());
+        EXPECT_EQ(cpu[k].sign_reason, device[k].sign_reason);
+        EXPECT_TRUE(same_bytes(cpu[k], device[k]));
+      }
+    }
+    EXPECT_THROW(
+        (void)distance_transform(image, {.selection = LabelSelection::of_label(9)}, {.device = Device::cuda()}),
+        InvalidImage);
+  }
+}
+
+TEST(Connectivity, IsThatOfSiteTable) {
   for (const TriangleMesh& mesh : {make_gear({}), test::nasty_soup(3, 60), make_segments()}) {
     kernels::EmulatedDevice device;
     kernels::Connectivity<kernels::EmulatedDevice> found;
@@ -229,8 +283,7 @@ TEST(FieldKernels, ConnectivityIsThatOfSiteTable) {
   }
 }
 
-TEST(FieldKernels, SolverFollowsADeformingMeshAndANewOne) {
-  const test::EmulatedCuda cuda;
+TEST_P(FieldKernels, SolverFollowsADeformingMeshAndANewOne) {
   TriangleMesh mesh = make_torus_knot({});
   const GridSpec grid = grid_around(bounds(mesh), 24, 0.3);
   FieldSolver solver(grid, {}, {.device = Device::cuda()});

@@ -1,0 +1,72 @@
+"""Where fields are computed: the CPU, or a device where there is one; never another than was asked for."""
+
+import blum
+import numpy as np
+import pytest
+
+
+def has_cuda():
+    try:
+        blum.distance_field(blum.generate("box"), resolution=4, device="cuda")
+    except blum.DeviceError:
+        return False
+    return True
+
+
+CUDA = has_cuda()
+
+
+@pytest.fixture(scope="module")
+def gear():
+    return blum.generate("gear")
+
+
+def test_fields_say_where_they_were_computed(gear):
+    assert blum.distance_field(gear, resolution=16).device == "cpu"
+    automatic = blum.distance_field(gear, resolution=16, device="auto")
+    assert automatic.device == ("cuda:0" if CUDA else "cpu")
+    if not CUDA:
+        assert np.array_equal(automatic.distance, blum.distance_field(gear, resolution=16).distance)
+
+
+@pytest.mark.skipif(CUDA, reason="there is a CUDA device")
+def test_a_device_that_is_not_there_is_an_error(gear):
+    mask = np.zeros((3, 3, 3), bool)
+    mask[1] = True
+    grid = blum.Grid.around(gear, resolution=8)
+    for call in (
+        lambda: blum.distance_field(gear, resolution=8, device="cuda"),
+        lambda: blum.distance_transform(mask, device="cuda:0"),
+        lambda: blum.FieldSolver(grid, device="cuda:1"),
+    ):
+        with pytest.raises(RuntimeError, match="CUDA") as caught:
+            call()
+        assert isinstance(caught.value, blum.DeviceError)
+    assert blum.distance_transform(mask, device="auto").device == "cpu"
+
+
+@pytest.mark.parametrize("wrong", ["gpu", "cuda:", "cuda:-1", "cuda:x", "cuda:1 ", "CUDA", ""])
+def test_devices_that_no_name_stands_for(gear, wrong):
+    with pytest.raises(blum.InvalidOption, match="device"):
+        blum.distance_field(gear, resolution=8, device=wrong)
+
+
+def test_a_device_is_a_string(gear):
+    for wrong in (0, None, b"cpu"):
+        with pytest.raises(TypeError, match="device"):
+            blum.distance_field(gear, resolution=8, device=wrong)
+        with pytest.raises(TypeError, match="device"):
+            blum.FieldSolver(blum.Grid.around(gear, resolution=8), device=wrong)
+
+
+@pytest.mark.skipif(not CUDA, reason="no CUDA device")
+def test_a_cuda_device_agrees_with_the_cpu(gear):
+    for sign in ("auto", "winding", "none"):
+        cpu = blum.distance_field(gear, resolution=96, sign=sign)
+        cuda = blum.distance_field(gear, resolution=96, sign=sign, device="cuda")
+        assert (cuda.device, cuda.sign_rule, cuda.sign_reason) == ("cuda:0", cpu.sign_rule, cpu.sign_reason)
+        assert np.abs(cuda.distance - cpu.distance).max() < 4e-6
+    mask = np.random.default_rng(1).random((40, 50, 60)) < 0.1
+    cpu, cuda = (blum.distance_transform(mask, spacing=(1, 2, 3), device=device) for device in ("cpu", "cuda"))
+    assert np.array_equal(cpu.distance, cuda.distance)
+    assert np.array_equal(cpu.site, cuda.site)
