@@ -1,5 +1,6 @@
-// Compares fields of a CUDA device with brute force in double and with the same kernels run on the host: promise, signs,
-// bands, slabs, determinism. Needs a compiler and CUDA alone; prints a line per case, exits with 1 where one fails.
+// Compares fields of a CUDA device with brute force in double and with the same kernels run on the host: promise,
+// signs, bands, slabs, determinism. Needs a compiler and CUDA alone; prints a line per case, exits with 1 where one
+// fails.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -40,8 +41,7 @@ Result compute(Device& device, const TriangleMesh& mesh, const kernels::EngineRe
   out.distance.resize(request.grid.node_count());
   out.site.resize(request.grid.node_count());
   engine.set_connectivity(mesh);
-  (void)engine.compute(
-      mesh, request, out.distance.data(), out.site.data(), [] { return false; }, [](double) {});
+  (void)engine.compute(mesh, request, out.distance.data(), out.site.data(), [] { return false; }, [](double) {});
   return out;
 }
 
@@ -79,8 +79,7 @@ Errors measure(const Case& c, const kernels::EngineRequest& request, const Resul
     const auto at = static_cast<std::size_t>(node);
     errors.distance = std::max(errors.distance, std::abs(std::abs(device.distance[at]) - expected) / diagonal);
     if (device.site[at] != kernels::dead_record) {
-      errors.site =
-          std::max(errors.site, (brute.site_distance(SiteId(device.site[at]), query) - truth) / diagonal);
+      errors.site = std::max(errors.site, (brute.site_distance(SiteId(device.site[at]), query) - truth) / diagonal);
     }
     if (c.is_closed && truth > 1e-6 * diagonal) {
       errors.signs += std::signbit(device.distance[at]) != (reference::winding_number(c.mesh, query) > 0.5) ? 1 : 0;

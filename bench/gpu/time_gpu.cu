@@ -296,11 +296,12 @@ int main_of(const Options& options) {
     std::printf("%-40s %9.3f %9.3f %9.3f %9.3f | %9.1f %9.1f | %9.2f\n", c.name.c_str(), t.total, t.steps[0],
                 t.steps[1], t.steps[2], c.must, c.aim, t.baseline);
     if (json != nullptr) {
-      std::fprintf(json,
-                   "%s\n  {\"name\": \"%s\", \"triangles\": %zu, \"resolution\": %d, \"ms\": %.4f, \"upload_ms\": %.4f, "
-                   "\"trees_ms\": %.4f, \"tiles_ms\": %.4f, \"must_ms\": %g, \"aim_ms\": %g, \"query_per_node_ms\": %.4f}",
-                   is_first ? "" : ",", c.name.c_str(), c.mesh.triangles.size(), c.resolution, t.total, t.steps[0],
-                   t.steps[1], t.steps[2], c.must, c.aim, t.baseline);
+      std::fprintf(
+          json,
+          "%s\n  {\"name\": \"%s\", \"triangles\": %zu, \"resolution\": %d, \"ms\": %.4f, \"upload_ms\": %.4f, "
+          "\"trees_ms\": %.4f, \"tiles_ms\": %.4f, \"must_ms\": %g, \"aim_ms\": %g, \"query_per_node_ms\": %.4f}",
+          is_first ? "" : ",", c.name.c_str(), c.mesh.triangles.size(), c.resolution, t.total, t.steps[0], t.steps[1],
+          t.steps[2], c.must, c.aim, t.baseline);
     }
     is_first = false;
   }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <utility>
 
 #include "blum/core/parallel.hpp"
+#include "field/kernels/row_crossings.hpp"
 
 namespace blum {
 namespace {
@@ -22,93 +22,27 @@ struct Crossing {
   std::uint64_t key;  ///< as in SignScan::crossings_
 };
 
-/// Whole numbers k of [0, size) with from <= k < to: the slices (or rows) that have one end at or below, one above.
-struct Cuts {
-  std::int64_t begin, end;
-
-  Cuts(double from, double to, std::int64_t size)
-      : begin(clamped(std::ceil(from), size)), end(clamped(std::ceil(to), size)) {}
-
- private:
-  /// 0 where the value is not a number: absurdly small spacings overflow.
-  static std::int64_t clamped(double value, std::int64_t size) {
-    if (!(value > 0)) return 0;
-    return value < static_cast<double>(size) ? static_cast<std::int64_t>(value) : size;
-  }
-};
-
-/// A point of a slice.
-struct SlicePoint {
-  double x, y;
-};
-
-/// Positions in units of the grid's spacings, from node (0, 0, 0).
-class NodeFrame {
- public:
-  explicit NodeFrame(const GridSpec& grid) : origin_(grid.origin) {
-    // The inverse proper, not the transpose: the direction is orthonormal to 1e-6 only.
-    const Vec3d* axis = grid.direction.columns;
-    const double determinant = dot(axis[0], cross(axis[1], axis[2]));
-    for (std::size_t k = 0; k < 3; ++k) {
-      inverse_.columns[k] = cross(axis[(k + 1) % 3], axis[(k + 2) % 3]) / (determinant * grid.spacing[k]);
-    }
-    is_mirrored_ = determinant < 0;
-  }
-
-  [[nodiscard]] Vec3d position(const Vec3d& world) const { return inverse_.transposed_times(world - origin_); }
-  [[nodiscard]] bool is_mirrored() const { return is_mirrored_; }
-
- private:
-  Vec3d origin_;
-  Mat3 inverse_;
-  bool is_mirrored_ = false;
-};
-
 /// Finds the crossings of triangles, given in units of nodes.
 class Scanner {
  public:
   Scanner(const std::array<std::int64_t, 3>& size, bool is_mirrored, std::vector<Crossing>& out)
       : size_(size), is_mirrored_(is_mirrored), out_(out) {}
 
-  void scan(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    const Cuts slices(std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z}), size_[2]);
+  void scan(const kernels::PlacedTriangle& triangle) {
+    const auto slices = triangle.slices(size_[2]);
     for (std::int64_t k = slices.begin; k < slices.end; ++k) {
-      const auto z = static_cast<double>(k);
-      const bool above_a = a.z > z, above_b = b.z > z, above_c = c.z > z;
-      // The corner that is alone on its side comes first.
-      if (above_b == above_c) cut(k, a, b, c, above_a);
-      if (above_c == above_a && above_b != above_a) cut(k, b, c, a, above_b);
-      if (above_a == above_b && above_c != above_a) cut(k, c, a, b, above_c);
+      const kernels::SliceCut cut(triangle, static_cast<double>(k), is_mirrored_);
+      const auto rows = cut.rows(size_[1]);
+      for (std::int64_t j = rows.begin; j < rows.end; ++j) {
+        const double next = cut.node_behind(static_cast<double>(j));
+        if (!(next < static_cast<double>(size_[0]))) continue;
+        const std::int64_t node = j * size_[0] + static_cast<std::int64_t>(std::max(next, 0.0));
+        out_.push_back({static_cast<std::size_t>(k), 2 * static_cast<std::uint64_t>(node) + (cut.goes_in ? 1U : 0U)});
+      }
     }
   }
 
  private:
-  void cut(std::int64_t slice, const Vec3d& alone, const Vec3d& next, const Vec3d& last, bool is_above) {
-    const auto z = static_cast<double>(slice);
-    const SlicePoint p = is_above ? edge_point(next, alone, z) : edge_point(alone, next, z);
-    const SlicePoint q = is_above ? edge_point(last, alone, z) : edge_point(alone, last, z);
-    // With its corner alone above and q at larger y, the triangle faces along x, so that its rows leave the solid.
-    scan_rows(slice, p, q, (q.y > p.y) != (is_above != is_mirrored_));
-  }
-
-  /// Where an edge meets a slice. From its lower to its upper end, so that both of its triangles find the same point
-  /// (this file is compiled without contraction of multiplications and additions).
-  static SlicePoint edge_point(const Vec3d& lower, const Vec3d& upper, double z) {
-    const double t = (z - lower.z) / (upper.z - lower.z);
-    return {lower.x + t * (upper.x - lower.x), lower.y + t * (upper.y - lower.y)};
-  }
-
-  void scan_rows(std::int64_t slice, const SlicePoint& p, const SlicePoint& q, bool goes_in) {
-    const Cuts rows(std::min(p.y, q.y), std::max(p.y, q.y), size_[1]);
-    for (std::int64_t j = rows.begin; j < rows.end; ++j) {
-      const double t = (static_cast<double>(j) - p.y) / (q.y - p.y);
-      const double next = std::floor(p.x + t * (q.x - p.x)) + 1;
-      if (!(next < static_cast<double>(size_[0]))) continue;
-      const std::int64_t node = j * size_[0] + static_cast<std::int64_t>(std::max(next, 0.0));
-      out_.push_back({static_cast<std::size_t>(slice), 2 * static_cast<std::uint64_t>(node) + (goes_in ? 1U : 0U)});
-    }
-  }
-
   std::array<std::int64_t, 3> size_;
   bool is_mirrored_;
   std::vector<Crossing>& out_;
@@ -120,21 +54,21 @@ using Found = std::vector<std::vector<Crossing>>;
 /// @return  nothing where there are more than `most`.
 std::optional<Found> find_crossings(const MeshView& mesh, const GridSpec& grid, std::size_t most,
                                     const Context& context) {
-  const NodeFrame frame(grid);
+  const kernels::NodeUnits units(grid);
   std::vector<Vec3d> position(mesh.vertices.size());
   parallel_for(context, position.size(), vertices_per_range, "", [&](const WorkRange& range) {
-    for (std::size_t v = range.begin; v < range.end; ++v) position[v] = frame.position(mesh.vertices[v]);
+    for (std::size_t v = range.begin; v < range.end; ++v) position[v] = units.position(mesh.vertices[v]);
   });
   const std::size_t count = mesh.triangles.size();
   Found found((count + triangles_per_range - 1) / triangles_per_range);
   std::atomic<std::size_t> total{0};
   parallel_for(context, count, triangles_per_range, "", [&](const WorkRange& range) {
     std::vector<Crossing>& out = found[range.begin / triangles_per_range];
-    Scanner scanner(grid.size, frame.is_mirrored(), out);
+    Scanner scanner(grid.size, units.is_mirrored, out);
     std::size_t counted = 0;
     for (std::size_t t = range.begin; t < range.end && total <= most && !context.cancel.stop_requested(); ++t) {
       const Triangle& triangle = mesh.triangles[t];
-      scanner.scan(position[triangle[0]], position[triangle[1]], position[triangle[2]]);
+      scanner.scan({position[triangle[0]], position[triangle[1]], position[triangle[2]]});
       if (out.size() - counted < counted_at_once && t + 1 < range.end) continue;
       total += out.size() - counted;
       counted = out.size();

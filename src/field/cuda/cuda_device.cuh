@@ -78,7 +78,8 @@ __global__ void for_each_kernel(const __grid_constant__ Body body, const std::si
 }
 
 template <class Body>
-__global__ void __launch_bounds__(Body::threads, Body::blocks_per_processor) block_kernel(const __grid_constant__ Body body) {
+__global__ void __launch_bounds__(Body::threads, Body::blocks_per_processor)
+    block_kernel(const __grid_constant__ Body body) {
   extern __shared__ __align__(16) unsigned char storage[];
   auto& shared = *reinterpret_cast<typename Body::Shared*>(storage);
   body(CudaBlock<Body::threads>{}, shared, blockIdx.x);
@@ -129,9 +130,9 @@ class CudaDevice {
   void run_blocks(std::size_t count, const Body& body) const {
     if (count == 0) return;
     constexpr std::size_t shared = sizeof(typename Body::Shared);
-    check(cudaFuncSetAttribute(block_kernel<Body>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                               static_cast<int>(shared)),
-          "asking for shared memory");
+    check(
+        cudaFuncSetAttribute(block_kernel<Body>, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
+        "asking for shared memory");
     block_kernel<Body><<<static_cast<unsigned>(count), Body::threads, shared, stream_>>>(body);
     check(cudaGetLastError(), "launching a kernel");
   }

@@ -171,6 +171,12 @@ struct Connectivity {
   Array<std::uint32_t> neighbours;
   std::uint32_t edge_count = 0;
   std::uint32_t named_count = 0;
+  /// Kept, so that the next mesh allocates nothing.
+  struct Scratch {
+    Array<std::uint32_t> flags, sums, border;
+    Array<std::uint64_t> key;
+  };
+  Scratch scratch;
 
   [[nodiscard]] ConnectivityView view() const {
     return {edges.data(), edge_faces.data(), named_vertices.data(), first_neighbour.data(), neighbours.data(),
@@ -192,8 +198,7 @@ std::uint32_t total_of(Device& device, const typename Device::template Array<std
 /// Cost: a sort of all sides of triangles and one of all ends of edges.
 template <class Device>
 void build_connectivity(Device& device, const DeviceMesh& mesh, Connectivity<Device>& out) {
-  typename Device::template Array<std::uint32_t> flags;
-  typename Device::template Array<std::uint32_t> sums;
+  auto& [flags, sums, border, key] = out.scratch;
   flags.resize(mesh.vertex_count);
   device.fill(flags, 0U);
   device.for_each(mesh.corner_count(), MarkNamed{mesh, flags.data()});
@@ -204,8 +209,6 @@ void build_connectivity(Device& device, const DeviceMesh& mesh, Connectivity<Dev
 
   const int vertex_bits = static_cast<int>(std::bit_width(mesh.vertex_count));
   const std::size_t borders = mesh.border_count();
-  typename Device::template Array<std::uint64_t> key;
-  typename Device::template Array<std::uint32_t> border;
   key.resize(borders);
   border.resize(borders);
   device.for_each(borders, BorderKeys{mesh, vertex_bits, key.data(), border.data()});

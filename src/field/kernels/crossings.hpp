@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "field/kernels/connectivity.hpp"
-#include "field/kernels/tile_grid.hpp"
+#include "field/kernels/row_crossings.hpp"
 
 // The same exact counting as SignScan (field/sign_scan.hpp), with the crossings added up at the nodes behind them
 // instead of sorted: whole numbers, so that the order does not matter.
@@ -30,58 +30,12 @@ BLUM_HD inline std::uint32_t take_number(std::uint32_t& counter) {
 #endif
 }
 
-/// Positions in units of the grid's spacings, from node (0, 0, 0).
-struct NodeUnits {
-  Vec3d origin;
-  Mat3 inverse;
-  bool is_mirrored = false;
-
-  NodeUnits() = default;
-  explicit NodeUnits(const GridSpec& grid) : origin(grid.origin) {
-    // The inverse proper, not the transpose: the direction is orthonormal to 1e-6 only.
-    const Vec3d* axis = grid.direction.columns;
-    const double determinant = dot(axis[0], cross(axis[1], axis[2]));
-    for (std::size_t k = 0; k < 3; ++k) {
-      inverse.columns[k] = cross(axis[(k + 1) % 3], axis[(k + 2) % 3]) / (determinant * grid.spacing[k]);
-    }
-    is_mirrored = determinant < 0;
-  }
-};
-
 /// Once per vertex, so that all its triangles see the same numbers.
 struct PlaceInNodes {
   NodeUnits units;
   const Vec3d* vertices;
   Vec3d* places;
-  BLUM_HD void operator()(std::size_t v) const {
-    places[v] = units.inverse.transposed_times(vertices[v] - units.origin);
-  }
-};
-
-/// Whole numbers k of [0, size) with from <= k < to: the slices (or rows) that have one end at or below, one above.
-struct Cuts {
-  std::int32_t begin, end;
-
-  BLUM_HD Cuts(double from, double to, std::int32_t size)
-      : begin(clamped_to(ceil(from), size)), end(clamped_to(ceil(to), size)) {}
-
- private:
-  /// 0 where the value is not a number: absurdly small spacings overflow.
-  BLUM_HD static std::int32_t clamped_to(double value, std::int32_t size) {
-    if (!(value > 0)) return 0;
-    return value < static_cast<double>(size) ? static_cast<std::int32_t>(value) : size;
-  }
-};
-
-/// A point of a slice.
-struct SlicePoint {
-  double x, y;
-};
-
-/// Where a slice cuts a triangle, and whether the rows that cross the cut go into the solid there.
-struct SliceCut {
-  SlicePoint p{}, q{};
-  bool goes_in = false;
+  BLUM_HD void operator()(std::size_t v) const { places[v] = units.position(vertices[v]); }
 };
 
 /// Counts crossings of triangles with rows.
@@ -94,58 +48,23 @@ struct CrossingCount {
   std::int32_t last_slice;
   std::int32_t* change;  ///< of the winding number, at each node of the slab; to be added up along rows
 
+  [[nodiscard]] BLUM_HD PlacedTriangle placed(std::uint32_t t) const {
+    return {places[triangles[t][0]], places[triangles[t][1]], places[triangles[t][2]]};
+  }
   /// Slices of the slab that cut a triangle.
-  [[nodiscard]] BLUM_HD Cuts slices(std::uint32_t t) const {
-    const double z[3] = {corner(t, 0).z, corner(t, 1).z, corner(t, 2).z};
-    Cuts cuts(smaller(smaller(z[0], z[1]), z[2]), larger(larger(z[0], z[1]), z[2]), size[2]);
+  [[nodiscard]] BLUM_HD Cuts<std::int32_t> slices(const PlacedTriangle& t) const {
+    Cuts<std::int32_t> cuts = t.slices(size[2]);
     cuts.begin = larger(cuts.begin, first_slice);
     cuts.end = smaller(cuts.end, last_slice);
     return cuts;
   }
-  /// An upper bound on how many rows of a slice cross a triangle.
-  [[nodiscard]] BLUM_HD Cuts rows(std::uint32_t t) const {
-    const double y[3] = {corner(t, 0).y, corner(t, 1).y, corner(t, 2).y};
-    return Cuts(smaller(smaller(y[0], y[1]), y[2]), larger(larger(y[0], y[1]), y[2]), size[1]);
-  }
-
-  [[nodiscard]] BLUM_HD SliceCut cut(std::uint32_t t, std::int32_t slice) const {
-    const auto z = static_cast<double>(slice);
-    const bool above[3] = {corner(t, 0).z > z, corner(t, 1).z > z, corner(t, 2).z > z};
-    // The corner that is alone on its side comes first.
-    const std::size_t first = above[1] == above[2] ? 0 : above[2] == above[0] ? 1 : 2;
-    const Vec3d alone = corner(t, first);
-    const Vec3d next = corner(t, (first + 1) % 3);
-    const Vec3d last = corner(t, (first + 2) % 3);
-    SliceCut out;
-    const bool is_above = above[first];
-    out.p = is_above ? edge_point(next, alone, z) : edge_point(alone, next, z);
-    out.q = is_above ? edge_point(last, alone, z) : edge_point(alone, last, z);
-    // With its corner alone above and q at larger y, the triangle faces along x, so that its rows leave the solid.
-    out.goes_in = (out.q.y > out.p.y) != (is_above != is_mirrored);
-    return out;
-  }
-
-  [[nodiscard]] BLUM_HD Cuts rows(const SliceCut& cut) const {
-    return Cuts(smaller(cut.p.y, cut.q.y), larger(cut.p.y, cut.q.y), size[1]);
-  }
   BLUM_HD void cross_row(const SliceCut& cut, std::int32_t slice, std::int32_t row) const {
-    const double t = (static_cast<double>(row) - cut.p.y) / (cut.q.y - cut.p.y);
-    const double next = floor(cut.p.x + rounded_product(t, cut.q.x - cut.p.x)) + 1;
+    const double next = cut.node_behind(static_cast<double>(row));
     if (!(next < static_cast<double>(size[0]))) return;
     const auto line = static_cast<std::size_t>(slice - first_slice) * static_cast<std::size_t>(size[1]) +
                       static_cast<std::size_t>(row);
     const auto node = static_cast<std::size_t>(larger(next, 0.0));
     add_atomically(change[line * static_cast<std::size_t>(size[0]) + node], cut.goes_in ? 1 : -1);
-  }
-
- private:
-  [[nodiscard]] BLUM_HD const Vec3d& corner(std::uint32_t t, std::size_t k) const { return places[triangles[t][k]]; }
-
-  /// Where an edge meets a slice. From its lower to its upper end and without fused operations, so that both of its
-  /// triangles find the same point.
-  BLUM_HD static SlicePoint edge_point(const Vec3d& lower, const Vec3d& upper, double z) {
-    const double t = (z - lower.z) / (upper.z - lower.z);
-    return {lower.x + rounded_product(t, upper.x - lower.x), lower.y + rounded_product(t, upper.y - lower.y)};
   }
 };
 
@@ -158,17 +77,17 @@ struct CrossTriangles {
   std::uint32_t* large_count;
 
   BLUM_HD void operator()(std::size_t index) const {
-    const auto t = static_cast<std::uint32_t>(index);
-    const Cuts slices = count.slices(t);
+    const PlacedTriangle triangle = count.placed(static_cast<std::uint32_t>(index));
+    const auto slices = count.slices(triangle);
     if (slices.begin >= slices.end) return;
-    const Cuts all_rows = count.rows(t);
+    const auto all_rows = triangle.rows(count.size[1]);
     if (std::int64_t{slices.end - slices.begin} * (all_rows.end - all_rows.begin) > most_rows) {
-      large[take_number(*large_count)] = t;
+      large[take_number(*large_count)] = static_cast<std::uint32_t>(index);
       return;
     }
     for (std::int32_t slice = slices.begin; slice < slices.end; ++slice) {
-      const SliceCut cut = count.cut(t, slice);
-      const Cuts rows = count.rows(cut);
+      const SliceCut cut(triangle, static_cast<double>(slice), count.is_mirrored);
+      const auto rows = cut.rows(count.size[1]);
       for (std::int32_t row = rows.begin; row < rows.end; ++row) count.cross_row(cut, slice, row);
     }
   }
@@ -191,11 +110,11 @@ struct CrossLargeTriangles {
       const auto own = static_cast<std::int32_t>(index * (threads / warp_size) + warp.index());
       constexpr auto step = static_cast<std::int32_t>(blocks * (threads / warp_size));
       for (std::uint32_t k = 0; k < *large_count; ++k) {
-        const std::uint32_t t = large[k];
-        const Cuts slices = count.slices(t);
+        const PlacedTriangle triangle = count.placed(large[k]);
+        const auto slices = count.slices(triangle);
         for (std::int32_t slice = slices.begin + own; slice < slices.end; slice += step) {
-          const SliceCut cut = count.cut(t, slice);
-          const Cuts rows = count.rows(cut);
+          const SliceCut cut(triangle, static_cast<double>(slice), count.is_mirrored);
+          const auto rows = cut.rows(count.size[1]);
           warp.each([&](std::uint32_t lane) {
             for (std::int32_t row = rows.begin + static_cast<std::int32_t>(lane); row < rows.end;
                  row += static_cast<std::int32_t>(warp_size)) {

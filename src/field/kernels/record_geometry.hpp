@@ -29,11 +29,15 @@ BLUM_HD inline Vec3d closest_on_triangle(const Vec3d& query, const Vec3d& a, con
   return best;
 }
 
-/// Slivers are rare: they must not cost the common paths registers.
-BLUM_HD BLUM_NOINLINE inline Vec3d closest_on_sliver(const Record& record, const Vec3d& query) {
-  return closest_on_triangle(query, to_double(vec_at(record, SliverColumns::corners)),
-                             to_double(vec_at(record, SliverColumns::corners + 3)),
-                             to_double(vec_at(record, SliverColumns::corners + 6)));
+/// Slivers are rare: they must not cost the common paths registers, nor (by a reference) keep records in memory.
+BLUM_HD BLUM_NOINLINE inline Vec3d closest_on_flat_triangle(Vec3d query, Vec3f a, Vec3f b, Vec3f c) {
+  return closest_on_triangle(query, to_double(a), to_double(b), to_double(c));
+}
+
+BLUM_HD inline Vec3d closest_on_sliver(const Record& record, const Vec3d& query) {
+  return closest_on_flat_triangle(query, vec_at(record, SliverColumns::corners),
+                                  vec_at(record, SliverColumns::corners + 3),
+                                  vec_at(record, SliverColumns::corners + 6));
 }
 
 /// Closest point of a closed edge.
