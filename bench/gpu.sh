@@ -24,8 +24,8 @@ failed=0
 "$build/bin/time_gpu" --json "$out/times.json" ${BLUM_GPU_MESH:+--mesh "$BLUM_GPU_MESH"} | tee "$out/times.txt" || failed=1
 if [[ ${BLUM_GPU_SKIP:-} != sanitizers ]]; then
   if command -v compute-sanitizer >/dev/null; then
-    for tool in memcheck racecheck; do
-      timeout 150 compute-sanitizer --tool "$tool" --error-exitcode 9 "$build/bin/check_gpu" --quick \
+    for tool in memcheck racecheck initcheck synccheck; do
+      timeout 90 compute-sanitizer --tool "$tool" --error-exitcode 9 "$build/bin/check_gpu" --quick \
         >"$out/sanitizer-$tool.txt" 2>&1 || failed=1
       echo "gpu: compute-sanitizer $tool: $(tail -n 1 "$out/sanitizer-$tool.txt")"
     done

@@ -4,6 +4,7 @@
   results.py check DIR NAME -- COMMAND...   run a command; it counts as one check, passed when it exits with 0
   results.py junit DIR NAME FILE [--complete]   count the tests of a JUnit file (ctest, pytest); no tests is a failure;
                                             --complete: so is a test that was skipped, but for want of the data folder
+                                            or of a CUDA device
   results.py fail DIR NAME REASON           count one failure
   results.py summary DIR                    list what failed and was skipped; last line `N passed, N failed[, N skipped]`
 
@@ -22,6 +23,7 @@ import time
 import xml.etree.ElementTree as ElementTree
 
 PROJECT = pathlib.Path(__file__).resolve().parent.parent
+WANTS_DEVICE = re.compile(r"no CUDA (device|module)|CUDA: ")
 WANTS_DATA = re.compile(r"no data folder|data folder|shared/data|BLUM_DATA_DIR", re.IGNORECASE)
 
 
@@ -72,7 +74,7 @@ def junit(folder: str, name: str, file: str, complete: bool) -> None:
                 failed.append(f"{label} (did not run)")
             elif data_present() and WANTS_DATA.search(text):
                 failed.append(f"{label} (skipped for want of data, though the data folder is there)")
-            elif complete and not WANTS_DATA.search(text):
+            elif complete and not WANTS_DATA.search(text) and not WANTS_DEVICE.search(text):
                 failed.append(f"{label} (skipped: {text.strip()})")
             else:
                 skipped.append(label)

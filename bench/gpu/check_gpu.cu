@@ -2,6 +2,7 @@
 // signs, bands, slabs, determinism. Needs a compiler and CUDA alone; prints a line per case, exits with 1 where one
 // fails.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -9,6 +10,8 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "blum/core/random.hpp"
@@ -17,6 +20,7 @@
 #include "field/cuda/cuda_device.cuh"
 #include "field/kernels/emulated_device.hpp"
 #include "field/kernels/field_engine.hpp"
+#include "field/kernels/image_engine.hpp"
 #include "gpu/meshes.hpp"
 
 namespace blum::bench {
@@ -132,13 +136,84 @@ std::vector<Case> cases(bool is_quick) {
           {"segments", make_segments(), 40}};
 }
 
+/// One engine on meshes and grids that grow and shrink, in many slabs: buffers are used again and again.
+bool run_frames(cuda::CudaDevice& device, bool is_quick) {
+  kernels::FieldEngine<cuda::CudaDevice> engine(device, 1);
+  bool is_same = true;
+  for (const auto& [triangles, resolution] :
+       {std::pair{4'000, 24}, {is_quick ? 4'000 : 60'000, is_quick ? 70 : 260}, {500, 12}, {8'000, 40}}) {
+    const TriangleMesh mesh = noisy_knot(triangles);
+    kernels::EngineRequest request;
+    request.grid = grid_around(bounds(mesh), resolution, 0.1);
+    // Along z, where slabs are cut: 32 slices each.
+    request.grid.size[2] = is_quick ? 70 : 170;
+    request.level = 0;
+    Result out;
+    out.distance.resize(request.grid.node_count());
+    out.site.resize(request.grid.node_count());
+    engine.set_connectivity(mesh);
+    for (int frame = 0; frame < 2; ++frame) {
+      (void)engine.compute(mesh, request, out.distance.data(), out.site.data(), [] { return false; }, [](double) {});
+    }
+    is_same = is_same && out == compute(device, mesh, request, std::size_t{1} << 28);
+  }
+  std::printf("%-4s one engine, many frames and slabs: %s\n", is_same ? "ok" : "FAIL",
+              is_same ? "same bytes" : "NOT THE SAME BYTES");
+  return is_same;
+}
+
+/// Images against the host's kernels, which the tests hold to brute force.
+bool run_image(cuda::CudaDevice& device, const std::array<std::int64_t, 3>& size, const Vec3d& spacing,
+               const DistanceTransformOptions& options) {
+  VoxelImage image;
+  image.grid.size = size;
+  image.grid.spacing = spacing;
+  Random random(3);
+  std::vector<std::uint8_t> values(image.grid.node_count());
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = random.below(1 + k % 400) == 0 ? 1 : 0;
+  image.values = values;
+  const detail::ImagePlan plan = detail::make_image_plan(image.grid, options);
+  const auto transform = [&](auto& on) {
+    kernels::ImageEngine<std::decay_t<decltype(on)>> engine(on);
+    Result out;
+    out.distance.resize(values.size());
+    out.site.resize(values.size());
+    engine.set_image(image, plan);
+    (void)engine.select({});
+    engine.transform(out.distance.data(), out.site.data());
+    return out;
+  };
+  kernels::EmulatedDevice emulated;
+  const bool is_same = transform(device) == transform(emulated);
+  std::printf("%-4s image %lldx%lldx%lld, %s, %s: %s\n", is_same ? "ok" : "FAIL", static_cast<long long>(size[0]),
+              static_cast<long long>(size[1]), static_cast<long long>(size[2]),
+              options.is_signed ? "signed" : "unsigned", plan.integer ? "whole numbers" : "double",
+              is_same ? "the host's bytes" : "NOT THE HOST'S BYTES");
+  return is_same;
+}
+
+int run_images(cuda::CudaDevice& device, bool is_quick) {
+  int failed = 0;
+  const std::int64_t side = is_quick ? 40 : 150;
+  for (const std::array<std::int64_t, 3>& size :
+       std::vector<std::array<std::int64_t, 3>>{{side, side - 3, side + 5}, {3, 2 * side, 5}, {7, 1, 3 * side}}) {
+    for (const Vec3d& spacing : {Vec3d{1, 1, 1}, Vec3d{0.7, 1.1, 0.3140001}}) {
+      for (const bool is_signed : {true, false}) {
+        failed += run_image(device, size, spacing, {.is_signed = is_signed}) ? 0 : 1;
+      }
+    }
+  }
+  return failed;
+}
+
 int main_of(bool is_quick) {
   cuda::check(cudaSetDevice(0), "choosing the device");
   cuda::CudaDevice device(nullptr);
-  int failed = 0;
+  int failed = run_frames(device, is_quick) ? 0 : 1;
+  failed += run_images(device, is_quick);
   const std::vector<Case> all = cases(is_quick);
   for (const Case& c : all) failed += run(device, c) ? 0 : 1;
-  std::printf("%zu passed, %d failed\n", all.size() - static_cast<std::size_t>(failed), failed);
+  std::printf("%zu cases, %d failed\n", all.size() + 13, failed);
   return failed == 0 ? 0 : 1;
 }
 

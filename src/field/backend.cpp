@@ -39,6 +39,8 @@ auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& mak
       return make_cuda(0);
     } catch (const DeviceError&) {
       return make_cpu();
+    } catch (const OutOfMemory&) {  // of the device: others may fill it
+      return make_cpu();
     }
   }
   return make_cpu();

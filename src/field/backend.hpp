@@ -84,6 +84,6 @@ struct CudaMakers {
   std::function<std::unique_ptr<ImageBackend>(int index)> image;
 };
 /// Puts something in the place of the CUDA back ends, for tests; empty functions restore them.
-void replace_cuda(CudaMakers makers);
+void replace_cuda(CudaMakers replacement);
 
 }  // namespace blum

@@ -31,6 +31,8 @@ void check(Status status, const Call& call) {
       throw OutOfMemory(call.message);
     case Status::invalid_grid:
       throw InvalidGrid(call.message);
+    case Status::invalid_option:
+      throw InvalidOption(call.message);
     case Status::cancelled:
       throw Cancelled();
     case Status::device_error:

@@ -4,6 +4,7 @@
 #include <cuda_runtime.h>
 #include <thrust/iterator/counting_iterator.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cub/device/device_radix_sort.cuh>
@@ -36,15 +37,16 @@ class CudaArray {
   CudaArray& operator=(const CudaArray&) = delete;
   ~CudaArray() { (void)cudaFree(data_); }
 
-  /// What was there is lost where the array grows. @throws OutOfMemory.
-  void resize(std::size_t count) {
-    if (count > capacity_) {
+  /// What was there is lost where the array grows. @param room  for at least so many. @throws OutOfMemory.
+  void resize(std::size_t count, std::size_t room = 0) {
+    room = std::max(room, count);
+    if (room > capacity_) {
       (void)cudaFree(std::exchange(data_, nullptr));
       capacity_ = 0;
       size_ = 0;
-      check(cudaMalloc(reinterpret_cast<void**>(&data_), count * sizeof(T)),
-            ("allocating " + std::to_string(count * sizeof(T)) + " bytes").c_str());
-      capacity_ = count;
+      check(cudaMalloc(reinterpret_cast<void**>(&data_), room * sizeof(T)),
+            ("allocating " + std::to_string(room * sizeof(T)) + " bytes").c_str());
+      capacity_ = room;
     }
     size_ = count;
   }
@@ -75,6 +77,14 @@ template <class Body>
 __global__ void for_each_kernel(const __grid_constant__ Body body, const std::size_t count) {
   const std::size_t index = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
   if (index < count) body(index);
+}
+
+/// Whether the current device can run what this file was compiled to. @throws DeviceError.
+template <class Body>
+void expect_runnable() {
+  cudaFuncAttributes attributes{};
+  check(cudaFuncGetAttributes(&attributes, for_each_kernel<Body>),
+        "loading kernels, which need compute capability 8.0");
 }
 
 template <class Body>
@@ -140,8 +150,10 @@ class CudaDevice {
   template <class Key>
   void sort_pairs(Array<Key>& keys, Array<std::uint32_t>& values, int bits) {
     Array<Key>& sorted_keys = sorted_keys_of(Key{});
-    sorted_keys.resize(keys.size());
-    sorted_values_.resize(keys.size());
+    // Buffers change places below: with room for the largest sort in each, the frames that follow allocate nothing.
+    largest_sort_ = std::max(largest_sort_, keys.size());
+    sorted_keys.resize(keys.size(), largest_sort_);
+    sorted_values_.resize(keys.size(), largest_sort_);
     with_scratch([&](void* scratch, std::size_t& bytes) {
       return cub::DeviceRadixSort::SortPairs(scratch, bytes, keys.data(), sorted_keys.data(), values.data(),
                                              sorted_values_.data(), keys.size(), 0, bits, stream_);
@@ -187,6 +199,7 @@ class CudaDevice {
   cudaStream_t copies_ = nullptr;
   cudaEvent_t marks_[2] = {};
   Array<unsigned char> scratch_;
+  std::size_t largest_sort_ = 0;
   Array<std::uint32_t> sorted_values_;
   Array<std::uint32_t> sorted_short_keys_;
   Array<std::uint64_t> sorted_long_keys_;

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <optional>
 #include <string>
 
@@ -55,12 +56,17 @@ Status guarded(int device, Call* call, const Work& work) {
     fail(Status::out_of_memory, error.what());
   } catch (const InvalidGrid& error) {
     fail(Status::invalid_grid, error.what());
+  } catch (const InvalidOption& error) {
+    fail(Status::invalid_option, error.what());
+  } catch (const std::bad_alloc&) {
+    fail(Status::out_of_memory, "not enough memory on the host");
   } catch (const Cancelled& error) {
     fail(Status::cancelled, error.what());
   } catch (const std::exception& error) {
     fail(Status::device_error, error.what());
   }
-  if (had_device) (void)cudaSetDevice(before);
+  if (had_device && before != device) (void)cudaSetDevice(before);
+  (void)cudaGetLastError();  // or the next launch would report what was ignored here
   return status;
 }
 
@@ -80,7 +86,10 @@ Status create(int device, void** engine, Call* call) {
     std::snprintf(call->message, sizeof(call->message), "%s", error.what());
     return Status::device_error;
   }
-  return guarded(device, call, [&] { *engine = new Engine(device); });
+  return guarded(device, call, [&] {
+    expect_runnable<kernels::MakeFrame>();
+    *engine = new Engine(device);
+  });
 }
 
 void destroy(void* engine) {

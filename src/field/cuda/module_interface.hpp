@@ -18,7 +18,7 @@ inline constexpr std::uint32_t module_version = 1;
 inline constexpr const char* module_symbol = "blum_cuda_module";
 inline constexpr const char* module_file = "libblum_cuda.so";
 
-enum class Status : std::uint8_t { done, device_error, out_of_memory, invalid_grid, cancelled };
+enum class Status : std::uint8_t { done, device_error, out_of_memory, invalid_grid, invalid_option, cancelled };
 
 /// How a call runs and what it says.
 struct Call {

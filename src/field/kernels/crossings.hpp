@@ -93,7 +93,7 @@ struct CrossTriangles {
   }
 };
 
-/// The slices of each large triangle are shared out among all warps, its rows among the lanes.
+/// Large triangles are shared out among blocks, their slices among the warps, the rows among the lanes.
 struct CrossLargeTriangles {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 2;
@@ -107,9 +107,9 @@ struct CrossLargeTriangles {
   template <class Block>
   BLUM_HD void operator()(const Block& block, Shared&, std::size_t index) const {
     block.each_warp([&](const typename Block::Warp& warp) {
-      const auto own = static_cast<std::int32_t>(index * (threads / warp_size) + warp.index());
-      constexpr auto step = static_cast<std::int32_t>(blocks * (threads / warp_size));
-      for (std::uint32_t k = 0; k < *large_count; ++k) {
+      const auto own = static_cast<std::int32_t>(warp.index());
+      constexpr auto step = static_cast<std::int32_t>(threads / warp_size);
+      for (auto k = static_cast<std::uint32_t>(index); k < *large_count; k += blocks) {
         const PlacedTriangle triangle = count.placed(large[k]);
         const auto slices = count.slices(triangle);
         for (std::int32_t slice = slices.begin + own; slice < slices.end; slice += step) {

@@ -48,10 +48,9 @@ class FieldEngine {
   bool compute(const MeshView& mesh, const EngineRequest& request, float* distance, std::uint32_t* site,
                const IsStopped& is_stopped, const Report& report) {
     const GridSpec& grid = request.grid;
+    constexpr std::int64_t most_nodes = std::numeric_limits<std::int32_t>::max() - 63;  // whole tiles, in 32 bits
     for (const std::int64_t size : grid.size) {
-      if (size > std::numeric_limits<std::int32_t>::max()) {
-        throw InvalidGrid("a device holds at most 2^31 - 1 nodes along an axis");
-      }
+      if (size > most_nodes) throw InvalidGrid("a device takes at most 2^31 - 64 nodes along an axis");
     }
     device_.upload(mesh.vertices, vertices_);
     pipeline_.prepare(on_device(mesh), grid);

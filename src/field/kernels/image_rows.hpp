@@ -30,8 +30,9 @@ struct SelectVoxels {
       const std::size_t first = index * words_per_block + std::size_t{warp.index()} * warp_size;
       typename Block::Warp::template Lanes<std::uint32_t> mine;
       for (std::uint32_t k = 0; k < warp_size && first + k < words; ++k) {
-        const std::size_t row = (first + k) / words_per_row;
-        const auto x = static_cast<std::uint32_t>((first + k) % words_per_row) * warp_size;
+        const auto word = static_cast<std::uint32_t>(first + k);  // there are fewer than 2^31
+        const std::size_t row = word / words_per_row;
+        const std::uint32_t x = word % words_per_row * warp_size;
         const std::uint32_t bits =
             warp.ballot([&](std::uint32_t lane) { return x + lane < size_x && test(values[row * size_x + x + lane]); });
         warp.each([&](std::uint32_t lane) {
