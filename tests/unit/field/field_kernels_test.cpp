@@ -190,16 +190,17 @@ TEST_P(FieldKernels, GridsOfAnyShapeAndDirection) {
 }
 
 TEST_P(FieldKernels, BandsCutOff) {
-  const TriangleMesh mesh = make_torus_knot({});
-  const GridSpec grid = grid_for(mesh, 48);
+  const TriangleMesh mesh = make_torus_knot({.curve_segments = 100, .tube_segments = 8});
+  const GridSpec grid = grid_for(mesh, 40);
   for (const double band : {0.01, 0.2, 100.0}) {
     expect_exact(mesh, grid, {.sign = SignMode::automatic, .band = band});
   }
 }
 
 TEST_P(FieldKernels, SlabsDoNotChangeABit) {
-  const TriangleMesh mesh = make_torus_knot({});
-  const GridSpec grid = grid_for(mesh, 80);
+  const TriangleMesh mesh = make_torus_knot({.curve_segments = 100, .tube_segments = 8});
+  GridSpec grid = grid_for(mesh, 24);
+  grid.size[2] = 100;
   const Field whole = compute(mesh, grid);
   if (GetParam() == Where::device) GTEST_SKIP() << "slabs of the device have one size; bench/gpu checks others";
   const test::EmulatedCuda cuda(1);  // 32 slices at a time
@@ -208,8 +209,8 @@ TEST_P(FieldKernels, SlabsDoNotChangeABit) {
 }
 
 TEST_P(FieldKernels, MoreSitesThanAListHolds) {
-  // All of 80,000 triangles matter to the tile in the middle of a sphere, and a list holds 512.
-  const TriangleMesh mesh = make_sphere({.frequency = 64});
+  // All of 18,000 triangles matter to the tile in the middle of a sphere, and a list holds 512.
+  const TriangleMesh mesh = make_sphere({.frequency = 30});
   const GridSpec grid = grid_in({{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}}, 12);
   expect_exact(mesh, grid);
 }
@@ -284,7 +285,7 @@ TEST(Connectivity, IsThatOfSiteTable) {
 }
 
 TEST_P(FieldKernels, SolverFollowsADeformingMeshAndANewOne) {
-  TriangleMesh mesh = make_torus_knot({});
+  TriangleMesh mesh = make_torus_knot({.curve_segments = 100, .tube_segments = 8});
   const GridSpec grid = grid_around(bounds(mesh), 24, 0.3);
   FieldSolver solver(grid, {}, {.device = Device::cuda()});
   for (int frame = 0; frame < 3; ++frame) {
