@@ -151,8 +151,11 @@ class EmulatedDevice {
     const Key mask = bits >= static_cast<int>(8 * sizeof(Key)) ? ~Key{0} : (Key{1} << bits) - 1;
     std::vector<std::size_t> order(keys.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return (keys.data()[a] & mask) < (keys.data()[b] & mask); });
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      const Key key_a = keys.data()[a] & mask;
+      const Key key_b = keys.data()[b] & mask;
+      return key_a != key_b ? key_a < key_b : a < b;
+    });
     Array<Key> sorted_keys;
     Array<std::uint32_t> sorted_values;
     sorted_keys.resize(keys.size());
