@@ -1,4 +1,4 @@
-// Blum: what computes unsigned fields. SPDX-License-Identifier: Apache-2.0
+// Blum: what computes fields, on each device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>

@@ -1,29 +1,15 @@
 #include "field/cpu/adjacency.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "blum/core/parallel.hpp"
 #include "field/cpu/radix_sort.hpp"
+#include "field/kernels/morton.hpp"
 
 namespace blum::cpu {
 namespace {
 
 constexpr std::size_t grain = 1 << 14;
-
-/// Spreads the low 10 bits of x to every third bit.
-std::uint32_t spread_bits(std::uint32_t x) {
-  x = (x | (x << 16)) & 0x030000ffU;
-  x = (x | (x << 8)) & 0x0300f00fU;
-  x = (x | (x << 4)) & 0x030c30c3U;
-  x = (x | (x << 2)) & 0x09249249U;
-  return x;
-}
-
-std::uint32_t morton_code(const Vec3d& p) {
-  const auto cell = [](double x) { return static_cast<std::uint32_t>(std::clamp((x + 0.5) * 1023.0, 0.0, 1023.0)); };
-  return spread_bits(cell(p.x)) | (spread_bits(cell(p.y)) << 1) | (spread_bits(cell(p.z)) << 2);
-}
 
 /// Indices 0 .. keys.size()-1 in rising order of key (< key_count), equal keys in their own order.
 void counting_order(std::span<const std::uint32_t> keys, std::size_t key_count, std::vector<std::uint32_t>& order) {
@@ -84,7 +70,7 @@ void order_sites(const MeshView& mesh, const SiteTable& sites, const Adjacency& 
   parallel_for(context, named_count, grain, "", [&](const WorkRange& range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const std::uint32_t v = adjacency.named_vertices[i];
-      keyed[i] = {morton_code(positions[v]), v};
+      keyed[i] = {kernels::morton_code(positions[v]), v};
     }
   });
   radix_sort(keyed);

@@ -17,9 +17,7 @@ bool in_face_direction(const RecordInput& input, const FaceFacts& facts, std::ui
   const Vec3d& normal = facts.normals[triangle];
   if (normal == Vec3d{}) return false;
   const Triangle& t = input.mesh.triangles[triangle];
-  const bool is_forward = (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||
-                          (t[2] == edge[0] && t[0] == edge[1]);
-  direction = kernels::in_face_direction(normal, tangent, is_forward);
+  direction = kernels::in_face_direction(normal, tangent, kernels::runs_along(t, edge));
   return true;
 }
 

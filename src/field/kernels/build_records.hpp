@@ -155,9 +155,7 @@ struct BuildEdges {
     const Vec3d normal = source.face_normals[face];
     if (normal == Vec3d{}) return false;
     const Triangle& t = source.mesh.triangles[face];
-    const bool is_forward = (t[0] == ends[0] && t[1] == ends[1]) || (t[1] == ends[0] && t[2] == ends[1]) ||
-                            (t[2] == ends[0] && t[0] == ends[1]);
-    direction = in_face_direction(normal, tangent, is_forward);
+    direction = in_face_direction(normal, tangent, runs_along(t, ends));
     return true;
   }
   BLUM_HD float find_reach(const EdgeShape& edge, std::uint32_t rank) const {

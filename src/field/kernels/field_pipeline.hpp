@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "blum/core/error.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "field/kernels/build_records.hpp"
 #include "field/kernels/compute_tiles.hpp"
@@ -76,12 +75,7 @@ class FieldPipeline {
   void check_frame() {
     NormalFrame frame;
     device_.download(frame_.data(), 1, &frame);
-    if (frame.fault == NormalFrame::Fault::too_large) {
-      throw InvalidGrid("mesh and grid span more than 1e37, too far for 32-bit distances: scale them down");
-    }
-    if (frame.fault == NormalFrame::Fault::too_small) {
-      throw InvalidGrid("mesh and grid span less than 1e-36, too little for 32-bit distances: scale them up");
-    }
+    throw_if_faulty(frame);
   }
 
   /// Writes the slices [first_slice, last_slice) of the grid to a device's memory.

@@ -29,8 +29,7 @@ struct BandTuning {
 /// Memory moved, in bytes per voxel: 4 (rows) + 16 (columns along y) + 16 (along z) + 8 (distances), at most, and 1/8
 /// each for the mask; and one reading of the image. The memory of the distances is the passes' working memory.
 ///
-/// In whole numbers the result is the CPU's, byte for byte. In double it is what the CPU computes where it fuses no
-/// products with sums: sites may differ where two are equally far but for rounding.
+/// The result is the CPU's, byte for byte: neither fuses products with sums.
 template <class Device>
 class ImageTransform {
  public:

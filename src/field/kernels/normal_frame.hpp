@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "blum/core/error.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "field/kernels/host_device.hpp"
 
@@ -62,6 +63,16 @@ BLUM_HD inline NormalFrame make_normal_frame(Bounds box, const GridSpec& grid) {
   frame.first_node = (first - frame.center) * frame.scale;
   frame.spacing = grid.spacing * frame.scale;
   return frame;
+}
+
+/// @throws InvalidGrid where mesh and grid are too large or too small for 32-bit distances.
+inline void throw_if_faulty(const NormalFrame& frame) {
+  if (frame.fault == NormalFrame::Fault::too_large) {
+    throw InvalidGrid("mesh and grid span more than 1e37, too far for 32-bit distances: scale them down");
+  }
+  if (frame.fault == NormalFrame::Fault::too_small) {
+    throw InvalidGrid("mesh and grid span less than 1e-36, too little for 32-bit distances: scale them up");
+  }
 }
 
 }  // namespace blum::kernels

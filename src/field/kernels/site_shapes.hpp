@@ -1,6 +1,7 @@
 // Blum: records of single faces and edges. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "blum/geometry/triangle_mesh.hpp"
 #include "field/kernels/record.hpp"
 
 namespace blum::kernels {
@@ -73,6 +74,12 @@ BLUM_HD inline Vec3d any_perpendicular(const Vec3d& t) {
   const Vec3d axis = magnitude(t.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d b = cross(t, axis);
   return b / norm(b);
+}
+
+/// Whether a triangle's border runs from the edge's first end to its second.
+BLUM_HD constexpr bool runs_along(const Triangle& t, const Segment& edge) {
+  return (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||
+         (t[2] == edge[0] && t[0] == edge[1]);
 }
 
 /// Unit direction that leaves an edge with this tangent into a triangle on its left (`is_forward`) or right.

@@ -198,7 +198,7 @@ TEST(ImageKernels, EqualTheCpuByteForByteInWholeNumbers) {
   EXPECT_GT(compared, 500);
 }
 
-TEST(ImageKernels, EqualTheCpuWithinRoundingForAnySpacing) {
+TEST(ImageKernels, EqualTheCpuByteForByteForAnySpacing) {
   unsigned seed = 5000;
   for (const Vec3d spacing : {Vec3d{0.3, 0.7, 1.1},
                               {1e-9, 1.3e-9, 1e-9},

@@ -1,0 +1,31 @@
+// Blum: places on a space-filling curve. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "field/kernels/host_device.hpp"
+
+namespace blum::kernels {
+
+/// Spreads the low 10 bits of x to every third bit.
+BLUM_HD constexpr std::uint32_t spread_bits(std::uint32_t x) {
+  x = (x | (x << 16)) & 0x030000ffU;
+  x = (x | (x << 8)) & 0x0300f00fU;
+  x = (x | (x << 4)) & 0x030c30c3U;
+  x = (x | (x << 2)) & 0x09249249U;
+  return x;
+}
+
+/// Place on a Morton curve of 1024 cells a side around the origin, for coordinates in [-1/2, 1/2].
+BLUM_HD constexpr std::uint32_t morton_code(const Vec3d& p) {
+  std::uint32_t code = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto cell = static_cast<std::uint32_t>(clamped((p[axis] + 0.5) * 1023.0, 0.0, 1023.0));
+    code |= spread_bits(cell) << axis;
+  }
+  return code;
+}
+inline constexpr int morton_bits = 30;
+
+}  // namespace blum::kernels
