@@ -1,33 +1,12 @@
 // The one place that knows every back end.
 #include "field/backend.hpp"
 
-#include <mutex>
-#include <utility>
-
 #include "blum/core/error.hpp"
 #include "field/cpu/engine.hpp"
 #include "field/cuda/cuda_backend.hpp"
 
 namespace blum {
 namespace {
-
-struct Makers {
-  std::mutex mutex;
-  CudaMakers replacement;
-};
-
-Makers& makers() {
-  static Makers value;
-  return value;
-}
-
-CudaMakers cuda_makers() {
-  const std::scoped_lock lock(makers().mutex);
-  CudaMakers result = makers().replacement;
-  if (!result.field) result.field = cuda::make_field_backend;
-  if (!result.image) result.image = cuda::make_image_backend;
-  return result;
-}
 
 /// What make_cuda(index) makes where the device is a CUDA device, or may be one and is there; else what make_cpu()
 /// does.
@@ -49,17 +28,12 @@ auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& mak
 }  // namespace
 
 std::unique_ptr<FieldBackend> make_field_backend(const Context& context) {
-  return make_on(context.device, cuda_makers().field,
+  return make_on(context.device, cuda::make_field_backend,
                  []() -> std::unique_ptr<FieldBackend> { return std::make_unique<cpu::Engine>(); });
 }
 
 std::unique_ptr<ImageBackend> make_image_backend(const Context& context) {
-  return make_on(context.device, cuda_makers().image, []() -> std::unique_ptr<ImageBackend> { return nullptr; });
-}
-
-void replace_cuda(CudaMakers replacement) {
-  const std::scoped_lock lock(makers().mutex);
-  makers().replacement = std::move(replacement);
+  return make_on(context.device, cuda::make_image_backend, []() -> std::unique_ptr<ImageBackend> { return nullptr; });
 }
 
 }  // namespace blum

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,8 +20,8 @@ struct FieldRequest {
   std::optional<double> band = {};
   /// Signs by pseudonormals, of a closed, consistently oriented mesh. Only where the back end can_tell_sides().
   bool with_sides = false;
-  /// Signs by counted crossings: nodes with a winding number above this are inside. Of a mesh that is_balanced(), and
-  /// only where the back end can_count_crossings().
+  /// Signs by winding numbers: nodes are inside where theirs is above this (above level + 1/2, where the mesh has a
+  /// boundary). Back ends may leave it to others, see FieldResult.
   std::optional<int> level = {};
 };
 
@@ -30,8 +29,10 @@ struct FieldResult {
   /// Nodes that are left to exact queries: those that no site claimed in float32, and those whose side is too close to
   /// call; rising.
   std::vector<std::size_t> unsettled;
-  /// With a level: whether every node has the winding number level or level + 1, as those of a mesh that does not cross
-  /// itself have.
+  /// With a level: whether the field got signs.
+  bool is_signed = false;
+  /// Then, of a mesh without boundary: whether every node has the winding number level or level + 1, as those of a mesh
+  /// that does not cross itself have.
   bool is_simple = false;
 };
 
@@ -45,7 +46,6 @@ class FieldBackend {
 
   [[nodiscard]] virtual Device device() const = 0;
   [[nodiscard]] virtual bool can_tell_sides() const = 0;
-  [[nodiscard]] virtual bool can_count_crossings() const = 0;
 
   /// Makes `mesh` the current one; what depends on its connectivity alone is kept while that stays the same. The mesh
   /// must stay alive until compute() returns.
@@ -77,13 +77,5 @@ class ImageBackend {
 [[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context);
 /// Likewise; none for the CPU. @throws DeviceError.
 [[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(const Context& context);
-
-/// Makes the back ends of the CUDA device with an index.
-struct CudaMakers {
-  std::function<std::unique_ptr<FieldBackend>(int index)> field;
-  std::function<std::unique_ptr<ImageBackend>(int index)> image;
-};
-/// Puts something in the place of the CUDA back ends, for tests; empty functions restore them.
-void replace_cuda(CudaMakers replacement);
 
 }  // namespace blum

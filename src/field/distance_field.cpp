@@ -1,10 +1,9 @@
 // Fields of meshes: decides the sign rule, runs the back end, settles what it leaves open.
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
@@ -13,6 +12,7 @@
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/pseudonormals.hpp"
 #include "field/backend.hpp"
+#include "field/field_options.hpp"
 #include "field/sign.hpp"
 #include "field/sign_scan.hpp"
 
@@ -20,15 +20,6 @@ namespace blum {
 namespace {
 
 constexpr std::size_t nodes_per_range = std::size_t{1} << 18;
-
-void check_options(const FieldOptions& options) {
-  if (options.band && !(*options.band > 0 && std::isfinite(*options.band))) {
-    throw InvalidOption("the band's half-width must be positive and finite, in mesh units");
-  }
-  if (options.site_ids == SiteIds::voxels) {
-    throw InvalidOption("voxel ids are for fields of images; a mesh has features or triangles");
-  }
-}
 
 void check_site_ids(const MeshView& mesh, const FieldOptions& options) {
   if (options.site_ids == SiteIds::triangles && (!mesh.segments.empty() || !mesh.points.empty())) {
@@ -60,10 +51,39 @@ void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, c
   });
 }
 
+/// Negates the distances of nodes whose closest site, as the field has it, faces away from them.
+/// @return  nodes without a site, rising.
+std::vector<std::size_t> tell_sides(const MeshView& mesh, const SiteTable& sites, const Context& context,
+                                    Field& field) {
+  const Pseudonormals normals(mesh, sites, context);
+  const GridSpec& grid = field.grid;
+  const auto per_slice = static_cast<std::size_t>(grid.size[0] * grid.size[1]);
+  std::vector<std::vector<std::size_t>> open(static_cast<std::size_t>(grid.size[2]));
+  parallel_for(context, open.size(), 1, "", [&](const WorkRange& range) {
+    for (std::size_t slice = range.begin; slice < range.end; ++slice) {
+      for (std::size_t k = 0; k < per_slice; ++k) {
+        const std::size_t node = slice * per_slice + k;
+        const SiteId site = field.site[node];
+        if (!site.has_value()) {
+          open[slice].push_back(node);
+          continue;
+        }
+        const auto at = static_cast<std::int64_t>(k);
+        const Vec3d query = grid.position(at % grid.size[0], at / grid.size[0], static_cast<std::int64_t>(slice));
+        // A site's normal is perpendicular to it, so that any of its points will do.
+        const auto corner = static_cast<std::size_t>(sites.vertices(site)[0]);
+        if (normals.is_inside(query, mesh.vertices[corner], site)) field.distance[node] = -field.distance[node];
+      }
+    }
+  });
+  std::vector<std::size_t> all;
+  for (const auto& part : open) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 /// Signs an unsigned field by winding numbers: counted along rows where they are whole, else summed.
-void sign_by_winding(const MeshView& mesh, const SiteTable& sites, bool is_whole, const Context& context,
-                     Field& field) {
-  if (is_whole) {
+void sign_by_winding(const MeshView& mesh, const SiteTable& sites, const Context& context, Field& field) {
+  if (is_balanced(mesh, sites)) {
     if (const std::optional<SignScan> scan = SignScan::make(mesh, field.grid, context)) {
       (void)scan->apply(field, 0, context);
       return;
@@ -147,23 +167,19 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   const SignChoice choice = choose_sign_rule(options.sign, mesh, engine->sites());
   connectivity_timer.lap("connectivity");
   const bool with_sides = choice.rule == SignRule::normals && !choice.level;
-  const bool is_whole = choice.rule == SignRule::winding && is_balanced(mesh, engine->sites());
-  FieldRequest request{field.grid, options.band, with_sides && engine->can_tell_sides()};
-  if (engine->can_count_crossings()) request.level = is_whole ? std::optional<int>(0) : choice.level;
+  const FieldRequest request{field.grid, options.band, with_sides && engine->can_tell_sides(),
+                             choice.rule == SignRule::winding ? std::optional<int>(0) : choice.level};
   FieldResult result = engine->compute(request, frame_context, field);
   PhaseTimer sign_timer(field.phases);
-  if (with_sides && !engine->can_tell_sides()) {
-    result.unsettled.resize(nodes);
-    std::iota(result.unsettled.begin(), result.unsettled.end(), std::size_t{0});
-  }
+  if (with_sides && !engine->can_tell_sides()) result.unsettled = tell_sides(mesh, engine->sites(), frame_context, field);
   settle_nodes(result.unsettled, mesh, engine->sites(), with_sides, frame_context, field);
   field.sign_rule = choice.rule;
   field.sign_reason = choice.reason;
-  if (choice.rule == SignRule::winding && !request.level) {
-    sign_by_winding(mesh, engine->sites(), is_whole, frame_context, field);
+  if (choice.rule == SignRule::winding && !result.is_signed) {
+    sign_by_winding(mesh, engine->sites(), frame_context, field);
   }
   if (choice.level) {
-    const bool is_simple = request.level
+    const bool is_simple = result.is_signed
                                ? result.is_simple
                                : sign_by_orientation(mesh, engine->sites(), *choice.level, frame_context, field);
     if (!is_simple) tell_crossing(choice, field);

@@ -20,7 +20,6 @@ class Engine final : public FieldBackend {
  public:
   [[nodiscard]] Device device() const override { return Device::cpu(); }
   [[nodiscard]] bool can_tell_sides() const override { return true; }
-  [[nodiscard]] bool can_count_crossings() const override { return false; }
   void set_mesh(const MeshView& mesh, const Context& context) override;
   [[nodiscard]] const SiteTable& sites() const override { return sites_; }
   [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context, Field& field) override;

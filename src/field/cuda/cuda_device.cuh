@@ -112,6 +112,8 @@ class CudaDevice {
     (void)cudaStreamDestroy(copies_);
   }
   [[nodiscard]] cudaStream_t stream() const { return stream_; }
+  /// Queues on another stream from here on.
+  void use(cudaStream_t stream) { stream_ = stream; }
 
   template <class T>
   void upload(std::span<const T> from, Array<T>& to) const {

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -32,6 +33,8 @@ std::vector<std::string> places() {
   return result;
 }
 
+std::atomic<const Module*> replacement{nullptr};
+
 const Module& find_module() {
   std::string reasons;
   for (const std::string& place : places()) {
@@ -53,8 +56,13 @@ const Module& find_module() {
 }  // namespace
 
 const Module& load_module() {
+  if (const Module* module = replacement.load(); module != nullptr) return *module;
   static const Module& module = find_module();
   return module;
+}
+
+void replace_module(const Module* module) {
+  replacement.store(module);
 }
 
 }  // namespace blum::cuda

@@ -10,4 +10,7 @@ namespace blum::cuda {
 /// @throws DeviceError saying where it was looked for and why it could not be loaded.
 [[nodiscard]] const Module& load_module();
 
+/// Puts another table in the module's place, for tests; nullptr restores it. What was made before keeps its own.
+void replace_module(const Module* module);
+
 }  // namespace blum::cuda

@@ -1,16 +1,8 @@
-// The CUDA module: everything behind its functions throws nothing.
-#include "field/cuda/module_interface.hpp"
-
-#include <cstdio>
-#include <exception>
-#include <new>
-#include <optional>
+// The CUDA module: nothing is thrown across its border.
 #include <string>
 
-#include "blum/core/error.hpp"
 #include "field/cuda/cuda_device.cuh"
-#include "field/kernels/field_engine.hpp"
-#include "field/kernels/image_engine.hpp"
+#include "field/cuda/module_functions.hpp"
 
 namespace blum::cuda {
 namespace {
@@ -28,114 +20,90 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// One device and what it keeps for a solver.
-struct Engine {
-  explicit Engine(int device_index) : index(device_index), device(stream.get()), fields(device), images(device) {}
+/// An event likewise.
+class Event {
+ public:
+  Event() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "making an event"); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  ~Event() { (void)cudaEventDestroy(event_); }
+  [[nodiscard]] cudaEvent_t get() const { return event_; }
 
-  int index;
-  Stream stream;
-  CudaDevice device;
-  kernels::FieldEngine<CudaDevice> fields;
-  kernels::ImageEngine<CudaDevice> images;
+ private:
+  cudaEvent_t event_ = nullptr;
 };
 
-/// Runs work on a device and turns what it throws into a status. The host's choice of a device is left as it was.
-template <class Work>
-Status guarded(int device, Call* call, const Work& work) {
-  int before = 0;
-  const bool had_device = cudaGetDevice(&before) == cudaSuccess;
-  Status status = Status::done;
-  const auto fail = [&](Status kind, const char* what) {
-    std::snprintf(call->message, sizeof(call->message), "%s", what);
-    status = kind;
+/// Queues on a stream of its own, or on one that is lent: its memory is used by one piece of work after the other.
+class CudaQueue {
+ public:
+  CudaQueue() : device_(stream_.get()) {}
+  CudaQueue(const CudaQueue&) = delete;
+  CudaQueue& operator=(const CudaQueue&) = delete;
+
+  [[nodiscard]] CudaDevice& device() { return device_; }
+  void enter(void* stream) {
+    order(stream);
+    device_.use(static_cast<cudaStream_t>(stream));
+  }
+  void leave() {
+    (void)cudaEventRecord(done_.get(), device_.stream());
+    device_.use(stream_.get());
+  }
+  void wait() { (void)cudaEventSynchronize(done_.get()); }
+  void order(void* stream) {
+    check(cudaStreamWaitEvent(static_cast<cudaStream_t>(stream), done_.get(), 0), "ordering streams");
+  }
+
+ private:
+  Stream stream_;
+  Event done_;
+  CudaDevice device_;
+};
+
+struct CudaPlatform {
+  using Device = CudaDevice;
+  using Queue = CudaQueue;
+
+  /// The host's choice of a device is left as it was.
+  class Choice {
+   public:
+    explicit Choice(int device) : device_(device) {
+      had_device_ = cudaGetDevice(&before_) == cudaSuccess;
+      check(cudaSetDevice(device), "choosing the device");
+      expect_runnable<kernels::MakeFrame>();
+    }
+    Choice(const Choice&) = delete;
+    Choice& operator=(const Choice&) = delete;
+    ~Choice() {
+      if (had_device_ && before_ != device_) (void)cudaSetDevice(before_);
+      (void)cudaGetLastError();  // or the next launch would report what was ignored here
+    }
+
+   private:
+    int device_;
+    int before_ = 0;
+    bool had_device_ = false;
   };
-  try {
-    check(cudaSetDevice(device), "choosing the device");
-    work();
-  } catch (const OutOfMemory& error) {
-    fail(Status::out_of_memory, error.what());
-  } catch (const InvalidGrid& error) {
-    fail(Status::invalid_grid, error.what());
-  } catch (const InvalidOption& error) {
-    fail(Status::invalid_option, error.what());
-  } catch (const std::bad_alloc&) {
-    fail(Status::out_of_memory, "not enough memory on the host");
-  } catch (const Cancelled& error) {
-    fail(Status::cancelled, error.what());
-  } catch (const std::exception& error) {
-    fail(Status::device_error, error.what());
+
+  static void expect_device(int device) {
+    int count = 0;
+    check(cudaGetDeviceCount(&count), "looking for devices");
+    if (device < count) return;
+    throw DeviceError("there is no CUDA device " + std::to_string(device) + ": " + std::to_string(count) +
+                      " can be seen, counted from 0");
   }
-  if (had_device && before != device) (void)cudaSetDevice(before);
-  (void)cudaGetLastError();  // or the next launch would report what was ignored here
-  return status;
-}
-
-void expect_device(int device) {
-  int count = 0;
-  check(cudaGetDeviceCount(&count), "looking for devices");
-  if (device < count) return;
-  throw DeviceError("there is no CUDA device " + std::to_string(device) + ": " + std::to_string(count) +
-                    " can be seen, counted from 0");
-}
-
-Status create(int device, void** engine, Call* call) {
-  *engine = nullptr;
-  try {
-    expect_device(device);
-  } catch (const std::exception& error) {
-    std::snprintf(call->message, sizeof(call->message), "%s", error.what());
-    return Status::device_error;
+  static void* allocate(std::size_t bytes) {
+    void* memory = nullptr;
+    check(cudaMalloc(&memory, bytes), ("allocating " + std::to_string(bytes) + " bytes").c_str());
+    return memory;
   }
-  return guarded(device, call, [&] {
-    expect_runnable<kernels::MakeFrame>();
-    *engine = new Engine(device);
-  });
-}
-
-void destroy(void* engine) {
-  auto* own = static_cast<Engine*>(engine);
-  if (own == nullptr) return;
-  Call call;
-  (void)guarded(own->index, &call, [&] { delete own; });
-}
-
-Status set_connectivity(void* engine, const MeshView* mesh, Call* call) {
-  auto& own = *static_cast<Engine*>(engine);
-  return guarded(own.index, call, [&] { own.fields.set_connectivity(*mesh); });
-}
-
-Status compute(void* engine, const MeshView* mesh, FieldMemory* field, Call* call) {
-  auto& own = *static_cast<Engine*>(engine);
-  return guarded(own.index, call, [&] {
-    const auto level = field->is_signed ? std::optional<std::int32_t>(field->level) : std::nullopt;
-    field->is_simple = own.fields.compute(
-        *mesh, {*field->grid, field->band, level}, field->distance, field->site,
-        [&] { return call->is_cancelled(call->context); },
-        [&](double fraction) { call->report(call->context, fraction); });
-  });
-}
-
-Status set_image(void* engine, const VoxelImageView* image, const detail::ImagePlan* plan, Call* call) {
-  auto& own = *static_cast<Engine*>(engine);
-  return guarded(own.index, call, [&] { own.images.set_image(*image, *plan); });
-}
-
-Status select_voxels(void* engine, const LabelSelection* selection, std::size_t* selected, Call* call) {
-  auto& own = *static_cast<Engine*>(engine);
-  return guarded(own.index, call, [&] { *selected = own.images.select(*selection); });
-}
-
-Status transform_image(void* engine, float* distance, std::uint32_t* site, Call* call) {
-  auto& own = *static_cast<Engine*>(engine);
-  return guarded(own.index, call, [&] { own.images.transform(distance, site); });
-}
+  static void release(void* memory) { (void)cudaFree(memory); }
+  static std::size_t slab_nodes() { return kernels::FieldEngine<CudaDevice>::default_slab_nodes; }
+};
 
 }  // namespace
 }  // namespace blum::cuda
 
 extern "C" __attribute__((visibility("default"))) const blum::cuda::Module* blum_cuda_module() {
-  using namespace blum::cuda;
-  static const Module module{module_version, create,    destroy,       set_connectivity,
-                             compute,        set_image, select_voxels, transform_image};
-  return &module;
+  return blum::cuda::ModuleFunctions<blum::cuda::CudaPlatform>::table();
 }

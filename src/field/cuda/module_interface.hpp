@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "blum/field/device_memory.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/voxel_image.hpp"
@@ -14,11 +15,19 @@
 namespace blum::cuda {
 
 /// To be raised with every change of this file.
-inline constexpr std::uint32_t module_version = 1;
+inline constexpr std::uint32_t module_version = 2;
 inline constexpr const char* module_symbol = "blum_cuda_module";
 inline constexpr const char* module_file = "libblum_cuda.so";
 
-enum class Status : std::uint8_t { done, device_error, out_of_memory, invalid_grid, invalid_option, cancelled };
+enum class Status : std::uint8_t {
+  done,
+  device_error,
+  out_of_memory,
+  invalid_mesh,
+  invalid_grid,
+  invalid_option,
+  cancelled
+};
 
 /// How a call runs and what it says.
 struct Call {
@@ -28,16 +37,19 @@ struct Call {
   char message[512] = {};
 };
 
-/// A field to be written. Sites are feature ids; 0xffffffff beyond the band.
+/// A field to be written, in the host's memory or the device's. Sites are feature ids; 0xffffffff beyond the band.
 struct FieldMemory {
   const GridSpec* grid = nullptr;
   double band = 0;  ///< half-width; 0: the full grid
   float* distance = nullptr;
   std::uint32_t* site = nullptr;
-  /// Whether nodes with a winding number above `level` get negative distances, and whether all winding numbers were
-  /// level or level + 1.
-  bool is_signed = false;
+  /// Whether nodes with a winding number above `level` (with a boundary: level + 1/2) are to get negative distances.
+  bool wants_signs = false;
   int level = 0;
+  /// Whether sites are to be the smallest triangles that they lie on. In the device's memory only.
+  bool wants_triangles = false;
+  /// Whether they got signs, and whether all winding numbers were level or level + 1. In the host's memory only.
+  bool is_signed = false;
   bool is_simple = false;
 };
 
@@ -51,6 +63,16 @@ struct Module {
   Status (*set_connectivity)(void* engine, const MeshView* mesh, Call* call) = nullptr;
   /// Computes the field of the mesh's vertices.
   Status (*compute)(void* engine, const MeshView* mesh, FieldMemory* field, Call* call) = nullptr;
+  /// The same two for a mesh and a field in the device's memory. compute_there() queues its work on a stream and does not
+  /// wait.
+  Status (*set_connectivity_there)(void* engine, const DeviceMeshView* mesh, void* stream, Call* call) = nullptr;
+  Status (*compute_there)(void* engine, const DeviceArrayView* vertices, FieldMemory* field, void* stream,
+                          Call* call) = nullptr;
+  /// Makes a stream wait for what the engine has queued.
+  Status (*order)(void* engine, void* stream, Call* call) = nullptr;
+  /// Memory of a device.
+  Status (*allocate)(int device, std::size_t bytes, void** memory, Call* call) = nullptr;
+  void (*release)(int device, void* memory) = nullptr;
   /// Uploads an image.
   Status (*set_image)(void* engine, const VoxelImageView* image, const detail::ImagePlan* plan, Call* call) = nullptr;
   /// Counts the selected voxels.

@@ -109,8 +109,12 @@ struct ComputeTiles {
           nearest_(job.tile_points[tile]) {}
 
     BLUM_HD void run() {
+      if (job_.frame->fault != NormalFrame::Fault::none) {
+        fill(NAN);
+        return;
+      }
       if (is_beyond_band()) {
-        fill();
+        fill(static_cast<float>(job_.output.band));
         return;
       }
       start();
@@ -392,15 +396,15 @@ struct ComputeTiles {
       });
     }
 
-    /// Gives all nodes the band's distance and no site.
-    BLUM_HD void fill() {
+    /// Gives all nodes one distance and no site.
+    BLUM_HD void fill(float distance) {
       block_.each_warp([&](const Warp& warp) {
         warp.each([&](std::uint32_t lane) {
           for (std::uint32_t k = 0; k < 2; ++k) {
             const Place place = place_in(leaf_box(warp.index()), lane, k);
             if (!is_in(nodes_, place)) continue;
             const std::size_t at = offset(place);
-            job_.output.distance[at] = static_cast<float>(job_.output.band);
+            job_.output.distance[at] = distance;
             job_.output.site[at] = dead_record;
           }
         });

@@ -48,6 +48,8 @@ struct ConnectivityView {
   const std::uint32_t* named_vertices = nullptr;  ///< rising
   const std::uint32_t* first_neighbour = nullptr;
   const std::uint32_t* neighbours = nullptr;  ///< of v: [first_neighbour[v], first_neighbour[v + 1])
+  /// Of each edge: how many more triangles run from its smaller to its larger vertex than back.
+  const std::int32_t* balance = nullptr;
   std::uint32_t edge_count = 0;
   std::uint32_t named_count = 0;
 };
@@ -111,20 +113,27 @@ struct WriteEdges {
   const std::uint32_t* place;
   std::size_t count;
   int vertex_bits;
-  std::uint32_t triangle_count;
+  DeviceMesh mesh;
   Segment* edges;
   std::array<std::uint32_t, 2>* edge_faces;
+  std::int32_t* balance;
 
   BLUM_HD void operator()(std::size_t k) const {
     if (is_first[k] == 0) return;
     const std::uint64_t mask = (std::uint64_t{1} << vertex_bits) - 1;
-    edges[place[k]] = {static_cast<std::uint32_t>(key[k] >> vertex_bits), static_cast<std::uint32_t>(key[k] & mask)};
+    const Segment edge{static_cast<std::uint32_t>(key[k] >> vertex_bits), static_cast<std::uint32_t>(key[k] & mask)};
     std::uint32_t faces[2] = {no_index, no_index};
     std::uint32_t found = 0;
-    for (std::size_t at = k; at < count && key[at] == key[k] && found < 2; ++at) {
-      if (border[at] / 3 < triangle_count) faces[found++] = border[at] / 3;
+    std::int32_t sum = 0;
+    for (std::size_t at = k; at < count && key[at] == key[k]; ++at) {
+      const std::uint32_t t = border[at] / 3;
+      if (t >= mesh.triangle_count) continue;
+      if (found < 2) faces[found++] = t;
+      sum += mesh.triangles[t][border[at] % 3] == edge[0] ? 1 : -1;
     }
+    edges[place[k]] = edge;
     edge_faces[place[k]] = {faces[0], faces[1]};
+    balance[place[k]] = sum;
   }
 };
 
@@ -169,6 +178,7 @@ struct Connectivity {
   Array<std::uint32_t> named_vertices;
   Array<std::uint32_t> first_neighbour;
   Array<std::uint32_t> neighbours;
+  Array<std::int32_t> balance;
   std::uint32_t edge_count = 0;
   std::uint32_t named_count = 0;
   /// Kept, so that the next mesh allocates nothing.
@@ -180,7 +190,7 @@ struct Connectivity {
 
   [[nodiscard]] ConnectivityView view() const {
     return {edges.data(), edge_faces.data(), named_vertices.data(), first_neighbour.data(), neighbours.data(),
-            edge_count,   named_count};
+            balance.data(), edge_count, named_count};
   }
 };
 
@@ -219,8 +229,9 @@ void build_connectivity(Device& device, const DeviceMesh& mesh, Connectivity<Dev
   out.edge_count = total_of(device, flags, sums);
   out.edges.resize(out.edge_count);
   out.edge_faces.resize(out.edge_count);
-  device.for_each(borders, WriteEdges{key.data(), border.data(), flags.data(), sums.data(), borders, vertex_bits,
-                                      mesh.triangle_count, out.edges.data(), out.edge_faces.data()});
+  out.balance.resize(out.edge_count);
+  device.for_each(borders, WriteEdges{key.data(), border.data(), flags.data(), sums.data(), borders, vertex_bits, mesh,
+                                      out.edges.data(), out.edge_faces.data(), out.balance.data()});
 
   const std::size_t ends = std::size_t{2} * out.edge_count;
   flags.resize(ends);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "field/kernels/boundary_signs.hpp"
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/row_crossings.hpp"
 
@@ -127,13 +128,52 @@ struct CrossLargeTriangles {
   }
 };
 
-/// Negates the distances of nodes whose winding number is above `level`. One warp per row.
-struct ApplyWinding {
+/// Adds up what crossings change along a row. Calls visit(lane, node, sum) for each node.
+template <class Warp, class Visit>
+BLUM_HD void add_up_row(const Warp& warp, const std::int32_t* change, std::int32_t width, const Visit& visit) {
+  std::int32_t before = 0;
+  for (std::int32_t first = 0; first < width; first += static_cast<std::int32_t>(warp_size)) {
+    typename Warp::template Lanes<std::int32_t> sum;
+    warp.each([&](std::uint32_t lane) {
+      const std::int32_t x = first + static_cast<std::int32_t>(lane);
+      sum[lane] = x < width ? change[x] : 0;
+    });
+    warp.add_up(sum);
+    warp.each([&](std::uint32_t lane) {
+      const std::int32_t x = first + static_cast<std::int32_t>(lane);
+      if (x < width) visit(x, before + sum[lane]);
+    });
+    before += warp.broadcast(sum, warp_size - 1);
+  }
+}
+
+/// What the kernels below share: one warp per row.
+struct RowsOfWarps {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 4;
   static constexpr std::uint32_t warps = threads / warp_size;
   struct Shared {};
+};
 
+/// Replaces what crossings change by the sums along each row.
+struct SumCrossings : RowsOfWarps {
+  std::int32_t* change;
+  std::size_t rows;
+  std::int32_t width;
+
+  template <class Block>
+  BLUM_HD void operator()(const Block& block, Shared&, std::size_t index) const {
+    block.each_warp([&](const typename Block::Warp& warp) {
+      const std::size_t row = index * warps + warp.index();
+      if (row >= rows) return;
+      std::int32_t* const line = change + row * static_cast<std::size_t>(width);
+      add_up_row(warp, line, width, [&](std::int32_t x, std::int32_t sum) { line[x] = sum; });
+    });
+  }
+};
+
+/// Negates the distances of nodes whose winding number is above `level`, where winding numbers are whole.
+struct ApplyWinding : RowsOfWarps {
   const std::int32_t* change;
   std::size_t rows;
   std::int32_t width;
@@ -148,33 +188,33 @@ struct ApplyWinding {
       const std::size_t row = index * warps + warp.index();
       if (row >= rows) return;
       const std::size_t line = row * static_cast<std::size_t>(width);
-      std::int32_t before = 0;
-      for (std::int32_t first = 0; first < width; first += static_cast<std::int32_t>(warp_size)) {
-        typename Block::Warp::template Lanes<std::int32_t> winding;
-        warp.each([&](std::uint32_t lane) {
-          const std::int32_t x = first + static_cast<std::int32_t>(lane);
-          winding[lane] = x < width ? change[line + static_cast<std::size_t>(x)] : 0;
-        });
-        warp.add_up(winding);
-        warp.each([&](std::uint32_t lane) {
-          const std::int32_t x = first + static_cast<std::int32_t>(lane);
-          if (x >= width) return;
-          const std::int32_t own = before + winding[lane];
-          float& value = distance[line + static_cast<std::size_t>(x)];
-          if (own > level && value > 0) value = -value;
-          if (own != level && own != level + 1) *is_crossed = 1;
-        });
-        before += warp.broadcast(winding, warp_size - 1);
-      }
+      add_up_row(warp, change + line, width, [&](std::int32_t x, std::int32_t winding) {
+        float& value = distance[line + static_cast<std::size_t>(x)];
+        if (winding > level && value > 0) value = -value;
+        if (winding != level && winding != level + 1) *is_crossed = 1;
+      });
     });
   }
 };
 
-/// Signs of slabs by counted crossings.
+/// Signs of slabs by winding numbers: counted crossings, and for meshes with a boundary what its edges add.
 template <class Device>
 class CrossingSigns {
  public:
   explicit CrossingSigns(Device& device) : device_(device) {}
+
+  /// Once per connectivity. Waits for the device.
+  void set_connectivity(const ConnectivityView& connectivity) {
+    flags_.resize(connectivity.edge_count);
+    device_.for_each(connectivity.edge_count, FlagBoundary{connectivity.balance, flags_.data()});
+    device_.exclusive_sum(flags_, sums_);
+    boundary_count_ = total_of(device_, flags_, sums_);
+    boundary_.resize(boundary_count_);
+    device_.for_each(connectivity.edge_count,
+                     ListBoundary{connectivity.edges, connectivity.balance, sums_.data(), boundary_.data()});
+  }
+  /// Edges of the boundary: with none, winding numbers are whole.
+  [[nodiscard]] std::uint32_t boundary_count() const { return boundary_count_; }
 
   /// Once per frame.
   void prepare(const DeviceMesh& mesh, const GridSpec& grid) {
@@ -189,9 +229,43 @@ class CrossingSigns {
     device_.for_each(mesh.vertex_count, PlaceInNodes{units_, mesh.vertices, places_.data()});
   }
 
-  /// Negates the unsigned distances of a slab inside: where the winding number is above `level`.
-  void apply(std::int64_t first_slice, std::int64_t last_slice, std::int32_t level, float* distance) {
+  /// Negates the unsigned distances of a slab inside: where the winding number is above `level`, or with a boundary above
+  /// level + 1/2.
+  /// @param frame  of the distances, in the device's memory.
+  void apply(std::int64_t first_slice, std::int64_t last_slice, std::int32_t level, const NormalFrame* frame,
+             float* distance) {
+    const auto width = static_cast<std::int32_t>(grid_.size[0]);
     const auto rows = static_cast<std::size_t>(last_slice - first_slice) * static_cast<std::size_t>(grid_.size[1]);
+    const std::size_t row_blocks = (rows + RowsOfWarps::warps - 1) / RowsOfWarps::warps;
+    count_changes(first_slice, last_slice, rows);
+    if (boundary_count_ == 0) {
+      device_.run_blocks(row_blocks,
+                         ApplyWinding{{}, change_.data(), rows, width, level, distance, is_crossed_.data()});
+      return;
+    }
+    device_.run_blocks(row_blocks, SumCrossings{{}, change_.data(), rows, width});
+    const TileGrid tiles{grid_.size, first_slice, last_slice, SignTiles::side};
+    device_.run_blocks(
+        tiles.count(),
+        SignTiles{{boundary_.data(), boundary_count_, places_.data(), grid_.spacing, units_.is_mirrored},
+                  frame,
+                  tiles,
+                  grid_.spacing,
+                  change_.data(),
+                  level,
+                  distance});
+  }
+
+  /// Whether every node so far has the winding number level or level + 1, of a mesh without boundary. Waits for the
+  /// device.
+  [[nodiscard]] bool is_simple() {
+    std::uint32_t flag = 0;
+    device_.download(is_crossed_.data(), 1, &flag);
+    return flag == 0;
+  }
+
+ private:
+  void count_changes(std::int64_t first_slice, std::int64_t last_slice, std::size_t rows) {
     change_.resize(rows * static_cast<std::size_t>(grid_.size[0]));
     device_.fill(change_, std::int32_t{0});
     device_.fill(large_count_, 0U);
@@ -205,23 +279,16 @@ class CrossingSigns {
                               change_.data()};
     device_.for_each(mesh_.triangle_count, CrossTriangles{count, large_.data(), large_count_.data()});
     device_.run_blocks(CrossLargeTriangles::blocks, CrossLargeTriangles{count, large_.data(), large_count_.data()});
-    device_.run_blocks((rows + ApplyWinding::warps - 1) / ApplyWinding::warps,
-                       ApplyWinding{change_.data(), rows, static_cast<std::int32_t>(grid_.size[0]), level, distance,
-                                    is_crossed_.data()});
   }
 
-  /// Whether every node so far has the winding number level or level + 1. Waits for the device.
-  [[nodiscard]] bool is_simple() {
-    std::uint32_t flag = 0;
-    device_.download(is_crossed_.data(), 1, &flag);
-    return flag == 0;
-  }
-
- private:
   Device& device_;
   DeviceMesh mesh_;
   GridSpec grid_;
   NodeUnits units_;
+  std::uint32_t boundary_count_ = 0;
+  typename Device::template Array<std::uint32_t> flags_;
+  typename Device::template Array<std::uint32_t> sums_;
+  typename Device::template Array<BoundaryEdge> boundary_;
   typename Device::template Array<Vec3d> places_;
   typename Device::template Array<std::uint32_t> large_;
   typename Device::template Array<std::uint32_t> large_count_;

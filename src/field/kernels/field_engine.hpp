@@ -1,4 +1,4 @@
-// Blum: fields in the host's memory, computed slab by slab on a device. SPDX-License-Identifier: Apache-2.0
+// Blum: fields of meshes, computed slab by slab on a device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -7,27 +7,42 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "blum/core/error.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "field/kernels/crossings.hpp"
 #include "field/kernels/field_pipeline.hpp"
+#include "field/kernels/memory_arrays.hpp"
+#include "field/kernels/slabs.hpp"
 
 namespace blum::kernels {
 
 /// What a field is asked for.
 struct EngineRequest {
   GridSpec grid;
-  double band = 0;                         ///< half-width, mesh units; 0: the full grid
-  std::optional<std::int32_t> level = {};  ///< nodes with a winding number above it get negative distances
+  double band = 0;  ///< half-width, mesh units; 0: the full grid
+  /// Nodes with a winding number above this, or with a boundary above it by more than 1/2, get negative distances.
+  std::optional<std::int32_t> level = {};
+  /// With more edges in the boundary there are no signs: their cost is that of tiles times edges.
+  std::uint32_t most_boundary_edges = 1U << 14;
 };
 
-/// Keeps a mesh's connectivity and its memory from frame to frame.
+struct EngineResult {
+  bool is_signed = false;
+  /// With a level, and without a boundary: whether every node has the winding number level or level + 1.
+  bool is_simple = false;
+};
+
+/// Keeps a mesh's connectivity and its memory from frame to frame. Fields go to the host's memory, slab by slab, or stay on
+/// the device.
 template <class Device>
 class FieldEngine {
  public:
   /// Nodes of a slab: two of them are on the device at a time, 8 bytes per node each.
   static constexpr std::size_t default_slab_nodes = std::size_t{1} << 23;
+  /// Nodes of a slab where the field stays on the device: they need 5 bytes more per node while they are computed.
+  static constexpr std::size_t device_slab_nodes = std::size_t{1} << 28;
 
   explicit FieldEngine(Device& device, std::size_t slab_nodes = default_slab_nodes)
       : device_(device), slab_nodes_(slab_nodes), pipeline_(device), signs_(device) {}
@@ -36,46 +51,49 @@ class FieldEngine {
     device_.upload(mesh.triangles, triangles_);
     device_.upload(mesh.segments, segments_);
     device_.upload(mesh.points, points_);
-    pipeline_.set_connectivity(on_device(mesh));
+    vertices_.resize(mesh.vertices.size());
+    build();
+  }
+  /// Of indices in the device's memory, which are copied. Waits for the device.
+  /// @throws InvalidMesh where an index is out of range.
+  void set_connectivity(const MemoryMesh& mesh) {
+    faults_.resize(1);
+    device_.fill(faults_, 0U);
+    copy_indices(mesh.triangles, mesh.vertices.rows, triangles_);
+    copy_indices(mesh.segments, mesh.vertices.rows, segments_);
+    copy_indices(mesh.points, mesh.vertices.rows, points_);
+    vertices_.resize(mesh.vertices.rows);
+    std::uint32_t faults = 0;
+    device_.download(faults_.data(), 1, &faults);
+    if (faults != 0) throw InvalidMesh("an index is negative, or no vertex has it");
+    build();
   }
 
   /// Computes the field of a mesh with the current connectivity.
-  /// @return            with a level: whether every node has the winding number level or level + 1.
   /// @param is_stopped  callable: whether to give up.
   /// @param report      callable: fraction done.
   /// @throws InvalidGrid, Cancelled, and what the device throws.
   template <class IsStopped, class Report>
-  bool compute(const MeshView& mesh, const EngineRequest& request, float* distance, std::uint32_t* site,
-               const IsStopped& is_stopped, const Report& report) {
-    const GridSpec& grid = request.grid;
-    constexpr std::int64_t most_nodes = std::numeric_limits<std::int32_t>::max() - 63;  // whole tiles, in 32 bits
-    for (const std::int64_t size : grid.size) {
-      if (size > most_nodes) throw InvalidGrid("a device takes at most 2^31 - 64 nodes along an axis");
-    }
+  EngineResult compute(const MeshView& mesh, const EngineRequest& request, float* distance, std::uint32_t* site,
+                       const IsStopped& is_stopped, const Report& report) {
+    check_size(request.grid);
     device_.upload(mesh.vertices, vertices_);
-    pipeline_.prepare(on_device(mesh), grid);
+    pipeline_.prepare(mesh_, request.grid);
     pipeline_.check_frame();
-    if (request.level) signs_.prepare(on_device(mesh), grid);
-    const auto per_slice = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
-    const std::int64_t slices = slab_slices(per_slice);
-    const std::int64_t slabs = (grid.size[2] + slices - 1) / slices;
+    const bool is_signed = prepare_signs(request);
+    const Slabs slabs(request.grid, slab_nodes_);
     const auto fetch = [&](std::int64_t slab) {
       const Slab& from = slabs_[static_cast<std::size_t>(slab % 2)];
-      const std::size_t first = static_cast<std::size_t>(slab * slices) * per_slice;
-      device_.fetch(from.distance.data(), from.nodes, distance + first);
-      device_.fetch(from.site.data(), from.nodes, site + first);
-      report(static_cast<double>(slab + 1) / static_cast<double>(slabs));
+      device_.fetch(from.distance.data(), slabs.nodes(slab), distance + slabs.first_node(slab));
+      device_.fetch(from.site.data(), slabs.nodes(slab), site + slabs.first_node(slab));
+      report(static_cast<double>(slab + 1) / static_cast<double>(slabs.count()));
     };
-    for (std::int64_t slab = 0; slab < slabs; ++slab) {
+    for (std::int64_t slab = 0; slab < slabs.count(); ++slab) {
       if (is_stopped()) throw Cancelled();
       Slab& to = slabs_[static_cast<std::size_t>(slab % 2)];
-      const std::int64_t first = slab * slices;
-      const std::int64_t last = std::min(first + slices, grid.size[2]);
-      to.nodes = static_cast<std::size_t>(last - first) * per_slice;
-      to.distance.resize(to.nodes);
-      to.site.resize(to.nodes);
-      pipeline_.compute(first, last, {request.band, to.distance.data(), to.site.data()});
-      if (request.level) signs_.apply(first, last, *request.level, to.distance.data());
+      to.distance.resize(slabs.nodes(slab));
+      to.site.resize(slabs.nodes(slab));
+      compute_slab(slabs, slab, request, is_signed, to.distance.data(), to.site.data());
       device_.mark(static_cast<int>(slab % 2));
       // The slab before this one travels while this one is computed.
       if (slab > 0) {
@@ -84,39 +102,107 @@ class FieldEngine {
       }
     }
     device_.wait();
-    fetch(slabs - 1);
-    return request.level && signs_.is_simple();
+    fetch(slabs.count() - 1);
+    return {is_signed, is_signed && signs_.boundary_count() == 0 && signs_.is_simple()};
+  }
+
+  /// The same from vertices in the device's memory to arrays there; queued, without waiting for the device. Where mesh and
+  /// grid span too much or too little for 32-bit distances, or a vertex is not finite, every node gets NaN and no site.
+  /// @throws InvalidGrid, InvalidMesh where vertices are not as many as the connectivity was made for.
+  void compute(const MemoryArray& vertices, const EngineRequest& request, float* distance, std::uint32_t* site) {
+    check_size(request.grid);
+    if (vertices.rows != mesh_.vertex_count) {
+      throw InvalidMesh(std::to_string(vertices.rows) + " vertices, but the connectivity is that of " +
+                        std::to_string(mesh_.vertex_count));
+    }
+    copy_vertices(vertices);
+    pipeline_.prepare(mesh_, request.grid);
+    const bool is_signed = prepare_signs(request);
+    const Slabs slabs(request.grid, device_slab_nodes);
+    for (std::int64_t slab = 0; slab < slabs.count(); ++slab) {
+      const std::size_t first = slabs.first_node(slab);
+      compute_slab(slabs, slab, request, is_signed, distance + first, site + first);
+    }
+  }
+
+  /// Replaces sites, in the device's memory, by the smallest triangle that each lies on. Queued.
+  void show_triangles(std::size_t count, std::uint32_t* site) {
+    if (!has_vertex_triangles_) {
+      vertex_triangle_.resize(mesh_.vertex_count);
+      device_.fill(vertex_triangle_, no_index);
+      device_.for_each(std::size_t{3} * mesh_.triangle_count,
+                       FindVertexTriangles{mesh_.triangles, vertex_triangle_.data()});
+      has_vertex_triangles_ = true;
+    }
+    const ConnectivityView connectivity = pipeline_.connectivity();
+    device_.for_each(count, ShowTriangle{vertex_triangle_.data(), connectivity.edge_faces, mesh_.vertex_count,
+                                         connectivity.edge_count, site});
+  }
+
+  /// Vertices, edges, triangles.
+  [[nodiscard]] std::array<std::size_t, 3> site_counts() const {
+    return {mesh_.vertex_count, pipeline_.connectivity().edge_count, mesh_.triangle_count};
   }
 
  private:
   struct Slab {
     typename Device::template Array<float> distance;
     typename Device::template Array<std::uint32_t> site;
-    std::size_t nodes = 0;
   };
 
-  /// Whole tiles of both sizes, so that slabs do not change which tile a node is in.
-  [[nodiscard]] std::int64_t slab_slices(std::size_t per_slice) const {
-    constexpr std::int64_t unit = 4 * ComputeTiles::side;
-    const auto fitting = static_cast<std::int64_t>(slab_nodes_ / std::max<std::size_t>(per_slice, 1));
-    return std::max(unit, fitting / unit * unit);
+  static void check_size(const GridSpec& grid) {
+    constexpr std::int64_t most_nodes = std::numeric_limits<std::int32_t>::max() - 63;  // whole tiles, in 32 bits
+    for (const std::int64_t size : grid.size) {
+      if (size > most_nodes) throw InvalidGrid("a device takes at most 2^31 - 64 nodes along an axis");
+    }
   }
 
-  [[nodiscard]] DeviceMesh on_device(const MeshView& mesh) const {
-    return {vertices_.data(),
-            triangles_.data(),
-            segments_.data(),
-            points_.data(),
-            static_cast<std::uint32_t>(mesh.vertices.size()),
-            static_cast<std::uint32_t>(mesh.triangles.size()),
-            static_cast<std::uint32_t>(mesh.segments.size()),
-            static_cast<std::uint32_t>(mesh.points.size())};
+  /// Of the current arrays.
+  void build() {
+    mesh_ = {vertices_.data(),
+             triangles_.data(),
+             segments_.data(),
+             points_.data(),
+             static_cast<std::uint32_t>(vertices_.size()),
+             static_cast<std::uint32_t>(triangles_.size()),
+             static_cast<std::uint32_t>(segments_.size()),
+             static_cast<std::uint32_t>(points_.size())};
+    has_vertex_triangles_ = false;
+    pipeline_.set_connectivity(mesh_);
+    signs_.set_connectivity(pipeline_.connectivity());
+  }
+
+  template <class Row>
+  void copy_indices(const MemoryArray& from, std::size_t limit, typename Device::template Array<Row>& to) {
+    to.resize(from.rows);
+    const std::size_t count = from.rows * (sizeof(Row) / sizeof(std::uint32_t));
+    device_.for_each(count,
+                     CopyIndices{from, limit, reinterpret_cast<std::uint32_t*>(to.data()), faults_.data()});
+  }
+  void copy_vertices(const MemoryArray& from) { device_.for_each(from.rows, CopyVertices{from, vertices_.data()}); }
+
+  /// Whether there will be signs.
+  bool prepare_signs(const EngineRequest& request) {
+    if (!request.level || signs_.boundary_count() > request.most_boundary_edges) return false;
+    signs_.prepare(mesh_, request.grid);
+    return true;
+  }
+  void compute_slab(const Slabs& slabs, std::int64_t slab, const EngineRequest& request, bool is_signed,
+                    float* distance, std::uint32_t* site) {
+    const std::int64_t first = slabs.first_slice(slab);
+    const std::int64_t last = slabs.last_slice(slab);
+    pipeline_.compute(first, last, {request.band, distance, site});
+    if (is_signed) signs_.apply(first, last, *request.level, pipeline_.frame(), distance);
   }
 
   Device& device_;
   std::size_t slab_nodes_;
   FieldPipeline<Device> pipeline_;
   CrossingSigns<Device> signs_;
+  DeviceMesh mesh_;
+  bool has_vertex_triangles_ = false;
+  typename Device::template Array<std::uint32_t> vertex_triangle_;
+  typename Device::template Array<std::uint32_t> faults_;
   typename Device::template Array<Vec3d> vertices_;
   typename Device::template Array<Triangle> triangles_;
   typename Device::template Array<Segment> segments_;

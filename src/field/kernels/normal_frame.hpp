@@ -12,7 +12,7 @@ namespace blum::kernels {
 /// Maps the world so that float32 loses nothing: the grid's axes become x, y, z, the box around mesh and grid is
 /// centred on the origin, and its diagonal lies in (1/2, 1]. The scale is a power of two, so that it is exact.
 struct NormalFrame {
-  enum class Fault : std::uint8_t { none, too_large, too_small };
+  enum class Fault : std::uint8_t { none, too_large, too_small };  // too_large: also vertices that are not finite
 
   Mat3 direction;
   Vec3d center;      ///< of the common box, in grid axes
@@ -39,6 +39,15 @@ struct Bounds {
   BLUM_HD void extend(const Vec3d& p) {
     lower = min(lower, p);
     upper = max(upper, p);
+  }
+  /// What is not a number, no comparison would show.
+  BLUM_HD void extend_if_finite(const Vec3d& p) {
+    if (dot(p, p) < HUGE_VAL) {
+      extend(p);
+    } else {
+      lower = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+      upper = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    }
   }
 };
 

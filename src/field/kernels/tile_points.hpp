@@ -39,7 +39,9 @@ struct FindTilePoints {
         best = coarse[coarse_tiles.index(place)];
         best.squared_distance = squared_length(center - best.point);
       }
-      NearestSearch<typename Block::Warp>(warp, forest, shared.stack[warp.index()]).run(center, best);
+      if (frame->fault == NormalFrame::Fault::none) {
+        NearestSearch<typename Block::Warp>(warp, forest, shared.stack[warp.index()]).run(center, best);
+      }
       warp.each([&](std::uint32_t lane) {
         if (lane == 0) out[tile] = best;
       });

@@ -13,6 +13,7 @@
 #include "blum/field/field.hpp"
 #include "blum/geometry/generators.hpp"
 #include "blum/geometry/shape_catalog.hpp"
+#include "field/backend.hpp"
 #include "support/emulated_backend.hpp"
 #include "support/field_check.hpp"
 #include "support/nasty_soup.hpp"
@@ -173,6 +174,76 @@ TEST_P(FieldKernels, CountedCrossingsGiveTheSignsOfTheCpu) {
       }
     }
   }
+}
+
+/// Fails where a sign is not that of the full sum over all triangles.
+void expect_winding_signs(const Field& field, const MeshView& mesh) {
+  const double diagonal = test::common_diagonal(mesh, field.grid);
+  std::size_t wrong = 0;
+  for (const std::size_t node : test::all_nodes(field.grid)) {
+    if (std::abs(field.distance[node]) <= 1e-6 * diagonal) continue;
+    const double winding = reference::winding_number(mesh, test::node_position(field.grid, node));
+    if (std::abs(winding - 0.5) < 1e-9) continue;
+    wrong += std::signbit(field.distance[node]) != (winding > 0.5) ? 1 : 0;
+  }
+  EXPECT_EQ(wrong, 0U);
+}
+
+/// A sphere without what lies above a height.
+TriangleMesh bowl(double height) {
+  TriangleMesh mesh = make_sphere({.frequency = 8});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return mesh.vertices[t[0]].z > height && mesh.vertices[t[1]].z > height && mesh.vertices[t[2]].z > height;
+  });
+  return mesh;
+}
+
+TEST_P(FieldKernels, SignsOfOpenMeshesAreThoseOfTheFullSum) {
+  for (const double height : {-0.5, 0.0, 0.8, 0.95}) {
+    SCOPED_TRACE(height);
+    const TriangleMesh mesh = bowl(height);
+    for (const double band : {0.0, 0.1}) {
+      FieldOptions options{.sign = SignMode::winding};
+      if (band > 0) options.band = band;
+      expect_winding_signs(compute(mesh, grid_around(bounds(mesh), 26, 0.3), options), mesh);
+    }
+  }
+}
+
+TEST_P(FieldKernels, SignsOfOpenMeshesWhoseEdgesLieOnTheGrid) {
+  // Rows pass through edges and corners of the opening, and run along them.
+  for (std::size_t missing = 0; missing < 12; ++missing) {
+    SCOPED_TRACE(missing);
+    TriangleMesh mesh = make_box({.size = {2, 2, 2}});
+    mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(missing));
+    GridSpec grid{.origin = {-2, -2, -2}, .spacing = {0.25, 0.25, 0.25}, .size = {17, 17, 17}};
+    expect_winding_signs(compute(mesh, grid, {.sign = SignMode::winding}), mesh);
+    grid.direction = {{{0, 1, 0}, {0, 0, 1}, {-1, 0, 0}}};  // mirrored
+    grid.origin = {2, -2, -2};
+    expect_winding_signs(compute(mesh, grid, {.sign = SignMode::winding}), mesh);
+    grid.spacing = {0.25, 0.5, 0.125};
+    grid.size = {17, 9, 33};
+    expect_winding_signs(compute(mesh, grid, {.sign = SignMode::winding}), mesh);
+  }
+}
+
+TEST_P(FieldKernels, SignsOfSoupsAreThoseOfTheFullSum) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(seed);
+    TriangleMesh mesh = test::nasty_soup(seed, 60);
+    mesh.segments.clear();
+    mesh.points.clear();
+    if (mesh.triangles.empty()) continue;
+    expect_winding_signs(compute(mesh, grid_for(mesh, 20), {.sign = SignMode::winding}), mesh);
+  }
+  // Edges run along the same way by two triangles, and by four, count as often.
+  TriangleMesh fan = make_box({});
+  fan.triangles.insert(fan.triangles.end(), fan.triangles.begin(), fan.triangles.begin() + 5);
+  expect_winding_signs(compute(fan, grid_for(fan, 20), {.sign = SignMode::winding}), fan);
+  // Triangles that are turned leave surpluses of two.
+  TriangleMesh turned = make_sphere({.frequency = 3});
+  for (std::size_t t = 0; t < turned.triangles.size(); t += 7) std::swap(turned.triangles[t][0], turned.triangles[t][1]);
+  expect_winding_signs(compute(turned, grid_for(turned, 20), {.sign = SignMode::winding}), turned);
 }
 
 TEST_P(FieldKernels, GridsOfAnyShapeAndDirection) {

@@ -1,0 +1,164 @@
+// Blum: the functions of the module, for any platform that kernels run on. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "field/cuda/module_interface.hpp"
+#include "field/kernels/field_engine.hpp"
+#include "field/kernels/image_engine.hpp"
+
+namespace blum::cuda {
+
+/// What is thrown becomes a status. Platform is CudaPlatform; the tests have one that runs on the host. It has
+///   Device       what kernels are launched with
+///   Queue        a Device and the stream it queues on: device(), enter(stream), leave(), order(stream), wait()
+///   Choice       makes a device the current one while it is alive
+///   static void expect_device(int index)              throws DeviceError
+///   static void* allocate(std::size_t bytes), static void release(void*)
+///   static std::size_t slab_nodes()                   of fields that go to the host's memory
+template <class Platform>
+class ModuleFunctions {
+ public:
+  [[nodiscard]] static const Module* table() {
+    static const Module module{module_version, create,        destroy, set_connectivity, compute, set_connectivity_there,
+                               compute_there,  order,         allocate, release,         set_image, select_voxels,
+                               transform_image};
+    return &module;
+  }
+
+ private:
+  /// One device and what it keeps for a solver.
+  struct Engine {
+    explicit Engine(int device_index) : index(device_index), fields(queue.device(), Platform::slab_nodes()), images(queue.device()) {}
+
+    int index;
+    typename Platform::Queue queue;
+    kernels::FieldEngine<typename Platform::Device> fields;
+    kernels::ImageEngine<typename Platform::Device> images;
+  };
+
+  /// Lets an engine queue its work on a stream of others.
+  class Visit {
+   public:
+    Visit(Engine& engine, void* stream) : engine_(engine) { engine_.queue.enter(stream); }
+    Visit(const Visit&) = delete;
+    Visit& operator=(const Visit&) = delete;
+    ~Visit() { engine_.queue.leave(); }
+
+   private:
+    Engine& engine_;
+  };
+
+  template <class Work>
+  static Status guarded(int device, Call* call, const Work& work) {
+    const auto fail = [&](Status status, const char* what) {
+      std::snprintf(call->message, sizeof(call->message), "%s", what);
+      return status;
+    };
+    try {
+      Platform::expect_device(device);
+      const typename Platform::Choice choice(device);
+      work();
+    } catch (const OutOfMemory& error) {
+      return fail(Status::out_of_memory, error.what());
+    } catch (const InvalidMesh& error) {
+      return fail(Status::invalid_mesh, error.what());
+    } catch (const InvalidGrid& error) {
+      return fail(Status::invalid_grid, error.what());
+    } catch (const InvalidOption& error) {
+      return fail(Status::invalid_option, error.what());
+    } catch (const std::bad_alloc&) {
+      return fail(Status::out_of_memory, "not enough memory on the host");
+    } catch (const Cancelled& error) {
+      return fail(Status::cancelled, error.what());
+    } catch (const std::exception& error) {
+      return fail(Status::device_error, error.what());
+    }
+    return Status::done;
+  }
+  /// With the engine's device.
+  template <class Work>
+  static Status with(void* engine, Call* call, const Work& work) {
+    auto& own = *static_cast<Engine*>(engine);
+    return guarded(own.index, call, [&] { work(own); });
+  }
+
+  static Status create(int device, void** engine, Call* call) {
+    *engine = nullptr;
+    return guarded(device, call, [&] { *engine = new Engine(device); });
+  }
+  static void destroy(void* engine) {
+    auto* own = static_cast<Engine*>(engine);
+    if (own == nullptr) return;
+    Call call;
+    (void)guarded(own->index, &call, [&] {
+      own->queue.wait();
+      delete own;
+    });
+  }
+
+  static kernels::EngineRequest request_of(const FieldMemory& field) {
+    kernels::EngineRequest request{*field.grid, field.band};
+    if (field.wants_signs) request.level = field.level;
+    return request;
+  }
+
+  static Status set_connectivity(void* engine, const MeshView* mesh, Call* call) {
+    return with(engine, call, [&](Engine& own) { own.fields.set_connectivity(*mesh); });
+  }
+  static Status compute(void* engine, const MeshView* mesh, FieldMemory* field, Call* call) {
+    return with(engine, call, [&](Engine& own) {
+      const kernels::EngineResult result = own.fields.compute(
+          *mesh, request_of(*field), field->distance, field->site, [&] { return call->is_cancelled(call->context); },
+          [&](double fraction) { call->report(call->context, fraction); });
+      field->is_signed = result.is_signed;
+      field->is_simple = result.is_simple;
+    });
+  }
+  static Status set_connectivity_there(void* engine, const DeviceMeshView* mesh, void* stream, Call* call) {
+    return with(engine, call, [&](Engine& own) {
+      const Visit visit(own, stream);
+      own.fields.set_connectivity(*mesh);
+    });
+  }
+  static Status compute_there(void* engine, const DeviceArrayView* vertices, FieldMemory* field, void* stream,
+                              Call* call) {
+    return with(engine, call, [&](Engine& own) {
+      const Visit visit(own, stream);
+      kernels::EngineRequest request = request_of(*field);
+      request.most_boundary_edges = kernels::no_index;
+      own.fields.compute(*vertices, request, field->distance, field->site);
+      if (field->wants_triangles) own.fields.show_triangles(field->grid->node_count(), field->site);
+    });
+  }
+  static Status order(void* engine, void* stream, Call* call) {
+    return with(engine, call, [&](Engine& own) { own.queue.order(stream); });
+  }
+  static Status allocate(int device, std::size_t bytes, void** memory, Call* call) {
+    *memory = nullptr;
+    return guarded(device, call, [&] { *memory = Platform::allocate(bytes); });
+  }
+  static void release(int device, void* memory) {
+    Call call;
+    (void)guarded(device, &call, [&] { Platform::release(memory); });
+  }
+
+  static Status set_image(void* engine, const VoxelImageView* image, const detail::ImagePlan* plan, Call* call) {
+    return with(engine, call, [&](Engine& own) { own.images.set_image(*image, *plan); });
+  }
+  static Status select_voxels(void* engine, const LabelSelection* selection, std::size_t* selected, Call* call) {
+    return with(engine, call, [&](Engine& own) { *selected = own.images.select(*selection); });
+  }
+  static Status transform_image(void* engine, float* distance, std::uint32_t* site, Call* call) {
+    return with(engine, call, [&](Engine& own) { own.images.transform(distance, site); });
+  }
+};
+
+}  // namespace blum::cuda

@@ -1,0 +1,140 @@
+// Fields that stay in the memory of a device.
+#include "blum/field/device_field.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "blum/core/error.hpp"
+#include "field/cuda/module_engine.hpp"
+#include "field/field_options.hpp"
+
+namespace blum {
+namespace {
+
+/// The CUDA device that a context asks for.
+int cuda_index(const Device& device) {
+  if (device.kind == DeviceKind::cuda) return device.index;
+  if (device.kind == DeviceKind::automatic) return 0;
+  throw InvalidOption("memory of a CUDA device is asked for, but the device is the CPU");
+}
+
+void check_vertices(const DeviceArrayView& vertices) {
+  if (vertices.type != ElementType::float32 && vertices.type != ElementType::float64) {
+    throw InvalidOption("vertices on a device must be float32 or float64");
+  }
+}
+
+void check_indices(const DeviceArrayView& indices, const std::string& name) {
+  if (indices.rows == 0) return;
+  if (indices.data == nullptr) throw InvalidOption(name + " on a device have rows, but no memory");
+  if (indices.type == ElementType::float32 || indices.type == ElementType::float64) {
+    throw InvalidOption(name + " on a device must be int32, uint32 or int64");
+  }
+}
+
+void check_mesh(const DeviceMeshView& mesh, const FieldOptions& options) {
+  check_vertices(mesh.vertices);
+  check_indices(mesh.triangles, "triangles");
+  check_indices(mesh.segments, "segments");
+  check_indices(mesh.points, "points");
+  if (mesh.triangles.rows + mesh.segments.rows + mesh.points.rows == 0) {
+    throw InvalidMesh("the mesh has no triangles, segments or points, so no node has a closest site");
+  }
+  // Each triangle may have three edges of its own.
+  const std::size_t limit = max_id_count;
+  for (const std::size_t rows : {mesh.vertices.rows, mesh.triangles.rows, mesh.segments.rows, mesh.points.rows}) {
+    if (rows > limit) throw InvalidMesh("the mesh has more sites than there are ids for");
+  }
+  if (mesh.vertices.rows + 4 * mesh.triangles.rows + mesh.segments.rows > limit) {
+    throw InvalidMesh("the mesh may have more sites than there are ids for: vertices, segments and four times the triangles "
+                      "must stay below 2^31 on a device");
+  }
+  if (options.site_ids == SiteIds::triangles && mesh.segments.rows + mesh.points.rows > 0) {
+    throw InvalidOption("triangle ids were asked for, but the mesh also has segments or points: ask for features");
+  }
+}
+
+}  // namespace
+
+DeviceMemory::DeviceMemory(const Device& device, std::size_t bytes) : size_(bytes) {
+  const int index = cuda_index(device);
+  const cuda::Module& module = cuda::load_module();
+  void* memory = nullptr;
+  cuda::Call call;
+  cuda::check(module.allocate(index, bytes, &memory, &call), call);
+  data_ = std::shared_ptr<void>(memory, [index, release = module.release](void* own) { release(index, own); });
+}
+
+struct DeviceFieldSolver::State {
+  State(const GridSpec& nodes, const FieldOptions& wanted, int device_index)
+      : grid(nodes), options(wanted), index(device_index), engine(device_index) {}
+
+  GridSpec grid;
+  FieldOptions options;
+  int index;
+  cuda::ModuleEngine engine;
+  std::optional<SignRule> sign_rule;  ///< none before there is a connectivity
+};
+
+DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context) {
+  validate(grid);
+  check_options(options);
+  if (options.sign == SignMode::normals) {
+    throw InvalidOption(
+        "signs by normals need a mesh in the host's memory: ask for automatic, which tells the same sides of closed meshes "
+        "that face outwards");
+  }
+  state_ = std::make_unique<State>(grid, options, cuda_index(context.device));
+}
+
+DeviceFieldSolver::DeviceFieldSolver(DeviceFieldSolver&&) noexcept = default;
+DeviceFieldSolver& DeviceFieldSolver::operator=(DeviceFieldSolver&&) noexcept = default;
+DeviceFieldSolver::~DeviceFieldSolver() = default;
+
+Device DeviceFieldSolver::device() const {
+  return Device::cuda(state_->index);
+}
+const GridSpec& DeviceFieldSolver::grid() const {
+  return state_->grid;
+}
+const FieldOptions& DeviceFieldSolver::options() const {
+  return state_->options;
+}
+
+void DeviceFieldSolver::set_connectivity(const DeviceMeshView& mesh, void* stream) {
+  state_->sign_rule.reset();
+  check_mesh(mesh, state_->options);
+  if (state_->options.sign == SignMode::winding && mesh.triangles.rows == 0) {
+    throw InvalidOption("a sign was asked for, but the mesh has no triangles, so it has no inside: ask for none");
+  }
+  state_->engine.run(&cuda::Module::set_connectivity_there, Context{}, &mesh, stream);
+  const bool is_signed = state_->options.sign != SignMode::none && mesh.triangles.rows > 0;
+  state_->sign_rule = is_signed ? SignRule::winding : SignRule::none;
+}
+
+SignRule DeviceFieldSolver::sign_rule() const {
+  return state_->sign_rule.value_or(SignRule::none);
+}
+
+void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFieldView& field, void* stream) {
+  if (!state_->sign_rule) throw InvalidOption("the solver has no connectivity yet: call set_connectivity first");
+  check_vertices(vertices);
+  if (vertices.data == nullptr || field.distance == nullptr || field.site == nullptr) {
+    throw InvalidOption("vertices, distances and sites on a device need memory");
+  }
+  cuda::FieldMemory memory;
+  memory.grid = &state_->grid;
+  memory.band = state_->options.band.value_or(0);
+  memory.distance = field.distance;
+  memory.site = field.site;
+  memory.wants_signs = *state_->sign_rule == SignRule::winding;
+  memory.wants_triangles = state_->options.site_ids == SiteIds::triangles;
+  state_->engine.run(&cuda::Module::compute_there, Context{}, &vertices, &memory, stream);
+}
+
+void DeviceFieldSolver::order(void* stream) {
+  state_->engine.run(&cuda::Module::order, Context{}, stream);
+}
+
+}  // namespace blum

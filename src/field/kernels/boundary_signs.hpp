@@ -1,0 +1,155 @@
+// Blum: signs of a slab of nodes around a surface with a boundary. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "field/kernels/boundary.hpp"
+#include "field/kernels/tile_grid.hpp"
+
+namespace blum::kernels {
+
+/// Negates the distances of nodes whose winding number is above level + 1/2. One block per tile of 8^3 nodes.
+///
+/// Where no triangle comes into a tile, its winding numbers differ by less than the bound on their gradient allows: most
+/// tiles ask at one node. Elsewhere each row of the tile asks once, as along a row the winding number changes by the
+/// counted crossings and no more than that bound; nodes too close to call ask for themselves.
+/// Cost: tiles and rows, times edges of the boundary.
+struct SignTiles {
+  static constexpr std::uint32_t threads = 256;
+  static constexpr std::uint32_t blocks_per_processor = 2;
+  static constexpr std::uint32_t warps = threads / warp_size;
+  static constexpr std::int32_t side = 8;
+  /// Rounding of a winding number, far more than there is.
+  static constexpr double slack = 1e-9;
+
+  struct Sum {
+    double winding = 0;
+    double gradient = 0;
+  };
+  struct Shared {
+    Sum partial[warps];
+    bool is_settled;
+    bool is_inside;
+  };
+
+  BoundaryTerms terms;
+  const NormalFrame* frame;
+  TileGrid tiles;
+  Vec3d spacing;
+  const std::int32_t* crossings;  ///< of the ray from each node of the slab to -x
+  std::int32_t level;
+  float* distance;
+
+  template <class Block>
+  BLUM_HD void operator()(const Block& block, Shared& shared, std::size_t index) const {
+    using Warp = typename Block::Warp;
+    const NodeBox nodes = tiles.box(static_cast<std::uint32_t>(index));
+    const Place middle{{nodes.first[0] + nodes.count[0] / 2, nodes.first[1] + nodes.count[1] / 2,
+                        nodes.first[2] + nodes.count[2] / 2}};
+    const double reach = norm(Vec3d{spacing.x * (nodes.count[0] / 2), spacing.y * (nodes.count[1] / 2),
+                                    spacing.z * (nodes.count[2] / 2)});
+    // Distances are good to 1e-6 of the diagonal, which is at most 1 in normalised units.
+    const bool may_be_crossed = !(static_cast<double>(distance[offset(middle)]) > reach + 4e-6 / frame->scale);
+    block.each_warp([&](const Warp& warp) {
+      Sum sum;
+      if (!may_be_crossed) sum = sum_over_edges(warp, middle, reach, warp.index() * warp_size, threads);
+      warp.each([&](std::uint32_t lane) {
+        if (lane == 0) shared.partial[warp.index()] = sum;
+      });
+    });
+    block.once([&] {
+      Sum sum;
+      for (const Sum& part : shared.partial) sum = {sum.winding + part.winding, sum.gradient + part.gradient};
+      const double above = winding_above(middle, sum.winding);
+      shared.is_settled = !may_be_crossed && magnitude(above) > sum.gradient * reach + slack;
+      shared.is_inside = above > 0;
+    });
+    const bool is_settled = block.read(shared.is_settled);
+    const bool is_inside = block.read(shared.is_inside);
+    if (is_settled && !is_inside) return;
+    block.each_warp([&](const Warp& warp) {
+      const auto rows = static_cast<std::uint32_t>(nodes.count[1] * nodes.count[2]);
+      for (std::uint32_t row = warp.index(); row < rows; row += warps) {
+        const Place first{{nodes.first[0], nodes.first[1] + static_cast<std::int32_t>(row) % nodes.count[1],
+                           nodes.first[2] + static_cast<std::int32_t>(row) / nodes.count[1]}};
+        if (is_settled) {
+          negate(warp, first, nodes.count[0]);
+        } else {
+          settle_row(warp, first, nodes.count[0]);
+        }
+      }
+    });
+  }
+
+ private:
+  [[nodiscard]] BLUM_HD std::size_t offset(const Place& p) const {
+    const auto line = static_cast<std::size_t>(p.at[2] - tiles.first_slice) * static_cast<std::size_t>(tiles.size[1]) +
+                      static_cast<std::size_t>(p.at[1]);
+    return line * static_cast<std::size_t>(tiles.size[0]) + static_cast<std::size_t>(p.at[0]);
+  }
+  [[nodiscard]] BLUM_HD static Place moved(Place p, std::int32_t along_x) {
+    p.at[0] += along_x;
+    return p;
+  }
+  [[nodiscard]] BLUM_HD double winding_above(const Place& p, double of_boundary) const {
+    return static_cast<double>(crossings[offset(p)] - level) - 0.5 + of_boundary;
+  }
+
+  /// The terms of edges first, first + step, ..., of which each lane takes its share.
+  template <class Warp>
+  [[nodiscard]] BLUM_HD Sum sum_over_edges(const Warp& warp, const Place& place, double reach, std::uint32_t first,
+                                           std::uint32_t step) const {
+    const Vec3d node{static_cast<double>(place.at[0]), static_cast<double>(place.at[1]),
+                     static_cast<double>(place.at[2])};
+    typename Warp::template Lanes<double> winding;
+    typename Warp::template Lanes<double> gradient;
+    warp.each([&](std::uint32_t lane) {
+      winding[lane] = 0;
+      gradient[lane] = 0;
+      for (std::uint32_t e = first + lane; e < terms.count(); e += step) {
+        winding[lane] += terms.term(e, node);
+        if (reach > 0) gradient[lane] += terms.gradient_bound(e, node, reach);
+      }
+    });
+    warp.add_up(winding);
+    warp.add_up(gradient);
+    return {warp.broadcast(winding, warp_size - 1), warp.broadcast(gradient, warp_size - 1)};
+  }
+
+  template <class Warp>
+  BLUM_HD void negate(const Warp& warp, const Place& first, std::int32_t count) const {
+    warp.each([&](std::uint32_t lane) {
+      if (static_cast<std::int32_t>(lane) < count) negate(moved(first, static_cast<std::int32_t>(lane)));
+    });
+  }
+  BLUM_HD void negate(const Place& place) const {
+    float& value = distance[offset(place)];
+    if (value > 0) value = -value;
+  }
+
+  template <class Warp>
+  BLUM_HD void settle_row(const Warp& warp, const Place& first, std::int32_t count) const {
+    const Place middle = moved(first, count / 2);
+    const double reach = spacing.x * (count / 2);
+    const Sum sum = sum_over_edges(warp, middle, reach, 0, warp_size);
+    std::uint32_t open = warp.ballot([&](std::uint32_t lane) {
+      const auto x = static_cast<std::int32_t>(lane);
+      if (x >= count) return false;
+      const double above = winding_above(moved(first, x), sum.winding);
+      // Where the row has one node, there is nothing to bound.
+      if (magnitude(above) <= (reach > 0 ? sum.gradient * reach : 0.0) + slack) return true;
+      if (above > 0) negate(moved(first, x));
+      return false;
+    });
+    for (; open != 0; open &= open - 1) {
+      const Place place = moved(first, static_cast<std::int32_t>(lowest_bit(open)));
+      const Sum own = sum_over_edges(warp, place, 0, 0, warp_size);
+      warp.each([&](std::uint32_t lane) {
+        if (lane == 0 && winding_above(place, own.winding) > 0) negate(place);
+      });
+    }
+  }
+};
+
+}  // namespace blum::kernels

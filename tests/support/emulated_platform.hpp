@@ -1,0 +1,44 @@
+// Blum: the CUDA module's functions on the host. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "field/cuda/module_functions.hpp"
+#include "field/kernels/emulated_device.hpp"
+
+namespace blum::test {
+
+/// One device, whose memory is the host's, and which has done everything as soon as it is queued.
+struct EmulatedPlatform {
+  using Device = kernels::EmulatedDevice;
+
+  class Queue {
+   public:
+    [[nodiscard]] Device& device() { return device_; }
+    void enter(void*) {}
+    void leave() {}
+    void order(void*) {}
+    void wait() {}
+
+   private:
+    Device device_;
+  };
+  struct Choice {
+    explicit Choice(int) {}
+  };
+
+  static void expect_device(int device) {
+    if (device == 0) return;
+    throw DeviceError("there is no CUDA device " + std::to_string(device) + ": 1 can be seen, counted from 0");
+  }
+  static void* allocate(std::size_t bytes) { return ::operator new(bytes); }
+  static void release(void* memory) { ::operator delete(memory); }
+  static std::size_t slab_nodes() { return wanted_slab_nodes; }
+
+  inline static std::size_t wanted_slab_nodes = kernels::FieldEngine<Device>::default_slab_nodes;
+};
+
+}  // namespace blum::test
