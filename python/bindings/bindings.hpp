@@ -10,6 +10,7 @@ namespace nb = nanobind;
 void bind_grid(nb::module_& m);
 void bind_geometry(nb::module_& m);
 void bind_field(nb::module_& m);
+void bind_device_field(nb::module_& m);
 void bind_closest_points(nb::module_& m);
 void bind_images(nb::module_& m);
 void bind_medial_axis(nb::module_& m);

@@ -54,14 +54,6 @@ Field field_of(const FloatsIn& distance, const GridSpec& grid, const std::option
   return field;
 }
 
-FieldOptions options_of(const std::string& sign, std::optional<double> band, const std::string& site_ids) {
-  FieldOptions options;
-  options.sign = sign_mode(sign);
-  options.band = band;
-  options.site_ids = site_ids_of(site_ids);
-  return options;
-}
-
 void bind_field_class(nb::module_& m) {
   nb::class_<Field>(m, "Field")
       .def(
@@ -114,7 +106,7 @@ void bind_solver(nb::module_& m) {
           "__init__",
           [](FieldSolver* self, const GridSpec& grid, const std::string& sign, std::optional<double> band,
              const std::string& site_ids, const std::string& device) {
-            new (self) FieldSolver(grid, options_of(sign, band, site_ids), {.device = parse_device(device)});
+            new (self) FieldSolver(grid, field_options(sign, band, site_ids), {.device = parse_device(device)});
           },
           nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"), nb::arg("device"))
       .def(
@@ -154,6 +146,14 @@ SiteIds site_ids_of(const std::string& name) {
   throw InvalidOption("site_ids is \"" + name + "\", but must be \"features\" or \"triangles\"");
 }
 
+FieldOptions field_options(const std::string& sign, std::optional<double> band, const std::string& site_ids) {
+  FieldOptions options;
+  options.sign = sign_mode(sign);
+  options.band = band;
+  options.site_ids = site_ids_of(site_ids);
+  return options;
+}
+
 nb::list phases_of(const std::vector<PhaseTime>& phases) {
   nb::list out;
   for (const PhaseTime& phase : phases) out.append(nb::make_tuple(phase.phase, phase.seconds));
@@ -168,7 +168,7 @@ void bind_field(nb::module_& m) {
       [](const MeshArrays& mesh, const GridSpec& grid, const std::string& sign, std::optional<double> band,
          const std::string& site_ids, int threads, const std::string& device, nb::object progress) {
         const MeshView view = mesh.view();
-        const FieldOptions options = options_of(sign, band, site_ids);
+        const FieldOptions options = field_options(sign, band, site_ids);
         return run({threads, std::move(progress), parse_device(device)},
                    [&](const Context& context) { return distance_field(view, grid, options, context); });
       },

@@ -62,6 +62,7 @@ NB_MODULE(_core, m) {
   bind_grid(m);
   bind_geometry(m);
   bind_field(m);
+  bind_device_field(m);
   bind_closest_points(m);
   bind_images(m);
   bind_medial_axis(m);

@@ -23,6 +23,7 @@ from ._certificate import (
 from ._complex import ROLES, MedialComplex, NestedComplex, Present, ball_union_field, read_medial
 from ._core import thread_count
 from ._core import version as __version__
+from ._device import DeviceArray, DeviceField, DeviceFieldSolver
 from ._errors import (
     Cancelled,
     DeviceError,
@@ -77,7 +78,10 @@ __all__ = [
     "Certificate",
     "ClosestPointQuery",
     "ClosestPoints",
+    "DeviceArray",
     "DeviceError",
+    "DeviceField",
+    "DeviceFieldSolver",
     "EdgeCheck",
     "Error",
     "Field",

@@ -47,8 +47,9 @@ void check_mesh(const DeviceMeshView& mesh, const FieldOptions& options) {
     if (rows > limit) throw InvalidMesh("the mesh has more sites than there are ids for");
   }
   if (mesh.vertices.rows + 4 * mesh.triangles.rows + mesh.segments.rows > limit) {
-    throw InvalidMesh("the mesh may have more sites than there are ids for: vertices, segments and four times the triangles "
-                      "must stay below 2^31 on a device");
+    throw InvalidMesh(
+        "the mesh may have more sites than there are ids for: vertices, segments and four times the triangles "
+        "must stay below 2^31 on a device");
   }
   if (options.site_ids == SiteIds::triangles && mesh.segments.rows + mesh.points.rows > 0) {
     throw InvalidOption("triangle ids were asked for, but the mesh also has segments or points: ask for features");
@@ -82,7 +83,8 @@ DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& o
   check_options(options);
   if (options.sign == SignMode::normals) {
     throw InvalidOption(
-        "signs by normals need a mesh in the host's memory: ask for automatic, which tells the same sides of closed meshes "
+        "signs by normals need a mesh in the host's memory: ask for automatic, which tells the same sides of closed "
+        "meshes "
         "that face outwards");
   }
   state_ = std::make_unique<State>(grid, options, cuda_index(context.device));
@@ -118,7 +120,8 @@ SignRule DeviceFieldSolver::sign_rule() const {
 }
 
 void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFieldView& field, void* stream) {
-  if (!state_->sign_rule) throw InvalidOption("the solver has no connectivity yet: call set_connectivity first");
+  if (!state_->sign_rule)
+    throw InvalidOption("the first field of a solver needs the triangles, segments or points of its mesh");
   check_vertices(vertices);
   if (vertices.data == nullptr || field.distance == nullptr || field.site == nullptr) {
     throw InvalidOption("vertices, distances and sites on a device need memory");
@@ -133,8 +136,8 @@ void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFie
   state_->engine.run(&cuda::Module::compute_there, Context{}, &vertices, &memory, stream);
 }
 
-void DeviceFieldSolver::order(void* stream) {
-  state_->engine.run(&cuda::Module::order, Context{}, stream);
+void DeviceFieldSolver::order(void* before, void* after) {
+  state_->engine.run(&cuda::Module::order, Context{}, before, after);
 }
 
 }  // namespace blum

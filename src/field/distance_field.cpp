@@ -171,7 +171,8 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
                              choice.rule == SignRule::winding ? std::optional<int>(0) : choice.level};
   FieldResult result = engine->compute(request, frame_context, field);
   PhaseTimer sign_timer(field.phases);
-  if (with_sides && !engine->can_tell_sides()) result.unsettled = tell_sides(mesh, engine->sites(), frame_context, field);
+  if (with_sides && !engine->can_tell_sides())
+    result.unsettled = tell_sides(mesh, engine->sites(), frame_context, field);
   settle_nodes(result.unsettled, mesh, engine->sites(), with_sides, frame_context, field);
   field.sign_rule = choice.rule;
   field.sign_reason = choice.reason;

@@ -1,5 +1,10 @@
 """Where fields are computed: the CPU, or a device where there is one; never another than was asked for."""
 
+import os
+import pathlib
+import subprocess
+import sys
+
 import blum
 import numpy as np
 import pytest
@@ -70,3 +75,16 @@ def test_a_cuda_device_agrees_with_the_cpu(gear):
     cpu, cuda = (blum.distance_transform(mask, spacing=(1, 2, 3), device=device) for device in ("cpu", "cuda"))
     assert np.array_equal(cpu.distance, cuda.distance)
     assert np.array_equal(cpu.site, cuda.site)
+
+
+def test_memory_of_a_device():
+    """tests/python/on_device, with a module whose device is the host."""
+    here = pathlib.Path(__file__).resolve().parent
+    module = pathlib.Path(os.environ["BLUM_BIN_DIR"]) / "libblum_emulated_cuda.so"
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(here / "on_device")]
+    done = subprocess.run(
+        command, env={**os.environ, "BLUM_CUDA_MODULE": str(module)}, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert " passed" in done.stdout
+    assert "skipped" not in done.stdout

@@ -20,7 +20,7 @@ struct EmulatedPlatform {
     [[nodiscard]] Device& device() { return device_; }
     void enter(void*) {}
     void leave() {}
-    void order(void*) {}
+    void order(void*, void*) {}
     void wait() {}
 
    private:

@@ -27,7 +27,9 @@ std::vector<std::string> places() {
   std::vector<std::string> result;
   if (const std::filesystem::path folder = own_folder(); !folder.empty()) {
     result.push_back((folder / module_file).string());
+    // Programs lie in bin beside lib, and in Python's package one folder below the library.
     result.push_back((folder / ".." / "lib" / module_file).lexically_normal().string());
+    result.push_back((folder / ".." / module_file).lexically_normal().string());
   }
   result.emplace_back(module_file);
   return result;

@@ -42,21 +42,24 @@ class CudaQueue {
 
   [[nodiscard]] CudaDevice& device() { return device_; }
   void enter(void* stream) {
-    order(stream);
-    device_.use(static_cast<cudaStream_t>(stream));
+    const auto other = static_cast<cudaStream_t>(stream);
+    check(cudaStreamWaitEvent(other, done_.get(), 0), "ordering streams");
+    device_.use(other);
   }
   void leave() {
     (void)cudaEventRecord(done_.get(), device_.stream());
     device_.use(stream_.get());
   }
   void wait() { (void)cudaEventSynchronize(done_.get()); }
-  void order(void* stream) {
-    check(cudaStreamWaitEvent(static_cast<cudaStream_t>(stream), done_.get(), 0), "ordering streams");
+  void order(void* before, void* after) {
+    check(cudaEventRecord(other_.get(), static_cast<cudaStream_t>(before)), "ordering streams");
+    check(cudaStreamWaitEvent(static_cast<cudaStream_t>(after), other_.get(), 0), "ordering streams");
   }
 
  private:
   Stream stream_;
-  Event done_;
+  Event done_;   ///< all that was queued on lent streams
+  Event other_;  ///< for the streams of others
   CudaDevice device_;
 };
 

@@ -18,7 +18,8 @@ namespace blum::cuda {
 
 /// What is thrown becomes a status. Platform is CudaPlatform; the tests have one that runs on the host. It has
 ///   Device       what kernels are launched with
-///   Queue        a Device and the stream it queues on: device(), enter(stream), leave(), order(stream), wait()
+///   Queue        a Device and the stream it queues on: device(), enter(stream), leave(), wait(),
+///                order(before, after)
 ///   Choice       makes a device the current one while it is alive
 ///   static void expect_device(int index)              throws DeviceError
 ///   static void* allocate(std::size_t bytes), static void release(void*)
@@ -27,8 +28,8 @@ template <class Platform>
 class ModuleFunctions {
  public:
   [[nodiscard]] static const Module* table() {
-    static const Module module{module_version, create,        destroy, set_connectivity, compute, set_connectivity_there,
-                               compute_there,  order,         allocate, release,         set_image, select_voxels,
+    static const Module module{module_version, create, destroy,  set_connectivity, compute,   set_connectivity_there,
+                               compute_there,  order,  allocate, release,          set_image, select_voxels,
                                transform_image};
     return &module;
   }
@@ -36,7 +37,8 @@ class ModuleFunctions {
  private:
   /// One device and what it keeps for a solver.
   struct Engine {
-    explicit Engine(int device_index) : index(device_index), fields(queue.device(), Platform::slab_nodes()), images(queue.device()) {}
+    explicit Engine(int device_index)
+        : index(device_index), fields(queue.device(), Platform::slab_nodes()), images(queue.device()) {}
 
     int index;
     typename Platform::Queue queue;
@@ -138,8 +140,8 @@ class ModuleFunctions {
       if (field->wants_triangles) own.fields.show_triangles(field->grid->node_count(), field->site);
     });
   }
-  static Status order(void* engine, void* stream, Call* call) {
-    return with(engine, call, [&](Engine& own) { own.queue.order(stream); });
+  static Status order(void* engine, void* before, void* after, Call* call) {
+    return with(engine, call, [&](Engine& own) { own.queue.order(before, after); });
   }
   static Status allocate(int device, std::size_t bytes, void** memory, Call* call) {
     *memory = nullptr;

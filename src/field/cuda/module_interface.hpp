@@ -63,13 +63,13 @@ struct Module {
   Status (*set_connectivity)(void* engine, const MeshView* mesh, Call* call) = nullptr;
   /// Computes the field of the mesh's vertices.
   Status (*compute)(void* engine, const MeshView* mesh, FieldMemory* field, Call* call) = nullptr;
-  /// The same two for a mesh and a field in the device's memory. compute_there() queues its work on a stream and does not
-  /// wait.
+  /// The same two for a mesh and a field in the device's memory. compute_there() queues its work on a stream and does
+  /// not wait.
   Status (*set_connectivity_there)(void* engine, const DeviceMeshView* mesh, void* stream, Call* call) = nullptr;
   Status (*compute_there)(void* engine, const DeviceArrayView* vertices, FieldMemory* field, void* stream,
                           Call* call) = nullptr;
-  /// Makes a stream wait for what the engine has queued.
-  Status (*order)(void* engine, void* stream, Call* call) = nullptr;
+  /// Makes what is queued on one stream from now on wait for what is queued on another one now.
+  Status (*order)(void* engine, void* before, void* after, Call* call) = nullptr;
   /// Memory of a device.
   Status (*allocate)(int device, std::size_t bytes, void** memory, Call* call) = nullptr;
   void (*release)(int device, void* memory) = nullptr;

@@ -7,14 +7,15 @@
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/row_crossings.hpp"
 
-// Let a ray leave a point p along -x, and the boundary of a surface sweep out a strip along +x, edge by edge. Surface and
-// strips together enclose: their winding number is a whole number, and as no strip meets the ray, it is the sum of the
-// ray's signed crossings with the surface. What the strips have added, the sum of their solid angles, is taken off again.
-// So the winding number of any soup is counted crossings plus one term for each edge of its boundary:
+// Let a ray leave a point p along -x, and the boundary of a surface sweep out a strip along +x, edge by edge. Surface
+// and strips together enclose: their winding number is a whole number, and as no strip meets the ray, it is the sum of
+// the ray's signed crossings with the surface. What the strips have added, the sum of their solid angles, is taken off
+// again. So the winding number of any soup is counted crossings plus one term for each edge of its boundary:
 //   w(p) = N(p) + sum over edges (a, b) of count * arg(1 + conj(u_a) u_b) / 2 pi,
-// where u is the direction to a vertex, projected from -x onto the plane of y and z, as a complex number (the solid angle
-// of the spherical triangle a, b, +x; van Oosterom, Strackee 1983). N and a term jump by the same whole number where p
-// passes a strip; both decide there by the same comparison, so that the jumps cancel. docs/theory/fields.md, "On a device".
+// where u is the direction to a vertex, projected from -x onto the plane of y and z, as a complex number (the solid
+// angle of the spherical triangle a, b, +x; van Oosterom, Strackee 1983). N and a term jump by the same whole number
+// where p passes a strip; both decide there by the same comparison, so that the jumps cancel. docs/theory/fields.md,
+// "On a device".
 namespace blum::kernels {
 
 /// An edge that triangles do not run along as often one way as the other.
@@ -91,15 +92,15 @@ class BoundaryTerms {
     const ProjectedDirection v(scaled(b));
     const double real = u.weight * v.weight + u.y * v.y + u.z * v.z;
     const double turned = u.y * v.z - u.z * v.y;
-    const double angle = atan2(is_left(places_[edge.from], places_[edge.to], a, b, node, turned) ? magnitude(turned)
-                                                                                                  : -magnitude(turned),
-                               real);
+    const double angle = atan2(
+        is_left(places_[edge.from], places_[edge.to], a, b, node, turned) ? magnitude(turned) : -magnitude(turned),
+        real);
     const double winding = edge.count * angle * 0.15915494309189535;  // 1 / 2 pi
     return is_mirrored_ ? -winding : winding;
   }
 
-  /// A bound on the gradient of the term along paths that cross no strip, within a distance of a node; infinite where the
-  /// edge may be that close. The winding number's gradient is the Biot-Savart field of the boundary.
+  /// A bound on the gradient of the term along paths that cross no strip, within a distance of a node; infinite where
+  /// the edge may be that close. The winding number's gradient is the Biot-Savart field of the boundary.
   /// @param reach  mesh units.
   [[nodiscard]] BLUM_HD double gradient_bound(std::uint32_t index, const Vec3d& node, double reach) const {
     const BoundaryEdge edge = edges_[index];

@@ -11,10 +11,10 @@ namespace blum::kernels {
 
 /// Negates the distances of nodes whose winding number is above level + 1/2. One block per tile of 8^3 nodes.
 ///
-/// Where no triangle comes into a tile, its winding numbers differ by less than the bound on their gradient allows: most
-/// tiles ask at one node. Elsewhere each row of the tile asks once, as along a row the winding number changes by the
-/// counted crossings and no more than that bound; nodes too close to call ask for themselves.
-/// Cost: tiles and rows, times edges of the boundary.
+/// Where no triangle comes into a tile, its winding numbers differ by less than the bound on their gradient allows:
+/// most tiles ask at one node. Elsewhere each row of the tile asks once, as along a row the winding number changes by
+/// the counted crossings and no more than that bound; nodes too close to call ask for themselves. Cost: tiles and rows,
+/// times edges of the boundary.
 struct SignTiles {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 2;
@@ -47,8 +47,8 @@ struct SignTiles {
     const NodeBox nodes = tiles.box(static_cast<std::uint32_t>(index));
     const Place middle{{nodes.first[0] + nodes.count[0] / 2, nodes.first[1] + nodes.count[1] / 2,
                         nodes.first[2] + nodes.count[2] / 2}};
-    const double reach = norm(Vec3d{spacing.x * (nodes.count[0] / 2), spacing.y * (nodes.count[1] / 2),
-                                    spacing.z * (nodes.count[2] / 2)});
+    const double reach = norm(
+        Vec3d{spacing.x * (nodes.count[0] / 2), spacing.y * (nodes.count[1] / 2), spacing.z * (nodes.count[2] / 2)});
     // Distances are good to 1e-6 of the diagonal, which is at most 1 in normalised units.
     const bool may_be_crossed = !(static_cast<double>(distance[offset(middle)]) > reach + 4e-6 / frame->scale);
     block.each_warp([&](const Warp& warp) {

@@ -189,8 +189,14 @@ struct Connectivity {
   Scratch scratch;
 
   [[nodiscard]] ConnectivityView view() const {
-    return {edges.data(), edge_faces.data(), named_vertices.data(), first_neighbour.data(), neighbours.data(),
-            balance.data(), edge_count, named_count};
+    return {edges.data(),
+            edge_faces.data(),
+            named_vertices.data(),
+            first_neighbour.data(),
+            neighbours.data(),
+            balance.data(),
+            edge_count,
+            named_count};
   }
 };
 

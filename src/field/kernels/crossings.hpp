@@ -229,8 +229,8 @@ class CrossingSigns {
     device_.for_each(mesh.vertex_count, PlaceInNodes{units_, mesh.vertices, places_.data()});
   }
 
-  /// Negates the unsigned distances of a slab inside: where the winding number is above `level`, or with a boundary above
-  /// level + 1/2.
+  /// Negates the unsigned distances of a slab inside: where the winding number is above `level`, or with a boundary
+  /// above level + 1/2.
   /// @param frame  of the distances, in the device's memory.
   void apply(std::int64_t first_slice, std::int64_t last_slice, std::int32_t level, const NormalFrame* frame,
              float* distance) {
@@ -245,15 +245,14 @@ class CrossingSigns {
     }
     device_.run_blocks(row_blocks, SumCrossings{{}, change_.data(), rows, width});
     const TileGrid tiles{grid_.size, first_slice, last_slice, SignTiles::side};
-    device_.run_blocks(
-        tiles.count(),
-        SignTiles{{boundary_.data(), boundary_count_, places_.data(), grid_.spacing, units_.is_mirrored},
-                  frame,
-                  tiles,
-                  grid_.spacing,
-                  change_.data(),
-                  level,
-                  distance});
+    device_.run_blocks(tiles.count(),
+                       SignTiles{{boundary_.data(), boundary_count_, places_.data(), grid_.spacing, units_.is_mirrored},
+                                 frame,
+                                 tiles,
+                                 grid_.spacing,
+                                 change_.data(),
+                                 level,
+                                 distance});
   }
 
   /// Whether every node so far has the winding number level or level + 1, of a mesh without boundary. Waits for the

@@ -34,8 +34,8 @@ struct EngineResult {
   bool is_simple = false;
 };
 
-/// Keeps a mesh's connectivity and its memory from frame to frame. Fields go to the host's memory, slab by slab, or stay on
-/// the device.
+/// Keeps a mesh's connectivity and its memory from frame to frame. Fields go to the host's memory, slab by slab, or
+/// stay on the device.
 template <class Device>
 class FieldEngine {
  public:
@@ -106,8 +106,9 @@ class FieldEngine {
     return {is_signed, is_signed && signs_.boundary_count() == 0 && signs_.is_simple()};
   }
 
-  /// The same from vertices in the device's memory to arrays there; queued, without waiting for the device. Where mesh and
-  /// grid span too much or too little for 32-bit distances, or a vertex is not finite, every node gets NaN and no site.
+  /// The same from vertices in the device's memory to arrays there; queued, without waiting for the device. Where mesh
+  /// and grid span too much or too little for 32-bit distances, or a vertex is not finite, every node gets NaN and no
+  /// site.
   /// @throws InvalidGrid, InvalidMesh where vertices are not as many as the connectivity was made for.
   void compute(const MemoryArray& vertices, const EngineRequest& request, float* distance, std::uint32_t* site) {
     check_size(request.grid);
@@ -176,8 +177,7 @@ class FieldEngine {
   void copy_indices(const MemoryArray& from, std::size_t limit, typename Device::template Array<Row>& to) {
     to.resize(from.rows);
     const std::size_t count = from.rows * (sizeof(Row) / sizeof(std::uint32_t));
-    device_.for_each(count,
-                     CopyIndices{from, limit, reinterpret_cast<std::uint32_t*>(to.data()), faults_.data()});
+    device_.for_each(count, CopyIndices{from, limit, reinterpret_cast<std::uint32_t*>(to.data()), faults_.data()});
   }
   void copy_vertices(const MemoryArray& from) { device_.for_each(from.rows, CopyVertices{from, vertices_.data()}); }
 

@@ -78,8 +78,8 @@ class FieldPipeline {
     throw_if_faulty(frame);
   }
 
-  /// Writes the slices [first_slice, last_slice) of the grid to a device's memory. Where the frame is faulty, distances are
-  /// NaN and there are no sites.
+  /// Writes the slices [first_slice, last_slice) of the grid to a device's memory. Where the frame is faulty, distances
+  /// are NaN and there are no sites.
   void compute(std::int64_t first_slice, std::int64_t last_slice, const FieldOutput& output) {
     const TileGrid coarse{grid_.size, first_slice, last_slice, 4 * ComputeTiles::side};
     const TileGrid tiles{grid_.size, first_slice, last_slice, ComputeTiles::side};

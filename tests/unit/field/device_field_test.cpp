@@ -1,6 +1,6 @@
-// Proves that fields from and to a device's memory are, byte for byte, those of meshes in the host's memory, whatever types
-// the arrays have; and that wrong arrays, indices and vertices are told of. The device is the host (EmulatedCuda);
-// bench/gpu does the like on a real one.
+// Proves that fields from and to a device's memory are, byte for byte, those of meshes in the host's memory, whatever
+// types the arrays have; and that wrong arrays, indices and vertices are told of. The device is the host
+// (EmulatedCuda); bench/gpu does the like on a real one.
 #include "blum/field/device_field.hpp"
 
 #include <gtest/gtest.h>
@@ -125,7 +125,7 @@ TEST_F(DeviceField, FollowsADeformingMeshAndANewOne) {
   solver.set_connectivity(arrays.view());
   solver.compute(arrays.view().vertices, output.view());
   expect_same(output, distance_field(other, grid, {}, {.device = Device::cuda()}));
-  solver.order(nullptr);
+  solver.order(nullptr, nullptr);
 }
 
 TEST_F(DeviceField, VerticesThatAreNoNumbersGiveNoField) {

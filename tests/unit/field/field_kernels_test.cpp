@@ -242,7 +242,8 @@ TEST_P(FieldKernels, SignsOfSoupsAreThoseOfTheFullSum) {
   expect_winding_signs(compute(fan, grid_for(fan, 20), {.sign = SignMode::winding}), fan);
   // Triangles that are turned leave surpluses of two.
   TriangleMesh turned = make_sphere({.frequency = 3});
-  for (std::size_t t = 0; t < turned.triangles.size(); t += 7) std::swap(turned.triangles[t][0], turned.triangles[t][1]);
+  for (std::size_t t = 0; t < turned.triangles.size(); t += 7)
+    std::swap(turned.triangles[t][0], turned.triangles[t][1]);
   expect_winding_signs(compute(turned, grid_for(turned, 20), {.sign = SignMode::winding}), turned);
 }
 

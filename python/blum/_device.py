@@ -1,0 +1,338 @@
+"""Fields from and to the memory of a CUDA device."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arguments import Real, device_name, integer, one_of, optional_number
+from ._errors import InvalidOption
+from ._field import _SIGNS, _SITE_IDS, Sign, SiteIds
+from ._grid import Grid
+
+_CUDA = 2  # DLPack's numbers of kinds of devices
+_MANAGED = 13
+_LEGACY = 1  # the legacy default stream, for CUDA and DLPack alike
+
+
+class DeviceArray:
+    """An array in a CUDA device's memory, for ``torch.from_dlpack``, ``cupy.asarray`` and their like; not copied.
+
+    It has ``__dlpack__`` and ``__cuda_array_interface__``: whoever reads it by one of them, waits on their own stream
+    for what computes it.
+    """
+
+    def __init__(self, core: _core.DeviceArray, solver: _core.DeviceFieldSolver, stream: int) -> None:
+        self._core = core
+        self._solver = solver
+        self._stream = stream
+
+    def __repr__(self) -> str:
+        return f"DeviceArray(shape={self.shape}, dtype={self.dtype}, device='cuda:{self._core.device}')"
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Sizes of the axes."""
+        return tuple(self._core.shape)
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of an element."""
+        return np.dtype(self._core.type)
+
+    @property
+    def address(self) -> int:
+        """Where it begins, on the device."""
+        return int(self._core.address)
+
+    @property
+    def __cuda_array_interface__(self) -> dict[str, Any]:
+        return {
+            "shape": self.shape,
+            "typestr": self._core.type,
+            "data": (self.address, False),
+            "strides": None,
+            "stream": self._stream,
+            "version": 3,
+        }
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return _CUDA, int(self._core.device)
+
+    def __dlpack__(
+        self,
+        *,
+        stream: int | None = None,
+        max_version: tuple[int, int] | None = None,
+        dl_device: tuple[int, int] | None = None,
+        copy: bool | None = None,
+    ) -> Any:
+        if dl_device is not None and tuple(dl_device) != self.__dlpack_device__():
+            raise BufferError("the array stays on its device: copy it from there")
+        if copy:
+            raise BufferError("the array is not copied: copy what shares it")
+        after = _LEGACY if stream is None else stream
+        if after != -1 and after != self._stream:
+            self._solver.order(self._stream, after)
+        return self._core.capsule()
+
+
+class DeviceField:
+    """Distance and closest site at every node of a grid, in a CUDA device's memory; made by DeviceFieldSolver."""
+
+    def __init__(self, distance: Any, site: Any, solver: DeviceFieldSolver) -> None:
+        self._distance = distance
+        self._site = site
+        self._grid = solver.grid
+        self._band = solver.band
+        self._site_ids = solver.site_ids
+        self._sign_rule = solver.sign_rule
+        self._device = solver.device
+
+    def __repr__(self) -> str:
+        return f"DeviceField({self._grid!r}, sign_rule={self._sign_rule!r}, device={self._device!r})"
+
+    @property
+    def distance(self) -> Any:
+        """Float32 (z, y, x), mesh units, negative inside when signed: a DeviceArray, or what `out` named."""
+        return self._distance
+
+    @property
+    def site(self) -> Any:
+        """Closest site, int32 (z, y, x); -1 beyond the band."""
+        return self._site
+
+    @property
+    def grid(self) -> Grid:
+        """Where the nodes are."""
+        return self._grid
+
+    @property
+    def band(self) -> float | None:
+        """Half-width of the band, mesh units."""
+        return self._band
+
+    @property
+    def site_ids(self) -> str:
+        """What the sites count: "features" or "triangles"."""
+        return self._site_ids
+
+    @property
+    def sign_rule(self) -> str:
+        """How the sign was found: "winding" or "none"."""
+        return self._sign_rule
+
+    @property
+    def device(self) -> str:
+        """Where it is: "cuda:K"."""
+        return self._device
+
+
+class DeviceFieldSolver:
+    """Fields of deforming meshes that are in a CUDA device's memory, as arrays there: no copies, no waiting.
+
+    Arrays come in by DLPack or ``__cuda_array_interface__`` (PyTorch, CuPy, JAX, Numba, Warp), C-contiguous, and fields
+    go out by the same. See :class:`FieldSolver` for meshes in the host's memory.
+
+    Parameters
+    ----------
+    grid : Grid
+    sign : "auto", "winding" or "none"
+        "auto" and "winding" are both the winding number; the sides of closed meshes that face outwards are those of
+        "normals".
+    band, site_ids
+        As for :func:`distance_field`.
+    device : "cuda" or "cuda:K"
+
+    Examples
+    --------
+    ::
+
+        solver = blum.DeviceFieldSolver(blum.Grid(size=(128, 128, 128), spacing=0.02, origin=(-1.3, -1.3, -1.3)))
+        field = solver.compute(vertices, triangles)           # tensors of PyTorch on the device
+        distance = torch.from_dlpack(field.distance)
+        field = solver.compute(vertices + step)               # the same triangles
+    """
+
+    def __init__(
+        self,
+        grid: Grid,
+        *,
+        sign: Sign = "auto",
+        band: Real | None = None,
+        site_ids: SiteIds = "features",
+        device: str = "cuda",
+    ) -> None:
+        if not isinstance(grid, Grid):
+            raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
+        self._solver = _core.DeviceFieldSolver(
+            grid._spec,
+            one_of(sign, "sign", _SIGNS),
+            optional_number(band, "band"),
+            one_of(site_ids, "site_ids", _SITE_IDS),
+            device_name(device),
+        )
+        self._grid = grid
+        self._band = optional_number(band, "band")
+        self._site_ids = str(site_ids)
+        self._busy = threading.Lock()
+
+    def __repr__(self) -> str:
+        return f"DeviceFieldSolver({self._grid!r}, device={self.device!r})"
+
+    @property
+    def grid(self) -> Grid:
+        """Where the nodes are."""
+        return self._grid
+
+    @property
+    def band(self) -> float | None:
+        """Half-width of the band, mesh units."""
+        return self._band
+
+    @property
+    def site_ids(self) -> str:
+        """What the sites count: "features" or "triangles"."""
+        return self._site_ids
+
+    @property
+    def sign_rule(self) -> str:
+        """How the signs of fields are found with the current triangles: "winding" or "none"."""
+        return str(self._solver.sign_rule)
+
+    @property
+    def device(self) -> str:
+        """Where fields are computed: "cuda:K"."""
+        return str(self._solver.device)
+
+    def compute(
+        self,
+        vertices: Any,
+        triangles: Any = None,
+        *,
+        segments: Any = None,
+        points: Any = None,
+        out: tuple[Any, Any] | None = None,
+        stream: Any = None,
+    ) -> DeviceField:
+        """Queues the field of a mesh.
+
+        Parameters
+        ----------
+        vertices : (n, 3) of float32 or float64, on the device
+            Where one is not finite, every distance becomes NaN: no error is raised, as nothing waits for the device.
+        triangles, segments, points : (m, 3), (m, 2), (m,) of int32, uint32 or int64, on the device
+            Without any, those of the last call, which saves finding the edges, and waiting for it.
+        out : (distance, site), optional
+            Arrays on the device to write to: float32 and int32 or uint32, of the grid's shape.
+        stream : int, or a stream of PyTorch or CuPy
+            What to queue on; default: the legacy default stream.
+
+        Raises
+        ------
+        InvalidMesh, InvalidOption, InvalidGrid (all ValueError), TypeError, OutOfMemory, DeviceError
+        """
+        queue = _stream_address(stream)
+        rows = self._take(vertices, "vertices", (None, 3), _REALS, queue)
+        parts = {
+            name: None if value is None else self._take(value, name, shape, _INTEGERS, queue)
+            for name, value, shape in (
+                ("triangles", triangles, (None, 3)),
+                ("segments", segments, (None, 2)),
+                ("points", points, (None,)),
+            )
+        }
+        distance, site = self._outputs(out, queue)
+        with self._busy:
+            if any(part is not None for part in parts.values()):
+                self._solver.set_connectivity(rows, **parts, stream=queue)
+            self._solver.compute(rows, distance, site, queue)
+        if out is not None:
+            return DeviceField(*out, self)
+        return DeviceField(DeviceArray(distance, self._solver, queue), DeviceArray(site, self._solver, queue), self)
+
+    def _outputs(self, out: tuple[Any, Any] | None, stream: int) -> tuple[Any, Any]:
+        shape = self._grid.shape
+        if out is None:
+            return tuple(_core.DeviceArray.allocated(self.device, list(shape), kind) for kind in ("<f4", "<i4"))
+        if not isinstance(out, tuple) or len(out) != 2:
+            raise TypeError("out must be a pair of arrays on the device, (distance, site)")
+        for place, value in enumerate(out):
+            interface = getattr(value, "__cuda_array_interface__", None)
+            if interface is not None and interface["data"][1]:
+                raise ValueError(f"out[{place}] is read-only")
+        distance = self._take(out[0], "out[0]", shape, ("<f4",), stream)
+        return distance, self._take(out[1], "out[1]", shape, ("<i4", "<u4"), stream)
+
+    def _take(
+        self, value: Any, name: str, shape: tuple[int | None, ...], types: tuple[str, ...], stream: int
+    ) -> _core.DeviceArray:
+        """An array of others, checked; what it holds is ready for what is queued on the stream from now on."""
+        array = _imported(value, name, self._solver, stream)
+        if array.type not in types:
+            raise TypeError(f"{name} must hold {' or '.join(np.dtype(kind).name for kind in types)}")
+        if not array.is_contiguous:
+            raise ValueError(f"{name} must be C-contiguous")
+        found = tuple(array.shape)
+        if len(found) != len(shape) or any(want not in (None, size) for want, size in zip(shape, found, strict=True)):
+            wanted = ", ".join("n" if size is None else str(size) for size in shape)
+            raise ValueError(f"{name} has the shape {found}, but must have ({wanted}{',' if len(shape) == 1 else ''})")
+        if array.device != _index(self._solver):
+            raise InvalidOption(f"{name} is on cuda:{array.device}, but fields are computed on {self.device}")
+        return array
+
+
+_REALS = ("<f4", "<f8")
+_INTEGERS = ("<i4", "<u4", "<i8")
+
+
+def _index(solver: _core.DeviceFieldSolver) -> int:
+    return int(solver.device.partition(":")[2])
+
+
+def _stream_address(stream: Any) -> int:
+    """A stream as CUDA's runtime and DLPack both have it."""
+    if stream is None:
+        return _LEGACY
+    for attribute in ("cuda_stream", "ptr"):  # PyTorch, CuPy
+        stream = getattr(stream, attribute, stream)
+    address = integer(stream, "stream", bits=65)
+    if address < 0:
+        raise InvalidOption(f"stream is {address}, which is no stream")
+    return address or _LEGACY
+
+
+def _imported(value: Any, name: str, solver: _core.DeviceFieldSolver, stream: int) -> _core.DeviceArray:
+    if hasattr(value, "__dlpack__") and hasattr(value, "__dlpack_device__"):
+        kind, _ = value.__dlpack_device__()
+        if int(kind) in (_CUDA, _MANAGED):
+            return _core.DeviceArray.of_capsule(value.__dlpack__(stream=stream))
+    interface = getattr(value, "__cuda_array_interface__", None)
+    if interface is None:
+        raise TypeError(
+            f"{name} must be in a CUDA device's memory; distance_field and FieldSolver take meshes of the host's"
+        )
+    kind = np.dtype(interface["typestr"])
+    shape = [int(size) for size in interface["shape"]]
+    strides = interface.get("strides")
+    before = interface.get("stream")
+    if before is not None and int(before) != stream:
+        solver.order(int(before), stream)
+    return _core.DeviceArray.at_address(
+        int(interface["data"][0]), shape, kind.str, _is_contiguous(shape, strides, kind.itemsize), _index(solver), value
+    )
+
+
+def _is_contiguous(shape: Sequence[int], strides: Sequence[int] | None, item: int) -> bool:
+    if strides is None or 0 in shape:
+        return True
+    step = item
+    for size, stride in zip(reversed(shape), reversed(strides), strict=True):
+        if size != 1 and stride != step:
+            return False
+        step *= size
+    return True

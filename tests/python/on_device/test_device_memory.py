@@ -1,0 +1,223 @@
+"""Fields from and to a CUDA device's memory are those of meshes in the host's.
+
+Run by test_package_devices.py with a module whose device is the host (BLUM_CUDA_MODULE), so that NumPy can look into its
+memory.
+"""
+
+import ctypes
+import gc
+
+import blum
+import numpy as np
+import pytest
+
+
+class OnDevice:
+    """An array as others hold it: by __cuda_array_interface__ alone."""
+
+    def __init__(self, values, stream=None, strides=None, read_only=False):
+        self.values = np.array(values, order="C")
+        self.stream = stream
+        self.strides = strides
+        self.read_only = read_only
+
+    @property
+    def __cuda_array_interface__(self):
+        interface = {
+            "shape": self.values.shape,
+            "typestr": self.values.dtype.str,
+            "data": (self.values.ctypes.data, self.read_only),
+            "version": 3,
+        }
+        if self.stream is not None:
+            interface["stream"] = self.stream
+        if self.strides is not None:
+            interface["strides"] = self.strides
+        return interface
+
+
+class ByDlpack:
+    """An array by DLPack alone, as PyTorch's tensors; it notes the streams that it was asked for."""
+
+    def __init__(self, values, index=0):
+        self.values = np.array(values, order="C")
+        self.index = index
+        self.streams = []
+
+    def __dlpack_device__(self):
+        return 2, self.index
+
+    def __dlpack__(self, *, stream=None):
+        self.streams.append(stream)
+        core = blum._core.DeviceArray.at_address(
+            self.values.ctypes.data, list(self.values.shape), self.values.dtype.str, True, self.index, self.values
+        )
+        return core.capsule()
+
+
+def on_host(array):
+    """What a DeviceArray of the emulated device holds."""
+    interface = array.__cuda_array_interface__
+    count = int(np.prod(interface["shape"]))
+    kind = np.dtype(interface["typestr"])
+    memory = (ctypes.c_char * (count * kind.itemsize)).from_address(interface["data"][0])
+    return np.frombuffer(bytes(memory), kind).reshape(interface["shape"])
+
+
+@pytest.fixture(scope="module")
+def mesh():
+    return blum.generate("torus")
+
+
+@pytest.fixture(scope="module")
+def grid(mesh):
+    return blum.Grid.around(mesh, resolution=20, padding=0.3)
+
+
+def check(field, expected):
+    assert np.array_equal(on_host(field.distance), expected.distance)
+    assert np.array_equal(on_host(field.site), expected.site)
+
+
+@pytest.mark.parametrize("kind", [OnDevice, ByDlpack])
+@pytest.mark.parametrize("real", [np.float32, np.float64])
+@pytest.mark.parametrize("index", [np.int32, np.uint32, np.int64])
+def test_fields_are_those_of_the_host(mesh, grid, kind, real, index):
+    solver = blum.DeviceFieldSolver(grid)
+    vertices = mesh.vertices.astype(real)
+    field = solver.compute(kind(vertices), kind(mesh.triangles.astype(index)))
+    check(field, blum.distance_field(vertices.astype(float), mesh.triangles, grid=grid, device="cuda"))
+    assert field.sign_rule == "winding"
+    assert field.device == solver.device == "cuda:0"
+    assert field.distance.dtype == np.float32
+    assert field.site.dtype == np.int32
+    assert field.distance.shape == field.grid.shape == grid.shape
+    assert field.grid is grid
+
+
+def test_options_are_those_of_fields(mesh, grid):
+    arrays = OnDevice(mesh.vertices), OnDevice(mesh.triangles)
+    for options in ({"sign": "none"}, {"band": 0.1}, {"site_ids": "triangles"}, {"sign": "winding", "band": 0.2}):
+        field = blum.DeviceFieldSolver(grid, **options).compute(*arrays)
+        check(field, blum.distance_field(mesh, grid=grid, device="cuda", **options))
+        assert field.band == options.get("band")
+        assert field.site_ids == options.get("site_ids", "features")
+
+
+def test_a_deforming_mesh_keeps_its_triangles(mesh, grid):
+    solver = blum.DeviceFieldSolver(grid)
+    with pytest.raises(blum.InvalidOption, match="triangles"):
+        solver.compute(OnDevice(mesh.vertices))
+    solver.compute(OnDevice(mesh.vertices), OnDevice(mesh.triangles))
+    field = solver.compute(OnDevice(mesh.vertices * 0.9))
+    check(field, blum.distance_field(mesh.vertices * 0.9, mesh.triangles, grid=grid, device="cuda"))
+    with pytest.raises(blum.InvalidMesh, match="vertices"):
+        solver.compute(OnDevice(mesh.vertices[1:]))
+
+
+def test_segments_and_points(grid):
+    vertices = np.array([[0.0, 0, 0], [0.5, 0, 0], [0, 0.5, 0.1]])
+    field = blum.DeviceFieldSolver(grid).compute(
+        OnDevice(vertices), segments=OnDevice([[0, 1]]), points=OnDevice(np.array([2], np.int32))
+    )
+    expected = blum.distance_field(blum.Mesh(vertices, segments=[[0, 1]], points=[2]), grid=grid, device="cuda")
+    check(field, expected)
+    assert field.sign_rule == "none"
+
+
+def test_out_is_written_to(mesh, grid):
+    solver = blum.DeviceFieldSolver(grid)
+    for integer in (np.int32, np.uint32):
+        out = OnDevice(np.zeros(grid.shape, np.float32)), OnDevice(np.zeros(grid.shape, integer))
+        field = solver.compute(OnDevice(mesh.vertices), OnDevice(mesh.triangles), out=out)
+        assert (field.distance, field.site) == out
+        expected = blum.distance_field(mesh, grid=grid, device="cuda")
+        assert np.array_equal(out[0].values, expected.distance)
+        assert np.array_equal(out[1].values.view(np.int32), expected.site)
+
+
+def test_streams_are_handed_on(mesh, grid):
+    solver = blum.DeviceFieldSolver(grid)
+
+    class OfTorch:
+        cuda_stream = 0
+
+    class OfCupy:
+        ptr = 4096
+
+    for stream, address in ((None, 1), (2, 2), (7, 7), (OfTorch(), 1), (OfCupy(), 4096), (np.int64(9), 9)):
+        vertices = ByDlpack(mesh.vertices)
+        field = solver.compute(vertices, OnDevice(mesh.triangles, stream=5), stream=stream)
+        assert vertices.streams == [address]
+        assert field.distance.__cuda_array_interface__["stream"] == address
+    for wrong in (-1, 1.5, "default"):
+        with pytest.raises((TypeError, blum.InvalidOption), match="stream"):
+            solver.compute(OnDevice(mesh.vertices), stream=wrong)
+
+
+def test_fields_go_out_by_dlpack(mesh, grid):
+    field = blum.DeviceFieldSolver(grid).compute(OnDevice(mesh.vertices), OnDevice(mesh.triangles))
+    expected = blum.distance_field(mesh, grid=grid, device="cuda")
+    distance = field.distance
+    assert distance.__dlpack_device__() == (2, 0)
+    for stream in (None, 1, 2, -1):
+        shared = blum._core.DeviceArray.of_capsule(distance.__dlpack__(stream=stream))
+        assert (shared.address, tuple(shared.shape), shared.type) == (distance.address, grid.shape, "<f4")
+    with pytest.raises(BufferError):
+        distance.__dlpack__(copy=True)
+    with pytest.raises(BufferError):
+        distance.__dlpack__(dl_device=(1, 0))
+    # What shares the memory keeps it.
+    address = distance.address
+    del field, distance
+    gc.collect()
+    kept = blum.DeviceArray(shared, None, 1)
+    assert kept.address == address
+    assert np.array_equal(on_host(kept), expected.distance)
+
+
+def test_wrong_arrays_are_told_of(mesh, grid):
+    solver = blum.DeviceFieldSolver(grid)
+    vertices, triangles = OnDevice(mesh.vertices), OnDevice(mesh.triangles)
+    for wrong, error, text in (
+        ((mesh.vertices, triangles), TypeError, "vertices must be in a CUDA device's memory"),
+        ((mesh.vertices.tolist(), triangles), TypeError, "vertices"),
+        ((vertices, mesh.triangles), TypeError, "triangles"),
+        ((OnDevice(mesh.vertices.astype(np.float16)), triangles), TypeError, "float32 or float64"),
+        ((OnDevice(mesh.vertices.astype(">f8")), triangles), TypeError, "vertices"),
+        ((vertices, OnDevice(mesh.vertices)), TypeError, "triangles must hold int32"),
+        ((OnDevice(mesh.vertices[:, :2]), triangles), ValueError, r"\(n, 3\)"),
+        ((OnDevice(mesh.vertices[0]), triangles), ValueError, "shape"),
+        ((OnDevice(mesh.vertices, strides=(8, 8)), triangles), ValueError, "C-contiguous"),
+        ((ByDlpack(mesh.vertices, 1), triangles), blum.InvalidOption, "cuda:1"),
+        ((vertices, OnDevice(mesh.triangles + 1)), blum.InvalidMesh, "index"),
+        ((vertices, OnDevice(mesh.triangles - 1)), blum.InvalidMesh, "index"),
+        ((vertices, OnDevice(np.zeros((0, 3), np.int32))), blum.InvalidMesh, "no triangles"),
+    ):
+        with pytest.raises(error, match=text):
+            solver.compute(*wrong)
+    good = OnDevice(np.zeros(grid.shape, np.float32)), OnDevice(np.zeros(grid.shape, np.int32))
+    for out, error, text in (
+        (good[0], TypeError, "pair"),
+        ((good[1], good[0]), TypeError, "float32"),
+        ((OnDevice(np.zeros((2, 2, 2), np.float32)), good[1]), ValueError, "shape"),
+        ((OnDevice(np.zeros(grid.shape, np.float32), read_only=True), good[1]), ValueError, "read-only"),
+    ):
+        with pytest.raises(error, match=text):
+            solver.compute(vertices, triangles, out=out)
+    for options in ({"sign": "normals"}, {"band": 0}, {"site_ids": "voxels"}, {"device": "cpu"}):
+        with pytest.raises(blum.InvalidOption):
+            blum.DeviceFieldSolver(grid, **options)
+    with pytest.raises(blum.DeviceError, match="no CUDA device 3"):
+        blum.DeviceFieldSolver(grid, device="cuda:3")
+    with pytest.raises(TypeError, match="grid"):
+        blum.DeviceFieldSolver(grid.shape)
+    check(solver.compute(vertices, triangles), blum.distance_field(mesh, grid=grid, device="cuda"))
+
+
+def test_vertices_that_are_no_numbers_give_no_field(mesh, grid):
+    vertices = mesh.vertices.copy()
+    vertices[3] = np.nan
+    field = blum.DeviceFieldSolver(grid).compute(OnDevice(vertices), OnDevice(mesh.triangles))
+    assert np.isnan(on_host(field.distance)).all()
+    assert (on_host(field.site) == -1).all()
