@@ -255,10 +255,14 @@ class DeviceFieldSolver:
             return DeviceField(*out, self)
         return DeviceField(DeviceArray(distance, self._solver, queue), DeviceArray(site, self._solver, queue), self)
 
-    def _outputs(self, out: tuple[Any, Any] | None, stream: int) -> tuple[Any, Any]:
+    def _outputs(self, out: tuple[Any, Any] | None, stream: int) -> tuple[_core.DeviceArray, _core.DeviceArray]:
         shape = self._grid.shape
         if out is None:
-            return tuple(_core.DeviceArray.allocated(self.device, list(shape), kind) for kind in ("<f4", "<i4"))
+            size = list(shape)
+            return (
+                _core.DeviceArray.allocated(self.device, size, "<f4"),
+                _core.DeviceArray.allocated(self.device, size, "<i4"),
+            )
         if not isinstance(out, tuple) or len(out) != 2:
             raise TypeError("out must be a pair of arrays on the device, (distance, site)")
         for place, value in enumerate(out):

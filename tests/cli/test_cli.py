@@ -535,3 +535,17 @@ def test_field_on_a_device(shapes, tmp_path):
         assert "CUDA" in err
     assert "none.npz" not in names(tmp_path)
     assert "cuda:K" in run("field", shapes / "sphere.ply", "-o", out, "--device", "gpu", status=2)[1]
+
+
+def test_field_on_the_host_as_a_device(shapes, tmp_path, monkeypatch):
+    monkeypatch.setenv("BLUM_CUDA_MODULE", str(Path(os.environ["BLUM_BIN_DIR"]) / "libblum_emulated_cuda.so"))
+    for source in ("sphere.ply", "ball.nrrd"):
+        grid = ["--resolution", 16] if source.endswith("ply") else []
+        found = []
+        for device in ("cpu", "cuda", "auto"):
+            out = tmp_path / f"{device}.npz"
+            told = run_json("field", shapes / source, "-o", out, *grid, "--device", device)
+            assert told["fields"][0]["device"] == ("cpu" if device == "cpu" else "cuda:0")
+            found.append(np.load(out)["distance"])
+        assert np.abs(found[0] - found[1]).max() < 1e-6
+        assert np.array_equal(found[1], found[2])

@@ -13,9 +13,9 @@
 // again. So the winding number of any soup is counted crossings plus one term for each edge of its boundary:
 //   w(p) = N(p) + sum over edges (a, b) of count * arg(1 + conj(u_a) u_b) / 2 pi,
 // where u is the direction to a vertex, projected from -x onto the plane of y and z, as a complex number (the solid
-// angle of the spherical triangle a, b, +x; van Oosterom, Strackee 1983). N and a term jump by the same whole number
-// where p passes a strip; both decide there by the same comparison, so that the jumps cancel. docs/theory/fields.md,
-// "On a device".
+// angle of the spherical triangle a, b, +x; Martens, Trettner, Bessmeltsev 2026). N and a term jump by the same whole
+// number where p passes a strip; both decide there by the same comparison, so that the jumps cancel.
+// docs/theory/fields.md, "On a device".
 namespace blum::kernels {
 
 /// An edge that triangles do not run along as often one way as the other.
