@@ -16,6 +16,7 @@
 #include "blum/grid/grid_spec.hpp"
 #include "field/cuda/cuda_device.cuh"
 #include "field/image_plan.hpp"
+#include "field/kernels/crossings.hpp"
 #include "field/kernels/field_pipeline.hpp"
 #include "field/kernels/image_transform.hpp"
 #include "gpu/meshes.hpp"
@@ -151,7 +152,7 @@ struct Case {
 
 struct Timing {
   double total = 0;
-  std::vector<double> steps;  ///< upload and connectivity, records and trees, tiles
+  std::vector<double> steps;  ///< upload and connectivity, records and trees, tiles, and for itself: signs
   double baseline = 0;
 };
 
@@ -162,6 +163,7 @@ class Timer {
   Timing run(const Case& c) {
     const GridSpec grid = grid_around(bounds(c.mesh), c.resolution, 0.1);
     kernels::FieldPipeline<CudaDevice> pipeline(device_);
+    kernels::CrossingSigns<CudaDevice> signs(device_);
     distance_.resize(grid.node_count());
     site_.resize(grid.node_count());
     const kernels::FieldOutput output{0, distance_.data(), site_.data()};
@@ -170,11 +172,17 @@ class Timer {
     for (int k = -3; k < runs_; ++k) {  // three to warm up
       laps.start();
       const kernels::DeviceMesh mesh = upload(c, k == -3 || !c.is_frame);
-      if (k == -3 || !c.is_frame) pipeline.set_connectivity(mesh);
+      if (k == -3 || !c.is_frame) {
+        pipeline.set_connectivity(mesh);
+        signs.set_connectivity(pipeline.connectivity());
+      }
       laps.lap();
       pipeline.prepare(mesh, grid);
       laps.lap();
       pipeline.compute(0, grid.size[2], output);
+      laps.lap();
+      signs.prepare(mesh, grid);
+      signs.apply(0, grid.size[2], 0, pipeline.frame(), distance_.data());
       laps.lap();
       const std::vector<double> steps = laps.milliseconds();
       if (k >= 0) samples.push_back(steps);
@@ -184,7 +192,7 @@ class Timer {
     std::vector<double> totals;
     for (const auto& steps : samples) totals.push_back(steps[0] + steps[1] + steps[2]);
     timing.total = median(totals);
-    for (std::size_t s = 0; s < 3; ++s) {
+    for (std::size_t s = 0; s < 4; ++s) {
       std::vector<double> values;
       for (const auto& steps : samples) values.push_back(steps[s]);
       timing.steps.push_back(median(values));
@@ -275,6 +283,9 @@ std::vector<Case> cases(const Options& options) {
   all.push_back({"69 k triangles, 128^3", bunny, 128, 0, 0, true, false});
   all.push_back({"69 k triangles, 512^3", bunny, 512, 30, 8, false, false});
   all.push_back({"1.6 M triangles, 256^3", noisy_knot(1'600'000), 256, 40, 12, true, false});
+  TriangleMesh open = bunny;
+  open.triangles.resize(open.triangles.size() - open.triangles.size() / 50);
+  all.push_back({"the same with an opening, 256^3", open, 256, 0, 0, false, false});
   all.push_back({"sphere of 320 k triangles, 256^3", make_sphere({.frequency = 126}), 256, 0, 0, true, false});
   return all;
 }
@@ -287,21 +298,22 @@ int main_of(const Options& options) {
               static_cast<double>(properties.totalGlobalMem) / (1 << 30));
   std::FILE* json = options.json.empty() ? nullptr : std::fopen(options.json.c_str(), "w");
   if (json != nullptr) std::fprintf(json, "{\"device\": \"%s\", \"cases\": [", properties.name);
-  std::printf("%-40s %9s %9s %9s %9s | %9s %9s | %9s\n", "case", "ms", "upload", "trees", "tiles", "must", "aim",
-              "per node");
+  std::printf("%-40s %9s %9s %9s %9s | %9s %9s | %9s %9s\n", "case", "ms", "upload", "trees", "tiles", "must", "aim",
+              "signs", "per node");
   Timer timer(options.runs);
   bool is_first = true;
   for (const Case& c : cases(options)) {
     const Timing t = timer.run(c);
-    std::printf("%-40s %9.3f %9.3f %9.3f %9.3f | %9.1f %9.1f | %9.2f\n", c.name.c_str(), t.total, t.steps[0],
-                t.steps[1], t.steps[2], c.must, c.aim, t.baseline);
+    std::printf("%-40s %9.3f %9.3f %9.3f %9.3f | %9.1f %9.1f | %9.3f %9.2f\n", c.name.c_str(), t.total, t.steps[0],
+                t.steps[1], t.steps[2], c.must, c.aim, t.steps[3], t.baseline);
     if (json != nullptr) {
       std::fprintf(
           json,
           "%s\n  {\"name\": \"%s\", \"triangles\": %zu, \"resolution\": %d, \"ms\": %.4f, \"upload_ms\": %.4f, "
-          "\"trees_ms\": %.4f, \"tiles_ms\": %.4f, \"must_ms\": %g, \"aim_ms\": %g, \"query_per_node_ms\": %.4f}",
+          "\"trees_ms\": %.4f, \"tiles_ms\": %.4f, \"signs_ms\": %.4f, \"must_ms\": %g, \"aim_ms\": %g, "
+          "\"query_per_node_ms\": %.4f}",
           is_first ? "" : ",", c.name.c_str(), c.mesh.triangles.size(), c.resolution, t.total, t.steps[0], t.steps[1],
-          t.steps[2], c.must, c.aim, t.baseline);
+          t.steps[2], t.steps[3], c.must, c.aim, t.baseline);
     }
     is_first = false;
   }

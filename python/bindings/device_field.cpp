@@ -163,6 +163,11 @@ void bind_device_field(nb::module_& m) {
       .def("set_connectivity", &set_connectivity, nb::arg("vertices"), nb::arg("triangles").none(),
            nb::arg("segments").none(), nb::arg("points").none(), nb::arg("stream"))
       .def("compute", &compute, nb::arg("vertices"), nb::arg("distance"), nb::arg("site"), nb::arg("stream"))
+      .def("progress",
+           [](const DeviceFieldSolver& solver) {
+             const DeviceFieldSolver::Progress progress = solver.progress();
+             return nb::make_tuple(progress.queued, progress.finished);
+           })
       .def(
           "order",
           [](DeviceFieldSolver& solver, std::uintptr_t before, std::uintptr_t after) {

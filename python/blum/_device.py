@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Sequence
 from typing import Any
 
@@ -180,6 +181,7 @@ class DeviceFieldSolver:
         self._band = optional_number(band, "band")
         self._site_ids = str(site_ids)
         self._busy = threading.Lock()
+        self._held: deque[tuple[int, tuple[_core.DeviceArray, ...]]] = deque()
 
     def __repr__(self) -> str:
         return f"DeviceFieldSolver({self._grid!r}, device={self.device!r})"
@@ -251,9 +253,17 @@ class DeviceFieldSolver:
             if any(part is not None for part in parts.values()):
                 self._solver.set_connectivity(rows, **parts, stream=queue)
             self._solver.compute(rows, distance, site, queue)
+            self._hold((rows, distance, site))
         if out is not None:
             return DeviceField(*out, self)
         return DeviceField(DeviceArray(distance, self._solver, queue), DeviceArray(site, self._solver, queue), self)
+
+    def _hold(self, arrays: tuple[_core.DeviceArray, ...]) -> None:
+        """Keeps arrays for as long as what is queued uses them: those who gave them may let go of them at once."""
+        queued, finished = self._solver.progress()
+        self._held.append((queued, arrays))
+        while self._held and self._held[0][0] <= finished:
+            self._held.popleft()
 
     def _outputs(self, out: tuple[Any, Any] | None, stream: int) -> tuple[_core.DeviceArray, _core.DeviceArray]:
         shape = self._grid.shape

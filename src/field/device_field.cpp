@@ -136,6 +136,12 @@ void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFie
   state_->engine.run(&cuda::Module::compute_there, Context{}, &vertices, &memory, stream);
 }
 
+DeviceFieldSolver::Progress DeviceFieldSolver::progress() const {
+  Progress progress;
+  state_->engine.run(&cuda::Module::progress, Context{}, &progress.queued, &progress.finished);
+  return progress;
+}
+
 void DeviceFieldSolver::order(void* before, void* after) {
   state_->engine.run(&cuda::Module::order, Context{}, before, after);
 }

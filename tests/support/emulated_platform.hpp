@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <string>
 
@@ -19,12 +20,15 @@ struct EmulatedPlatform {
    public:
     [[nodiscard]] Device& device() { return device_; }
     void enter(void*) {}
-    void leave() {}
+    void leave() { ++queued_; }
+    [[nodiscard]] std::uint64_t queued() const { return queued_; }
+    [[nodiscard]] std::uint64_t finished() const { return queued_; }
     void order(void*, void*) {}
     void wait() {}
 
    private:
     Device device_;
+    std::uint64_t queued_ = 0;
   };
   struct Choice {
     explicit Choice(int) {}

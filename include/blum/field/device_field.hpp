@@ -1,6 +1,7 @@
 // Blum: fields from and to the memory of a device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -15,7 +16,7 @@ namespace blum {
 ///
 /// What FieldSolver promises, holds. Streams are cudaStream_t; nullptr is the legacy default stream. Whatever is read
 /// must have been queued on the stream before the call; the field is complete for what is queued on it afterwards.
-/// Calls may change streams. One call at a time.
+/// Arrays must stay until the device has passed there. Calls may change streams. One call at a time.
 class DeviceFieldSolver {
  public:
   /// @param options  sign: `automatic` and `winding` are both the winding number, which tells the sides of closed
@@ -51,6 +52,14 @@ class DeviceFieldSolver {
   ///         InvalidGrid, OutOfMemory, DeviceError.
   /// Cost: as distance_field's; where the mesh has a boundary, also tiles of 8^3 nodes times its edges.
   void compute(const DeviceArrayView& vertices, const DeviceFieldView& field, void* stream = nullptr);
+
+  /// How many calls have queued work so far, and how many of those, from the first on, have been completed by the
+  /// device: what they read and wrote is free again.
+  struct Progress {
+    std::uint64_t queued = 0;
+    std::uint64_t finished = 0;
+  };
+  [[nodiscard]] Progress progress() const;
 
   /// Makes what is queued on one stream from now on wait for what is queued on another one now.
   void order(void* before, void* after);

@@ -1,4 +1,5 @@
 // The CUDA module: nothing is thrown across its border.
+#include <cstdint>
 #include <string>
 
 #include "field/cuda/cuda_device.cuh"
@@ -43,23 +44,40 @@ class CudaQueue {
   [[nodiscard]] CudaDevice& device() { return device_; }
   void enter(void* stream) {
     const auto other = static_cast<cudaStream_t>(stream);
-    check(cudaStreamWaitEvent(other, done_.get(), 0), "ordering streams");
+    if (queued_ > 0) check(cudaStreamWaitEvent(other, event_of(queued_ - 1), 0), "ordering streams");
     device_.use(other);
   }
   void leave() {
-    (void)cudaEventRecord(done_.get(), device_.stream());
+    // With all events in use, the oldest has to come to pass before it is used again.
+    if (queued_ - finished_ == events) {
+      (void)cudaEventSynchronize(event_of(finished_));
+      ++finished_;
+    }
+    (void)cudaEventRecord(event_of(queued_++), device_.stream());
     device_.use(stream_.get());
   }
-  void wait() { (void)cudaEventSynchronize(done_.get()); }
+  [[nodiscard]] std::uint64_t queued() const { return queued_; }
+  [[nodiscard]] std::uint64_t finished() {
+    while (finished_ < queued_ && cudaEventQuery(event_of(finished_)) == cudaSuccess) ++finished_;
+    return finished_;
+  }
+  void wait() {
+    if (queued_ > 0) (void)cudaEventSynchronize(event_of(queued_ - 1));
+  }
   void order(void* before, void* after) {
     check(cudaEventRecord(other_.get(), static_cast<cudaStream_t>(before)), "ordering streams");
     check(cudaStreamWaitEvent(static_cast<cudaStream_t>(after), other_.get(), 0), "ordering streams");
   }
 
  private:
+  static constexpr std::uint64_t events = 64;
+  [[nodiscard]] cudaEvent_t event_of(std::uint64_t number) const { return done_[number % events].get(); }
+
   Stream stream_;
-  Event done_;   ///< all that was queued on lent streams
-  Event other_;  ///< for the streams of others
+  Event done_[events];  ///< of the last pieces of work on lent streams
+  Event other_;         ///< for the streams of others
+  std::uint64_t queued_ = 0;
+  std::uint64_t finished_ = 0;
   CudaDevice device_;
 };
 

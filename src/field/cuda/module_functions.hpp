@@ -18,7 +18,7 @@ namespace blum::cuda {
 
 /// What is thrown becomes a status. Platform is CudaPlatform; the tests have one that runs on the host. It has
 ///   Device       what kernels are launched with
-///   Queue        a Device and the stream it queues on: device(), enter(stream), leave(), wait(),
+///   Queue        a Device and the stream it queues on: device(), enter(stream), leave(), queued(), finished(), wait(),
 ///                order(before, after)
 ///   Choice       makes a device the current one while it is alive
 ///   static void expect_device(int index)              throws DeviceError
@@ -28,9 +28,9 @@ template <class Platform>
 class ModuleFunctions {
  public:
   [[nodiscard]] static const Module* table() {
-    static const Module module{module_version, create, destroy,  set_connectivity, compute,   set_connectivity_there,
-                               compute_there,  order,  allocate, release,          set_image, select_voxels,
-                               transform_image};
+    static const Module module{
+        module_version, create, destroy,  set_connectivity, compute,   set_connectivity_there, compute_there,
+        progress,       order,  allocate, release,          set_image, select_voxels,          transform_image};
     return &module;
   }
 
@@ -138,6 +138,12 @@ class ModuleFunctions {
       request.most_boundary_edges = kernels::no_index;
       own.fields.compute(*vertices, request, field->distance, field->site);
       if (field->wants_triangles) own.fields.show_triangles(field->grid->node_count(), field->site);
+    });
+  }
+  static Status progress(void* engine, std::uint64_t* queued, std::uint64_t* finished, Call* call) {
+    return with(engine, call, [&](Engine& own) {
+      *finished = own.queue.finished();
+      *queued = own.queue.queued();
     });
   }
   static Status order(void* engine, void* before, void* after, Call* call) {

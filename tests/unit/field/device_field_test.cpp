@@ -126,6 +126,8 @@ TEST_F(DeviceField, FollowsADeformingMeshAndANewOne) {
   solver.compute(arrays.view().vertices, output.view());
   expect_same(output, distance_field(other, grid, {}, {.device = Device::cuda()}));
   solver.order(nullptr, nullptr);
+  EXPECT_GE(solver.progress().queued, 5U);  // two connectivities, three fields
+  EXPECT_EQ(solver.progress().finished, solver.progress().queued);
 }
 
 TEST_F(DeviceField, VerticesThatAreNoNumbersGiveNoField) {
