@@ -15,6 +15,7 @@
 
 #include "bindings.hpp"
 #include "blum/core/error.hpp"
+#include "blum/field/device_distance_transform.hpp"
 #include "fields.hpp"
 
 namespace blum::python {
@@ -27,11 +28,22 @@ struct NamedType {
   std::size_t bytes;
 };
 
-constexpr std::array<NamedType, 5> types{{{"<f4", ElementType::float32, nb::dtype<float>(), 4},
-                                          {"<f8", ElementType::float64, nb::dtype<double>(), 8},
-                                          {"<i4", ElementType::int32, nb::dtype<std::int32_t>(), 4},
-                                          {"<u4", ElementType::uint32, nb::dtype<std::uint32_t>(), 4},
-                                          {"<i8", ElementType::int64, nb::dtype<std::int64_t>(), 8}}};
+template <class T>
+constexpr NamedType named(const char* name, ElementType type) {
+  return {name, type, nb::dtype<T>(), sizeof(T)};
+}
+// A type that is named twice has its first name.
+constexpr std::array<NamedType, 11> types{named<std::uint8_t>("|u1", ElementType::uint8),
+                                          named<std::int8_t>("|i1", ElementType::int8),
+                                          named<std::uint16_t>("<u2", ElementType::uint16),
+                                          named<std::int16_t>("<i2", ElementType::int16),
+                                          named<std::uint32_t>("<u4", ElementType::uint32),
+                                          named<std::int32_t>("<i4", ElementType::int32),
+                                          named<std::uint64_t>("<u8", ElementType::uint64),
+                                          named<std::int64_t>("<i8", ElementType::int64),
+                                          named<float>("<f4", ElementType::float32),
+                                          named<double>("<f8", ElementType::float64),
+                                          named<bool>("|b1", ElementType::uint8)};
 
 /// An array in a device's memory, and what keeps it there.
 struct DeviceArray {
@@ -44,9 +56,14 @@ struct DeviceArray {
   nb::object owner;      ///< or of another object,
   nb::ndarray<> import;  ///< or of one that came by DLPack
 
-  [[nodiscard]] DeviceArrayView view() const {
-    if (!type || !is_contiguous) throw InvalidOption("arrays on a device must be C-contiguous numbers");
-    return {data, type->type, shape.empty() ? 1 : shape[0]};
+  /// @param axes  how many of the first count the rows.
+  [[nodiscard]] DeviceArrayView view(std::size_t axes = 1) const {
+    if (!type || !is_contiguous || shape.size() < axes) {
+      throw InvalidOption("arrays on a device must be C-contiguous numbers");
+    }
+    std::size_t rows = 1;
+    for (std::size_t axis = 0; axis < axes; ++axis) rows *= shape[axis];
+    return {data, type->type, rows};
   }
 };
 
@@ -145,11 +162,37 @@ void compute(DeviceFieldSolver& solver, const DeviceArray& vertices, const Devic
   solver.compute(from, to, stream_of(stream));
 }
 
+void transform(DeviceDistanceTransform& transform, const DeviceArray& values, const DeviceArray& distance,
+               const DeviceArray& site, std::uintptr_t stream) {
+  const DeviceArrayView from = values.view(3);
+  const DeviceFieldView to{static_cast<float*>(distance.data), static_cast<std::uint32_t*>(site.data)};
+  const nb::gil_scoped_release released;
+  transform.compute(from, to, stream_of(stream));
+}
+
+/// What both solvers have.
+template <class Solver>
+void bind_queue(nb::class_<Solver>& type) {
+  type.def_prop_ro("device", [](const Solver& solver) { return to_string(solver.device()); })
+      .def("progress",
+           [](const Solver& solver) {
+             const DeviceProgress progress = solver.progress();
+             return nb::make_tuple(progress.queued, progress.finished);
+           })
+      .def(
+          "order",
+          [](Solver& solver, std::uintptr_t before, std::uintptr_t after) {
+            solver.order(stream_of(before), stream_of(after));
+          },
+          nb::arg("before"), nb::arg("after"));
+}
+
 }  // namespace
 
 void bind_device_field(nb::module_& m) {
   bind_device_array(m);
-  nb::class_<DeviceFieldSolver>(m, "DeviceFieldSolver")
+  auto solver = nb::class_<DeviceFieldSolver>(m, "DeviceFieldSolver");
+  solver
       .def(
           "__init__",
           [](DeviceFieldSolver* self, const GridSpec& grid, const std::string& sign, std::optional<double> band,
@@ -157,23 +200,27 @@ void bind_device_field(nb::module_& m) {
             new (self) DeviceFieldSolver(grid, field_options(sign, band, site_ids), {.device = parse_device(device)});
           },
           nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"), nb::arg("device"))
-      .def_prop_ro("device", [](const DeviceFieldSolver& solver) { return to_string(solver.device()); })
-      .def_prop_ro("sign_rule",
-                   [](const DeviceFieldSolver& solver) { return std::string(to_string(solver.sign_rule())); })
+      .def_prop_ro("sign_rule", [](const DeviceFieldSolver& self) { return std::string(to_string(self.sign_rule())); })
       .def("set_connectivity", &set_connectivity, nb::arg("vertices"), nb::arg("triangles").none(),
            nb::arg("segments").none(), nb::arg("points").none(), nb::arg("stream"))
-      .def("compute", &compute, nb::arg("vertices"), nb::arg("distance"), nb::arg("site"), nb::arg("stream"))
-      .def("progress",
-           [](const DeviceFieldSolver& solver) {
-             const DeviceFieldSolver::Progress progress = solver.progress();
-             return nb::make_tuple(progress.queued, progress.finished);
-           })
+      .def("compute", &compute, nb::arg("vertices"), nb::arg("distance"), nb::arg("site"), nb::arg("stream"));
+  bind_queue(solver);
+
+  auto transforms = nb::class_<DeviceDistanceTransform>(m, "DeviceDistanceTransform");
+  transforms
       .def(
-          "order",
-          [](DeviceFieldSolver& solver, std::uintptr_t before, std::uintptr_t after) {
-            solver.order(stream_of(before), stream_of(after));
+          "__init__",
+          [](DeviceDistanceTransform* self, const GridSpec& grid, std::optional<std::int64_t> label,
+             std::optional<double> threshold, bool is_signed, std::optional<double> band, const std::string& device) {
+            DistanceTransformOptions options{.is_signed = is_signed, .band = band};
+            if (label) options.selection = LabelSelection::of_label(*label);
+            if (threshold) options.selection = LabelSelection::at_least(*threshold);
+            new (self) DeviceDistanceTransform(grid, options, {.device = parse_device(device)});
           },
-          nb::arg("before"), nb::arg("after"));
+          nb::arg("grid"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("is_signed"),
+          nb::arg("band").none(), nb::arg("device"))
+      .def("compute", &transform, nb::arg("values"), nb::arg("distance"), nb::arg("site"), nb::arg("stream"));
+  bind_queue(transforms);
 }
 
 }  // namespace blum::python

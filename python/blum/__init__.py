@@ -23,7 +23,7 @@ from ._certificate import (
 from ._complex import ROLES, MedialComplex, NestedComplex, Present, ball_union_field, read_medial
 from ._core import thread_count
 from ._core import version as __version__
-from ._device import DeviceArray, DeviceField, DeviceFieldSolver
+from ._device import DeviceArray, DeviceDistanceTransform, DeviceField, DeviceFieldSolver
 from ._errors import (
     Cancelled,
     DeviceError,
@@ -79,6 +79,7 @@ __all__ = [
     "ClosestPointQuery",
     "ClosestPoints",
     "DeviceArray",
+    "DeviceDistanceTransform",
     "DeviceError",
     "DeviceField",
     "DeviceFieldSolver",

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arguments import Real, device_name, integer, one_of, optional_number
+from ._arguments import Integer, Real, device_name, integer, label_of, one_of, optional_number
 from ._errors import InvalidOption
 from ._field import _SIGNS, _SITE_IDS, Sign, SiteIds
 from ._grid import Grid
@@ -27,7 +27,7 @@ class DeviceArray:
     for what computes it.
     """
 
-    def __init__(self, core: _core.DeviceArray, solver: _core.DeviceFieldSolver, stream: int) -> None:
+    def __init__(self, core: _core.DeviceArray, solver: Any, stream: int) -> None:
         self._core = core
         self._solver = solver
         self._stream = stream
@@ -83,9 +83,10 @@ class DeviceArray:
 
 
 class DeviceField:
-    """Distance and closest site at every node of a grid, in a CUDA device's memory; made by DeviceFieldSolver."""
+    """Distance and closest site at every node of a grid, in a CUDA device's memory; made by
+    :class:`DeviceFieldSolver` and :class:`DeviceDistanceTransform`."""
 
-    def __init__(self, distance: Any, site: Any, solver: DeviceFieldSolver) -> None:
+    def __init__(self, distance: Any, site: Any, solver: DeviceFieldSolver | DeviceDistanceTransform) -> None:
         self._distance = distance
         self._site = site
         self._grid = solver.grid
@@ -104,7 +105,7 @@ class DeviceField:
 
     @property
     def site(self) -> Any:
-        """Closest site, int32 (z, y, x); -1 beyond the band."""
+        """Closest site, int32 (z, y, x); -1 where there is none."""
         return self._site
 
     @property
@@ -119,12 +120,12 @@ class DeviceField:
 
     @property
     def site_ids(self) -> str:
-        """What the sites count: "features" or "triangles"."""
+        """What the sites count: "features", "triangles" or "voxels"."""
         return self._site_ids
 
     @property
     def sign_rule(self) -> str:
-        """How the sign was found: "winding" or "none"."""
+        """How the sign was found: "winding", "label" or "none"."""
         return self._sign_rule
 
     @property
@@ -133,7 +134,90 @@ class DeviceField:
         return self._device
 
 
-class DeviceFieldSolver:
+class _DeviceSolver:
+    """What the solvers of this module share: arrays of others in and out, and the streams between."""
+
+    def __init__(self, grid: Grid, core: Any, band: float | None, site_ids: str) -> None:
+        self._solver = core
+        self._grid = grid
+        self._band = band
+        self._site_ids = site_ids
+        self._busy = threading.Lock()
+        self._held: deque[tuple[int, tuple[_core.DeviceArray, ...]]] = deque()
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self._grid!r}, device={self.device!r})"
+
+    @property
+    def grid(self) -> Grid:
+        """Where the nodes are."""
+        return self._grid
+
+    @property
+    def band(self) -> float | None:
+        """Half-width of the band."""
+        return self._band
+
+    @property
+    def site_ids(self) -> str:
+        """What the sites count: "features", "triangles" or "voxels"."""
+        return self._site_ids
+
+    @property
+    def device(self) -> str:
+        """Where fields are computed: "cuda:K"."""
+        return str(self._solver.device)
+
+    def _hold(self, arrays: tuple[_core.DeviceArray, ...]) -> None:
+        """Keeps arrays for as long as what is queued uses them: those who gave them may let go of them at once."""
+        queued, finished = self._solver.progress()
+        self._held.append((queued, arrays))
+        while self._held and self._held[0][0] <= finished:
+            self._held.popleft()
+
+    def _outputs(self, out: tuple[Any, Any] | None, stream: int) -> tuple[_core.DeviceArray, _core.DeviceArray]:
+        shape = self._grid.shape
+        if out is None:
+            size = list(shape)
+            return (
+                _core.DeviceArray.allocated(self.device, size, "<f4"),
+                _core.DeviceArray.allocated(self.device, size, "<i4"),
+            )
+        if not isinstance(out, tuple) or len(out) != 2:
+            raise TypeError("out must be a pair of arrays on the device, (distance, site)")
+        for place, value in enumerate(out):
+            interface = getattr(value, "__cuda_array_interface__", None)
+            if interface is not None and interface["data"][1]:
+                raise ValueError(f"out[{place}] is read-only")
+        distance = self._take(out[0], "out[0]", shape, ("<f4",), stream)
+        return distance, self._take(out[1], "out[1]", shape, ("<i4", "<u4"), stream)
+
+    def _results(
+        self, distance: _core.DeviceArray, site: _core.DeviceArray, out: tuple[Any, Any] | None, stream: int
+    ) -> tuple[Any, Any]:
+        if out is not None:
+            return out
+        return DeviceArray(distance, self._solver, stream), DeviceArray(site, self._solver, stream)
+
+    def _take(
+        self, value: Any, name: str, shape: tuple[int | None, ...], types: tuple[str, ...], stream: int
+    ) -> _core.DeviceArray:
+        """An array of others, checked; what it holds is ready for what is queued on the stream from now on."""
+        array = _imported(value, name, self._solver, stream)
+        if array.type not in types:
+            raise TypeError(f"{name} must hold {' or '.join(np.dtype(kind).name for kind in types)}")
+        if not array.is_contiguous:
+            raise ValueError(f"{name} must be C-contiguous")
+        found = tuple(array.shape)
+        if len(found) != len(shape) or any(want not in (None, size) for want, size in zip(shape, found, strict=True)):
+            wanted = ", ".join("n" if size is None else str(size) for size in shape)
+            raise ValueError(f"{name} has the shape {found}, but must have ({wanted}{',' if len(shape) == 1 else ''})")
+        if array.device != _index(self._solver):
+            raise InvalidOption(f"{name} is on cuda:{array.device}, but fields are computed on {self.device}")
+        return array
+
+
+class DeviceFieldSolver(_DeviceSolver):
     """Fields of deforming meshes that are in a CUDA device's memory, as arrays there: no copies, no waiting.
 
     Arrays come in by DLPack or ``__cuda_array_interface__`` (PyTorch, CuPy, JAX, Numba, Warp), C-contiguous, and fields
@@ -153,7 +237,7 @@ class DeviceFieldSolver:
     --------
     ::
 
-        solver = blum.DeviceFieldSolver(blum.Grid(size=(128, 128, 128), spacing=0.02, origin=(-1.3, -1.3, -1.3)))
+        solver = blum.DeviceFieldSolver(blum.Grid((-1.3, -1.3, -1.3), 0.02, (128, 128, 128)))
         field = solver.compute(vertices, triangles)           # tensors of PyTorch on the device
         distance = torch.from_dlpack(field.distance)
         field = solver.compute(vertices + step)               # the same triangles
@@ -170,46 +254,19 @@ class DeviceFieldSolver:
     ) -> None:
         if not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
-        self._solver = _core.DeviceFieldSolver(
+        core = _core.DeviceFieldSolver(
             grid._spec,
             one_of(sign, "sign", _SIGNS),
             optional_number(band, "band"),
             one_of(site_ids, "site_ids", _SITE_IDS),
             device_name(device),
         )
-        self._grid = grid
-        self._band = optional_number(band, "band")
-        self._site_ids = str(site_ids)
-        self._busy = threading.Lock()
-        self._held: deque[tuple[int, tuple[_core.DeviceArray, ...]]] = deque()
-
-    def __repr__(self) -> str:
-        return f"DeviceFieldSolver({self._grid!r}, device={self.device!r})"
-
-    @property
-    def grid(self) -> Grid:
-        """Where the nodes are."""
-        return self._grid
-
-    @property
-    def band(self) -> float | None:
-        """Half-width of the band, mesh units."""
-        return self._band
-
-    @property
-    def site_ids(self) -> str:
-        """What the sites count: "features" or "triangles"."""
-        return self._site_ids
+        super().__init__(grid, core, optional_number(band, "band"), str(site_ids))
 
     @property
     def sign_rule(self) -> str:
         """How the signs of fields are found with the current triangles: "winding" or "none"."""
         return str(self._solver.sign_rule)
-
-    @property
-    def device(self) -> str:
-        """Where fields are computed: "cuda:K"."""
-        return str(self._solver.device)
 
     def compute(
         self,
@@ -254,57 +311,94 @@ class DeviceFieldSolver:
                 self._solver.set_connectivity(rows, **parts, stream=queue)
             self._solver.compute(rows, distance, site, queue)
             self._hold((rows, distance, site))
-        if out is not None:
-            return DeviceField(*out, self)
-        return DeviceField(DeviceArray(distance, self._solver, queue), DeviceArray(site, self._solver, queue), self)
+        return DeviceField(*self._results(distance, site, out, queue), self)
 
-    def _hold(self, arrays: tuple[_core.DeviceArray, ...]) -> None:
-        """Keeps arrays for as long as what is queued uses them: those who gave them may let go of them at once."""
-        queued, finished = self._solver.progress()
-        self._held.append((queued, arrays))
-        while self._held and self._held[0][0] <= finished:
-            self._held.popleft()
 
-    def _outputs(self, out: tuple[Any, Any] | None, stream: int) -> tuple[_core.DeviceArray, _core.DeviceArray]:
-        shape = self._grid.shape
-        if out is None:
-            size = list(shape)
-            return (
-                _core.DeviceArray.allocated(self.device, size, "<f4"),
-                _core.DeviceArray.allocated(self.device, size, "<i4"),
-            )
-        if not isinstance(out, tuple) or len(out) != 2:
-            raise TypeError("out must be a pair of arrays on the device, (distance, site)")
-        for place, value in enumerate(out):
-            interface = getattr(value, "__cuda_array_interface__", None)
-            if interface is not None and interface["data"][1]:
-                raise ValueError(f"out[{place}] is read-only")
-        distance = self._take(out[0], "out[0]", shape, ("<f4",), stream)
-        return distance, self._take(out[1], "out[1]", shape, ("<i4", "<u4"), stream)
+class DeviceDistanceTransform(_DeviceSolver):
+    """Distance transforms of images that are in a CUDA device's memory: no copies, no waiting.
 
-    def _take(
-        self, value: Any, name: str, shape: tuple[int | None, ...], types: tuple[str, ...], stream: int
-    ) -> _core.DeviceArray:
-        """An array of others, checked; what it holds is ready for what is queued on the stream from now on."""
-        array = _imported(value, name, self._solver, stream)
-        if array.type not in types:
-            raise TypeError(f"{name} must hold {' or '.join(np.dtype(kind).name for kind in types)}")
-        if not array.is_contiguous:
-            raise ValueError(f"{name} must be C-contiguous")
-        found = tuple(array.shape)
-        if len(found) != len(shape) or any(want not in (None, size) for want, size in zip(shape, found, strict=True)):
-            wanted = ", ".join("n" if size is None else str(size) for size in shape)
-            raise ValueError(f"{name} has the shape {found}, but must have ({wanted}{',' if len(shape) == 1 else ''})")
-        if array.device != _index(self._solver):
-            raise InvalidOption(f"{name} is on cuda:{array.device}, but fields are computed on {self.device}")
-        return array
+    Arrays come in and fields go out as with :class:`DeviceFieldSolver`; see :func:`distance_transform` for images in
+    the host's memory.
+
+    Parameters
+    ----------
+    grid : Grid
+        Of the images: spacing, and where they are.
+    label, threshold, signed, band
+        As for :func:`distance_transform`.
+    device : "cuda" or "cuda:K"
+
+    Examples
+    --------
+    ::
+
+        transform = blum.DeviceDistanceTransform(blum.Grid((0, 0, 0), 1, mask.shape[::-1]), signed=False)
+        distance = cupy.from_dlpack(transform.compute(mask).distance)     # mask: (z, y, x) on the device
+    """
+
+    def __init__(
+        self,
+        grid: Grid,
+        *,
+        label: Integer | None = None,
+        threshold: Real | None = None,
+        signed: bool = True,
+        band: Real | None = None,
+        device: str = "cuda",
+    ) -> None:
+        if not isinstance(grid, Grid):
+            raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
+        if label is not None and threshold is not None:
+            raise InvalidOption("label and threshold exclude each other")
+        width = optional_number(band, "band")
+        core = _core.DeviceDistanceTransform(
+            grid._spec,
+            None if label is None else label_of(label, "label"),
+            optional_number(threshold, "threshold"),
+            bool(signed),
+            width,
+            device_name(device),
+        )
+        super().__init__(grid, core, width, "voxels")
+        self._sign_rule = "label" if signed else "none"
+
+    @property
+    def sign_rule(self) -> str:
+        """How the sign is found: "label" or "none"."""
+        return self._sign_rule
+
+    def compute(self, values: Any, *, out: tuple[Any, Any] | None = None, stream: Any = None) -> DeviceField:
+        """Queues the transform of an image.
+
+        Parameters
+        ----------
+        values : (z, y, x) of booleans or numbers, on the device
+            Where no voxel is selected, or in a signed transform every one, distances are infinite (or the band's) and
+            there are no sites: no error is raised, as nothing waits for the device.
+        out : (distance, site), optional
+            Arrays on the device to write to: float32 and int32 or uint32, of the grid's shape.
+        stream : int, or a stream of PyTorch or CuPy
+            What to queue on; default: the legacy default stream.
+
+        Raises
+        ------
+        InvalidOption (a ValueError), ValueError, TypeError, OutOfMemory, DeviceError
+        """
+        queue = _stream_address(stream)
+        voxels = self._take(values, "values", self._grid.shape, _NUMBERS, queue)
+        distance, site = self._outputs(out, queue)
+        with self._busy:
+            self._solver.compute(voxels, distance, site, queue)
+            self._hold((voxels, distance, site))
+        return DeviceField(*self._results(distance, site, out, queue), self)
 
 
 _REALS = ("<f4", "<f8")
 _INTEGERS = ("<i4", "<u4", "<i8")
+_NUMBERS = ("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f4", "<f8")
 
 
-def _index(solver: _core.DeviceFieldSolver) -> int:
+def _index(solver: Any) -> int:
     return int(solver.device.partition(":")[2])
 
 
@@ -320,7 +414,7 @@ def _stream_address(stream: Any) -> int:
     return address or _LEGACY
 
 
-def _imported(value: Any, name: str, solver: _core.DeviceFieldSolver, stream: int) -> _core.DeviceArray:
+def _imported(value: Any, name: str, solver: Any, stream: int) -> _core.DeviceArray:
     if hasattr(value, "__dlpack__") and hasattr(value, "__dlpack_device__"):
         kind, _ = value.__dlpack_device__()
         if int(kind) in (_CUDA, _MANAGED):

@@ -6,18 +6,11 @@
 #include <utility>
 
 #include "blum/core/error.hpp"
-#include "field/cuda/module_engine.hpp"
+#include "field/cuda/device_queue.hpp"
 #include "field/field_options.hpp"
 
 namespace blum {
 namespace {
-
-/// The CUDA device that a context asks for.
-int cuda_index(const Device& device) {
-  if (device.kind == DeviceKind::cuda) return device.index;
-  if (device.kind == DeviceKind::automatic) return 0;
-  throw InvalidOption("memory of a CUDA device is asked for, but the device is the CPU");
-}
 
 void check_vertices(const DeviceArrayView& vertices) {
   if (vertices.type != ElementType::float32 && vertices.type != ElementType::float64) {
@@ -28,7 +21,7 @@ void check_vertices(const DeviceArrayView& vertices) {
 void check_indices(const DeviceArrayView& indices, const std::string& name) {
   if (indices.rows == 0) return;
   if (indices.data == nullptr) throw InvalidOption(name + " on a device have rows, but no memory");
-  if (indices.type == ElementType::float32 || indices.type == ElementType::float64) {
+  if (indices.type != ElementType::int32 && indices.type != ElementType::uint32 && indices.type != ElementType::int64) {
     throw InvalidOption(name + " on a device must be int32, uint32 or int64");
   }
 }
@@ -58,23 +51,13 @@ void check_mesh(const DeviceMeshView& mesh, const FieldOptions& options) {
 
 }  // namespace
 
-DeviceMemory::DeviceMemory(const Device& device, std::size_t bytes) : size_(bytes) {
-  const int index = cuda_index(device);
-  const cuda::Module& module = cuda::load_module();
-  void* memory = nullptr;
-  cuda::Call call;
-  cuda::check(module.allocate(index, bytes, &memory, &call), call);
-  data_ = std::shared_ptr<void>(memory, [index, release = module.release](void* own) { release(index, own); });
-}
-
 struct DeviceFieldSolver::State {
-  State(const GridSpec& nodes, const FieldOptions& wanted, int device_index)
-      : grid(nodes), options(wanted), index(device_index), engine(device_index) {}
+  State(const GridSpec& nodes, const FieldOptions& wanted, const Device& device)
+      : grid(nodes), options(wanted), queue(device) {}
 
   GridSpec grid;
   FieldOptions options;
-  int index;
-  cuda::ModuleEngine engine;
+  cuda::DeviceQueue queue;
   std::optional<SignRule> sign_rule;  ///< none before there is a connectivity
 };
 
@@ -87,7 +70,7 @@ DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& o
         "meshes "
         "that face outwards");
   }
-  state_ = std::make_unique<State>(grid, options, cuda_index(context.device));
+  state_ = std::make_unique<State>(grid, options, context.device);
 }
 
 DeviceFieldSolver::DeviceFieldSolver(DeviceFieldSolver&&) noexcept = default;
@@ -95,7 +78,7 @@ DeviceFieldSolver& DeviceFieldSolver::operator=(DeviceFieldSolver&&) noexcept = 
 DeviceFieldSolver::~DeviceFieldSolver() = default;
 
 Device DeviceFieldSolver::device() const {
-  return Device::cuda(state_->index);
+  return state_->queue.device();
 }
 const GridSpec& DeviceFieldSolver::grid() const {
   return state_->grid;
@@ -110,7 +93,7 @@ void DeviceFieldSolver::set_connectivity(const DeviceMeshView& mesh, void* strea
   if (state_->options.sign == SignMode::winding && mesh.triangles.rows == 0) {
     throw InvalidOption("a sign was asked for, but the mesh has no triangles, so it has no inside: ask for none");
   }
-  state_->engine.run(&cuda::Module::set_connectivity_there, Context{}, &mesh, stream);
+  state_->queue.run(&cuda::Module::set_connectivity_there, &mesh, stream);
   const bool is_signed = state_->options.sign != SignMode::none && mesh.triangles.rows > 0;
   state_->sign_rule = is_signed ? SignRule::winding : SignRule::none;
 }
@@ -133,17 +116,14 @@ void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFie
   memory.site = field.site;
   memory.wants_signs = *state_->sign_rule == SignRule::winding;
   memory.wants_triangles = state_->options.site_ids == SiteIds::triangles;
-  state_->engine.run(&cuda::Module::compute_there, Context{}, &vertices, &memory, stream);
+  state_->queue.run(&cuda::Module::compute_there, &vertices, &memory, stream);
 }
 
-DeviceFieldSolver::Progress DeviceFieldSolver::progress() const {
-  Progress progress;
-  state_->engine.run(&cuda::Module::progress, Context{}, &progress.queued, &progress.finished);
-  return progress;
+DeviceProgress DeviceFieldSolver::progress() const {
+  return state_->queue.progress();
 }
-
 void DeviceFieldSolver::order(void* before, void* after) {
-  state_->engine.run(&cuda::Module::order, Context{}, before, after);
+  state_->queue.order(before, after);
 }
 
 }  // namespace blum

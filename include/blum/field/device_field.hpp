@@ -1,7 +1,6 @@
 // Blum: fields from and to the memory of a device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -53,14 +52,7 @@ class DeviceFieldSolver {
   /// Cost: as distance_field's; where the mesh has a boundary, also tiles of 8^3 nodes times its edges.
   void compute(const DeviceArrayView& vertices, const DeviceFieldView& field, void* stream = nullptr);
 
-  /// How many calls have queued work so far, and how many of those, from the first on, have been completed by the
-  /// device: what they read and wrote is free again.
-  struct Progress {
-    std::uint64_t queued = 0;
-    std::uint64_t finished = 0;
-  };
-  [[nodiscard]] Progress progress() const;
-
+  [[nodiscard]] DeviceProgress progress() const;
   /// Makes what is queued on one stream from now on wait for what is queued on another one now.
   void order(void* before, void* after);
 

@@ -9,7 +9,8 @@
 
 namespace blum {
 
-enum class ElementType : std::uint8_t { float32, float64, int32, uint32, int64 };
+/// In the order of VoxelImageView::Values.
+enum class ElementType : std::uint8_t { uint8, int8, uint16, int16, uint32, int32, uint64, int64, float32, float64 };
 
 /// Rows of an array in a CUDA device's memory, one after the other without gaps.
 struct DeviceArrayView {
@@ -30,6 +31,13 @@ struct DeviceMeshView {
 struct DeviceFieldView {
   float* distance = nullptr;
   std::uint32_t* site = nullptr;  ///< 0xffffffff where there is none
+};
+
+/// How many calls have queued work so far, and how many of those, from the first on, the device has completed: what
+/// they read and wrote is free again.
+struct DeviceProgress {
+  std::uint64_t queued = 0;
+  std::uint64_t finished = 0;
 };
 
 /// Memory of a CUDA device that ends with its owner.

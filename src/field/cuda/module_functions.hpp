@@ -28,9 +28,14 @@ template <class Platform>
 class ModuleFunctions {
  public:
   [[nodiscard]] static const Module* table() {
-    static const Module module{
-        module_version, create, destroy,  set_connectivity, compute,   set_connectivity_there, compute_there,
-        progress,       order,  allocate, release,          set_image, select_voxels,          transform_image};
+    static const Module module{module_version, create,
+                               destroy,        set_connectivity,
+                               compute,        set_connectivity_there,
+                               compute_there,  transform_there,
+                               progress,       order,
+                               allocate,       release,
+                               set_image,      select_voxels,
+                               transform_image};
     return &module;
   }
 
@@ -138,6 +143,14 @@ class ModuleFunctions {
       request.most_boundary_edges = kernels::no_index;
       own.fields.compute(*vertices, request, field->distance, field->site);
       if (field->wants_triangles) own.fields.show_triangles(field->grid->node_count(), field->site);
+    });
+  }
+  static Status transform_there(void* engine, const DeviceArrayView* values, const detail::ImagePlan* plan,
+                                const LabelSelection* selection, float* distance, std::uint32_t* site, void* stream,
+                                Call* call) {
+    return with(engine, call, [&](Engine& own) {
+      const Visit visit(own, stream);
+      own.images.transform_there(*values, *plan, *selection, distance, site);
     });
   }
   static Status progress(void* engine, std::uint64_t* queued, std::uint64_t* finished, Call* call) {

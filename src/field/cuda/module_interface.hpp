@@ -68,7 +68,11 @@ struct Module {
   Status (*set_connectivity_there)(void* engine, const DeviceMeshView* mesh, void* stream, Call* call) = nullptr;
   Status (*compute_there)(void* engine, const DeviceArrayView* vertices, FieldMemory* field, void* stream,
                           Call* call) = nullptr;
-  /// How often the two above have queued work, and how much of that, from the first on, is done.
+  /// The same for an image and its selected voxels: uploads nothing and does not wait.
+  Status (*transform_there)(void* engine, const DeviceArrayView* values, const detail::ImagePlan* plan,
+                            const LabelSelection* selection, float* distance, std::uint32_t* site, void* stream,
+                            Call* call) = nullptr;
+  /// How often the three above have queued work, and how much of that, from the first on, is done.
   Status (*progress)(void* engine, std::uint64_t* queued, std::uint64_t* finished, Call* call) = nullptr;
   /// Makes what is queued on one stream from now on wait for what is queued on another one now.
   Status (*order)(void* engine, void* before, void* after, Call* call) = nullptr;

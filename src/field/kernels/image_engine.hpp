@@ -6,6 +6,7 @@
 #include <span>
 #include <variant>
 
+#include "blum/field/device_memory.hpp"
 #include "blum/grid/voxel_image.hpp"
 #include "field/kernels/image_transform.hpp"
 
@@ -44,7 +45,42 @@ class ImageEngine {
     device_.download(site_.data(), voxels_, site);
   }
 
+  /// Transforms an image in the device's memory to arrays there. Queued, without waiting.
+  void transform_there(const DeviceArrayView& values, const detail::ImagePlan& plan, const LabelSelection& selection,
+                       float* distance, std::uint32_t* site) {
+    transform_.set_plan(plan);
+    with_type(values.type, [&]<class T>(T) { transform_.select(static_cast<const T*>(values.data), selection); });
+    transform_.run(distance, site);
+  }
+
  private:
+  /// Calls work with a value of an element type.
+  template <class Work>
+  static void with_type(ElementType type, const Work& work) {
+    switch (type) {
+      case ElementType::uint8:
+        return work(std::uint8_t{});
+      case ElementType::int8:
+        return work(std::int8_t{});
+      case ElementType::uint16:
+        return work(std::uint16_t{});
+      case ElementType::int16:
+        return work(std::int16_t{});
+      case ElementType::uint32:
+        return work(std::uint32_t{});
+      case ElementType::int32:
+        return work(std::int32_t{});
+      case ElementType::uint64:
+        return work(std::uint64_t{});
+      case ElementType::int64:
+        return work(std::int64_t{});
+      case ElementType::float32:
+        return work(float{});
+      case ElementType::float64:
+        return work(double{});
+    }
+  }
+
   Device& device_;
   ImageTransform<Device> transform_;
   VoxelImageView::Values image_;  ///< for its type

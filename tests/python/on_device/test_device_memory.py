@@ -221,3 +221,49 @@ def test_vertices_that_are_no_numbers_give_no_field(mesh, grid):
     field = blum.DeviceFieldSolver(grid).compute(OnDevice(vertices), OnDevice(mesh.triangles))
     assert np.isnan(on_host(field.distance)).all()
     assert (on_host(field.site) == -1).all()
+
+
+@pytest.mark.parametrize("kind", [OnDevice, ByDlpack])
+@pytest.mark.parametrize("number", [np.bool_, np.uint8, np.int8, np.uint16, np.int16, np.uint32, np.int32, np.uint64,
+                                    np.int64, np.float32, np.float64])
+def test_images_are_those_of_the_host(kind, number):
+    values = np.random.default_rng(3).integers(0, 4, (7, 12, 9)).astype(number)
+    grid = blum.Grid((0, 0, 0), (1, 0.5, 2), (9, 12, 7))
+    for options in ({}, {"signed": False}, {"label": 1}, {"threshold": 1, "band": 1.5}):
+        transform = blum.DeviceDistanceTransform(grid, **options)
+        field = transform.compute(kind(values))
+        check(field, blum.distance_transform(values, spacing=(1, 0.5, 2), **options))
+        assert field.site_ids == "voxels"
+        assert field.sign_rule == transform.sign_rule == ("label" if options.get("signed", True) else "none")
+        assert field.band == options.get("band")
+
+
+def test_images_without_selected_voxels_are_infinitely_far():
+    grid = blum.Grid((0, 0, 0), 1, (5, 6, 7))
+    for fill, options in ((0, {}), (1, {}), (0, {"signed": False})):
+        field = blum.DeviceDistanceTransform(grid, **options).compute(OnDevice(np.full(grid.shape, fill)))
+        assert np.isinf(on_host(field.distance)).all()
+        assert (on_host(field.site) == -1).all()
+
+
+def test_wrong_images_are_told_of():
+    grid = blum.Grid((0, 0, 0), 1, (5, 6, 7))
+    transform = blum.DeviceDistanceTransform(grid)
+    for wrong, error, text in (
+        (np.zeros(grid.shape), TypeError, "CUDA device's memory"),
+        (OnDevice(np.zeros((5, 6, 7))), ValueError, "shape"),
+        (OnDevice(np.zeros(grid.shape, complex)), TypeError, "values must hold"),
+    ):
+        with pytest.raises(error, match=text):
+            transform.compute(wrong)
+    for options in ({"label": 1, "threshold": 2}, {"threshold": np.nan}, {"band": -1}, {"device": "cpu"}):
+        with pytest.raises(blum.InvalidOption):
+            blum.DeviceDistanceTransform(grid, **options)
+    for wrong in (blum.Grid((0, 0, 0), 1, (1 << 11, 1 << 11, 1 << 11)), blum.Grid((0, 0, 0), 1e37, (2, 2, 2))):
+        with pytest.raises((blum.InvalidImage, blum.InvalidGrid)):
+            blum.DeviceDistanceTransform(wrong)
+    out = OnDevice(np.zeros(grid.shape, np.float32)), OnDevice(np.zeros(grid.shape, np.int32))
+    values = np.zeros(grid.shape, np.uint8)
+    values[2, 3, 1] = 1
+    assert transform.compute(OnDevice(values), out=out, stream=2).distance is out[0]
+    assert np.array_equal(out[0].values, blum.distance_transform(values).distance)

@@ -1,0 +1,38 @@
+// Blum: an engine of the CUDA module that works on arrays of others. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "blum/core/context.hpp"
+#include "blum/core/device.hpp"
+#include "blum/field/device_memory.hpp"
+#include "field/cuda/module_engine.hpp"
+
+namespace blum::cuda {
+
+/// The index of the CUDA device that is asked for. @throws InvalidOption for the CPU.
+[[nodiscard]] int cuda_index(const Device& device);
+
+/// What the solvers of device_*.hpp share.
+class DeviceQueue {
+ public:
+  /// @throws DeviceError, OutOfMemory, InvalidOption.
+  explicit DeviceQueue(const Device& device) : index_(cuda_index(device)), engine_(index_) {}
+
+  [[nodiscard]] Device device() const { return Device::cuda(index_); }
+
+  template <class Function, class... Arguments>
+  void run(Function function, Arguments... arguments) const {
+    engine_.run(function, Context{}, arguments...);
+  }
+  [[nodiscard]] DeviceProgress progress() const {
+    DeviceProgress progress;
+    run(&Module::progress, &progress.queued, &progress.finished);
+    return progress;
+  }
+  void order(void* before, void* after) const { run(&Module::order, before, after); }
+
+ private:
+  int index_;
+  ModuleEngine engine_;
+};
+
+}  // namespace blum::cuda

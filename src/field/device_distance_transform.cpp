@@ -1,0 +1,67 @@
+// Distance transforms that stay in the memory of a device.
+#include "blum/field/device_distance_transform.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/core/ids.hpp"
+#include "field/cuda/device_queue.hpp"
+#include "field/image_plan.hpp"
+
+namespace blum {
+
+struct DeviceDistanceTransform::State {
+  State(const GridSpec& voxels, const DistanceTransformOptions& wanted, const Device& device)
+      : grid(voxels), options(wanted), plan(detail::make_image_plan(voxels, wanted)), queue(device) {}
+
+  GridSpec grid;
+  DistanceTransformOptions options;
+  detail::ImagePlan plan;
+  cuda::DeviceQueue queue;
+};
+
+DeviceDistanceTransform::DeviceDistanceTransform(const GridSpec& grid, const DistanceTransformOptions& options,
+                                                 const Context& context) {
+  validate(grid);
+  if (grid.node_count() > max_id_count) throw InvalidImage("the image has more voxels than there are ids for");
+  if (options.selection.rule == LabelSelection::Rule::threshold && std::isnan(options.selection.threshold)) {
+    throw InvalidOption("the threshold is not a number; give a number");
+  }
+  state_ = std::make_unique<State>(grid, options, context.device);
+}
+
+DeviceDistanceTransform::DeviceDistanceTransform(DeviceDistanceTransform&&) noexcept = default;
+DeviceDistanceTransform& DeviceDistanceTransform::operator=(DeviceDistanceTransform&&) noexcept = default;
+DeviceDistanceTransform::~DeviceDistanceTransform() = default;
+
+Device DeviceDistanceTransform::device() const {
+  return state_->queue.device();
+}
+const GridSpec& DeviceDistanceTransform::grid() const {
+  return state_->grid;
+}
+const DistanceTransformOptions& DeviceDistanceTransform::options() const {
+  return state_->options;
+}
+
+void DeviceDistanceTransform::compute(const DeviceArrayView& values, const DeviceFieldView& field, void* stream) {
+  if (values.rows != state_->grid.node_count()) {
+    throw InvalidImage(std::to_string(values.rows) + " values, but the grid has " +
+                       std::to_string(state_->grid.node_count()) + " voxels");
+  }
+  if (values.data == nullptr || field.distance == nullptr || field.site == nullptr) {
+    throw InvalidOption("values, distances and sites on a device need memory");
+  }
+  state_->queue.run(&cuda::Module::transform_there, &values, &state_->plan, &state_->options.selection, field.distance,
+                    field.site, stream);
+}
+
+DeviceProgress DeviceDistanceTransform::progress() const {
+  return state_->queue.progress();
+}
+void DeviceDistanceTransform::order(void* before, void* after) {
+  state_->queue.order(before, after);
+}
+
+}  // namespace blum
