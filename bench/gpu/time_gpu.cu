@@ -135,6 +135,17 @@ class Laps {
   int count_ = 0;
 };
 
+/// Gigabytes per second of the current device's memory, as its clock and width have it.
+double bandwidth() {
+  int device = 0;
+  int kilohertz = 0;
+  int bits = 0;
+  check(cudaGetDevice(&device), "asking for the device");
+  check(cudaDeviceGetAttribute(&kilohertz, cudaDevAttrMemoryClockRate, device), "asking for the memory's clock");
+  check(cudaDeviceGetAttribute(&bits, cudaDevAttrGlobalMemoryBusWidth, device), "asking for the memory's width");
+  return 2.0 * kilohertz * (bits / 8) / 1e6;  // two transfers per clock
+}
+
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
@@ -280,7 +291,14 @@ std::vector<Case> cases(const Options& options) {
   std::vector<Case> all{{"69 k triangles, 256^3", bunny, 256, 8, 2, true, false},
                         {"two of 2 k triangles deforming, 256^3", pair, 256, 3, 1, true, true}};
   if (options.is_quick) return all;
-  all.push_back({"69 k triangles, 128^3", bunny, 128, 0, 0, true, false});
+  for (const int resolution : {64, 128, 192, 384}) {
+    const std::string name = "69 k triangles, " + std::to_string(resolution) + "^3";
+    all.push_back({name, bunny, resolution, 0, 0, resolution < 256, false});
+  }
+  for (const int triangles : {1'000, 8'000, 32'000, 128'000, 512'000}) {
+    const std::string name = std::to_string(triangles / 1000) + " k triangles, 256^3";
+    all.push_back({name, noisy_knot(triangles), 256, 0, 0, true, false});
+  }
   all.push_back({"69 k triangles, 512^3", bunny, 512, 30, 8, false, false});
   all.push_back({"1.6 M triangles, 256^3", noisy_knot(1'600'000), 256, 40, 12, true, false});
   TriangleMesh open = bunny;
@@ -297,7 +315,9 @@ int main_of(const Options& options) {
   std::printf("%s, %d processors, %.0f GiB\n", properties.name, properties.multiProcessorCount,
               static_cast<double>(properties.totalGlobalMem) / (1 << 30));
   std::FILE* json = options.json.empty() ? nullptr : std::fopen(options.json.c_str(), "w");
-  if (json != nullptr) std::fprintf(json, "{\"device\": \"%s\", \"cases\": [", properties.name);
+  if (json != nullptr) {
+    std::fprintf(json, "{\"device\": \"%s\", \"bandwidth_gb_per_s\": %.0f, \"cases\": [", properties.name, bandwidth());
+  }
   std::printf("%-40s %9s %9s %9s %9s | %9s %9s | %9s %9s\n", "case", "ms", "upload", "trees", "tiles", "must", "aim",
               "signs", "per node");
   Timer timer(options.runs);

@@ -46,10 +46,12 @@ struct ListBoundary {
 
 /// The direction u to a vertex as a quotient (y, z) / weight, so that it may be infinite.
 struct ProjectedDirection {
-  double weight, y, z;
+  double weight = 1;
+  double y = 0;
+  double z = 0;
 
   /// @param v  from the query to the vertex.
-  BLUM_HD explicit ProjectedDirection(const Vec3d& v) : weight(1), y(0), z(0) {
+  BLUM_HD explicit ProjectedDirection(const Vec3d& v) {
     const double across = root(v.y * v.y + v.z * v.z);
     const double distance = norm(v);
     if (v.x > 0) {
