@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -25,6 +26,13 @@ inline double common_diagonal(const MeshView& mesh, const GridSpec& grid) {
 inline Vec3d node_position(const GridSpec& grid, std::size_t node) {
   const auto n = static_cast<std::int64_t>(node);
   return grid.position(n % grid.size[0], n / grid.size[0] % grid.size[1], n / (grid.size[0] * grid.size[1]));
+}
+
+/// Whether two fields have the same distances and sites, bit for bit.
+inline bool same_bytes(const Field& a, const Field& b) {
+  return a.distance.size() == b.distance.size() &&
+         std::memcmp(a.distance.data(), b.distance.data(), a.distance.span().size_bytes()) == 0 &&
+         std::memcmp(a.site.data(), b.site.data(), a.site.span().size_bytes()) == 0;
 }
 
 /// The worst violations over a set of nodes, as fractions of the diagonal.
