@@ -1,12 +1,12 @@
-// Proves that the distance transform of images equals brute force (distance, closest voxel, ties, sign, band) on random
-// and degenerate images of every value type, for exact and inexact spacings, and gives the same bytes on any threads.
+// Proves on every back end that the distance transform of images equals brute force (distance, closest voxel, ties,
+// sign, band) on random and degenerate images of every value type, for exact and inexact spacings, and gives the same
+// bytes on any threads; and that the CPU's is the same with every instruction set.
 #include "blum/field/distance_transform.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <random>
 #include <stop_token>
@@ -15,6 +15,8 @@
 #include "blum/core/error.hpp"
 #include "blum/field/image_reference.hpp"
 #include "field/cpu/tile_kernel.hpp"
+#include "support/back_ends.hpp"
+#include "support/field_check.hpp"
 
 namespace blum {
 namespace {
@@ -72,12 +74,6 @@ void expect_brute_force(const VoxelImage& image, const std::vector<std::uint8_t>
   }
 }
 
-void expect_same_bytes(const Field& a, const Field& b) {
-  ASSERT_EQ(a.distance.size(), b.distance.size());
-  EXPECT_EQ(std::memcmp(a.distance.data(), b.distance.data(), a.distance.size() * sizeof(float)), 0);
-  EXPECT_EQ(std::memcmp(a.site.data(), b.site.data(), a.site.size() * sizeof(SiteId)), 0);
-}
-
 constexpr std::array<Size, 14> sizes = {{{1, 1, 3},
                                          {1, 37, 1},
                                          {70, 1, 1},
@@ -93,7 +89,45 @@ constexpr std::array<Size, 14> sizes = {{{1, 1, 3},
                                          {3, 33, 29},
                                          {80, 5, 6}}};
 
-TEST(DistanceTransform, EqualsBruteForceWhereSquaresAreExact) {
+class DistanceTransform : public test::BackEndTest {
+ protected:
+  [[nodiscard]] Field transform(const VoxelImageView& image, const DistanceTransformOptions& options = {},
+                                const Context& how = {}) const {
+    Field field = distance_transform(image, options, context(how));
+    EXPECT_EQ(field.device, device());
+    return field;
+  }
+
+  /// An image of another value type must give the field of its mask.
+  template <class T>
+  void expect_selects(const std::vector<T>& values, const LabelSelection& selection,
+                      const std::vector<bool>& selected) const {
+    VoxelImage image;
+    image.grid.size = {static_cast<std::int64_t>(values.size()), 1, 1};
+    image.values = values;
+    const Field field = transform(image, {.selection = selection, .is_signed = false});
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      EXPECT_EQ(field.distance[i] == 0.0F, selected[i])
+          << "value " << +values[i] << " at " << i << " of type " << image.values.index();
+    }
+  }
+
+  template <class T>
+  void expect_labels_and_thresholds() const;
+
+  [[nodiscard]] std::string message_of(const VoxelImage& image, const DistanceTransformOptions& options = {}) const {
+    try {
+      (void)transform(image, options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(On, DistanceTransform, test::every_back_end(), test::back_end_name);
+
+TEST_P(DistanceTransform, EqualsBruteForceWhereSquaresAreExact) {
   unsigned seed = 0;
   int compared = 0;  // of 420; the rest are of one kind only
   for (const Vec3d spacing : {Vec3d{1, 1, 1}, {1, 1, 3}, {3, 3, 3}, {0.5, 0.75, 1}, {5, 2, 1}}) {
@@ -105,8 +139,8 @@ TEST(DistanceTransform, EqualsBruteForceWhereSquaresAreExact) {
         SCOPED_TRACE(testing::Message() << size[0] << "x" << size[1] << "x" << size[2] << " spacing " << spacing.x
                                         << " " << spacing.y << " " << spacing.z << " density " << density);
         const std::size_t step = mask.size() > 1000 ? 5 : 1;  // brute force is slow; 5 visits every column and row
-        expect_brute_force(image, mask, distance_transform(image), true, step);
-        expect_brute_force(image, mask, distance_transform(image, {.is_signed = false}), true, step);
+        expect_brute_force(image, mask, transform(image), true, step);
+        expect_brute_force(image, mask, transform(image, {.is_signed = false}), true, step);
         if (HasFatalFailure()) return;
         ++compared;
       }
@@ -115,7 +149,7 @@ TEST(DistanceTransform, EqualsBruteForceWhereSquaresAreExact) {
   EXPECT_GT(compared, 250);
 }
 
-TEST(DistanceTransform, EqualsBruteForceWithinRoundingForAnySpacing) {
+TEST_P(DistanceTransform, EqualsBruteForceWithinRoundingForAnySpacing) {
   unsigned seed = 1000;
   for (const Vec3d spacing : {Vec3d{0.3, 0.7, 1.1},
                               {1e-9, 1.3e-9, 1e-9},
@@ -131,8 +165,8 @@ TEST(DistanceTransform, EqualsBruteForceWithinRoundingForAnySpacing) {
         if (!has_both_kinds(mask)) continue;
         SCOPED_TRACE(testing::Message() << size[0] << "x" << size[1] << "x" << size[2] << " spacing " << spacing.x);
         const std::size_t step = mask.size() > 1000 ? 7 : 1;
-        expect_brute_force(image, mask, distance_transform(image), false, step);
-        expect_brute_force(image, mask, distance_transform(image, {.is_signed = false}), false, step);
+        expect_brute_force(image, mask, transform(image), false, step);
+        expect_brute_force(image, mask, transform(image, {.is_signed = false}), false, step);
         if (HasFatalFailure()) return;
       }
     }
@@ -163,44 +197,44 @@ VoxelImage shape_image(std::int64_t n, const Vec3d& spacing, int shape) {
   return image;
 }
 
-TEST(DistanceTransform, EqualsBruteForceOnShapes) {
+TEST_P(DistanceTransform, EqualsBruteForceOnShapes) {
   for (int shape = 0; shape < 4; ++shape) {
     const VoxelImage image = shape_image(37, {1, 1, 1}, shape);
     const auto mask = mask_of(image);
     SCOPED_TRACE(shape);
-    expect_brute_force(image, mask, distance_transform(image), true, 37);
-    expect_brute_force(image, mask, distance_transform(image, {.is_signed = false}), true, 37);
+    expect_brute_force(image, mask, transform(image), true, 37);
+    expect_brute_force(image, mask, transform(image, {.is_signed = false}), true, 37);
     const VoxelImage stretched = shape_image(37, {1, 0.7, 1.3}, shape);
-    expect_brute_force(stretched, mask, distance_transform(stretched), false, 37);
+    expect_brute_force(stretched, mask, transform(stretched), false, 37);
     if (HasFatalFailure()) return;
   }
 }
 
-TEST(DistanceTransform, TiesGoToTheSmallestIndex) {
+TEST_P(DistanceTransform, TiesGoToTheSmallestIndex) {
   VoxelImage image = random_image({3, 3, 3}, {1, 1, 1}, 0, 0);
   auto& values = std::get<std::vector<std::uint8_t>>(image.values);
   for (const std::size_t site : {4U, 10U, 12U, 14U, 16U, 22U}) values[site] = 1;  // the six neighbours of the centre
-  EXPECT_EQ(distance_transform(image).site[13], SiteId(4));
+  EXPECT_EQ(transform(image).site[13], SiteId(4));
   values[4] = 0;
-  EXPECT_EQ(distance_transform(image).site[13], SiteId(10));
+  EXPECT_EQ(transform(image).site[13], SiteId(10));
   values[10] = 0;
-  EXPECT_EQ(distance_transform(image).site[13], SiteId(12));
+  EXPECT_EQ(transform(image).site[13], SiteId(12));
 }
 
-TEST(DistanceTransform, GivesTheSameBytesForAnyNumberOfThreads) {
+TEST_P(DistanceTransform, GivesTheSameBytesForAnyNumberOfThreads) {
   for (const Vec3d spacing : {Vec3d{1, 1, 1}, {0.3, 0.7, 1.1}}) {
     for (const Size size : {Size{130, 61, 50}, Size{1500, 900, 1}}) {
       for (const double density : {0.0005, 0.5}) {
         const VoxelImage image = random_image(size, spacing, density, 5);
-        const Field one = distance_transform(image, {}, {.threads = 1});
-        expect_same_bytes(one, distance_transform(image, {}, {.threads = 2}));
-        expect_same_bytes(one, distance_transform(image, {}, {.threads = 7}));
+        const Field one = transform(image, {}, {.threads = 1});
+        EXPECT_TRUE(test::same_bytes(one, transform(image, {}, {.threads = 2})));
+        EXPECT_TRUE(test::same_bytes(one, transform(image, {}, {.threads = 7})));
       }
     }
   }
 }
 
-TEST(DistanceTransform, EveryInstructionSetGivesTheSameField) {
+TEST(DistanceTransformOnTheCpu, EveryInstructionSetGivesTheSameField) {
   for (const Vec3d spacing : {Vec3d{1, 1, 1}, {1, 1, 3}, {0.5, 0.7, 1.1}}) {
     const VoxelImage random = random_image({45, 31, 38}, spacing, 0.01, 11);
     const VoxelImage striped = shape_image(40, spacing, 3);  // neighbouring columns disagree: solved one by one
@@ -208,8 +242,8 @@ TEST(DistanceTransform, EveryInstructionSetGivesTheSameField) {
     for (const std::string& target : cpu::simd_targets()) {
       SCOPED_TRACE(target);
       cpu::use_simd_target(target);
-      expect_same_bytes(best[0], distance_transform(random));
-      expect_same_bytes(best[1], distance_transform(striped));
+      EXPECT_TRUE(test::same_bytes(best[0], distance_transform(random)));
+      EXPECT_TRUE(test::same_bytes(best[1], distance_transform(striped)));
       expect_brute_force(random, mask_of(random), distance_transform(random), spacing.x == 1.0, 97);
     }
     cpu::use_simd_target("");
@@ -218,7 +252,7 @@ TEST(DistanceTransform, EveryInstructionSetGivesTheSameField) {
 
 /// Rows so far apart along x that columns are on their own, and sites at alternating ends: the closest rows of
 /// neighbouring columns are 599 apart everywhere, which makes the passes solve columns one by one.
-TEST(DistanceTransform, ColumnsThatDisagreeEqualBruteForce) {
+TEST_P(DistanceTransform, ColumnsThatDisagreeEqualBruteForce) {
   for (const double spacing : {1000.0, 1000.3}) {
     for (const Size size : {Size{32, 600, 2}, Size{32, 2, 600}}) {
       VoxelImage image = random_image(size, {spacing, 1, 1}, 0, 0);
@@ -227,26 +261,25 @@ TEST(DistanceTransform, ColumnsThatDisagreeEqualBruteForce) {
         values[i % 2 == 0 ? image.grid.index(i, 0, 0) : image.grid.index(i, size[1] - 1, size[2] - 1)] = 1;
       }
       for (const bool is_signed : {false, true}) {
-        expect_brute_force(image, mask_of(image), distance_transform(image, {.is_signed = is_signed}),
-                           spacing == 1000.0, 29);
+        expect_brute_force(image, mask_of(image), transform(image, {.is_signed = is_signed}), spacing == 1000.0, 29);
       }
     }
   }
 }
 
-TEST(DistanceTransform, LargePlanesEqualBruteForce) {
+TEST_P(DistanceTransform, LargePlanesEqualBruteForce) {
   const VoxelImage image = random_image({1500, 900, 1}, {1, 1, 1}, 0.0001, 6);
-  expect_brute_force(image, mask_of(image), distance_transform(image), true, 30011);
+  expect_brute_force(image, mask_of(image), transform(image), true, 30011);
 }
 
-TEST(DistanceTransform, DistancesOfExactlyTheBandAreWithinIt) {
+TEST_P(DistanceTransform, DistancesOfExactlyTheBandAreWithinIt) {
   for (const double step : {1.0, 0.7, 0.1, 0.3, 1.0 / 3, 1e-3, 123.4}) {
     for (const int steps : {1, 2, 3}) {
       VoxelImage image;
       image.grid.size = {9, 1, 1};
       image.grid.spacing = {step, 5 * step, step};
       image.values = std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0};
-      const Field field = distance_transform(image, {.band = steps * step});
+      const Field field = transform(image, {.band = steps * step});
       for (int i = 0; i < 9; ++i) {
         EXPECT_EQ(field.site[static_cast<std::size_t>(i)].has_value(), std::abs(i - 4) <= steps)
             << "voxel " << i << ", band of " << steps << " steps of " << step;
@@ -255,18 +288,18 @@ TEST(DistanceTransform, DistancesOfExactlyTheBandAreWithinIt) {
   }
 }
 
-TEST(DistanceTransform, LayersWithoutNeighboursMayHaveAnySpacing) {
+TEST_P(DistanceTransform, LayersWithoutNeighboursMayHaveAnySpacing) {
   VoxelImage image;
   image.grid.size = {3, 1, 1};
   image.grid.spacing = {1, 1e38, 1e-40};
   image.values = std::vector<std::uint8_t>{1, 0, 0};
-  EXPECT_EQ(distance_transform(image).distance[2], 2.0F);
+  EXPECT_EQ(transform(image).distance[2], 2.0F);
 }
 
-TEST(DistanceTransform, BandClipsDistancesAndSites) {
+TEST_P(DistanceTransform, BandClipsDistancesAndSites) {
   const VoxelImage image = random_image({40, 30, 20}, {1, 1, 1}, 0.001, 7);
-  const Field full = distance_transform(image);
-  const Field banded = distance_transform(image, {.band = 5.0});
+  const Field full = transform(image);
+  const Field banded = transform(image, {.band = 5.0});
   EXPECT_EQ(banded.band, 5.0);
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < full.distance.size(); ++i) {
@@ -283,38 +316,19 @@ TEST(DistanceTransform, BandClipsDistancesAndSites) {
   EXPECT_LT(beyond, full.distance.size() - 100);
 }
 
-TEST(DistanceTransform, KeepsTheGridAndNamesItsSignRule) {
+TEST_P(DistanceTransform, KeepsTheGridAndNamesItsSignRule) {
   VoxelImage image = random_image({4, 5, 6}, {1, 2, 3}, 0.5, 8);
   image.grid.origin = {7, 8, 9};
   image.grid.direction = {{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};
-  const Field field = distance_transform(image);
+  const Field field = transform(image);
   EXPECT_EQ(field.grid, image.grid);
   EXPECT_EQ(field.site_ids, SiteIds::voxels);
   EXPECT_EQ(field.sign_rule, SignRule::label);
-  EXPECT_EQ(distance_transform(image, {.is_signed = false}).sign_rule, SignRule::none);
-}
-
-/// An image of another value type must give the field of its mask.
-template <class T>
-void expect_selects(const std::vector<T>& values, const LabelSelection& selection, const std::vector<bool>& selected) {
-  VoxelImage image;
-  image.grid.size = {static_cast<std::int64_t>(values.size()), 1, 1};
-  image.values = values;
-  const Field field = distance_transform(image, {.selection = selection, .is_signed = false});
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    EXPECT_EQ(field.distance[i] == 0.0F, selected[i])
-        << "value " << +values[i] << " at " << i << " of type " << image.values.index();
-  }
+  EXPECT_EQ(transform(image, {.is_signed = false}).sign_rule, SignRule::none);
 }
 
 template <class T>
-class DistanceTransformOfType : public testing::Test {};
-using ValueTypes = testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t, std::int32_t,
-                                  std::uint64_t, std::int64_t, float, double>;
-TYPED_TEST_SUITE(DistanceTransformOfType, ValueTypes);
-
-TYPED_TEST(DistanceTransformOfType, SelectsLabelsAndThresholds) {
-  using T = TypeParam;
+void DistanceTransform::expect_labels_and_thresholds() const {
   const T low = std::numeric_limits<T>::lowest();
   const T high = std::numeric_limits<T>::max();
   const std::vector<T> values = {0, 3, low, high, 4, 100, 3};
@@ -328,17 +342,30 @@ TYPED_TEST(DistanceTransformOfType, SelectsLabelsAndThresholds) {
   VoxelImage image;
   image.grid.size = {7, 1, 1};
   image.values = values;
-  EXPECT_THROW((void)distance_transform(image, {.selection = LabelSelection::of_label(77)}), InvalidImage);
+  EXPECT_THROW((void)transform(image, {.selection = LabelSelection::of_label(77)}), InvalidImage);
 }
 
-TEST(DistanceTransform, SelectsExactlyAtTheLimitsOfTypes) {
+TEST_P(DistanceTransform, SelectsLabelsAndThresholdsOfEveryType) {
+  expect_labels_and_thresholds<std::uint8_t>();
+  expect_labels_and_thresholds<std::int8_t>();
+  expect_labels_and_thresholds<std::uint16_t>();
+  expect_labels_and_thresholds<std::int16_t>();
+  expect_labels_and_thresholds<std::uint32_t>();
+  expect_labels_and_thresholds<std::int32_t>();
+  expect_labels_and_thresholds<std::uint64_t>();
+  expect_labels_and_thresholds<std::int64_t>();
+  expect_labels_and_thresholds<float>();
+  expect_labels_and_thresholds<double>();
+}
+
+TEST_P(DistanceTransform, SelectsExactlyAtTheLimitsOfTypes) {
   constexpr std::int64_t large = (std::int64_t{1} << 53) + 1;  // not a double
   expect_selects<std::int64_t>({large, large - 1, large + 1}, LabelSelection::of_label(large), {true, false, false});
   expect_selects<double>({9007199254740992.0, 5}, LabelSelection::of_label(5), {false, true});
   VoxelImage image;
   image.grid.size = {2, 1, 1};
   image.values = std::vector<double>{9007199254740992.0, 0};
-  EXPECT_THROW((void)distance_transform(image, {.selection = LabelSelection::of_label(large)}), InvalidImage);
+  EXPECT_THROW((void)transform(image, {.selection = LabelSelection::of_label(large)}), InvalidImage);
   const double infinity = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_selects<double>({infinity, 1, nan, -infinity}, LabelSelection::at_least(infinity),
@@ -350,56 +377,47 @@ TEST(DistanceTransform, SelectsExactlyAtTheLimitsOfTypes) {
   expect_selects<float>({0.1F, 0.2F}, LabelSelection::at_least(0.1), {true, true});                // 0.1F is above 0.1
   expect_selects<float>({0.3F, 0.7F, 0.8F}, LabelSelection::at_least(0.7), {false, false, true});  // 0.7F is below 0.7
   expect_selects<std::uint8_t>({255, 254}, LabelSelection::at_least(254.5), {true, false});
-  EXPECT_THROW((void)distance_transform(image, {.selection = LabelSelection::at_least(nan)}), InvalidOption);
+  EXPECT_THROW((void)transform(image, {.selection = LabelSelection::at_least(nan)}), InvalidOption);
 }
 
-TEST(DistanceTransform, SeveralLabelsEqualOneByOne) {
+TEST_P(DistanceTransform, SeveralLabelsEqualOneByOne) {
   VoxelImage image = random_image({50, 40, 30}, {1, 1, 2}, 0, 0);
   auto& values = std::get<std::vector<std::uint8_t>>(image.values);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint8_t>((i / 7 + i / 1999) % 4);
   const std::array<LabelSelection, 4> selections = {LabelSelection::of_label(1), LabelSelection::of_label(3),
                                                     LabelSelection::at_least(2), LabelSelection{}};
-  const auto fields = distance_transforms(image, selections);
+  const auto fields = distance_transforms(image, selections, {}, context());
   ASSERT_EQ(fields.size(), selections.size());
   for (std::size_t i = 0; i < selections.size(); ++i) {
-    expect_same_bytes(fields[i], distance_transform(image, {.selection = selections[i]}));
+    EXPECT_TRUE(test::same_bytes(fields[i], transform(image, {.selection = selections[i]})));
   }
-  EXPECT_TRUE(distance_transforms(image, {}).empty());
+  EXPECT_TRUE(distance_transforms(image, {}, {}, context()).empty());
 }
 
-std::string message_of(const VoxelImage& image, const DistanceTransformOptions& options = {}) {
-  try {
-    (void)distance_transform(image, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-TEST(DistanceTransform, RefusesImagesWithoutTwoKinds) {
+TEST_P(DistanceTransform, RefusesImagesWithoutTwoKinds) {
   const VoxelImage empty = random_image({3, 4, 5}, {1, 1, 1}, 0, 0);
   const VoxelImage full = random_image({3, 4, 5}, {1, 1, 1}, 1, 0);
-  EXPECT_THROW((void)distance_transform(empty), InvalidImage);
-  EXPECT_THROW((void)distance_transform(empty, {.is_signed = false}), InvalidImage);
-  EXPECT_THROW((void)distance_transform(full), InvalidImage);
+  EXPECT_THROW((void)transform(empty), InvalidImage);
+  EXPECT_THROW((void)transform(empty, {.is_signed = false}), InvalidImage);
+  EXPECT_THROW((void)transform(full), InvalidImage);
   EXPECT_NE(message_of(full).find("every voxel"), std::string::npos);
   EXPECT_NE(message_of(empty, {.selection = LabelSelection::of_label(9)}).find("label 9"), std::string::npos);
-  const Field zero = distance_transform(full, {.is_signed = false});
+  const Field zero = transform(full, {.is_signed = false});
   for (std::size_t i = 0; i < 60; ++i) {
     EXPECT_EQ(zero.distance[i], 0.0F);
     EXPECT_EQ(zero.site[i], SiteId(static_cast<std::uint32_t>(i)));
   }
   const VoxelImage one = random_image({1, 1, 1}, {1, 1, 1}, 1, 0);
-  EXPECT_THROW((void)distance_transform(one), InvalidImage);
-  EXPECT_EQ(distance_transform(one, {.is_signed = false}).distance[0], 0.0F);
+  EXPECT_THROW((void)transform(one), InvalidImage);
+  EXPECT_EQ(transform(one, {.is_signed = false}).distance[0], 0.0F);
   VoxelImage broken = one;
   broken.values = std::vector<float>(2);
-  EXPECT_THROW((void)distance_transform(broken), InvalidImage);
-  EXPECT_THROW((void)distance_transform(one, {.is_signed = false, .band = 0.0}), InvalidOption);
-  EXPECT_THROW((void)distance_transform(one, {.is_signed = false, .band = std::nan("")}), InvalidOption);
+  EXPECT_THROW((void)transform(broken), InvalidImage);
+  EXPECT_THROW((void)transform(one, {.is_signed = false, .band = 0.0}), InvalidOption);
+  EXPECT_THROW((void)transform(one, {.is_signed = false, .band = std::nan("")}), InvalidOption);
 }
 
-TEST(DistanceTransform, StopsWhenAskedAndReportsProgress) {
+TEST(DistanceTransformOnTheCpu, StopsWhenAskedAndReportsProgress) {
   const VoxelImage image = random_image({200, 200, 100}, {1, 1, 1}, 0.01, 9);
   std::stop_source source;
   int calls = 0;
@@ -418,11 +436,18 @@ TEST(DistanceTransform, StopsWhenAskedAndReportsProgress) {
   EXPECT_EQ(phases, (std::vector<std::string>{"select voxels", "rows and columns", "depth"}));
 }
 
-TEST(DistanceTransform, RefusesExtentsThatFloat32CannotHold) {
+TEST_P(DistanceTransform, DoesNotStartWhenAskedToStop) {
+  std::stop_source stop;
+  stop.request_stop();
+  const VoxelImage image = random_image({20, 20, 20}, {1, 1, 1}, 0.1, 12);
+  EXPECT_THROW((void)transform(image, {}, {.cancel = stop.get_token()}), Cancelled);
+}
+
+TEST_P(DistanceTransform, RefusesExtentsThatFloat32CannotHold) {
   for (const Vec3d& spacing : {Vec3d{1e200, 1e200, 1e200}, Vec3d{1, 1, 1e37}, Vec3d{1e-200, 1e-200, 1e-200}}) {
     VoxelImage image{.grid = {.spacing = spacing, .size = {4, 4, 4}}, .values = std::vector<std::uint8_t>(64)};
     std::get<std::vector<std::uint8_t>>(image.values)[21] = 1;
-    EXPECT_THROW((void)distance_transform(image), InvalidImage) << spacing.x << ' ' << spacing.y << ' ' << spacing.z;
+    EXPECT_THROW((void)transform(image), InvalidImage) << spacing.x << ' ' << spacing.y << ' ' << spacing.z;
   }
 }
 

@@ -1,10 +1,9 @@
-// Proves that the kernels of image transforms, run by the emulated device, equal brute force and, byte for byte in
-// whole numbers, the CPU's transform: for any shape, spacing, density, band and selection, and however columns are cut.
+// Proves that the kernels of image transforms give, byte for byte in whole numbers, the CPU's transform: for any shape,
+// spacing, density, band and selection, and, run by the emulated device, however columns are cut.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -15,10 +14,11 @@
 #include <vector>
 
 #include "blum/field/distance_transform.hpp"
-#include "blum/field/image_reference.hpp"
 #include "field/image_plan.hpp"
 #include "field/kernels/emulated_device.hpp"
 #include "field/kernels/image_transform.hpp"
+#include "support/back_ends.hpp"
+#include "support/field_check.hpp"
 
 namespace blum {
 namespace {
@@ -95,26 +95,6 @@ bool has_both_kinds(const Mask& mask) {
   return count > 0 && count < mask.size();
 }
 
-/// @param step  every how manieth voxel is compared
-void expect_brute_force(const VoxelImage& image, const Result& result, const DistanceTransformOptions& options,
-                        std::size_t step) {
-  const Mask& mask = mask_of(image);
-  Mask outside = mask;
-  for (auto& value : outside) value = value != 0 ? 0 : 1;
-  for (std::size_t voxel = 0; voxel < mask.size(); voxel += step) {
-    const bool inside = options.is_signed && mask[voxel] != 0;
-    const auto expected = reference::nearest_voxel(image.grid, inside ? outside : mask, voxel);
-    float distance = static_cast<float>(std::sqrt(expected.squared));
-    std::uint32_t site = expected.site.value;
-    if (options.band && distance > static_cast<float>(*options.band)) {
-      distance = static_cast<float>(*options.band);
-      site = kernels::no_voxel;
-    }
-    ASSERT_EQ(result.distance[voxel], inside ? -distance : distance) << "voxel " << voxel;
-    ASSERT_EQ(result.site[voxel], site) << "voxel " << voxel;
-  }
-}
-
 void expect_same_bytes(const Result& result, const Field& field) {
   for (std::size_t voxel = 0; voxel < result.site.size(); ++voxel) {
     ASSERT_EQ(result.site[voxel], field.site[voxel].value) << "voxel " << voxel;
@@ -146,35 +126,24 @@ constexpr std::array<Size, 17> sizes = {{{1, 1, 3},
                                          {80, 5, 6}}};
 constexpr std::array<kernels::BandTuning, 4> tunings = {whole_columns, many_bands, bands_of_three, bands_of_seven};
 
-void expect_cpu_bytes(const VoxelImage& image, const DistanceTransformOptions& options) {
-  const Field field = distance_transform(image, options);
-  for (const auto& tuning : tunings) {
-    SCOPED_TRACE(testing::Message() << "bands of " << tuning.fewest_rows << (options.is_signed ? "" : " unsigned"));
-    expect_same_bytes(transform(image, options, tuning), field);
-    if (testing::Test::HasFatalFailure()) return;
-  }
-}
-
-TEST(ImageKernels, EqualBruteForce) {
-  unsigned seed = 0;
-  for (const Vec3d spacing : {Vec3d{1, 1, 1}, {0.5, 0.75, 1}, {5, 2, 1}}) {
-    for (const Size& size : sizes) {
-      for (const double density : {0.003, 0.1, 0.5, 0.99}) {
-        const VoxelImage image = image_of(size, spacing, random_mask(size, density, ++seed));
-        if (!has_both_kinds(mask_of(image))) continue;
-        SCOPED_TRACE(describe(size, spacing, seed));
-        for (const bool is_signed : {true, false}) {
-          DistanceTransformOptions options{.is_signed = is_signed};
-          expect_brute_force(image, transform(image, options, whole_columns), options, 7);
-          expect_brute_force(image, transform(image, options, bands_of_three), options, 11);
-          if (HasFatalFailure()) return;
-        }
-      }
+class ImageKernels : public test::BackEndTest {
+ protected:
+  /// Cuts columns in every way where that can be chosen: on the host.
+  void expect_cpu_bytes(const VoxelImage& image, const DistanceTransformOptions& options) const {
+    const Field field = distance_transform(image, options);
+    ASSERT_TRUE(test::same_bytes(distance_transform(image, options, context()), field));
+    if (GetParam() != test::BackEnd::host) return;
+    for (const auto& tuning : tunings) {
+      SCOPED_TRACE(testing::Message() << "bands of " << tuning.fewest_rows << (options.is_signed ? "" : " unsigned"));
+      expect_same_bytes(transform(image, options, tuning), field);
+      if (HasFatalFailure()) return;
     }
   }
-}
+};
 
-TEST(ImageKernels, EqualTheCpuByteForByteInWholeNumbers) {
+INSTANTIATE_TEST_SUITE_P(On, ImageKernels, test::cuda_back_ends(), test::back_end_name);
+
+TEST_P(ImageKernels, EqualTheCpuByteForByteInWholeNumbers) {
   unsigned seed = 1000;
   int compared = 0;
   for (const Vec3d spacing : {Vec3d{1, 1, 1}, {1, 1, 3}, {3, 3, 3}, {0.5, 0.75, 1}, {7, 2, 1}, {1, 1, 200}}) {
@@ -198,7 +167,7 @@ TEST(ImageKernels, EqualTheCpuByteForByteInWholeNumbers) {
   EXPECT_GT(compared, 500);
 }
 
-TEST(ImageKernels, EqualTheCpuByteForByteForAnySpacing) {
+TEST_P(ImageKernels, EqualTheCpuByteForByteForAnySpacing) {
   unsigned seed = 5000;
   for (const Vec3d spacing : {Vec3d{0.3, 0.7, 1.1},
                               {1e-9, 1.3e-9, 1e-9},
@@ -214,15 +183,7 @@ TEST(ImageKernels, EqualTheCpuByteForByteForAnySpacing) {
         if (!has_both_kinds(mask_of(image))) continue;
         SCOPED_TRACE(describe(size, spacing, seed));
         for (const bool is_signed : {true, false}) {
-          const DistanceTransformOptions options{.is_signed = is_signed};
-          const Field field = distance_transform(image, options);
-          const Result whole = transform(image, options, whole_columns);
-          expect_same_bytes(whole, field);
-          for (const auto& tuning : tunings) {
-            const Result cut = transform(image, options, tuning);
-            ASSERT_EQ(cut.site, whole.site) << "bands of " << tuning.fewest_rows;
-            ASSERT_EQ(cut.distance, whole.distance);
-          }
+          expect_cpu_bytes(image, {.is_signed = is_signed});
           if (HasFatalFailure()) return;
         }
       }
@@ -258,7 +219,7 @@ std::uint32_t lowest_as_computed(const detail::ImagePlan& plan, const Mask& targ
   return best;
 }
 
-TEST(ImageKernels, ChooseTheLowestComputedDistanceInDouble) {
+TEST(ImageKernelsAlone, ChooseTheLowestComputedDistanceInDouble) {
   unsigned seed = 9000;
   int compared = 0;
   for (const Vec3d spacing : {Vec3d{0.3, 0.7, 1.1}, {1.1, 0.3, 0.7}, {0.1, 0.1, 0.3}, {0.488281, 0.488281, 1.25}}) {
@@ -280,7 +241,7 @@ TEST(ImageKernels, ChooseTheLowestComputedDistanceInDouble) {
   EXPECT_GE(compared, 40);
 }
 
-TEST(ImageKernels, OneVoxelOrAllButOne) {
+TEST_P(ImageKernels, OneVoxelOrAllButOne) {
   for (const Size& size : {Size{45, 38, 1}, {19, 23, 29}, {1, 64, 33}}) {
     const std::size_t count = static_cast<std::size_t>(size[0] * size[1] * size[2]);
     for (const std::size_t voxel : {std::size_t{0}, count / 2, count / 3, count - 1}) {
@@ -298,7 +259,7 @@ TEST(ImageKernels, OneVoxelOrAllButOne) {
   }
 }
 
-TEST(ImageKernels, ManySmallImages) {
+TEST_P(ImageKernels, ManySmallImages) {
   std::mt19937 random(7);
   const auto pick = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
   for (unsigned trial = 0; trial < 4000; ++trial) {
@@ -310,6 +271,30 @@ TEST(ImageKernels, ManySmallImages) {
     SCOPED_TRACE(describe(size, spacing, trial));
     expect_cpu_bytes(image, {.is_signed = trial % 3 != 0});
     if (HasFatalFailure()) return;
+  }
+}
+
+TEST_P(ImageKernels, SeveralSelectionsOfImagesWithLabels) {
+  std::mt19937 random(5);
+  for (const Size& size : {Size{33, 20, 17}, {70, 1, 5}}) {
+    VoxelImage image;
+    image.grid.size = size;
+    image.grid.spacing = {1, 0.7, 2.1};
+    std::vector<std::int16_t> values(image.grid.node_count());
+    for (auto& value : values) value = static_cast<std::int16_t>(random() % 30 / 9);
+    image.values = std::move(values);
+    const std::vector<LabelSelection> selections{LabelSelection::of_label(3), LabelSelection::at_least(1)};
+    for (const DistanceTransformOptions& options :
+         {DistanceTransformOptions{}, DistanceTransformOptions{.is_signed = false, .band = 1.5}}) {
+      const std::vector<Field> cpu = distance_transforms(image, selections, options);
+      const std::vector<Field> device = distance_transforms(image, selections, options, context());
+      ASSERT_EQ(cpu.size(), device.size());
+      for (std::size_t k = 0; k < cpu.size(); ++k) {
+        EXPECT_EQ(device[k].device, Device::cuda());
+        EXPECT_EQ(cpu[k].sign_reason, device[k].sign_reason);
+        EXPECT_TRUE(test::same_bytes(cpu[k], device[k]));
+      }
+    }
   }
 }
 
@@ -339,7 +324,7 @@ TYPED_TEST(ImageKernelsOf, SelectLikeTheCpu) {
   }
 }
 
-TEST(ImageKernels, DivideExactly) {
+TEST(ImageKernelsAlone, DivideExactly) {
   std::mt19937 random(3);
   std::uniform_int_distribution<std::uint32_t> any(0, 0x7fffffffU);
   for (int trial = 0; trial < 200000; ++trial) {
@@ -352,7 +337,7 @@ TEST(ImageKernels, DivideExactly) {
   }
 }
 
-TEST(ImageKernels, SayHowMuchMemoryTheyNeed) {
+TEST(ImageKernelsAlone, SayHowMuchMemoryTheyNeed) {
   GridSpec grid;
   grid.size = {512, 512, 512};
   using Transform = kernels::ImageTransform<kernels::EmulatedDevice>;
