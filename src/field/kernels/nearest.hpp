@@ -60,8 +60,11 @@ class NearestSearch {
     std::uint32_t top = 0;
     warp_.each([&](std::uint32_t lane) {
       if (lane >= kind_count) return;
-      stack_.code[lane] = Entry::make(lane, forest_.trees[lane].levels, 0).code;
-      stack_.squared[lane] = forest_.trees[lane].levels > 0 ? 0.0F : std::numeric_limits<float>::infinity();
+      // Vertices on top: each gives a point, whereas a face gives none to queries beside its prism.
+      const std::uint32_t kind = kind_count - 1 - lane;
+      const std::uint32_t levels = forest_.trees[kind].levels;
+      stack_.code[lane] = Entry::make(kind, levels, 0).code;
+      stack_.squared[lane] = levels > 0 ? 0.0F : std::numeric_limits<float>::infinity();
     });
     top = kind_count;
     while (top > 0) {
