@@ -43,7 +43,7 @@ struct QueryPerNode {
     const Vec3f query = kernels::to_float(Vec3d{frame->at(0, x), frame->at(1, y), frame->at(2, z)});
     std::uint32_t stack[kernels::SearchStack::capacity];
     std::uint32_t top = 0;
-    for (std::uint32_t kind = 0; kind < kernels::kind_count; ++kind) {
+    for (std::uint32_t kind = kernels::kind_count; kind-- > 0;) {  // vertices on top, as in NearestSearch
       const kernels::Tree& tree = forest.trees[kind];
       if (tree.levels > 0) stack[top++] = kernels::Entry::make(kind, tree.levels, 0).code;
     }
