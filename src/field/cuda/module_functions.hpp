@@ -140,7 +140,7 @@ class ModuleFunctions {
     return with(engine, call, [&](Engine& own) {
       const Visit visit(own, stream);
       kernels::EngineRequest request = request_of(*field);
-      request.most_boundary_edges = kernels::no_index;
+      request.limits = std::nullopt;
       own.fields.compute(*vertices, request, field->distance, field->site);
       if (field->wants_triangles) own.fields.show_triangles(field->grid->node_count(), field->site);
     });

@@ -1,10 +1,10 @@
-// Blum: the boundary of a mesh's triangles, and what it adds to winding numbers. SPDX-License-Identifier: Apache-2.0
+// Blum: what the boundary of a mesh's triangles adds to winding numbers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "field/kernels/connectivity.hpp"
+#include "field/kernels/boundary_edges.hpp"
 #include "field/kernels/row_crossings.hpp"
 
 // Let a ray leave a point p along -x, and the boundary of a surface sweep out a strip along +x, edge by edge. Surface
@@ -14,35 +14,11 @@
 //   w(p) = N(p) + sum over edges (a, b) of count * arg(1 + conj(u_a) u_b) / 2 pi,
 // where u is the direction to a vertex, projected from -x onto the plane of y and z, as a complex number (the solid
 // angle of the spherical triangle a, b, +x; Martens, Trettner, Bessmeltsev 2026). N and a term jump by the same whole
-// number where p passes a strip; both decide there by the same comparison, so that the jumps cancel.
-// docs/theory/fields.md, "On a device".
+// number where p passes a strip; one comparison decides both jumps, so that they cancel. docs/theory/fields.md, "On a
+// device".
 namespace blum::kernels {
 
-/// An edge that triangles do not run along as often one way as the other.
-struct BoundaryEdge {
-  std::uint32_t from;
-  std::uint32_t to;
-  double count;  ///< surplus of triangles that run from `from` to `to`; > 0
-};
-
-struct FlagBoundary {
-  const std::int32_t* balance;
-  std::uint32_t* is_boundary;
-  BLUM_HD void operator()(std::size_t e) const { is_boundary[e] = balance[e] != 0 ? 1 : 0; }
-};
-
-struct ListBoundary {
-  const Segment* edges;
-  const std::int32_t* balance;
-  const std::uint32_t* place;
-  BoundaryEdge* out;
-  BLUM_HD void operator()(std::size_t e) const {
-    if (balance[e] == 0) return;
-    const bool is_forward = balance[e] > 0;
-    out[place[e]] = {edges[e][is_forward ? 0 : 1], edges[e][is_forward ? 1 : 0],
-                     static_cast<double>(is_forward ? balance[e] : -balance[e])};
-  }
-};
+inline constexpr double pi = 3.141592653589793;
 
 /// The direction u to a vertex as a quotient (y, z) / weight, so that it may be infinite.
 struct ProjectedDirection {
@@ -52,7 +28,7 @@ struct ProjectedDirection {
 
   /// @param v  from the query to the vertex.
   BLUM_HD explicit ProjectedDirection(const Vec3d& v) {
-    const double across = root(v.y * v.y + v.z * v.z);
+    const double across = hypot(v.y, v.z);  // whose squares may underflow
     const double distance = norm(v);
     if (v.x > 0) {
       weight = distance + v.x;
@@ -77,27 +53,18 @@ struct ProjectedDirection {
 class BoundaryTerms {
  public:
   BoundaryTerms() = default;
-  /// @param edges   in the device's memory.
-  /// @param places  of the vertices, in units of nodes.
-  BoundaryTerms(const BoundaryEdge* edges, std::uint32_t count, const Vec3d* places, const Vec3d& spacing,
+  /// @param edges, count  in the device's memory.
+  /// @param places        of the vertices, in units of nodes.
+  BoundaryTerms(const BoundaryEdge* edges, const std::uint32_t* count, const Vec3d* places, const Vec3d& spacing,
                 bool is_mirrored)
-      : edges_(edges), places_(places), spacing_(spacing), count_(count), is_mirrored_(is_mirrored) {}
+      : edges_(edges), count_(count), places_(places), spacing_(spacing), is_mirrored_(is_mirrored) {}
 
-  [[nodiscard]] BLUM_HD std::uint32_t count() const { return count_; }
+  [[nodiscard]] BLUM_HD std::uint32_t count() const { return *count_; }
 
   /// @param node  in units of nodes: whole numbers.
   [[nodiscard]] BLUM_HD double term(std::uint32_t index, const Vec3d& node) const {
     const BoundaryEdge edge = edges_[index];
-    const Vec3d a = places_[edge.from] - node;
-    const Vec3d b = places_[edge.to] - node;
-    const ProjectedDirection u(scaled(a));
-    const ProjectedDirection v(scaled(b));
-    const double real = u.weight * v.weight + u.y * v.y + u.z * v.z;
-    const double turned = u.y * v.z - u.z * v.y;
-    const double angle = atan2(
-        is_left(places_[edge.from], places_[edge.to], a, b, node, turned) ? magnitude(turned) : -magnitude(turned),
-        real);
-    const double winding = edge.count * angle * 0.15915494309189535;  // 1 / 2 pi
+    const double winding = edge.count * angle(places_[edge.from], places_[edge.to], node) * (0.5 / pi);
     return is_mirrored_ ? -winding : winding;
   }
 
@@ -113,7 +80,7 @@ class BoundaryTerms {
     // Rounding of places and of this sum stays far below a hundredth of a percent of the distance and the edge.
     const double gap = 0.9999 * norm(a + along * t) - 1e-9 * root(squared) - reach;
     if (!(gap > 0)) return HUGE_VAL;
-    return edge.count * root(squared) / (12.566370614359172 * gap * gap);
+    return magnitude(edge.count) * root(squared) / (4 * pi * gap * gap);
   }
 
  private:
@@ -121,22 +88,38 @@ class BoundaryTerms {
     return {v.x * spacing_.x, v.y * spacing_.y, v.z * spacing_.z};
   }
 
-  /// Whether the edge turns to the left around a query, seen from +x (y to the right, z up): by the comparison that
-  /// decides which rows cross a triangle with this edge.
-  /// @param a, b  from the query to the ends.
-  [[nodiscard]] BLUM_HD static bool is_left(const Vec3d& from, const Vec3d& to, const Vec3d& a, const Vec3d& b,
-                                            const Vec3d& node, double turned) {
+  /// How far the edge turns to the left around the ray of a node, seen from +x (y to the right, z up).
+  ///
+  /// The angles of edges that share a vertex have the same rounded direction in common, so their sums are right but for
+  /// whole turns, however close the ray comes to the vertex. Which whole turn is due, the crossings decide: by the
+  /// comparison that tells which rows cross a triangle with this edge, and not by a rounded angle's sign.
+  [[nodiscard]] BLUM_HD double angle(const Vec3d& from, const Vec3d& to, const Vec3d& node) const {
+    const Vec3d a = from - node;
+    const Vec3d b = to - node;
+    const ProjectedDirection u(scaled(a));
+    const ProjectedDirection v(scaled(b));
+    const double real = u.weight * v.weight + u.y * v.y + u.z * v.z;
+    const double turned = u.y * v.z - u.z * v.y;
+    const double angle = atan2(turned, real);
     const bool is_a_above = a.z > 0;
     const bool is_b_above = b.z > 0;
-    if (is_a_above == is_b_above) return turned != 0 ? turned > 0 : b.y > a.y;
+    if (is_a_above == is_b_above) {
+      if (turned != 0) return angle;
+      return (b.y > a.y) != is_a_above ? magnitude(angle) : -magnitude(angle);
+    }
     const SlicePoint cut = is_b_above ? edge_point(from, to, node.z) : edge_point(to, from, node.z);
-    return (cut.y <= node.y) != is_b_above;
+    if (!(cut.x < node.x)) return angle;  // no strip here
+    const bool is_left = (cut.y <= node.y) != is_b_above;
+    // The sign of `turned` is that of the angle, which may underflow.
+    const bool is_contradicted = turned != 0 ? is_left != (turned > 0) : real < 0 && is_left != (angle > 0);
+    if (!is_contradicted) return angle;
+    return angle + (is_left ? 2 * pi : -2 * pi);
   }
 
   const BoundaryEdge* edges_ = nullptr;
+  const std::uint32_t* count_ = nullptr;
   const Vec3d* places_ = nullptr;
   Vec3d spacing_;
-  std::uint32_t count_ = 0;
   bool is_mirrored_ = false;
 };
 

@@ -13,8 +13,9 @@ namespace blum::kernels {
 ///
 /// Where no triangle comes into a tile, its winding numbers differ by less than the bound on their gradient allows:
 /// most tiles ask at one node. Elsewhere each row of the tile asks once, as along a row the winding number changes by
-/// the counted crossings and no more than that bound; nodes too close to call ask for themselves. Cost: tiles and rows,
-/// times edges of the boundary.
+/// the counted crossings and no more than that bound; nodes too close to call ask for themselves. Cost: tiles, and rows
+/// of those that triangles come into, times edges of the boundary; nodes times edges where the boundary is all over, as
+/// in soups.
 struct SignTiles {
   static constexpr std::uint32_t threads = 256;
   static constexpr std::uint32_t blocks_per_processor = 2;
@@ -44,6 +45,7 @@ struct SignTiles {
   template <class Block>
   BLUM_HD void operator()(const Block& block, Shared& shared, std::size_t index) const {
     using Warp = typename Block::Warp;
+    if (frame->fault != NormalFrame::Fault::none) return;  // there are no distances
     const NodeBox nodes = tiles.box(static_cast<std::uint32_t>(index));
     const Place middle{{nodes.first[0] + nodes.count[0] / 2, nodes.first[1] + nodes.count[1] / 2,
                         nodes.first[2] + nodes.count[2] / 2}};

@@ -201,20 +201,16 @@ struct ApplyWinding : RowsOfWarps {
 template <class Device>
 class CrossingSigns {
  public:
-  explicit CrossingSigns(Device& device) : device_(device) {}
+  explicit CrossingSigns(Device& device) : device_(device), boundary_(device) {}
 
   /// Once per connectivity. Waits for the device.
-  void set_connectivity(const ConnectivityView& connectivity) {
-    flags_.resize(connectivity.edge_count);
-    device_.for_each(connectivity.edge_count, FlagBoundary{connectivity.balance, flags_.data()});
-    device_.exclusive_sum(flags_, sums_);
-    boundary_count_ = total_of(device_, flags_, sums_);
-    boundary_.resize(boundary_count_);
-    device_.for_each(connectivity.edge_count,
-                     ListBoundary{connectivity.edges, connectivity.balance, sums_.data(), boundary_.data()});
+  void set_connectivity(const ConnectivityView& connectivity) { boundary_.set_connectivity(connectivity); }
+  /// Edges of the boundary by index: with none, winding numbers are whole.
+  [[nodiscard]] std::uint32_t boundary_count() const { return boundary_.count(); }
+  /// Those of the last frame that others at the same place do not cancel. Waits for the device.
+  [[nodiscard]] std::uint32_t download_boundary_count() {
+    return boundary_.count() == 0 ? 0 : boundary_.download_kept_count();
   }
-  /// Edges of the boundary: with none, winding numbers are whole.
-  [[nodiscard]] std::uint32_t boundary_count() const { return boundary_count_; }
 
   /// Once per frame.
   void prepare(const DeviceMesh& mesh, const GridSpec& grid) {
@@ -227,6 +223,7 @@ class CrossingSigns {
     is_crossed_.resize(1);
     device_.fill(is_crossed_, 0U);
     device_.for_each(mesh.vertex_count, PlaceInNodes{units_, mesh.vertices, places_.data()});
+    if (boundary_.count() > 0) boundary_.place(mesh.vertices);
   }
 
   /// Negates the unsigned distances of a slab inside: where the winding number is above `level`, or with a boundary
@@ -238,21 +235,21 @@ class CrossingSigns {
     const auto rows = static_cast<std::size_t>(last_slice - first_slice) * static_cast<std::size_t>(grid_.size[1]);
     const std::size_t row_blocks = (rows + RowsOfWarps::warps - 1) / RowsOfWarps::warps;
     count_changes(first_slice, last_slice, rows);
-    if (boundary_count_ == 0) {
+    if (boundary_.count() == 0) {
       device_.run_blocks(row_blocks,
                          ApplyWinding{{}, change_.data(), rows, width, level, distance, is_crossed_.data()});
       return;
     }
     device_.run_blocks(row_blocks, SumCrossings{{}, change_.data(), rows, width});
     const TileGrid tiles{grid_.size, first_slice, last_slice, SignTiles::side};
-    device_.run_blocks(tiles.count(),
-                       SignTiles{{boundary_.data(), boundary_count_, places_.data(), grid_.spacing, units_.is_mirrored},
-                                 frame,
-                                 tiles,
-                                 grid_.spacing,
-                                 change_.data(),
-                                 level,
-                                 distance});
+    device_.run_blocks(tiles.count(), SignTiles{{boundary_.kept(), boundary_.kept_count(), places_.data(),
+                                                 grid_.spacing, units_.is_mirrored},
+                                                frame,
+                                                tiles,
+                                                grid_.spacing,
+                                                change_.data(),
+                                                level,
+                                                distance});
   }
 
   /// Whether every node so far has the winding number level or level + 1, of a mesh without boundary. Waits for the
@@ -284,10 +281,7 @@ class CrossingSigns {
   DeviceMesh mesh_;
   GridSpec grid_;
   NodeUnits units_;
-  std::uint32_t boundary_count_ = 0;
-  typename Device::template Array<std::uint32_t> flags_;
-  typename Device::template Array<std::uint32_t> sums_;
-  typename Device::template Array<BoundaryEdge> boundary_;
+  Boundary<Device> boundary_;
   typename Device::template Array<Vec3d> places_;
   typename Device::template Array<std::uint32_t> large_;
   typename Device::template Array<std::uint32_t> large_count_;

@@ -24,8 +24,13 @@ struct EngineRequest {
   double band = 0;  ///< half-width, mesh units; 0: the full grid
   /// Nodes with a winding number above this, or with a boundary above it by more than 1/2, get negative distances.
   std::optional<std::int32_t> level = {};
-  /// With more edges in the boundary there are no signs: their cost is that of tiles times edges.
-  std::uint32_t most_boundary_edges = 1U << 14;
+  /// Where the boundary has more edges, or nodes times edges are more, there are no signs. No limits: for what must not
+  /// wait for the device.
+  struct Limits {
+    std::uint32_t edges = 1U << 14U;
+    double nodes_times_edges = 0x1p36;
+  };
+  std::optional<Limits> limits = Limits{};
 };
 
 struct EngineResult {
@@ -183,9 +188,13 @@ class FieldEngine {
 
   /// Whether there will be signs.
   bool prepare_signs(const EngineRequest& request) {
-    if (!request.level || signs_.boundary_count() > request.most_boundary_edges) return false;
+    if (!request.level) return false;
     signs_.prepare(mesh_, request.grid);
-    return true;
+    if (!request.limits || signs_.boundary_count() == 0) return true;
+    const std::uint32_t edges = signs_.download_boundary_count();
+    return edges <= request.limits->edges &&
+           static_cast<double>(edges) * static_cast<double>(request.grid.node_count()) <=
+               request.limits->nodes_times_edges;
   }
   void compute_slab(const Slabs& slabs, std::int64_t slab, const EngineRequest& request, bool is_signed,
                     float* distance, std::uint32_t* site) {

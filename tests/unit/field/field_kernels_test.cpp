@@ -15,6 +15,7 @@
 
 #include "blum/field/field.hpp"
 #include "blum/geometry/generators.hpp"
+#include "field/kernels/boundary_edges.hpp"
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/emulated_device.hpp"
 #include "support/back_ends.hpp"
@@ -152,6 +153,73 @@ TEST_P(FieldKernels, SignsOfSoupsAreThoseOfTheFullSum) {
   TriangleMesh mixed = make_sphere({.frequency = 3});
   for (std::size_t t = 0; t < mixed.triangles.size(); t += 7) std::swap(mixed.triangles[t][0], mixed.triangles[t][1]);
   expect_winding_signs(compute(mixed, grid_for(mixed, 20), {.sign = SignMode::winding}), mixed);
+}
+
+/// Triangles between corners that lie on rows and columns of unit nodes, or an ulp beside.
+TriangleMesh beside_rows(std::uint64_t seed) {
+  Random random(seed);
+  const auto coordinate = [&] {
+    const double whole = static_cast<double>(random.below(12)) - 2;
+    const std::uint64_t kind = random.below(4);
+    if (kind == 0) return std::nextafter(whole, 100.0);
+    if (kind == 1) return std::nextafter(whole, -100.0);
+    return kind == 2 ? whole : whole + random.uniform();
+  };
+  TriangleMesh mesh;
+  for (std::uint64_t k = 0; k < 3 + random.below(10); ++k) {
+    mesh.vertices.push_back({coordinate(), coordinate(), coordinate()});
+  }
+  const auto corner = [&] { return static_cast<std::uint32_t>(random.below(mesh.vertices.size())); };
+  for (std::uint64_t k = 0; k < 1 + random.below(15); ++k) mesh.triangles.push_back({corner(), corner(), corner()});
+  return mesh;
+}
+
+TEST_P(FieldKernels, SignsOfSoupsWhoseCornersLieAnUlpBesideRows) {
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    SCOPED_TRACE(seed);
+    const TriangleMesh mesh = beside_rows(seed);
+    GridSpec grid{.size = {8, 8, 8}};
+    if (seed % 2 == 0) std::swap(grid.direction.columns[0], grid.direction.columns[seed / 2 % 2 + 1]);
+    expect_winding_signs(compute(mesh, grid, {.sign = SignMode::winding}), mesh);
+  }
+}
+
+TEST_P(FieldKernels, TrianglesThatShareNoVerticesHaveTheSignsOfThoseThatDo) {
+  for (TriangleMesh mesh : {make_sphere({.frequency = 6}), bowl(0.3)}) {
+    TriangleMesh apart;
+    for (const Triangle& t : mesh.triangles) {
+      const auto first = static_cast<std::uint32_t>(apart.vertices.size());
+      for (const std::uint32_t corner : t) apart.vertices.push_back(mesh.vertices[corner]);
+      apart.triangles.push_back({first, first + 1, first + 2});
+    }
+    const GridSpec grid = grid_for(mesh, 24);
+    expect_winding_signs(compute(apart, grid, {.sign = SignMode::winding}), mesh);
+  }
+}
+
+TEST(Boundary, IsWhatCoincidentEdgesLeave) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, -0.0, 0}};
+  mesh.triangles = {{0, 1, 2}, {4, 3, 5}, {6, 3, 4}};  // the first and the last lie upon each other
+  kernels::EmulatedDevice device;
+  kernels::Connectivity<kernels::EmulatedDevice> connectivity;
+  kernels::build_connectivity(device,
+                              {mesh.vertices.data(), mesh.triangles.data(), nullptr, nullptr,
+                               static_cast<std::uint32_t>(mesh.vertices.size()), 3, 0, 0},
+                              connectivity);
+  kernels::Boundary<kernels::EmulatedDevice> boundary(device);
+  boundary.set_connectivity(connectivity.view());
+  EXPECT_EQ(boundary.count(), 7U);  // an edge is shared by index
+  boundary.place(mesh.vertices.data());
+  ASSERT_EQ(boundary.download_kept_count(), 5U);
+  double counts[2] = {};
+  for (std::uint32_t k = 0; k < 5; ++k) {
+    const double count = std::abs(boundary.kept()[k].count);
+    ASSERT_TRUE(count == 1 || count == 2);
+    counts[static_cast<int>(count) - 1] += 1;
+  }
+  EXPECT_EQ(counts[0], 3);  // two of the second triangle, and the diagonal, which all three run along
+  EXPECT_EQ(counts[1], 2);
 }
 
 TEST_P(FieldKernels, SlabsDoNotChangeABit) {
