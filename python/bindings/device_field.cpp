@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,6 +48,17 @@ constexpr std::array<NamedType, 11> types{named<std::uint8_t>("|u1", ElementType
 
 /// An array in a device's memory, and what keeps it there.
 struct DeviceArray {
+  DeviceArray() = default;
+  DeviceArray(DeviceArray&&) noexcept = default;
+  DeviceArray& operator=(DeviceArray&&) noexcept = default;
+  DeviceArray(const DeviceArray&) = delete;
+  DeviceArray& operator=(const DeviceArray&) = delete;
+  ~DeviceArray() {
+    if (memory.data() == nullptr) return;
+    const nb::gil_scoped_release released;  // it waits for the device, which may wait for Python
+    memory = {};
+  }
+
   void* data = nullptr;
   std::vector<std::size_t> shape;
   std::optional<NamedType> type;  ///< none: one that Blum does not take
@@ -75,6 +87,9 @@ std::optional<NamedType> named_type(const std::string& name) {
 }
 
 DeviceArray of_capsule(nb::ndarray<> import) {
+  if (import.device_type() != nb::device::cuda::value && import.device_type() != nb::device::cuda_managed::value) {
+    throw InvalidOption("its DLPack capsule is of another kind of device than CUDA's");
+  }
   DeviceArray array;
   array.data = import.data();
   for (const NamedType& type : types) {
@@ -110,7 +125,10 @@ DeviceArray allocated(const std::string& device, std::vector<std::size_t> shape,
   std::size_t bytes = array.type->bytes;
   for (const std::size_t size : shape) bytes *= size;
   const Device there = parse_device(device);
-  array.memory = DeviceMemory(there, bytes);
+  {
+    const nb::gil_scoped_release released;
+    array.memory = DeviceMemory(there, bytes);
+  }
   array.data = array.memory.data();
   array.shape = std::move(shape);
   array.device = there.index;
@@ -146,43 +164,94 @@ void bind_device_array(nb::module_& m) {
       .def("capsule", &capsule_of);
 }
 
-void set_connectivity(DeviceFieldSolver& solver, const DeviceArray& vertices, const DeviceArray* triangles,
-                      const DeviceArray* segments, const DeviceArray* points, std::uintptr_t stream) {
+/// A solver that many threads may call, one after the other. None of them holds Python's lock meanwhile: the device may
+/// wait for Python, too.
+template <class Solver>
+class Shared {
+ public:
+  template <class Options>
+  Shared(const GridSpec& grid, const Options& options, const Context& context)
+      : solver_(std::in_place, grid, options, context) {}
+  Shared(const Shared&) = delete;
+  Shared& operator=(const Shared&) = delete;
+  ~Shared() {
+    const nb::gil_scoped_release released;
+    solver_.reset();
+  }
+
+  template <class Work>
+  auto with(const Work& work) {
+    const nb::gil_scoped_release released;
+    const std::scoped_lock lock(mutex_);
+    return work(*solver_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<Solver> solver_;
+};
+using FieldSolverHere = Shared<DeviceFieldSolver>;
+using TransformHere = Shared<DeviceDistanceTransform>;
+
+DeviceFieldView output_of(const DeviceArray& distance, const DeviceArray& site) {
+  return {static_cast<float*>(distance.data), static_cast<std::uint32_t*>(site.data)};
+}
+
+/// The number of pieces of work that are queued with this one.
+std::uint64_t compute(FieldSolverHere& solver, const DeviceArray& vertices, const DeviceArray* triangles,
+                      const DeviceArray* segments, const DeviceArray* points, const DeviceArray& distance,
+                      const DeviceArray& site, std::uintptr_t stream) {
   const auto view = [](const DeviceArray* array) { return array == nullptr ? DeviceArrayView{} : array->view(); };
   const DeviceMeshView mesh{vertices.view(), view(triangles), view(segments), view(points)};
-  const nb::gil_scoped_release released;
-  solver.set_connectivity(mesh, stream_of(stream));
+  const bool has_connectivity = triangles != nullptr || segments != nullptr || points != nullptr;
+  const DeviceFieldView to = output_of(distance, site);
+  return solver.with([&](DeviceFieldSolver& own) {
+    if (has_connectivity) own.set_connectivity(mesh, stream_of(stream));
+    own.compute(mesh.vertices, to, stream_of(stream));
+    return own.progress().queued;
+  });
 }
 
-void compute(DeviceFieldSolver& solver, const DeviceArray& vertices, const DeviceArray& distance,
-             const DeviceArray& site, std::uintptr_t stream) {
-  const DeviceArrayView from = vertices.view();
-  const DeviceFieldView to{static_cast<float*>(distance.data), static_cast<std::uint32_t*>(site.data)};
-  const nb::gil_scoped_release released;
-  solver.compute(from, to, stream_of(stream));
-}
-
-void transform(DeviceDistanceTransform& transform, const DeviceArray& values, const DeviceArray& distance,
-               const DeviceArray& site, std::uintptr_t stream) {
+std::uint64_t transform(TransformHere& transform, const DeviceArray& values, const DeviceArray& distance,
+                        const DeviceArray& site, std::uintptr_t stream) {
   const DeviceArrayView from = values.view(3);
-  const DeviceFieldView to{static_cast<float*>(distance.data), static_cast<std::uint32_t*>(site.data)};
-  const nb::gil_scoped_release released;
-  transform.compute(from, to, stream_of(stream));
+  const DeviceFieldView to = output_of(distance, site);
+  return transform.with([&](DeviceDistanceTransform& own) {
+    own.compute(from, to, stream_of(stream));
+    return own.progress().queued;
+  });
 }
 
 /// What both solvers have.
 template <class Solver>
-void bind_queue(nb::class_<Solver>& type) {
-  type.def_prop_ro("device", [](const Solver& solver) { return to_string(solver.device()); })
+void bind_queue(nb::class_<Shared<Solver>>& type) {
+  type.def_prop_ro(
+          "device",
+          [](Shared<Solver>& self) { return self.with([](const Solver& own) { return to_string(own.device()); }); })
       .def("progress",
-           [](const Solver& solver) {
-             const DeviceProgress progress = solver.progress();
+           [](Shared<Solver>& self) {
+             const DeviceProgress progress = self.with([](const Solver& own) { return own.progress(); });
              return nb::make_tuple(progress.queued, progress.finished);
            })
       .def(
+          "device_of",
+          [](Shared<Solver>& self, std::uintptr_t address) {
+            return self.with([&](const Solver& own) -> std::optional<int> {
+              const std::optional<Device> device = own.device_of(stream_of(address));
+              return device ? std::make_optional(device->index) : std::nullopt;
+            });
+          },
+          nb::arg("address"))
+      .def(
+          "follow",
+          [](Shared<Solver>& self, std::uint64_t pieces, std::uintptr_t stream) {
+            self.with([&](Solver& own) { own.follow(pieces, stream_of(stream)); });
+          },
+          nb::arg("pieces"), nb::arg("stream"))
+      .def(
           "order",
-          [](Solver& solver, std::uintptr_t before, std::uintptr_t after) {
-            solver.order(stream_of(before), stream_of(after));
+          [](Shared<Solver>& self, std::uintptr_t before, std::uintptr_t after) {
+            self.with([&](Solver& own) { own.order(stream_of(before), stream_of(after)); });
           },
           nb::arg("before"), nb::arg("after"));
 }
@@ -191,31 +260,35 @@ void bind_queue(nb::class_<Solver>& type) {
 
 void bind_device_field(nb::module_& m) {
   bind_device_array(m);
-  auto solver = nb::class_<DeviceFieldSolver>(m, "DeviceFieldSolver");
+  auto solver = nb::class_<FieldSolverHere>(m, "DeviceFieldSolver");
   solver
       .def(
           "__init__",
-          [](DeviceFieldSolver* self, const GridSpec& grid, const std::string& sign, std::optional<double> band,
+          [](FieldSolverHere* self, const GridSpec& grid, const std::string& sign, std::optional<double> band,
              const std::string& site_ids, const std::string& device) {
-            new (self) DeviceFieldSolver(grid, field_options(sign, band, site_ids), {.device = parse_device(device)});
+            new (self)
+                FieldSolverHere(grid, field_options(sign, band, site_ids), Context{.device = parse_device(device)});
           },
           nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"), nb::arg("device"))
-      .def_prop_ro("sign_rule", [](const DeviceFieldSolver& self) { return std::string(to_string(self.sign_rule())); })
-      .def("set_connectivity", &set_connectivity, nb::arg("vertices"), nb::arg("triangles").none(),
-           nb::arg("segments").none(), nb::arg("points").none(), nb::arg("stream"))
-      .def("compute", &compute, nb::arg("vertices"), nb::arg("distance"), nb::arg("site"), nb::arg("stream"));
+      .def_prop_ro(
+          "sign_rule",
+          [](FieldSolverHere& self) {
+            return self.with([](const DeviceFieldSolver& own) { return std::string(to_string(own.sign_rule())); });
+          })
+      .def("compute", &compute, nb::arg("vertices"), nb::arg("triangles").none(), nb::arg("segments").none(),
+           nb::arg("points").none(), nb::arg("distance"), nb::arg("site"), nb::arg("stream"));
   bind_queue(solver);
 
-  auto transforms = nb::class_<DeviceDistanceTransform>(m, "DeviceDistanceTransform");
+  auto transforms = nb::class_<TransformHere>(m, "DeviceDistanceTransform");
   transforms
       .def(
           "__init__",
-          [](DeviceDistanceTransform* self, const GridSpec& grid, std::optional<std::int64_t> label,
+          [](TransformHere* self, const GridSpec& grid, std::optional<std::int64_t> label,
              std::optional<double> threshold, bool is_signed, std::optional<double> band, const std::string& device) {
             DistanceTransformOptions options{.is_signed = is_signed, .band = band};
             if (label) options.selection = LabelSelection::of_label(*label);
             if (threshold) options.selection = LabelSelection::at_least(*threshold);
-            new (self) DeviceDistanceTransform(grid, options, {.device = parse_device(device)});
+            new (self) TransformHere(grid, options, Context{.device = parse_device(device)});
           },
           nb::arg("grid"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("is_signed"),
           nb::arg("band").none(), nb::arg("device"))

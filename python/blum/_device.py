@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import threading
 from collections import deque
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._arguments import Integer, Real, device_name, integer, label_of, one_of, optional_number
@@ -21,16 +21,16 @@ _LEGACY = 1  # the legacy default stream, for CUDA and DLPack alike
 
 
 class DeviceArray:
-    """An array in a CUDA device's memory, for ``torch.from_dlpack``, ``cupy.asarray`` and their like; not copied.
+    """An array in a CUDA device's memory, for ``torch.from_dlpack``, ``cupy.from_dlpack`` and their like; not copied.
 
-    It has ``__dlpack__`` and ``__cuda_array_interface__``: whoever reads it by one of them, waits on their own stream
+    It has ``__dlpack__`` and ``__cuda_array_interface__``: whoever takes it by one of them, waits on their own stream
     for what computes it.
     """
 
-    def __init__(self, core: _core.DeviceArray, solver: Any, stream: int) -> None:
+    def __init__(self, core: _core.DeviceArray, solver: _DeviceSolver, pieces: int) -> None:
         self._core = core
-        self._solver = solver
-        self._stream = stream
+        self._solver = solver  # keeps what the device still reads
+        self._pieces = pieces  # of the solver's work, this array's among them
 
     def __repr__(self) -> str:
         return f"DeviceArray(shape={self.shape}, dtype={self.dtype}, device='cuda:{self._core.device}')"
@@ -52,14 +52,19 @@ class DeviceArray:
 
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]:
+        # By way of the legacy default stream, which is always there: streams of others may be gone.
+        self._solver._solver.follow(self._pieces, _LEGACY)
         return {
             "shape": self.shape,
             "typestr": self._core.type,
             "data": (self.address, False),
             "strides": None,
-            "stream": self._stream,
+            "stream": _LEGACY,
             "version": 3,
         }
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        raise TypeError("the array is in a CUDA device's memory: copy it to the host first, with PyTorch or CuPy")
 
     def __dlpack_device__(self) -> tuple[int, int]:
         return _CUDA, int(self._core.device)
@@ -76,9 +81,8 @@ class DeviceArray:
             raise BufferError("the array stays on its device: copy it from there")
         if copy:
             raise BufferError("the array is not copied: copy what shares it")
-        after = _LEGACY if stream is None else stream
-        if after != -1 and after != self._stream:
-            self._solver.order(self._stream, after)
+        if stream != -1:
+            self._solver._solver.follow(self._pieces, stream or _LEGACY)
         return self._core.capsule()
 
 
@@ -137,12 +141,13 @@ class DeviceField:
 class _DeviceSolver:
     """What the solvers of this module share: arrays of others in and out, and the streams between."""
 
+    _instead = ""  # what takes arrays of the host
+
     def __init__(self, grid: Grid, core: Any, band: float | None, site_ids: str) -> None:
         self._solver = core
         self._grid = grid
         self._band = band
         self._site_ids = site_ids
-        self._busy = threading.Lock()
         self._held: deque[tuple[int, tuple[_core.DeviceArray, ...]]] = deque()
 
     def __repr__(self) -> str:
@@ -168,10 +173,16 @@ class _DeviceSolver:
         """Where fields are computed: "cuda:K"."""
         return str(self._solver.device)
 
+    def __del__(self) -> None:
+        self.__dict__.pop("_solver", None)  # which waits for the device; only then may the arrays go
+
     def _hold(self, arrays: tuple[_core.DeviceArray, ...]) -> None:
         """Keeps arrays for as long as what is queued uses them: those who gave them may let go of them at once."""
-        queued, finished = self._solver.progress()
-        self._held.append((queued, arrays))
+        self._held.append((self._solver.progress()[0], arrays))
+
+    def _let_go(self) -> None:
+        """Drops the arrays that the device is done with."""
+        _, finished = self._solver.progress()
         while self._held and self._held[0][0] <= finished:
             self._held.popleft()
 
@@ -183,7 +194,7 @@ class _DeviceSolver:
                 _core.DeviceArray.allocated(self.device, size, "<f4"),
                 _core.DeviceArray.allocated(self.device, size, "<i4"),
             )
-        if not isinstance(out, tuple) or len(out) != 2:
+        if not isinstance(out, (tuple, list)) or len(out) != 2:
             raise TypeError("out must be a pair of arrays on the device, (distance, site)")
         for place, value in enumerate(out):
             interface = getattr(value, "__cuda_array_interface__", None)
@@ -193,17 +204,17 @@ class _DeviceSolver:
         return distance, self._take(out[1], "out[1]", shape, ("<i4", "<u4"), stream)
 
     def _results(
-        self, distance: _core.DeviceArray, site: _core.DeviceArray, out: tuple[Any, Any] | None, stream: int
+        self, distance: _core.DeviceArray, site: _core.DeviceArray, out: tuple[Any, Any] | None, pieces: int
     ) -> tuple[Any, Any]:
         if out is not None:
-            return out
-        return DeviceArray(distance, self._solver, stream), DeviceArray(site, self._solver, stream)
+            return out[0], out[1]
+        return DeviceArray(distance, self, pieces), DeviceArray(site, self, pieces)
 
     def _take(
         self, value: Any, name: str, shape: tuple[int | None, ...], types: tuple[str, ...], stream: int
     ) -> _core.DeviceArray:
         """An array of others, checked; what it holds is ready for what is queued on the stream from now on."""
-        array = _imported(value, name, self._solver, stream)
+        array = _imported(value, name, self._solver, stream, self._instead)
         if array.type not in types:
             raise TypeError(f"{name} must hold {' or '.join(np.dtype(kind).name for kind in types)}")
         if not array.is_contiguous:
@@ -212,6 +223,8 @@ class _DeviceSolver:
         if len(found) != len(shape) or any(want not in (None, size) for want, size in zip(shape, found, strict=True)):
             wanted = ", ".join("n" if size is None else str(size) for size in shape)
             raise ValueError(f"{name} has the shape {found}, but must have ({wanted}{',' if len(shape) == 1 else ''})")
+        if array.address % np.dtype(array.type).itemsize:
+            raise ValueError(f"{name} does not begin at a multiple of its elements' size")
         if array.device != _index(self._solver):
             raise InvalidOption(f"{name} is on cuda:{array.device}, but fields are computed on {self.device}")
         return array
@@ -242,6 +255,8 @@ class DeviceFieldSolver(_DeviceSolver):
         distance = torch.from_dlpack(field.distance)
         field = solver.compute(vertices + step)               # the same triangles
     """
+
+    _instead = "distance_field and FieldSolver take meshes of the host's"
 
     def __init__(
         self,
@@ -296,6 +311,7 @@ class DeviceFieldSolver(_DeviceSolver):
         InvalidMesh, InvalidOption, InvalidGrid (all ValueError), TypeError, OutOfMemory, DeviceError
         """
         queue = _stream_address(stream)
+        self._let_go()
         rows = self._take(vertices, "vertices", (None, 3), _REALS, queue)
         parts = {
             name: None if value is None else self._take(value, name, shape, _INTEGERS, queue)
@@ -305,13 +321,13 @@ class DeviceFieldSolver(_DeviceSolver):
                 ("points", points, (None,)),
             )
         }
+        used = [part for part in parts.values() if part is not None]
         distance, site = self._outputs(out, queue)
-        with self._busy:
-            if any(part is not None for part in parts.values()):
-                self._solver.set_connectivity(rows, **parts, stream=queue)
-            self._solver.compute(rows, distance, site, queue)
-            self._hold((rows, distance, site))
-        return DeviceField(*self._results(distance, site, out, queue), self)
+        try:
+            pieces = self._solver.compute(rows, **parts, distance=distance, site=site, stream=queue)
+        finally:
+            self._hold((rows, *used) if out is None else (rows, *used, distance, site))
+        return DeviceField(*self._results(distance, site, out, pieces), self)
 
 
 class DeviceDistanceTransform(_DeviceSolver):
@@ -335,6 +351,8 @@ class DeviceDistanceTransform(_DeviceSolver):
         transform = blum.DeviceDistanceTransform(blum.Grid((0, 0, 0), 1, mask.shape[::-1]), signed=False)
         distance = cupy.from_dlpack(transform.compute(mask).distance)     # mask: (z, y, x) on the device
     """
+
+    _instead = "distance_transform takes images of the host's"
 
     def __init__(
         self,
@@ -385,12 +403,14 @@ class DeviceDistanceTransform(_DeviceSolver):
         InvalidOption (a ValueError), ValueError, TypeError, OutOfMemory, DeviceError
         """
         queue = _stream_address(stream)
+        self._let_go()
         voxels = self._take(values, "values", self._grid.shape, _NUMBERS, queue)
         distance, site = self._outputs(out, queue)
-        with self._busy:
-            self._solver.compute(voxels, distance, site, queue)
-            self._hold((voxels, distance, site))
-        return DeviceField(*self._results(distance, site, out, queue), self)
+        try:
+            pieces = self._solver.compute(voxels, distance, site, queue)
+        finally:
+            self._hold((voxels,) if out is None else (voxels, distance, site))
+        return DeviceField(*self._results(distance, site, out, pieces), self)
 
 
 _REALS = ("<f4", "<f8")
@@ -406,33 +426,50 @@ def _stream_address(stream: Any) -> int:
     """A stream as CUDA's runtime and DLPack both have it."""
     if stream is None:
         return _LEGACY
-    for attribute in ("cuda_stream", "ptr"):  # PyTorch, CuPy
+    protocol = getattr(stream, "__cuda_stream__", None)
+    if protocol is not None:
+        stream = protocol()[1] if callable(protocol) else protocol[1]
+    for attribute in ("cuda_stream", "ptr"):  # PyTorch and Warp, CuPy
         stream = getattr(stream, attribute, stream)
+    if not isinstance(stream, (int, np.integer)):
+        raise TypeError(f"stream must be an integer, or a stream of PyTorch, CuPy or Warp, not {type(stream).__name__}")
     address = integer(stream, "stream", bits=65)
     if address < 0:
         raise InvalidOption(f"stream is {address}, which is no stream")
     return address or _LEGACY
 
 
-def _imported(value: Any, name: str, solver: Any, stream: int) -> _core.DeviceArray:
-    if hasattr(value, "__dlpack__") and hasattr(value, "__dlpack_device__"):
-        kind, _ = value.__dlpack_device__()
-        if int(kind) in (_CUDA, _MANAGED):
-            return _core.DeviceArray.of_capsule(value.__dlpack__(stream=stream))
-    interface = getattr(value, "__cuda_array_interface__", None)
-    if interface is None:
-        raise TypeError(
-            f"{name} must be in a CUDA device's memory; distance_field and FieldSolver take meshes of the host's"
-        )
+def _imported(value: Any, name: str, solver: Any, stream: int, instead: str) -> _core.DeviceArray:
+    try:
+        if hasattr(value, "__dlpack__") and hasattr(value, "__dlpack_device__"):
+            kind, _ = value.__dlpack_device__()
+            if int(kind) in (_CUDA, _MANAGED):
+                return _core.DeviceArray.of_capsule(value.__dlpack__(stream=stream))
+        interface = getattr(value, "__cuda_array_interface__", None)
+        if interface is not None:
+            return _of_interface(value, interface, solver, stream)
+    except Exception as error:
+        raise TypeError(f"{name} cannot be used as an array on a device: {error}") from error
+    raise TypeError(f"{name} must be in a CUDA device's memory; {instead}")
+
+
+def _of_interface(value: Any, interface: dict[str, Any], solver: Any, stream: int) -> _core.DeviceArray:
+    if interface.get("mask") is not None:
+        raise ValueError("it has a mask, and Blum knows no masks")
     kind = np.dtype(interface["typestr"])
     shape = [int(size) for size in interface["shape"]]
-    strides = interface.get("strides")
+    address = int(interface["data"][0])
+    device = _index(solver)
+    if 0 not in shape:
+        owner = solver.device_of(address)
+        if owner is None:
+            raise ValueError("its memory is not that of a device")
+        device = owner
     before = interface.get("stream")
     if before is not None and int(before) != stream:
         solver.order(int(before), stream)
-    return _core.DeviceArray.at_address(
-        int(interface["data"][0]), shape, kind.str, _is_contiguous(shape, strides, kind.itemsize), _index(solver), value
-    )
+    is_contiguous = _is_contiguous(shape, interface.get("strides"), kind.itemsize)
+    return _core.DeviceArray.at_address(address, shape, kind.str, is_contiguous, device, value)
 
 
 def _is_contiguous(shape: Sequence[int], strides: Sequence[int] | None, item: int) -> bool:

@@ -60,6 +60,12 @@ void DeviceDistanceTransform::compute(const DeviceArrayView& values, const Devic
 DeviceProgress DeviceDistanceTransform::progress() const {
   return state_->queue.progress();
 }
+void DeviceDistanceTransform::follow(std::uint64_t pieces, void* stream) {
+  state_->queue.follow(pieces, stream);
+}
+std::optional<Device> DeviceDistanceTransform::device_of(const void* memory) const {
+  return state_->queue.device_of(memory);
+}
 void DeviceDistanceTransform::order(void* before, void* after) {
   state_->queue.order(before, after);
 }

@@ -88,11 +88,11 @@ const FieldOptions& DeviceFieldSolver::options() const {
 }
 
 void DeviceFieldSolver::set_connectivity(const DeviceMeshView& mesh, void* stream) {
-  state_->sign_rule.reset();
   check_mesh(mesh, state_->options);
   if (state_->options.sign == SignMode::winding && mesh.triangles.rows == 0) {
     throw InvalidOption("a sign was asked for, but the mesh has no triangles, so it has no inside: ask for none");
   }
+  state_->sign_rule.reset();
   state_->queue.run(&cuda::Module::set_connectivity_there, &mesh, stream);
   const bool is_signed = state_->options.sign != SignMode::none && mesh.triangles.rows > 0;
   state_->sign_rule = is_signed ? SignRule::winding : SignRule::none;
@@ -121,6 +121,12 @@ void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFie
 
 DeviceProgress DeviceFieldSolver::progress() const {
   return state_->queue.progress();
+}
+void DeviceFieldSolver::follow(std::uint64_t pieces, void* stream) {
+  state_->queue.follow(pieces, stream);
+}
+std::optional<Device> DeviceFieldSolver::device_of(const void* memory) const {
+  return state_->queue.device_of(memory);
 }
 void DeviceFieldSolver::order(void* before, void* after) {
   state_->queue.order(before, after);

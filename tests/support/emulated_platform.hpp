@@ -23,6 +23,7 @@ struct EmulatedPlatform {
     void leave() { ++queued_; }
     [[nodiscard]] std::uint64_t queued() const { return queued_; }
     [[nodiscard]] std::uint64_t finished() const { return queued_; }
+    void follow(std::uint64_t, void*) {}
     void order(void*, void*) {}
     void wait() {}
 
@@ -38,6 +39,8 @@ struct EmulatedPlatform {
     if (device == 0) return;
     throw DeviceError("there is no CUDA device " + std::to_string(device) + ": 1 can be seen, counted from 0");
   }
+  static void expect_runnable() {}
+  static int device_of(const void*) { return 0; }
   static void* allocate(std::size_t bytes) { return ::operator new(bytes); }
   static void release(void* memory) { ::operator delete(memory); }
   static std::size_t slab_nodes() { return wanted_slab_nodes; }

@@ -1,7 +1,9 @@
 // Blum: distance transforms of images in the memory of a device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "blum/core/context.hpp"
 #include "blum/field/device_memory.hpp"
@@ -28,7 +30,8 @@ class DeviceDistanceTransform {
   [[nodiscard]] const GridSpec& grid() const;
   [[nodiscard]] const DistanceTransformOptions& options() const;
 
-  /// Queues what distance_transform() computes, byte for byte; does not wait.
+  /// Queues what distance_transform() computes, byte for byte; does not wait, but with 64 calls in flight for the
+  /// oldest.
   ///
   /// Which voxels are selected shows only on the device: where no voxel is, or, signed, every one, distances are
   /// infinite (or the band's) and there are no sites.
@@ -37,6 +40,10 @@ class DeviceDistanceTransform {
   void compute(const DeviceArrayView& values, const DeviceFieldView& field, void* stream = nullptr);
 
   [[nodiscard]] DeviceProgress progress() const;
+  /// Makes what is queued on a stream from now on wait for the first `pieces` of the work that progress() counts.
+  void follow(std::uint64_t pieces, void* stream);
+  /// The device that memory belongs to; none for the host's.
+  [[nodiscard]] std::optional<Device> device_of(const void* memory) const;
   /// Makes what is queued on one stream from now on wait for what is queued on another one now.
   void order(void* before, void* after);
 

@@ -1,7 +1,9 @@
 // Blum: fields from and to the memory of a device. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "blum/core/context.hpp"
@@ -42,7 +44,8 @@ class DeviceFieldSolver {
   /// How the signs of fields are found with the current connectivity.
   [[nodiscard]] SignRule sign_rule() const;
 
-  /// Queues the field of the current connectivity with these vertices; does not wait.
+  /// Queues the field of the current connectivity with these vertices; does not wait, but with 64 calls in flight for
+  /// the oldest.
   ///
   /// Vertices that are not finite, and extents that 32-bit distances do not hold, show only on the device: then every
   /// node gets NaN and no site.
@@ -53,6 +56,10 @@ class DeviceFieldSolver {
   void compute(const DeviceArrayView& vertices, const DeviceFieldView& field, void* stream = nullptr);
 
   [[nodiscard]] DeviceProgress progress() const;
+  /// Makes what is queued on a stream from now on wait for the first `pieces` of the work that progress() counts.
+  void follow(std::uint64_t pieces, void* stream);
+  /// The device that memory belongs to; none for the host's.
+  [[nodiscard]] std::optional<Device> device_of(const void* memory) const;
   /// Makes what is queued on one stream from now on wait for what is queued on another one now.
   void order(void* before, void* after);
 

@@ -1,6 +1,9 @@
 // Blum: an engine of the CUDA module that works on arrays of others. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "blum/core/context.hpp"
 #include "blum/core/device.hpp"
 #include "blum/field/device_memory.hpp"
@@ -27,6 +30,12 @@ class DeviceQueue {
     DeviceProgress progress;
     run(&Module::progress, &progress.queued, &progress.finished);
     return progress;
+  }
+  void follow(std::uint64_t pieces, void* stream) const { run(&Module::follow, pieces, stream); }
+  [[nodiscard]] std::optional<Device> device_of(const void* memory) const {
+    int index = -1;
+    run(&Module::device_of, memory, &index);
+    return index < 0 ? std::nullopt : std::make_optional(Device::cuda(index));
   }
   void order(void* before, void* after) const { run(&Module::order, before, after); }
 

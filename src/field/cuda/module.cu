@@ -1,4 +1,5 @@
 // The CUDA module: nothing is thrown across its border.
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -53,7 +54,8 @@ class CudaQueue {
       (void)cudaEventSynchronize(event_of(finished_));
       ++finished_;
     }
-    (void)cudaEventRecord(event_of(queued_++), device_.stream());
+    // Without an event, whoever asks for it must not be told of an older one.
+    if (cudaEventRecord(event_of(queued_++), device_.stream()) != cudaSuccess) (void)cudaDeviceSynchronize();
     device_.use(stream_.get());
   }
   [[nodiscard]] std::uint64_t queued() const { return queued_; }
@@ -63,6 +65,11 @@ class CudaQueue {
   }
   void wait() {
     if (queued_ > 0) (void)cudaEventSynchronize(event_of(queued_ - 1));
+  }
+  void follow(std::uint64_t pieces, void* stream) {
+    pieces = std::min(pieces, queued_);
+    if (pieces <= finished()) return;
+    check(cudaStreamWaitEvent(static_cast<cudaStream_t>(stream), event_of(pieces - 1), 0), "ordering streams");
   }
   void order(void* before, void* after) {
     check(cudaEventRecord(other_.get(), static_cast<cudaStream_t>(before)), "ordering streams");
@@ -91,7 +98,6 @@ struct CudaPlatform {
     explicit Choice(int device) : device_(device) {
       had_device_ = cudaGetDevice(&before_) == cudaSuccess;
       check(cudaSetDevice(device), "choosing the device");
-      expect_runnable<kernels::MakeFrame>();
     }
     Choice(const Choice&) = delete;
     Choice& operator=(const Choice&) = delete;
@@ -106,12 +112,24 @@ struct CudaPlatform {
     bool had_device_ = false;
   };
 
+  static void expect_runnable() { cuda::expect_runnable<kernels::MakeFrame>(); }
   static void expect_device(int device) {
+    int driver = 0;
+    if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) {
+      throw DeviceError(
+          "no NVIDIA driver can be seen: is one installed, and do its devices show in a container? nvidia-smi tells");
+    }
     int count = 0;
     check(cudaGetDeviceCount(&count), "looking for devices");
     if (device < count) return;
     throw DeviceError("there is no CUDA device " + std::to_string(device) + ": " + std::to_string(count) +
                       " can be seen, counted from 0");
+  }
+  static int device_of(const void* memory) {
+    cudaPointerAttributes attributes{};
+    check(cudaPointerGetAttributes(&attributes, memory), "asking whose memory it is");
+    const bool is_on_device = attributes.type == cudaMemoryTypeDevice || attributes.type == cudaMemoryTypeManaged;
+    return is_on_device ? attributes.device : -1;
   }
   static void* allocate(std::size_t bytes) {
     void* memory = nullptr;

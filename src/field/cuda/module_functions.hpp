@@ -19,23 +19,21 @@ namespace blum::cuda {
 /// What is thrown becomes a status. Platform is CudaPlatform; the tests have one that runs on the host. It has
 ///   Device       what kernels are launched with
 ///   Queue        a Device and the stream it queues on: device(), enter(stream), leave(), queued(), finished(), wait(),
-///                order(before, after)
+///                follow(pieces, stream), order(before, after)
 ///   Choice       makes a device the current one while it is alive
-///   static void expect_device(int index)              throws DeviceError
+///   static void expect_device(int index)              throws DeviceError, as the next one does
+///   static void expect_runnable()                     of the current device
+///   static int device_of(const void* memory)          -1 for the host's
 ///   static void* allocate(std::size_t bytes), static void release(void*)
 ///   static std::size_t slab_nodes()                   of fields that go to the host's memory
 template <class Platform>
 class ModuleFunctions {
  public:
   [[nodiscard]] static const Module* table() {
-    static const Module module{module_version, create,
-                               destroy,        set_connectivity,
-                               compute,        set_connectivity_there,
-                               compute_there,  transform_there,
-                               progress,       order,
-                               allocate,       release,
-                               set_image,      select_voxels,
-                               transform_image};
+    static const Module module{
+        module_version, create,          destroy,   set_connectivity, compute,        set_connectivity_there,
+        compute_there,  transform_there, progress,  follow,           order,          device_of,
+        allocate,       release,         set_image, select_voxels,    transform_image};
     return &module;
   }
 
@@ -99,7 +97,10 @@ class ModuleFunctions {
 
   static Status create(int device, void** engine, Call* call) {
     *engine = nullptr;
-    return guarded(device, call, [&] { *engine = new Engine(device); });
+    return guarded(device, call, [&] {
+      Platform::expect_runnable();
+      *engine = new Engine(device);
+    });
   }
   static void destroy(void* engine) {
     auto* own = static_cast<Engine*>(engine);
@@ -158,6 +159,12 @@ class ModuleFunctions {
       *finished = own.queue.finished();
       *queued = own.queue.queued();
     });
+  }
+  static Status follow(void* engine, std::uint64_t pieces, void* stream, Call* call) {
+    return with(engine, call, [&](Engine& own) { own.queue.follow(pieces, stream); });
+  }
+  static Status device_of(void* engine, const void* memory, int* device, Call* call) {
+    return with(engine, call, [&](Engine&) { *device = Platform::device_of(memory); });
   }
   static Status order(void* engine, void* before, void* after, Call* call) {
     return with(engine, call, [&](Engine& own) { own.queue.order(before, after); });

@@ -15,7 +15,7 @@
 namespace blum::cuda {
 
 /// To be raised with every change of this file.
-inline constexpr std::uint32_t module_version = 2;
+inline constexpr std::uint32_t module_version = 3;
 inline constexpr const char* module_symbol = "blum_cuda_module";
 inline constexpr const char* module_file = "libblum_cuda.so";
 
@@ -74,8 +74,12 @@ struct Module {
                             Call* call) = nullptr;
   /// How often the three above have queued work, and how much of that, from the first on, is done.
   Status (*progress)(void* engine, std::uint64_t* queued, std::uint64_t* finished, Call* call) = nullptr;
+  /// Makes what is queued on a stream from now on wait for the first pieces of that work.
+  Status (*follow)(void* engine, std::uint64_t pieces, void* stream, Call* call) = nullptr;
   /// Makes what is queued on one stream from now on wait for what is queued on another one now.
   Status (*order)(void* engine, void* before, void* after, Call* call) = nullptr;
+  /// The index of the device that memory belongs to; -1 for the host's.
+  Status (*device_of)(void* engine, const void* memory, int* device, Call* call) = nullptr;
   /// Memory of a device.
   Status (*allocate)(int device, std::size_t bytes, void** memory, Call* call) = nullptr;
   void (*release)(int device, void* memory) = nullptr;

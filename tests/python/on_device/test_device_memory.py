@@ -6,6 +6,8 @@ memory.
 
 import ctypes
 import gc
+import weakref
+from concurrent.futures import ThreadPoolExecutor
 
 import blum
 import numpy as np
@@ -145,11 +147,15 @@ def test_streams_are_handed_on(mesh, grid):
     class OfCupy:
         ptr = 4096
 
-    for stream, address in ((None, 1), (2, 2), (7, 7), (OfTorch(), 1), (OfCupy(), 4096), (np.int64(9), 9)):
+    class OfProtocol:
+        def __cuda_stream__(self):
+            return 0, 77
+
+    for stream, address in ((None, 1), (OfProtocol(), 77), (2, 2), (7, 7), (OfTorch(), 1), (OfCupy(), 4096), (np.int64(9), 9)):
         vertices = ByDlpack(mesh.vertices)
         field = solver.compute(vertices, OnDevice(mesh.triangles, stream=5), stream=stream)
         assert vertices.streams == [address]
-        assert field.distance.__cuda_array_interface__["stream"] == address
+        assert field.distance.__cuda_array_interface__["stream"] == 1
     for wrong in (-1, 1.5, "default"):
         with pytest.raises((TypeError, blum.InvalidOption), match="stream"):
             solver.compute(OnDevice(mesh.vertices), stream=wrong)
@@ -171,9 +177,84 @@ def test_fields_go_out_by_dlpack(mesh, grid):
     address = distance.address
     del field, distance
     gc.collect()
-    kept = blum.DeviceArray(shared, None, 1)
-    assert kept.address == address
-    assert np.array_equal(on_host(kept), expected.distance)
+    memory = (ctypes.c_float * expected.distance.size).from_address(address)
+    assert np.array_equal(np.frombuffer(bytes(memory), np.float32), expected.distance.ravel())
+    assert shared.address == address
+
+
+def test_what_the_device_may_still_read_is_kept(mesh, grid):
+    class Vertices(OnDevice):
+        pass
+
+    vertices, out = Vertices(mesh.vertices), OnDevice(np.zeros(grid.shape, np.float32))
+    gone = weakref.ref(vertices)
+    field = blum.DeviceFieldSolver(grid).compute(vertices, OnDevice(mesh.triangles))
+    distance = field.distance
+    del vertices, field
+    gc.collect()
+    assert gone() is not None  # by the solver, which the array keeps
+    del distance
+    gc.collect()
+    assert gone() is None
+    # A call that fails may have queued work, too.
+    solver = blum.DeviceFieldSolver(grid)
+    vertices = Vertices(mesh.vertices)
+    gone = weakref.ref(vertices)
+    with pytest.raises(blum.InvalidMesh):
+        solver.compute(vertices, OnDevice(mesh.triangles + 1), out=(out, OnDevice(np.zeros(grid.shape, np.int32))))
+    del vertices
+    gc.collect()
+    assert gone() is not None
+    solver.compute(OnDevice(mesh.vertices), OnDevice(mesh.triangles))
+    gc.collect()
+    assert gone() is None
+
+
+def test_arrays_that_lie_are_told_of(mesh, grid):
+    solver = blum.DeviceFieldSolver(grid)
+    triangles = OnDevice(mesh.triangles)
+
+    class Lying(OnDevice):
+        def __init__(self, values, **entries):
+            super().__init__(values)
+            self.entries = entries
+
+        @property
+        def __cuda_array_interface__(self):
+            return {**super().__cuda_array_interface__, **self.entries}
+
+    class OfTheHost(ByDlpack):
+        def __dlpack__(self, *, stream=None):
+            return self.values.__dlpack__()
+
+    class Failing(ByDlpack):
+        def __dlpack__(self, *, stream=None):
+            raise RuntimeError("no more")
+
+    odd = Lying(mesh.vertices)
+    odd.entries["data"] = (odd.values.ctypes.data + 4, False)
+    for wrong, error, text in (
+        (odd, ValueError, "multiple"),
+        (Lying(mesh.vertices, mask=OnDevice(mesh.vertices)), TypeError, "mask"),
+        (Lying(mesh.vertices, typestr="nonsense"), TypeError, "vertices cannot be used"),
+        (Lying(mesh.vertices, shape=("a", 3)), TypeError, "vertices cannot be used"),
+        (Lying(mesh.vertices, data=None), TypeError, "vertices cannot be used"),
+        (OfTheHost(mesh.vertices), TypeError, "another kind of device"),
+        (Failing(mesh.vertices), TypeError, "no more"),
+    ):
+        with pytest.raises(error, match=text):
+            solver.compute(wrong, triangles)
+    with pytest.raises(TypeError, match="CUDA device's memory"):
+        np.asarray(solver.compute(OnDevice(mesh.vertices), triangles).distance)
+
+
+def test_threads_share_a_solver(mesh, grid):
+    solver = blum.DeviceFieldSolver(grid)
+    expected = blum.distance_field(mesh, grid=grid, device="cuda")
+    with ThreadPoolExecutor(4) as pool:
+        fields = list(pool.map(lambda _: solver.compute(OnDevice(mesh.vertices), OnDevice(mesh.triangles)), range(8)))
+    for field in fields:
+        check(field, expected)
 
 
 def test_wrong_arrays_are_told_of(mesh, grid):
