@@ -4,6 +4,8 @@
 #   bench/gpu.sh [OUT]   figures go to OUT (default: out/gpu): check.txt, sanitizer-*.txt, times.txt, times.json
 # BLUM_GPU_MESH: an OFF or OBJ file for the 69 k triangles (default: a generated mesh of that size).
 # BLUM_GPU_SKIP=sanitizers: leave compute-sanitizer out.
+# BLUM_GPU_BUILD_ONLY=1: only build. BLUM_GPU_ARCHITECTURE: what for, such as 80 (default: what the GPU here is, else 90).
+# JOBS: compilers at once. CUDACXX: nvcc, if it is not in PATH (default: the one that tools/cuda.sh installs).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=${1:-out/gpu}
@@ -12,10 +14,17 @@ build=build/gpu
 generator=()
 command -v ninja >/dev/null && generator=(-G Ninja)
 
+if [[ -z ${CUDACXX:-} ]] && ! command -v nvcc >/dev/null; then
+  CUDACXX=$(ls "$PWD"/build/cuda-toolkit/lib/python3*/site-packages/nvidia/cu13/bin/nvcc 2>/dev/null || true)
+  [[ -n $CUDACXX ]] && export CUDACXX
+fi
+architecture=${BLUM_GPU_ARCHITECTURE:-$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/null |
+  head -n 1 | tr -d '. ' || true)}
+
 started=$SECONDS
 cmake -S . -B "$build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release -DBLUM_CUDA=ON -DBLUM_GPU_BENCH=ON \
-  -DBLUM_FIELD_CPU=OFF -DBLUM_TESTS=OFF -DBLUM_THREADS=STD -DCMAKE_CUDA_ARCHITECTURES="${BLUM_GPU_ARCHITECTURE:-90}"
-cmake --build "$build" --parallel "$(nproc)"
+  -DBLUM_FIELD_CPU=OFF -DBLUM_TESTS=OFF -DBLUM_THREADS=STD -DCMAKE_CUDA_ARCHITECTURES="${architecture:-90}"
+cmake --build "$build" --parallel "${JOBS:-$(nproc)}"
 echo "gpu: built in $((SECONDS - started)) s"
 [[ ${BLUM_GPU_BUILD_ONLY:-} == 1 ]] && exit 0
 

@@ -7,6 +7,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 toolkit=$PWD/build/cuda-toolkit
+if [[ -n ${CUDACXX:-} ]] && ! command -v "$CUDACXX" >/dev/null; then
+  echo "cuda: CUDACXX is $CUDACXX, which cannot be run" >&2
+  exit 1
+fi
 find_nvcc() {
   command -v "${CUDACXX:-nvcc}" || ls "$toolkit"/lib/python3*/site-packages/nvidia/cu13/bin/nvcc 2>/dev/null
 }
@@ -22,3 +26,4 @@ echo "cuda: $("$CUDACXX" --version | tail -n 1)"
 cmake -S . -B build/cuda -G Ninja -DCMAKE_BUILD_TYPE=Release -DBLUM_CUDA=ON -DBLUM_GPU_BENCH=ON -DBLUM_FIELD_CPU=OFF \
   -DBLUM_TESTS=OFF -DBLUM_THREADS=STD -DBLUM_WERROR=ON --log-level=WARNING
 cmake --build build/cuda --parallel "${JOBS:-$(nproc)}" --target blum_cuda check_gpu time_gpu
+echo "cuda: export BLUM_CUDA_MODULE=$PWD/build/cuda/bin/libblum_cuda.so makes every Blum here use it"

@@ -124,6 +124,7 @@ struct Run {
   std::vector<fs::path> outputs;
   std::vector<std::string> warnings;
   TextTable table;
+  bool names_device = false;  ///< one other than the CPU was asked for, which `auto` may be, too
   void time(const char* phase, double seconds) { phases.push_back({phase, seconds}); }
 };
 
@@ -173,7 +174,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   if (label) run.table.add("label", std::to_string(*label));
   run.table.add("sign",
                 std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
-  if (field.device != Device::cpu()) run.table.add("device", to_string(field.device));
+  if (run.names_device) run.table.add("device", to_string(field.device));
   run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
                                 (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
   run.table.add("sites", sites_text(s, field.site_ids));
@@ -265,6 +266,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
       }(),
       {r.input});
   Run run;
+  run.names_device = r.device != Device::cpu();
   Stopwatch watch;
   MeshFile file;
   {
@@ -320,6 +322,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
   check_outputs(all, {r.input});
 
   Run run;
+  run.names_device = r.device != Device::cpu();
   Stopwatch watch;
   VoxelImage image;
   {

@@ -31,12 +31,27 @@ def existing_file(path: PathLike) -> Path:
     return file
 
 
+def is_on_device(value: Any) -> bool:
+    """Whether an array says that it is in a CUDA device's memory."""
+    try:
+        if hasattr(value, "__dlpack_device__"):
+            return int(value.__dlpack_device__()[0]) in (2, 13)
+    except Exception:
+        return False
+    return hasattr(value, "__cuda_array_interface__")
+
+
 def as_array(value: Any, name: str) -> npt.NDArray[Any]:
     """Any array-like on the CPU as a NumPy array, without a copy where that can be."""
     if isinstance(value, np.ma.MaskedArray):
         raise TypeError(f"{name} is a masked array, and Blum knows no masks: fill it first, with .filled(...)")
     if isinstance(value, np.ndarray):
         return np.asarray(value)  # subclasses may answer questions for themselves
+    if is_on_device(value):
+        raise TypeError(
+            f"{name} is in a CUDA device's memory: copy it to the host (.cpu(), .get()), or use DeviceFieldSolver or "
+            "DeviceDistanceTransform, which leave it there"
+        )
     try:
         if hasattr(value, "__dlpack__") and hasattr(value, "__dlpack_device__"):
             return np.from_dlpack(value)
@@ -140,9 +155,12 @@ def one_of(value: Any, name: str, allowed: Sequence[str]) -> str:
 
 def device_name(value: Any) -> str:
     """A device by its name, which the library reads."""
-    if not isinstance(value, str):
-        raise TypeError(f"device must be a string, not {type(value).__name__}")
-    return value
+    if isinstance(value, str):
+        return value
+    kind = getattr(value, "type", None)  # of PyTorch
+    if isinstance(kind, str) and hasattr(value, "index"):
+        return kind if value.index is None else f"{kind}:{value.index}"
+    raise TypeError(f"device must be a string, not {type(value).__name__}")
 
 
 def integer(value: Any, name: str, bits: int = 32) -> int:

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import shutil
 import signal
 import struct
 import subprocess
@@ -549,3 +550,25 @@ def test_field_on_the_host_as_a_device(shapes, tmp_path, monkeypatch):
             found.append(np.load(out)["distance"])
         assert np.abs(found[0] - found[1]).max() < 1e-6
         assert np.array_equal(found[1], found[2])
+
+
+def test_the_module_beside_a_tool_that_path_finds(shapes, tmp_path, monkeypatch):
+    place = tmp_path / "bin"
+    place.mkdir()
+    shutil.copy(BLUM, place / "blum")
+    monkeypatch.delenv("BLUM_CUDA_MODULE", raising=False)
+    environment = {**os.environ, "PATH": f"{place}{os.pathsep}{os.environ['PATH']}"}
+    command = ["blum", "field", str(shapes / "sphere.ply"), "-o", "out.npz", "--resolution", "8", "--device", "auto"]
+
+    def device(module):
+        shutil.copy(Path(os.environ["BLUM_BIN_DIR"]) / "libblum_emulated_cuda.so", module)
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
+        module.unlink()
+        return next(line.split()[-1] for line in done.stdout.splitlines() if line.startswith("device"))
+
+    (tmp_path / "lib").mkdir()
+    assert device(place / "libblum_cuda.so") == "cuda:0"
+    assert device(tmp_path / "lib" / "libblum_cuda.so") == "cuda:0"
+    assert device(tmp_path / "lib" / "another.so") in ("cpu", "cuda:0")
+    (tmp_path / "blum").write_text("a file of the tool's name, which is not the tool")
+    assert device(place / "libblum_cuda.so") == "cuda:0"

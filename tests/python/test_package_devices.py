@@ -88,3 +88,36 @@ def test_memory_of_a_device():
     assert done.returncode == 0, done.stdout + done.stderr
     assert " passed" in done.stdout
     assert "skipped" not in done.stdout
+
+
+def test_arrays_on_a_device_are_told_where_to_go(gear):
+    class OnDevice:
+        @property
+        def __cuda_array_interface__(self):
+            return {"shape": (3, 3), "typestr": "<f8", "data": (4096, False), "version": 3}
+
+    class OfPyTorch:
+        def __dlpack_device__(self):
+            return 2, 0
+
+        def __dlpack__(self, **_):
+            raise AssertionError("it must not be asked for")
+
+    for array in (OnDevice(), OfPyTorch()):
+        for call in (
+            lambda array=array: blum.distance_field(array, gear.triangles, resolution=8),
+            lambda array=array: blum.closest_points(gear, array),
+            lambda array=array: blum.distance_transform(array),
+        ):
+            with pytest.raises(TypeError, match="DeviceFieldSolver"):
+                call()
+
+
+def test_devices_of_pytorch_are_names(gear):
+    class Device:
+        def __init__(self, kind, index=None):
+            self.type, self.index = kind, index
+
+    assert blum.distance_field(gear, resolution=8, device=Device("cpu")).device == "cpu"
+    with pytest.raises(blum.DeviceError, match="CUDA"):
+        blum.distance_field(gear, resolution=8, device=Device("cuda", 99))

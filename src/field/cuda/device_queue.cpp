@@ -10,7 +10,9 @@ namespace blum::cuda {
 int cuda_index(const Device& device) {
   if (device.kind == DeviceKind::cuda) return device.index;
   if (device.kind == DeviceKind::automatic) return 0;
-  throw InvalidOption("memory of a CUDA device is asked for, but the device is the CPU");
+  throw InvalidOption(
+      "memory of a CUDA device is asked for, but the device is the CPU: FieldSolver and distance_transform are for the "
+      "host");
 }
 
 }  // namespace blum::cuda

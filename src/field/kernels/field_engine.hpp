@@ -62,15 +62,21 @@ class FieldEngine {
   /// Of indices in the device's memory, which are copied. Waits for the device.
   /// @throws InvalidMesh where an index is out of range.
   void set_connectivity(const MemoryMesh& mesh) {
-    faults_.resize(1);
+    constexpr std::size_t kinds = 3;
+    faults_.resize(kinds);
     device_.fill(faults_, 0U);
-    copy_indices(mesh.triangles, mesh.vertices.rows, triangles_);
-    copy_indices(mesh.segments, mesh.vertices.rows, segments_);
-    copy_indices(mesh.points, mesh.vertices.rows, points_);
+    copy_indices(mesh.triangles, mesh.vertices.rows, triangles_, faults_.data());
+    copy_indices(mesh.segments, mesh.vertices.rows, segments_, faults_.data() + 1);
+    copy_indices(mesh.points, mesh.vertices.rows, points_, faults_.data() + 2);
     vertices_.resize(mesh.vertices.rows);
-    std::uint32_t faults = 0;
-    device_.download(faults_.data(), 1, &faults);
-    if (faults != 0) throw InvalidMesh("an index is negative, or no vertex has it");
+    std::uint32_t faults[kinds] = {};
+    device_.download(faults_.data(), kinds, &faults[0]);
+    for (std::size_t k = 0; k < kinds; ++k) {
+      constexpr const char* names[kinds] = {"triangles", "segments", "points"};
+      if (faults[k] == 0) continue;
+      throw InvalidMesh(std::string(names[k]) + " have an index that is negative, or not below the " +
+                        std::to_string(mesh.vertices.rows) + " vertices");
+    }
     build();
   }
 
@@ -179,10 +185,11 @@ class FieldEngine {
   }
 
   template <class Row>
-  void copy_indices(const MemoryArray& from, std::size_t limit, typename Device::template Array<Row>& to) {
+  void copy_indices(const MemoryArray& from, std::size_t limit, typename Device::template Array<Row>& to,
+                    std::uint32_t* fault) {
     to.resize(from.rows);
     const std::size_t count = from.rows * (sizeof(Row) / sizeof(std::uint32_t));
-    device_.for_each(count, CopyIndices{from, limit, reinterpret_cast<std::uint32_t*>(to.data()), faults_.data()});
+    device_.for_each(count, CopyIndices{from, limit, reinterpret_cast<std::uint32_t*>(to.data()), fault});
   }
   void copy_vertices(const MemoryArray& from) { device_.for_each(from.rows, CopyVertices{from, vertices_.data()}); }
 
