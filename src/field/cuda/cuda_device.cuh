@@ -3,6 +3,7 @@
 
 #include <cuda_runtime.h>
 #include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -171,9 +172,10 @@ class CudaDevice {
   }
   template <class T, class Load, class Combine>
   void reduce(std::size_t count, const Load& load, const T& first, const Combine& combine, T* out) {
+    // DeviceReduce::TransformReduce is there from CUDA 12.5 on only. Counts fit an int: there are fewer than 2^31 ids.
+    const auto values = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0), load);
     with_scratch([&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceReduce::TransformReduce(scratch, bytes, thrust::counting_iterator<std::size_t>(0), out, count,
-                                                combine, load, first, stream_);
+      return cub::DeviceReduce::Reduce(scratch, bytes, values, out, static_cast<int>(count), combine, first, stream_);
     });
   }
   void wait() const { check(cudaStreamSynchronize(stream_), "waiting for the device"); }
