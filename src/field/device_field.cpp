@@ -44,9 +44,7 @@ void check_mesh(const DeviceMeshView& mesh, const FieldOptions& options) {
         "the mesh may have more sites than there are ids for: vertices, segments and four times the triangles "
         "must stay below 2^31 on a device");
   }
-  if (options.site_ids == SiteIds::triangles && mesh.segments.rows + mesh.points.rows > 0) {
-    throw InvalidOption("triangle ids were asked for, but the mesh also has segments or points: ask for features");
-  }
+  check_site_ids(options, mesh.segments.rows + mesh.points.rows > 0);
 }
 
 }  // namespace
@@ -67,8 +65,7 @@ DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& o
   if (options.sign == SignMode::normals) {
     throw InvalidOption(
         "signs by normals need a mesh in the host's memory: ask for automatic, which tells the same sides of closed "
-        "meshes "
-        "that face outwards");
+        "meshes that face outwards");
   }
   state_ = std::make_unique<State>(grid, options, context.device);
 }

@@ -21,12 +21,6 @@ namespace {
 
 constexpr std::size_t nodes_per_range = std::size_t{1} << 18;
 
-void check_site_ids(const MeshView& mesh, const FieldOptions& options) {
-  if (options.site_ids == SiteIds::triangles && (!mesh.segments.empty() || !mesh.points.empty())) {
-    throw InvalidOption("triangle ids were asked for, but the mesh also has segments or points: ask for features");
-  }
-}
-
 /// Finishes nodes that float32 left open: exact distance and site, and the side by its pseudonormal.
 void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, const SiteTable& sites, bool with_sides,
                   const Context& context, Field& field) {
@@ -151,7 +145,7 @@ struct FieldSolver::State {
 
 void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_context) {
   validate(mesh);
-  check_site_ids(mesh, options);
+  check_site_ids(options, !mesh.segments.empty() || !mesh.points.empty());
   throw_if_cancelled(frame_context);
   const std::size_t nodes = field.grid.node_count();
   // One by one: where memory runs out between the two, the next frame_context finds the first one there already.

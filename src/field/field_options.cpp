@@ -15,4 +15,10 @@ void check_options(const FieldOptions& options) {
   }
 }
 
+void check_site_ids(const FieldOptions& options, bool has_free_parts) {
+  if (options.site_ids == SiteIds::triangles && has_free_parts) {
+    throw InvalidOption("triangle ids were asked for, but the mesh also has segments or points: ask for features");
+  }
+}
+
 }  // namespace blum

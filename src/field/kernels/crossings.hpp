@@ -207,10 +207,8 @@ class CrossingSigns {
   void set_connectivity(const ConnectivityView& connectivity) { boundary_.set_connectivity(connectivity); }
   /// Edges of the boundary by index: with none, winding numbers are whole.
   [[nodiscard]] std::uint32_t boundary_count() const { return boundary_.count(); }
-  /// Those of the last frame that others at the same place do not cancel. Waits for the device.
-  [[nodiscard]] std::uint32_t download_boundary_count() {
-    return boundary_.count() == 0 ? 0 : boundary_.download_kept_count();
-  }
+  /// Those of the last frame that others at the same place do not cancel, where there are any. Waits for the device.
+  [[nodiscard]] std::uint32_t download_boundary_count() { return boundary_.download_kept_count(); }
 
   /// Once per frame.
   void prepare(const DeviceMesh& mesh, const GridSpec& grid) {

@@ -151,11 +151,6 @@ class FieldEngine {
                                          connectivity.edge_count, site});
   }
 
-  /// Vertices, edges, triangles.
-  [[nodiscard]] std::array<std::size_t, 3> site_counts() const {
-    return {mesh_.vertex_count, pipeline_.connectivity().edge_count, mesh_.triangle_count};
-  }
-
  private:
   struct Slab {
     typename Device::template Array<float> distance;
