@@ -1,7 +1,7 @@
 # Blum: the commands of everyday work. `make` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build test demo format lint bench docs asan tsan fuzz configurations install viewer clean
+.PHONY: help setup build test check demo format lint tidy bench docs asan tsan fuzz configurations install viewer clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
@@ -31,9 +31,17 @@ format: ## Bring the sources into the project's format (clang-format 19)
 	@tools/setup.sh --lint
 	@tools/format.sh
 
-lint: ## Check format, clang-tidy, shell scripts, layer rules, words, links, Python and the viewer
+lint: ## Check format, clang-tidy of what changed, shell scripts, layer rules, words, links, Python and the viewer
 	@tools/setup.sh --lint --viewer
 	@tools/lint.sh
+
+tidy: ## Check everything with clang-tidy 19, and record the commit that passed (tools/tidy-base)
+	@tools/setup.sh --lint
+	@tools/build.sh release -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_header_check
+	@tools/tidy.py --all
+
+check: ## Build and run the tests whose names match: make check T=geometry, T=test_field.WindingSign, T=pytest.test_cli, T=viewer
+	@tools/check.sh '$(T)'
 
 bench: ## Build and run the benchmarks, with their peers
 	@tools/bench.sh
@@ -58,7 +66,7 @@ tsan: ## Run the tests that use threads under ThreadSanitizer
 fuzz: ## Run every fuzz target for a short while (FUZZ_SECONDS=15 each)
 	@tools/fuzz.sh
 
-configurations: ## Build every switched-off part, the scalar and the serial paths, and with clang
+configurations: ## Build every switched-off part, and test the scalar and the serial paths
 	@tools/check_configurations.sh
 
 install: build ## Install the library and the tool under PREFIX (/usr/local)

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "blum/medial_axis/certificate.hpp"
+#include "blum/certificate/certificate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "support/measure.hpp"
 #include "support/shapes.hpp"
@@ -36,7 +36,7 @@ void mesh_case(benchmark::State& state, const std::string& name, int resolution)
   double voxels = 0;
   const Times times = time_runs([&] {
     const MedialAxis axis = medial_axis(solid.mesh, options);
-    const MedialComplex complex = axis.extract(theta);
+    const Complex complex = axis.extract(theta);
     phases = axis.report().phases;
     const Times check = time_once([&] { is_certified = certify(complex, solid.mesh).holds(); });
     certificate_seconds = check.wall;

@@ -6,7 +6,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/field/closest_points.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 
 int main() try {
   const blum::TriangleMesh mesh = blum::make_sphere({.radius = 2});

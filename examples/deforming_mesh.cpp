@@ -6,7 +6,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 
 namespace {
 

@@ -5,10 +5,10 @@
 
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
-#include "blum/geometry/shape_catalog.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/io/field_io.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 
 int main(int argc, char** argv) try {
   // A mesh from a file, or a torus knot that Blum makes.

@@ -6,7 +6,7 @@
 #include "blum/core/error.hpp"
 #include "blum/field/device_field.hpp"
 #include "blum/field/field.hpp"
-#include "blum/geometry/shape_catalog.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 
 int main() try {
   const blum::TriangleMesh mesh = blum::make_shape("torus_knot");

@@ -3,12 +3,12 @@
 #include <cstddef>
 #include <iostream>
 
+#include "blum/certificate/certificate.hpp"
 #include "blum/core/error.hpp"
-#include "blum/geometry/shape_catalog.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/io/mesh_io.hpp"
-#include "blum/medial_axis/certificate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 
 int main(int argc, char** argv) try {
   // A mesh from a file, or a bracket that Blum makes.
@@ -20,7 +20,7 @@ int main(int argc, char** argv) try {
   const blum::MedialAxis axis = blum::medial_axis(mesh, options);
   const blum::MedialAxisReport& report = axis.report();
   std::cout << "solid: " << to_string(report.rule) << ", " << report.reason << '\n';
-  if (!report.is_right) std::cout << "something is thinner than a voxel: raise the resolution\n";
+  if (!report.topology_matches) std::cout << "something is thinner than a voxel: raise the resolution\n";
 
   // Axes at rising angles are parts of each other.
   for (const double theta : {20.0, 60.0, 120.0}) {
@@ -29,16 +29,17 @@ int main(int argc, char** argv) try {
               << counts.curve_edges << " edges of curves\n";
   }
 
-  const blum::MedialComplex complex = axis.extract(60);
+  const blum::Complex complex = axis.extract(60);
 
   // Radii and footprints: how thick the solid is where the ball is the largest.
+  const blum::MedialView view(complex);  // its columns
   std::size_t widest = 0;
-  for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    if (complex.vertices[v].radius > complex.vertices[widest].radius) widest = v;
+  for (std::size_t v = 0; v < view.radius.size(); ++v) {
+    if (view.radius[v] > view.radius[widest]) widest = v;
   }
-  const blum::MedialVertex& vertex = complex.vertices[widest];
-  std::cout << "largest ball: radius " << vertex.radius << ", walls seen " << std::round(vertex.separation_angle)
-            << " degrees apart, the closest at site " << vertex.sites[0].value << '\n';
+  std::cout << "largest ball: radius " << view.radius[widest] << ", walls seen "
+            << std::round(view.separation_angle[widest]) << " degrees apart, the closest at site "
+            << view.site(widest, 0).value << '\n';
 
   // Checked against the mesh, by code that shares nothing with the construction.
   if (report.rule == blum::SolidRule::polyhedron) {

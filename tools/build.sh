@@ -4,6 +4,7 @@
 # JOBS in the environment limits how many compilers run at once.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. tools/cache.sh
 
 preset=$1
 shift

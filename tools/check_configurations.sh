@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Builds what can be switched off, switched off, and runs the tests that are left: parts without their packages, the
-# scalar and the serial path, and the whole with clang.
+# Builds what can be switched off, switched off, and runs the tests that differ there: parts without their packages, the
+# scalar and the serial path. (Clang builds everything for tools/sanitize.sh asan and for clang-tidy.)
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. tools/cache.sh
 
 # One configuration: name, then CMake options. Builds everything, and runs ctest where there are tests.
 configuration() {
-  local name=$1 folder=build/configurations/$1
+  local name=$1 folder=build/$1
   shift
   cmake -S . -B "$folder" -G Ninja --no-warn-unused-cli -DCMAKE_BUILD_TYPE=Release -DBLUM_WERROR=ON "$@" || return
   cmake --build "$folder" --parallel "${JOBS:-$(nproc)}" || return
@@ -20,16 +21,19 @@ compiler_alone() {
     forbidden+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
   done
   configuration "$1" -DBLUM_FIELD_CPU=OFF -DBLUM_TESTS=OFF "-DBLUM_THREADS=$2" "${forbidden[@]}" || return
-  tests/install/run.sh "build/configurations/$1"
+  tests/install/run.sh "build/$1"
 }
 
+# A configuration in which no other code runs than elsewhere but in some layers: name, these layers' test programs as a
+# regular expression, then CMake options. Suites that repeat much, or are slow, are left to `make test`.
 with_tests() {
-  local name=$1
-  configuration "$@" || return
-  ctest --test-dir "build/configurations/$name" --parallel "${JOBS:-$(nproc)}" --output-on-failure --label-exclude slow \
-    --quiet --output-log "build/configurations/$name/ctest.log" ||
+  local name=$1 programs=$2
+  shift 2
+  configuration "$name" "$@" || return
+  ctest --test-dir "build/$name" --parallel "${JOBS:-$(nproc)}" --output-on-failure --tests-regex "^test_($programs)\\." \
+    --label-exclude 'slow|many' --no-tests=error --quiet --output-log "build/$name/ctest.log" ||
     {
-      tail -n 100 "build/configurations/$name/ctest.log"
+      tail -n 100 "build/$name/ctest.log"
       return 1
     }
 }
@@ -39,17 +43,17 @@ case ${1:-} in
     tools/setup.sh --tests --fuzz
     results=${RESULTS:-build/results/configurations}
     [[ -n ${RESULTS:-} ]] || rm -rf "$results"
-    for name in compiler-alone compiler-alone-serial scalar serial clang; do
+    for name in compiler-alone compiler-alone-serial scalar serial; do
       tools/results.py check "$results" "configuration-$name" -- "$0" "$name"
     done
     [[ -n ${RESULTS:-} ]] || tools/results.py summary "$results"
     ;;
   compiler-alone) compiler_alone compiler-alone STD ;;
   compiler-alone-serial) compiler_alone compiler-alone-serial SERIAL ;;
-  scalar) with_tests scalar -DBLUM_CLI=OFF -DBLUM_SIMD=OFF -DBLUM_THREADS=STD ;;
-  serial) with_tests serial -DBLUM_CLI=OFF -DBLUM_THREADS=SERIAL ;;
-  # Without optimisation: this one is for clang's opinion of the code.
-  clang) configuration clang -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=clang++-19 ;;
+  # Other instructions in geometry and field, and std::thread in core.
+  scalar) with_tests scalar 'core|geometry|field|property|regression' -DBLUM_CLI=OFF -DBLUM_SIMD=OFF -DBLUM_THREADS=STD ;;
+  # No threads in core: every loop runs otherwise.
+  serial) with_tests serial '.*' -DBLUM_CLI=OFF -DBLUM_THREADS=SERIAL ;;
   *)
     echo "configurations: unknown configuration $1" >&2
     exit 2

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Checks the text of the project's files. Prints each place that breaks a rule, and exits with 1 where there is one.
 
+- No name in code that docs/glossary.md gives another one for.
 - No word that marks unfinished work, and no absolute path of some machine.
 - C++ and Python files have at most 600 lines; C++ headers open with what they are, their licence, and `#pragma once`.
 - No tabs (but in makefiles), no spaces at line ends, a line feed at the end.
@@ -16,6 +17,9 @@ LONGEST = 600
 CODE = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".ts"}
 TEXT = CODE | {".txt", ".md", ".json", ".cff", ".in", ".yml", ".yaml", ".toml", ""}
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK|[Nn]ot implemented|[Ss]tub|[Pp]laceholder)\b")
+# Names that code had once, and the terms of docs/glossary.md that stand for them.
+REPLACED = {"turned_shells": "reversed_shells"}
+REPLACED_NAME = re.compile(r"\b(" + "|".join(REPLACED) + r")\b")
 MACHINE_PATH = re.compile(r"(?<![\w.}/)<-])/(home|root|work|workspace|Users|mnt|scratch)/\w")
 
 
@@ -29,6 +33,9 @@ def line_problems(path: pathlib.Path, line: str) -> list[str]:
     problems = []
     if path.suffix in CODE and path != pathlib.Path(__file__).resolve() and UNFINISHED.search(line):
         problems.append("marks unfinished work")
+    old = REPLACED_NAME.search(line)
+    if old and path.suffix in CODE and path != pathlib.Path(__file__).resolve():
+        problems.append(f"`{old[1]}` is called `{REPLACED[old[1]]}` (docs/glossary.md)")
     if MACHINE_PATH.search(line):
         problems.append("names an absolute path of some machine")
     if line != line.rstrip() and path.suffix != ".md":

@@ -4,6 +4,7 @@
 #   tools/check_wheel.sh [PYTHON]   an interpreter of 3.11 or newer (default python3)
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. tools/cache.sh
 
 tools/setup.sh --tests
 python=${1:-python3}

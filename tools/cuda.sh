@@ -5,6 +5,7 @@
 #   tools/cuda.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. tools/cache.sh
 
 toolkit=$PWD/build/cuda-toolkit
 if [[ -n ${CUDACXX:-} ]] && ! command -v "$CUDACXX" >/dev/null; then
@@ -21,7 +22,7 @@ if ! find_nvcc >/dev/null; then
   for folder in "$toolkit"/lib/python3*/site-packages/nvidia/cu13; do ln -sfn lib "$folder/lib64"; done
 fi
 CUDACXX=$(find_nvcc)
-export CUDACXX
+export CUDACXX CCACHE_COMPILERCHECK=content  # the wheels are unpacked anew in each clone
 echo "cuda: $("$CUDACXX" --version | tail -n 1)"
 cmake -S . -B build/cuda -G Ninja -DCMAKE_BUILD_TYPE=Release -DBLUM_CUDA=ON -DBLUM_GPU_BENCH=ON -DBLUM_FIELD_CPU=OFF \
   -DBLUM_TESTS=OFF -DBLUM_THREADS=STD -DBLUM_WERROR=ON --log-level=WARNING

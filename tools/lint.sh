@@ -1,31 +1,10 @@
 #!/usr/bin/env bash
-# `make lint`: format, clang-tidy, shell scripts, layer rules, text rules, links, Python (ruff) and the viewer (tsc,
-# ESLint), each counted as one check.
+# `make lint`: format, clang-tidy of what changed (tools/tidy.py), shell scripts, layer rules, text rules, links, Python
+# (ruff) and the viewer (tsc, ESLint), each counted as one check.
 #   tools/lint.sh [CHECK ...]   only these: format includes text links shell python viewer tidy
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-
-# clang-tidy over the library, the tool, the examples and, where they are configured, the Python bindings; headers are
-# checked where they are included.
-tidy() {
-  [[ -f build/release/compile_commands.json ]] || cmake --preset release >/dev/null
-  local files
-  mapfile -t files < <(python3 - <<'PYTHON'
-import json, pathlib
-here = pathlib.Path.cwd()
-commands = json.loads((here / "build/release/compile_commands.json").read_text())
-names = {pathlib.Path(command["file"]) for command in commands}
-print(*sorted(str(name.relative_to(here)) for name in names
-              if name.is_file() and any(name.is_relative_to(here / folder)
-                                        for folder in ("src", "apps", "examples", "python"))),
-      sep="\n")
-PYTHON
-  )
-  echo "clang-tidy: ${#files[@]} files"
-  printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "${JOBS:-$(nproc)}" clang-tidy-19 -p build/release --quiet \
-    --extra-arg=-Wno-unknown-warning-option 2>/dev/null
-}
 
 shell_scripts() {
   mapfile -t files < <(git ls-files --cached --others --exclude-standard -- '*.sh' .ci/run)
@@ -46,7 +25,7 @@ run() {
     shell) shell_scripts ;;
     python) python_sources ;;
     viewer) tools/viewer.sh install && tools/viewer.sh lint ;;
-    tidy) tidy ;;
+    tidy) tools/tidy.py ;;
     *)
       echo "lint: unknown check $1" >&2
       exit 2

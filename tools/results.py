@@ -2,9 +2,10 @@
 """Counts results of tests and checks, over several programs, and closes with one line.
 
   results.py check DIR NAME -- COMMAND...   run a command; it counts as one check, passed when it exits with 0
-  results.py junit DIR NAME FILE [--complete]   count the tests of a JUnit file (ctest, pytest); no tests is a failure;
-                                            --complete: so is a test that was skipped, but for want of the data folder
-                                            or of a CUDA device
+  results.py junit DIR NAME FILE [INNER]    count the tests of a JUnit file (ctest, vitest); no tests is a failure. A test
+                                            pytest.X of ctest stands for those of the JUnit file INNER/X.xml; one of
+                                            these that was skipped is a failure, too, but for want of the data folder or
+                                            of a CUDA device
   results.py fail DIR NAME REASON           count one failure
   results.py summary DIR                    list what failed and was skipped; last line `N passed, N failed[, N skipped]`
 
@@ -52,37 +53,57 @@ def check(folder: str, name: str, command: list[str]) -> None:
         record(folder, name, 0, [f"{name} (exit status {status})"], [], seconds)
 
 
-def junit(folder: str, name: str, file: str, complete: bool) -> None:
+def outcome(case: ElementTree.Element, label: str, complete: bool) -> tuple[str, str]:
+    """passed, failed or skipped, and the label to list it under."""
+    if case.find("failure") is not None or case.find("error") is not None or case.get("status") == "fail":
+        return "failed", label
+    skip = case.find("skipped")
+    if skip is None and case.get("status") not in ("notrun", "disabled"):
+        return "passed", label
+    text = (skip.get("message") or "" if skip is not None else "") + " " + (case.findtext("system-out") or "")
+    if case.get("status") == "disabled" or "Unable to find executable" in text or "_NOT_BUILT" in label:
+        return "failed", f"{label} (did not run)"
+    if data_present() and WANTS_DATA.search(text):
+        return "failed", f"{label} (skipped for want of data, though the data folder is there)"
+    if complete and not WANTS_DATA.search(text) and not WANTS_DEVICE.search(text):
+        return "failed", f"{label} (skipped: {text.strip()})"
+    return "skipped", label
+
+
+def inner_outcomes(file: pathlib.Path, outer: tuple[str, str]) -> list[tuple[str, str]]:
+    """What the tests of one pytest file came to; its test of ctest alone where it left no results, or none failed there
+    though the whole did."""
+    try:
+        cases = list(ElementTree.parse(file).getroot().iter("testcase"))
+    except (OSError, ElementTree.ParseError):
+        cases = []
+    found = [outcome(case, f"pytest: {case.get('classname')}.{case.get('name')}", complete=True) for case in cases]
+    if not found or (outer[0] != "passed" and all(kind != "failed" for kind, _ in found)):
+        found.append(("failed", f"{outer[1]} (broke off)"))
+    return found
+
+
+def junit(folder: str, name: str, file: str, inner: str | None) -> None:
     try:
         root = ElementTree.parse(file).getroot()
     except (OSError, ElementTree.ParseError) as error:
         record(folder, name, 0, [f"{name}: no results ({error})"], [])
         return
-    passed = 0
-    failed: list[str] = []
-    skipped: list[str] = []
+    outcomes: list[tuple[str, str]] = []
     seconds = 0.0
     for case in root.iter("testcase"):
-        label = f"{name}: {case.get('name')}"
         seconds += float(case.get("time") or 0)
-        skip = case.find("skipped")
-        if case.find("failure") is not None or case.find("error") is not None or case.get("status") == "fail":
-            failed.append(label)
-        elif skip is not None or case.get("status") in ("notrun", "disabled"):
-            text = (skip.get("message") or "" if skip is not None else "") + " " + (case.findtext("system-out") or "")
-            if case.get("status") == "disabled" or "Unable to find executable" in text or "_NOT_BUILT" in label:
-                failed.append(f"{label} (did not run)")
-            elif data_present() and WANTS_DATA.search(text):
-                failed.append(f"{label} (skipped for want of data, though the data folder is there)")
-            elif complete and not WANTS_DATA.search(text) and not WANTS_DEVICE.search(text):
-                failed.append(f"{label} (skipped: {text.strip()})")
-            else:
-                skipped.append(label)
+        test = case.get("name") or ""
+        found = outcome(case, f"{name}: {test}", complete=False)
+        if inner and test.startswith("pytest."):
+            outcomes += inner_outcomes(pathlib.Path(inner) / f"{test.removeprefix('pytest.')}.xml", found)
         else:
-            passed += 1
-    if passed + len(failed) + len(skipped) == 0:
+            outcomes.append(found)
+    passed, failed, skipped = ([label for kind, label in outcomes if kind == wanted]
+                               for wanted in ("passed", "failed", "skipped"))
+    if not outcomes:
         failed.append(f"{name}: no tests were found")
-    record(folder, name, passed, failed, skipped, seconds)
+    record(folder, name, len(passed), failed, skipped, seconds)
 
 
 def summary(folder: str) -> int:
@@ -110,9 +131,9 @@ def main(arguments: list[str]) -> int:
         case ["check", folder, name, "--", *command] if command:
             check(folder, name, command)
         case ["junit", folder, name, file]:
-            junit(folder, name, file, complete=False)
-        case ["junit", folder, name, file, "--complete"]:
-            junit(folder, name, file, complete=True)
+            junit(folder, name, file, None)
+        case ["junit", folder, name, file, inner]:
+            junit(folder, name, file, inner)
         case ["fail", folder, name, reason]:
             record(folder, name, 0, [f"{name}: {reason}"], [])
         case ["summary", folder]:

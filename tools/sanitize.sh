@@ -1,28 +1,30 @@
 #!/usr/bin/env bash
 # Runs the tests under sanitizers.
 #   tools/sanitize.sh asan|tsan
-# asan: AddressSanitizer and UndefinedBehaviorSanitizer, every test but those labelled slow.
-# tsan: ThreadSanitizer over std::thread, the tests of the layers that run threads.
+# asan: AddressSanitizer and UndefinedBehaviorSanitizer, every test program; with clang, whose warnings are errors here.
+# tsan: ThreadSanitizer over std::thread, the tests of the layers that run threads, with g++.
+# Left out are tests labelled slow or many (tests/CMakeLists.txt), which repeat what others run once.
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 preset=$1
-tools/setup.sh --tests
+tools/setup.sh --tests --fuzz
 results=${RESULTS:-build/results/$preset}
 [[ -n ${RESULTS:-} ]] || rm -rf "$results"
 
 case $preset in
   asan)
     targets=()
-    selection=(--label-exclude slow)
+    selection=(--label-exclude 'slow|many')
     # A failed allocation must reach Blum's own handling as it does without the sanitizer.
     export ASAN_OPTIONS=allocator_may_return_null=1:detect_stack_use_after_return=1
     export UBSAN_OPTIONS=print_stacktrace=1
     ;;
   tsan)
     targets=(-- test_core test_field test_medial_axis)
-    selection=(--label-exclude slow --tests-regex '^test_(core|field|medial_axis)\.')
+    # Kernels on the host (/Host, Kernels) run on one thread.
+    selection=(--label-exclude 'slow|many' --exclude-regex '/Host$|Kernels' --tests-regex '^test_(core|field|medial_axis)\.')
     export TSAN_OPTIONS=allocator_may_return_null=1:halt_on_error=1:second_deadlock_stack=1
     ;;
   *)
@@ -31,7 +33,7 @@ case $preset in
     ;;
 esac
 
-tools/results.py check "$results" "$preset-build" -- tools/build.sh "$preset" -DBLUM_CLI=OFF "${targets[@]}"
+tools/results.py check "$results" "$preset-build" -- tools/build.sh "$preset" -DBLUM_CLI=OFF -DBLUM_WERROR=ON "${targets[@]}"
 if [[ -f build/$preset/build.ninja ]]; then
   tools/ctest.sh "$results" "$preset" "build/$preset" "${selection[@]}"
 fi

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "blum/certificate/certificate.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/certificate.hpp"
 #include "files.hpp"
 #include "medial_report.hpp"
 #include "progress.hpp"
@@ -46,15 +46,16 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
   const Context context = make_context(0, progress, interrupt);
   const MedialFile file = read_medial(path);
   const MedialCounts counts = count(file.complex);
-  const BettiNumbers betti = betti_of(file.complex, context);
+  const BettiNumbers betti = homology(file.complex.view(), context);
   progress.clear();
   Box3 box;
   double least = 0;
   double most = 0;
-  for (const MedialVertex& v : file.complex.vertices) {
-    least = box.is_empty() ? v.radius : std::min(least, v.radius);
-    most = std::max(most, v.radius);
-    box.extend(v.position);
+  const MedialView axis(file.complex);
+  for (std::size_t v = 0; v < axis.positions.size(); ++v) {
+    least = box.is_empty() ? axis.radius[v] : std::min(least, axis.radius[v]);
+    most = std::max(most, axis.radius[v]);
+    box.extend(axis.positions[v]);
   }
   const bool has_radii = file.has_radii && !box.is_empty();
   const MedialMetadata& m = file.metadata;
@@ -68,7 +69,7 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
                      {"blum_version", or_null(m.version)},
                      {"solid_rule", or_null(m.solid_rule)},
                      {"theta", or_null(m.theta)},
-                     {"nested_theta", file.nested ? Json(file.nested->least_theta) : Json(nullptr)},
+                     {"nested_theta", file.nested ? Json(file.least_theta) : Json(nullptr)},
                      {"lambda", or_null(m.lambda)},
                      {"spacing", or_null(m.spacing)},
                      {"label", or_null(m.label)},
@@ -82,7 +83,7 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
   table.add("radii", has_radii ? rounded_text(least) + " to " + rounded_text(most) : "none in the file");
   table.add("footprints", file.has_footprints ? "two at each vertex" : "none in the file");
   if (!box.is_empty()) table.add("bounds", vector_text(box.lower) + " to " + vector_text(box.upper));
-  if (file.nested) table.add("angles", angles_text(*file.nested));
+  if (file.nested) table.add("angles", angles_text(file.least_theta));
   table.add("of", source_text(m));
   table.add("made with", made_text(m));
   report(options, json, table.text());

@@ -17,6 +17,7 @@ void add_info_command(CLI::App& app);
 void add_medial_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_reconstruct_command(CLI::App& app);
+void add_surface_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 
 /// An axis that is not certified: exit status 3.

@@ -16,7 +16,7 @@ void add_weld_option(CLI::App& command, std::optional<std::string>& weld, const 
 }
 
 void add_threads_option(CLI::App& command, std::optional<std::string>& threads) {
-  add_text_option(command, "--threads", threads, "T", "Number of threads (default: one per core)");
+  add_text_option(command, "--threads", threads, "T", "Number of threads; 0, the default: one per core");
 }
 
 void add_device_option(CLI::App& command, std::optional<std::string>& device) {

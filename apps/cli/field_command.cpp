@@ -67,7 +67,7 @@ Request parse(const Arguments& a) {
   Request r;
   r.input = a.input;
   r.output = a.output;
-  check_extension("--output", r.output, {".nrrd", ".npz", ".vti"});
+  check_extension("--output", r.output, file_extensions(FileContent::field, FileAccess::write));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
   exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
   exclude(a.bounds.has_value(), "--bounds", a.padding.has_value(), "--padding", "the bounds are taken as they are");
@@ -260,7 +260,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   context.device = r.device;
   check_outputs(
       [&] {
-        std::vector<fs::path> files = field_files(r.output);
+        std::vector<fs::path> files = files_of_field(r.output);
         for (const fs::path& file : r.report.files()) files.push_back(file);
         return files;
       }(),
@@ -271,7 +271,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   MeshFile file;
   {
     const Unattended reading;
-    file = load_mesh(r.input, {r.weld});
+    file = read_mesh_of_any_name(r.input, {r.weld});
   }
   run.time("read", watch.lap());
   const MeshView mesh = file.mesh;
@@ -301,7 +301,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   write_field(r.output, field, {&mesh, &sites, r.input.filename().string(), BLUM_VERSION}, context);
   run.time("write", watch.lap());
   progress.clear();
-  add_field(run, field, statistics, field_files(r.output), nullptr);
+  add_field(run, field, statistics, files_of_field(r.output), nullptr);
   run.warnings = warnings_of(field, statistics, facts);
   if (is_welded_away(file)) run.warnings.push_back(welded_away_text(file));
   finish(r, run, grid, context);
@@ -317,7 +317,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
   }
   std::vector<fs::path> all = r.report.files();
   for (const fs::path& name : names) {
-    for (const fs::path& file : field_files(name)) all.push_back(file);
+    for (const fs::path& file : files_of_field(name)) all.push_back(file);
   }
   check_outputs(all, {r.input});
 
@@ -327,7 +327,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
   VoxelImage image;
   {
     const Unattended reading;
-    image = load_image(r.input);
+    image = read_image_of_any_name(r.input);
   }
   run.time("read", watch.lap());
   if (has_only_nan(image)) {
@@ -354,7 +354,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
     write_field(names[i], fields[i], {nullptr, nullptr, r.input.filename().string(), BLUM_VERSION, image.space},
                 context);
     run.time("write", watch.lap());
-    add_field(run, fields[i], statistics, field_files(names[i]),
+    add_field(run, fields[i], statistics, files_of_field(names[i]),
               r.selections.labels.empty() ? nullptr : &r.selections.labels[i]);
     fields[i] = {};
   }
@@ -365,7 +365,7 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
 void run(const Arguments& arguments) {
   const Request request = parse(arguments);
   const InputKind kind = input_kind(request.input);
-  const bool vector_field_file = kind == InputKind::field && extension(request.input) != ".nrrd";
+  const bool vector_field_file = kind == InputKind::field && file_extension(request.input) != ".nrrd";
   if (vector_field_file) {
     throw FileError("'" + request.input.string() + "' is a field file; `blum field` reads meshes and images");
   }
@@ -380,7 +380,7 @@ void run(const Arguments& arguments) {
 void add_field_command(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("field", "Exact distance and closest site at every node of a grid");
-  command->add_option("INPUT", a->input, "Mesh (.obj .off .stl .ply) or image (.nrrd .nhdr .nii .nii.gz .npy .vol)")
+  command->add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       ->required();
   command->add_option("-o,--output", a->output, "Field file: .nrrd (and OUT.site.nrrd), .npz or .vti")
       ->required()

@@ -198,7 +198,7 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
   MeshFile file;
   {
     const Unattended reading;
-    file = load_mesh(a.input, {weld});
+    file = read_mesh_of_any_name(a.input, {weld});
   }
   const Topology facts = topology(file.mesh, context);
   const SelfIntersections contacts = find_self_intersections(file.mesh, contact_limit, context);
@@ -289,7 +289,7 @@ void add_grid(TextTable& table, const GridSpec& grid) {
 }
 
 void run_image(const Arguments& a) {
-  const VoxelImage image = load_image(a.input);
+  const VoxelImage image = read_image_of_any_name(a.input);
   validate(image);
   const ImageFacts facts = std::visit([](const auto& values) { return image_facts(values); }, image.values);
   Json json = image_json(a.input, image);
@@ -305,7 +305,7 @@ void run_image(const Arguments& a) {
   json["labels"] = labels;
 
   TextTable table;
-  table.add("file", a.input + ": " + image_format_name(a.input) + " image of " + type_name(image.values));
+  table.add("file", a.input + ": " + std::string(image_format_name(a.input)) + " image of " + type_name(image.values));
   add_grid(table, image.grid);
   if (!image.space.empty()) table.add("world axes", image.space);
   table.add("range", has_values ? rounded_text(facts.minimum) + " to " + rounded_text(facts.maximum) : "no numbers");
@@ -349,7 +349,7 @@ void run(const Arguments& a) {
   if (a.input.empty()) throw UsageError("INPUT needs a file name");
   const std::optional<double> weld = parse_weld(a.weld);
   check_outputs(a.report.files(), {a.input});
-  if (is_axis(a.input)) {
+  if (holds_complex(a.input)) {
     if (weld) throw UsageError("--weld is for meshes, and '" + a.input + "' is a medial axis");
     return report_axis(a.input, a.report);
   }

@@ -111,7 +111,8 @@ Json image_json(const std::filesystem::path& path, const VoxelImage& image) {
 
 std::string image_text(const std::filesystem::path& path, const VoxelImage& image) {
   TextTable table;
-  table.add("input", path.string() + ": " + image_format_name(path) + " image of " + type_name(image.values));
+  table.add("input",
+            path.string() + ": " + std::string(image_format_name(path)) + " image of " + type_name(image.values));
   return table.text();
 }
 

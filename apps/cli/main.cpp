@@ -9,6 +9,7 @@
 #include "blum/core/parallel.hpp"
 #include "commands.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "summary.hpp"
 
 namespace blum::cli {
@@ -28,7 +29,7 @@ constexpr const char* examples = R"(Examples:
   blum view knot.ply knot.nrrd axis.vtp --open     all of it in a browser
 
 `blum COMMAND --help` says more. Exit status: 0 done, 2 bad usage, 3 not certified, 1 any
-other failure.
+other failure; Ctrl-C ends by SIGINT (130 in a shell).
 Existing output files are only ever replaced by complete ones.)";
 
 /// A word of the command line that is neither an option nor a command, where a command is due.
@@ -96,6 +97,7 @@ void add_commands(CLI::App& app, std::vector<std::string>& arguments) {
   add_medial_command(app);
   add_verify_command(app);
   add_reconstruct_command(app);
+  add_surface_command(app);
   add_view_command(app);
 }
 
@@ -117,6 +119,10 @@ int run(std::vector<std::string> arguments) {
     return fail(error.what(), exit_usage);
   } catch (const InvalidOption& error) {
     return fail(error.what(), exit_usage);
+  } catch (const Cancelled&) {
+    static_cast<void>(fail("cancelled", exit_failure));
+    end_by_last_signal();
+    return exit_failure;
   } catch (const std::bad_alloc&) {
     return fail("out of memory; use a coarser grid or a machine with more memory", exit_failure);
   } catch (const std::exception& error) {

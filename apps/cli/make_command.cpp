@@ -10,11 +10,11 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/parameters.hpp"
-#include "blum/geometry/generators.hpp"
-#include "blum/geometry/shape_catalog.hpp"
 #include "blum/grid/image_generators.hpp"
 #include "blum/io/image_io.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "files.hpp"
@@ -263,9 +263,8 @@ void make(const Arguments& a) {
     throw UsageError(std::string("--output is required; name ") +
                      (is_mesh ? "an .obj, .off, .stl or .ply file" : "an .nrrd or .npy file"));
   }
-  check_extension(
-      "--output", a.output,
-      is_mesh ? std::vector<std::string>{".obj", ".off", ".stl", ".ply"} : std::vector<std::string>{".nrrd", ".npy"});
+  check_extension("--output", a.output,
+                  file_extensions(is_mesh ? FileContent::mesh : FileContent::image, FileAccess::write));
   std::vector<fs::path> files = a.report.files();
   files.emplace_back(a.output);
   check_outputs(files, {});
@@ -290,7 +289,9 @@ void add_make_command(CLI::App& app, std::vector<std::string>& arguments) {
   if (!arguments.empty() && arguments[0] == "make") a->parameters = take_parameters(arguments);
   CLI::App* command = app.add_subcommand("make", "Make a shape to test with or to start from");
   command->add_option("SHAPE", a->shape, "Name of a shape; its parameters are given as --name value");
-  command->add_option("-o,--output", a->output, "Mesh (.obj .off .stl .ply) or image (.nrrd .npy), as the shape is")
+  command
+      ->add_option("-o,--output", a->output,
+                   extensions_help({FileContent::mesh, FileContent::image}, FileAccess::write) + ", as the shape is")
       ->type_name("FILE");
   command->add_flag("--list", a->list, "List all shapes, or one, with parameters, defaults and ranges");
   add_report_options(*command, a->report, "Write what was made (or the list) as JSON; - is standard output");

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "axis_solid.hpp"
+#include "blum/certificate/certificate.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/io/draft.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/certificate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "commands.hpp"
@@ -79,7 +80,7 @@ Request parse(const Arguments& a) {
   Request r;
   r.input = a.input;
   r.output = a.output;
-  check_extension("--output", r.output, {".vtp", ".ply", ".obj", ".ma", ".npz"});
+  check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::write));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
   exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the voxel size");
   exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
@@ -91,7 +92,7 @@ Request parse(const Arguments& a) {
   if (a.theta) r.thetas = parse_thetas(*a.theta);
   if (a.prune) r.prunes_sheets = parse_choice<bool>("--prune", *a.prune, {{"sheets", true}});
   r.nested = a.nested;
-  if (r.nested && extension(r.output) != ".npz") {
+  if (r.nested && file_extension(r.output) != ".npz") {
     throw UsageError("--nested needs an output with the extension .npz: the other formats hold the axis of one angle");
   }
   if (r.nested && r.thetas.size() > 1) {
@@ -131,31 +132,6 @@ fs::path with_theta(const fs::path& path, double theta) {
   return name;
 }
 
-/// A file that is written, but not yet certified; gone unless it is kept.
-class Draft {
- public:
-  explicit Draft(fs::path name) : name_(std::move(name)), draft_(make_draft(name_)) {}
-  ~Draft() {
-    std::error_code ignored;
-    if (!draft_.empty()) fs::remove(draft_, ignored);
-  }
-  Draft(Draft&& other) noexcept : name_(std::move(other.name_)), draft_(std::exchange(other.draft_, {})) {}
-  Draft& operator=(Draft&&) = delete;
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return draft_; }
-  [[nodiscard]] const fs::path& name() const { return name_; }
-  void keep() {
-    replace_by_draft(name_, draft_);
-    draft_.clear();
-  }
-
- private:
-  fs::path name_;
-  fs::path draft_;
-};
-
 /// What a run gathers for its summary.
 struct Run {
   Json solids = Json::array();
@@ -167,10 +143,14 @@ struct Run {
 };
 
 Json body_json(const BodyReport& body) {
-  return {{"solid_betti", to_json(body.solid)}, {"voxel_betti", to_json(body.voxels)},
-          {"topology_reached", body.is_right},  {"spacing", body.spacing},
-          {"voxels", body.voxel_count},         {"voxels_left_out", body.left_out},
-          {"voxels_taken_in", body.taken_in},   {"deviation", body.deviation}};
+  return {{"solid_betti", to_json(body.solid)},
+          {"voxel_betti", to_json(body.voxels)},
+          {"topology_reached", body.topology_matches},
+          {"spacing", body.spacing},
+          {"voxels", body.voxel_count},
+          {"voxels_left_out", body.left_out},
+          {"voxels_taken_in", body.taken_in},
+          {"deviation", body.deviation}};
 }
 
 /// What the voxels of a solid miss, and what there is to do about it.
@@ -178,7 +158,7 @@ std::vector<std::string> shortfalls(const MedialAxisReport& report) {
   std::vector<std::string> out;
   for (std::size_t b = 0; b < report.bodies.size(); ++b) {
     const BodyReport& body = report.bodies[b];
-    if (body.is_right) continue;
+    if (body.topology_matches) continue;
     out.push_back((report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : std::string("the solid")) + " has " +
                   betti_text(body.solid) + ", its voxels of side " + rounded_text(body.spacing) + " have " +
                   betti_text(body.voxels) + ": something is thinner than a voxel; raise --max-resolution");
@@ -235,7 +215,7 @@ void add_report(Run& run, const MedialAxisReport& report, std::optional<double> 
   json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
   json["rule"] = to_string(report.rule);
   json["reason"] = report.reason;
-  json["turned_shells"] = report.turned_shells;
+  json["reversed_shells"] = report.reversed_shells;
   json["grid"] = to_json(report.grid);
   json["bodies"] = bodies;
   run.table.add("solid", betti_text(report.solid) + " (" + report.reason + ")");
@@ -244,16 +224,16 @@ void add_report(Run& run, const MedialAxisReport& report, std::optional<double> 
                                                rounded_text(deviation) + " from the surface, for the topology"
                                          : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
-  if (report.turned_shells > 0) {
-    run.warnings.push_back(plural(report.turned_shells, "shell faces", "shells face") + " the solid and " +
-                           (report.turned_shells == 1 ? "was" : "were") + " turned");
+  if (report.reversed_shells > 0) {
+    run.warnings.push_back(plural(report.reversed_shells, "shell faces", "shells face") + " the solid and " +
+                           (report.reversed_shells == 1 ? "was" : "were") + " reversed");
   }
   if (report.rule == SolidRule::winding) run.warnings.push_back(report.reason + ", as voxels");
 }
 
 /// Writes, reads again and certifies an axis at one angle.
 void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
-              const MedialAxis& axis, const MedialComplex& complex, double theta, const fs::path& name, Json& axes,
+              const MedialAxis& axis, const Complex& complex, double theta, const fs::path& name, Json& axes,
               const Context& context) {
   const MedialAxisReport& report = axis.report();
   Stopwatch watch;
@@ -269,7 +249,7 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   record(selection, r.weld, input.kind, metadata);
   run.drafts.emplace_back(name);
   if (r.nested) {
-    write_medial(run.drafts.back().path(), complex, axis.nested(), metadata, context);
+    write_medial(run.drafts.back().path(), complex, axis.nested(), axis.least_theta(), metadata, context);
   } else {
     write_medial(run.drafts.back().path(), complex, metadata, context);
   }
@@ -293,29 +273,10 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   }
 }
 
-/// Six times the volume between the triangles of a mesh and the middle of its box: negative where an open mesh faces
-/// inwards.
-double volume_around_middle(const MeshView& mesh) {
-  const Vec3d middle = bounds(mesh).center();
-  double volume = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d a = mesh.vertices[t[0]] - middle;
-    volume += dot(a, cross(mesh.vertices[t[1]] - middle, mesh.vertices[t[2]] - middle));
-  }
-  return volume;
-}
-
 MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, const Context& context) {
   if (input.kind == InputKind::image) return medial_axis(input.image, options, context);
   if (options.spacing) check_spacing(*options.spacing, bounds(input.mesh.mesh));
-  try {
-    return medial_axis(input.mesh.mesh, options, context);
-  } catch (const InvalidMesh& error) {
-    const std::string message = error.what();
-    const bool is_inward =
-        message.find("no interior") != std::string::npos && volume_around_middle(input.mesh.mesh) < 0;
-    throw InvalidMesh(message + (is_inward ? "; its triangles face inwards: flip them" : ""));
-  }
+  return medial_axis(input.mesh.mesh, options, context);
 }
 
 void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
@@ -334,14 +295,14 @@ void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelS
              json);
   for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
   Json axes = Json::array();
-  MedialComplex whole;
+  Complex whole;
   if (r.prunes_sheets) whole = axis.extract(0);
   for (const double theta : r.thetas) {
     const fs::path name = r.thetas.size() == 1 ? output : with_theta(output, theta);
     Stopwatch watch;
     // From one angle to the next, so that what is left is nested.
     if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
-    const MedialComplex cut = r.prunes_sheets ? MedialComplex{} : axis.extract(theta);
+    const Complex cut = r.prunes_sheets ? Complex{} : axis.extract(theta);
     run.phases.push_back({"extract", watch.lap()});
     add_axis(run, r, input, selection, axis, r.prunes_sheets ? whole : cut, theta, name, axes, context);
   }
@@ -429,9 +390,10 @@ void run(const Arguments& arguments) {
 void add_medial_command(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("medial", "Medial axis with the topology of the solid, certified");
-  command->add_option("INPUT", a->input, "Mesh (.obj .off .stl .ply) or image (.nrrd .nhdr .nii .nii.gz .npy .vol)")
+  command->add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       ->required();
-  command->add_option("-o,--output", a->output, "Medial axis: .vtp, .ply, .obj, .ma or .npz")
+  command
+      ->add_option("-o,--output", a->output, "Medial axis: " + extension_list(FileContent::complex, FileAccess::write))
       ->required()
       ->type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {

@@ -4,30 +4,12 @@
 #include <utility>
 #include <vector>
 
+#include "blum/io/verify_medial.hpp"
 #include "commands.hpp"
 #include "files.hpp"
 
 namespace blum::cli {
 namespace {
-
-/// What a file says of itself that is not so.
-std::vector<std::string> false_claims(const MedialFile& file, SolidRule rule) {
-  std::vector<std::string> claims;
-  const MedialMetadata& metadata = file.metadata;
-  if (!metadata.solid_rule.empty() && metadata.solid_rule != to_string(rule)) {
-    claims.push_back("the file says that its solid is '" + metadata.solid_rule + "', and it is '" +
-                     std::string(to_string(rule)) + "'");
-  }
-  if (metadata.version.empty()) return claims;  // of another program, which need not know all of it
-  const SiteIds sites = rule == SolidRule::voxels ? SiteIds::voxels : SiteIds::features;
-  for (const auto& [is_there, what] :
-       {std::pair{file.has_radii, "radii"}, std::pair{file.has_footprints, "footprints"},
-        std::pair{file.has_angles, "separation angles"}, std::pair{file.has_sites, "sites"},
-        std::pair{!file.has_sites || metadata.site_ids == sites, "sites of this kind of solid"}}) {
-    if (!is_there) claims.push_back("the file says that Blum " + metadata.version + " wrote it, but holds no " + what);
-  }
-  return claims;
-}
 
 const char* against_text(SolidRule rule) {
   return rule == SolidRule::polyhedron ? "the polyhedron"
@@ -44,33 +26,14 @@ constexpr const char* untold_rule =
 
 Certificate certificate_of(const MedialFile& file, const SolidInput& input, const LabelSelection& selection,
                            const Context& context) {
-  const bool is_image = input.kind == InputKind::image;
-  CertificateOptions options;
-  options.radii = file.has_radii;
-  options.footprints = file.has_footprints;
-  options.angles = file.has_angles;
-  options.sites = file.has_sites && file.metadata.site_ids == (is_image ? SiteIds::voxels : SiteIds::features);
-  const auto with_claims = [&](Certificate certificate) {
-    for (const std::string& claim : false_claims(file, certificate.against)) certificate.mismatches.push_back(claim);
-    return certificate;
-  };
-  if (is_image) {
-    const VoxelSet voxels = selected_voxels(input.image, selection, context);
-    return with_claims(certify(file.complex, voxels, input.image.grid, nullptr, options, context));
+  if (input.kind == InputKind::image) {
+    return verify(file.complex, claims_of(file), input.image, selection, {}, context);
   }
-  const MeshView mesh = input.mesh.mesh;
-  const MeshSolidRule found = solid_rule(mesh, context);
-  if (found.rule == SolidRule::polyhedron) return with_claims(certify(file.complex, mesh, options, context));
-  if (!file.metadata.grid) {
-    throw InvalidMesh("the mesh bounds no polyhedron (" + found.reason + ")" + untold_rule);
+  try {
+    return verify(file.complex, claims_of(file), input.mesh.mesh, {}, available_memory(), context);
+  } catch (const UntoldVoxels& error) {
+    throw InvalidMesh("the mesh bounds no polyhedron (" + error.reason() + ")" + untold_rule);
   }
-  const GridSpec& grid = *file.metadata.grid;
-  // Distances, winding numbers, and what the fields beside them take.
-  check_memory(16.0 * static_cast<double>(grid.node_count()),
-               "the grid that the axis names, of " + size_text(grid) + " nodes,",
-               "it is not one that Blum would have made here");
-  const VoxelSet voxels = voxels_inside(mesh, grid, context);
-  return with_claims(certify(file.complex, voxels, grid, &mesh, options, context));
 }
 
 NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std::string& rest)
@@ -79,14 +42,6 @@ NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std
         for (const std::string& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch;
         return "NOT certified: " + all + rest;
       }()) {}
-
-BettiNumbers betti_of(const MedialComplex& axis, const Context& context) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const MedialEdge& edge : axis.edges) edges.push_back(edge.vertices);
-  for (const MedialTriangle& triangle : axis.triangles) triangles.push_back(triangle.vertices);
-  return homology({axis.vertices.size(), edges, triangles}, context);
-}
 
 Json to_json(const BettiNumbers& betti) {
   return Json::array({betti[0], betti[1], betti[2]});
@@ -161,8 +116,8 @@ std::string counts_text(const MedialCounts& counts, bool has_labels) {
          plural(counts.junctions, "junction", "junctions");
 }
 
-std::string angles_text(const NestedComplex& nested) {
-  return "all from " + rounded_text(nested.least_theta) + " degrees on";
+std::string angles_text(double least_theta) {
+  return "all from " + rounded_text(least_theta) + " degrees on";
 }
 
 void add_certificate(TextTable& table, const Certificate& c) {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "blum/certificate/certificate.hpp"
 #include "blum/io/medial_io.hpp"
-#include "blum/medial_axis/certificate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "solid_input.hpp"
 #include "summary.hpp"
@@ -18,8 +18,6 @@ namespace blum::cli {
 [[nodiscard]] Certificate certificate_of(const MedialFile& file, const SolidInput& input,
                                          const LabelSelection& selection, const Context& context);
 
-/// Those of an axis as it is, by homology(). @throws as that.
-[[nodiscard]] BettiNumbers betti_of(const MedialComplex& axis, const Context& context);
 [[nodiscard]] Json to_json(const BettiNumbers& betti);
 [[nodiscard]] Json to_json(const Certificate& certificate);
 /// Where the file of an axis holds no labels, what they would say is null. Edges are then those of no triangle.
@@ -28,8 +26,8 @@ namespace blum::cli {
 [[nodiscard]] std::string betti_text(const BettiNumbers& betti);
 /// The same as text, without what the file does not tell.
 [[nodiscard]] std::string counts_text(const MedialCounts& counts, bool has_labels);
-/// Which angles a file holds the axes of.
-[[nodiscard]] std::string angles_text(const NestedComplex& nested);
+/// Which angles a file holds the axes of, where it holds those of all.
+[[nodiscard]] std::string angles_text(double least_theta);
 /// Whether it holds, against what, and how precisely. Why not is left to NotCertified.
 void add_certificate(TextTable& table, const Certificate& certificate);
 

@@ -144,7 +144,7 @@ std::optional<double> parse_weld(const std::optional<std::string>& text) {
 }
 
 int parse_threads(const std::optional<std::string>& text) {
-  return text ? static_cast<int>(parse_integer("--threads", *text, 1, 1024)) : 0;
+  return text ? static_cast<int>(parse_integer("--threads", *text, 0, 1024)) : 0;
 }
 
 std::vector<std::string> similar_words(std::string_view word, const std::vector<std::string>& candidates) {

@@ -21,6 +21,7 @@ using namespace std::chrono_literals;
 
 // What a signal handler may touch: lock-free atomics and a pipe to the thread that may do more.
 std::atomic<int> signals_seen = 0;
+std::atomic<int> last_signal = 0;
 std::atomic<bool> unattended = false;
 std::array<int, 2> wake_pipe = {-1, -1};
 
@@ -32,12 +33,24 @@ void send(char message) {
   }
 }
 
-extern "C" void on_signal(int /*number*/) {
+/// Ends the process by a signal, so that whoever waits for it sees that: a shell then leaves its loop, too.
+[[noreturn]] void end_by(int number) {
+  signal(number, SIG_DFL);
+  sigset_t own;
+  sigemptyset(&own);
+  sigaddset(&own, number);
+  pthread_sigmask(SIG_UNBLOCK, &own, nullptr);
+  raise(number);
+  _exit(128 + number);  // where the signal is ignored
+}
+
+extern "C" void on_signal(int number) {
   const int saved = errno;
+  last_signal = number;
   if (signals_seen.fetch_add(1) > 0 || unattended.load()) {
     constexpr std::string_view text = "\nblum: error: cancelled\n";
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
-    _exit(EXIT_FAILURE);
+    end_by(number);
   }
   send(message_signal);
   errno = saved;
@@ -87,6 +100,10 @@ void Progress::clear() {
   std::fputs("\r\033[K", stderr);
   std::fflush(stderr);
   visible_ = false;
+}
+
+void end_by_last_signal() {
+  if (const int number = last_signal; number != 0) end_by(number);
 }
 
 Interrupt::Interrupt() {

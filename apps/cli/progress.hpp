@@ -32,8 +32,8 @@ class Progress {
 };
 
 /// Turns the first Ctrl-C (SIGINT) or SIGTERM into a request to stop, and the second into the end of the process.
-/// While nothing listens to the request (reading files, say) even the first one ends the process at once, with status
-/// 1: see Unattended. At most one may exist.
+/// While nothing listens to the request (reading files, say) even the first one ends the process at once: see
+/// Unattended. At most one may exist.
 class Interrupt {
  public:
   Interrupt();
@@ -47,6 +47,10 @@ class Interrupt {
   std::stop_source source_;
   std::thread watcher_;
 };
+
+/// Ends the process by the signal that was caught last, so that whoever waits for it sees SIGINT or SIGTERM; returns
+/// where there was none. For when all is cleaned up.
+void end_by_last_signal();
 
 /// For its lifetime a signal ends the process at once. Only for work that has no output file open.
 class Unattended {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "axis_solid.hpp"
+#include "blum/field/ball_union.hpp"
 #include "blum/field/zero_surface.hpp"
 #include "blum/io/field_io.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/io/mesh_io.hpp"
-#include "blum/medial_axis/ball_union.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "files.hpp"
@@ -30,9 +30,6 @@ constexpr const char* examples = R"(Examples:
   blum reconstruct part.vtp -o part.ply                      what the balls of an axis fill, as a mesh
   blum reconstruct part.vtp -o part.nrrd --resolution 512    as a signed field
   blum reconstruct part.vtp -o part.ply --input part.stl     and how far it is from the solid)";
-
-const std::vector<std::string> field_extensions{".nrrd", ".npz", ".vti"};
-const std::vector<std::string> mesh_extensions{".obj", ".off", ".stl", ".ply"};
 
 struct Arguments {
   std::string axis;
@@ -53,16 +50,27 @@ struct Request {
   int threads = 0;
 };
 
+/// A field is likely to be given here by those who want its surface.
+void check_is_no_field(const fs::path& path) {
+  const std::string end = file_extension(path);
+  std::error_code ignored;
+  const bool is_field =
+      end == ".nrrd" || end == ".vti" || (end == ".npz" && fs::exists(path, ignored) && !holds_complex(path));
+  if (!is_field) return;
+  throw UsageError("AXIS '" + path.string() +
+                   "' is no medial axis; of a field, `blum surface FIELD --level L -o MESH` makes a mesh");
+}
+
 Request parse(const Arguments& a) {
   Request r;
   r.axis = a.axis;
   r.output = a.output;
+  check_is_no_field(r.axis);
   check_extension("AXIS", r.axis, {".vtp", ".ply", ".ma", ".npz"});
-  std::vector<std::string> known = field_extensions;
-  known.insert(known.end(), mesh_extensions.begin(), mesh_extensions.end());
+  std::vector<std::string> known = file_extensions(FileContent::field, FileAccess::write);
+  for (const std::string& end : file_extensions(FileContent::mesh, FileAccess::write)) known.push_back(end);
   check_extension("--output", r.output, known);
-  r.is_field =
-      std::find(field_extensions.begin(), field_extensions.end(), extension(r.output)) != field_extensions.end();
+  r.is_field = format_by_name(FileContent::field, r.output).has_value();
   exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
   exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
   if (a.input) r.input = *a.input;
@@ -85,14 +93,15 @@ Request parse(const Arguments& a) {
 std::vector<Ball> balls_of(const MedialFile& file, const fs::path& path) {
   if (!file.has_radii) throw FileError("'" + path.string() + "' holds no radii: take a .vtp, .ply, .ma or .npz file");
   std::vector<Ball> balls;
-  for (const MedialVertex& vertex : file.complex.vertices) balls.push_back({vertex.position, vertex.radius});
+  const MedialView axis(file.complex);
+  for (std::size_t v = 0; v < axis.positions.size(); ++v) balls.push_back({axis.positions[v], axis.radius[v]});
   if (balls.empty()) throw FileError("'" + path.string() + "' holds no vertices, and so no balls");
   return balls;
 }
 
 void run(const Arguments& a) {
   const Request r = parse(a);
-  std::vector<fs::path> outputs = r.is_field ? field_files(r.output) : std::vector<fs::path>{r.output};
+  std::vector<fs::path> outputs = r.is_field ? files_of_field(r.output) : std::vector<fs::path>{r.output};
   std::vector<fs::path> inputs{r.axis};
   if (r.input) inputs.push_back(*r.input);
   {
@@ -172,7 +181,9 @@ void add_reconstruct_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("reconstruct", "The union of the balls of a medial axis, as a field or a mesh");
   command->add_option("AXIS", a->axis, "Medial axis: .vtp, .ply, .ma or .npz")->required();
-  command->add_option("-o,--output", a->output, "Field (.nrrd .npz .vti) or mesh (.obj .off .stl .ply)")
+  command
+      ->add_option("-o,--output", a->output,
+                   extensions_help({FileContent::field, FileContent::mesh}, FileAccess::write))
       ->required()
       ->type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {

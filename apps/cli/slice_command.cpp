@@ -79,7 +79,7 @@ void run(const Arguments& a) {
   if (index && position) throw UsageError("--index and --position both name the layer: give one");
   std::optional<double> scale;
   if (a.scale) scale = parse_positive("--scale", *a.scale);
-  check_outputs({output}, field_files(input));
+  check_outputs({output}, files_of_field(input));
 
   check_may_be_field(input);
   const Field field = read_field(input);
@@ -91,8 +91,8 @@ void run(const Arguments& a) {
   if (position) index = layer_at(field.grid, *axis, *position);
   if (sites && field.site.empty()) {
     throw FileError("'" + input.string() + "' has no closest sites" +
-                    (extension(input) == ".nrrd"
-                         ? "; they are kept beside it, in '" + field_files(input).back().filename().string() + "'"
+                    (file_extension(input) == ".nrrd"
+                         ? "; they are kept beside it, in '" + files_of_field(input).back().filename().string() + "'"
                          : std::string()));
   }
   const Slice slice = take_slice(field, *axis, index.value_or(layers / 2));

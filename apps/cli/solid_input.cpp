@@ -15,7 +15,7 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
   }
   const Unattended reading;
   if (input.kind == InputKind::mesh) {
-    input.mesh = load_mesh(path, {weld});
+    input.mesh = read_mesh_of_any_name(path, {weld});
     const MeshView mesh = input.mesh.mesh;
     validate(mesh);
     const SiteTable sites(mesh);
@@ -24,7 +24,7 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
     input.text = mesh_text(path, input.mesh, sites, facts);
     return input;
   }
-  input.image = load_image(path);
+  input.image = read_image_of_any_name(path);
   if (has_only_nan(input.image)) {
     throw FileError("'" + path.string() + "': every voxel is NaN (not a number), so none can be selected");
   }

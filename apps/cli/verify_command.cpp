@@ -125,7 +125,8 @@ class Verifier {
 void run(const Arguments& a) {
   const fs::path path = a.input;
   const std::vector<fs::path> axes(a.axes.begin(), a.axes.end());
-  for (const fs::path& axis : axes) check_extension("AXIS", axis, {".vtp", ".ply", ".obj", ".ma", ".npz"});
+  for (const fs::path& axis : axes)
+    check_extension("AXIS", axis, file_extensions(FileContent::complex, FileAccess::write));
   const InputKind kind = input_kind(path);
   const SolidChoice given = parse_solid(a, kind);
   std::vector<fs::path> inputs = axes;

@@ -2,34 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
 #include "blum/core/error.hpp"
 #include "blum/io/atomic_file.hpp"
 
-// The page lies in the read-only part of the program. CMake names the file, and compiles this again when it changes.
-#if defined(__APPLE__)
-#define BLUM_READ_ONLY ".const_data"
-#define BLUM_SYMBOL "_blum_viewer_page"
-#else
-#define BLUM_READ_ONLY ".section .rodata"
-#define BLUM_SYMBOL "blum_viewer_page"
-#endif
-// clang-format off
-asm(BLUM_READ_ONLY "\n"
-    ".globl " BLUM_SYMBOL "\n"
-    ".globl " BLUM_SYMBOL "_end\n"
-    BLUM_SYMBOL ":\n"
-    ".incbin \"" BLUM_VIEWER_PAGE "\"\n"
-    BLUM_SYMBOL "_end:\n"
-    ".byte 0\n"
-    ".text\n");
-// clang-format on
-extern "C" const char blum_viewer_page[];      // NOLINT(readability-redundant-declaration)
-extern "C" const char blum_viewer_page_end[];  // NOLINT(readability-redundant-declaration)
-
 namespace blum::cli {
+
+// Defined in a file that cmake/embed.cmake writes.
+extern const unsigned char viewer_page_bytes[];
+extern const std::size_t viewer_page_size;
+
 namespace {
 
 /// Where the scene goes.
@@ -81,7 +66,7 @@ class SceneElements {
 }  // namespace
 
 std::string_view viewer_page() {
-  return {blum_viewer_page, static_cast<std::size_t>(blum_viewer_page_end - blum_viewer_page)};
+  return {reinterpret_cast<const char*>(viewer_page_bytes), viewer_page_size};
 }
 
 void write_page(const std::filesystem::path& path, const Scene& scene) {

@@ -55,7 +55,7 @@ void check_size(std::size_t count, std::size_t most, const char* what, const fs:
 }
 
 Json mesh_item(SceneBlob& blob, const fs::path& path, std::optional<double> weld) {
-  const MeshFile file = load_mesh(path, {weld});
+  const MeshFile file = read_mesh_of_any_name(path, {weld});
   const TriangleMesh& mesh = file.mesh;
   validate(mesh);
   check_size(mesh.triangles.size(), most_triangles, "triangles", path, "show a coarser mesh");
@@ -176,7 +176,7 @@ void check_exact(const std::vector<T>& values, const fs::path& path) {
 }
 
 Json image_item(SceneBlob& blob, const fs::path& path) {
-  const VoxelImage image = load_image(path);
+  const VoxelImage image = read_image_of_any_name(path);
   validate(image);
   check_size(image.grid.node_count(), most_nodes, "voxels", path, "show a coarser image");
   Json item = {{"kind", "image"}, {"units", "units of the spacing"}};
@@ -203,7 +203,7 @@ Json image_item(SceneBlob& blob, const fs::path& path) {
 
 /// The sites of a field, as an image of labels: OUT.site.nrrd, which is no field by itself.
 bool is_site_file(const fs::path& path) {
-  return extension(path) == ".nrrd" && extension(path.stem()) == ".site";
+  return file_extension(path) == ".nrrd" && file_extension(path.stem()) == ".site";
 }
 
 /// Browsers draw in single precision.
@@ -227,7 +227,7 @@ void check_extent(const Json& item, const fs::path& path) {
 }
 
 Json item_of(SceneBlob& blob, const fs::path& path, std::optional<double> weld, const Context& context) {
-  if (is_axis(path)) return axis_item(blob, path, context);
+  if (holds_complex(path)) return axis_item(blob, path, context);
   switch (is_site_file(path) ? InputKind::image : input_kind(path)) {
     case InputKind::mesh:
       return mesh_item(blob, path, weld);

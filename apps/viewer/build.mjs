@@ -27,13 +27,13 @@ async function bundle(entry, define = {}) {
 const worker = await bundle("src/isoworker.ts");
 const script = await bundle("src/main.ts", { ISO_WORKER: JSON.stringify(worker) });
 const style = readFileSync(join(here, "src/style.css"), "utf8");
-const licence = readFileSync(join(here, "node_modules/three/LICENSE"), "utf8").trim();
+const licence = (name) => readFileSync(join(here, "node_modules", name, "LICENSE"), "utf8").trim();
 
 // What would end the element, or be taken for the place of the scene, does not occur in it. Lines end as in all files of
 // the project: without spaces.
 const safe = script.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
 const page = readFileSync(join(here, "src/page.html"), "utf8")
-  .replace("<!doctype html>", () => `<!doctype html>\n<!--\nBlum's viewer, Apache-2.0. It holds three.js:\n\n${licence}\n-->`)
+  .replace("<!doctype html>", () => `<!doctype html>\n<!--\nBlum's viewer, Apache-2.0. It holds three.js:\n\n${licence("three")}\n\nand three-mesh-bvh:\n\n${licence("three-mesh-bvh")}\n-->`)
   .replace("/*style*/", () => style.trim())
   .replace("/*script*/", () => safe);
 mkdirSync(dirname(out), { recursive: true });

@@ -17,7 +17,7 @@
 
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "field/cuda/cuda_device.cuh"
 #include "field/kernels/emulated_device.hpp"
 #include "field/kernels/field_engine.hpp"

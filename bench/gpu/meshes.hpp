@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "blum/geometry/generators.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/shapes/generators.hpp"
 
 namespace blum::bench {
 

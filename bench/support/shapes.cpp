@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <map>
 
-#include "blum/geometry/generators.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "blum/shapes/generators.hpp"
 
 namespace blum::bench {
 namespace {

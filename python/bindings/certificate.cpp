@@ -1,4 +1,4 @@
-#include "blum/medial_axis/certificate.hpp"
+#include "blum/certificate/certificate.hpp"
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
@@ -6,11 +6,15 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/io/verify_medial.hpp"
 #include "call.hpp"
 #include "images.hpp"
 
@@ -72,18 +76,25 @@ nb::dict certificate_of(const Certificate& certificate) {
   return out;
 }
 
+/// What an axis says of itself: version, solid_rule, site_ids, grid (or None), has_radii and so on.
+MedialClaims claims_from(const nb::dict& told) {
+  MedialClaims claims;
+  claims.metadata.version = nb::cast<std::string>(told["version"]);
+  claims.metadata.solid_rule = nb::cast<std::string>(told["solid_rule"]);
+  const auto sites = nb::cast<std::string>(told["site_ids"]);
+  claims.metadata.site_ids = sites == to_string(SiteIds::voxels) ? SiteIds::voxels : SiteIds::features;
+  const nb::object grid = told["grid"];
+  if (!grid.is_none()) claims.metadata.grid = nb::cast<GridSpec>(grid);
+  claims.has_radii = nb::cast<bool>(told["has_radii"]);
+  claims.has_footprints = nb::cast<bool>(told["has_footprints"]);
+  claims.has_angles = nb::cast<bool>(told["has_angles"]);
+  claims.has_sites = nb::cast<bool>(told["has_sites"]);
+  return claims;
+}
+
 }  // namespace
 
 void bind_certificate(nb::module_& m) {
-  m.def(
-      "homology",
-      [](std::size_t vertex_count, const SegmentsIn& edges, const TrianglesIn& triangles, int threads,
-         nb::object progress) {
-        const ComplexView view{vertex_count, rows<std::array<std::uint32_t, 2>>(edges), rows<Triangle>(triangles)};
-        return run({threads, std::move(progress)}, [&](const Context& context) { return homology(view, context); });
-      },
-      nb::arg("vertex_count"), nb::arg("edges").noconvert(), nb::arg("triangles").noconvert(), nb::arg("threads"),
-      nb::arg("progress").none());
   m.def(
       "solid_rule",
       [](const MeshArrays& mesh, int threads, nb::object progress) {
@@ -94,41 +105,36 @@ void bind_certificate(nb::module_& m) {
       },
       nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
-      "certify_mesh",
-      [](const MedialComplex& complex, const MeshArrays& mesh, bool positions, bool radii, bool footprints, bool angles,
-         bool sites, bool balls, int threads, nb::object progress) {
-        const MeshView view = mesh.view();
-        const CertificateOptions options{positions, radii, footprints, angles, sites, balls};
-        return certificate_of(run({threads, std::move(progress)},
-                                  [&](const Context& context) { return certify(complex, view, options, context); }));
-      },
-      nb::arg("complex"), nb::arg("mesh"), nb::arg("positions"), nb::arg("radii"), nb::arg("footprints"),
-      nb::arg("angles"), nb::arg("sites"), nb::arg("balls"), nb::arg("threads"), nb::arg("progress").none());
-  m.def(
-      "certify_voxels",
-      [](const MedialComplex& complex, const MaskIn& mask, const GridSpec& grid, bool positions, bool radii,
+      "verify_mesh",
+      [](const Complex& complex, const nb::dict& claims, const MeshArrays& mesh, bool positions, bool radii,
          bool footprints, bool angles, bool sites, bool balls, int threads, nb::object progress) {
+        const MeshView view = mesh.view();
+        const MedialClaims said = claims_from(claims);
         const CertificateOptions options{positions, radii, footprints, angles, sites, balls};
         return certificate_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return certify(complex, voxel_set(mask), grid, nullptr, options, context);
+          return verify(complex, said, view, options, HUGE_VAL, context);
         }));
       },
-      nb::arg("complex"), nb::arg("mask").noconvert(), nb::arg("grid"), nb::arg("positions"), nb::arg("radii"),
+      nb::arg("complex"), nb::arg("claims"), nb::arg("mesh"), nb::arg("positions"), nb::arg("radii"),
       nb::arg("footprints"), nb::arg("angles"), nb::arg("sites"), nb::arg("balls"), nb::arg("threads"),
       nb::arg("progress").none());
   m.def(
-      "certify_winding",
-      [](const MedialComplex& complex, const MeshArrays& mesh, const GridSpec& grid, bool positions, bool radii,
-         bool footprints, bool angles, bool sites, bool balls, int threads, nb::object progress) {
-        const MeshView view = mesh.view();
+      "verify_image",
+      [](const Complex& complex, const nb::dict& claims, const ImageArrays& image, std::optional<std::int64_t> label,
+         std::optional<double> threshold, bool positions, bool radii, bool footprints, bool angles, bool sites,
+         bool balls, int threads, nb::object progress) {
+        const MedialClaims said = claims_from(claims);
+        LabelSelection selection;
+        if (label) selection = LabelSelection::of_label(*label);
+        if (threshold) selection = LabelSelection::at_least(*threshold);
         const CertificateOptions options{positions, radii, footprints, angles, sites, balls};
         return certificate_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return certify(complex, voxels_inside(view, grid, context), grid, &view, options, context);
+          return verify(complex, said, image.view, selection, options, context);
         }));
       },
-      nb::arg("complex"), nb::arg("mesh"), nb::arg("grid"), nb::arg("positions"), nb::arg("radii"),
-      nb::arg("footprints"), nb::arg("angles"), nb::arg("sites"), nb::arg("balls"), nb::arg("threads"),
-      nb::arg("progress").none());
+      nb::arg("complex"), nb::arg("claims"), nb::arg("image"), nb::arg("label").none(), nb::arg("threshold").none(),
+      nb::arg("positions"), nb::arg("radii"), nb::arg("footprints"), nb::arg("angles"), nb::arg("sites"),
+      nb::arg("balls"), nb::arg("threads"), nb::arg("progress").none());
 }
 
 }  // namespace blum::python

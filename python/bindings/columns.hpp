@@ -66,12 +66,4 @@ template <class List, class Entry, class Member>
   return Out<Element>(reinterpret_cast<Element*>(&(first.*member)), shape.size(), shape.data(), owner, strides.data());
 }
 
-/// A read-only property of a class that holds a list: one member of its entries.
-template <class Class, class Entry, class Member>
-void bind_column(nb::class_<Class>& bound, const char* name, std::vector<Entry> Class::* list, Member Entry::* member) {
-  bound.def_prop_ro(name, [list, member](nb::pointer_and_handle<Class> self) {
-    return column(std::as_const(self.p->*list), member, self.h);
-  });
-}
-
 }  // namespace blum::python

@@ -95,6 +95,7 @@ nb::dict metadata_of(const MedialFile& file) {
   set(out, "label", metadata.label);
   set(out, "threshold", metadata.threshold);
   set(out, "weld", metadata.weld);
+  out["least_theta"] = file.least_theta;
   out["has_radii"] = file.has_radii;
   out["has_footprints"] = file.has_footprints;
   out["has_sites"] = file.has_sites;
@@ -114,7 +115,7 @@ void bind_medial_files(nb::module_& m) {
       nb::arg("path"));
   m.def(
       "write_medial",
-      [](const Path& path, const MedialComplex& complex, const NestedComplex* nested, const std::string& source,
+      [](const Path& path, const Complex& complex, const Complex* nested, double least_theta, const std::string& source,
          const std::string& site_ids, const std::string& solid_rule, std::optional<double> theta,
          std::optional<double> lambda, std::optional<double> spacing, const GridSpec* grid,
          std::optional<std::int64_t> label, std::optional<double> threshold, std::optional<double> weld) {
@@ -131,13 +132,14 @@ void bind_medial_files(nb::module_& m) {
         metadata.threshold = threshold;
         metadata.weld = weld;
         run_call({0, nb::none()}, [&](const Context& context) {
-          if (nested != nullptr) return write_medial(path, complex, *nested, metadata, context);
+          if (nested != nullptr) return write_medial(path, complex, *nested, least_theta, metadata, context);
           write_medial(path, complex, metadata, context);
         });
       },
-      nb::arg("path"), nb::arg("complex"), nb::arg("nested").none(), nb::arg("source"), nb::arg("site_ids"),
-      nb::arg("solid_rule"), nb::arg("theta").none(), nb::arg("lambda_").none(), nb::arg("spacing").none(),
-      nb::arg("grid").none(), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("weld").none());
+      nb::arg("path"), nb::arg("complex"), nb::arg("nested").none(), nb::arg("least_theta"), nb::arg("source"),
+      nb::arg("site_ids"), nb::arg("solid_rule"), nb::arg("theta").none(), nb::arg("lambda_").none(),
+      nb::arg("spacing").none(), nb::arg("grid").none(), nb::arg("label").none(), nb::arg("threshold").none(),
+      nb::arg("weld").none());
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "blum/field/image_reference.hpp"
+#include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
 #include "call.hpp"
 #include "fields.hpp"

@@ -11,18 +11,16 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "blum/medial_axis/ball_union.hpp"
+#include "blum/complex/medial_columns.hpp"
+#include "blum/field/ball_union.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "call.hpp"
-#include "columns.hpp"
 #include "fields.hpp"
 #include "images.hpp"
 
 namespace blum::python {
 namespace {
 
-using AnglesIn = In<float, nb::shape<-1>>;
-using RolesIn = In<std::uint8_t, nb::shape<-1>>;
 using NumbersIn = In<double, nb::shape<-1>>;
 
 void check_length(const char* name, std::size_t length, std::size_t wanted) {
@@ -31,113 +29,24 @@ void check_length(const char* name, std::size_t length, std::size_t wanted) {
                       std::to_string(wanted));
 }
 
-std::vector<MedialVertex> vertices_of(const PointsIn& positions, const NumbersIn& radius, const PointsIn& footprints,
-                                      const SegmentsIn& sites, const NumbersIn& angle, const RolesIn& role) {
-  std::vector<MedialVertex> out(positions.shape(0));
-  check_length("radius", radius.shape(0), out.size());
-  check_length("footprints", footprints.shape(0), 2 * out.size());
-  check_length("sites", sites.shape(0), out.size());
-  check_length("separation_angle", angle.shape(0), out.size());
-  check_length("role", role.shape(0), out.size());
-  const auto feet = vectors(footprints);
-  const auto ids = rows<std::array<std::uint32_t, 2>>(sites);
-  for (std::size_t v = 0; v < out.size(); ++v) {
-    out[v] = {vectors(positions)[v],
-              radius.data()[v],
-              {feet[2 * v], feet[2 * v + 1]},
-              {SiteId(ids[v][0]), SiteId(ids[v][1])},
-              angle.data()[v],
-              static_cast<MedialRole>(role.data()[v])};
-  }
+nb::dict counts_of(const Complex& axis) {
+  const MedialCounts counts = count(axis);
+  nb::dict out;
+  out["vertices"] = counts.vertices;
+  out["triangles"] = counts.triangles;
+  out["sheets"] = counts.sheets;
+  out["curve_edges"] = counts.curve_edges;
+  out["rim_edges"] = counts.rim_edges;
+  out["seam_edges"] = counts.seam_edges;
+  out["junctions"] = counts.junctions;
   return out;
-}
-
-/// What complexes of one angle and of all have in common.
-template <class Complex>
-void bind_columns(nb::class_<Complex>& complex) {
-  using Edge = typename decltype(Complex::edges)::value_type;
-  using Face = typename decltype(Complex::triangles)::value_type;
-  bind_column(complex, "vertices", &Complex::vertices, &MedialVertex::position);
-  bind_column(complex, "radius", &Complex::vertices, &MedialVertex::radius);
-  bind_column(complex, "footprints", &Complex::vertices, &MedialVertex::footprints);
-  bind_column(complex, "sites", &Complex::vertices, &MedialVertex::sites);
-  bind_column(complex, "separation_angle", &Complex::vertices, &MedialVertex::separation_angle);
-  bind_column(complex, "role", &Complex::vertices, &MedialVertex::role);
-  bind_column(complex, "edges", &Complex::edges, &Edge::vertices);
-  bind_column(complex, "edge_angle", &Complex::edges, &Edge::separation_angle);
-  bind_column(complex, "edge_role", &Complex::edges, &Edge::role);
-  bind_column(complex, "triangles", &Complex::triangles, &Face::vertices);
-  bind_column(complex, "triangle_angle", &Complex::triangles, &Face::separation_angle);
-  bind_column(complex, "triangle_sheet", &Complex::triangles, &Face::sheet);
-  complex.def_ro("sheet_count", &Complex::sheet_count);
-}
-
-void bind_nested(nb::module_& m) {
-  nb::class_<NestedComplex> nested(m, "NestedComplex");
-  bind_columns(nested);
-  nested.def_ro("least_theta", &NestedComplex::least_theta);
-  nested.def_prop_ro("vertex_until", [](nb::pointer_and_handle<NestedComplex> self) {
-    const std::vector<float>& all = self.p->vertex_until;
-    return view_of(all.data(), {all.size()}, self.h);
-  });
-  bind_column(nested, "edge_from", &NestedComplex::edges, &NestedEdge::from);
-  bind_column(nested, "edge_until", &NestedComplex::edges, &NestedEdge::until);
-  bind_column(nested, "triangle_until", &NestedComplex::triangles, &NestedTriangle::until);
-}
-
-void bind_complex(nb::module_& m) {
-  nb::class_<MedialComplex> complex(m, "MedialComplex");
-  bind_columns(complex);
-  complex
-      .def(
-          "__init__",
-          [](MedialComplex* self, const PointsIn& positions, const NumbersIn& radius, const PointsIn& footprints,
-             const SegmentsIn& sites, const NumbersIn& angle, const RolesIn& role, const SegmentsIn& edges,
-             const AnglesIn& edge_angle, const RolesIn& edge_role, const TrianglesIn& triangles,
-             const AnglesIn& triangle_angle, const IndicesIn& sheet, std::uint32_t sheet_count) {
-            MedialComplex complex;
-            complex.vertices = vertices_of(positions, radius, footprints, sites, angle, role);
-            complex.edges.resize(edges.shape(0));
-            check_length("edge_angle", edge_angle.shape(0), complex.edges.size());
-            check_length("edge_role", edge_role.shape(0), complex.edges.size());
-            for (std::size_t e = 0; e < complex.edges.size(); ++e) {
-              complex.edges[e] = {rows<std::array<std::uint32_t, 2>>(edges)[e], edge_angle.data()[e],
-                                  static_cast<MedialRole>(edge_role.data()[e])};
-            }
-            complex.triangles.resize(triangles.shape(0));
-            check_length("triangle_angle", triangle_angle.shape(0), complex.triangles.size());
-            check_length("triangle_sheet", sheet.shape(0), complex.triangles.size());
-            for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-              complex.triangles[t] = {rows<Triangle>(triangles)[t], triangle_angle.data()[t],
-                                      static_cast<std::uint32_t>(sheet.data()[t])};
-            }
-            complex.sheet_count = sheet_count;
-            new (self) MedialComplex(std::move(complex));
-          },
-          nb::arg("positions").noconvert(), nb::arg("radius").noconvert(), nb::arg("footprints").noconvert(),
-          nb::arg("sites").noconvert(), nb::arg("separation_angle").noconvert(), nb::arg("role").noconvert(),
-          nb::arg("edges").noconvert(), nb::arg("edge_angle").noconvert(), nb::arg("edge_role").noconvert(),
-          nb::arg("triangles").noconvert(), nb::arg("triangle_angle").noconvert(),
-          nb::arg("triangle_sheet").noconvert(), nb::arg("sheet_count"))
-      .def("counts", [](const MedialComplex& complex) {
-        const MedialCounts counts = count(complex);
-        nb::dict out;
-        out["vertices"] = counts.vertices;
-        out["triangles"] = counts.triangles;
-        out["sheets"] = counts.sheets;
-        out["curve_edges"] = counts.curve_edges;
-        out["rim_edges"] = counts.rim_edges;
-        out["seam_edges"] = counts.seam_edges;
-        out["junctions"] = counts.junctions;
-        return out;
-      });
 }
 
 nb::dict body_of(const BodyReport& body) {
   nb::dict out;
   out["solid"] = nb::cast(body.solid);
   out["voxels"] = nb::cast(body.voxels);
-  out["is_right"] = body.is_right;
+  out["topology_matches"] = body.topology_matches;
   out["spacing"] = body.spacing;
   out["voxel_count"] = body.voxel_count;
   out["left_out"] = body.left_out;
@@ -150,10 +59,10 @@ nb::dict report_of(const MedialAxisReport& report) {
   nb::dict out;
   out["rule"] = std::string(to_string(report.rule));
   out["reason"] = report.reason;
-  out["turned_shells"] = report.turned_shells;
+  out["reversed_shells"] = report.reversed_shells;
   out["solid"] = nb::cast(report.solid);
   out["voxels"] = nb::cast(report.voxels);
-  out["is_right"] = report.is_right;
+  out["topology_matches"] = report.topology_matches;
   out["grid"] = nb::cast(report.grid);
   nb::list bodies;
   for (const BodyReport& body : report.bodies) bodies.append(body_of(body));
@@ -208,12 +117,13 @@ void bind_axis(nb::module_& m) {
 }  // namespace
 
 void bind_medial_axis(nb::module_& m) {
-  bind_complex(m);
-  bind_nested(m);
   bind_axis(m);
+  m.def("medial_counts", &counts_of, nb::arg("axis"));
+  m.def("medial_problem", &problem_of_medial, nb::arg("axis"));
+  m.def("sheet_count", &sheet_count, nb::arg("axis"));
   m.def(
       "prune_sheets",
-      [](const MedialComplex& complex, double theta, int threads, nb::object progress) {
+      [](const Complex& complex, double theta, int threads, nb::object progress) {
         return run({threads, std::move(progress)},
                    [&](const Context& context) { return prune_sheets(complex, theta, context); });
       },

@@ -16,11 +16,9 @@ from ._certificate import (
     EdgeCheck,
     GeometryCheck,
     SolidRule,
-    certify,
-    homology,
     solid_rule,
 )
-from ._complex import ROLES, MedialComplex, NestedComplex, Present, ball_union_field, read_medial
+from ._complex import Complex, homology
 from ._core import thread_count
 from ._core import version as __version__
 from ._device import DeviceArray, DeviceDistanceTransform, DeviceField, DeviceFieldSolver
@@ -52,6 +50,8 @@ from ._field import (
 from ._grid import Grid
 from ._image import Image, read_image
 from ._medial import BodyReport, MedialAxis, MedialAxisReport, medial_axis
+from ._medial_columns import ROLES, NestedComplex, Present
+from ._medial_complex import MedialComplex, ball_union_field, certify, read_medial
 from ._mesh import (
     Mesh,
     SelfIntersections,
@@ -78,6 +78,7 @@ __all__ = [
     "Certificate",
     "ClosestPointQuery",
     "ClosestPoints",
+    "Complex",
     "DeviceArray",
     "DeviceDistanceTransform",
     "DeviceError",

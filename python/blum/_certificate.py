@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import Any
 
 from . import _core
-from ._arguments import Integer, Real, indices, integer
-from ._errors import InvalidMesh
-from ._field import selected_voxels
+from ._arguments import Integer, Real, integer, label_of, optional_number
+from ._complex import Complex
+from ._errors import InvalidOption
 from ._grid import Grid
 from ._image import as_image, is_image
-from ._mesh import Betti, Mesh, as_mesh, betti_of
+from ._mesh import Betti, as_mesh, betti_of
 from ._progress import Progress, reporting
-
-if TYPE_CHECKING:
-    from ._complex import MedialComplex
 
 
 @dataclass(frozen=True)
@@ -113,18 +109,29 @@ def _certificate(found: dict[str, Any]) -> Certificate:
     )
 
 
-#: Whether to look at positions, radii, footprints, angles, sites, balls.
-_Checks = tuple[bool, bool, bool, bool, bool, bool]
+@dataclass(frozen=True)
+class Claim:
+    """An axis as its certificate sees it, with what it (or the file that it was read from) says of itself."""
+
+    complex: Complex
+    has: Mapping[str, bool]  #: which attributes are more than fillers: radii, footprints, angles, sites
+    grid: Grid | None  #: of the voxels' centres, where that is known
+    label: int | None  #: of an image: the voxels of this value
+    threshold: float | None  #: of an image: the voxels of this value or more
+    rule: str  #: of its solid; empty where it does not say
+    site_ids: str
+    version: str  #: of the Blum that wrote its file; empty otherwise
 
 
-def certify(
-    axis: MedialComplex,
+def certified(
+    claim: Claim,
     shape: Any,
     triangles: Any = None,
     *,
     label: Integer | None = None,
     threshold: Real | None = None,
     grid: Grid | None = None,
+    weld: Real | None = None,
     positions: bool = True,
     radii: bool | None = None,
     footprints: bool | None = None,
@@ -134,36 +141,10 @@ def certify(
     threads: int = 0,
     progress: Progress = False,
 ) -> Certificate:
-    """Checks an axis against the mesh or image whose solid it is said to have.
-
-    Betti numbers are compared body by body; vertices, radii, footprints, sites and angles with exact searches; edges
-    must lie in the solid. Nothing of what made the axis is used.
-
-    Parameters
-    ----------
-    axis : MedialComplex
-    shape, triangles
-        The mesh, as for :func:`distance_field`, or the image, as for :func:`distance_transform`.
-    label, threshold
-        Of an image: which voxels are the solid.
-    grid : Grid, optional
-        Of a mesh that bounds no polyhedron: of the centres of the voxels that are the solid. Default: the axis's own.
-    positions, radii, footprints, angles, sites, balls : bool, optional
-        What to look at besides topology. Default: all that the axis has.
-
-    >>> import blum
-    >>> torus = blum.generate("torus")
-    >>> axis = blum.medial_axis(torus, resolution=32)
-    >>> print(blum.certify(axis.simplify(60), torus))
-    certified against the polyhedron: components, tunnels, voids (1, 1, 0)
-    """
-    from ._complex import MedialComplex
-
-    if not isinstance(axis, MedialComplex):
-        raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
+    """What `blum.certify` says of an axis."""
     if grid is not None and not isinstance(grid, Grid):
         raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
-    has = axis.has
+    has = claim.has
 
     def chosen(asked: bool | None, attribute: str) -> bool:
         return has[attribute] if asked is None else bool(asked)
@@ -178,34 +159,49 @@ def certify(
     )
     count = integer(threads, "threads")
     if triangles is None and is_image(shape):
+        if label is not None and threshold is not None:
+            raise InvalidOption("label and threshold exclude each other")
         image = as_image(shape)
-        mask = selected_voxels(image, label=label, threshold=threshold)
+        if label is None and threshold is None:
+            label, threshold = claim.label, claim.threshold
+        chosen_label = None if label is None else label_of(label, "label")
         with reporting(progress) as report:
             return _certificate(
-                _core.certify_voxels(
-                    axis._core, mask.view(np.uint8), image.grid._spec, *checks, threads=count, progress=report
+                _core.verify_image(
+                    claim.complex._core,
+                    _claims(claim, grid, "voxels"),
+                    image._arrays,
+                    chosen_label,
+                    optional_number(threshold, "threshold"),
+                    *checks,
+                    threads=count,
+                    progress=report,
                 )
             )
-    mesh = as_mesh(shape, triangles, "shape")
-    rule, reason = _core.solid_rule(mesh._arrays, count, None)
-    if rule == "polyhedron":
-        with reporting(progress) as report:
-            return _certificate(_core.certify_mesh(axis._core, mesh._arrays, *checks, threads=count, progress=report))
-    return _against_winding(axis, mesh, grid, reason, checks, count, progress)
-
-
-def _against_winding(
-    axis: MedialComplex, mesh: Mesh, grid: Grid | None, reason: str, checks: _Checks, threads: int, progress: Progress
-) -> Certificate:
-    nodes = axis.grid if grid is None else grid
-    if nodes is None:
-        raise InvalidMesh(
-            f"the mesh bounds no polyhedron ({reason}), so its axis is that of voxels: give grid, that of their centres"
-        )
+    mesh = as_mesh(shape, triangles, "shape", weld=weld)
     with reporting(progress) as report:
         return _certificate(
-            _core.certify_winding(axis._core, mesh._arrays, nodes._spec, *checks, threads=threads, progress=report)
+            _core.verify_mesh(
+                claim.complex._core,
+                _claims(claim, grid, "features"),
+                mesh._arrays,
+                *checks,
+                threads=count,
+                progress=report,
+            )
         )
+
+
+def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
+    """What an axis says of itself, for the library to check; `sites` where it does not say of what they are."""
+    nodes = claim.grid if grid is None else grid
+    return {
+        "version": claim.version,
+        "solid_rule": claim.rule,
+        "site_ids": claim.site_ids if claim.rule or claim.version else sites,
+        "grid": None if nodes is None else nodes._spec,
+        **{f"has_{name}": claim.has[name] for name in ("radii", "footprints", "angles", "sites")},
+    }
 
 
 @dataclass(frozen=True)
@@ -216,7 +212,9 @@ class SolidRule:
     reason: str  #: one sentence
 
 
-def solid_rule(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> SolidRule:
+def solid_rule(
+    mesh: Any, triangles: Any = None, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+) -> SolidRule:
     """Whether a mesh bounds a polyhedron, and if not, why.
 
     >>> import blum
@@ -224,28 +222,6 @@ def solid_rule(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: 
     'polyhedron'
     """
     with reporting(progress) as report:
-        return SolidRule(*_core.solid_rule(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report))
-
-
-def homology(
-    vertex_count: int, edges: Any = (), triangles: Any = (), *, threads: int = 0, progress: Progress = False
-) -> Betti:
-    """Betti numbers over Z/2 of a complex of vertices, edges, and triangles with their edges.
-
-    >>> import blum
-    >>> blum.homology(4, edges=[[0, 1], [1, 2], [2, 0]])
-    (2, 1, 0)
-    """
-    count = integer(vertex_count, "vertex_count")
-    if count < 0:
-        raise ValueError(f"vertex_count is {count}, but must be at least 0")
-    with reporting(progress) as report:
-        return betti_of(
-            _core.homology(
-                count,
-                indices(edges, "edges", 2, count),
-                indices(triangles, "triangles", 3, count),
-                integer(threads, "threads"),
-                report,
-            )
+        return SolidRule(
+            *_core.solid_rule(as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report)
         )

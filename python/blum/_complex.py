@@ -1,236 +1,46 @@
-"""Medial axes as complexes of vertices, edges and triangles, and their files."""
+"""Complexes of vertices, edges and triangles, with named columns of numbers on each."""
 
 from __future__ import annotations
 
-import os
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import (
-    FloatArray,
-    IntArray,
-    Integer,
-    PathLike,
-    Real,
-    as_array,
-    existing_file,
-    float_list,
-    float_rows,
-    indices,
-    integer,
-    number,
-    site_ids,
-)
-from ._certificate import Certificate, certify
+from ._arguments import FloatArray, IntArray, as_array, float_rows, indices, integer
 from ._errors import InvalidOption
-from ._field import Field
-from ._grid import Grid, grid_for
-from ._image import Image
-from ._mesh import Bounds, Mesh
+from ._mesh import Betti, betti_of
 from ._progress import Progress, reporting
 
-#: What the numbers in `MedialComplex.role` and `edge_role` stand for.
-ROLES = ("sheet", "rim", "seam", "curve", "junction")
-
-EVERYTHING = {"radii": True, "footprints": True, "angles": True, "sites": True, "labels": True}
-
-
-@dataclass(frozen=True)
-class Origin:
-    """What a complex was made from, for its certificate and its files."""
-
-    shape: Mesh | Image | None = None
-    label: int | None = None
-    threshold: float | None = None
-    theta: float | None = None
-    lambda_: float | None = None
-    spacing: float | None = None
-    rule: str = ""
-    grid: Grid | None = None
-    source: str = ""
-    weld: float | None = None
-    site_ids: str = "features"
-
-
 # A class that has a member `_core` cannot name the module in its annotations.
-_CoreComplex = _core.MedialComplex
-_CoreNested = _core.NestedComplex
+_CoreComplex = _core.Complex
+
+#: Named columns: (n,) or (n, components) arrays of float64, float32, int64 or int32.
+ColumnsOf = Mapping[str, npt.NDArray[Any]]
 
 
-class _Columns:
-    """The arrays that complexes of one angle and of all have in common: read-only views of the library's memory."""
+class Complex:
+    """Vertices, edges and triangles in space, with named columns on each. Arrays are read-only views of the library's
+    memory. As a space it is made of its vertices, edges and triangles, and of the triangles' own edges.
 
-    _core: _CoreComplex | _CoreNested
-
-    @property
-    def vertices(self) -> FloatArray:
-        """(n, 3): positions, mesh units."""
-        found: FloatArray = self._core.vertices
-        return found
-
-    @property
-    def radius(self) -> FloatArray:
-        """(n,): exact distance from each vertex to the surface, mesh units."""
-        found: FloatArray = self._core.radius
-        return found
-
-    @property
-    def footprints(self) -> FloatArray:
-        """(n, 2, 3): the closest point of the surface, and that of the other wall."""
-        found: FloatArray = self._core.footprints
-        return found
-
-    @property
-    def sites(self) -> IntArray:
-        """(n, 2): the sites that the footprints lie on: of the mesh (:class:`Sites`), or flat indices of voxels."""
-        found: IntArray = self._core.sites
-        return found
-
-    @property
-    def separation_angle(self) -> FloatArray:
-        """(n,): between the footprints as the vertex sees them, degrees."""
-        found: FloatArray = self._core.separation_angle
-        return found
-
-    @property
-    def role(self) -> npt.NDArray[np.uint8]:
-        """(n,): see ROLES."""
-        found: npt.NDArray[np.uint8] = self._core.role
-        return found
-
-    @property
-    def edges(self) -> IntArray:
-        """(e, 2): curves, rims and seams; inner edges of sheets are not listed."""
-        found: IntArray = self._core.edges
-        return found
-
-    @property
-    def edge_angle(self) -> npt.NDArray[np.float32]:
-        """(e,): degrees; 0 where only homotopy keeps an edge."""
-        found: npt.NDArray[np.float32] = self._core.edge_angle
-        return found
-
-    @property
-    def edge_role(self) -> npt.NDArray[np.uint8]:
-        """(e,): rim, seam or curve, see ROLES."""
-        found: npt.NDArray[np.uint8] = self._core.edge_role
-        return found
-
-    @property
-    def triangles(self) -> IntArray:
-        """(m, 3)."""
-        found: IntArray = self._core.triangles
-        return found
-
-    @property
-    def triangle_angle(self) -> npt.NDArray[np.float32]:
-        """(m,): degrees; 0 where only homotopy keeps a triangle."""
-        found: npt.NDArray[np.float32] = self._core.triangle_angle
-        return found
-
-    @property
-    def triangle_sheet(self) -> IntArray:
-        """(m,): the sheet that each triangle is part of, 0 to sheet_count - 1."""
-        found: IntArray = self._core.triangle_sheet
-        return found
-
-    @property
-    def sheet_count(self) -> int:
-        """How many sheets there are."""
-        return int(self._core.sheet_count)
-
-
-@dataclass(frozen=True, eq=False)
-class Present:
-    """What of a :class:`NestedComplex` is there at an angle: True or False for each."""
-
-    vertices: npt.NDArray[np.bool_]  #: (n,)
-    edges: npt.NDArray[np.bool_]  #: (e,)
-    triangles: npt.NDArray[np.bool_]  #: (m,)
-
-
-class NestedComplex(_Columns):
-    """The medial axes of one solid at all angles from `least_theta` on, as sets of points: to show, and to cut at any
-    angle without computing anything again. Made by :meth:`MedialAxis.nested`.
-
-    Vertices at the same place are one, and pieces without extent are left out: its topology need not be that of the
-    solid. Roles and sheets are those at the least angle; an edge that has several roles is there several times.
+    Parameters
+    ----------
+    vertices : (n, 3) array
+    edges : (e, 2) array, optional
+    triangles : (m, 3) array, optional
+    vertex_columns, edge_columns, triangle_columns : mapping of names to arrays, optional
+        (n,) or (n, components) arrays, a row for each vertex, edge or triangle; float64, float32, int64 or int32.
 
     >>> import blum
-    >>> nested = blum.medial_axis(blum.generate("box"), resolution=32).nested()
-    >>> at = nested.at(80)
-    >>> nested.triangles[at.triangles].shape[0] <= len(nested.triangles)
-    True
-    """
-
-    _core: _CoreNested
-
-    def __init__(self, core: _CoreNested) -> None:
-        self._core = core
-
-    @property
-    def least_theta(self) -> float:
-        """Degrees."""
-        return float(self._core.least_theta)
-
-    @property
-    def vertex_until(self) -> npt.NDArray[np.float32]:
-        """(n,): degrees; a vertex is there where theta is less."""
-        found: npt.NDArray[np.float32] = self._core.vertex_until
-        return found
-
-    @property
-    def edge_from(self) -> npt.NDArray[np.float32]:
-        """(e,): degrees; an edge has its role where edge_from <= theta < edge_until."""
-        found: npt.NDArray[np.float32] = self._core.edge_from
-        return found
-
-    @property
-    def edge_until(self) -> npt.NDArray[np.float32]:
-        """(e,): degrees."""
-        found: npt.NDArray[np.float32] = self._core.edge_until
-        return found
-
-    @property
-    def triangle_until(self) -> npt.NDArray[np.float32]:
-        """(m,): degrees; a triangle is there where theta is less."""
-        found: npt.NDArray[np.float32] = self._core.triangle_until
-        return found
-
-    def at(self, theta: Real) -> Present:
-        """What is there at an angle, degrees, `least_theta` to 180: it covers what simplify(theta) gives."""
-        angle = number(theta, "theta")
-        if not self.least_theta <= angle <= 180:
-            raise InvalidOption(f"theta is {angle:g}, but must be {self.least_theta:g} to 180")
-        return Present(
-            self.vertex_until > angle,
-            (self.edge_from <= angle) & (self.edge_until > angle),
-            self.triangle_until > angle,
-        )
-
-    def __repr__(self) -> str:
-        return (
-            f"NestedComplex({len(self.vertices):,} vertices, {len(self.triangles):,} triangles, "
-            f"theta >= {self.least_theta:g})"
-        )
-
-
-class MedialComplex(_Columns):
-    """A medial axis as vertices, edges and triangles. Arrays are read-only views of the library's memory.
-
-    Made by :meth:`MedialAxis.simplify`, :func:`read_medial`, or from arrays: ``MedialComplex(vertices, radius=...,
-    edges=..., triangles=...)``.
-
-    >>> import blum
-    >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).simplify(60)
-    >>> axis.counts["sheets"] > 0, axis.certificate.holds
-    (True, True)
+    >>> path = blum.Complex([[0, 0, 0], [1, 0, 0], [1, 1, 0]], edges=[[0, 1], [1, 2]], edge_columns={"cost": [1, 2.5]})
+    >>> path.edge_columns["cost"]
+    array([1. , 2.5])
+    >>> path.homology()
+    (1, 0, 0)
     """
 
     _core: _CoreComplex
@@ -239,288 +49,131 @@ class MedialComplex(_Columns):
         self,
         vertices: Any,
         *,
-        radius: Any = None,
-        footprints: Any = None,
-        sites: Any = None,
-        separation_angle: Any = None,
-        role: Any = None,
         edges: Any = (),
-        edge_angle: Any = None,
-        edge_role: Any = None,
         triangles: Any = (),
-        triangle_angle: Any = None,
-        triangle_sheet: Any = None,
+        vertex_columns: Mapping[str, Any] = MappingProxyType({}),
+        edge_columns: Mapping[str, Any] = MappingProxyType({}),
+        triangle_columns: Mapping[str, Any] = MappingProxyType({}),
     ) -> None:
         positions = float_rows(vertices, "vertices")
-        count = len(positions)
-        lines = indices(edges, "edges", 2, count)
-        faces = indices(triangles, "triangles", 3, count)
-        feet = np.zeros((2 * count, 3)) if footprints is None else _footprint_rows(footprints)
-        names = np.full((count, 2), -1, dtype=np.int32) if sites is None else site_ids(sites, "sites", 2)
-        sheet = (
-            np.zeros(len(faces), dtype=np.int32)
-            if triangle_sheet is None
-            else indices(triangle_sheet, "triangle_sheet", None, len(faces))
+        core = _core.Complex(
+            positions,
+            indices(edges, "edges", 2, len(positions)),
+            indices(triangles, "triangles", 3, len(positions)),
+            _arrays_of(vertex_columns, "vertex_columns"),
+            _arrays_of(edge_columns, "edge_columns"),
+            _arrays_of(triangle_columns, "triangle_columns"),
         )
-        self._take(
-            _core.MedialComplex(
-                positions,
-                _numbers(radius, "radius", count),
-                feet,
-                names,
-                _numbers(separation_angle, "separation_angle", count),
-                _roles(role, "role", count, 0),
-                lines,
-                _numbers(edge_angle, "edge_angle", len(lines)).astype(np.float32),
-                _roles(edge_role, "edge_role", len(lines), 3),
-                faces,
-                _numbers(triangle_angle, "triangle_angle", len(faces)).astype(np.float32),
-                sheet,
-                int(sheet.max()) + 1 if len(sheet) else 0,
-            ),
-            {
-                "radii": radius is not None,
-                "footprints": footprints is not None,
-                "angles": separation_angle is not None,
-                "sites": sites is not None,
-                "labels": triangle_sheet is not None,
-            },
-            Origin(),
-        )
-
-    @classmethod
-    def _of(
-        cls, core: _CoreComplex, has: dict[str, bool], origin: Origin, nested: NestedComplex | None = None
-    ) -> MedialComplex:
-        out = cls.__new__(cls)
-        out._take(core, has, origin)
-        out.nested = nested
-        return out
-
-    def _take(self, core: _CoreComplex, has: dict[str, bool], origin: Origin) -> None:
+        problem = core.problem()
+        if problem:
+            raise InvalidOption(problem)
         self._core = core
-        self._origin = origin
-        #: Which attributes the complex has: radii, footprints, angles, sites, labels (roles and sheets).
-        self.has = dict(has)
-        #: The axes of all angles, where a file that was read holds them (:meth:`MedialAxis.write`).
-        self.nested: NestedComplex | None = None
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        names = ("vertices", *_ATTRIBUTES)
-        return _restored, ({name: np.array(getattr(self, name)) for name in names}, self.has, self._origin)
 
     @property
-    def counts(self) -> dict[str, int]:
-        """Vertices, triangles, sheets, curve, rim and seam edges, junctions."""
-        return dict(self._core.counts())
+    def vertices(self) -> FloatArray:
+        """(n, 3): positions, mesh units."""
+        found: FloatArray = self._core.vertices
+        return found
 
     @property
-    def theta(self) -> float | None:
-        """Degrees, if known."""
-        return self._origin.theta
+    def edges(self) -> IntArray:
+        """(e, 2): those that are listed; not the sides of triangles."""
+        found: IntArray = self._core.edges
+        return found
 
     @property
-    def grid(self) -> Grid | None:
-        """Voxel centres: of the first body, or of the image; None where that is not known."""
-        return self._origin.grid
+    def triangles(self) -> IntArray:
+        """(m, 3)."""
+        found: IntArray = self._core.triangles
+        return found
 
     @cached_property
-    def certificate(self) -> Certificate:
-        """The certificate against the shape that the axis was made from; see :func:`certify`."""
-        shape = self._origin.shape
-        if shape is None:
-            raise InvalidOption("what this axis was made from is not known here: use blum.certify(axis, shape)")
-        return certify(self, shape, label=self._origin.label, threshold=self._origin.threshold)
+    def vertex_columns(self) -> ColumnsOf:
+        """Columns with a row for each vertex, by name."""
+        return MappingProxyType(self._core.vertex_columns)
 
-    def prune_sheets(self, theta: Real, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
-        """Drops whole sheets whose largest separation angle is at most theta (degrees), smallest first."""
-        with reporting(progress) as report:
-            core = _core.prune_sheets(self._core, number(theta, "theta"), integer(threads, "threads"), report)
-        return MedialComplex._of(core, self.has, self._origin)
+    @cached_property
+    def edge_columns(self) -> ColumnsOf:
+        """Columns with a row for each of `edges`, by name."""
+        return MappingProxyType(self._core.edge_columns)
 
-    def reconstruct(
-        self,
-        *,
-        resolution: Integer = 256,
-        spacing: Real | None = None,
-        padding: Real = 0.1,
-        bounds: Any = None,
-        grid: Grid | None = None,
-        threads: int = 0,
-        progress: Progress = False,
-    ) -> Field:
-        """The union of the medial balls as a signed field; `.zero_surface()` is its boundary.
+    @cached_property
+    def triangle_columns(self) -> ColumnsOf:
+        """Columns with a row for each triangle, by name."""
+        return MappingProxyType(self._core.triangle_columns)
 
-        >>> import blum
-        >>> ball = blum.medial_axis(blum.generate("sphere"), resolution=32).simplify(60).reconstruct(resolution=32)
-        >>> blum.topology(ball.zero_surface()).betti
-        (1, 0, 0)
-        """
-        box: Bounds | None = None
-        if grid is None and bounds is None:
-            if len(self.vertices) == 0:
-                raise InvalidOption("the axis has no vertices, so there are no balls")
-            lower = (self.vertices - self.radius[:, None]).min(axis=0)
-            upper = (self.vertices + self.radius[:, None]).max(axis=0)
-            box = (tuple(map(float, lower)), tuple(map(float, upper)))  # type: ignore[assignment]
-        return ball_union_field(
-            self.vertices,
-            self.radius,
-            grid_for(box, grid, bounds, resolution, spacing, padding),
-            threads=threads,
-            progress=progress,
+    def homology(self, *, threads: int = 0, progress: Progress = False) -> Betti:
+        """Betti numbers over Z/2: components, tunnels, voids."""
+        return homology(len(self.vertices), self.edges, self.triangles, threads=threads, progress=progress)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (
+            np.array(self.vertices),
+            np.array(self.edges),
+            np.array(self.triangles),
+            *(
+                {name: np.array(column) for name, column in columns.items()}
+                for columns in (self.vertex_columns, self.edge_columns, self.triangle_columns)
+            ),
         )
-
-    def write(self, path: PathLike) -> None:
-        """Writes .vtp, .ply, .obj, .ma or .npz; the file appears complete or not at all.
-
-        .npz files keep the axes of all angles, `nested`, where there are any.
-        """
-        is_npz = os.fspath(path).lower().endswith(".npz")
-        write_complex(path, self, self.nested if is_npz else None)
-
-    def to_trimesh(self) -> Any:
-        """A trimesh.Trimesh of the triangles with vertex attributes; (vertices, triangles) where it is missing."""
-        vertices, triangles = np.ascontiguousarray(self.vertices), np.ascontiguousarray(self.triangles)
-        try:
-            import trimesh
-        except ImportError:
-            return vertices, triangles
-        return trimesh.Trimesh(
-            vertices,
-            triangles,
-            process=False,
-            vertex_attributes={"radius": np.array(self.radius), "separation_angle": np.array(self.separation_angle)},
-        )
-
-    def to_pyvista(self) -> Any:
-        """A pyvista.PolyData of triangles and edges with all attributes; a dict of arrays where PyVista is missing.
-
-        Cell data list the edges before the triangles, as PolyData does; `sheet` is -1 and `role` -1 where they do not
-        apply.
-        """
-        try:
-            import pyvista
-        except ImportError:
-            names = ("vertices", "radius", "separation_angle", "role", "edges", "triangles", "triangle_sheet")
-            return {name: getattr(self, name) for name in names}
-        from ._mesh import _padded
-
-        out = pyvista.PolyData(
-            np.ascontiguousarray(self.vertices),
-            faces=_padded(np.ascontiguousarray(self.triangles)),
-            lines=_padded(np.ascontiguousarray(self.edges)),
-        )
-        out.point_data["radius"] = np.array(self.radius)
-        out.point_data["separation_angle"] = np.array(self.separation_angle)
-        out.point_data["role"] = np.array(self.role)
-        lines, faces = len(self.edges), len(self.triangles)
-        out.cell_data["separation_angle"] = np.concatenate([self.edge_angle, self.triangle_angle])
-        out.cell_data["role"] = np.concatenate([self.edge_role.astype(np.int16), np.full(faces, -1, dtype=np.int16)])
-        out.cell_data["sheet"] = np.concatenate([np.full(lines, -1, dtype=np.int32), self.triangle_sheet])
-        return out
 
     def __repr__(self) -> str:
-        counts = self.counts
-        parts = ", ".join(f"{counts[name]:,} {name}" for name in ("vertices", "triangles", "sheets"))
-        return f"MedialComplex({parts}{'' if self.theta is None else f', theta={self.theta:g}'})"
+        counts = f"{len(self.vertices):,} vertices, {len(self.edges):,} edges, {len(self.triangles):,} triangles"
+        return f"Complex({counts})"
 
 
-_ATTRIBUTES = (
-    "radius",
-    "footprints",
-    "sites",
-    "separation_angle",
-    "role",
-    "edges",
-    "edge_angle",
-    "edge_role",
-    "triangles",
-    "triangle_angle",
-    "triangle_sheet",
-)
+def _restored(
+    vertices: FloatArray,
+    edges: IntArray,
+    triangles: IntArray,
+    vertex_columns: ColumnsOf,
+    edge_columns: ColumnsOf,
+    triangle_columns: ColumnsOf,
+) -> Complex:
+    return Complex(
+        vertices,
+        edges=edges,
+        triangles=triangles,
+        vertex_columns=vertex_columns,
+        edge_columns=edge_columns,
+        triangle_columns=triangle_columns,
+    )
 
 
-def _restored(arrays: dict[str, Any], has: dict[str, bool], origin: Origin) -> MedialComplex:
-    return MedialComplex._of(MedialComplex(**arrays)._core, has, origin)
+def _arrays_of(columns: Mapping[str, Any], argument: str) -> dict[str, npt.NDArray[Any]]:
+    """Columns as the library takes them: other numbers become the type that holds all of them."""
+    out = {}
+    for name, values in columns.items():
+        array = as_array(values, f"{argument}[{name!r}]")
+        if array.dtype not in (np.float64, np.float32, np.int64, np.int32):
+            if array.dtype.kind not in "biuf":
+                raise TypeError(f"{argument}[{name!r}] holds {array.dtype}, but must hold numbers")
+            if array.dtype == np.uint64 and array.size > 0 and int(array.max()) > np.iinfo(np.int64).max:
+                raise InvalidOption(f"{argument}[{name!r}] holds numbers above 2^63 - 1")
+            array = array.astype(np.float64 if array.dtype.kind == "f" else np.int64)
+        out[str(name)] = np.ascontiguousarray(array.astype(array.dtype.newbyteorder("="), copy=False))
+    return out
 
 
-def _numbers(value: Any, name: str, count: int) -> FloatArray:
-    return np.zeros(count) if value is None else float_list(value, name)
+def homology(
+    vertex_count: int, edges: Any = (), triangles: Any = (), *, threads: int = 0, progress: Progress = False
+) -> Betti:
+    """Betti numbers over Z/2 of a complex of vertices, edges, and triangles with their edges.
 
-
-def _roles(value: Any, name: str, count: int, default: int) -> npt.NDArray[np.uint8]:
-    if value is None:
-        return np.full(count, default, dtype=np.uint8)
-    return indices(value, name, None, len(ROLES)).astype(np.uint8)
-
-
-def _footprint_rows(value: Any) -> FloatArray:
-    array = as_array(value, "footprints")
-    if array.ndim != 3 or array.shape[1:] != (2, 3):
-        raise ValueError(f"footprints has the shape {array.shape}, but must have (n, 2, 3)")
-    return float_rows(array.reshape(-1, 3), "footprints")
-
-
-def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, progress: Progress = False) -> Field:
-    """The smallest distance to any of some balls at every node of a grid, negative inside.
-
-    Parameters
-    ----------
-    centres : (n, 3) array
-    radii : (n,) array
-        Mesh units, >= 0.
+    >>> import blum
+    >>> blum.homology(4, edges=[[0, 1], [1, 2], [2, 0]])
+    (2, 1, 0)
     """
-    if not isinstance(grid, Grid):
-        raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
+    count = integer(vertex_count, "vertex_count")
+    if count < 0:
+        raise ValueError(f"vertex_count is {count}, but must be at least 0")
     with reporting(progress) as report:
-        return Field._of(
-            _core.ball_union_field(
-                float_rows(centres, "centres"),
-                float_list(radii, "radii"),
-                grid._spec,
+        return betti_of(
+            _core.homology(
+                count,
+                indices(edges, "edges", 2, count),
+                indices(triangles, "triangles", 3, count),
                 integer(threads, "threads"),
                 report,
             )
         )
-
-
-def write_complex(path: PathLike, complex: MedialComplex, nested: NestedComplex | None) -> None:
-    origin = complex._origin
-    _core.write_medial(
-        Path(os.fspath(path)),
-        complex._core,
-        None if nested is None else nested._core,
-        origin.source,
-        origin.site_ids,
-        origin.rule,
-        origin.theta,
-        origin.lambda_,
-        origin.spacing,
-        None if origin.grid is None else origin.grid._spec,
-        origin.label,
-        origin.threshold,
-        origin.weld,
-    )
-
-
-def read_medial(path: PathLike) -> MedialComplex:
-    """Reads an axis of .vtp, .ply, .obj, .ma or .npz; `.has` tells which attributes the file holds, and `.nested`
-    has the axes of all angles where it holds them."""
-    core, nested, metadata = _core.read_medial(existing_file(path))
-    grid = metadata.get("grid")
-    origin = Origin(
-        None,
-        metadata.get("label"),
-        metadata.get("threshold"),
-        metadata.get("theta"),
-        metadata.get("lambda"),
-        metadata.get("spacing"),
-        metadata["solid_rule"],
-        None if grid is None else Grid._of(grid),
-        metadata["source"],
-        metadata.get("weld"),
-        metadata["site_ids"],
-    )
-    has = {name: metadata[f"has_{name}"] for name in EVERYTHING}
-    return MedialComplex._of(core, has, origin, None if nested is None else NestedComplex(nested))

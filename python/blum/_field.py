@@ -224,6 +224,7 @@ def distance_field(
     padding: Real = 0.1,
     bounds: Any = None,
     grid: Grid | None = None,
+    weld: Real | None = None,
     sign: Sign = "auto",
     band: Real | None = None,
     site_ids: SiteIds = "features",
@@ -248,6 +249,8 @@ def distance_field(
         The grid covers exactly this box instead.
     grid : Grid, optional
         The grid itself.
+    weld : float, optional
+        Merge vertices closer than this first, mesh units; 0: equal ones. Default: as :func:`read_mesh` has it.
     sign : "auto", "normals", "winding" or "none"
         Inside is negative. "auto" goes by orientation where the mesh is closed and simple, else by winding numbers.
     band : float, optional
@@ -275,7 +278,7 @@ def distance_field(
     >>> field.distance.shape, field.sign_rule
     ((32, 32, 32), 'normals')
     """
-    shape = as_mesh(mesh, triangles)
+    shape = as_mesh(mesh, triangles, weld=weld)
     nodes = grid_for(shape, grid, bounds, resolution, spacing, padding)
     with reporting(progress) as report:
         core = _core.distance_field(
@@ -418,7 +421,7 @@ class ClosestPointQuery:
 
     Parameters
     ----------
-    mesh, triangles
+    mesh, triangles, weld
         As for :func:`distance_field`.
     sign : "auto", "normals", "winding" or "none"
         "none" is cheapest.
@@ -436,12 +439,13 @@ class ClosestPointQuery:
         mesh: Any,
         triangles: Any = None,
         *,
+        weld: Real | None = None,
         sign: Sign = "auto",
         max_distance: Real | None = None,
         threads: int = 0,
         progress: Progress = False,
     ) -> None:
-        self._mesh = as_mesh(mesh, triangles)
+        self._mesh = as_mesh(mesh, triangles, weld=weld)
         with reporting(progress) as report:
             self._query = _core.ClosestPointQuery(
                 self._mesh._arrays,
@@ -478,6 +482,7 @@ def closest_points(
     mesh: Any,
     points: Any,
     *,
+    weld: Real | None = None,
     sign: Sign = "auto",
     max_distance: Real | None = None,
     threads: int = 0,
@@ -490,7 +495,7 @@ def closest_points(
     >>> [round(distance, 2) for distance in found.distance.tolist()]
     [2.0, -0.8]
     """
-    return ClosestPointQuery(mesh, sign=sign, max_distance=max_distance, threads=threads, progress=progress)(
+    return ClosestPointQuery(mesh, weld=weld, sign=sign, max_distance=max_distance, threads=threads, progress=progress)(
         points, threads=threads, progress=progress
     )
 

@@ -10,10 +10,11 @@ from typing import Any
 
 from . import _core
 from ._arguments import Integer, PathLike, Real, integer, label_of, number, optional_number
-from ._complex import EVERYTHING, MedialComplex, NestedComplex, Origin, write_complex
 from ._errors import InputWarning, InvalidOption
 from ._grid import Grid
 from ._image import Image, as_image, is_image
+from ._medial_columns import NestedComplex
+from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
 from ._mesh import Betti, as_mesh, betti_of
 from ._progress import Progress, reporting
 
@@ -24,7 +25,7 @@ class BodyReport:
 
     solid: Betti
     voxels: Betti  #: of the voxels that stand for it
-    is_right: bool  #: whether they are equal
+    topology_matches: bool  #: whether they are equal
     spacing: float  #: smallest side of a voxel, mesh units
     voxel_count: int
     left_out: int  #: voxels whose centre is inside, but that are left out
@@ -38,10 +39,10 @@ class MedialAxisReport:
 
     rule: str  #: "polyhedron", "winding" or "voxels"
     reason: str  #: one sentence: why this rule
-    turned_shells: int  #: shells that faced the solid and were turned
+    reversed_shells: int  #: shells that faced the solid and were reversed
     solid: Betti
     voxels: Betti  #: the axis has these, at every theta
-    is_right: bool  #: whether they are equal
+    topology_matches: bool  #: whether they are equal
     grid: Grid  #: voxel centres: of the first body, or of the image
     bodies: tuple[BodyReport, ...]
     seconds: dict[str, float]  #: wall-clock, of each phase
@@ -73,10 +74,10 @@ class MedialAxis:
         return MedialAxisReport(
             found["rule"],
             found["reason"],
-            found["turned_shells"],
+            found["reversed_shells"],
             betti_of(found["solid"]),
             betti_of(found["voxels"]),
-            found["is_right"],
+            found["topology_matches"],
             Grid._of(found["grid"]),
             bodies,
             dict(_summed(found["phases"])),
@@ -110,7 +111,7 @@ class MedialAxis:
 
         Cost: near-linear in the axis at the least angle.
         """
-        return NestedComplex(self._core.nested())
+        return NestedComplex(self._core.nested(), float(self.least_theta))
 
     def write(self, path: PathLike) -> None:
         """Writes the axis at the least angle with those of all larger ones, as `blum medial --nested` does: .npz.
@@ -143,6 +144,7 @@ def medial_axis(
     least_theta: Real = 0.0,
     label: Integer | None = None,
     threshold: Real | None = None,
+    weld: Real | None = None,
     threads: int = 0,
     progress: Progress = False,
 ) -> MedialAxis:
@@ -162,6 +164,8 @@ def medial_axis(
         Pieces whose two footprints are closer than this count for nothing, mesh units.
     least_theta : float
         The smallest theta that will be asked for, degrees: more is faster.
+    weld : float, optional
+        Meshes: as for :func:`distance_field`.
     label, threshold
         Images: which voxels are the solid; default: those that are not zero.
 
@@ -193,7 +197,7 @@ def medial_axis(
         return MedialAxis(core, Origin(image, chosen, least_value, lambda_=smallest, source=image.source), least)
     if label is not None or threshold is not None:
         raise InvalidOption("label and threshold select voxels of an image, and shape is a mesh")
-    mesh = as_mesh(shape, triangles, "shape")
+    mesh = as_mesh(shape, triangles, "shape", weld=weld)
     with reporting(progress) as report:
         core = _core.medial_axis_of_mesh(
             mesh._arrays,
@@ -206,10 +210,10 @@ def medial_axis(
             report,
         )
     axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), least)
-    turned = axis.report.turned_shells
+    turned = axis.report.reversed_shells
     if turned:
         text = (
-            f"{turned} shell{'s' if turned > 1 else ''} faced the solid, and {'were' if turned > 1 else 'was'} turned"
+            f"{turned} shell{'s' if turned > 1 else ''} faced the solid, and {'were' if turned > 1 else 'was'} reversed"
         )
         warnings.warn(text, InputWarning, stacklevel=2)
     if axis.report.rule == "winding":

@@ -163,12 +163,25 @@ def mesh_of_arrays(arrays: tuple[Any, Any, Any, Any]) -> Mesh:
     return Mesh(vertices, triangles, segments, points)
 
 
-def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh") -> Mesh:
-    """Anything that stands for a mesh, as a Mesh.
+def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh", *, weld: Any = None) -> Mesh:
+    """Anything that stands for a mesh, as a Mesh, its vertices merged where `weld` is given.
 
     Mesh; a path; vertices with triangles, apart or as a pair; an object with ``vertices`` and ``faces`` or
-    ``triangles`` (trimesh, Open3D); a meshio mesh (triangles, quads, lines and vertices of it); a PyVista dataset.
+    ``triangles`` (trimesh, Open3D); one of Open3D's tensors; a meshio mesh (triangles, quads, lines and vertices of
+    it); a PyVista dataset.
     """
+    if weld is None:
+        return _converted(mesh, triangles, name)
+    if triangles is None and isinstance(mesh, (str, os.PathLike)):
+        return read_mesh(mesh, weld=weld)
+    given = _converted(mesh, triangles, name)
+    tolerance = number(weld, "weld")
+    welded = mesh_of_arrays(_core.weld(given._arrays, tolerance))
+    welded.source, welded._weld = given.source, tolerance
+    return welded
+
+
+def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:
     if triangles is not None:
         return Mesh(mesh, triangles)
     if isinstance(mesh, Mesh):
@@ -181,6 +194,8 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh") -> Mesh:
         for faces in ("faces", "triangles"):
             if hasattr(mesh, faces):
                 return Mesh(mesh.vertices, getattr(mesh, faces))
+    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):
+        return _of_open3d_tensors(mesh, name)
     if hasattr(mesh, "extract_surface") and hasattr(mesh, "points"):
         return _of_pyvista(mesh)
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
@@ -189,6 +204,19 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh") -> Mesh:
         f"{name} is a {type(mesh).__name__}, but must be a blum.Mesh, a path, a pair (vertices, triangles), or an "
         "object of trimesh, Open3D, meshio or PyVista"
     )
+
+
+def _of_open3d_tensors(mesh: Any, name: str) -> Mesh:
+    """An open3d.t.geometry.TriangleMesh."""
+
+    def array(values: Any) -> npt.NDArray[Any]:
+        return np.asarray(values.cpu().numpy() if hasattr(values, "cpu") else values)
+
+    try:
+        positions, corners = mesh.vertex["positions"], mesh.triangle["indices"]
+    except (KeyError, IndexError, RuntimeError, TypeError) as error:
+        raise TypeError(f"{name} has no vertex.positions and triangle.indices: {error}") from error
+    return Mesh(array(positions), array(corners))
 
 
 def _of_meshio(mesh: Any) -> Mesh:
@@ -317,7 +345,9 @@ class Topology:
     betti: Betti | None  #: components, tunnels, voids of the solid; None where the mesh bounds none
 
 
-def topology(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> Topology:
+def topology(
+    mesh: Any, triangles: Any = None, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+) -> Topology:
     """What a mesh is as a surface and as a solid. Crossings are not looked for: :func:`self_intersections`.
 
     >>> import blum
@@ -325,7 +355,7 @@ def topology(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Pr
     (1, 1, 0)
     """
     with reporting(progress) as report:
-        found = _core.topology(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
+        found = _core.topology(as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report)
     shells = tuple(Shell(**shell) for shell in found.pop("shells"))
     return Topology(shells=shells, **found)
 
@@ -340,7 +370,13 @@ class SelfIntersections:
 
 
 def self_intersections(
-    mesh: Any, triangles: Any = None, *, limit: int = 100000, threads: int = 0, progress: Progress = False
+    mesh: Any,
+    triangles: Any = None,
+    *,
+    limit: int = 100000,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
 ) -> SelfIntersections:
     """Where a mesh crosses or touches itself; exact for the coordinates as they are.
 
@@ -353,7 +389,7 @@ def self_intersections(
         raise ValueError(f"limit is {most}, but must be at least 0")
     with reporting(progress) as report:
         pairs, crosses, complete = _core.self_intersections(
-            as_mesh(mesh, triangles)._arrays, most, integer(threads, "threads"), report
+            as_mesh(mesh, triangles, weld=weld)._arrays, most, integer(threads, "threads"), report
         )
     return SelfIntersections(pairs, crosses.view(np.bool_), complete)
 
@@ -372,9 +408,19 @@ class Sites:
     [[0, 2, -1]]
     """
 
-    def __init__(self, mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> None:
+    def __init__(
+        self,
+        mesh: Any,
+        triangles: Any = None,
+        *,
+        weld: Real | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> None:
         with reporting(progress) as report:
-            self._table = _core.SiteTable(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
+            self._table = _core.SiteTable(
+                as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report
+            )
 
     def __repr__(self) -> str:
         faces = len(self) - self.vertex_count - len(self.edges)
@@ -428,10 +474,14 @@ class Sites:
         return indices(np.atleast_1d(as_array(ids, "ids")), "ids", None, len(self))
 
 
-def pseudonormals(mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> FloatArray:
+def pseudonormals(
+    mesh: Any, triangles: Any = None, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+) -> FloatArray:
     """(sites, 3): angle-weighted normals of all sites, not normalised; zero where a site lies on no triangle."""
     with reporting(progress) as report:
-        found: FloatArray = _core.pseudonormals(as_mesh(mesh, triangles)._arrays, integer(threads, "threads"), report)
+        found: FloatArray = _core.pseudonormals(
+            as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report
+        )
     return found
 
 
@@ -444,8 +494,16 @@ class WindingNumber:
     [1.0, 0.0]
     """
 
-    def __init__(self, mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> None:
-        self._mesh = as_mesh(mesh, triangles)
+    def __init__(
+        self,
+        mesh: Any,
+        triangles: Any = None,
+        *,
+        weld: Real | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> None:
+        self._mesh = as_mesh(mesh, triangles, weld=weld)
         with reporting(progress) as report:
             self._winding = _core.WindingNumber(self._mesh._arrays, integer(threads, "threads"), report)
 

@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from ._arguments import PathLike, existing_file
-from ._complex import MedialComplex, NestedComplex
 from ._errors import Error, FileError, InvalidOption
 from ._field import Field
 from ._image import Image, as_image, is_image
 from ._medial import MedialAxis
+from ._medial_columns import NestedComplex
+from ._medial_complex import MedialComplex
 from ._mesh import Mesh, as_mesh
 
 _TOOL = Path(__file__).parent / "_bin" / "blum"

@@ -31,9 +31,6 @@ struct FieldResult {
   std::vector<std::size_t> unsettled;
   /// With a level: whether the field got signs.
   bool is_signed = false;
-  /// Then, of a mesh without boundary: whether every node has the winding number level or level + 1, as those of a mesh
-  /// that does not cross itself have.
-  bool is_simple = false;
 };
 
 /// Computes fields on one device; keeps connectivity and memory from one to the next.

@@ -8,11 +8,9 @@
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/bvh.hpp"
-#include "blum/geometry/pseudonormals.hpp"
-#include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/geometry/winding_number.hpp"
-#include "field/sign.hpp"
+#include "field/sign/policy.hpp"
+#include "field/sign/sides.hpp"
 
 namespace blum {
 namespace {
@@ -32,69 +30,30 @@ double checked_limit(const ClosestPointOptions& options) {
 struct ClosestPointQuery::Data {
   SiteTable sites;
   Bvh bvh;
-  SignChoice sign;
+  sign::Plan plan;
+  sign::Sides sides;
   double max_distance;
   double longest = 0;           ///< side of the mesh's box
   double coordinate_limit = 0;  ///< of queries, mesh units
-  std::optional<Pseudonormals> normals = {};
-  std::optional<WindingNumber> winding = {};
-  bool is_turned = false;  ///< the winding number is that of the mesh turned inside out
 
   Data(const MeshView& mesh, const ClosestPointOptions& options, const Context& context)
       : sites(mesh, context),
         bvh(mesh, sites, context),
-        sign(choose_sign_rule(options.sign, mesh, sites)),
+        plan(sign::plan_signs(options.sign, mesh, sites, context)),
+        sides(plan, mesh, sites, bvh, context),
         max_distance(checked_limit(options)) {
     const Vec3d size = bvh.bounds().size();
     longest = std::max({size.x, size.y, size.z});
     coordinate_limit = longest > 0 ? std::min(longest, 1.0) * 1e140 : 1e140;
-    if (sign.rule == SignRule::normals && sign.level && !find_self_intersections(mesh, 0, context).complete) {
-      sign_by_level(mesh, context);
-    } else if (sign.rule == SignRule::normals) {
-      normals.emplace(mesh, sites, context);
-    } else if (sign.rule == SignRule::winding) {
-      winding.emplace(mesh, sites, context);
-    }
-  }
-
-  /// Where parts of the surface touch or cross, the closest of them may lie within another one, and its normal tells
-  /// nothing.
-  void sign_by_level(const MeshView& mesh, const Context& context) {
-    is_turned = *sign.level < 0;
-    if (is_turned) {
-      const std::vector<Triangle> turned = turned_triangles(mesh.triangles);
-      const MeshView view{mesh.vertices, turned, {}, {}};
-      winding.emplace(view, SiteTable(view, context), context);
-    } else {
-      winding.emplace(mesh, sites, context);
-    }
-    if (sign.is_automatic) {
-      sign.rule = SignRule::winding;
-      sign.reason = "winding number above 1/2: the mesh is closed and oriented, but it touches or crosses itself";
-    } else {
-      sign.reason += "; the mesh touches or crosses itself: inside is what lies in any of its parts";
-    }
-  }
-
-  [[nodiscard]] bool is_beyond_bounds(const Vec3d& q) const {
-    const Box3& box = bvh.bounds();
-    return q.x < box.lower.x || q.y < box.lower.y || q.z < box.lower.z || q.x > box.upper.x || q.y > box.upper.y ||
-           q.z > box.upper.z;
-  }
-
-  [[nodiscard]] bool is_inside(const Vec3d& query, const NearestSite& nearest) const {
-    if (nearest.distance == 0) return false;
-    // Of far sites rounding may name any, and the normal of the wrong one looks away.
-    if (sign.level && is_beyond_bounds(query)) return *sign.level < 0;
-    if (winding) return winding->is_inside(query) != is_turned;
-    return normals && normals->is_inside(query, nearest.point, nearest.site);
   }
 
   /// An upper bound on the distance, where one is known, spares work; it does not change the result.
   [[nodiscard]] ClosestPoint closest(const Vec3d& query, double upper_bound) const {
     const std::optional<NearestSite> nearest = bvh.nearest(query, std::min(max_distance, upper_bound));
     if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
-    const double distance = is_inside(query, *nearest) ? -nearest->distance : nearest->distance;
+    // What lies on the surface is not inside.
+    const bool is_negative = nearest->distance > 0 && sides.is_inside(query, *nearest);
+    const double distance = is_negative ? -nearest->distance : nearest->distance;
     return {nearest->point, distance, nearest->site, sites.triangle(nearest->site)};
   }
 
@@ -119,10 +78,10 @@ ClosestPointQuery& ClosestPointQuery::operator=(ClosestPointQuery&&) noexcept = 
 ClosestPointQuery::~ClosestPointQuery() = default;
 
 SignRule ClosestPointQuery::sign_rule() const {
-  return data_->sign.rule;
+  return data_->plan.rule;
 }
 const std::string& ClosestPointQuery::sign_reason() const {
-  return data_->sign.reason;
+  return data_->plan.reason;
 }
 
 ClosestPoint ClosestPointQuery::nearest(const Vec3d& query) const {

@@ -8,6 +8,7 @@
 #include "blum/core/error.hpp"
 #include "field/cuda/device_queue.hpp"
 #include "field/field_options.hpp"
+#include "field/sign/policy.hpp"
 
 namespace blum {
 namespace {
@@ -62,11 +63,8 @@ struct DeviceFieldSolver::State {
 DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context) {
   validate(grid);
   check_options(options);
-  if (options.sign == SignMode::normals) {
-    throw InvalidOption(
-        "signs by normals need a mesh in the host's memory: ask for automatic, which tells the same sides of closed "
-        "meshes that face outwards");
-  }
+  // Of no mesh yet: refuses what no mesh on a device can have.
+  if (options.sign == SignMode::normals) (void)sign::plan_unseen_signs(options.sign, 0);
   state_ = std::make_unique<State>(grid, options, context.device);
 }
 
@@ -86,13 +84,10 @@ const FieldOptions& DeviceFieldSolver::options() const {
 
 void DeviceFieldSolver::set_connectivity(const DeviceMeshView& mesh, void* stream) {
   check_mesh(mesh, state_->options);
-  if (state_->options.sign == SignMode::winding && mesh.triangles.rows == 0) {
-    throw InvalidOption("a sign was asked for, but the mesh has no triangles, so it has no inside: ask for none");
-  }
+  const sign::Plan plan = sign::plan_unseen_signs(state_->options.sign, mesh.triangles.rows);
   state_->sign_rule.reset();
   state_->queue.run(&cuda::Module::set_connectivity_there, &mesh, stream);
-  const bool is_signed = state_->options.sign != SignMode::none && mesh.triangles.rows > 0;
-  state_->sign_rule = is_signed ? SignRule::winding : SignRule::none;
+  state_->sign_rule = plan.rule;
 }
 
 SignRule DeviceFieldSolver::sign_rule() const {

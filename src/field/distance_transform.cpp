@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "blum/core/context.hpp"
-#include "blum/field/phase_timer.hpp"
+#include "blum/core/phase_timer.hpp"
 #include "field/backend.hpp"
 #include "field/cpu/distance_transform.hpp"
 #include "field/image_field.hpp"

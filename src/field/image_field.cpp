@@ -4,6 +4,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "field/sign/policy.hpp"
 
 namespace blum::detail {
 namespace {
@@ -39,9 +40,9 @@ void begin_field(const VoxelImageView& image, const LabelSelection& selection, c
   field.site = Buffer<SiteId>(image.grid.node_count());
   field.site_ids = SiteIds::voxels;
   field.band = options.band;
-  field.sign_rule = options.is_signed ? SignRule::label : SignRule::none;
-  field.sign_reason = options.is_signed ? "a voxel is inside where its value " + describe(selection)
-                                        : "an unsigned field was asked for";
+  const sign::Plan plan = sign::plan_image_signs(options.is_signed, describe(selection));
+  field.sign_rule = plan.rule;
+  field.sign_reason = plan.reason;
 }
 
 }  // namespace blum::detail

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "geometry/simd.hpp"
+#include "geometry/lanes.hpp"
 #include "geometry/space_order.hpp"
 
 namespace blum {
@@ -183,8 +183,8 @@ double BoundaryChain::gradient_bound(const Box3& box) const {
     const double missing = cluster.moment + half * cluster.weight;
     const bool is_piece = item.level == 0;
     // Opening a cluster reduces its own extent's part only, not that of the box.
-    const bool is_compact = least > 0 && (cluster.moment <= 0.05 * cluster.weight * least ||
-                                          cluster.moment <= 0.25 * half * cluster.weight);
+    const bool is_compact =
+        least > 0 && (cluster.moment <= 0.2 * cluster.weight * least || cluster.moment <= 0.25 * half * cluster.weight);
     if (!is_piece && !is_compact) {
       const std::size_t end = std::min(std::size_t{item.index + 1} * lanes, levels_[item.level - 1].size());
       for (std::size_t child = std::size_t{item.index} * lanes; child < end; ++child) {

@@ -1,15 +1,18 @@
 // Blum: trees of boxes with eight children per node. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
-#include "geometry/simd.hpp"
+#include "blum/geometry/ray.hpp"
+#include "geometry/lanes.hpp"
 
 namespace blum {
 
@@ -74,6 +77,83 @@ void for_each_touching(const BoxTree& tree, const Box3& box, std::size_t first_l
       const std::size_t end = (child + 1) << (3 * static_cast<unsigned>(item.level));
       if (end > first_leaf) stack[size++] = {static_cast<std::uint32_t>(child), item.level - 1};
     }
+  }
+}
+
+/// A node or leaf that a search has still to look at, and how far it is.
+struct PendingBox {
+  double key = 0;
+  std::uint32_t block = 0;
+  std::int32_t level = 0;  ///< -1 for a leaf
+};
+
+/// Depth-first work list: at most seven siblings wait on each of at most eleven levels.
+struct PendingBoxes {
+  std::array<PendingBox, 128> items;
+  std::size_t size = 0;
+
+  void push(const PendingBox& item) { items[size++] = item; }
+  PendingBox pop() { return items[--size]; }
+
+  /// Children of a node whose keys are at most `limit`, so that the one with the smallest is popped first.
+  void push_children(const PendingBox& parent, const double (&keys)[lanes], double limit) {
+    const std::size_t bottom = size;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (!(keys[lane] <= limit)) continue;
+      std::size_t place = size++;
+      for (; place > bottom && items[place - 1].key < keys[lane]; --place) items[place] = items[place - 1];
+      items[place] = {keys[lane], static_cast<std::uint32_t>(parent.block * lanes + lane), parent.level - 1};
+    }
+  }
+};
+
+/// Calls limit = visit(leaf) for the leaves whose boxes are at most `limit` from a point, the nearer child first.
+/// Allocates nothing.
+template <class Visit>
+void visit_near(const BoxTree& tree, const Vec3d& point, double limit, const Visit& visit) {
+  // Not less than the square of the limit for rounding; and empty boxes, infinitely far away, are beyond it.
+  const auto squared_limit = [&] {
+    return limit < 0 ? -1 : std::min(limit * limit * (1 + 1e-14), std::numeric_limits<double>::max());
+  };
+  if (tree.is_empty()) return;
+  PendingBoxes pending;
+  pending.push({0.0, 0, tree.top()});
+  double squared[lanes];
+  while (pending.size > 0) {
+    const PendingBox item = pending.pop();
+    if (!(item.key <= squared_limit())) continue;
+    if (item.level < 0) {
+      limit = visit(static_cast<std::size_t>(item.block));
+      continue;
+    }
+    squared_distances(tree.levels[static_cast<std::size_t>(item.level)][item.block], point, squared);
+    pending.push_children(item, squared, squared_limit());
+  }
+}
+
+/// Where a ray enters each of eight boxes, t >= 0, or NaN where it misses one; not later than exactly. @param inverse
+/// of the direction, 0 where that is 0.
+void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double (&out)[lanes]);
+
+/// Calls limit = visit(leaf) for the leaves whose boxes a ray meets between t = 0 and `limit`, the nearer child first.
+/// Allocates nothing.
+template <class Visit>
+void visit_along(const BoxTree& tree, const Ray& ray, double limit, const Visit& visit) {
+  if (tree.is_empty()) return;
+  Vec3d inverse;
+  for (std::size_t axis = 0; axis < 3; ++axis) inverse[axis] = ray.direction[axis] == 0 ? 0 : 1 / ray.direction[axis];
+  PendingBoxes pending;
+  pending.push({0.0, 0, tree.top()});
+  double keys[lanes];
+  while (pending.size > 0) {
+    const PendingBox item = pending.pop();
+    if (!(item.key <= limit)) continue;
+    if (item.level < 0) {
+      limit = visit(static_cast<std::size_t>(item.block));
+      continue;
+    }
+    entries(tree.levels[static_cast<std::size_t>(item.level)][item.block], ray, inverse, keys);
+    pending.push_children(item, keys, limit);
   }
 }
 

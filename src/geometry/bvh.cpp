@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -15,6 +16,7 @@ namespace blum {
 namespace {
 
 constexpr std::size_t leaf_grain = 512;
+constexpr std::size_t query_grain = 512;
 /// Candidates within this much of the best distance, relative to the lengths involved, are looked at exactly.
 constexpr double candidate_slack = 2e-12;
 
@@ -23,6 +25,8 @@ struct Primitive {
   std::array<std::uint32_t, 3> vertices{};
   std::array<SiteId, 3> edges{SiteId::none(), SiteId::none(), SiteId::none()};
   SiteId face = SiteId::none();
+  /// Which of these vertices the first, second and third corner of the mesh's triangle is: two bits each.
+  std::uint8_t corners = 0b10'01'00;
 };
 
 class PrimitiveReader {
@@ -71,6 +75,8 @@ class PrimitiveReader {
       return edge.has_value() ? edge_site(edge.value) : SiteId::none();
     };
     out.vertices = {v[corner[0]], v[corner[1]], v[corner[2]]};
+    out.corners = 0;
+    for (unsigned k = 0; k < 3; ++k) out.corners |= static_cast<std::uint8_t>(k << (2 * corner[k]));
     out.edges = {between(corner[0], corner[1]), between(corner[1], corner[2]), between(corner[0], corner[2])};
     const bool has_area = out.vertices[0] != out.vertices[1] && out.vertices[1] != out.vertices[2];
     if (has_area) out.face = sites_.id({SiteKind::face, triangle});
@@ -80,34 +86,86 @@ class PrimitiveReader {
   const SiteTable& sites_;
 };
 
-struct Pending {
-  double squared = 0;
-  std::uint32_t block = 0;
-  std::int32_t level = 0;  ///< -1 for a leaf
-};
-
-/// Depth-first work list: at most seven siblings wait on each of at most eleven levels.
-struct PendingStack {
-  std::array<Pending, 128> items;
-  std::size_t size = 0;
-
-  void push(const Pending& item) { items[size++] = item; }
-  Pending pop() { return items[--size]; }
-};
-
 }  // namespace
 
 struct Bvh::Data {
   Box3 bounds;
   double scale = 1;  ///< coordinates in blocks are those of the mesh times this
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  std::vector<std::uint32_t> order;  ///< primitives in the order of the leaves
+  std::vector<std::uint8_t> turns;   ///< beside `order`: Primitive::corners
   std::vector<PrimitiveBlock> leaves;
   BoxTree tree;
+
+  /// How far an approximate distance may be off, and a query in the units of blocks.
+  struct Query {
+    Vec3d point;
+    double slack = 0;
+  };
+
+  /// nullopt where a query is out of its range, or there is nothing to find.
+  [[nodiscard]] std::optional<Query> prepare(const Vec3d& query) const {
+    const Vec3d q = query * scale;
+    if (tree.is_empty() || !(std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) <= 1e150)) return std::nullopt;
+    const Vec3d outside = max(max(bounds.lower * scale - q, q - bounds.upper * scale), Vec3d{});
+    return Query{q, candidate_slack * (1 + length(outside))};
+  }
+
+  [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
+
+  /// Calls limit = offer(leaf, lane, limit) for the primitives that may lie within `limit`, in units of blocks.
+  template <class Offer>
+  void for_each_candidate(const Query& query, double limit, const Offer& offer) const {
+    visit_near(tree, query.point, limit, [&](std::size_t leaf) {
+      double distances[lanes];
+      approximate_distances(leaves[leaf], query.point, distances);
+      // The most promising one first: it mostly rules the others out.
+      const std::size_t first = static_cast<std::size_t>(std::min_element(distances, distances + lanes) - distances);
+      for (std::size_t i = 0; i < lanes; ++i) {
+        const std::size_t lane = first ^ i;
+        if (distances[lane] <= limit) limit = offer(leaf, lane, limit);
+      }
+      return limit;
+    });
+  }
+
+  /// The closest point of one primitive.
+  [[nodiscard]] NearestPrimitive closest(std::size_t leaf, std::size_t lane, const Vec3d& q) const {
+    SiteCandidate best;
+    offer_closest(leaves[leaf], lane, q, best);
+    return {best.point / scale, best.distance / scale, best.site, order[leaf * lanes + lane]};
+  }
+
+  /// A crossing of a primitive's corners as they stand in blocks, told of the triangle as it stands in the mesh.
+  [[nodiscard]] RayCrossing as_given(const detail::TriangleCrossing& found, std::size_t leaf, std::size_t lane,
+                                     double t) const {
+    const std::size_t rank = leaf * lanes + lane;
+    RayCrossing out{t, TriangleId(order[rank]), {}, found.side, found.on_border};
+    const std::array<unsigned, 3> at{turns[rank] & 3U, turns[rank] >> 2 & 3U, turns[rank] >> 4 & 3U};
+    for (std::size_t k = 0; k < 3; ++k) out.weights[k] = found.weights[at[k]];
+    const bool is_reversed = (at[0] + 1) % 3 != at[1];
+    if (is_reversed) out.side = -out.side;
+    return out;
+  }
+
+  void fill_tree(const Context& context) {
+    std::vector<Box3> boxes(leaves.size());
+    for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+      for (std::size_t lane = 0; lane < lanes_of(leaf); ++lane) {
+        for (std::size_t k = 0; k < 3; ++k) boxes[leaf].extend(leaves[leaf].position(k, lane));
+      }
+    }
+    tree = make_box_tree(boxes, context);
+  }
 };
 
 Bvh::Bvh(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   auto data = std::make_unique<Data>();
   data->bounds = blum::bounds(mesh);
   data->scale = unit_scale(data->bounds);
+  data->vertices = mesh.vertices.size();
+  data->triangles = mesh.triangles.size();
   const double scale = data->scale;
   const PrimitiveReader reader(mesh, sites);
   const auto box_of = [&](std::size_t index) {
@@ -116,24 +174,23 @@ Bvh::Bvh(const MeshView& mesh, const SiteTable& sites, const Context& context) {
     return box;
   };
   const std::size_t count = reader.count();
-  const std::vector<std::uint32_t> order =
-      space_order(count, [&](std::size_t index) { return box_of(index).center(); }, context);
+  data->order = space_order(count, [&](std::size_t index) { return box_of(index).center(); }, context);
 
   data->leaves.resize((count + lanes - 1) / lanes);
-  std::vector<Box3> boxes(data->leaves.size());
+  data->turns.resize(count);
   parallel_for(context, data->leaves.size(), leaf_grain, "", [&](const WorkRange& range) {
     for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         // The last leaf repeats its last primitive.
-        const std::size_t index = order[std::min(leaf * lanes + lane, count - 1)];
-        const Primitive p = reader.read(index);
+        const std::size_t rank = std::min(leaf * lanes + lane, count - 1);
+        const Primitive p = reader.read(data->order[rank]);
+        if (leaf * lanes + lane == rank) data->turns[rank] = p.corners;
         const auto corner = [&](std::size_t k) { return mesh.vertices[p.vertices[k]] * scale; };
         data->leaves[leaf].set(lane, {corner(0), corner(1), corner(2)}, p.vertices, p.edges, p.face);
-        boxes[leaf].extend(box_of(index));
       }
     }
   });
-  data->tree = make_box_tree(boxes, context);
+  data->fill_tree(context);
   data_ = std::move(data);
 }
 
@@ -141,54 +198,174 @@ Bvh::Bvh(Bvh&&) noexcept = default;
 Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 Bvh::~Bvh() = default;
 
+void Bvh::refit(std::span<const Vec3d> vertices, const Context& context) {
+  Data& data = *data_;
+  if (vertices.size() != data.vertices) {
+    throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data.vertices) + " vertices is refitted to " +
+                      std::to_string(vertices.size()) + "; build a new one");
+  }
+  Box3 box;
+  for (std::size_t leaf = 0; leaf < data.leaves.size(); ++leaf) {
+    for (std::size_t lane = 0; lane < data.lanes_of(leaf); ++lane) {
+      for (const auto& corners : data.leaves[leaf].vertex) {
+        const std::uint32_t v = corners[lane];
+        const Vec3d& p = vertices[v];
+        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= 1e150)) {
+          throw InvalidMesh("vertex " + std::to_string(v) + " is not finite, or beyond 1e150");
+        }
+        box.extend(vertices[v]);
+      }
+    }
+  }
+  data.bounds = box;
+  data.scale = unit_scale(box);
+  parallel_for(context, data.leaves.size(), leaf_grain, "", [&](const WorkRange& range) {
+    for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
+      PrimitiveBlock& block = data.leaves[leaf];
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const auto corner = [&](std::size_t k) { return vertices[block.vertex[k][lane]] * data.scale; };
+        block.place(lane, {corner(0), corner(1), corner(2)});
+      }
+    }
+  });
+  data.fill_tree(context);
+}
+
 const Box3& Bvh::bounds() const {
   return data_->bounds;
+}
+std::size_t Bvh::size() const {
+  return data_->order.size();
 }
 
 std::optional<NearestSite> Bvh::nearest(const Vec3d& query, double max_distance) const {
   const Data& data = *data_;
-  const Vec3d q = query * data.scale;
-  if (data.tree.is_empty() || !(std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) <= 1e150)) return std::nullopt;
-
-  const Vec3d outside = max(max(data.bounds.lower * data.scale - q, q - data.bounds.upper * data.scale), Vec3d{});
-  const double slack = candidate_slack * (1 + length(outside));
+  const std::optional<Data::Query> q = data.prepare(query);
+  if (!q) return std::nullopt;
   const double furthest = max_distance * data.scale;
   SiteCandidate best;
-  double limit = furthest + slack;
-
-  PendingStack stack;
-  stack.push({0.0, 0, data.tree.top()});
-  double distances[lanes];
-  while (stack.size > 0) {
-    const Pending item = stack.pop();
-    if (!(item.squared <= limit * limit)) continue;
-    if (item.level < 0) {
-      const PrimitiveBlock& leaf = data.leaves[item.block];
-      approximate_distances(leaf, q, distances);
-      // The most promising one first: it mostly rules the others out.
-      const std::size_t first = static_cast<std::size_t>(std::min_element(distances, distances + lanes) - distances);
-      for (std::size_t i = 0; i < lanes; ++i) {
-        const std::size_t lane = first ^ i;
-        if (!(distances[lane] <= limit)) continue;
-        offer_closest(leaf, lane, q, best);
-        limit = std::min(limit, best.distance + slack);
-      }
-      continue;
-    }
-    squared_distances(data.tree.levels[static_cast<std::size_t>(item.level)][item.block], q, distances);
-    // Insert the children below the top of the stack so that the nearest one is popped first.
-    const std::size_t bottom = stack.size;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (!(distances[lane] <= limit * limit)) continue;
-      std::size_t place = stack.size++;
-      for (; place > bottom && stack.items[place - 1].squared < distances[lane]; --place) {
-        stack.items[place] = stack.items[place - 1];
-      }
-      stack.items[place] = {distances[lane], static_cast<std::uint32_t>(item.block * lanes + lane), item.level - 1};
-    }
-  }
+  data.for_each_candidate(*q, furthest + q->slack, [&](std::size_t leaf, std::size_t lane, double limit) {
+    offer_closest(data.leaves[leaf], lane, q->point, best);
+    return std::min(limit, best.distance + q->slack);
+  });
   if (!best.site.has_value() || best.distance > furthest) return std::nullopt;
   return NearestSite{best.point / data.scale, best.distance / data.scale, best.site};
+}
+
+std::vector<std::optional<NearestSite>> Bvh::nearest(std::span<const Vec3d> queries, double max_distance,
+                                                     const Context& context) const {
+  std::vector<std::optional<NearestSite>> out(queries.size());
+  parallel_for(context, queries.size(), query_grain, "closest points", [&](const WorkRange& range) {
+    for (std::size_t i = range.begin; i < range.end; ++i) out[i] = nearest(queries[i], max_distance);
+  });
+  return out;
+}
+
+namespace {
+
+bool is_nearer(const NearestPrimitive& a, const NearestPrimitive& b) {
+  return a.distance < b.distance || (a.distance == b.distance && a.primitive < b.primitive);
+}
+
+bool is_earlier(const RayCrossing& a, const RayCrossing& b) {
+  return a.t < b.t || (a.t == b.t && a.triangle < b.triangle);
+}
+
+}  // namespace
+
+std::vector<NearestPrimitive> Bvh::nearest_primitives(const Vec3d& query, std::size_t k, double max_distance) const {
+  const Data& data = *data_;
+  std::vector<NearestPrimitive> best;  // a heap, the furthest first
+  const std::optional<Data::Query> q = data.prepare(query);
+  if (!q || k == 0) return best;
+  data.for_each_candidate(
+      *q, max_distance * data.scale + q->slack, [&](std::size_t leaf, std::size_t lane, double limit) {
+        if (lane >= data.lanes_of(leaf)) return limit;
+        const NearestPrimitive found = data.closest(leaf, lane, q->point);
+        if (found.distance > max_distance) return limit;
+        if (best.size() == k && !is_nearer(found, best.front())) return limit;
+        if (best.size() == k) {
+          std::pop_heap(best.begin(), best.end(), is_nearer);
+          best.pop_back();
+        }
+        best.push_back(found);
+        std::push_heap(best.begin(), best.end(), is_nearer);
+        return best.size() < k ? limit : std::min(limit, best.front().distance * data.scale + q->slack);
+      });
+  std::sort_heap(best.begin(), best.end(), is_nearer);
+  return best;
+}
+
+void Bvh::for_each_within(const Vec3d& query, double distance, FunctionRef<bool(const NearestPrimitive&)> visit) const {
+  const Data& data = *data_;
+  const std::optional<Data::Query> q = data.prepare(query);
+  if (!q || !(distance >= 0)) return;
+  data.for_each_candidate(*q, distance * data.scale + q->slack, [&](std::size_t leaf, std::size_t lane, double limit) {
+    if (lane >= data.lanes_of(leaf)) return limit;
+    const NearestPrimitive found = data.closest(leaf, lane, q->point);
+    constexpr double stop = -1;
+    return found.distance > distance || visit(found) ? limit : stop;
+  });
+}
+
+std::vector<NearestPrimitive> Bvh::within(const Vec3d& query, double distance) const {
+  std::vector<NearestPrimitive> out;
+  for_each_within(query, distance, [&](const NearestPrimitive& found) {
+    out.push_back(found);
+    return true;
+  });
+  std::sort(out.begin(), out.end(), is_nearer);
+  return out;
+}
+
+void Bvh::for_each_crossing(const Ray& ray, double limit, FunctionRef<double(const RayCrossing&)> visit) const {
+  const Data& data = *data_;
+  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3d{}) return;
+  const auto [scaled, factor] = detail::scaled_direction({ray.origin * data.scale, ray.direction});
+  if (!data.prepare(ray.origin)) return;
+  // t in the units of blocks: lengths are `scale` times, directions 1 / factor times those of the caller.
+  const double t_factor = factor * data.scale;
+  double furthest = limit;
+  visit_along(data.tree, scaled, furthest * t_factor, [&](std::size_t leaf) {
+    const PrimitiveBlock& block = data.leaves[leaf];
+    for (std::size_t lane = 0; lane < data.lanes_of(leaf); ++lane) {
+      const std::uint32_t primitive = data.order[leaf * lanes + lane];
+      if (primitive >= data.triangles) continue;
+      const std::optional<detail::TriangleCrossing> found =
+          detail::crossing(scaled, {block.position(0, lane), block.position(1, lane), block.position(2, lane)});
+      if (!found || !(found->t / t_factor <= furthest)) continue;
+      furthest = visit(data.as_given(*found, leaf, lane, found->t / t_factor));
+    }
+    return furthest * t_factor;
+  });
+}
+
+std::vector<RayCrossing> Bvh::crossings(const Ray& ray, double limit) const {
+  std::vector<RayCrossing> out;
+  for_each_crossing(ray, limit, [&](const RayCrossing& found) {
+    out.push_back(found);
+    return limit;
+  });
+  std::sort(out.begin(), out.end(), is_earlier);
+  return out;
+}
+
+std::optional<RayCrossing> Bvh::first_crossing(const Ray& ray, double limit) const {
+  std::optional<RayCrossing> first;
+  for_each_crossing(ray, limit, [&](const RayCrossing& found) {
+    if (!first || is_earlier(found, *first)) first = found;
+    return first->t;
+  });
+  return first;
+}
+
+std::vector<std::optional<RayCrossing>> Bvh::first_crossings(std::span<const Ray> rays, double limit,
+                                                             const Context& context) const {
+  std::vector<std::optional<RayCrossing>> out(rays.size());
+  parallel_for(context, rays.size(), query_grain, "rays", [&](const WorkRange& range) {
+    for (std::size_t i = range.begin; i < range.end; ++i) out[i] = first_crossing(rays[i], limit);
+  });
+  return out;
 }
 
 bool Bvh::may_touch(const Box3& box) const {

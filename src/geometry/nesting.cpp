@@ -2,10 +2,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "geometry/orient2d.hpp"
+#include "blum/geometry/orient2d.hpp"
 #include "geometry/shells.hpp"
 
 namespace blum::detail {
@@ -13,6 +15,9 @@ namespace {
 
 /// A shell that touches others is looked at from many of its points, of which one lies on none of them.
 constexpr std::size_t most_probes_per_shell = 8192;
+/// Looking from many points ends when triangles and points have met this often, and 16 times for each of them besides:
+/// heaps of shells that lie upon each other would take the square of their number, and say no more in the end.
+constexpr std::size_t most_meetings = std::size_t{1} << 22;
 
 /// A point of a shell that we look outwards from.
 struct Query {
@@ -138,13 +143,24 @@ class Nesting {
     bounds_ = frame_(bounds_);
   }
 
-  void run() {
-    const std::vector<std::uint32_t> doubtful = ask(first_vertices(), false);
-    if (!doubtful.empty()) (void)ask(many_points(doubtful), true);
+  /// @return  how often a triangle met a point.
+  std::size_t run() {
+    const std::size_t without_end = std::numeric_limits<std::size_t>::max();
+    const Answers first = ask(first_vertices(), without_end);
+    const std::vector<std::uint32_t> doubtful = keep_certain(first);
+    if (!doubtful.empty()) {
+      std::vector<Query> queries = many_points(doubtful);
+      const std::size_t most = most_meetings + 16 * (queries.size() + mesh_.triangles.size());
+      const Answers more = ask(std::move(queries), most);
+      keep_first(more.is_complete ? more : first, more.is_complete ? keep_certain(more) : doubtful);
+    }
     set_depths();
+    return meetings_;
   }
 
  private:
+  static constexpr std::uint32_t no_probe = 0xffffffffU;
+
   static Box3 total_bounds(const ShellSet& set) {
     Box3 box;
     for (const Shell& shell : set.shells) box.extend(shell.bounds);
@@ -185,16 +201,24 @@ class Nesting {
     queries.push_back({frame_(point), shell, static_cast<std::uint32_t>(queries.size())});
   }
 
-  /// Finds the crossings above points of shells, and keeps those of each shell's first point of which there is no doubt
-  /// that it lies on no other shell. Returns the shells that have none, and no crossings then, unless this is the last
-  /// try.
-  std::vector<std::uint32_t> ask(const std::vector<Query>& queries, bool is_last) {
-    const QueryGrid grid(queries, bounds_);
-    const std::vector<bool> may_contain = find_candidates(grid);
-    std::vector<bool> is_doubtful(queries.size(), false);
+  /// What was found above the points of a round.
+  struct Answers {
+    std::vector<std::uint32_t> shell;  ///< of each point
+    std::vector<bool> is_doubtful;     ///< each point: it may lie on another shell
     std::vector<Crossing> found;
+    bool is_complete = true;
+  };
+
+  /// Finds the crossings above points of shells; gives up after so many meetings.
+  Answers ask(std::vector<Query> queries, std::size_t most) {
+    Answers out;
+    for (const Query& query : queries) out.shell.push_back(query.shell);
+    out.is_doubtful.assign(queries.size(), false);
+    const QueryGrid grid(std::move(queries), bounds_);
+    const std::vector<bool> may_contain = find_candidates(grid);
+    const std::size_t before = meetings_;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      if (t % 65536 == 0) throw_if_cancelled(context_);
+      if (t % 4096 == 0) throw_if_cancelled(context_);
       const std::uint32_t outer = set_.of_triangle[t];
       if (outer == no_component || !may_contain[outer]) continue;
       std::array<Vec3d, 3> corners;
@@ -205,40 +229,57 @@ class Nesting {
       }
       Box3 heights = frame_(set_.shells[outer].bounds);
       heights.upper.z = box.upper.z;
-      grid.visit_in(box, heights, [&](const Query& query) {
+      out.is_complete = !grid.visit_in(box, heights, [&](const Query& query) {
+        if (++meetings_ - before > most) return true;
         if (query.shell == outer || !is_within(frame_(set_.shells[outer].bounds), query.point)) return false;
         const int winding = projected_winding(corners, query.point);
         const bool is_beside = is_within(box, query.point) && query.point.z >= box.lower.z;
         if (winding == 0 && !is_beside) return false;
         const Height height = compare_height(corners, query.point, winding);
         // A point on an upright wall has no winding number in the projection, but must not count as beyond the wall.
-        if (!height.is_certain) is_doubtful[query.probe] = true;
-        if (winding != 0 && height.is_above) found.push_back({query.probe, query.shell, outer, winding});
+        if (!height.is_certain) out.is_doubtful[query.probe] = true;
+        if (winding != 0 && height.is_above) out.found.push_back({query.probe, query.shell, outer, winding});
         return false;
       });
+      if (!out.is_complete) break;
     }
-    return keep_certain(queries, is_doubtful, found, is_last);
+    return out;
   }
 
-  std::vector<std::uint32_t> keep_certain(const std::vector<Query>& queries, const std::vector<bool>& is_doubtful,
-                                          const std::vector<Crossing>& found, bool is_last) {
-    constexpr std::uint32_t none = 0xffffffffU;
-    std::vector<std::uint32_t> first(set_.shells.size(), none);
-    std::vector<std::uint32_t> chosen(set_.shells.size(), none);
-    for (const Query& query : queries) {
-      if (first[query.shell] == none) first[query.shell] = query.probe;
-      if (chosen[query.shell] == none && !is_doubtful[query.probe]) chosen[query.shell] = query.probe;
+  /// Keeps the crossings of each shell's first point of which there is no doubt that it lies on no other shell.
+  /// @return  the shells that have none, rising.
+  std::vector<std::uint32_t> keep_certain(const Answers& answers) {
+    std::vector<bool> is_asked(set_.shells.size(), false);
+    std::vector<std::uint32_t> chosen(set_.shells.size(), no_probe);
+    for (std::uint32_t probe = 0; probe < answers.shell.size(); ++probe) {
+      const std::uint32_t shell = answers.shell[probe];
+      is_asked[shell] = true;
+      if (chosen[shell] == no_probe && !answers.is_doubtful[probe]) chosen[shell] = probe;
     }
+    keep(answers, chosen);
     std::vector<std::uint32_t> doubtful;
-    for (std::uint32_t s = 0; s < first.size(); ++s) {
-      if (first[s] == none || chosen[s] != none) continue;
-      doubtful.push_back(s);
-      if (is_last) chosen[s] = first[s];
-    }
-    for (const Crossing& crossing : found) {
-      if (chosen[crossing.inner] == crossing.probe) crossings_.push_back(crossing);
+    for (std::uint32_t s = 0; s < chosen.size(); ++s) {
+      if (is_asked[s] && chosen[s] == no_probe) doubtful.push_back(s);
     }
     return doubtful;
+  }
+
+  /// Keeps the crossings of the first point of these shells, doubtful as it is.
+  void keep_first(const Answers& answers, const std::vector<std::uint32_t>& shells) {
+    std::vector<bool> is_wanted(set_.shells.size(), false);
+    for (const std::uint32_t s : shells) is_wanted[s] = true;
+    std::vector<std::uint32_t> chosen(set_.shells.size(), no_probe);
+    for (std::uint32_t probe = 0; probe < answers.shell.size(); ++probe) {
+      const std::uint32_t shell = answers.shell[probe];
+      if (is_wanted[shell] && chosen[shell] == no_probe) chosen[shell] = probe;
+    }
+    keep(answers, chosen);
+  }
+
+  void keep(const Answers& answers, const std::vector<std::uint32_t>& chosen) {
+    for (const Crossing& crossing : answers.found) {
+      if (chosen[crossing.inner] == crossing.probe) crossings_.push_back(crossing);
+    }
   }
 
   static bool is_within(const Box3& box, const Vec3d& p) {
@@ -288,13 +329,14 @@ class Nesting {
   Box3 bounds_;
   Frame frame_;
   std::vector<Crossing> crossings_;
+  std::size_t meetings_ = 0;
 };
 
 }  // namespace
 
-void nest_shells(const MeshView& mesh, ShellSet& set, const Context& context) {
-  if (set.shells.size() < 2) return;
-  Nesting(mesh, set, context).run();
+std::size_t nest_shells(const MeshView& mesh, ShellSet& set, const Context& context) {
+  if (set.shells.size() < 2) return 0;
+  return Nesting(mesh, set, context).run();
 }
 
 }  // namespace blum::detail

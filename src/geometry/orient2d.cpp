@@ -1,4 +1,4 @@
-#include "geometry/orient2d.hpp"
+#include "blum/geometry/orient2d.hpp"
 
 #include <cmath>
 

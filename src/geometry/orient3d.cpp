@@ -1,4 +1,4 @@
-#include "geometry/orient3d.hpp"
+#include "blum/geometry/orient3d.hpp"
 
 #include <array>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
-#include "geometry/simd.hpp"
+#include "geometry/lanes.hpp"
 
 namespace blum {
 
@@ -22,6 +22,8 @@ struct alignas(64) PrimitiveBlock {
 
   void set(std::size_t lane, const std::array<Vec3d, 3>& corners, const std::array<std::uint32_t, 3>& vertices,
            const std::array<SiteId, 3>& edges, SiteId face_site);
+  /// The same primitive with its corners elsewhere.
+  void place(std::size_t lane, const std::array<Vec3d, 3>& corners);
   [[nodiscard]] Vec3d position(std::size_t k, std::size_t lane) const {
     return {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]};
   }

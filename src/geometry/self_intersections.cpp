@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/box_bvh.hpp"
+#include "blum/geometry/triangle_contact.hpp"
 #include "blum/geometry/weld.hpp"
-#include "geometry/box_tree.hpp"
-#include "geometry/space_order.hpp"
-#include "geometry/triangle_contact.hpp"
 
 namespace blum {
 namespace {
@@ -42,103 +41,59 @@ std::vector<TriangleId> triangles_with_area(const MeshView& mesh) {
   return out;
 }
 
-/// Triangles in leaves of eight, and a tree of boxes over them.
+/// Triangles with an area, and a hierarchy of boxes over them. "Leaves" are eight triangles of neighbouring ranks.
 class Search {
  public:
   Search(const MeshView& mesh, const Context& context)
-      : ids_(triangles_with_area(mesh)), leaves_((ids_.size() + lanes - 1) / lanes) {
-    const double scale = scale_of(mesh);
-    const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
-    const std::vector<std::uint32_t> order = space_order(
-        ids_.size(), [&](std::size_t i) { return box_of(triangle(mesh, corners, scale, ids_[i])).center(); }, context);
-    std::vector<TriangleId> sorted(ids_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = ids_[order[i]];
-    ids_ = std::move(sorted);
-    triangles_.resize(ids_.size());
-    boxes_.resize(ids_.size());
-    std::vector<Box3> leaf_boxes(leaves_.size());
-    parallel_for(context, leaves_.size(), 512, "", [&](const WorkRange& range) {
-      for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
-        leaf_boxes[leaf] = fill(leaf, [&](TriangleId id) { return triangle(mesh, corners, scale, id); });
-      }
-    });
-    tree_ = make_box_tree(leaf_boxes, context);
-  }
+      : ids_(triangles_with_area(mesh)), triangles_(read(mesh, ids_)), bvh_(boxes(triangles_), context) {}
 
-  [[nodiscard]] std::size_t leaf_count() const { return leaves_.size(); }
+  [[nodiscard]] std::size_t leaf_count() const { return (ids_.size() + leaf_size - 1) / leaf_size; }
 
-  /// Adds the pairs of a leaf's triangles with each other and with those of later leaves; at most about `limit`.
+  /// Adds the pairs of a leaf's triangles with each other and with those of later ranks; at most about `limit`.
   void find(std::size_t leaf, std::size_t limit, std::vector<TrianglePair>& out) const {
-    const std::size_t end = std::min((leaf + 1) * lanes, ids_.size());
-    for (std::size_t i = leaf * lanes; i < end && out.size() <= limit; ++i) {
-      for_each_near(boxes_[i], leaf, [&](std::size_t other) {
-        test(i, other, out);
+    const std::size_t end = std::min((leaf + 1) * leaf_size, ids_.size());
+    for (std::size_t rank = leaf * leaf_size; rank < end && out.size() <= limit; ++rank) {
+      bvh_.for_each_later(rank, 0, [&](std::size_t later) {
+        test(bvh_.at_rank(rank), bvh_.at_rank(later), out);
         return out.size() <= limit;
       });
     }
   }
 
  private:
-  static detail::ContactTriangle triangle(const MeshView& mesh, const std::vector<std::uint32_t>& corners, double scale,
-                                          TriangleId id) {
-    detail::ContactTriangle out;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = mesh.triangles[id.value][k];
-      out.points[k] = mesh.vertices[v] * scale;
-      out.corners[k] = corners[v];
+  static constexpr std::size_t leaf_size = 8;
+
+  static std::vector<detail::ContactTriangle> read(const MeshView& mesh, const std::vector<TriangleId>& ids) {
+    const double scale = scale_of(mesh);
+    const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
+    std::vector<detail::ContactTriangle> out(ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = mesh.triangles[ids[i].value][k];
+        out[i].points[k] = mesh.vertices[v] * scale;
+        out[i].corners[k] = corners[v];
+      }
     }
     return out;
   }
 
-  static Box3 box_of(const detail::ContactTriangle& triangle) {
-    Box3 box;
-    for (const Vec3d& p : triangle.points) box.extend(p);
-    return box;
-  }
-
-  template <class Read>
-  Box3 fill(std::size_t leaf, const Read& read) {
-    Box3 whole;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t i = leaf * lanes + lane;
-      Box3 box;
-      if (i < ids_.size()) {
-        triangles_[i] = read(ids_[i]);
-        box = boxes_[i] = box_of(triangles_[i]);
-      }
-      whole.extend(box);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        leaves_[leaf].lower[axis][lane] = box.lower[axis];
-        leaves_[leaf].upper[axis][lane] = box.upper[axis];
-      }
+  static std::vector<Box3> boxes(const std::vector<detail::ContactTriangle>& triangles) {
+    std::vector<Box3> out(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      for (const Vec3d& p : triangles[i].points) out[i].extend(p);
     }
-    return whole;
+    return out;
   }
 
-  /// Calls visit(i) for the triangles from a leaf on whose boxes touch this one, until it returns false.
-  template <class Visit>
-  void for_each_near(const Box3& box, std::size_t first_leaf, const Visit& visit) const {
-    for_each_touching(tree_, box, first_leaf, [&](std::size_t leaf) {
-      const unsigned bits = touching(leaves_[leaf], box);
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        if ((bits >> lane & 1U) != 0 && !visit(leaf * lanes + lane)) return false;
-      }
-      return true;
-    });
-  }
-
-  void test(std::size_t i, std::size_t other, std::vector<TrianglePair>& out) const {
-    if (other <= i) return;
+  void test(std::uint32_t i, std::uint32_t other, std::vector<TrianglePair>& out) const {
     const detail::Contact found = detail::contact(triangles_[i], triangles_[other]);
     if (found == detail::Contact::none) return;
     out.push_back({std::min(ids_[i], ids_[other]), std::max(ids_[i], ids_[other]), found == detail::Contact::crossing});
   }
 
-  std::vector<TriangleId> ids_;  ///< in the order of the leaves
-  std::vector<detail::ContactTriangle> triangles_;
-  std::vector<Box3> boxes_;
-  std::vector<BoxBlock> leaves_;
-  BoxTree tree_;
+  std::vector<TriangleId> ids_;
+  std::vector<detail::ContactTriangle> triangles_;  ///< of these ids
+  BoxBvh bvh_;
 };
 
 /// The pairs of some leaves, in the order of the leaves.

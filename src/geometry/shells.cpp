@@ -107,7 +107,7 @@ ShellSet find_shells(const MeshView& mesh, const SurfaceComponents& components, 
     if (set.of_triangle[t] != no_component) measures[set.of_triangle[t]].add(mesh, mesh.triangles[t]);
   }
   throw_if_cancelled(context);
-  nest_shells(mesh, set, context);
+  (void)nest_shells(mesh, set, context);
   for (std::size_t s = 0; s < measures.size(); ++s) {
     Shell& shell = set.shells[s];
     const double unit = 1 / measures[s].scale;

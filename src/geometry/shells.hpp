@@ -51,7 +51,9 @@ struct ShellSet {
 [[nodiscard]] ShellSet find_shells(const MeshView& mesh, const SurfaceComponents& components, const Context& context);
 
 /// Sets depth and parent: for a vertex of each shell, the winding numbers of the others around it, by counting the
-/// triangles that a ray from it crosses.
-void nest_shells(const MeshView& mesh, ShellSet& set, const Context& context);
+/// triangles that a ray from it crosses. Where shells lie upon each other so often that no vertex free of others is
+/// found in bounded work, a vertex that lies on them decides.
+/// @return  how often a triangle was compared with a point.
+std::size_t nest_shells(const MeshView& mesh, ShellSet& set, const Context& context);
 
 }  // namespace blum::detail

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "blum/core/union_find.hpp"
-#include "geometry/orient2d.hpp"
+#include "blum/geometry/orient2d.hpp"
 #include "geometry/shells.hpp"
 
 namespace blum {

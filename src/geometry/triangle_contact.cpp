@@ -1,10 +1,10 @@
-#include "geometry/triangle_contact.hpp"
+#include "blum/geometry/triangle_contact.hpp"
 
 #include <cstddef>
 #include <utility>
 
-#include "geometry/orient2d.hpp"
-#include "geometry/orient3d.hpp"
+#include "blum/geometry/orient2d.hpp"
+#include "blum/geometry/orient3d.hpp"
 
 namespace blum::detail {
 namespace {

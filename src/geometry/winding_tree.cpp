@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "blum/core/parallel.hpp"
 #include "geometry/space_order.hpp"
@@ -222,6 +223,26 @@ WindingTree make_winding_tree(const MeshView& mesh, const Context& context) {
     clusters = std::move(parents);
   }
   return tree;
+}
+
+SolidAngleSum::SolidAngleSum() {
+  std::fill(re, re + lanes, 1.0);
+  std::fill(im, im + lanes, 0.0);
+  std::fill(turns, turns + lanes, 0.0);
+}
+
+double SolidAngleSum::winding_number() const {
+  double x = re[0], y = im[0], sum = turns[0];
+  for (std::size_t i = 1; i < lanes; ++i) {
+    const double px = x * re[i] - y * im[i];
+    const double py = x * im[i] + y * re[i];
+    if (y >= 0 && im[i] >= 0 && py < 0) sum += 1;
+    if (y < 0 && im[i] < 0 && py >= 0) sum -= 1;
+    sum += turns[i];
+    x = px;
+    y = py;
+  }
+  return sum + std::atan2(y, x) / (2 * std::numbers::pi);
 }
 
 }  // namespace blum

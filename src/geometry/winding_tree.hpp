@@ -9,7 +9,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "geometry/box_tree.hpp"
-#include "geometry/simd.hpp"
+#include "geometry/lanes.hpp"
 
 namespace blum {
 

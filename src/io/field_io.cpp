@@ -5,18 +5,14 @@
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/io/formats.hpp"
 #include "io/field_files.hpp"
 
 namespace blum {
 namespace {
 
 FieldFormat format_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".nrrd") return FieldFormat::nrrd;
-  if (extension == ".npz") return FieldFormat::npz;
-  if (extension == ".vti") return FieldFormat::vti;
+  if (const auto place = format_by_name(FileContent::field, path)) return static_cast<FieldFormat>(*place);
   throw InvalidOption("'" + path.string() +
                       "': fields are kept in .nrrd, .npz and .vti files; use one of these extensions");
 }

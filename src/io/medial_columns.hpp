@@ -1,44 +1,29 @@
-// Blum: columns of numbers in files of medial axes. SPDX-License-Identifier: Apache-2.0
+// Blum: medial axes in files of complexes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <string>
-#include <type_traits>
-#include <utility>
-#include <variant>
-#include <vector>
 
-#include "blum/core/error.hpp"
-#include "blum/grid/voxel_image.hpp"
+#include "blum/complex/complex.hpp"
 
 namespace blum::medial_files {
 
-/// Calls set(index, value) with each value as a double.
-template <class Set>
-void for_each_number(const VoxelImage::Values& values, Set set) {
-  std::visit(
-      [&](const auto& v) {
-        for (std::size_t i = 0; i < v.size(); ++i) set(i, static_cast<double>(v[i]));
-      },
-      values);
-}
+/// Which columns of a medial axis a complex had.
+struct MedialColumns {
+  bool radii = false, footprints = false, sites = false;
+  bool angles = false;  ///< of vertices, edges and triangles
+  bool labels = false;  ///< sheets and roles
+};
 
-/// Calls set(index, value) with each value as an int64. @throws FormatError with `where` when there are other values.
-template <class Set>
-void for_each_integer(const VoxelImage::Values& values, const std::string& where, Set set) {
-  std::visit(
-      [&]<class T>(const std::vector<T>& v) {
-        if constexpr (std::is_floating_point_v<T>) {
-          throw FormatError(where + ": the values must be whole numbers, but these are floating-point");
-        } else {
-          for (std::size_t i = 0; i < v.size(); ++i) {
-            if (!std::in_range<std::int64_t>(v[i])) throw FormatError(where + ": a value is too large");
-            set(i, static_cast<std::int64_t>(v[i]));
-          }
-        }
-      },
-      values);
-}
+// Both give the complex of a file the columns that MedialView (MedialLevels) needs, in their order and types, from
+// columns of any numeric type that may hold them; other columns follow. Both throw FormatError with `name` for a column
+// that cannot be that of an axis.
+
+/// Columns that are missing are filled in. Edges without roles that are sides of triangles are left out.
+[[nodiscard]] Complex to_axis(Complex complex, const std::string& name, MedialColumns& found);
+/// All columns must be there.
+[[nodiscard]] Complex to_nested(const Complex& complex, const std::string& name);
+
+/// Edges that are sides of triangles go, as the triangles imply them.
+[[nodiscard]] Complex without_sides(Complex complex);
 
 }  // namespace blum::medial_files

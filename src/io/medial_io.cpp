@@ -1,138 +1,25 @@
 #include "blum/io/medial_io.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <new>
 #include <utility>
 
+#include "blum/complex/medial_columns.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
-#include "io/medial_edges.hpp"
+#include "blum/io/complex_io.hpp"
+#include "blum/io/formats.hpp"
+#include "io/medial_columns.hpp"
 #include "io/medial_files.hpp"
+#include "io/text_scan.hpp"
 #include "io/whole_file.hpp"
 
 namespace blum {
-namespace medial_files {
-namespace {
-
-std::string place(const char* what, std::size_t index) {
-  return std::string(what) + " " + std::to_string(index) + " (counted from 0)";
-}
-
-bool is_site(SiteId site) {
-  return !site.has_value() || site.value <= max_id_count;
-}
-
-/// What is wrong with one vertex; null where nothing is.
-const char* vertex_problem(const MedialVertex& v) {
-  if (!is_finite(v.position)) return "has a coordinate that is not finite";
-  if (!std::isfinite(v.radius) || v.radius < 0) return "has a radius that is negative or not finite";
-  if (!is_finite(v.footprints[0]) || !is_finite(v.footprints[1])) return "has a footprint that is not finite";
-  if (!std::isfinite(v.separation_angle)) return "has an angle that is not finite";
-  if (!is_site(v.sites[0]) || !is_site(v.sites[1])) return "has a site that is too large for a file";
-  return nullptr;
-}
-
-/// The same for an edge or a triangle of a complex of `count` vertices.
-template <class Cell>
-std::string cell_problem(const Cell& cell, std::size_t count) {
-  for (std::size_t i = 0; i < cell.vertices.size(); ++i) {
-    const std::uint32_t v = cell.vertices[i];
-    if (v >= count) return "names vertex " + std::to_string(v) + ", but there are only " + std::to_string(count);
-    if (v == cell.vertices[(i + 1) % cell.vertices.size()]) return "names vertex " + std::to_string(v) + " twice";
-  }
-  return std::isfinite(cell.separation_angle) ? "" : "has an angle that is not finite";
-}
-
-template <class Cell>
-std::string problem_of_cells(const std::vector<Cell>& cells, const char* what, std::size_t count) {
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::string problem = cell_problem(cells[i], count);
-    if (!problem.empty()) return place(what, i) + " " + problem;
-  }
-  return {};
-}
-
-/// Every sheet has a triangle, so that a file cannot make anyone count to more sheets than it has triangles.
-std::string problem_of_sheets(const MedialComplex& complex) {
-  if (complex.sheet_count > complex.triangles.size()) {
-    return "there are " + std::to_string(complex.sheet_count) + " sheets, but only " +
-           std::to_string(complex.triangles.size()) + " triangles";
-  }
-  for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
-    if (complex.triangles[i].sheet < complex.sheet_count) continue;
-    return place("triangle", i) + " is on sheet " + std::to_string(complex.triangles[i].sheet) +
-           ", but there are only " + std::to_string(complex.sheet_count);
-  }
-  return {};
-}
-
-}  // namespace
-
-std::string problem_of(const MedialComplex& complex) {
-  const std::size_t count = complex.vertices.size();
-  if (count > max_id_count) return "there are more than 2^31 - 1 vertices";
-  for (std::size_t i = 0; i < count; ++i) {
-    if (const char* problem = vertex_problem(complex.vertices[i])) return place("vertex", i) + " " + problem;
-  }
-  std::string problem = problem_of_cells(complex.edges, "edge", count);
-  if (problem.empty()) problem = problem_of_cells(complex.triangles, "triangle", count);
-  return problem.empty() ? problem_of_sheets(complex) : problem;
-}
-
-std::string problem_of(const NestedComplex& nested) {
-  const std::size_t count = nested.vertices.size();
-  if (count > max_id_count) return "there are more than 2^31 - 1 vertices";
-  if (!(nested.least_theta >= 0 && nested.least_theta <= 180)) return "the least theta is not between 0 and 180";
-  if (nested.vertex_until.size() != count) return "not every vertex has an angle";
-  for (std::size_t i = 0; i < count; ++i) {
-    if (const char* problem = vertex_problem(nested.vertices[i])) return place("vertex", i) + " " + problem;
-    if (std::isnan(nested.vertex_until[i])) return place("vertex", i) + " has an angle that is not a number";
-  }
-  std::string problem = problem_of_cells(nested.edges, "edge", count);
-  if (problem.empty()) problem = problem_of_cells(nested.triangles, "triangle", count);
-  if (!problem.empty()) return problem;
-  for (std::size_t i = 0; i < nested.edges.size(); ++i) {
-    const NestedEdge& edge = nested.edges[i];
-    if (std::isnan(edge.from) || std::isnan(edge.until)) return place("edge", i) + " has an angle that is not a number";
-    const bool is_line =
-        edge.role == MedialRole::curve || edge.role == MedialRole::rim || edge.role == MedialRole::seam;
-    if (!is_line) return place("edge", i) + " is neither curve nor rim nor seam";
-  }
-  for (std::size_t i = 0; i < nested.triangles.size(); ++i) {
-    if (std::isnan(nested.triangles[i].until)) return place("triangle", i) + " has an angle that is not a number";
-  }
-  return nested.sheet_count > nested.triangles.size() ? "there are more sheets than triangles" : "";
-}
-
-std::uint32_t sheet_count(const MedialComplex& complex) {
-  std::uint32_t count = 0;
-  for (const MedialTriangle& t : complex.triangles) count = std::max(count, t.sheet + 1);
-  return count;
-}
-
-void keep_curves_only(MedialComplex& complex) {
-  if (!complex.triangles.empty()) {
-    const EdgeSet sides(complex, EdgeSet::Of::triangles);
-    std::erase_if(complex.edges, [&](const MedialEdge& edge) { return sides.contains(edge.vertices); });
-  }
-  for (MedialEdge& edge : complex.edges) edge.role = MedialRole::curve;
-}
-
-}  // namespace medial_files
-
 namespace {
 
 MedialFormat format_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".vtp") return MedialFormat::vtp;
-  if (extension == ".ply") return MedialFormat::ply;
-  if (extension == ".obj") return MedialFormat::obj;
-  if (extension == ".ma") return MedialFormat::ma;
-  if (extension == ".npz") return MedialFormat::npz;
+  if (const auto place = format_by_name(FileContent::complex, path)) return static_cast<MedialFormat>(*place);
   throw InvalidOption("'" + path.string() +
                       "': medial axes are kept in .vtp, .ply, .obj, .ma and .npz files; use one of these extensions");
 }
@@ -154,19 +41,47 @@ void check_metadata(const MedialMetadata& metadata) {
   if (metadata.grid) validate(*metadata.grid);
 }
 
-MedialFile read_by_format(const volume_io::ByteSource& source, MedialFormat format) {
-  return format == MedialFormat::vtp ? medial_files::read_vtp(source) : medial_files::read_npz(source);
+ComplexFormat complex_format(MedialFormat format) {
+  return format == MedialFormat::vtp   ? ComplexFormat::vtp
+         : format == MedialFormat::ply ? ComplexFormat::ply
+         : format == MedialFormat::obj ? ComplexFormat::obj
+                                       : ComplexFormat::npz;
 }
 
-MedialFile read_by_format(std::string_view bytes, MedialFormat format, const std::string& name) {
-  return format == MedialFormat::ply   ? medial_files::read_ply(bytes, name)
-         : format == MedialFormat::obj ? medial_files::read_obj(bytes, name)
-                                       : medial_files::read_ma(bytes, name);
+std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Formats whose arrays are read one by one, from where they are.
-bool is_read_in_parts(MedialFormat format) {
-  return format == MedialFormat::vtp || format == MedialFormat::npz;
+constexpr const char* nested_name = "nested";
+constexpr const char* nested_theta = "nested_theta";
+
+/// What a file of a complex says of a medial axis.
+MedialFile as_axis(const ComplexFile& file, const std::string& name) {
+  MedialFile out;
+  out.metadata = medial_files::from_pairs(file.metadata, name);
+  medial_files::MedialColumns has;
+  out.complex = medial_files::to_axis(file.complex, name, has);
+  out.has_radii = has.radii;
+  out.has_footprints = has.footprints;
+  out.has_sites = has.sites;
+  out.has_angles = has.angles;
+  out.has_labels = has.labels;
+  for (const NamedComplex& further : file.further) {
+    if (further.name != nested_name) continue;
+    out.nested = medial_files::to_nested(further.complex, name);
+    const auto theta = volume_io::parse_number<double>(find_value(file.metadata, nested_theta));
+    if (!theta) throw FormatError(name + ": the metadata do not say '" + nested_theta + "', the least of all angles");
+    out.least_theta = *theta;
+  }
+  return out;
+}
+
+/// @param nested  may be null.
+std::string problem_of_axes(const Complex& axis, const Complex* nested, double least_theta) {
+  std::string problem = problem_of_medial(axis);
+  if (!problem.empty() || nested == nullptr) return problem;
+  if (!(least_theta >= 0 && least_theta <= 180)) return "the least theta is not between 0 and 180";
+  return problem_of_medial(*nested);
 }
 
 /// Reads, and looks at the result as a whole.
@@ -174,9 +89,7 @@ template <class Read>
 MedialFile checked(const std::string& name, Read read) {
   try {
     MedialFile file = read();
-    file.complex.sheet_count = medial_files::sheet_count(file.complex);
-    std::string problem = medial_files::problem_of(file.complex);
-    if (problem.empty() && file.nested) problem = medial_files::problem_of(*file.nested);
+    const std::string problem = problem_of_axes(file.complex, file.nested ? &*file.nested : nullptr, file.least_theta);
     if (!problem.empty()) throw FormatError(name + ": " + problem);
     return file;
   } catch (const std::bad_alloc&) {
@@ -188,57 +101,59 @@ MedialFile checked(const std::string& name, Read read) {
 
 namespace {
 
-void write(const std::filesystem::path& path, const MedialComplex& complex, const NestedComplex* nested,
+/// @param nested  may be null.
+void write(const std::filesystem::path& path, const Complex& axis, const Complex* nested, double least_theta,
            const MedialMetadata& metadata, const Context& context) {
   const MedialFormat format = format_of(path);
   check_metadata(metadata);
   if (nested != nullptr && format != MedialFormat::npz) {
     throw InvalidOption("'" + path.string() + "': axes of all angles are kept in .npz files only");
   }
-  std::string problem = medial_files::problem_of(complex);
-  if (problem.empty() && nested != nullptr) problem = medial_files::problem_of(*nested);
+  static_cast<void>(MedialView(axis));  // throws where a column is missing
+  if (nested != nullptr) static_cast<void>(MedialLevels(*nested));
+  const std::string problem = problem_of_axes(axis, nested, least_theta);
   if (!problem.empty()) throw InvalidMesh("a medial axis that cannot be written: " + problem);
   throw_if_cancelled(context);
-  switch (format) {
-    case MedialFormat::vtp:
-      return medial_files::write_vtp(path, complex, metadata, context);
-    case MedialFormat::ply:
-      return medial_files::write_ply(path, complex, metadata, context);
-    case MedialFormat::obj:
-      return medial_files::write_obj(path, complex, context);
-    case MedialFormat::ma:
-      return medial_files::write_ma(path, complex, context);
-    case MedialFormat::npz:
-      return medial_files::write_npz(path, complex, nested, metadata, context);
+  if (format == MedialFormat::ma) return medial_files::write_ma(path, axis, context);
+  FileMetadata pairs = medial_files::to_pairs(metadata);
+  ComplexWriteOptions options;
+  options.allow_loss = true;  // as the table of formats says
+  if (nested != nullptr) {
+    options.further.push_back({nested_name, nested});
+    pairs.emplace_back(nested_theta, exact_text(least_theta));
+  }
+  if (format == MedialFormat::obj) {
+    write_complex(path, medial_files::without_sides(axis), pairs, options, context);
+  } else {
+    write_complex(path, axis, pairs, options, context);
   }
 }
 
 }  // namespace
 
-void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata,
+void write_medial(const std::filesystem::path& path, const Complex& complex, const MedialMetadata& metadata,
                   const Context& context) {
-  write(path, complex, nullptr, metadata, context);
+  write(path, complex, nullptr, 0, metadata, context);
 }
 
-void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const NestedComplex& nested,
+void write_medial(const std::filesystem::path& path, const Complex& complex, const Complex& nested, double least_theta,
                   const MedialMetadata& metadata, const Context& context) {
-  write(path, complex, &nested, metadata, context);
+  write(path, complex, &nested, least_theta, metadata, context);
 }
 
 MedialFile read_medial(const std::filesystem::path& path) {
   const MedialFormat format = format_of(path);
   return checked(path.string(), [&] {
-    if (is_read_in_parts(format)) return read_by_format(volume_io::FileSource(path), format);
+    if (format != MedialFormat::ma) return as_axis(read_complex(path), path.string());
     const FileBytes content = read_whole_file(path);
-    const auto bytes = content.span();
-    return read_by_format({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, format, path.string());
+    return as_axis({medial_files::read_ma(as_text(content.span()), path.string())}, path.string());
   });
 }
 
 MedialFile read_medial(std::span<const std::byte> bytes, MedialFormat format, const std::string& name) {
   return checked(name, [&] {
-    if (is_read_in_parts(format)) return read_by_format(volume_io::MemorySource(bytes, name), format);
-    return read_by_format({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, format, name);
+    if (format == MedialFormat::ma) return as_axis({medial_files::read_ma(as_text(bytes), name)}, name);
+    return as_axis(read_complex(bytes, complex_format(format), name), name);
   });
 }
 

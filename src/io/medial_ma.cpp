@@ -2,11 +2,13 @@
 // the first as a vertex, edge or triangle, also a comment: so none is written, and the file has no metadata.
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "blum/core/error.hpp"
-#include "io/medial_edges.hpp"
+#include "io/edge_set.hpp"
 #include "io/medial_files.hpp"
 #include "io/row_writer.hpp"
 #include "io/text_cursor.hpp"
@@ -20,19 +22,18 @@ class MaReader {
  public:
   MaReader(std::string_view text, std::string_view name) : cursor_(text, name, '#') {}
 
-  MedialFile read() {
+  Complex read() {
     read_counts();
-    MedialComplex& complex = file_.complex;
     while (cursor_.skip_space()) {
-      read_statement(complex);
+      read_statement();
       cursor_.skip_line();
     }
-    check_count(complex.vertices.size(), 0, "vertices");
-    check_count(complex.edges.size(), 1, "edges");
-    check_count(complex.triangles.size(), 2, "triangles");
-    keep_curves_only(complex);
-    file_.has_radii = true;
-    return std::move(file_);
+    check_count(complex_.positions.size(), 0, "vertices");
+    check_count(complex_.edges.size(), 1, "edges");
+    check_count(complex_.triangles.size(), 2, "triangles");
+    complex_.vertex_columns = Columns(radii_.size());
+    complex_.vertex_columns.add({"radius", 1, std::move(radii_)});
+    return std::move(complex_);
   }
 
  private:
@@ -54,33 +55,33 @@ class MaReader {
     }
     if (counts_[0] > max_id_count) cursor_.fail("too many vertices: 2^31 - 1 are the most");
     cursor_.skip_line();
-    file_.complex.vertices.reserve(counts_[0]);
-    file_.complex.edges.reserve(counts_[1]);
-    file_.complex.triangles.reserve(counts_[2]);
+    complex_.positions.reserve(counts_[0]);
+    radii_.reserve(counts_[0]);
+    complex_.edges.reserve(counts_[1]);
+    complex_.triangles.reserve(counts_[2]);
   }
 
-  void read_statement(MedialComplex& complex) {
+  void read_statement() {
     const char* const start = cursor_.position();
     const std::string_view keyword = cursor_.take_token();
     if (keyword == "v") {
-      complex.vertices.push_back(read_vertex());
+      read_vertex();
     } else if (keyword == "e") {
-      complex.edges.push_back({.vertices = read_indices<2>()});
+      complex_.edges.push_back(read_indices<2>());
     } else if (keyword == "f") {
-      complex.triangles.push_back({.vertices = read_indices<3>()});
+      complex_.triangles.push_back(read_indices<3>());
     } else {
       cursor_.fail_at(start, "a line must begin with v, e or f, not with " + in_quotes(keyword));
     }
   }
 
-  MedialVertex read_vertex() {
-    MedialVertex vertex;
-    vertex.position.x = cursor_.take_number("x coordinate");
-    vertex.position.y = cursor_.take_number("y coordinate");
-    vertex.position.z = cursor_.take_number("z coordinate");
-    vertex.radius = cursor_.take_number("radius");
-    if (vertex.radius < 0) cursor_.fail("a negative radius");
-    return vertex;
+  void read_vertex() {
+    Vec3d& position = complex_.positions.emplace_back();
+    position.x = cursor_.take_number("x coordinate");
+    position.y = cursor_.take_number("y coordinate");
+    position.z = cursor_.take_number("z coordinate");
+    radii_.push_back(cursor_.take_number("radius"));
+    if (radii_.back() < 0) cursor_.fail("a negative radius");
   }
 
   template <std::size_t n>
@@ -107,21 +108,24 @@ class MaReader {
   }
 
   TextCursor cursor_;
-  MedialFile file_;
+  Complex complex_;
+  std::vector<double> radii_;
   std::array<std::uint64_t, 3> counts_{};  ///< of vertices, edges and triangles
 };
 
 }  // namespace
 
-void write_ma(const std::filesystem::path& path, const MedialComplex& complex, const Context& context) {
-  const EdgeSet edges(complex, EdgeSet::Of::edges_and_triangles, context);
-  RowWriter out(path, complex.vertices.size() + edges.size() + complex.triangles.size(), context);
-  out.text(std::to_string(complex.vertices.size()) + " " + std::to_string(edges.size()) + " " +
+void write_ma(const std::filesystem::path& path, const Complex& complex, const Context& context) {
+  using complex_files::EdgeSet;
+  const EdgeSet edges(complex.view(), EdgeSet::Of::edges_and_triangles, context);
+  const std::span<const double> radii = complex.vertex_columns.get<double>("radius");
+  RowWriter out(path, complex.positions.size() + edges.size() + complex.triangles.size(), context);
+  out.text(std::to_string(complex.positions.size()) + " " + std::to_string(edges.size()) + " " +
            std::to_string(complex.triangles.size()) + "\n");
-  for (const MedialVertex& v : complex.vertices) {
+  for (std::size_t v = 0; v < complex.positions.size(); ++v) {
     out.text("v");
-    out.vector(v.position);
-    out.number(v.radius);
+    out.vector(complex.positions[v]);
+    out.number(radii[v]);
     out.text("\n");
     out.end_row();
   }
@@ -132,16 +136,16 @@ void write_ma(const std::filesystem::path& path, const MedialComplex& complex, c
     out.text("\n");
     out.end_row();
   });
-  for (const MedialTriangle& t : complex.triangles) {
+  for (const auto& triangle : complex.triangles) {
     out.text("f");
-    for (const std::uint32_t v : t.vertices) out.number(v);
+    for (const std::uint32_t v : triangle) out.number(v);
     out.text("\n");
     out.end_row();
   }
   out.finish();
 }
 
-MedialFile read_ma(std::string_view text, std::string_view name) {
+Complex read_ma(std::string_view text, std::string_view name) {
   return MaReader(text, name).read();
 }
 

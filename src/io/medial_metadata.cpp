@@ -6,14 +6,14 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "io/field_metadata.hpp"
 #include "io/medial_files.hpp"
 #include "io/text_scan.hpp"
 
 namespace blum::medial_files {
 namespace {
 
-using volume_io::find_value;
-using volume_io::Metadata;
+using Metadata = FileMetadata;
 
 constexpr const char* axis_content = "medial axis";
 
@@ -116,7 +116,7 @@ class PairReader {
 
 }  // namespace
 
-Metadata to_pairs(const MedialMetadata& metadata) {
+FileMetadata to_pairs(const MedialMetadata& metadata) {
   Metadata pairs;
   pairs.emplace_back("content", axis_content);
   if (!metadata.version.empty()) pairs.emplace_back("blum_version", metadata.version);
@@ -135,7 +135,7 @@ Metadata to_pairs(const MedialMetadata& metadata) {
   return pairs;
 }
 
-MedialMetadata from_pairs(const Metadata& pairs, const std::string& name) {
+MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name) {
   const PairReader reader(pairs, name);
   if (const std::string content = reader.text("content"); !content.empty() && content != axis_content) {
     throw FormatError(name + ": the metadata call it '" + content + "', not a medial axis");

@@ -10,21 +10,12 @@
 
 #include "blum/core/error.hpp"
 #include "blum/geometry/weld.hpp"
+#include "blum/io/formats.hpp"
 #include "io/mesh_builder.hpp"
 #include "io/whole_file.hpp"
 
 namespace blum {
 namespace {
-
-struct FormatName {
-  MeshFormat format;
-  std::string_view name;
-  std::string_view extension;
-};
-constexpr std::array<FormatName, 4> formats = {{{MeshFormat::obj, "OBJ", ".obj"},
-                                                {MeshFormat::off, "OFF", ".off"},
-                                                {MeshFormat::stl, "STL", ".stl"},
-                                                {MeshFormat::ply, "PLY", ".ply"}}};
 
 MeshFile parse(std::string_view content, MeshFormat format, std::string_view name) {
   switch (format) {
@@ -52,17 +43,12 @@ void apply_weld(MeshFile& file, const MeshReadOptions& options) {
 }  // namespace
 
 std::optional<MeshFormat> mesh_format(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const FormatName& entry : formats) {
-    if (extension == entry.extension) return entry.format;
-  }
-  return std::nullopt;
+  const auto place = format_by_name(FileContent::mesh, path);
+  return place ? std::optional(static_cast<MeshFormat>(*place)) : std::nullopt;
 }
 
 std::string_view to_string(MeshFormat format) {
-  return formats[static_cast<std::size_t>(format)].name;
+  return format_name(FileContent::mesh, static_cast<std::size_t>(format));
 }
 
 MeshFile read_mesh_file(std::span<const std::byte> data, MeshFormat format, const MeshReadOptions& options,

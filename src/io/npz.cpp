@@ -7,6 +7,24 @@ void NpzWriter::add_text(const std::string& name, const std::string& text) {
   add(name, "U" + std::to_string(text.size()), {}, std::span<const std::uint32_t>(characters));
 }
 
+std::vector<std::string> NpzReader::arrays() const {
+  constexpr std::string_view extension = ".npy";
+  std::vector<std::string> names;
+  for (const ZipEntry& entry : zip_.entries()) {
+    if (!entry.name.ends_with(extension)) continue;
+    names.push_back(entry.name.substr(0, entry.name.size() - extension.size()));
+  }
+  return names;
+}
+
+std::uint64_t NpzReader::packed_size() const {
+  std::uint64_t sum = 0;
+  for (const ZipEntry& entry : zip_.entries()) {
+    sum = entry.packed_size > UINT64_MAX - sum ? UINT64_MAX : sum + entry.packed_size;
+  }
+  return sum;
+}
+
 std::string NpzReader::text(const std::string& array) {
   return read(array, [&](ByteStream& stream, const NpyHeader& header) {
     if (header.kind != NpyHeader::Kind::text || header.count(stream.name()) != 1) {

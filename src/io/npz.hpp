@@ -46,6 +46,10 @@ class NpzReader {
  public:
   explicit NpzReader(const ByteSource& source) : source_(source), zip_(source) {}
 
+  /// The names of the arrays, in the order of the archive's directory.
+  [[nodiscard]] std::vector<std::string> arrays() const;
+  /// Bytes of all entries, as they are packed.
+  [[nodiscard]] std::uint64_t packed_size() const;
   [[nodiscard]] bool has(const std::string& array) const { return zip_.find(array + ".npy") != nullptr; }
 
   /// Reads one array; `use` gets the stream and the header.

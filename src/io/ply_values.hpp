@@ -35,6 +35,11 @@ class PlyText {
     cursor_.skip_space();
     return cursor_.take_number(what);
   }
+  /// Also an infinity or NaN.
+  double any_number(PlyType /*type*/, std::string_view what) {
+    cursor_.skip_space();
+    return cursor_.take_any_number(what);
+  }
   std::int64_t integer(PlyType /*type*/, std::string_view what) {
     cursor_.skip_space();
     return cursor_.take_integer(what);
@@ -88,18 +93,16 @@ class PlyBinary {
 
   double number(PlyType type, std::string_view what) {
     const std::size_t start = position_;
-    double value = 0;
-    if (type == PlyType::float32) {
-      value = std::bit_cast<float>(take<std::uint32_t>());
-    } else if (type == PlyType::float64) {
-      value = std::bit_cast<double>(take<std::uint64_t>());
-    } else if (type == PlyType::uint64) {
-      value = static_cast<double>(take<std::uint64_t>());
-    } else {
-      value = static_cast<double>(integer(type, what));
-    }
+    const double value = any_number(type, what);
     if (!std::isfinite(value)) fail_at(start, "a " + std::string(what) + " is not finite");
     return value;
+  }
+  /// Also an infinity or NaN.
+  double any_number(PlyType type, std::string_view what) {
+    if (type == PlyType::float32) return std::bit_cast<float>(take<std::uint32_t>());
+    if (type == PlyType::float64) return std::bit_cast<double>(take<std::uint64_t>());
+    if (type == PlyType::uint64) return static_cast<double>(take<std::uint64_t>());
+    return static_cast<double>(integer(type, what));
   }
   /// For whole-number types only.
   std::int64_t integer(PlyType type, std::string_view what) {

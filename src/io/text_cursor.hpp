@@ -102,6 +102,15 @@ class TextCursor {
   /// A finite number on this line. `what` names it in messages.
   double take_number(std::string_view what) {
     skip_blanks();
+    const char* const start = position_;
+    const double value = take_number_here(what);
+    if (!std::isfinite(value)) fail_at(start, std::string(what) + " is not finite: " + token_at(start));
+    return value;
+  }
+
+  /// The same, or an infinity or NaN.
+  double take_any_number(std::string_view what) {
+    skip_blanks();
     return take_number_here(what);
   }
 
@@ -168,7 +177,6 @@ class TextCursor {
       fail_at(start, not_what(start, what, "a number"));
     }
     if (!ends_token(last)) fail_at(start, not_what(start, what, "a number"));
-    if (!std::isfinite(value)) fail_at(start, std::string(what) + " is not finite: " + token_at(start));
     position_ = last;
     return value;
   }

@@ -44,6 +44,8 @@ class ZipReader {
  public:
   /// @throws FormatError. The source must outlive the reader and its streams.
   explicit ZipReader(const ByteSource& source);
+  /// In the order of the directory.
+  [[nodiscard]] const std::vector<ZipEntry>& entries() const { return entries_; }
   /// The entry of this name, or null.
   [[nodiscard]] const ZipEntry* find(std::string_view name) const;
   /// @throws FormatError.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "blum/core/phase_timer.hpp"
 #include "blum/core/union_find.hpp"
-#include "blum/field/phase_timer.hpp"
 #include "medial_axis/keep_edges_inside.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/thin_voxels.hpp"
@@ -48,8 +48,8 @@ void make_equal(AxisPiece& piece, double tolerance) {
 /// What is left of a piece at an angle.
 class Remainder {
  public:
-  Remainder(const AxisPiece& piece, double theta, MedialComplex& complex)
-      : piece_(piece), complex_(complex), vertex_(piece.nodes.size(), 0), in_square_(piece.cells.size(), false) {
+  Remainder(const AxisPiece& piece, double theta, AxisLists& lists)
+      : piece_(piece), lists_(lists), vertex_(piece.nodes.size(), 0), in_square_(piece.cells.size(), false) {
     for (std::size_t c = 0; c < piece.cells.size(); ++c) {
       if (piece.cells[c].level > theta) left_.push_back(c);
     }
@@ -70,14 +70,14 @@ class Remainder {
  private:
   void append_vertex(std::size_t node) {
     const std::size_t place = piece_.place_of(node);
-    vertex_[place] = static_cast<std::uint32_t>(complex_.vertices.size());
-    complex_.vertices.push_back(piece_.vertices[place]);
+    vertex_[place] = static_cast<std::uint32_t>(lists_.vertices.size());
+    lists_.vertices.push_back(piece_.vertices[place]);
   }
 
   void append_square(const AxisCell& square) {
     for (std::array<std::uint32_t, 3> places : triangles_of(piece_, square.cell)) {
       for (std::uint32_t& v : places) v = vertex_[v];
-      complex_.triangles.push_back({places, square.angle, 0});
+      lists_.add_triangle(places, square.angle);
     }
     piece_.lattice.for_each_face(square.cell, [&](Cell edge) { in_square_[index_of(piece_.cells, edge)] = true; });
   }
@@ -85,11 +85,11 @@ class Remainder {
   void append_curve(const AxisCell& edge) {
     std::array<std::uint32_t, 2> ends = ends_of(piece_, edge.cell);
     for (std::uint32_t& v : ends) v = vertex_[v];
-    complex_.edges.push_back({ends, edge.angle, MedialRole::curve});
+    lists_.add_edge(ends, edge.angle);
   }
 
   const AxisPiece& piece_;
-  MedialComplex& complex_;
+  AxisLists& lists_;
   std::vector<std::size_t> left_;
   std::vector<std::uint32_t> vertex_;
   std::vector<bool> in_square_;
@@ -155,8 +155,8 @@ AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floo
   return piece;
 }
 
-void append_at(const AxisPiece& piece, double theta, MedialComplex& complex) {
-  Remainder(piece, theta, complex).append();
+void append_at(const AxisPiece& piece, double theta, AxisLists& lists) {
+  Remainder(piece, theta, lists).append();
 }
 
 }  // namespace blum

@@ -8,7 +8,8 @@
 
 #include "blum/core/context.hpp"
 #include "blum/field/field.hpp"
-#include "blum/medial_axis/medial_complex.hpp"
+#include "medial_axis/axis_lists.hpp"
+#include "medial_axis/axis_vertex.hpp"
 #include "medial_axis/cell_complex.hpp"
 #include "medial_axis/collapse.hpp"
 #include "medial_axis/governors.hpp"
@@ -25,9 +26,9 @@ struct AxisCell {
 
 struct AxisPiece {
   CellLattice lattice;
-  std::vector<AxisCell> cells;         ///< by rising cell
-  std::vector<std::uint32_t> nodes;    ///< of the vertices among them, rising
-  std::vector<MedialVertex> vertices;  ///< one per node; sites are the surface's
+  std::vector<AxisCell> cells;       ///< by rising cell
+  std::vector<std::uint32_t> nodes;  ///< of the vertices among them, rising
+  std::vector<AxisVertex> vertices;  ///< one per node; sites are the surface's
 
   /// Where a node is among `nodes`.
   [[nodiscard]] std::size_t place_of(std::size_t node) const;
@@ -42,7 +43,7 @@ struct AxisPiece {
 [[nodiscard]] std::array<std::uint32_t, 2> ends_of(const AxisPiece& piece, Cell edge);
 [[nodiscard]] std::array<std::array<std::uint32_t, 3>, 2> triangles_of(const AxisPiece& piece, Cell square);
 
-/// Adds what is left of a piece at theta to a complex; edges are those of curves only.
-void append_at(const AxisPiece& piece, double theta, MedialComplex& complex);
+/// Adds what is left of a piece at theta; edges are those of curves only.
+void append_at(const AxisPiece& piece, double theta, AxisLists& lists);
 
 }  // namespace blum

@@ -4,8 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <iterator>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "blum/complex/medial_columns.hpp"
 
 namespace blum {
 namespace {
@@ -19,27 +22,22 @@ Pair ordered(std::uint32_t a, std::uint32_t b) {
 }
 
 /// The edges whose ends are at the same place, each once, rising.
-std::vector<Pair> points_of(const MedialComplex& complex) {
+std::vector<Pair> points_of(const Complex& axis, const Incidence& incidence) {
   std::vector<Pair> points;
-  const auto look_at = [&](std::uint32_t a, std::uint32_t b) {
-    if (complex.vertices[a].position == complex.vertices[b].position) points.push_back(ordered(a, b));
-  };
-  for (const MedialTriangle& t : complex.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) look_at(t.vertices[k], t.vertices[(k + 1) % 3]);
+  for (const Pair& edge : incidence.edges()) {
+    if (axis.positions[edge[0]] == axis.positions[edge[1]]) points.push_back(edge);
   }
-  for (const MedialEdge& edge : complex.edges) look_at(edge.vertices[0], edge.vertices[1]);
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
 }
 
 class Contractor {
  public:
-  explicit Contractor(MedialComplex& complex)
-      : complex_(complex),
-        merged_into_(complex.vertices.size(), none),
-        is_triangle_gone_(complex.triangles.size(), false),
-        is_edge_gone_(complex.edges.size(), false) {}
+  Contractor(Complex& axis, const Incidence& incidence)
+      : axis_(axis),
+        incidence_(incidence),
+        merged_into_(axis.positions.size(), none),
+        is_triangle_gone_(axis.triangles.size(), false),
+        is_edge_gone_(axis.edges.size(), false) {}
 
   void contract(std::vector<Pair> points) {
     gather_around(points);
@@ -74,16 +72,16 @@ class Contractor {
 
   /// Of the vertices of points only.
   void gather_around(const std::vector<Pair>& points) {
-    around_.resize(complex_.vertices.size());
-    std::vector<bool> is_wanted(complex_.vertices.size(), false);
+    around_.resize(axis_.positions.size());
+    std::vector<bool> is_wanted(axis_.positions.size(), false);
     for (const Pair& point : points) is_wanted[point[0]] = is_wanted[point[1]] = true;
-    for (std::uint32_t t = 0; t < complex_.triangles.size(); ++t) {
-      for (const std::uint32_t v : complex_.triangles[t].vertices) {
-        if (is_wanted[v]) around_[v].triangles.push_back(t);
-      }
+    for (std::uint32_t v = 0; v < is_wanted.size(); ++v) {
+      if (!is_wanted[v]) continue;
+      const std::span<const std::uint32_t> triangles = incidence_.triangles_of_vertex()[v];
+      around_[v].triangles.assign(triangles.begin(), triangles.end());
     }
-    for (std::uint32_t e = 0; e < complex_.edges.size(); ++e) {
-      for (const std::uint32_t v : complex_.edges[e].vertices) {
+    for (std::uint32_t e = 0; e < axis_.edges.size(); ++e) {
+      for (const std::uint32_t v : axis_.edges[e]) {
         if (is_wanted[v]) around_[v].edges.push_back(e);
       }
     }
@@ -98,14 +96,14 @@ class Contractor {
   template <class Visit>
   void for_each_curve(std::uint32_t v, const Visit& visit) const {
     for (const std::uint32_t e : around_[v].edges) {
-      const Pair& ends = complex_.edges[e].vertices;
+      const Pair& ends = axis_.edges[e];
       if (!is_edge_gone_[e]) visit(e, ends[0] == v ? ends[1] : ends[0]);
     }
   }
 
   /// The other two corners of a triangle.
   [[nodiscard]] Pair opposite(std::uint32_t t, std::uint32_t v) const {
-    const auto& c = complex_.triangles[t].vertices;
+    const auto& c = axis_.triangles[t];
     return c[0] == v ? ordered(c[1], c[2]) : c[1] == v ? ordered(c[2], c[0]) : ordered(c[0], c[1]);
   }
 
@@ -155,15 +153,16 @@ class Contractor {
   /// Moves all of the second vertex to the first one.
   void contract(const Pair& edge) {
     const auto [to, from] = edge;
+    const auto angles = std::as_const(axis_.triangle_columns).get<float>(medial_columns::separation_angle);
     std::vector<std::pair<std::uint32_t, float>> bared;  // third corners of triangles that go
     for_each_triangle(from, [&](std::uint32_t t) {
       const Pair other = opposite(t, from);
       if (other[0] != to && other[1] != to) return;
       is_triangle_gone_[t] = true;
-      bared.emplace_back(other[0] == to ? other[1] : other[0], complex_.triangles[t].separation_angle);
+      bared.emplace_back(other[0] == to ? other[1] : other[0], angles[t]);
     });
     for_each_triangle(from, [&](std::uint32_t t) {
-      for (std::uint32_t& v : complex_.triangles[t].vertices) v = v == from ? to : v;
+      for (std::uint32_t& v : axis_.triangles[t]) v = v == from ? to : v;
       around_[to].triangles.push_back(t);
     });
     for_each_curve(from, [&](std::uint32_t e, std::uint32_t other) {
@@ -171,7 +170,7 @@ class Contractor {
         is_edge_gone_[e] = true;
         return;
       }
-      for (std::uint32_t& v : complex_.edges[e].vertices) v = v == from ? to : v;
+      for (std::uint32_t& v : axis_.edges[e]) v = v == from ? to : v;
       around_[to].edges.push_back(e);
     });
     merged_into_[from] = to;
@@ -182,40 +181,48 @@ class Contractor {
   }
 
   void add_curve(std::uint32_t a, std::uint32_t b, float angle) {
-    const auto e = static_cast<std::uint32_t>(complex_.edges.size());
-    complex_.edges.push_back({{a, b}, angle, MedialRole::curve});
+    const auto e = static_cast<std::uint32_t>(axis_.edges.size());
+    axis_.edges.push_back({a, b});
+    axis_.edge_columns.resize(axis_.edges.size());
+    axis_.edge_columns.edit<float>(medial_columns::separation_angle)[e] = angle;
+    axis_.edge_columns.edit<std::int32_t>(medial_columns::role)[e] = static_cast<std::int32_t>(MedialRole::curve);
     is_edge_gone_.push_back(false);
     for (const std::uint32_t v : {a, b}) around_[v].edges.push_back(e);
   }
 
   /// Takes what is gone out of the complex.
   void sweep() {
-    std::vector<std::uint32_t> number(complex_.vertices.size(), none);
-    std::uint32_t count = 0;
+    std::vector<std::uint32_t> number(axis_.positions.size(), none);
+    std::vector<std::uint32_t> kept;
     for (std::uint32_t v = 0; v < number.size(); ++v) {
       if (merged_into_[v] != none) continue;
-      number[v] = count;
-      complex_.vertices[count++] = complex_.vertices[v];
+      number[v] = static_cast<std::uint32_t>(kept.size());
+      axis_.positions[kept.size()] = axis_.positions[v];
+      kept.push_back(v);
     }
-    complex_.vertices.resize(count);
-    sweep(complex_.triangles, is_triangle_gone_, number);
-    sweep(complex_.edges, is_edge_gone_, number);
+    axis_.positions.resize(kept.size());
+    axis_.vertex_columns = axis_.vertex_columns.pick(kept);
+    sweep(axis_.triangles, axis_.triangle_columns, is_triangle_gone_, number);
+    sweep(axis_.edges, axis_.edge_columns, is_edge_gone_, number);
   }
 
   template <class Cell>
-  static void sweep(std::vector<Cell>& cells, const std::vector<bool>& is_gone,
+  static void sweep(std::vector<Cell>& cells, Columns& columns, const std::vector<bool>& is_gone,
                     const std::vector<std::uint32_t>& number) {
-    std::size_t kept = 0;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t c = 0; c < cells.size(); ++c) {
       if (is_gone[c]) continue;
       Cell cell = cells[c];
-      for (std::uint32_t& v : cell.vertices) v = number[v];
-      cells[kept++] = cell;
+      for (std::uint32_t& v : cell) v = number[v];
+      cells[kept.size()] = cell;
+      kept.push_back(c);
     }
-    cells.resize(kept);
+    cells.resize(kept.size());
+    columns = columns.pick(kept);
   }
 
-  MedialComplex& complex_;
+  Complex& axis_;
+  const Incidence& incidence_;
   std::vector<std::uint32_t> merged_into_;
   std::vector<bool> is_triangle_gone_, is_edge_gone_;
   std::vector<Around> around_;
@@ -223,9 +230,11 @@ class Contractor {
 
 }  // namespace
 
-void contract_points(MedialComplex& complex) {
-  std::vector<Pair> points = points_of(complex);
-  if (!points.empty()) Contractor(complex).contract(std::move(points));
+bool contract_points(Complex& axis, const Incidence& incidence) {
+  std::vector<Pair> points = points_of(axis, incidence);
+  if (points.empty()) return false;
+  Contractor(axis, incidence).contract(std::move(points));
+  return true;
 }
 
 }  // namespace blum

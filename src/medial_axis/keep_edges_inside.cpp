@@ -145,7 +145,7 @@ void keep_edges_inside(AxisPiece& piece, const GovernorField& governors, const C
     if (!is_found) return;
     for (std::size_t v = 0; v < goes_back.size(); ++v) {
       if (goes_back[v] == 0) continue;
-      const MedialVertex corner = vertex_at_corner(governors, piece.lattice.place(piece.nodes[v]));
+      const AxisVertex corner = vertex_at_corner(governors, piece.lattice.place(piece.nodes[v]));
       if (corner.position == piece.vertices[v].position) continue;
       piece.vertices[v] = corner;
       is_done = false;

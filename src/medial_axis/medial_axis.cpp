@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
+#include "blum/complex/incidence.hpp"
 #include "blum/core/exact_text.hpp"
-#include "blum/field/phase_timer.hpp"
+#include "blum/core/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
 #include "medial_axis/axis_piece.hpp"
 #include "medial_axis/contract_points.hpp"
 #include "medial_axis/label_sheets.hpp"
 #include "medial_axis/mesh_surface.hpp"
 #include "medial_axis/nest_pieces.hpp"
-#include "medial_axis/solid_bodies.hpp"
 #include "medial_axis/voxel_surface.hpp"
 #include "medial_axis/voxelize.hpp"
 
@@ -51,6 +52,12 @@ void add(BettiNumbers& sum, const BettiNumbers& part) {
   for (std::size_t k = 0; k < 3; ++k) sum[k] += part[k];
 }
 
+InvalidMesh without_interior(const Solid& solid, double spacing) {
+  if (solid.rule() == SolidRule::polyhedron) return InvalidMesh("the mesh has no interior");
+  return InvalidMesh("the mesh has no interior: no winding number above 1/2 shows at voxels of " + exact_text(spacing) +
+                     (solid.faces_inwards() ? "; its triangles face inwards: flip them" : ""));
+}
+
 }  // namespace
 
 struct MedialAxis::Data {
@@ -68,41 +75,27 @@ class MedialAxisBuilder {
     data_->least_theta = options.least_theta;
   }
 
-  MedialAxis of_mesh(const MeshView& mesh) {
-    validate(mesh);
-    PhaseTimer timer(report().phases);
-    const SiteTable sites(mesh, context_);
-    const SolidBodies split = split_into_bodies(mesh, sites, context_);
-    report().rule = split.rule;
-    report().reason = split.reason;
-    report().turned_shells = split.turned_shells;
-    timer.lap("bodies");
-    const double spacing = options_.spacing.value_or(longest_side(bounds(mesh)) / options_.resolution);
-    if (!(spacing > 0)) throw InvalidMesh("the mesh is a single point, so it has no interior");
-    for (const SolidBody& body : split.bodies) add_body(body, sites, spacing);
+  MedialAxis of(const Solid& solid) {
+    report().rule = solid.rule();
+    report().reason = solid.reason();
+    report().reversed_shells = solid.reversed_shells();
+    if (solid.rule() == SolidRule::voxels) {
+      add_voxels(solid);
+    } else {
+      const double spacing = options_.spacing.value_or(longest_side(solid.box()) / options_.resolution);
+      if (!(spacing > 0)) throw InvalidMesh("the mesh is a single point, so it has no interior");
+      for (const SolidBody& body : solid.bodies()) add_body(solid, body, spacing);
+    }
     return finish();
   }
 
-  MedialAxis of_image(const VoxelImageView& image) {
-    report().rule = SolidRule::voxels;
-    report().reason = "the solid is the union of the selected voxels";
-    std::array<std::int64_t, 3> first{};
+  /// The axis of the solid that make() finds, which counts as a phase.
+  template <class Make>
+  MedialAxis of(const Make& make, const char* phase) {
     PhaseTimer timer(report().phases);
-    Voxelized voxelized = voxelize_image(image, options_.selection, first, context_);
-    timer.lap("voxels");
-    const VoxelSurface surface(voxelized.solid.voxels, voxelized.solid.grid);
-    AxisPiece& piece = add_piece(voxelized, surface, stairs);
-    const auto input_site = [&](SiteId own) {
-      std::array<std::int64_t, 3> at = voxelized.solid.voxels.place(own.value);
-      for (std::size_t a = 0; a < 3; ++a) {
-        at[a] = std::clamp(at[a] + first[a], std::int64_t{0}, image.grid.size[a] - 1);
-      }
-      return SiteId(static_cast<std::uint32_t>(image.grid.index(at[0], at[1], at[2])));
-    };
-    for (MedialVertex& vertex : piece.vertices) {
-      for (SiteId& site : vertex.sites) site = input_site(site);
-    }
-    return finish();
+    const Solid solid = make();
+    timer.lap(phase);
+    return of(solid);
   }
 
  private:
@@ -115,28 +108,43 @@ class MedialAxisBuilder {
     while (true) {
       Voxelized out =
           is_polyhedron ? voxelize_body(body, spacing, context_) : voxelize_by_winding(body.mesh, spacing, context_);
-      const bool is_done = out.report.is_right && out.report.voxel_count > 0;
+      const bool is_done = out.report.topology_matches && out.report.voxel_count > 0;
       if (is_done || !(spacing > finest * (1 + 1e-9))) return out;
       spacing = std::max(0.5 * spacing, finest);
     }
   }
 
-  void add_body(const SolidBody& body, const SiteTable& input_sites, double spacing) {
+  void add_voxels(const Solid& solid) {
+    std::array<std::int64_t, 3> first{};
+    PhaseTimer timer(report().phases);
+    Voxelized voxelized = voxelize_image(solid.voxels(), solid.grid(), first, context_);
+    timer.lap("voxels");
+    const VoxelSurface surface(voxelized.solid.voxels, voxelized.solid.grid);
+    AxisPiece& piece = add_piece(voxelized, surface, stairs);
+    const GridSpec& grid = solid.grid();
+    const auto input_site = [&](SiteId own) {
+      std::array<std::int64_t, 3> at = voxelized.solid.voxels.place(own.value);
+      for (std::size_t a = 0; a < 3; ++a) {
+        at[a] = std::clamp(at[a] + first[a], std::int64_t{0}, grid.size[a] - 1);
+      }
+      return SiteId(static_cast<std::uint32_t>(grid.index(at[0], at[1], at[2])));
+    };
+    for (AxisVertex& vertex : piece.vertices) {
+      for (SiteId& site : vertex.sites) site = input_site(site);
+    }
+  }
+
+  void add_body(const Solid& solid, const SolidBody& body, double spacing) {
     PhaseTimer timer(report().phases);
     Voxelized voxelized = voxelize(body, spacing);
     timer.lap("field and voxels");
-    if (voxelized.report.voxel_count == 0) {
-      throw InvalidMesh(report().rule == SolidRule::polyhedron
-                            ? "the mesh has no interior"
-                            : "the mesh has no interior: no winding number above 1/2 shows at voxels of " +
-                                  exact_text(voxelized.report.spacing));
-    }
+    if (voxelized.report.voxel_count == 0) throw without_interior(solid, voxelized.report.spacing);
     const SiteTable sites(body.mesh, context_);
     const MeshSurface surface(body.mesh, sites, report().rule == SolidRule::polyhedron, context_);
     timer.lap("surface");
     AxisPiece& piece = add_piece(voxelized, surface, NoiseFloor{});
-    for (MedialVertex& vertex : piece.vertices) {
-      for (SiteId& site : vertex.sites) site = body.input_site(site, sites, input_sites);
+    for (AxisVertex& vertex : piece.vertices) {
+      for (SiteId& site : vertex.sites) site = body.input_site(site, sites, solid.sites());
     }
   }
 
@@ -155,8 +163,8 @@ class MedialAxisBuilder {
       add(report().solid, body.solid);
       add(report().voxels, body.voxels);
     }
-    report().is_right = std::all_of(report().bodies.begin(), report().bodies.end(),
-                                    [](const BodyReport& body) { return body.is_right; });
+    report().topology_matches = std::all_of(report().bodies.begin(), report().bodies.end(),
+                                            [](const BodyReport& body) { return body.topology_matches; });
     return MedialAxis(std::move(data_));
   }
 
@@ -174,40 +182,40 @@ const MedialAxisReport& MedialAxis::report() const {
   return data_->report;
 }
 
-MedialComplex MedialAxis::extract(double theta) const {
+Complex MedialAxis::extract(double theta) const {
   if (!(theta >= data_->least_theta && theta <= 180)) {
     throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be " + exact_text(data_->least_theta) +
                         " to 180");
   }
-  MedialComplex complex;
-  for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, complex);
-  contract_points(complex);
-  label_sheets(complex);
+  AxisLists lists;
+  for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, lists);
+  Complex complex = complex_of(std::move(lists));
+  Incidence incidence(complex.view());
+  if (contract_points(complex, incidence)) incidence = Incidence(complex.view());
+  label_sheets(complex, incidence);
   return complex;
 }
 
-NestedComplex MedialAxis::nested() const {
+double MedialAxis::least_theta() const {
+  return data_->least_theta;
+}
+
+Complex MedialAxis::nested() const {
   return nest_pieces(data_->pieces, data_->least_theta);
 }
 
+MedialAxis medial_axis(const Solid& solid, const MedialAxisOptions& options, const Context& context) {
+  return MedialAxisBuilder(options, context).of(solid);
+}
+
 MedialAxis medial_axis(const MeshView& mesh, const MedialAxisOptions& options, const Context& context) {
-  return MedialAxisBuilder(options, context).of_mesh(mesh);
+  MedialAxisBuilder builder(options, context);  // checks the options before anything is computed
+  return builder.of([&] { return Solid::of(mesh, context); }, "bodies");
 }
 
 MedialAxis medial_axis(const VoxelImageView& image, const MedialAxisOptions& options, const Context& context) {
-  return MedialAxisBuilder(options, context).of_image(image);
-}
-
-std::string_view to_string(SolidRule rule) {
-  switch (rule) {
-    case SolidRule::polyhedron:
-      return "polyhedron";
-    case SolidRule::winding:
-      return "winding";
-    case SolidRule::voxels:
-      return "voxels";
-  }
-  return "unknown";
+  MedialAxisBuilder builder(options, context);
+  return builder.of([&] { return Solid::of(image, options.selection, context); }, "voxels");
 }
 
 }  // namespace blum

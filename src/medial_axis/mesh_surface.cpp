@@ -67,7 +67,7 @@ Footprint MeshSurface::footprint(SiteId site, const Vec3d& centre, bool /*is_ins
   return closest_on(sites_.triangle(site).value, centre);
 }
 
-SurfacePoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) const {
+NearestPoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) const {
   const std::optional<NearestSite> found = bvh_.nearest(query);
   if (found) return {found->point, found->distance, found->site, sites_.triangle(found->site).value};
   return {near.point, length(query - near.point), site_of(near), near.element};  // a query that is not finite

@@ -22,8 +22,8 @@ class MeshSurface final : public Surface {
 
   [[nodiscard]] Footprint footprint(SiteId site, const Vec3d& centre, bool is_inside) const override;
   [[nodiscard]] Footprint follow(const Footprint& start, const Vec3d& query, double reach) const override;
-  [[nodiscard]] SurfacePoint nearest(const Vec3d& query, const Footprint& near) const override;
-  [[nodiscard]] bool is_inside(const Vec3d& query, const SurfacePoint& nearest) const override {
+  [[nodiscard]] NearestPoint nearest(const Vec3d& query, const Footprint& near) const override;
+  [[nodiscard]] bool is_inside(const Vec3d& query, const NearestPoint& nearest) const override {
     return bounds_solid_ && nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
   }
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;

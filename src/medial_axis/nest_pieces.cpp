@@ -4,32 +4,19 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <span>
+#include <string>
+#include <string_view>
 #include <unordered_map>
+#include <utility>
 
+#include "blum/complex/incidence.hpp"
+#include "blum/complex/medial_columns.hpp"
 #include "medial_axis/label_sheets.hpp"
 
 namespace blum {
 namespace {
 
 using Pair = std::array<std::uint32_t, 2>;
-
-/// A pair of vertices that a cell joins until some angle.
-struct Side {
-  Pair vertices;  ///< smaller first
-  float until;
-  float angle;
-};
-
-Side make_side(std::uint32_t a, std::uint32_t b, const AxisCell& cell) {
-  return {{std::min(a, b), std::max(a, b)}, cell.level, cell.angle};
-}
-
-void sort(std::vector<Side>& sides) {
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.vertices != b.vertices ? a.vertices < b.vertices : a.until > b.until;
-  });
-}
 
 struct HashOfPlace {
   std::size_t operator()(const Vec3d& p) const {
@@ -40,9 +27,20 @@ struct HashOfPlace {
   }
 };
 
+/// How long something is there, and how important it is.
+struct Stay {
+  float until = 0;
+  float angle = 0;
+
+  void extend(const Stay& other) {
+    until = std::max(until, other.until);
+    angle = std::max(angle, other.angle);
+  }
+};
+
 class Nest {
  public:
-  explicit Nest(double least_theta) { nested_.least_theta = least_theta; }
+  explicit Nest(double least_theta) : least_theta_(least_theta) {}
 
   void add(const AxisPiece& piece) {
     std::vector<std::uint32_t> vertex(piece.vertices.size(), 0);
@@ -65,32 +63,37 @@ class Nest {
     }
   }
 
-  NestedComplex finish() {
-    sort(sides_);
-    sort(threads_);
+  Complex finish() {
     add_edges();
-    label();
-    return std::move(nested_);
+    Complex nested = labelled();
+    set_edges(nested);
+    add_level(nested.vertex_columns, medial_columns::until, std::move(vertex_until_));
+    add_level(nested.edge_columns, medial_columns::from, std::move(edge_from_));
+    add_level(nested.edge_columns, medial_columns::until, std::move(edge_until_));
+    add_level(nested.triangle_columns, medial_columns::until, std::move(triangle_until_));
+    return nested;
   }
 
  private:
-  [[nodiscard]] bool is_there(const AxisCell& cell) const { return cell.level > nested_.least_theta; }
+  [[nodiscard]] bool is_there(const AxisCell& cell) const { return cell.level > least_theta_; }
 
-  std::uint32_t vertex_at(const MedialVertex& vertex, float until) {
-    const auto next = static_cast<std::uint32_t>(nested_.vertices.size());
+  std::uint32_t vertex_at(const AxisVertex& vertex, float until) {
+    const auto next = static_cast<std::uint32_t>(lists_.vertices.size());
     const auto [entry, is_new] = place_.try_emplace(vertex.position, next);
     if (is_new) {
-      nested_.vertices.push_back(vertex);
-      nested_.vertex_until.push_back(until);
+      lists_.vertices.push_back(vertex);
+      vertex_until_.push_back(until);
     } else {
-      float& known = nested_.vertex_until[entry->second];
+      float& known = vertex_until_[entry->second];
       known = std::max(known, until);
     }
     return entry->second;
   }
 
   void add_thread(std::uint32_t a, std::uint32_t b, const AxisCell& cell) {
-    if (a != b) threads_.push_back(make_side(a, b, cell));
+    if (a == b) return;
+    threads_.push_back({a, b});
+    stays_.push_back({cell.level, cell.angle});
   }
 
   /// One without extent is as good as its sides.
@@ -102,81 +105,81 @@ class Nest {
       add_thread(c, a, cell);
       return;
     }
-    nested_.triangles.push_back({corners, cell.angle, cell.level, 0});
-    for (std::size_t k = 0; k < 3; ++k) sides_.push_back(make_side(corners[k], corners[(k + 1) % 3], cell));
+    lists_.add_triangle(corners, cell.angle);
+    triangle_until_.push_back(cell.level);
   }
 
-  /// Gives a pair its roles: a seam while it has three triangles, a rim while it has one, a curve when it has none.
-  /// @param sides  of its triangles, falling.  @param until  when the pair itself goes.
-  void add_roles(const Pair& pair, std::span<const Side> sides, float until, float thread_angle) {
-    const auto until_of = [&](std::size_t k) { return k < sides.size() ? sides[k].until : 0; };
-    float angle = 0;
-    for (const Side& side : sides) angle = std::max(angle, side.angle);
-    const auto add = [&](MedialRole role, float from, float to) {
-      if (to > from) nested_.edges.push_back({pair, role == MedialRole::curve ? thread_angle : angle, role, from, to});
-    };
-    add(MedialRole::seam, 0, until_of(2));
-    add(MedialRole::rim, until_of(1), until_of(0));
-    add(MedialRole::curve, until_of(0), until);
-  }
-
+  /// Gives each pair of vertices that anything joins its roles: a seam while it has three triangles, a rim while it has
+  /// one, a curve when it has none.
   void add_edges() {
-    std::size_t s = 0;
+    const Incidence incidence({lists_.vertices.size(), threads_, lists_.triangles});
     // Every side of a triangle is a thread, too, but for diagonals.
-    const auto roles_before = [&](const Pair* limit) {
-      while (s < sides_.size() && (limit == nullptr || sides_[s].vertices < *limit)) {
-        const std::size_t end = end_of(sides_, s);
-        add_roles(sides_[s].vertices, std::span(sides_).subspan(s, end - s), 0, 0);
-        s = end;
-      }
-    };
-    for (std::size_t t = 0; t < threads_.size();) {
-      const std::size_t end = end_of(threads_, t);
-      const Side& thread = threads_[t];
+    std::vector<Stay> threads(incidence.edges().size());
+    for (std::size_t t = 0; t < threads_.size(); ++t) threads[incidence.edge_of_listed()[t]].extend(stays_[t]);
+    std::vector<float> untils;  // of the triangles at an edge, falling
+    for (std::size_t e = 0; e < threads.size(); ++e) {
+      untils.clear();
       float angle = 0;
-      for (std::size_t k = t; k < end; ++k) angle = std::max(angle, threads_[k].angle);
-      roles_before(&thread.vertices);
-      const bool has_sides = s < sides_.size() && sides_[s].vertices == thread.vertices;
-      const std::size_t end_of_sides = has_sides ? end_of(sides_, s) : s;
-      add_roles(thread.vertices, std::span(sides_).subspan(s, end_of_sides - s), thread.until, angle);
-      s = end_of_sides;
-      t = end;
+      for (const std::uint32_t t : incidence.triangles_of_edge()[e]) {
+        untils.push_back(triangle_until_[t]);
+        angle = std::max(angle, lists_.triangle_angles[t]);
+      }
+      std::sort(untils.begin(), untils.end(), std::greater<>());
+      const auto until_of = [&](std::size_t k) { return k < untils.size() ? untils[k] : 0; };
+      const Pair& pair = incidence.edges()[e];
+      add_role(pair, MedialRole::seam, angle, 0, until_of(2));
+      add_role(pair, MedialRole::rim, angle, until_of(1), until_of(0));
+      add_role(pair, MedialRole::curve, threads[e].angle, until_of(0), threads[e].until);
     }
-    roles_before(nullptr);
   }
 
-  static std::size_t end_of(const std::vector<Side>& sides, std::size_t first) {
-    std::size_t end = first;
-    while (end < sides.size() && sides[end].vertices == sides[first].vertices) ++end;
-    return end;
+  void add_role(const Pair& pair, MedialRole role, float angle, float from, float until) {
+    if (!(until > from)) return;
+    edges_.push_back(pair);
+    edge_angles_.push_back(angle);
+    edge_roles_.push_back(static_cast<std::int32_t>(role));
+    edge_from_.push_back(from);
+    edge_until_.push_back(until);
   }
 
-  /// Sheets and roles at the least angle.
-  void label() {
-    MedialComplex complex;
-    complex.vertices = std::move(nested_.vertices);
-    for (const NestedTriangle& t : nested_.triangles) {
-      complex.triangles.push_back({t.vertices, t.separation_angle, 0});
+  /// Vertices and triangles with their sheets and roles at the least angle.
+  Complex labelled() {
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const bool is_curve = edge_roles_[e] == static_cast<std::int32_t>(MedialRole::curve);
+      if (is_curve && edge_from_[e] <= least_theta_) lists_.add_edge(edges_[e], edge_angles_[e]);
     }
-    for (const NestedEdge& edge : nested_.edges) {
-      const bool is_curve = edge.role == MedialRole::curve && edge.from <= nested_.least_theta;
-      if (is_curve) complex.edges.push_back({edge.vertices, edge.separation_angle, edge.role});
-    }
-    label_sheets(complex);
-    nested_.vertices = std::move(complex.vertices);
-    nested_.sheet_count = complex.sheet_count;
-    for (std::size_t t = 0; t < nested_.triangles.size(); ++t) nested_.triangles[t].sheet = complex.triangles[t].sheet;
+    Complex complex = complex_of(std::move(lists_));
+    label_sheets(complex, Incidence(complex.view()));
+    return complex;
   }
 
-  NestedComplex nested_;
+  /// Puts the edges of all angles in the place of those of the least.
+  void set_edges(Complex& nested) {
+    nested.edges = std::move(edges_);
+    nested.edge_columns = Columns(nested.edges.size());
+    nested.edge_columns.add({std::string(medial_columns::separation_angle), 1, std::move(edge_angles_)});
+    nested.edge_columns.add({std::string(medial_columns::role), 1, std::move(edge_roles_)});
+  }
+
+  static void add_level(Columns& columns, std::string_view name, std::vector<float> levels) {
+    columns.add({std::string(name), 1, std::move(levels)});
+  }
+
+  double least_theta_;
+  AxisLists lists_;  ///< vertices and triangles
   std::unordered_map<Vec3d, std::uint32_t, HashOfPlace> place_;
-  std::vector<Side> sides_;    ///< of triangles
-  std::vector<Side> threads_;  ///< edges, and sides of triangles without extent
+  std::vector<float> vertex_until_, triangle_until_;
+  std::vector<Pair> threads_;  ///< edges, and sides of triangles without extent
+  std::vector<Stay> stays_;    ///< of the threads
+  // The edges of the result.
+  std::vector<Pair> edges_;
+  std::vector<float> edge_angles_, edge_from_, edge_until_;
+  std::vector<std::int32_t> edge_roles_;
 };
 
 }  // namespace
 
-NestedComplex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta) {
+Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta) {
   Nest nest(least_theta);
   for (const AxisPiece& piece : pieces) nest.add(piece);
   return nest.finish();

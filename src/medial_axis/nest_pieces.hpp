@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "blum/medial_axis/nested_complex.hpp"
+#include "blum/complex/complex.hpp"
 #include "medial_axis/axis_piece.hpp"
 
 namespace blum {
 
 /// What append_at() and contract_points() make of pieces at the angles from `least_theta` on.
-[[nodiscard]] NestedComplex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta);
+[[nodiscard]] Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta);
 
 }  // namespace blum

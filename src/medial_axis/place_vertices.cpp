@@ -52,8 +52,8 @@ Vec3d corner_at(const GridSpec& grid, const std::array<std::int64_t, 3>& node) {
   return grid.position(node[0], node[1], node[2]) - grid.direction * (grid.spacing * 0.5);
 }
 
-MedialVertex vertex_of_one_wall(const Vec3d& x, const SurfacePoint& nearest) {
-  MedialVertex vertex;
+AxisVertex vertex_of_one_wall(const Vec3d& x, const NearestPoint& nearest) {
+  AxisVertex vertex;
   vertex.position = x;
   vertex.radius = nearest.distance;
   vertex.footprints = {nearest.point, nearest.point};
@@ -61,8 +61,8 @@ MedialVertex vertex_of_one_wall(const Vec3d& x, const SurfacePoint& nearest) {
   return vertex;
 }
 
-MedialVertex vertex_on_surface(const SurfacePoint& nearest) {
-  MedialVertex vertex = vertex_of_one_wall(nearest.point, nearest);
+AxisVertex vertex_on_surface(const NearestPoint& nearest) {
+  AxisVertex vertex = vertex_of_one_wall(nearest.point, nearest);
   vertex.radius = 0;
   return vertex;
 }
@@ -123,14 +123,14 @@ struct Placed {
   Vec3d x;
   Footprint p;
   Footprint q;
-  SurfacePoint nearest;  ///< to x
+  NearestPoint nearest;  ///< to x
 };
 
 class Placer {
  public:
   explicit Placer(const GovernorField& governors) : governors_(governors), surface_(governors.surface()) {}
 
-  [[nodiscard]] MedialVertex place(const std::array<std::int64_t, 3>& node) const {
+  [[nodiscard]] AxisVertex place(const std::array<std::int64_t, 3>& node) const {
     const GridSpec& grid = governors_.solid().grid;
     const GovernorsAround around = governors_.around(node);
     const Vec3d corner = corner_at(grid, node);
@@ -159,11 +159,11 @@ class Placer {
   }
 
   /// The corner itself where it is what joins voxels of an image: elsewhere edges would leave the solid there.
-  [[nodiscard]] std::optional<MedialVertex> joint_at(const GovernorsAround& around, const Vec3d& corner) const {
+  [[nodiscard]] std::optional<AxisVertex> joint_at(const GovernorsAround& around, const Vec3d& corner) const {
     unsigned inside = 0;
     for (unsigned v = 0; v < 8; ++v) inside |= around[v].is_inside ? 1U << v : 0U;
     if (are_joined_by_faces(inside)) return std::nullopt;
-    const SurfacePoint nearest = surface_.nearest(corner, around[0].foot);
+    const NearestPoint nearest = surface_.nearest(corner, around[0].foot);
     if (nearest.distance > on_surface * governors_.voxel()) return std::nullopt;
     return vertex_on_surface(nearest);
   }
@@ -208,7 +208,7 @@ class Placer {
   }
 
   /// Whether a point is in the solid: balls around it and around a voxel's centre that meet say so without more ado.
-  [[nodiscard]] bool is_inside(const GovernorsAround& around, const Vec3d& x, const SurfacePoint& nearest) const {
+  [[nodiscard]] bool is_inside(const GovernorsAround& around, const Vec3d& x, const NearestPoint& nearest) const {
     const bool meets = std::any_of(around.begin(), around.end(), [&](const Governor& g) {
       return g.is_inside && length(x - g.centre) < nearest.distance + length(g.centre - g.foot.point);
     });
@@ -216,11 +216,11 @@ class Placer {
   }
 
   /// The vertex at a point, if that is inside: the exact closest point, and the other wall's where it is as close.
-  [[nodiscard]] std::optional<MedialVertex> vertex_at(const std::optional<Placed>& placed,
-                                                      const GovernorsAround& around) const {
+  [[nodiscard]] std::optional<AxisVertex> vertex_at(const std::optional<Placed>& placed,
+                                                    const GovernorsAround& around) const {
     // On the surface, at a convex edge say, directions are rounding.
     if (!placed || placed->nearest.distance < least_radius * governors_.voxel()) return std::nullopt;
-    MedialVertex vertex = vertex_of_one_wall(placed->x, placed->nearest);
+    AxisVertex vertex = vertex_of_one_wall(placed->x, placed->nearest);
     if (!is_inside(around, placed->x, placed->nearest)) return std::nullopt;
     const double limit = vertex.radius + 1e-6 * governors_.voxel() + 1e-9 * vertex.radius;
     for (const Footprint& foot : {placed->p, placed->q}) {
@@ -235,10 +235,10 @@ class Placer {
   }
 
   /// The middle of a thin part next to a corner beyond the surface.
-  [[nodiscard]] std::optional<MedialVertex> in_thin_part(const SurfacePoint& touched, const Vec3d& corner) const {
+  [[nodiscard]] std::optional<AxisVertex> in_thin_part(const NearestPoint& touched, const Vec3d& corner) const {
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, touched, corner, 2 * governors_.longest_voxel());
     if (!ball) return std::nullopt;
-    MedialVertex vertex = vertex_of_one_wall(ball->centre, ball->nearest);
+    AxisVertex vertex = vertex_of_one_wall(ball->centre, ball->nearest);
     vertex.footprints[1] = ball->other.point;
     vertex.sites[1] = ball->other.site;
     vertex.separation_angle = ball->angle;
@@ -247,8 +247,8 @@ class Placer {
 
   /// Where no bisector is within reach: at the corner; where that is outside, in the middle of a thin part next to it;
   /// else at the deepest voxel's centre; on the surface where that is outside, too.
-  [[nodiscard]] MedialVertex without_bisector(const GovernorsAround& around, const Vec3d& corner) const {
-    const SurfacePoint nearest = surface_.nearest(corner, around[0].foot);
+  [[nodiscard]] AxisVertex without_bisector(const GovernorsAround& around, const Vec3d& corner) const {
+    const NearestPoint nearest = surface_.nearest(corner, around[0].foot);
     if (is_inside(around, corner, nearest)) return vertex_of_one_wall(corner, nearest);
     if (const auto vertex = in_thin_part(nearest, corner)) return *vertex;
     const auto depth = [](const Governor& g) {
@@ -267,17 +267,17 @@ class Placer {
 
 }  // namespace
 
-MedialVertex vertex_at_corner(const GovernorField& governors, const std::array<std::int64_t, 3>& node) {
+AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std::int64_t, 3>& node) {
   const Vec3d corner = corner_at(governors.solid().grid, node);
-  const SurfacePoint nearest = governors.surface().nearest(corner, governors.around(node)[0].foot);
+  const NearestPoint nearest = governors.surface().nearest(corner, governors.around(node)[0].foot);
   return nearest.distance > on_surface * governors.voxel() ? vertex_of_one_wall(corner, nearest)
                                                            : vertex_on_surface(nearest);
 }
 
-std::vector<MedialVertex> place_vertices(const GovernorField& governors, const CellLattice& lattice,
-                                         const std::vector<std::uint32_t>& nodes, const Context& context) {
+std::vector<AxisVertex> place_vertices(const GovernorField& governors, const CellLattice& lattice,
+                                       const std::vector<std::uint32_t>& nodes, const Context& context) {
   const Placer placer(governors);
-  std::vector<MedialVertex> vertices(nodes.size());
+  std::vector<AxisVertex> vertices(nodes.size());
   parallel_for(context, nodes.size(), nodes_per_range, "vertices", [&](const WorkRange& range) {
     for (std::size_t n = range.begin; n < range.end; ++n) vertices[n] = placer.place(lattice.place(nodes[n]));
   });

@@ -251,7 +251,7 @@ class Measure {
     }
     if (largest > 0 || inside != 0) return largest;
     // A wire may be too thin for the footprints to tell its middle.
-    const SurfacePoint nearest = surface_.nearest(middle, governors[0]->foot);
+    const NearestPoint nearest = surface_.nearest(middle, governors[0]->foot);
     if (nearest.distance > step_ || surface_.is_inside(middle, nearest)) return 0;
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, nearest, middle, step_);
     if (!ball || !is_near(ball->centre, middle, wire_reach)) return 0;
@@ -361,7 +361,7 @@ class Measure {
     const double distance = length(away);
     if (!(distance > 0)) return foot.point;
     const Vec3d beyond = x + away * (std::min(opposite_step * voxel_, 0.5 * distance) / distance);
-    const SurfacePoint there = surface_.nearest(beyond, foot);
+    const NearestPoint there = surface_.nearest(beyond, foot);
     return surface_.follow({there.point, there.element, 7}, x, reach_around_axis * voxel_).point;
   }
 

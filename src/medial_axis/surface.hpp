@@ -17,7 +17,7 @@ struct Footprint {
 };
 
 /// The closest point of a surface, exactly.
-struct SurfacePoint {
+struct NearestPoint {
   Vec3d point;
   double distance = 0;
   SiteId site;
@@ -45,10 +45,10 @@ class Surface {
   [[nodiscard]] virtual Footprint follow(const Footprint& start, const Vec3d& query, double reach) const = 0;
 
   /// The closest point of the whole surface. @param near  a footprint that is about as close.
-  [[nodiscard]] virtual SurfacePoint nearest(const Vec3d& query, const Footprint& near) const = 0;
+  [[nodiscard]] virtual NearestPoint nearest(const Vec3d& query, const Footprint& near) const = 0;
 
   /// Whether a point is in the solid. @param nearest  its closest point of the surface.
-  [[nodiscard]] virtual bool is_inside(const Vec3d& query, const SurfacePoint& nearest) const = 0;
+  [[nodiscard]] virtual bool is_inside(const Vec3d& query, const NearestPoint& nearest) const = 0;
 
   /// The site that a footprint lies on.
   [[nodiscard]] virtual SiteId site_of(const Footprint& foot) const = 0;

@@ -16,22 +16,22 @@ constexpr int most_climbs = 3;
 /// Of the sum of the directions from both walls, where the walls are not opposite: 150 degrees between them.
 constexpr double least_slope = 0.5;
 
-Footprint footprint_of(const SurfacePoint& at) {
+Footprint footprint_of(const NearestPoint& at) {
   return {at.point, at.element, 7};
 }
 
 /// The largest ball that touches the surface where the one around a point inside does.
-std::optional<ThinBall> touching_ball(const Surface& surface, const SurfacePoint& touched, const Vec3d& inside,
+std::optional<ThinBall> touching_ball(const Surface& surface, const NearestPoint& touched, const Vec3d& inside,
                                       double radius) {
   const Vec3d inwards = (inside - touched.point) / touched.distance;
-  SurfacePoint other = touched;
+  NearestPoint other = touched;
   for (int step = 0; step < most_steps; ++step) {
     const Vec3d x = touched.point + inwards * radius;
-    const SurfacePoint nearest = surface.nearest(x, footprint_of(other));
+    const NearestPoint nearest = surface.nearest(x, footprint_of(other));
     if (nearest.distance >= radius * (1 - 1e-10)) {
       if (step == 0 || !surface.is_inside(x, nearest)) return std::nullopt;
       ThinBall ball{x, nearest, nearest, 0};
-      for (const SurfacePoint& wall : {touched, other}) {
+      for (const NearestPoint& wall : {touched, other}) {
         const double angle = angle_at(x, nearest.point, wall.point);
         if (angle <= std::max(ball.angle, least_angle)) continue;
         ball.other = wall;
@@ -51,15 +51,15 @@ std::optional<ThinBall> touching_ball(const Surface& surface, const SurfacePoint
 /// The deepest of some points on a ray into the solid.
 struct Deepest {
   Vec3d point;
-  SurfacePoint nearest;  ///< at distance 0 where none is inside
+  NearestPoint nearest;  ///< at distance 0 where none is inside
 };
 
 Deepest deepest_along(const Surface& surface, const Vec3d& from, const Vec3d& direction, double furthest,
-                      const SurfacePoint& near) {
+                      const NearestPoint& near) {
   Deepest best;
   for (int n = 0; n < most_depths; ++n, furthest *= 0.75) {
     const Vec3d x = from + direction * furthest;
-    const SurfacePoint nearest = surface.nearest(x, footprint_of(near));
+    const NearestPoint nearest = surface.nearest(x, footprint_of(near));
     if (nearest.distance <= best.nearest.distance || !surface.is_inside(x, nearest)) continue;
     best = {x, nearest};
   }
@@ -79,7 +79,7 @@ std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, doub
 
 }  // namespace
 
-std::optional<ThinBall> thin_ball_behind(const Surface& surface, const SurfacePoint& touched, const Vec3d& beyond,
+std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched, const Vec3d& beyond,
                                          double radius) {
   if (!(touched.distance > 0)) return std::nullopt;
   const Vec3d inwards = (touched.point - beyond) / touched.distance;

@@ -10,8 +10,8 @@ namespace blum {
 /// A ball in the solid that touches the surface in two points, or in one.
 struct ThinBall {
   Vec3d centre;
-  SurfacePoint nearest;  ///< to the centre
-  SurfacePoint other;    ///< as far, on another wall; the nearest point again where none shows
+  NearestPoint nearest;  ///< to the centre
+  NearestPoint other;    ///< as far, on another wall; the nearest point again where none shows
   double angle = 0;      ///< between the two, degrees
 };
 
@@ -20,7 +20,7 @@ struct ThinBall {
 /// nearest neighbors and the normal field", 2012), and from there towards larger ones.
 /// @param touched  the closest point of the surface.
 /// @param radius   mesh units; nullopt where the ball would be larger, and where nothing behind is inside.
-[[nodiscard]] std::optional<ThinBall> thin_ball_behind(const Surface& surface, const SurfacePoint& touched,
+[[nodiscard]] std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched,
                                                        const Vec3d& beyond, double radius);
 
 }  // namespace blum

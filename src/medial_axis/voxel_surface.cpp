@@ -49,7 +49,7 @@ struct VoxelSurface::Search {
 };
 
 VoxelSurface::VoxelSurface(const VoxelSet& voxels, const GridSpec& grid) : voxels_(voxels), grid_(grid) {
-  Place size = voxels.size();
+  VoxelIndex size = voxels.size();
   do {
     Level level;
     for (std::size_t a = 0; a < 3; ++a) level.size[a] = blocks(size[a], branching);
@@ -73,8 +73,8 @@ VoxelSurface::VoxelSurface(const VoxelSet& voxels, const GridSpec& grid) : voxel
   } while (std::max({size[0], size[1], size[2]}) > 1);
 }
 
-unsigned VoxelSurface::others_in_row(const Place& middle) const {
-  const Place& size = voxels_.size();
+unsigned VoxelSurface::others_in_row(const VoxelIndex& middle) const {
+  const VoxelIndex& size = voxels_.size();
   if (middle[1] < 0 || middle[1] >= size[1] || middle[2] < 0 || middle[2] >= size[2]) return 0;
   const std::span<const std::uint64_t> row = voxels_.row(middle[1], middle[2]);
   // Rows end in bits of no voxel, so that the word after that of a voxel is there where the next voxel is.
@@ -98,7 +98,7 @@ Vec3d VoxelSurface::world(const Vec3d& local) const {
   return grid_.origin + grid_.direction * (local - grid_.spacing * 0.5);
 }
 
-Vec3d VoxelSurface::closest_in(const Place& lower, std::int64_t side, const Vec3d& query) const {
+Vec3d VoxelSurface::closest_in(const VoxelIndex& lower, std::int64_t side, const Vec3d& query) const {
   Vec3d out;
   for (std::size_t a = 0; a < 3; ++a) {
     const double low = static_cast<double>(lower[a]) * grid_.spacing[a];
@@ -111,13 +111,13 @@ Vec3d VoxelSurface::closest_in(const Place& lower, std::int64_t side, const Vec3
 Footprint VoxelSurface::footprint(SiteId site, const Vec3d& centre, bool is_inside) const {
   if (is_inside) return {world(closest_in(voxels_.place(site.value), 1, local(centre))), site.value, 7};
   // A voxel beyond the surface stands for itself, where it faces the solid.
-  const Place& size = voxels_.size();
+  const VoxelIndex& size = voxels_.size();
   const Vec3d at = local(centre);
-  Place own{};
+  VoxelIndex own{};
   for (std::size_t a = 0; a < 3; ++a) {
     own[a] = std::clamp(static_cast<std::int64_t>(at[a] / grid_.spacing[a]), std::int64_t{0}, size[a] - 1);
   }
-  const Place other = voxels_.place(site.value);
+  const VoxelIndex other = voxels_.place(site.value);
   const Vec3d goal = closest_in(other, 1, at);
   return {world(closest_in(own, 1, goal)), static_cast<std::uint32_t>((own[2] * size[1] + own[1]) * size[0] + own[0]),
           7};
@@ -132,24 +132,24 @@ std::optional<Vec3d> VoxelSurface::rough_footprint(SiteId site) const {
 Footprint VoxelSurface::follow(const Footprint& start, const Vec3d& query, double reach) const {
   const Vec3d at = local(query);
   const Vec3d from = local(start.point);
-  Place best = voxels_.place(start.element);
+  VoxelIndex best = voxels_.place(start.element);
   Vec3d best_point = closest_in(best, 1, at);
   double best_squared = squared_length(at - best_point);
   for (int step = 0; step < most_steps; ++step) {
     const int next = closer_neighbour(best, at, best_squared);
     if (next < 0) break;
-    const Place to{best[0] + next % 3 - 1, best[1] + next / 3 % 3 - 1, best[2] + next / 9 - 1};
+    const VoxelIndex to{best[0] + next % 3 - 1, best[1] + next / 3 % 3 - 1, best[2] + next / 9 - 1};
     const Vec3d point = closest_in(to, 1, at);
     if (squared_length(point - from) > reach * reach) break;
     best = to;
     best_point = point;
     best_squared = squared_length(at - point);
   }
-  const Place& size = voxels_.size();
+  const VoxelIndex& size = voxels_.size();
   return {world(best_point), static_cast<std::uint32_t>((best[2] * size[1] + best[1]) * size[0] + best[0]), 7};
 }
 
-int VoxelSurface::closer_neighbour(const Place& voxel, const Vec3d& query, double squared) const {
+int VoxelSurface::closer_neighbour(const VoxelIndex& voxel, const Vec3d& query, double squared) const {
   Axes axes;
   for (std::size_t a = 0; a < 3; ++a) {
     const double low = static_cast<double>(voxel[a]) * grid_.spacing[a];
@@ -162,7 +162,7 @@ int VoxelSurface::closer_neighbour(const Place& voxel, const Vec3d& query, doubl
   }
   const int best = closest_of(voxel, axes, squared);
   if (best < 0) return best;
-  const Place to{voxel[0] + best % 3 - 1, voxel[1] + best / 3 % 3 - 1, voxel[2] + best / 9 - 1};
+  const VoxelIndex to{voxel[0] + best % 3 - 1, voxel[1] + best / 3 % 3 - 1, voxel[2] + best / 9 - 1};
   const Vec3d from_foot = query - closest_in(voxel, 1, query);
   const Vec3d from_next = query - closest_in(to, 1, query);
   const double next_squared = squared_length(from_next);
@@ -176,7 +176,7 @@ int VoxelSurface::closer_neighbour(const Place& voxel, const Vec3d& query, doubl
   return closest_of(voxel, axes, squared);
 }
 
-int VoxelSurface::closest_of(const Place& voxel, const Axes& axes, double squared) const {
+int VoxelSurface::closest_of(const VoxelIndex& voxel, const Axes& axes, double squared) const {
   const auto& [part, allowed] = axes;
   int best = -1;
   double least = squared * (1 - 1e-12);
@@ -196,7 +196,7 @@ int VoxelSurface::closest_of(const Place& voxel, const Axes& axes, double square
   return best;
 }
 
-void VoxelSurface::search(Search& best, std::size_t level, const Place& block) const {
+void VoxelSurface::search(Search& best, std::size_t level, const VoxelIndex& block) const {
   unsigned parts = levels_[level].parts[levels_[level].index(block)];
   // Squared distances along each axis to the first and the second part.
   const auto side = static_cast<double>(std::int64_t{1} << level);
@@ -211,7 +211,7 @@ void VoxelSurface::search(Search& best, std::size_t level, const Place& block) c
   }
   struct Part {
     double squared;
-    Place at;
+    VoxelIndex at;
   };
   std::array<Part, 8> nearer;
   std::size_t count = 0;
@@ -220,15 +220,15 @@ void VoxelSurface::search(Search& best, std::size_t level, const Place& block) c
     const double squared = squares[0][n & 1U] + squares[1][n >> 1U & 1U] + squares[2][n >> 2U];
     if (squared > best.squared) continue;
     const auto bit = static_cast<std::int64_t>(n);
-    const Place at{branching * block[0] + (bit & 1), branching * block[1] + (bit >> 1 & 1),
-                   branching * block[2] + (bit >> 2)};
+    const VoxelIndex at{branching * block[0] + (bit & 1), branching * block[1] + (bit >> 1 & 1),
+                        branching * block[2] + (bit >> 2)};
     if (level > 0) {
       std::size_t place = count++;
       for (; place > 0 && nearer[place - 1].squared > squared; --place) nearer[place] = nearer[place - 1];
       nearer[place] = {squared, at};
       continue;
     }
-    const Place& size = voxels_.size();
+    const VoxelIndex& size = voxels_.size();
     const auto voxel = static_cast<std::uint32_t>((at[2] * size[1] + at[1]) * size[0] + at[0]);
     if (squared == best.squared && voxel >= best.voxel) continue;
     best.squared = squared;
@@ -237,7 +237,7 @@ void VoxelSurface::search(Search& best, std::size_t level, const Place& block) c
   for (std::size_t p = 0; p < count && nearer[p].squared <= best.squared; ++p) search(best, level - 1, nearer[p].at);
 }
 
-SurfacePoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) const {
+NearestPoint VoxelSurface::nearest(const Vec3d& query, const Footprint& near) const {
   Search best;
   best.query = local(query);
   // Slightly more than what is known is enough to begin with.

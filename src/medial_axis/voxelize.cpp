@@ -8,6 +8,9 @@
 
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/field/distance_transform.hpp"
+#include "blum/field/field.hpp"
+#include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
 #include "medial_axis/topology_repair.hpp"
 
@@ -102,7 +105,7 @@ BodyReport report_of(const VoxelSolid& solid, const Context& context) {
   BodyReport report;
   report.voxels = betti_numbers(solid.voxels, context);
   report.solid = report.voxels;
-  report.is_right = true;
+  report.topology_matches = true;
   report.spacing = std::min({solid.grid.spacing.x, solid.grid.spacing.y, solid.grid.spacing.z});
   report.voxel_count = solid.voxels.count();
   return report;
@@ -120,7 +123,7 @@ Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& co
   BodyReport& report = out.report;
   report.solid = body.betti;
   report.voxels = repair.betti;
-  report.is_right = repair.is_right;
+  report.topology_matches = repair.is_right;
   report.spacing = spacing;
   report.voxel_count = out.solid.voxels.count();
   report.left_out = repair.removed;
@@ -139,19 +142,13 @@ Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Contex
   return out;
 }
 
-Voxelized voxelize_image(const VoxelImageView& image, const LabelSelection& selection,
-                         std::array<std::int64_t, 3>& first, const Context& context) {
+Voxelized voxelize_image(const VoxelSet& all, const GridSpec& grid, std::array<std::int64_t, 3>& first,
+                         const Context& context) {
   Voxelized out;
-  VoxelImage cut;
-  {
-    const VoxelSet all = selected_voxels(image, selection, context);
-    const Extent extent = extent_of(all);
-    if (extent.upper[0] == 0) throw InvalidImage("no voxel of the image is selected, so there is no solid");
-    for (std::size_t a = 0; a < 3; ++a) first[a] = extent.lower[a] - 1;
-    cut = cut_out(all, extent, image.grid);
-  }
-  out.solid.voxels = selected_voxels(cut, {}, context);
-  VoxelSet voxels = std::move(out.solid.voxels);
+  const Extent extent = extent_of(all);
+  for (std::size_t a = 0; a < 3; ++a) first[a] = extent.lower[a] - 1;
+  const VoxelImage cut = cut_out(all, extent, grid);
+  VoxelSet voxels = selected_voxels(cut, {}, context);
   out.solid = solid_of(distance_transform(cut, {}, context));
   out.solid.is_exact = true;
   out.solid.voxels = std::move(voxels);

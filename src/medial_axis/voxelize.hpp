@@ -2,8 +2,10 @@
 #pragma once
 
 #include "blum/core/context.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/voxel_set.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
-#include "medial_axis/solid_bodies.hpp"
+#include "blum/solid/solid.hpp"
 #include "medial_axis/voxel_solid.hpp"
 
 namespace blum {
@@ -21,10 +23,10 @@ struct Voxelized {
 /// The voxels whose centre has a winding number above 1/2.
 [[nodiscard]] Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context);
 
-/// The selected voxels of an image, with a layer of others around the smallest box that holds them.
+/// Voxels of an image, with a layer of others around the smallest box that holds them.
 /// @param first  the place in the image of the box's voxel (0, 0, 0); may be -1.
-/// @throws InvalidImage where no voxel is selected.
-[[nodiscard]] Voxelized voxelize_image(const VoxelImageView& image, const LabelSelection& selection,
-                                       std::array<std::int64_t, 3>& first, const Context& context);
+/// @param voxels  at least one; on the grid of their centres.
+[[nodiscard]] Voxelized voxelize_image(const VoxelSet& voxels, const GridSpec& grid, std::array<std::int64_t, 3>& first,
+                                       const Context& context);
 
 }  // namespace blum

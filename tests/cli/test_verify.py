@@ -11,6 +11,10 @@ from tool import BLUM, FORMATS, names, run, run_json
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
 
+FOOTPRINTS = ("footprint_0", "footprint_1")
+SITES = ("site_0", "site_1")
+
+
 def falsified(axes, tmp_path, name, change):
     """A copy of an axis whose arrays were changed."""
     arrays = dict(np.load(axes / name))
@@ -39,19 +43,19 @@ def scale_radii(arrays):
 
 
 def move_a_footprint(arrays):
-    arrays["footprints"][7, 1] *= 0.99
+    arrays["footprint_1"][7] *= 0.99
 
 
 def drop_a_triangle(arrays):
     """One whose corners lie inside a sheet, so that a hole remains."""
     inner = np.all(arrays["role"][arrays["triangles"]] == 0, axis=1)
     arrays["triangles"] = np.delete(arrays["triangles"], np.flatnonzero(inner)[0], axis=0)
-    for name in ("triangle_angle", "triangle_sheet"):
+    for name in ("triangle_separation_angle", "triangle_sheet"):
         arrays[name] = arrays[name][:-1]
 
 
 def add_a_vertex(arrays):
-    for name in ("vertices", "radius", "separation_angle", "role", "footprints", "sites"):
+    for name in ("vertices", "radius", "separation_angle", "role", *FOOTPRINTS, *SITES):
         arrays[name] = np.concatenate([arrays[name], arrays[name][:1]])
 
 
@@ -74,11 +78,12 @@ def drop_radii(arrays):
 
 
 def drop_footprints(arrays):
-    del arrays["footprints"]
+    for name in FOOTPRINTS:
+        del arrays[name]
 
 
 def drop_sites(arrays):
-    del arrays["sites"]
+    del arrays["site_1"]
 
 
 def drop_angles(arrays):
@@ -86,7 +91,8 @@ def drop_angles(arrays):
 
 
 def change_sites(arrays):
-    arrays["sites"][:] = 0
+    for name in SITES:
+        arrays[name][:] = 0
 
 
 def change_angles(arrays):
@@ -194,9 +200,9 @@ def test_files_of_other_programs_are_checked_as_far_as_they_go(solids, axes, tmp
                 del arrays[name]
         return falsified(axes, tmp_path, "box.npz", change)
 
-    out, _ = run("verify", solids / "box.obj", foreign("radius", "sites", "footprints", "separation_angle"))
+    out, _ = run("verify", solids / "box.obj", foreign("radius", *SITES, *FOOTPRINTS, "separation_angle"))
     assert "not in the file: radii, footprints, separation angles, sites" in out
-    certificate = run_json("verify", solids / "box.obj", foreign("sites"))["certificate"]
+    certificate = run_json("verify", solids / "box.obj", foreign(*SITES))["certificate"]
     assert certificate["checked"] == ["topology", "positions", "edges", "radii", "footprints", "angles"]
 
 
@@ -248,10 +254,9 @@ def test_radii_of_files_without_footprints_are_verified(solids, axes, tmp_path):
 
 
 def test_a_field_is_no_axis_and_an_axis_no_field(solids, axes, tmp_path):
-    for arguments in (["verify", solids / "sphere.ply", solids / "sphere.npz"],
-                      ["reconstruct", solids / "sphere.npz", "-o", tmp_path / "x.ply"]):
-        assert "it holds a distance field" in run(*arguments, status=1)[1]
-    assert "a medial axis, not a field" in run("slice", axes / "box.npz", "-o", tmp_path / "x.png", status=1)[1]
+    assert "it holds a distance field" in run("verify", solids / "sphere.ply", solids / "sphere.npz", status=1)[1]
+    assert "blum surface" in run("reconstruct", solids / "sphere.npz", "-o", tmp_path / "x.ply", status=2)[1]
+    assert "is a medial axis; a mesh" in run("slice", axes / "box.npz", "-o", tmp_path / "x.png", status=1)[1]
     assert "is a medial axis; a mesh" in run("field", axes / "box.vtp", "-o", tmp_path / "x.npz", status=1)[1]
     np.savez(tmp_path / "else.npz", vertices=np.zeros((2, 3)), metadata=np.array('{"content": "a sonnet"}'))
     assert "call it 'a sonnet', not a medial axis" in run("info", tmp_path / "else.npz", status=1)[1]

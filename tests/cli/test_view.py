@@ -58,7 +58,8 @@ def test_a_page_holds_an_axis_exactly(tmp_path, axes):
     with np.load(axes / "torus.npz") as file:
         assert np.array_equal(scene.array(torus["vertices"]["positions"]), file["vertices"].ravel())
         assert np.array_equal(scene.array(torus["vertices"]["radii"]), file["radius"])
-        assert np.array_equal(scene.array(torus["vertices"]["footprints"]), file["footprints"].ravel())
+        footprints = np.stack([file["footprint_0"], file["footprint_1"]], axis=1)
+        assert np.array_equal(scene.array(torus["vertices"]["footprints"]), footprints.ravel())
         assert np.array_equal(scene.array(torus["triangles"]), file["triangles"].ravel())
         assert np.array_equal(scene.array(torus["edge_roles"]), file["edge_role"])
     assert torus["betti"] == [1, 1, 0] and box["betti"] == [1, 0, 0]

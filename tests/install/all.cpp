@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "blum/field/field.hpp"
-#include "blum/geometry/generators.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "blum/shapes/generators.hpp"
 
 int main() {
   const blum::TriangleMesh torus = blum::make_torus({.ring_segments = 24, .tube_segments = 12});

@@ -11,8 +11,8 @@
 
 #include "blum/core/random.hpp"
 #include "blum/field/field.hpp"
-#include "blum/geometry/generators.hpp"
-#include "blum/geometry/shape_catalog.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 #include "support/back_ends.hpp"
 #include "support/field_check.hpp"
 #include "support/nasty_soup.hpp"

@@ -5,11 +5,15 @@
 #include <functional>
 #include <numbers>
 
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "support/medial_check.hpp"
+#include "support/medial_rows.hpp"
 
 namespace blum {
 namespace {
+
+using test::AxisRows;
+using test::VertexRow;
 
 constexpr double degrees = 180 / std::numbers::pi;
 
@@ -218,14 +222,14 @@ TriangleMesh cloud(const std::vector<Sample>& axis) {
 void expect_known_axis(const Known& known, const MedialAxis& axis, double theta) {
   SCOPED_TRACE(testing::Message() << "theta " << theta);
   const double bound = test::voxel_diagonal(axis);
-  const MedialComplex complex = axis.extract(theta);
+  const AxisRows complex = axis.extract(theta);
   const std::vector<Sample> expected = above(known.axis, theta);
   const TriangleMesh exact = cloud(expected);
   EXPECT_LE(test::furthest_from(test::shape_of(complex), exact.vertices), bound) << "the exact axis to the output";
   double furthest = 0;
   double radius_error = 0;
   const ClosestPointQuery nearest(exact, {.sign = SignMode::none});
-  for (const MedialVertex& vertex : complex.vertices) {
+  for (const VertexRow& vertex : complex.vertices) {
     const ClosestPoint at = nearest.nearest(vertex.position);
     furthest = std::max(furthest, at.distance);
     radius_error = std::max(radius_error, std::abs(vertex.radius - expected[at.site.value].radius));

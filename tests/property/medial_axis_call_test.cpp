@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <thread>
 
-#include "blum/geometry/generators.hpp"
 #include "blum/grid/image_generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "support/medial_check.hpp"
 
 namespace blum {
@@ -50,7 +50,7 @@ TEST(MedialCall, AnglesOutOfRangeAreRefused) {
   for (const double theta : {-1.0, -1e-9, 180.001, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THROW((void)axis.extract(theta), InvalidOption) << theta;
   }
-  EXPECT_FALSE(axis.extract(180).vertices.empty());
+  EXPECT_FALSE(axis.extract(180).positions.empty());
 }
 
 TEST(MedialCall, TheLeastAndTheMostResolutionWork) {

@@ -4,17 +4,21 @@
 
 #include <algorithm>
 
-#include "blum/geometry/generators.hpp"
-#include "blum/geometry/shape_catalog.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 #include "support/data.hpp"
 #include "support/medial_check.hpp"
+#include "support/medial_rows.hpp"
 #include "support/mesh_places.hpp"
 #include "support/voxel_sets.hpp"
 
 namespace blum {
 namespace {
+
+using test::AxisRows;
+using test::VertexRow;
 
 constexpr MedialAxisOptions coarse{.resolution = 48};
 
@@ -25,7 +29,7 @@ TEST(MedialHostileMesh, ShapesThatFaceInwardsAreTurned) {
     const Topology right = topology(mesh);
     reverse_triangles(mesh);
     const MedialAxis axis = medial_axis(mesh, coarse);
-    EXPECT_EQ(axis.report().turned_shells, right.shells.size());
+    EXPECT_EQ(axis.report().reversed_shells, right.shells.size());
     test::expect_certified(axis, mesh, right.betti.value());
   }
 }
@@ -37,7 +41,7 @@ TEST(MedialHostileMesh, NestedShellsMayFaceEitherWay) {
       append(mesh, test::box_between({-0.7, -0.7, -0.7}, {0.7, 0.7, 0.7}, is_void_turned));
       append(mesh, test::box_between({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, is_outer_turned));
       const MedialAxis axis = medial_axis(mesh, coarse);
-      EXPECT_EQ(axis.report().turned_shells, (is_outer_turned ? 2U : 0U) + (is_void_turned ? 0U : 1U));
+      EXPECT_EQ(axis.report().reversed_shells, (is_outer_turned ? 2U : 0U) + (is_void_turned ? 0U : 1U));
       EXPECT_EQ(axis.report().bodies.size(), 2U);
       test::expect_certified(axis, mesh, {2, 0, 1});
     }
@@ -46,9 +50,9 @@ TEST(MedialHostileMesh, NestedShellsMayFaceEitherWay) {
 
 TEST(MedialHostileMesh, TurningShellsMovesNothing) {
   TriangleMesh mesh = make_shape("bracket");
-  const MedialComplex straight = medial_axis(mesh, coarse).extract(60);
+  const AxisRows straight = medial_axis(mesh, coarse).extract(60);
   reverse_triangles(mesh);
-  const MedialComplex turned = medial_axis(mesh, coarse).extract(60);
+  const AxisRows turned = medial_axis(mesh, coarse).extract(60);
   EXPECT_EQ(test::positions(turned), test::positions(straight));
 }
 
@@ -60,7 +64,7 @@ void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& option
   EXPECT_EQ(axis.report().solid, axis.report().voxels);
   EXPECT_GE(axis.report().voxels[0], 1);
   test::expect_betti(axis, axis.report().voxels);
-  const MedialComplex complex = axis.extract(60);
+  const AxisRows complex = axis.extract(60);
   test::expect_exact_balls(complex, mesh);
   const Field field = distance_field(mesh, axis.report().grid, {.sign = SignMode::winding});
   VoxelSet voxels(field.grid.size);
@@ -110,7 +114,7 @@ TEST(MedialHostileMesh, TrianglesThatDisagreeWithTheirNeighboursAreTurned) {
     // Turned back, it begins at its second corner: rounding tells which of a sphere's triangles is closer.
     std::rotate(agreeing.triangles[t].begin(), agreeing.triangles[t].begin() + 1, agreeing.triangles[t].end());
   }
-  const MedialComplex right = medial_axis(agreeing, coarse).extract(60);
+  const AxisRows right = medial_axis(agreeing, coarse).extract(60);
   const MedialAxis axis = medial_axis(mesh, coarse);
   test::expect_certified(axis, mesh, {1, 0, 0});
   EXPECT_EQ(test::positions(axis.extract(60)), test::positions(right));
@@ -224,10 +228,10 @@ TEST(MedialHostileMesh, PartsThinnerThanAVoxelAreKeptWhole) {
         const TriangleMesh mesh = test::turned(make_box({.size = size}), turn);
         const MedialAxis axis = medial_axis(mesh, coarse);
         test::expect_certified(axis, mesh, {1, 0, 0});
-        const MedialComplex complex = axis.extract(60);
+        const AxisRows complex = axis.extract(60);
         test::expect_exact_balls(complex, mesh);
         std::vector<double> radii;
-        for (const MedialVertex& vertex : complex.vertices) radii.push_back(vertex.radius);
+        for (const VertexRow& vertex : complex.vertices) radii.push_back(vertex.radius);
         std::sort(radii.begin(), radii.end());
         // The axis of a wire has sheets towards its edges as well.
         const bool is_wire = size.y < 1;
@@ -277,7 +281,7 @@ TEST(MedialHostileMesh, AThinFinOnABlockIsKeptWhole) {
   add_side(corner[1][1], tip[1][1], tip[1][0], corner[1][0]);
   const MedialAxis axis = medial_axis(mesh, coarse);
   test::expect_certified(axis, mesh, {1, 0, 0});
-  const MedialComplex complex = axis.extract(60);
+  const AxisRows complex = axis.extract(60);
   test::expect_exact_balls(complex, mesh);
   std::vector<Vec3d> middle;
   for (int n = 0; n <= 40; ++n) middle.push_back({0.5 + 1.95 * n / 40, 0.45 * std::sin(n), 0});

@@ -5,14 +5,20 @@
 #include <optional>
 
 #include "blum/core/random.hpp"
+#include "blum/field/distance_transform.hpp"
 #include "blum/grid/image_generators.hpp"
+#include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
 #include "blum/io/image_io.hpp"
 #include "support/data.hpp"
 #include "support/medial_check.hpp"
+#include "support/medial_rows.hpp"
 
 namespace blum {
 namespace {
+
+using test::AxisRows;
+using test::VertexRow;
 
 using Size = std::array<std::int64_t, 3>;
 
@@ -45,7 +51,7 @@ void expect_axis(const VoxelImage& image, const BettiNumbers& betti, const Media
   ASSERT_EQ(betti_numbers(voxels), betti);
   const MedialAxis axis = medial_axis(image, options);
   EXPECT_EQ(axis.report().rule, SolidRule::voxels);
-  EXPECT_TRUE(axis.report().is_right);
+  EXPECT_TRUE(axis.report().topology_matches);
   EXPECT_EQ(axis.report().solid, betti);
   EXPECT_EQ(axis.report().voxels, betti);
   test::expect_betti(axis, betti);
@@ -68,10 +74,10 @@ TEST(MedialImage, OfOneVoxelIsAPoint) {
   for (const Size& size : {Size{1, 1, 1}, Size{3, 3, 3}, Size{9, 5, 7}}) {
     const VoxelImage image = image_of(size, {{size[0] / 2, size[1] / 2, size[2] / 2}});
     expect_axis(image, {1, 0, 0});
-    const MedialComplex complex = medial_axis(image).extract(60);
+    const AxisRows complex = medial_axis(image).extract(60);
     ASSERT_FALSE(complex.vertices.empty());
     const Vec3d centre = image.grid.position(size[0] / 2, size[1] / 2, size[2] / 2);
-    for (const MedialVertex& vertex : complex.vertices) EXPECT_LE(length(vertex.position - centre), std::sqrt(0.75));
+    for (const VertexRow& vertex : complex.vertices) EXPECT_LE(length(vertex.position - centre), std::sqrt(0.75));
   }
 }
 
@@ -171,7 +177,7 @@ TEST(MedialImage, SpacingAndDirectionChangeNoTopology) {
 double reach(const VoxelImage& image, double theta, const MedialAxisOptions& options = {}) {
   const Vec3d middle = bounds(image.grid).center();
   double furthest = 0;
-  for (const MedialVertex& vertex : medial_axis(image, options).extract(theta).vertices) {
+  for (const VertexRow& vertex : AxisRows(medial_axis(image, options).extract(theta)).vertices) {
     furthest = std::max(furthest, length(vertex.position - middle));
   }
   return furthest / length(image.grid.spacing);

@@ -2,8 +2,9 @@
 // up to 1 % of their size, with edges of at least eight times that, both ways within two voxels.
 #include <gtest/gtest.h>
 
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "support/medial_check.hpp"
+#include "support/medial_rows.hpp"
 
 namespace blum {
 namespace {
@@ -28,7 +29,7 @@ void expect_stable(const TriangleMesh& clean, double amplitude, int resolution) 
     const TriangleMesh noisy = make_noisy(clean, amplitude, seed);
     const MedialAxis axis = medial_axis(noisy, {.resolution = resolution});
     test::expect_certified(axis, noisy, {1, 0, 0});
-    const MedialComplex complex = axis.extract(theta);
+    const Complex complex = axis.extract(theta);
     test::expect_exact_balls(complex, noisy);
     const double bound = 2 * axis.report().bodies[0].spacing;
     EXPECT_LE(test::furthest_from(expected, test::positions(complex)), bound) << "with noise to without";

@@ -4,15 +4,21 @@
 
 #include <functional>
 
-#include "blum/geometry/generators.hpp"
-#include "blum/geometry/shape_catalog.hpp"
 #include "blum/grid/image_generators.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 #include "support/data.hpp"
 #include "support/medial_check.hpp"
+#include "support/medial_rows.hpp"
 
 namespace blum {
 namespace {
+
+using test::AxisRows;
+using test::EdgeRow;
+using test::TriangleRow;
+using test::VertexRow;
 
 using Place = std::array<double, 3>;
 
@@ -30,7 +36,7 @@ void sort_once(std::vector<T>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-Cells cells_of(const MedialComplex& complex) {
+Cells cells_of(const AxisRows& complex) {
   Cells cells;
   const auto place = [&](std::uint32_t v) {
     const Vec3d& p = complex.vertices[v].position;
@@ -40,8 +46,8 @@ Cells cells_of(const MedialComplex& complex) {
     if (place(a) != place(b)) cells.edges.push_back({std::min(place(a), place(b)), std::max(place(a), place(b))});
   };
   for (std::uint32_t v = 0; v < complex.vertices.size(); ++v) cells.vertices.push_back(place(v));
-  for (const MedialEdge& edge : complex.edges) add_edge(edge.vertices[0], edge.vertices[1]);
-  for (const MedialTriangle& triangle : complex.triangles) {
+  for (const EdgeRow& edge : complex.edges) add_edge(edge.vertices[0], edge.vertices[1]);
+  for (const TriangleRow& triangle : complex.triangles) {
     const auto& v = triangle.vertices;
     for (std::size_t k = 0; k < 3; ++k) add_edge(v[k], v[(k + 1) % 3]);
     std::array<Place, 3> corners{place(v[0]), place(v[1]), place(v[2])};
@@ -95,19 +101,19 @@ TEST(MedialOrder, LargerAnglesKeepPartsOfWhatSmallerOnesKeepInImages) {
   expect_nested(medial_axis(make_ball_image({.size = 48, .spacing = {1, 1.5, 0.8}, .inner_radius = 0.5})));
 }
 
-void expect_same(const MedialComplex& a, const MedialComplex& b) {
+void expect_same(const AxisRows& a, const AxisRows& b) {
   ASSERT_EQ(a.vertices.size(), b.vertices.size());
   ASSERT_EQ(a.edges.size(), b.edges.size());
   ASSERT_EQ(a.triangles.size(), b.triangles.size());
   EXPECT_EQ(a.sheet_count, b.sheet_count);
-  const auto is_same_vertex = [](const MedialVertex& v, const MedialVertex& w) {
+  const auto is_same_vertex = [](const VertexRow& v, const VertexRow& w) {
     return v.position == w.position && v.radius == w.radius && v.footprints == w.footprints && v.sites == w.sites &&
            v.separation_angle == w.separation_angle && v.role == w.role;
   };
-  const auto is_same_edge = [](const MedialEdge& e, const MedialEdge& f) {
+  const auto is_same_edge = [](const EdgeRow& e, const EdgeRow& f) {
     return e.vertices == f.vertices && e.separation_angle == f.separation_angle && e.role == f.role;
   };
-  const auto is_same_triangle = [](const MedialTriangle& s, const MedialTriangle& t) {
+  const auto is_same_triangle = [](const TriangleRow& s, const TriangleRow& t) {
     return s.vertices == t.vertices && s.separation_angle == t.separation_angle && s.sheet == t.sheet;
   };
   EXPECT_TRUE(std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), is_same_vertex));
@@ -149,7 +155,7 @@ TEST(MedialOrder, ALeastAngleChangesNoTopologyAndKeepsTheNesting) {
   EXPECT_THROW((void)axis.extract(59), InvalidOption);
   Cells larger = cells_of(axis.extract(60));
   for (const double theta : {70.0, 90.0, 120.0, 170.0}) {
-    const MedialComplex complex = axis.extract(theta);
+    const AxisRows complex = axis.extract(theta);
     const Cells cells = cells_of(complex);
     EXPECT_TRUE(is_part(cells.vertices, larger.vertices) && is_part(cells.triangles, larger.triangles)) << theta;
     EXPECT_EQ(test::betti_of(complex), (BettiNumbers{1, 4, 0})) << theta;
@@ -158,13 +164,13 @@ TEST(MedialOrder, ALeastAngleChangesNoTopologyAndKeepsTheNesting) {
 }
 
 /// Cells with a separation angle above an angle: kept for themselves, and not for the topology alone.
-MedialComplex kept_for_themselves(MedialComplex complex, double theta) {
-  std::erase_if(complex.edges, [&](const MedialEdge& e) { return !(e.separation_angle > theta); });
-  std::erase_if(complex.triangles, [&](const MedialTriangle& t) { return !(t.separation_angle > theta); });
+AxisRows kept_for_themselves(AxisRows complex, double theta) {
+  std::erase_if(complex.edges, [&](const EdgeRow& e) { return !(e.separation_angle > theta); });
+  std::erase_if(complex.triangles, [&](const TriangleRow& t) { return !(t.separation_angle > theta); });
   return complex;
 }
 
-double footprint_distance(const MedialVertex& vertex) {
+double footprint_distance(const VertexRow& vertex) {
   return length(vertex.footprints[0] - vertex.footprints[1]);
 }
 
@@ -174,11 +180,11 @@ TEST_P(MedialLambda, LeavesLessTheLargerItIs) {
   const TriangleMesh mesh = make_shape(GetParam());
   const double extent = bounds(mesh).diagonal();
   constexpr double theta = 30;
-  MedialComplex larger = medial_axis(mesh, {.resolution = 64}).extract(theta);
+  AxisRows larger = medial_axis(mesh, {.resolution = 64}).extract(theta);
   for (const double part : {0.05, 0.1, 0.2}) {
     SCOPED_TRACE(testing::Message() << "lambda " << part << " of the diagonal");
     const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .lambda = part * extent});
-    const MedialComplex complex = axis.extract(theta);
+    const AxisRows complex = axis.extract(theta);
     EXPECT_LE(complex.triangles.size(), larger.triangles.size());
     EXPECT_LE(test::furthest_from(test::shape_of(larger), test::positions(complex)), test::voxel_diagonal(axis));
     EXPECT_TRUE(is_part(cells_of(kept_for_themselves(complex, theta)).triangles,
@@ -193,9 +199,9 @@ TEST_P(MedialLambda, KeepsPiecesWhoseFootprintsAreFurtherApart) {
   const TriangleMesh mesh = make_shape(GetParam());
   const double lambda = 0.06 * bounds(mesh).diagonal();
   const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .lambda = lambda});
-  const MedialComplex complex = kept_for_themselves(axis.extract(30), 30);
+  const AxisRows complex = kept_for_themselves(axis.extract(30), 30);
   double least = HUGE_VAL;
-  for (const MedialTriangle& triangle : complex.triangles) {
+  for (const TriangleRow& triangle : complex.triangles) {
     double apart = 0;
     for (const std::uint32_t v : triangle.vertices) apart = std::max(apart, footprint_distance(complex.vertices[v]));
     least = std::min(least, apart);

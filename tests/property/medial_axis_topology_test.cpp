@@ -2,9 +2,9 @@
 // numbers are known from their construction and from topology(), and real meshes.
 #include <gtest/gtest.h>
 
-#include "blum/geometry/shape_catalog.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 #include "support/data.hpp"
 #include "support/medial_check.hpp"
 #include "support/mesh_places.hpp"

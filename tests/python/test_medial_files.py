@@ -72,12 +72,12 @@ class Axis:
         self.position = self.column("vertices", "position", float)
         self.radius = self.column("vertices", "radius", float)
         self.separation_angle = self.column("vertices", "separation_angle", float)
-        self.role = self.column("vertices", "role", numpy.uint8)
+        self.role = self.column("vertices", "role", numpy.int32)
         self.footprints = self.column("vertices", "footprints", float)
         self.sites = self.column("vertices", "sites", numpy.int32)
         self.edge = self.column("edges", "vertices", numpy.int32)
         self.edge_angle = self.column("edges", "separation_angle", numpy.float32)
-        self.edge_role = self.column("edges", "role", numpy.uint8)
+        self.edge_role = self.column("edges", "role", numpy.int32)
         self.triangle = self.column("triangles", "vertices", numpy.int32)
         self.triangle_angle = self.column("triangles", "separation_angle", numpy.float32)
         self.sheet = self.column("triangles", "sheet", numpy.int32)
@@ -154,7 +154,7 @@ def test_vtp_in_vtk(samples, expected):
     angle_of_isolated = expected.separation_angle[expected.isolated].astype(numpy.float32)
     known = {"separation_angle": [angle_of_isolated, expected.edge_angle, expected.triangle_angle],
              "role": [expected.role[expected.isolated], expected.edge_role,
-                      numpy.full(len(expected.triangle), 255, numpy.uint8)],
+                      numpy.full(len(expected.triangle), -1, numpy.int32)],
              "sheet": [none, expected.sheet]}
     assert data.GetCellData().GetNumberOfArrays() == 3
     for name, values in known.items():
@@ -171,9 +171,11 @@ def test_empty_vtp_in_vtk(samples):
 
 def test_npz_in_numpy(samples, expected):
     known = {"vertices": expected.position, "radius": expected.radius, "separation_angle": expected.separation_angle,
-             "role": expected.role, "footprints": expected.footprints, "sites": expected.sites,
-             "edges": expected.edge, "edge_angle": expected.edge_angle, "edge_role": expected.edge_role,
-             "triangles": expected.triangle, "triangle_angle": expected.triangle_angle,
+             "role": expected.role,
+             "footprint_0": expected.footprints[:, 0], "footprint_1": expected.footprints[:, 1],
+             "site_0": expected.sites[:, 0], "site_1": expected.sites[:, 1],
+             "edges": expected.edge, "edge_separation_angle": expected.edge_angle, "edge_role": expected.edge_role,
+             "triangles": expected.triangle, "triangle_separation_angle": expected.triangle_angle,
              "triangle_sheet": expected.sheet}
     with numpy.load(samples / "axis.npz", allow_pickle=False) as npz:
         assert set(npz.files) == set(known) | {"metadata"}
@@ -183,7 +185,7 @@ def test_npz_in_numpy(samples, expected):
         middle = npz["vertices"][npz["edges"]].mean(axis=1)  # indices index
         assert middle.shape == (len(expected.edge), 3)
     with numpy.load(samples / "empty.npz", allow_pickle=False) as npz:
-        assert npz["vertices"].shape == (0, 3) and npz["footprints"].shape == (0, 2, 3)
+        assert npz["vertices"].shape == (0, 3) and npz["footprint_0"].shape == (0, 3)
 
 
 PLY_TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "uchar": "u1"}

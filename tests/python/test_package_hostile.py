@@ -246,7 +246,7 @@ def test_what_looks_wrong_is_warned_of(box):
         blum.distance_field(box.vertices, box.triangles[:, ::-1], resolution=8)
     with pytest.warns(blum.InputWarning, match="open"):
         blum.medial_axis(box.vertices, box.triangles[1:], resolution=16)
-    with pytest.warns(blum.InputWarning, match="1 shell faced the solid, and was turned"):
+    with pytest.warns(blum.InputWarning, match="1 shell faced the solid, and was reversed"):
         blum.medial_axis(box.vertices, box.triangles[:, ::-1], resolution=16)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -183,3 +183,43 @@ def test_the_tool_certifies_the_voxels_of_a_mesh_as_python_does(tmp_path):
     elsewhere = blum.Grid(np.array(piece.grid.origin) + 5, piece.grid.spacing, piece.grid.size)
     with pytest.raises(ValueError, match="no voxels"):
         blum.certify(piece, tmp_path / "open.ply", grid=elsewhere)
+
+
+@pytest.mark.parametrize(
+    "changes,dropped,reason",
+    [
+        ({"solid_rule": "winding"}, (), "its solid is 'winding', and it is 'polyhedron'"),
+        ({"solid_rule": "nonsense"}, (), "its solid is 'nonsense', and it is 'polyhedron'"),
+        ({}, ("radius",), "holds no radii"),
+        ({}, ("separation_angle",), "holds no separation angles"),
+        ({"site_ids": "voxels"}, (), "holds no sites of this kind of solid"),
+    ],
+)
+def test_false_claims_of_a_file_are_refused_in_python_as_by_the_tool(axis, plate, tmp_path, changes, dropped, reason):
+    import json
+
+    import tool
+
+    plate.write(tmp_path / "plate.ply")
+    axis.simplify(60).write(tmp_path / "true.npz")
+    assert blum.certify(blum.read_medial(tmp_path / "true.npz"), plate)
+    with np.load(tmp_path / "true.npz") as file:
+        arrays = {name: file[name] for name in file.files if name not in dropped}
+    arrays["metadata"] = np.array(json.dumps(json.loads(str(arrays["metadata"])) | changes))
+    np.savez(tmp_path / "false.npz", **arrays)
+    certificate = blum.certify(blum.read_medial(tmp_path / "false.npz"), plate)
+    assert not certificate and any(reason in mismatch for mismatch in certificate.mismatches)
+    told = tool.run("verify", tmp_path / "plate.ply", tmp_path / "false.npz", "--json", "-", status=3)[0]
+    assert tuple(json.loads(told)["certificate"]["mismatches"]) == certificate.mismatches
+
+
+def test_a_file_says_which_voxels_its_axis_is_of(tmp_path):
+    labels = np.zeros((12, 12, 12), dtype=np.uint8)
+    labels[2:5, 2:10, 2:10] = 1
+    labels[7:10, 2:10, 2:10] = 2
+    blum.medial_axis(labels, label=2).simplify(60).write(tmp_path / "two.npz")
+    read = blum.read_medial(tmp_path / "two.npz")
+    assert blum.certify(read, labels).holds
+    assert not blum.certify(read, labels, label=1)
+    sparse = blum.certify(read, blum.Image(labels, spacing=(2, 2, 2)))
+    assert any("its voxels have the sides 1 1 1, and the image's have 2 2 2" in text for text in sparse.mismatches)

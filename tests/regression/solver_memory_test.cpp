@@ -11,7 +11,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define BLUM_TEST_HAS_SHADOW_MEMORY

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,11 +11,8 @@
 namespace blum::test {
 
 /// The folder of real shapes: the environment variable BLUM_DATA_DIR, else what CMake was given, else
-/// ../shared/data beside the project. It is no part of the project, and may be absent.
-inline std::filesystem::path data_directory() {
-  const char* const chosen = std::getenv("BLUM_DATA_DIR");
-  return chosen != nullptr && *chosen != '\0' ? chosen : BLUM_DATA_DIR;
-}
+/// ../shared/data beside the project. It is no part of the project, and may be absent. (Target blum_test_data.)
+std::filesystem::path data_directory();
 
 /// The file of that name in the data folder; nullopt where there is no data folder, and only then: where there is one,
 /// a file that is missing in it fails the test, so that a test that needs data cannot be passed over unseen.

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "blum/certificate/certificate.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
-#include "blum/medial_axis/certificate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 
 namespace blum::test {
@@ -31,12 +31,8 @@ inline std::string test_name(std::string name) {
 }
 
 /// Betti numbers of a complex as it is written.
-inline BettiNumbers betti_of(const MedialComplex& complex) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const MedialEdge& edge : complex.edges) edges.push_back(edge.vertices);
-  for (const MedialTriangle& triangle : complex.triangles) triangles.push_back(triangle.vertices);
-  return homology({complex.vertices.size(), edges, triangles});
+inline BettiNumbers betti_of(const Complex& complex) {
+  return homology(complex.view());
 }
 
 /// At every angle.
@@ -56,7 +52,7 @@ inline void expect_certificates(const MedialAxis& axis, const MeshView& mesh, do
 /// A mesh that was taken as a polyhedron, and whose axis is certified.
 inline void expect_certified(const MedialAxis& axis, const MeshView& mesh, const BettiNumbers& betti) {
   EXPECT_EQ(axis.report().rule, SolidRule::polyhedron) << axis.report().reason;
-  EXPECT_TRUE(axis.report().is_right);
+  EXPECT_TRUE(axis.report().topology_matches);
   EXPECT_EQ(axis.report().solid, betti);
   EXPECT_EQ(axis.report().voxels, betti);
   expect_betti(axis, betti);
@@ -64,19 +60,17 @@ inline void expect_certified(const MedialAxis& axis, const MeshView& mesh, const
 }
 
 /// A complex as a shape that distances can be measured to; vertices keep their order.
-inline TriangleMesh shape_of(const MedialComplex& complex) {
+inline TriangleMesh shape_of(const Complex& complex) {
   TriangleMesh mesh;
-  for (const MedialVertex& vertex : complex.vertices) {
-    mesh.points.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
-    mesh.vertices.push_back(vertex.position);
-  }
-  for (const MedialEdge& edge : complex.edges) mesh.segments.push_back(edge.vertices);
-  for (const MedialTriangle& triangle : complex.triangles) mesh.triangles.push_back(triangle.vertices);
+  mesh.vertices = complex.positions;
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) mesh.points.push_back(v);
+  mesh.segments = complex.edges;
+  mesh.triangles = complex.triangles;
   return mesh;
 }
 
-inline std::vector<Vec3d> positions(const MedialComplex& complex) {
-  return shape_of(complex).vertices;
+inline std::vector<Vec3d> positions(const Complex& complex) {
+  return complex.positions;
 }
 
 /// The largest distance of any of some points from a shape.
@@ -96,19 +90,19 @@ inline double voxel_diagonal(const MedialAxis& axis) {
 }
 
 /// Footprints lie on the surface, and as far from their vertex as the surface is: all within 1e-6 of the diagonal.
-inline void expect_exact_balls(const MedialComplex& complex, const MeshView& mesh) {
+inline void expect_exact_balls(const Complex& complex, const MeshView& mesh) {
   const double tolerance = 1e-6 * bounds(mesh).diagonal();
-  const std::vector<Vec3d> centres = positions(complex);
+  const MedialView axis(complex);
   const ClosestPointQuery surface(mesh, {.sign = SignMode::none});
   double radius_error = 0;
   double off_surface = 0;
   double footprint_error = 0;
-  for (const MedialVertex& vertex : complex.vertices) {
-    const double radius = surface.nearest(vertex.position).distance;
-    radius_error = std::max(radius_error, std::abs(vertex.radius - radius));
-    for (const Vec3d& foot : vertex.footprints) {
+  for (std::size_t v = 0; v < axis.positions.size(); ++v) {
+    const double radius = surface.nearest(axis.positions[v]).distance;
+    radius_error = std::max(radius_error, std::abs(axis.radius[v] - radius));
+    for (const Vec3d& foot : {axis.footprint(v, 0), axis.footprint(v, 1)}) {
       off_surface = std::max(off_surface, surface.nearest(foot).distance);
-      footprint_error = std::max(footprint_error, std::abs(length(foot - vertex.position) - radius));
+      footprint_error = std::max(footprint_error, std::abs(length(foot - axis.positions[v]) - radius));
     }
   }
   EXPECT_LE(radius_error, tolerance);

@@ -17,6 +17,10 @@
 namespace {
 
 using namespace blum;
+using test::AxisRows;
+using test::EdgeRow;
+using test::TriangleRow;
+using test::VertexRow;
 
 void show(std::ostream& out, const Vec3d& v) {
   out << "[" << v.x << ", " << v.y << ", " << v.z << "]";
@@ -32,8 +36,8 @@ void show_list(std::ostream& out, const char* name, const Items& items, Show sho
   out << "]";
 }
 
-void show_complex(std::ostream& out, const MedialComplex& complex) {
-  show_list(out, "vertices", complex.vertices, [&](const MedialVertex& v) {
+void show_complex(std::ostream& out, const AxisRows& complex) {
+  show_list(out, "vertices", complex.vertices, [&](const VertexRow& v) {
     out << "{\"position\": ";
     show(out, v.position);
     out << ", \"radius\": " << v.radius << ", \"separation_angle\": " << v.separation_angle
@@ -45,18 +49,18 @@ void show_complex(std::ostream& out, const MedialComplex& complex) {
     out << "]}";
   });
   out << ",\n";
-  show_list(out, "edges", complex.edges, [&](const MedialEdge& e) {
+  show_list(out, "edges", complex.edges, [&](const EdgeRow& e) {
     out << "{\"vertices\": [" << e.vertices[0] << ", " << e.vertices[1]
         << "], \"separation_angle\": " << e.separation_angle << ", \"role\": " << static_cast<int>(e.role) << "}";
   });
   out << ",\n";
-  show_list(out, "triangles", complex.triangles, [&](const MedialTriangle& t) {
+  show_list(out, "triangles", complex.triangles, [&](const TriangleRow& t) {
     out << "{\"vertices\": [" << t.vertices[0] << ", " << t.vertices[1] << ", " << t.vertices[2]
         << "], \"separation_angle\": " << t.separation_angle << ", \"sheet\": " << t.sheet << "}";
   });
 }
 
-void write_json(const std::filesystem::path& path, const MedialComplex& complex) {
+void write_json(const std::filesystem::path& path, const AxisRows& complex) {
   std::ofstream out(path);
   out.precision(std::numeric_limits<double>::max_digits10);
   out << "{";
@@ -66,10 +70,10 @@ void write_json(const std::filesystem::path& path, const MedialComplex& complex)
 
 void write_samples(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  const MedialComplex complex = test::sample_complex();
+  const AxisRows complex = test::sample_complex();
   for (const char* extension : {".vtp", ".ply", ".obj", ".ma", ".npz"}) {
     write_medial(folder / (std::string("axis") + extension), complex, test::sample_metadata());
-    write_medial(folder / (std::string("empty") + extension), {}, test::sample_metadata());
+    write_medial(folder / (std::string("empty") + extension), AxisRows{}, test::sample_metadata());
   }
   write_json(folder / "axis.expected.json", complex);
 }

@@ -4,16 +4,17 @@
 #include <cmath>
 
 #include "blum/io/medial_io.hpp"
+#include "medial_rows.hpp"
 
 namespace blum::test {
 
 /// Three triangles around a seam (one sheet each), their rims, two curve edges that begin at the seam, and a vertex of
 /// nothing. Every number differs, and few are short in the decimal or the binary system.
-inline MedialComplex sample_complex() {
-  MedialComplex complex;
+inline AxisRows sample_complex() {
+  AxisRows complex;
   const auto add = [&](const Vec3d& position, MedialRole role) {
     const double i = static_cast<double>(complex.vertices.size());
-    MedialVertex v;
+    VertexRow v;
     v.position = position;
     v.radius = 1.0 / (3.0 + i);
     v.footprints = {position + Vec3d{0, 0, v.radius}, position - Vec3d{std::sin(i), 1e-9, v.radius * 1e6}};

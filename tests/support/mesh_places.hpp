@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "blum/core/random.hpp"
-#include "blum/geometry/generators.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/shapes/generators.hpp"
 
 namespace blum::test {
 

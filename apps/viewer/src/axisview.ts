@@ -3,7 +3,8 @@ import * as THREE from "three";
 import { AxisModel, Role, type AxisPart } from "./axismodel.ts";
 import { coarsen, keptBelow, worthCoarsening, type Coarse } from "./coarse.ts";
 import { counted, plural, rounded } from "./format.ts";
-import { add, along, distance, dot, firstHit, sub, tripleAt, type Ray } from "./geometry.ts";
+import { add, along, distance, dot, sub, tripleAt, type Ray } from "./geometry.ts";
+import { Picker } from "./picker.ts";
 import type { AxisItem, Fact, Triple } from "./scene.ts";
 import {
   Coloring,
@@ -31,6 +32,7 @@ export class AxisView implements View {
   readonly #model: AxisModel;
   readonly #places: Float32Array; // in the drawn world
   readonly #corners: Float32Array; // of the model's triangles
+  readonly #picker: Picker;
   readonly #surface = surfaceMaterial({ hasCells: true });
   readonly #geometry = new THREE.BufferGeometry();
   readonly #sheets = new THREE.Mesh(this.#geometry, this.#surface);
@@ -59,6 +61,7 @@ export class AxisView implements View {
     for (let i = 0; i < this.#places.length; ++i) this.#places[i] = item.positions[i] - around.center[i % 3];
     this.#corners = new Float32Array(3 * this.#model.triangles.length);
     this.#model.triangles.forEach((v, i) => this.#corners.set(this.#places.subarray(3 * v, 3 * v + 3), 3 * i));
+    this.#picker = new Picker(this.#corners);
     this.#radii = rangeOf(item.radii);
     if (item.radii === undefined) this.#colorBy = "sheet";
     this.#fillGeometry();
@@ -83,7 +86,7 @@ export class AxisView implements View {
 
   pick(ray: Ray): Hit | undefined {
     const curve = this.#pickCurve(ray);
-    const hit = firstHit(ray, this.#corners, undefined, this.#part.triangles);
+    const hit = this.#picker.firstHit(ray, this.#part.triangles);
     if (hit !== undefined && (curve === undefined || hit.t < curve.t)) {
       const at = along(ray, hit.t);
       const corners = [...this.#model.triangles.subarray(3 * hit.triangle, 3 * hit.triangle + 3)];

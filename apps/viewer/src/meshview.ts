@@ -2,7 +2,8 @@
 import * as THREE from "three";
 import { coarsen, worthCoarsening } from "./coarse.ts";
 import { plural } from "./format.ts";
-import { add, along, distance, firstHit, sub, tripleAt, type Ray } from "./geometry.ts";
+import { add, along, distance, sub, tripleAt, type Ray } from "./geometry.ts";
+import { Picker } from "./picker.ts";
 import type { Fact, MeshItem, Triple } from "./scene.ts";
 import { dotMaterial, lineGeometry, lineMaterial, setColor, setStyle, surfaceMaterial, type Style } from "./shaders.ts";
 import type { Hit, Legend, Surroundings, View } from "./view.ts";
@@ -17,6 +18,7 @@ export class MeshView implements View {
   readonly controls: HTMLElement;
   readonly #offset: Triple; // of its own origin in the drawn world
   readonly #material = surfaceMaterial();
+  #picker: Picker | undefined;
   readonly #lines = lineMaterial([0.35, 0.4, 0.46], 2);
   readonly #dots = dotMaterial([0.35, 0.4, 0.46], 5);
   readonly #whole = new THREE.BufferGeometry();
@@ -58,7 +60,8 @@ export class MeshView implements View {
   pick(ray: Ray): Hit | undefined {
     const { positions, triangles } = this.item;
     const own: Ray = { origin: sub(ray.origin, this.#offset), direction: ray.direction };
-    const hit = firstHit(own, positions, triangles, triangles.length / 3);
+    this.#picker ??= new Picker(positions, triangles);
+    const hit = this.#picker.firstHit(own);
     if (hit === undefined) return undefined;
     const at = along(own, hit.t);
     const corners = [0, 1, 2].map((k) => triangles[3 * hit.triangle + k]);

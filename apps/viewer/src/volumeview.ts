@@ -2,9 +2,10 @@
 import * as THREE from "three";
 import { coarsen, worthCoarsening } from "./coarse.ts";
 import { exactFloat32, plural, rounded, roundStep } from "./format.ts";
-import { dot, firstHit, scale, sub, type Ray } from "./geometry.ts";
+import { dot, scale, sub, type Ray } from "./geometry.ts";
 import { nodeIndex, toWorld } from "./grid.ts";
 import { IsoSurfaces } from "./isosurface.ts";
+import { Picker } from "./picker.ts";
 import type { Fact, FieldItem, ImageItem, Triple } from "./scene.ts";
 import { setColor, setStyle, SliceMode, surfaceMaterial, type Style } from "./shaders.ts";
 import { Slice } from "./slice.ts";
@@ -27,6 +28,7 @@ export class VolumeView implements View {
   readonly #isoSlider: Slider;
   readonly #iso = new THREE.Mesh(new THREE.BufferGeometry(), surfaceMaterial({ hasNormals: true }));
   #whole = new THREE.BufferGeometry();
+  #picker: Picker | undefined; // of the whole surface
   #coarse: THREE.BufferGeometry | undefined;
   #surfaces: IsoSurfaces | undefined;
   #show: Show;
@@ -302,6 +304,7 @@ export class VolumeView implements View {
     geometry.setAttribute("normal", new THREE.BufferAttribute(surface.normals, 3));
     geometry.setIndex(new THREE.BufferAttribute(surface.triangles, 1));
     this.#whole = geometry;
+    this.#picker = undefined;
     this.#iso.geometry = geometry;
     this.#around.changed();
     this.#onSurface?.();
@@ -317,7 +320,8 @@ export class VolumeView implements View {
       origin: direction.map((column) => dot(column, from)) as Triple,
       direction: direction.map((column) => dot(column, ray.direction)) as Triple,
     };
-    return firstHit(own, attributes.position.array, index.array, index.count / 3)?.t;
+    this.#picker ??= new Picker(attributes.position.array as Float32Array, index.array as Uint32Array);
+    return this.#picker.firstHit(own)?.t;
   }
 
   #hitAt(node: Triple, t: number): Hit {

@@ -2,11 +2,13 @@
 import { describe, expect, it } from "vitest";
 import { divergingColor, paletteIndex, regionPalette, sequentialColor } from "../src/colors.ts";
 import { exactFloat32, roundStep, rounded } from "../src/format.ts";
-import { closestOnMesh, closestOnTriangle, distance, firstHit } from "../src/geometry.ts";
+import { closestOnMesh, closestOnTriangle, distance } from "../src/geometry.ts";
 import { copyLayer, nearestNode, nodeIndex, toIndex, toWorld } from "../src/grid.ts";
+import { Picker } from "../src/picker.ts";
 import type { Grid, Triple } from "../src/scene.ts";
 import { SurfaceNets } from "../src/surfacenets.ts";
 import { extremes } from "../src/volumeview.ts";
+import { firstHit } from "./brute_force.ts";
 
 describe("text of numbers", () => {
   it("is the shortest that gives the same single-precision number", () => {
@@ -93,11 +95,36 @@ describe("rays and closest points", () => {
 
   it("hit the first triangle from either side", () => {
     const down = { origin: [0.2, 0.2, 5] as Triple, direction: [0, 0, -1] as Triple };
-    expect(firstHit(down, positions, triangles, 2)).toEqual({ triangle: 1, t: 3 });
+    const indexed = new Picker(positions, triangles);
+    expect(indexed.firstHit(down)).toEqual({ triangle: 1, t: 3 });
+    expect(indexed.firstHit(down, 1)).toEqual({ triangle: 0, t: 5 });
+    expect(indexed.firstHit(down, 0)).toBeUndefined();
     const up = { origin: [0.2, 0.2, -1] as Triple, direction: [0, 0, 1] as Triple };
-    expect(firstHit(up, positions, triangles, 2)).toEqual({ triangle: 0, t: 1 });
-    expect(firstHit(up, positions, undefined, 2)).toEqual({ triangle: 0, t: 1 });
-    expect(firstHit({ ...up, origin: [2, 2, -1] }, positions, triangles, 2)).toBeUndefined();
+    expect(indexed.firstHit(up)).toEqual({ triangle: 0, t: 1 });
+    expect(new Picker(positions).firstHit(up)).toEqual({ triangle: 0, t: 1 });
+    expect(indexed.firstHit({ ...up, origin: [2, 2, -1] })).toBeUndefined();
+    expect(new Picker(new Float32Array(), new Uint32Array()).firstHit(up)).toBeUndefined();
+  });
+
+  it("hit what a look at every triangle finds, with any number of them left out", () => {
+    let state = 1;
+    const random = () => (state = (state * 16807) % 2147483647) / 2147483647;
+    const corners = Float32Array.from({ length: 9 * 500 }, random);
+    const picker = new Picker(corners);
+    let hits = 0;
+    for (let k = 0; k < 200; ++k) {
+      const target: Triple = [random(), random(), random()];
+      const origin: Triple = [3 * random() - 1, 3 * random() - 1, -1];
+      const length = distance(target, origin);
+      const direction = target.map((x, axis) => (x - origin[axis]) / length) as Triple;
+      const count = k % 3 === 0 ? undefined : Math.floor(500 * random());
+      const hit = picker.firstHit({ origin, direction }, count);
+      const expected = firstHit({ origin, direction }, corners, undefined, count ?? 500);
+      expect(hit?.triangle).toBe(expected?.triangle);
+      if (hit && expected) expect(hit.t).toBeCloseTo(expected.t, 9);
+      hits += hit ? 1 : 0;
+    }
+    expect(hits).toBeGreaterThan(100);
   });
 
   it("find the closest point like a fine search does", () => {

@@ -17,8 +17,7 @@
 namespace blum {
 
 struct ClosestPointOptions {
-  /// How the sign is found, as for fields: `automatic` takes `normals` where the mesh is closed, consistently oriented,
-  /// faces outwards, and no two of its triangles touch or cross but neighbours; else `winding`. `none` is cheapest.
+  /// How the sign is found, by the same rule as for fields. `none` is cheapest.
   SignMode sign = SignMode::automatic;
   /// Nothing further than this is looked for; >= 0, in mesh units. Unset: no limit.
   std::optional<double> max_distance = {};
@@ -71,7 +70,10 @@ class ClosestPointQuery {
 /// @param queries  finite.
 /// @return         one entry per query, in their order; see ClosestPointQuery.
 /// @throws InvalidMesh; InvalidOption, also for a query that is not finite (named by its index); Cancelled.
-/// Cost: O(n log n) for n primitives, then about a microsecond per query and core.
+/// Cost: O(n log n) for n primitives; then per query and core, measured with 72,000 and 144,000 triangles, 0.7 us near
+/// the surface where queries follow each other along it, 1.4 us near it in any order, 7 us all over the mesh's box, and
+/// up to 20 us where many sites are nearly equally close. Signs of closed meshes add up to a third, those of open ones
+/// a winding number each.
 [[nodiscard]] std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const Vec3d> queries,
                                                        const ClosestPointOptions& options = {},
                                                        const Context& context = {});

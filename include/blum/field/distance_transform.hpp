@@ -9,31 +9,10 @@
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
+#include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
-#include "blum/grid/voxel_set.hpp"
 
 namespace blum {
-
-/// Which voxels of an image are selected. Voxels that are not a number never are.
-struct LabelSelection {
-  enum class Rule : std::uint8_t {
-    nonzero,   ///< value != 0
-    label,     ///< value == label, compared exactly
-    threshold  ///< value >= threshold, compared exactly
-  };
-  Rule rule = Rule::nonzero;
-  std::int64_t label = 0;  ///< for Rule::label
-  double threshold = 0;    ///< for Rule::threshold, in image values; not NaN
-
-  [[nodiscard]] static constexpr LabelSelection of_label(std::int64_t value) { return {Rule::label, value, 0}; }
-  [[nodiscard]] static constexpr LabelSelection at_least(double value) { return {Rule::threshold, 0, value}; }
-};
-
-/// The selected voxels of an image, which may be none.
-/// @param image  must pass validate(image).
-/// @throws InvalidImage, InvalidOption, Cancelled. Cost: the speed of memory; 1/8 byte per voxel, twice.
-[[nodiscard]] VoxelSet selected_voxels(const VoxelImageView& image, const LabelSelection& selection,
-                                       const Context& context = {});
 
 struct DistanceTransformOptions {
   LabelSelection selection = {};

@@ -14,6 +14,7 @@
 #include "blum/core/device.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
+#include "blum/core/phase_timer.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
 
@@ -21,8 +22,9 @@ namespace blum {
 
 /// How the sign of a field is asked for.
 enum class SignMode : std::uint8_t {
-  automatic,  ///< `normals` where the mesh is closed, consistently oriented and faces outwards, and no node shows that
-              ///< it crosses itself; else `winding`
+  automatic,  ///< `normals` where the mesh is closed, consistently oriented, faces outwards, and no two of its
+              ///< triangles touch or cross but neighbours; else `winding`. A function of the mesh alone, whatever the
+              ///< grid
   normals,    ///< the side that the orientation of a closed, consistently oriented mesh tells. Exact: crossings are
             ///< counted along the grid's rows. Angle-weighted pseudonormals (Baerentzen, Aanaes 2005) decide only where
             ///< shells cross or face different ways
@@ -57,12 +59,6 @@ struct FieldOptions {
   std::optional<double> band = {};
   /// What the site values count: features or triangles.
   SiteIds site_ids = SiteIds::features;
-};
-
-/// Wall-clock seconds of one phase of a computation.
-struct PhaseTime {
-  std::string phase;
-  double seconds = 0;
 };
 
 /// Distance and closest site at every node of a grid.

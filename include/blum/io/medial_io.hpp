@@ -8,12 +8,11 @@
 #include <span>
 #include <string>
 
+#include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
 #include "blum/grid/grid_spec.hpp"
-#include "blum/medial_axis/medial_complex.hpp"
-#include "blum/medial_axis/nested_complex.hpp"
 
 namespace blum {
 
@@ -37,9 +36,10 @@ struct MedialMetadata {
 
 /// A medial axis as a file holds it.
 struct MedialFile {
-  MedialComplex complex;
+  Complex complex;  ///< with all columns of MedialView, whatever the file has
   MedialMetadata metadata;
-  std::optional<NestedComplex> nested = {};  ///< the axes of all angles, where the file holds them (.npz)
+  std::optional<Complex> nested = {};  ///< the axes of all angles, where the file holds them (.npz)
+  double least_theta = 0;              ///< of these, degrees
   bool has_radii = false;
   bool has_footprints = false;
   bool has_sites = false;
@@ -49,41 +49,39 @@ struct MedialFile {
 
 enum class MedialFormat : std::uint8_t { vtp, ply, obj, ma, npz };
 
-/// Writes a medial axis; the format goes by the extension.
+/// Writes a medial axis as a complex (see write_complex), or as .ma; the format goes by the extension.
 ///
-///   .vtp  VTK poly data, raw appended: isolated vertices as verts; curves, rims and seams as lines; triangles as
-///         polys. Point data `radius`, `separation_angle`, `role`, `footprint_0`, `footprint_1`, `site_0`, `site_1`;
-///         cell data `separation_angle`, `role` (255 for polys), `sheet` (-1 for verts and lines); metadata (JSON) as
-///         the string `metadata` of the field data.
-///   .ply  binary, vertices with all attributes, and the radius again as `quality` (float32); triangles with theirs;
-///         edges (curves, rims, seams), whose attributes are an element of their own, `edge_attributes`, in the edges'
-///         order; metadata as comments `blum {"key": "value"}`.
-///   .obj  v; f; l for edges of no triangle; p for vertices of nothing else. No attributes, no unused vertex.
+/// The columns are, of vertices: `radius`, `footprint_0`, `footprint_1` (3 components), `separation_angle` (float64),
+/// `site_0`, `site_1` and `role` (int32); of edges: `separation_angle` (float32) and `role` (int32); of triangles:
+/// `separation_angle` (float32) and `sheet` (int32). Roles are the numbers of MedialRole; sites are -1 where there is
+/// none.
+///
+///   .vtp, .ply, .npz  hold all of it, and the metadata.
+///   .obj  holds positions, triangles, and edges of no triangle.
 ///   .ma   text: counts; v x y z radius; e for all edges, also those of triangles, each once; f. As medial meshes are
 ///         exchanged (Q-MAT); such files have no metadata.
-///   .npz  `vertices`, `radius`, `separation_angle`, `role`, `footprints` [n, 2, 3], `sites` [n, 2]; `edges`,
-///         `edge_angle`, `edge_role`; `triangles`, `triangle_angle`, `triangle_sheet`; `metadata` (JSON).
 ///
-/// Roles are the numbers of MedialRole, sites are -1 where there is none, and indices count from 0 (in .obj from 1).
 /// Coordinates keep double precision. A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension, or metadata that are not finite or not as said above; InvalidGrid;
-/// InvalidMesh when the complex names vertices that it does not have, or one twice in an edge or triangle, or holds
-/// numbers that are not finite, a negative radius, or a sheet beyond its count; FileError; Cancelled.
-void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const MedialMetadata& metadata = {},
+/// @throws InvalidOption for another extension, a column of MedialView that is missing, or metadata that are not finite
+/// or not as said above; InvalidGrid; InvalidMesh when the complex names vertices that it does not have, or one twice
+/// in an edge or triangle, or holds numbers that are not finite, a negative radius, or a sheet beyond its count;
+/// FileError; Cancelled.
+void write_medial(const std::filesystem::path& path, const Complex& complex, const MedialMetadata& metadata = {},
                   const Context& context = {});
 
-/// The same with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files hold them, in arrays like
-/// those above whose names begin with `nested_`, and: `nested_theta` [1], the least angle; `nested_vertex_until`,
-/// `nested_triangle_until`, at which theta a vertex or triangle is gone (inf: at none); `nested_edge_from` and
-/// `nested_edge_until`, between which an edge has its role.
+/// The same with the axes of all angles, MedialAxis::nested(), for viewers. Only .npz files hold them, as the further
+/// complex `nested`, which has more columns (float32): of vertices and triangles `until`, the theta at which they are
+/// gone (inf: none); of edges `from` and `until`, between which an edge has its role. The least angle is in the
+/// metadata, as `nested_theta`.
 /// @throws InvalidOption for other formats.
-void write_medial(const std::filesystem::path& path, const MedialComplex& complex, const NestedComplex& nested,
+/// @param least_theta  MedialAxis::least_theta(), degrees.
+void write_medial(const std::filesystem::path& path, const Complex& complex, const Complex& nested, double least_theta,
                   const MedialMetadata& metadata = {}, const Context& context = {});
 
-/// Reads a file that write_medial wrote, or one of the same form by another program: with only some of the attributes,
-/// with polygons (.ply, .obj), with other numeric types and byte orders (.vtp, .ply, .npz). .vtp, .ply and .npz give
-/// back exactly what was written. Where a file does not say what its edges are, those that are sides of triangles are
-/// left out, as the triangles imply them, and the others are curves; without sheets all triangles are on sheet 0.
+/// Reads a file that write_medial wrote, or one of the same form by another program (see read_complex), with any of the
+/// columns; others are left out. .vtp, .ply and .npz give back exactly what was written. Where a file does not say what
+/// its edges are, those that are sides of triangles are left out, as the triangles imply them, and the others are
+/// curves; without sheets all triangles are on sheet 0.
 /// @throws FileError; FormatError naming the file and the reason; InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.

@@ -6,22 +6,21 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "blum/complex/complex.hpp"
+#include "blum/complex/medial_columns.hpp"
+#include "blum/core/betti_numbers.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
-#include "blum/field/distance_transform.hpp"
-#include "blum/field/field.hpp"
+#include "blum/core/phase_timer.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
-#include "blum/medial_axis/medial_complex.hpp"
-#include "blum/medial_axis/nested_complex.hpp"
+#include "blum/solid/solid.hpp"
 
 namespace blum {
-
-/// Components, tunnels and voids.
-using BettiNumbers = std::array<std::int64_t, 3>;
 
 struct MedialAxisOptions {
   /// Meshes: voxels along the longest side of the box around the mesh, 8 to 800.
@@ -37,25 +36,16 @@ struct MedialAxisOptions {
   /// The smallest theta that will be asked for, 0 to 180 degrees: what is seen at less is not looked at closely, which
   /// saves time where much is. What joins the rest may then run elsewhere.
   double least_theta = 0;
-  /// Images: which voxels are the solid.
+  /// medial_axis() of an image: which voxels are the solid. Not looked at where a Solid is given.
   LabelSelection selection = {};
 };
 
-/// What a solid is, and so what a certificate is worth.
-enum class SolidRule : std::uint8_t {
-  polyhedron,  ///< what the closed shells of a mesh bound: tunnels and voids are known exactly
-  winding,     ///< the voxels whose centre has a winding number above 1/2: the mesh is open, crosses itself or is not
-               ///< manifold, and only the topology of these voxels is kept
-  voxels       ///< the union of the selected, closed voxels of an image
-};
-[[nodiscard]] std::string_view to_string(SolidRule rule);
-
 /// How one body (a connected part of the solid) was voxelised.
 struct BodyReport {
-  BettiNumbers solid{};   ///< of the body
-  BettiNumbers voxels{};  ///< of the voxels that stand for it
-  bool is_right = false;  ///< whether they are equal
-  double spacing = 0;     ///< smallest side of a voxel, mesh units
+  BettiNumbers solid{};           ///< of the body
+  BettiNumbers voxels{};          ///< of the voxels that stand for it
+  bool topology_matches = false;  ///< whether they are equal
+  double spacing = 0;             ///< smallest side of a voxel, mesh units
   std::size_t voxel_count = 0;
   std::size_t left_out = 0;  ///< voxels whose centre is inside, but that are left out
   std::size_t taken_in = 0;  ///< voxels whose centre is outside, but that are taken in
@@ -64,12 +54,12 @@ struct BodyReport {
 
 struct MedialAxisReport {
   SolidRule rule = SolidRule::polyhedron;
-  std::string reason;             ///< one sentence: why this rule
-  std::size_t turned_shells = 0;  ///< shells that faced the solid and were turned
-  BettiNumbers solid{};           ///< of the whole solid: the sum of the bodies'
-  BettiNumbers voxels{};          ///< the axis has these, at every theta
-  bool is_right = false;          ///< whether they are equal
-  GridSpec grid;                  ///< voxel centres: of the first body, or of the image
+  std::string reason;               ///< one sentence: why this rule
+  std::size_t reversed_shells = 0;  ///< shells that faced the solid and were reversed
+  BettiNumbers solid{};             ///< of the whole solid: the sum of the bodies'
+  BettiNumbers voxels{};            ///< the axis has these, at every theta
+  bool topology_matches = false;    ///< whether they are equal
+  GridSpec grid;                    ///< voxel centres: of the first body, or of the image
   std::vector<BodyReport> bodies;
   std::vector<PhaseTime> phases;  ///< seconds
 };
@@ -83,14 +73,21 @@ class MedialAxis {
   ~MedialAxis();
 
   /// The part where two footprints are seen at more than theta apart, and what homotopy needs to join it: a complex
-  /// with the Betti numbers report().voxels. What a larger theta gives is part of what a smaller one gives.
+  /// with the columns of MedialView and the Betti numbers report().voxels. What a larger theta gives is part of what a
+  /// smaller one gives.
   /// @param theta  degrees, MedialAxisOptions::least_theta to 180.
   /// @throws InvalidOption. Cost: linear in the result.
-  [[nodiscard]] MedialComplex extract(double theta) const;
+  [[nodiscard]] Complex extract(double theta) const;
 
-  /// What extract() gives for all angles from MedialAxisOptions::least_theta on, in one complex.
-  /// Cost: near-linear in the axis at the least angle.
-  [[nodiscard]] NestedComplex nested() const;
+  /// The axes of all angles from least_theta() to 180 as sets of points, in one complex: to show, and to simplify
+  /// without computing anything again. It has the columns of MedialView and MedialLevels; at an angle, the triangles,
+  /// curves and vertices that are there cover what extract() gives for it. Vertices at the same place are one, and
+  /// pieces without extent are left out, so that its topology need not be that of the solid. Sheets and the roles of
+  /// vertices are those at the least angle. Cost: near-linear in the axis at the least angle.
+  [[nodiscard]] Complex nested() const;
+
+  /// MedialAxisOptions::least_theta.
+  [[nodiscard]] double least_theta() const;
 
   [[nodiscard]] const MedialAxisReport& report() const;
 
@@ -101,30 +98,27 @@ class MedialAxis {
   std::unique_ptr<Data> data_;
 };
 
-/// The medial axis of the solid that a mesh bounds.
-///
-/// Closed, manifold meshes that do not cross themselves are taken as polyhedra, shell by shell: each outer shell and
-/// the voids in it are one body, and bodies may touch. Triangles that face another way than their neighbours are
-/// turned, and so are shells that face the solid. For other meshes the solid is where the winding number is above 1/2
-/// (SolidRule::winding).
+/// The medial axis of a solid.
 ///
 /// Vertices lie on the bisector of two parts of the surface where there are two, within 0.7 voxels of a corner of the
 /// voxel lattice; their radius is the exact distance to the surface (1e-9 of the extent).
 ///
-/// @param mesh  must pass validate(mesh); segments and points are ignored.
-/// @return      report().is_right says whether the axis has the topology of the solid: look at it. Sites are those of
-///              SiteTable(mesh). The same bytes for any number of threads.
-/// @throws InvalidMesh (also for a mesh without triangles, or without any interior), InvalidOption, OutOfMemory,
-/// Cancelled.
+/// @return      report().topology_matches says whether the axis has the topology of the solid: look at it. Of a mesh,
+///              sites are those of SiteTable(mesh). Of an image, distances are to the faces of the voxels, and sites
+///              are voxels that are not selected, or that lie just outside of the image, where the id is that of the
+///              image's voxel next to them. The same bytes for any number of threads.
+/// @throws InvalidMesh for a solid without any interior that voxels could show: where triangles face inwards, the
+/// message says so; InvalidOption, OutOfMemory, Cancelled.
 /// Cost: near-linear in the voxels of the solid; about 10 bytes for each voxel of the box.
 /// Method: docs/theory/medial-axis.md (Sud 2006, ch. 5; Liu, Chambers, Letscher, Ju 2010; Chaussard, Couprie 2009).
+[[nodiscard]] MedialAxis medial_axis(const Solid& solid, const MedialAxisOptions& options = {},
+                                     const Context& context = {});
+
+/// The same of Solid::of(mesh) in one call; segments and points are ignored. @throws as both.
 [[nodiscard]] MedialAxis medial_axis(const MeshView& mesh, const MedialAxisOptions& options = {},
                                      const Context& context = {});
 
-/// The medial axis of the selected voxels of an image: of the union of these closed voxels (components that touch in a
-/// corner are one). Distances are to the faces of the voxels; sites are voxels that are not selected, or that lie just
-/// outside of the image, where the id is that of the image's voxel next to them.
-/// @throws InvalidImage (also when no voxel is selected), InvalidOption, OutOfMemory, Cancelled.
+/// The same of Solid::of(image, options.selection) in one call. @throws as both.
 [[nodiscard]] MedialAxis medial_axis(const VoxelImageView& image, const MedialAxisOptions& options = {},
                                      const Context& context = {});
 

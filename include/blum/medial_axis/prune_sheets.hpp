@@ -1,9 +1,9 @@
 // Blum: medial axes simplified sheet by sheet. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
-#include "blum/medial_axis/medial_complex.hpp"
 
 namespace blum {
 
@@ -13,9 +13,10 @@ namespace blum {
 /// MedialAxis::extract() cuts sheets apart at theta, this keeps each as it is or drops it.
 /// @param axis   as extract() gives it, at a small theta: sheets are taken as they are labelled.
 /// @param theta  degrees, 0 to 180.
-/// @return       part of the axis, labelled anew; what a larger theta leaves of the result is part of it.
-/// @throws InvalidOption, Cancelled.
+/// @return       part of the axis with its columns (edges have those of medial_columns only), labelled anew; what a
+/// larger theta leaves of the result is part of it.
+/// @throws InvalidOption, also saying problem_of_medial(axis); Cancelled.
 /// Cost: O(n log n), more where many sheets are tried in vain. Method: Sud 2006, 5.6.
-[[nodiscard]] MedialComplex prune_sheets(const MedialComplex& axis, double theta, const Context& context = {});
+[[nodiscard]] Complex prune_sheets(const Complex& axis, double theta, const Context& context = {});
 
 }  // namespace blum

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "blum/core/parallel.hpp"
+#include "blum/grid/selected_voxels.hpp"
 #include "field/cpu/distance_transform_kernels.hpp"
-#include "field/cpu/distance_transform_mask.hpp"
 #include "field/image_field.hpp"
 #include "field/image_plan.hpp"
 
@@ -139,22 +139,6 @@ Field transform(const VoxelImageView& image, const LabelSelection& selection, co
 }
 
 }  // namespace
-
-VoxelSet selected_voxels(const VoxelImageView& image, const LabelSelection& selection, const Context& context) {
-  validate(image);
-  detail::MaskBits mask;
-  const auto& size = image.grid.size;
-  static_cast<void>(detail::select_voxels(image, selection, static_cast<std::size_t>(size[0]), context, mask));
-  VoxelSet voxels(size);
-  std::size_t first = 0;
-  for (std::int64_t k = 0; k < size[2]; ++k) {
-    for (std::int64_t j = 0; j < size[1]; ++j, first += mask.words_per_row) {
-      const auto row = mask.words.span().subspan(first, mask.words_per_row);
-      std::copy(row.begin(), row.end(), voxels.row(j, k).begin());
-    }
-  }
-  return voxels;
-}
 
 namespace cpu {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "blum/core/parallel.hpp"
-#include "blum/field/phase_timer.hpp"
+#include "blum/core/phase_timer.hpp"
 #include "blum/geometry/pseudonormals.hpp"
 
 namespace blum::cpu {

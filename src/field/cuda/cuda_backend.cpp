@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "blum/field/phase_timer.hpp"
+#include "blum/core/phase_timer.hpp"
 #include "field/connectivity_cache.hpp"
 #include "field/cuda/module_engine.hpp"
 
@@ -33,7 +33,7 @@ class CudaFieldBackend final : public FieldBackend {
     memory.level = request.level.value_or(0);
     engine_.run(&Module::compute, context, &mesh_, &memory);
     timer.lap("field");
-    return {{}, memory.is_signed, memory.is_simple};
+    return {{}, memory.is_signed};
   }
 
  private:

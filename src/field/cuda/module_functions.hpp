@@ -127,7 +127,6 @@ class ModuleFunctions {
           *mesh, request_of(*field), field->distance, field->site, [&] { return call->is_cancelled(call->context); },
           [&](double fraction) { call->report(call->context, fraction); });
       field->is_signed = result.is_signed;
-      field->is_simple = result.is_simple;
     });
   }
   static Status set_connectivity_there(void* engine, const DeviceMeshView* mesh, void* stream, Call* call) {

@@ -15,7 +15,7 @@
 namespace blum::cuda {
 
 /// To be raised with every change of this file.
-inline constexpr std::uint32_t module_version = 3;
+inline constexpr std::uint32_t module_version = 4;
 inline constexpr const char* module_symbol = "blum_cuda_module";
 inline constexpr const char* module_file = "libblum_cuda.so";
 
@@ -48,9 +48,8 @@ struct FieldMemory {
   int level = 0;
   /// Whether sites are to be the smallest triangles that they lie on. In the device's memory only.
   bool wants_triangles = false;
-  /// Whether they got signs, and whether all winding numbers were level or level + 1. In the host's memory only.
+  /// Whether they got signs. In the host's memory only.
   bool is_signed = false;
-  bool is_simple = false;
 };
 
 /// The functions of the module.

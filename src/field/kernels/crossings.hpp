@@ -9,7 +9,7 @@
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/row_crossings.hpp"
 
-// The same exact counting as SignScan (field/sign_scan.hpp), with the crossings added up at the nodes behind them
+// The same exact counting as SignScan (field/sign/scan.hpp), with the crossings added up at the nodes behind them
 // instead of sorted: whole numbers, so that the order does not matter.
 namespace blum::kernels {
 
@@ -179,8 +179,6 @@ struct ApplyWinding : RowsOfWarps {
   std::int32_t width;
   std::int32_t level;
   float* distance;
-  /// Set where a winding number is neither level nor level + 1, as those of a mesh that does not cross itself are.
-  std::uint32_t* is_crossed;
 
   template <class Block>
   BLUM_HD void operator()(const Block& block, Shared&, std::size_t index) const {
@@ -191,7 +189,6 @@ struct ApplyWinding : RowsOfWarps {
       add_up_row(warp, change + line, width, [&](std::int32_t x, std::int32_t winding) {
         float& value = distance[line + static_cast<std::size_t>(x)];
         if (winding > level && value > 0) value = -value;
-        if (winding != level && winding != level + 1) *is_crossed = 1;
       });
     });
   }
@@ -218,8 +215,6 @@ class CrossingSigns {
     places_.resize(mesh.vertex_count);
     large_.resize(mesh.triangle_count);
     large_count_.resize(1);
-    is_crossed_.resize(1);
-    device_.fill(is_crossed_, 0U);
     device_.for_each(mesh.vertex_count, PlaceInNodes{units_, mesh.vertices, places_.data()});
     if (boundary_.count() > 0) boundary_.place(mesh.vertices);
   }
@@ -234,8 +229,7 @@ class CrossingSigns {
     const std::size_t row_blocks = (rows + RowsOfWarps::warps - 1) / RowsOfWarps::warps;
     count_changes(first_slice, last_slice, rows);
     if (boundary_.count() == 0) {
-      device_.run_blocks(row_blocks,
-                         ApplyWinding{{}, change_.data(), rows, width, level, distance, is_crossed_.data()});
+      device_.run_blocks(row_blocks, ApplyWinding{{}, change_.data(), rows, width, level, distance});
       return;
     }
     device_.run_blocks(row_blocks, SumCrossings{{}, change_.data(), rows, width});
@@ -248,14 +242,6 @@ class CrossingSigns {
                                                 change_.data(),
                                                 level,
                                                 distance});
-  }
-
-  /// Whether every node so far has the winding number level or level + 1, of a mesh without boundary. Waits for the
-  /// device.
-  [[nodiscard]] bool is_simple() {
-    std::uint32_t flag = 0;
-    device_.download(is_crossed_.data(), 1, &flag);
-    return flag == 0;
   }
 
  private:
@@ -283,7 +269,6 @@ class CrossingSigns {
   typename Device::template Array<Vec3d> places_;
   typename Device::template Array<std::uint32_t> large_;
   typename Device::template Array<std::uint32_t> large_count_;
-  typename Device::template Array<std::uint32_t> is_crossed_;
   typename Device::template Array<std::int32_t> change_;
 };
 

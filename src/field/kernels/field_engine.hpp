@@ -35,8 +35,6 @@ struct EngineRequest {
 
 struct EngineResult {
   bool is_signed = false;
-  /// With a level, and without a boundary: whether every node has the winding number level or level + 1.
-  bool is_simple = false;
 };
 
 /// Keeps a mesh's connectivity and its memory from frame to frame. Fields go to the host's memory, slab by slab, or
@@ -114,7 +112,7 @@ class FieldEngine {
     }
     device_.wait();
     fetch(slabs.count() - 1);
-    return {is_signed, is_signed && signs_.boundary_count() == 0 && signs_.is_simple()};
+    return {is_signed};
   }
 
   /// The same from vertices in the device's memory to arrays there; queued, without waiting for the device. Where mesh

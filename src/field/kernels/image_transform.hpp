@@ -9,11 +9,11 @@
 #include <variant>
 
 #include "blum/field/distance_transform.hpp"
+#include "blum/grid/voxel_test.hpp"
 #include "field/image_plan.hpp"
 #include "field/kernels/image_columns.hpp"
 #include "field/kernels/image_rows.hpp"
 #include "field/kernels/image_shape.hpp"
-#include "field/voxel_test.hpp"
 
 namespace blum::kernels {
 

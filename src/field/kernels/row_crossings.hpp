@@ -7,7 +7,7 @@
 #include "blum/grid/grid_spec.hpp"
 #include "field/kernels/host_device.hpp"
 
-// The arithmetic of SignScan (field/sign_scan.hpp), which says why it is exact, and of its counterpart on devices. No
+// The arithmetic of SignScan (field/sign/scan.hpp), which says why it is exact, and of its counterpart on devices. No
 // product is fused with a sum: triangles that share an edge must get the very same point where a slice cuts it. On the
 // host, files that include this are compiled without contraction.
 namespace blum::kernels {

@@ -8,7 +8,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "support/emulated_backend.hpp"
 
 namespace blum {

@@ -8,7 +8,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "field/cpu/tile_kernel.hpp"
 #include "support/back_ends.hpp"
 #include "support/field_check.hpp"

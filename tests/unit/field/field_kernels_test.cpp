@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "blum/field/field.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "field/kernels/boundary_edges.hpp"
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/emulated_device.hpp"

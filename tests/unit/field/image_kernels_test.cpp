@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "blum/field/distance_transform.hpp"
+#include "blum/grid/selected_voxels.hpp"
 #include "field/image_plan.hpp"
 #include "field/kernels/emulated_device.hpp"
 #include "field/kernels/image_transform.hpp"

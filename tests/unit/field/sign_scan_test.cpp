@@ -1,6 +1,6 @@
 // Proves that winding numbers counted along the rows of a grid are those of the full sum, node by node, on any balanced
 // mesh: crossing, folded, flat, aligned with the nodes; and that nothing else is taken for balanced.
-#include "field/sign_scan.hpp"
+#include "field/sign/scan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,15 +8,20 @@
 
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
+#include "field/sign/policy.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {
 namespace {
 
+sign::Method method_of(const MeshView& mesh) {
+  return sign::plan_signs(SignMode::winding, mesh, SiteTable(mesh), {}).method;
+}
+
 /// Compares all nodes; those within 1e-12 of the diagonal from the surface may differ.
 void expect_true_signs(const MeshView& mesh, const GridSpec& grid) {
-  ASSERT_TRUE(is_balanced(mesh, SiteTable(mesh)));
+  ASSERT_EQ(method_of(mesh), sign::Method::crossings);
   const reference::BruteForce exact(mesh);
   Box3 box = bounds(mesh);
   box.extend(bounds(grid));
@@ -108,26 +113,13 @@ TEST(SignScan, IsRightFarFromTheOriginAndAtAnyScale) {
   expect_true_signs(star, grid_in({{-1e7, -1e7, -1e7}, {1e7, 1e7, 1e7}}, 9));
 }
 
-bool is_simple(const TriangleMesh& mesh, int level = 0) {
+TEST(SignScan, LeavesZerosAlone) {
   Field field;
+  const TriangleMesh mesh = make_box({});
   field.grid = grid_around(bounds(mesh), 9);
   field.distance = Buffer<float>(field.grid.node_count(), 0.0F);
-  const bool simple = SignScan::make(mesh, field.grid, {})->apply(field, level, {});
+  SignScan::make(mesh, field.grid, {})->apply(field, 0, {});
   for (const float d : field.distance.span()) EXPECT_FALSE(std::signbit(d));  // zeros have no side
-  return simple;
-}
-
-TEST(SignScan, TellsWhetherShapesOverlap) {
-  TriangleMesh mesh = make_box({});
-  EXPECT_TRUE(is_simple(mesh));
-  append(mesh, make_box({}), {1.5, 0, 0});
-  EXPECT_TRUE(is_simple(mesh));
-  append(mesh, make_box({}), {1, 0, 0});
-  EXPECT_FALSE(is_simple(mesh));
-  TriangleMesh inverted = make_box({});
-  reverse_triangles(inverted);
-  EXPECT_FALSE(is_simple(inverted));
-  EXPECT_TRUE(is_simple(inverted, -1));
 }
 
 TEST(SignScan, GivesUpOnHeapsOfOverlappingShapes) {
@@ -139,21 +131,21 @@ TEST(SignScan, GivesUpOnHeapsOfOverlappingShapes) {
 
 TEST(SignScan, BalanceIsOfEveryEdge) {
   TriangleMesh mesh = make_sphere({.frequency = 3});
-  EXPECT_TRUE(is_balanced(mesh, SiteTable(mesh)));
+  EXPECT_EQ(method_of(mesh), sign::Method::crossings);
   mesh.triangles.push_back({2, 2, 5});  // no edge of positive length, or the same one there and back
-  EXPECT_TRUE(is_balanced(mesh, SiteTable(mesh)));
+  EXPECT_EQ(method_of(mesh), sign::Method::crossings);
   mesh.triangles.pop_back();
   std::swap(mesh.triangles[4][0], mesh.triangles[4][1]);
-  EXPECT_FALSE(is_balanced(mesh, SiteTable(mesh)));
+  EXPECT_EQ(method_of(mesh), sign::Method::sums);
   mesh.triangles.erase(mesh.triangles.begin() + 4);
-  EXPECT_FALSE(is_balanced(mesh, SiteTable(mesh)));
+  EXPECT_EQ(method_of(mesh), sign::Method::sums);
   // Four triangles at an edge, two each way.
   TriangleMesh touching = make_box({});
   append(touching, make_box({}));
   for (Triangle& t : touching.triangles) {
     for (std::uint32_t& v : t) v %= 8;
   }
-  EXPECT_TRUE(is_balanced(touching, SiteTable(touching)));
+  EXPECT_EQ(method_of(touching), sign::Method::crossings);
 }
 
 }  // namespace

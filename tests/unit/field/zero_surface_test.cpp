@@ -16,9 +16,9 @@
 #include <stop_token>
 
 #include "blum/core/random.hpp"
-#include "blum/geometry/generators.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
+#include "blum/shapes/generators.hpp"
 
 namespace blum {
 namespace {

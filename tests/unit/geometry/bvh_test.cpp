@@ -1,12 +1,16 @@
-// Proves that the bounding-volume hierarchy finds the closest site that a look at every site finds.
+// Proves that every query of the bounding-volume hierarchy finds what a look at every site or primitive finds: the
+// closest site, the k closest primitives, those within a distance, crossings of rays; and the same after a refit as
+// when built anew.
 #include "blum/geometry/bvh.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {
@@ -102,6 +106,144 @@ TEST(Bvh, IsTheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(one.nearest(q)->distance, four.nearest(q)->distance);
     EXPECT_EQ(one.nearest(q)->site, four.nearest(q)->site);
   }
+}
+
+/// The closest point of each primitive, each found by a hierarchy that holds nothing else.
+std::vector<NearestPrimitive> each_alone(const MeshView& mesh, const Vec3d& q) {
+  std::vector<NearestPrimitive> out;
+  const SiteTable sites(mesh);
+  const auto add = [&](const MeshView& one) {
+    const std::optional<NearestSite> found = Bvh(one, SiteTable(one)).nearest(q);
+    out.push_back({found->point, found->distance, {}, static_cast<std::uint32_t>(out.size())});
+  };
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) add({mesh.vertices, mesh.triangles.subspan(i, 1), {}, {}});
+  for (std::size_t i = 0; i < mesh.segments.size(); ++i) add({mesh.vertices, {}, mesh.segments.subspan(i, 1), {}});
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) add({mesh.vertices, {}, {}, mesh.points.subspan(i, 1)});
+  std::sort(out.begin(), out.end(), [](const NearestPrimitive& a, const NearestPrimitive& b) {
+    return a.distance < b.distance || (a.distance == b.distance && a.primitive < b.primitive);
+  });
+  return out;
+}
+
+TEST(Bvh, FindsTheKClosestPrimitivesAndThoseWithinADistance) {
+  const TriangleMesh mesh = test::awkward_soup(60, 9);
+  const reference::BruteForce truth(mesh);
+  const Bvh bvh(mesh, truth.sites());
+  const double tolerance = 1e-12 * bounds(mesh).diagonal();
+  EXPECT_EQ(bvh.size(), mesh.triangles.size() + mesh.segments.size() + mesh.points.size());
+  for (const Vec3d& q : test::places_around(mesh, 60, 10)) {
+    const std::vector<NearestPrimitive> all = each_alone(mesh, q);
+    const std::vector<NearestPrimitive> found = bvh.nearest_primitives(q, 11);
+    ASSERT_EQ(found.size(), 11U);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double slack = tolerance + 1e-12 * all[i].distance;
+      EXPECT_NEAR(found[i].distance, all[i].distance, slack);
+      EXPECT_NEAR(length(q - found[i].point), found[i].distance, slack);
+      EXPECT_NEAR(truth.site_distance(found[i].site, q), found[i].distance, slack);
+      if (i > 0) {
+        EXPECT_LE(found[i - 1].distance, found[i].distance);
+      }
+    }
+    EXPECT_EQ(found.front().distance, bvh.nearest(q)->distance);
+    EXPECT_EQ(bvh.nearest_primitives(q, 1000).size(), bvh.size());
+    EXPECT_TRUE(bvh.nearest_primitives(q, 0).empty());
+    const double reach = found[6].distance;
+    const std::vector<NearestPrimitive> within = bvh.within(q, reach);
+    ASSERT_GE(within.size(), 7U);
+    for (std::size_t i = 0; i < std::min<std::size_t>(within.size(), 11); ++i) {
+      EXPECT_EQ(within[i].primitive, found[i].primitive);
+      EXPECT_EQ(within[i].distance, found[i].distance);
+    }
+    EXPECT_EQ(bvh.nearest_primitives(q, 1000, reach).size(), within.size());
+    std::size_t beyond = 0;
+    for (const NearestPrimitive& p : all) beyond += p.distance > reach * (1 + 1e-9) ? 1 : 0;
+    EXPECT_LE(within.size(), all.size() - beyond);
+    EXPECT_TRUE(bvh.within(q, -1).empty());
+  }
+  int calls = 0;
+  bvh.for_each_within({}, 1e9, [&](const NearestPrimitive&) { return ++calls < 5; });
+  EXPECT_EQ(calls, 5);
+}
+
+TEST(Bvh, RaysCrossWhatEveryTriangleAloneSays) {
+  for (const double scale : {1.0, 1e-40, 1e40}) {
+    const TriangleMesh mesh = test::moved(test::awkward_soup(200, 31), scale);
+    const Bvh bvh(mesh, SiteTable(mesh));
+    const std::vector<Vec3d> places = test::places_around(mesh, 300, 32);
+    for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
+      const Ray ray{places[i], (places[i + 1] - places[i]) * (i % 4 == 0 ? 1e-3 : 1)};
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& [a, b, c] = mesh.triangles[t];
+        const auto alone = detail::crossing(ray, {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+        if (alone) expected.push_back(t);
+      }
+      const std::vector<RayCrossing> found = bvh.crossings(ray);
+      std::vector<std::uint32_t> triangles;
+      for (const RayCrossing& hit : found) {
+        triangles.push_back(hit.triangle.value);
+        const auto& [a, b, c] = mesh.triangles[hit.triangle.value];
+        const auto alone = detail::crossing(ray, {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+        ASSERT_TRUE(alone);
+        EXPECT_EQ(hit.side, alone->side);
+        EXPECT_EQ(hit.on_border, alone->on_border);
+        const Vec3d point =
+            mesh.vertices[a] * hit.weights[0] + mesh.vertices[b] * hit.weights[1] + mesh.vertices[c] * hit.weights[2];
+        EXPECT_LE(length(point - (ray.origin + ray.direction * hit.t)), 1e-9 * scale * (1 + hit.t)) << i;
+      }
+      std::sort(triangles.begin(), triangles.end());
+      EXPECT_EQ(triangles, expected);
+      EXPECT_TRUE(std::is_sorted(found.begin(), found.end(),
+                                 [](const RayCrossing& a, const RayCrossing& b) { return a.t < b.t; }));
+      const std::optional<RayCrossing> first = bvh.first_crossing(ray);
+      ASSERT_EQ(first.has_value(), !found.empty());
+      if (first) {
+        EXPECT_EQ(first->t, found.front().t);
+        EXPECT_EQ(first->triangle, found.front().triangle);
+        EXPECT_FALSE(bvh.first_crossing(ray, first->t * (1 - 1e-9) - 1e-300));
+        EXPECT_EQ(bvh.first_crossings(std::vector<Ray>{ray})[0]->t, first->t);
+      }
+    }
+  }
+  const TriangleMesh sphere = make_sphere({.frequency = 8});
+  const Bvh bvh(sphere, SiteTable(sphere));
+  EXPECT_EQ(bvh.crossings({{0.01, 0.02, 0.03}, {0.3, 0.2, 0.9}}).size(), 1U);
+  EXPECT_TRUE(bvh.crossings({{0, 0, 0}, {0, 0, 0}}).empty());
+  EXPECT_TRUE(bvh.crossings({{0, 0, NAN}, {0, 0, 1}}).empty());
+}
+
+TEST(Bvh, AnswersAfterARefitAreThoseOfANewOne) {
+  const TriangleMesh before = test::awkward_soup(150, 41);
+  TriangleMesh after = before;
+  Random random(42);
+  for (Vec3d& v : after.vertices) v = v * 3.0 + random.in_ball() * 2.0 + Vec3d{5, 0, -7};
+  const SiteTable sites(before);
+  Bvh refitted(before, sites);
+  EXPECT_THROW(refitted.refit(std::span(after.vertices).first(3)), InvalidMesh);
+  refitted.refit(after.vertices);
+  const Bvh fresh(after, sites);
+  EXPECT_EQ(refitted.bounds().lower, fresh.bounds().lower);
+  EXPECT_EQ(refitted.bounds().upper, fresh.bounds().upper);
+  for (const Vec3d& q : test::places_around(after, 300, 43)) {
+    const std::optional<NearestSite> a = refitted.nearest(q);
+    const std::optional<NearestSite> b = fresh.nearest(q);
+    EXPECT_EQ(a->distance, b->distance);
+    EXPECT_EQ(a->site, b->site);
+    EXPECT_EQ(a->point, b->point);
+    const auto near_a = refitted.nearest_primitives(q, 5);
+    const auto near_b = fresh.nearest_primitives(q, 5);
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(near_a[i].primitive, near_b[i].primitive);
+    const Ray ray{q, bounds(after).center() - q};
+    const auto hits_a = refitted.crossings(ray);
+    const auto hits_b = fresh.crossings(ray);
+    ASSERT_EQ(hits_a.size(), hits_b.size());
+    for (std::size_t i = 0; i < hits_a.size(); ++i) EXPECT_EQ(hits_a[i].triangle, hits_b[i].triangle);
+  }
+  const std::vector<Vec3d> queries = test::places_around(after, 700, 44);
+  const auto batch = refitted.nearest(queries, HUGE_VAL, {.threads = 3});
+  for (std::size_t i = 0; i < queries.size(); ++i) EXPECT_EQ(batch[i]->site, fresh.nearest(queries[i])->site);
+  after.vertices[after.triangles[0][0]].x = NAN;
+  EXPECT_THROW(refitted.refit(after.vertices), InvalidMesh);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Proves that orient3d has the sign of the exact determinant, against signs that rational arithmetic gave and against
 // integers of 128 bits.
-#include "geometry/orient3d.hpp"
+#include "blum/geometry/orient3d.hpp"
 
 #include <gtest/gtest.h>
 

@@ -13,9 +13,9 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
-#include "blum/geometry/generators.hpp"
-#include "blum/geometry/shape_catalog.hpp"
-#include "geometry/triangle_contact.hpp"
+#include "blum/geometry/triangle_contact.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {

@@ -14,7 +14,8 @@
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
+#include "geometry/shells.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {
@@ -374,6 +375,19 @@ TEST(Topology, ManyShellsInOne) {
   append(mesh, make_bodies({3000, 0.5, 1, 2}));
   const Topology t = topology(mesh);
   EXPECT_EQ(t.betti, (Betti{3001, 0, 1}));
+}
+
+TEST(Topology, ShellsThatLieUponEachOtherTakeBoundedWork) {
+  const auto meetings = [](int boxes) {
+    TriangleMesh mesh;
+    for (int k = 0; k < boxes; ++k) append(mesh, make_box({}));
+    const SiteTable sites(mesh);
+    detail::ShellSet set =
+        detail::find_shells(mesh, detail::find_components(mesh, sites, detail::tally_edges(mesh, sites)), {});
+    return detail::nest_shells(mesh, set, {});
+  };
+  EXPECT_GT(meetings(100), 100U * 100U * 12U);  // from many points of each
+  EXPECT_LT(meetings(1200), 24'000'000U);       // and 1,200^2 times 110 without an end
 }
 
 TEST(Topology, RefusesInvalidMeshesAndCanBeCancelled) {

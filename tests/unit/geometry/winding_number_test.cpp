@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/shapes/generators.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {

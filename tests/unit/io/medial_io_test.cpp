@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/medial_rows.hpp"
 #include "support/medial_sample.hpp"
 #include "unit/io/medial_text.hpp"
 #include "unit/io/temporary_folder.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 using namespace test;
 
-void expect_same_vertex(const MedialVertex& a, const MedialVertex& b) {
+void expect_same_vertex(const VertexRow& a, const VertexRow& b) {
   EXPECT_EQ(a.position, b.position);
   EXPECT_EQ(a.radius, b.radius);
   EXPECT_EQ(a.footprints, b.footprints);
@@ -30,7 +31,7 @@ void expect_same_vertex(const MedialVertex& a, const MedialVertex& b) {
   EXPECT_EQ(a.role, b.role);
 }
 
-void expect_same(const MedialComplex& a, const MedialComplex& b) {
+void expect_same(const AxisRows& a, const AxisRows& b) {
   ASSERT_EQ(a.vertices.size(), b.vertices.size());
   for (std::size_t i = 0; i < a.vertices.size(); ++i) expect_same_vertex(a.vertices[i], b.vertices[i]);
   ASSERT_EQ(a.edges.size(), b.edges.size());
@@ -63,16 +64,16 @@ void expect_same(const MedialMetadata& a, const MedialMetadata& b) {
 }
 
 /// What an .obj file keeps: places, triangles, curves. A .ma file keeps the radii as well.
-MedialComplex without_attributes(const MedialComplex& complex, bool radii) {
-  MedialComplex out;
-  for (const MedialVertex& v : complex.vertices) {
+AxisRows without_attributes(const AxisRows& complex, bool radii) {
+  AxisRows out;
+  for (const VertexRow& v : complex.vertices) {
     out.vertices.emplace_back().position = v.position;
     if (radii) out.vertices.back().radius = v.radius;
   }
-  for (const MedialEdge& e : complex.edges) {
+  for (const EdgeRow& e : complex.edges) {
     if (e.role == MedialRole::curve) out.edges.push_back({.vertices = e.vertices});
   }
-  for (const MedialTriangle& t : complex.triangles) out.triangles.push_back({.vertices = t.vertices});
+  for (const TriangleRow& t : complex.triangles) out.triangles.push_back({.vertices = t.vertices});
   out.sheet_count = out.triangles.empty() ? 0 : 1;
   return out;
 }
@@ -96,7 +97,7 @@ class MedialFiles : public testing::TestWithParam<MedialFormat> {
   TemporaryFolder folder;
   std::filesystem::path path = folder.path() / ("out" + extension);
   [[nodiscard]] bool keeps_all() const { return extension != ".obj" && extension != ".ma"; }
-  [[nodiscard]] MedialComplex kept(const MedialComplex& complex) const {
+  [[nodiscard]] AxisRows kept(const AxisRows& complex) const {
     return keeps_all() ? complex : without_attributes(complex, extension == ".ma");
   }
 };
@@ -108,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, MedialFiles,
                          });
 
 TEST_P(MedialFiles, ReadBackAsWritten) {
-  MedialComplex complex = sample_complex();
+  AxisRows complex = sample_complex();
   if (extension == ".ma") std::swap(complex.edges[7].vertices[0], complex.edges[7].vertices[1]);  // e is rising
   write_medial(path, complex, sample_metadata());
   const MedialFile file = read_medial(path);
@@ -138,47 +139,47 @@ TEST_P(MedialFiles, KeepAThreshold) {
 }
 
 TEST_P(MedialFiles, EmptyAndPartlyEmpty) {
-  write_medial(path, MedialComplex{}, sample_metadata());
+  write_medial(path, AxisRows{}, sample_metadata());
   const MedialFile empty = read_medial(path);
-  expect_same(empty.complex, MedialComplex{});
+  expect_same(empty.complex, AxisRows{});
   expect_same(empty.metadata, keeps_all() ? sample_metadata() : MedialMetadata{});
 
-  MedialComplex vertices = sample_complex();
+  AxisRows vertices = sample_complex();
   vertices.edges.clear();
   vertices.triangles.clear();
   vertices.sheet_count = 0;
   write_medial(path, vertices);
   expect_same(read_medial(path).complex, kept(vertices));
 
-  MedialComplex curves = sample_complex();
+  AxisRows curves = sample_complex();
   curves.edges.erase(curves.edges.begin(), curves.edges.begin() + 8);
   curves.triangles.clear();
   curves.sheet_count = 0;
   write_medial(path, curves);
   expect_same(read_medial(path).complex, kept(curves));
 
-  MedialComplex sheets = sample_complex();
+  AxisRows sheets = sample_complex();
   sheets.edges.clear();
   write_medial(path, sheets);
   expect_same(read_medial(path).complex, kept(sheets));
 }
 
 TEST_P(MedialFiles, ExtremeNumbersKeepEveryBit) {
-  MedialComplex complex = sample_complex();
+  AxisRows complex = sample_complex();
   complex.vertices[0].position = {std::numeric_limits<double>::max(), -std::numeric_limits<double>::denorm_min(), -0.0};
   complex.vertices[0].radius = std::nextafter(0.1, 1.0);
   write_medial(path, complex);
-  const MedialVertex v = read_medial(path).complex.vertices[0];
+  const VertexRow v = AxisRows(read_medial(path).complex).vertices[0];
   EXPECT_EQ(v.position, complex.vertices[0].position);
   EXPECT_TRUE(std::signbit(v.position.z));
   EXPECT_EQ(v.radius, extension == ".obj" ? 0 : complex.vertices[0].radius);
 }
 
 /// A strip of triangles, longer than any buffer of the writers.
-MedialComplex long_strip(std::uint32_t count) {
-  MedialComplex complex;
+AxisRows long_strip(std::uint32_t count) {
+  AxisRows complex;
   for (std::uint32_t i = 0; i < count + 2; ++i) {
-    MedialVertex v;
+    VertexRow v;
     v.position = {std::sqrt(i), static_cast<double>(i % 2), std::sin(i)};
     v.radius = std::numbers::sqrt2 * i;
     complex.vertices.push_back(v);
@@ -190,7 +191,7 @@ MedialComplex long_strip(std::uint32_t count) {
 }
 
 TEST_P(MedialFiles, LargerThanAnyBuffer) {
-  const MedialComplex complex = long_strip(150000);
+  const AxisRows complex = long_strip(150000);
   write_medial(path, complex);
   expect_same(read_medial(path).complex, kept(complex));
 }
@@ -231,7 +232,7 @@ TEST_P(MedialFiles, CancelledWriteLeavesTheOldFile) {
 
 TEST_P(MedialFiles, FailedWriteLeavesNothing) {
   EXPECT_THROW(write_medial(folder / "absent" / path.filename(), sample_complex()), FileError);
-  std::vector<MedialComplex> broken(9, sample_complex());
+  std::vector<AxisRows> broken(8, sample_complex());
   broken[0].edges[0].vertices[1] = 8;
   broken[1].triangles[2].vertices[0] = 8;
   broken[2].vertices[1].position.y = std::numeric_limits<double>::quiet_NaN();
@@ -240,8 +241,7 @@ TEST_P(MedialFiles, FailedWriteLeavesNothing) {
   broken[5].edges[2].vertices[0] = 1;
   broken[6].edges[2].separation_angle = std::numeric_limits<float>::infinity();
   broken[7].vertices[3].sites[1] = SiteId(0x80000000U);
-  broken[8].sheet_count = 4;
-  for (const MedialComplex& complex : broken) EXPECT_THROW(write_medial(path, complex), InvalidMesh);
+  for (const AxisRows& complex : broken) EXPECT_THROW(write_medial(path, complex), InvalidMesh);
   MedialMetadata metadata;
   metadata.theta = std::numeric_limits<double>::infinity();
   EXPECT_THROW(write_medial(path, sample_complex(), metadata), InvalidOption);
@@ -314,18 +314,18 @@ TEST(MedialOthers, MaWithCommentsTagsAndEdgesThatAreSides) {
   const MedialFile file = parse_medial(
       "# made elsewhere\n4 3 1\nv 0 0 0 1 7\n\nv 1 0 0 1\nv 0 1 0 1\nv 0 0 1 .5\ne 1 0 0 2\ne 3 2\ne 2 1\nf 2 1 0 0\n",
       MedialFormat::ma);
-  ASSERT_EQ(file.complex.edges.size(), 1U);
-  EXPECT_EQ(file.complex.edges[0].vertices, (std::array<std::uint32_t, 2>{3, 2}));
-  EXPECT_EQ(file.complex.edges[0].role, MedialRole::curve);
-  EXPECT_EQ(file.complex.vertices[3].radius, 0.5);
+  ASSERT_EQ(AxisRows(file.complex).edges.size(), 1U);
+  EXPECT_EQ(AxisRows(file.complex).edges[0].vertices, (std::array<std::uint32_t, 2>{3, 2}));
+  EXPECT_EQ(AxisRows(file.complex).edges[0].role, MedialRole::curve);
+  EXPECT_EQ(AxisRows(file.complex).vertices[3].radius, 0.5);
   EXPECT_TRUE(file.has_radii);
 }
 
 TEST(MedialOthers, ObjWithPolygonsAndLines) {
   const MedialFile file =
       parse_medial("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\nl 1 5 2 1\n", MedialFormat::obj);
-  EXPECT_EQ(file.complex.triangles.size(), 2U);
-  EXPECT_EQ(file.complex.edges.size(), 2U);  // the third step of the line is a side
+  EXPECT_EQ(AxisRows(file.complex).triangles.size(), 2U);
+  EXPECT_EQ(AxisRows(file.complex).edges.size(), 2U);  // the third step of the line is a side
   EXPECT_FALSE(file.has_radii);
 }
 
@@ -336,11 +336,11 @@ TEST(MedialOthers, PlainPlyAsText) {
       "element edge 3\nproperty int vertex1\nproperty int vertex2\nelement material 1\nproperty int shade\nend_header\n"
       "0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n0 0 1 1\n4 0 1 2 3 0.5\n0 1\n4 0\n4 1\n9\n",
       MedialFormat::ply);
-  EXPECT_EQ(file.complex.vertices.size(), 5U);
-  EXPECT_EQ(file.complex.triangles.size(), 2U);
-  ASSERT_EQ(file.complex.edges.size(), 2U);
-  EXPECT_EQ(file.complex.edges[0].vertices, (std::array<std::uint32_t, 2>{4, 0}));
-  EXPECT_EQ(file.complex.sheet_count, 1U);
+  EXPECT_EQ(AxisRows(file.complex).vertices.size(), 5U);
+  EXPECT_EQ(AxisRows(file.complex).triangles.size(), 2U);
+  ASSERT_EQ(AxisRows(file.complex).edges.size(), 2U);
+  EXPECT_EQ(AxisRows(file.complex).edges[0].vertices, (std::array<std::uint32_t, 2>{4, 0}));
+  EXPECT_EQ(AxisRows(file.complex).sheet_count, 1U);
   EXPECT_FALSE(file.has_radii || file.has_footprints || file.has_angles || file.has_labels);
 }
 
@@ -358,11 +358,11 @@ TEST(MedialOthers, PlyWithAttributesInTheEdges) {
         "property float separation_angle\nend_header\n" +
             points + "0 1\n2 1\n3 40.5\n1 50.5\n"}) {
     const MedialFile file = parse_medial(head + edges, MedialFormat::ply);
-    ASSERT_EQ(file.complex.edges.size(), 2U);
-    EXPECT_EQ(file.complex.edges[1].vertices, (std::array<std::uint32_t, 2>{2, 1}));
-    EXPECT_EQ(file.complex.edges[1].separation_angle, 50.5F);
-    EXPECT_EQ(file.complex.edges[0].role, MedialRole::curve);
-    EXPECT_EQ(file.complex.edges[1].role, MedialRole::rim);
+    ASSERT_EQ(AxisRows(file.complex).edges.size(), 2U);
+    EXPECT_EQ(AxisRows(file.complex).edges[1].vertices, (std::array<std::uint32_t, 2>{2, 1}));
+    EXPECT_EQ(AxisRows(file.complex).edges[1].separation_angle, 50.5F);
+    EXPECT_EQ(AxisRows(file.complex).edges[0].role, MedialRole::curve);
+    EXPECT_EQ(AxisRows(file.complex).edges[1].role, MedialRole::rim);
     EXPECT_TRUE(file.has_angles && file.has_labels);
   }
 }
@@ -378,8 +378,8 @@ TEST(MedialOthers, PlyThatIsBigEndian) {
       "property double radius\nend_header\n" +
           data,
       MedialFormat::ply);
-  EXPECT_EQ(file.complex.vertices[0].position.z, 1.5);
-  EXPECT_EQ(file.complex.vertices[1].radius, 0.25);
+  EXPECT_EQ(AxisRows(file.complex).vertices[0].position.z, 1.5);
+  EXPECT_EQ(AxisRows(file.complex).vertices[1].radius, 0.25);
   EXPECT_TRUE(file.has_radii);
 }
 
@@ -412,10 +412,10 @@ TEST(MedialOthers, VtpWithPolylinesOtherTypesAndOrders) {
       "NumberOfPolys='1'>" +
           arrays + "</Piece></PolyData><AppendedData encoding='raw'>_" + data,
       MedialFormat::vtp);
-  EXPECT_EQ(file.complex.vertices[3].position.z, 1.5);
-  ASSERT_EQ(file.complex.edges.size(), 1U);  // the first step is a side of the triangle
-  EXPECT_EQ(file.complex.edges[0].vertices, (std::array<std::uint32_t, 2>{1, 3}));
-  EXPECT_EQ(file.complex.triangles[0].vertices, (std::array<std::uint32_t, 3>{2, 1, 0}));
+  EXPECT_EQ(AxisRows(file.complex).vertices[3].position.z, 1.5);
+  ASSERT_EQ(AxisRows(file.complex).edges.size(), 1U);  // the first step is a side of the triangle
+  EXPECT_EQ(AxisRows(file.complex).edges[0].vertices, (std::array<std::uint32_t, 2>{1, 3}));
+  EXPECT_EQ(AxisRows(file.complex).triangles[0].vertices, (std::array<std::uint32_t, 3>{2, 1, 0}));
   EXPECT_FALSE(file.has_radii || file.has_footprints || file.has_angles || file.has_labels);
 }
 

@@ -8,6 +8,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/io/medial_io.hpp"
+#include "support/medial_rows.hpp"
 #include "support/medial_sample.hpp"
 #include "unit/io/temporary_folder.hpp"
 
@@ -16,34 +17,29 @@ namespace {
 
 using namespace test;
 
-NestedComplex sample_nested() {
-  const MedialComplex complex = sample_complex();
-  NestedComplex nested;
-  nested.least_theta = 12.5;
-  nested.vertices = complex.vertices;
-  for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    nested.vertex_until.push_back(v == 0 ? std::numeric_limits<float>::infinity() : 20.1F + static_cast<float>(v));
+constexpr double least_theta = 12.5;
+
+AxisRows sample_nested() {
+  AxisRows nested = sample_complex();
+  nested.has_levels = true;
+  for (std::size_t v = 1; v < nested.vertices.size(); ++v) nested.vertices[v].until = 20.1F + static_cast<float>(v);
+  for (EdgeRow& e : nested.edges) {
+    e.from = 1.1F;
+    e.until = 33.3F;
   }
-  for (const MedialEdge& e : complex.edges) {
-    nested.edges.push_back({e.vertices, e.separation_angle, e.role, 1.1F, 33.3F});
-  }
-  for (const MedialTriangle& t : complex.triangles) {
-    nested.triangles.push_back({t.vertices, t.separation_angle, 77.7F, t.sheet});
-  }
-  nested.sheet_count = complex.sheet_count;
+  for (TriangleRow& t : nested.triangles) t.until = 77.7F;
   return nested;
 }
 
 TEST(MedialNested, ReadsBackAsWritten) {
   const TemporaryFolder folder;
   const auto path = folder / "axis.npz";
-  const NestedComplex nested = sample_nested();
-  write_medial(path, sample_complex(), nested, sample_metadata());
+  const AxisRows nested = sample_nested();
+  write_medial(path, sample_complex(), nested, least_theta, sample_metadata());
   const MedialFile file = read_medial(path);
   ASSERT_TRUE(file.nested.has_value());
-  const NestedComplex& read = *file.nested;
-  EXPECT_EQ(read.least_theta, nested.least_theta);
-  EXPECT_EQ(read.vertex_until, nested.vertex_until);
+  const AxisRows read = *file.nested;
+  EXPECT_EQ(file.least_theta, least_theta);
   EXPECT_EQ(read.sheet_count, nested.sheet_count);
   ASSERT_EQ(read.vertices.size(), nested.vertices.size());
   for (std::size_t v = 0; v < read.vertices.size(); ++v) {
@@ -53,6 +49,7 @@ TEST(MedialNested, ReadsBackAsWritten) {
     EXPECT_EQ(read.vertices[v].sites, nested.vertices[v].sites);
     EXPECT_EQ(read.vertices[v].separation_angle, nested.vertices[v].separation_angle);
     EXPECT_EQ(read.vertices[v].role, nested.vertices[v].role);
+    EXPECT_EQ(read.vertices[v].until, nested.vertices[v].until);
   }
   ASSERT_EQ(read.edges.size(), nested.edges.size());
   for (std::size_t e = 0; e < read.edges.size(); ++e) {
@@ -76,28 +73,28 @@ TEST(MedialNested, ReadsBackAsWritten) {
 TEST(MedialNested, OtherFormatsTakeNone) {
   const TemporaryFolder folder;
   for (const char* name : {"axis.vtp", "axis.ply", "axis.obj", "axis.ma"}) {
-    EXPECT_THROW(write_medial(folder / name, sample_complex(), sample_nested()), InvalidOption) << name;
+    EXPECT_THROW(write_medial(folder / name, sample_complex(), sample_nested(), least_theta), InvalidOption) << name;
   }
 }
 
 TEST(MedialNested, BrokenOnesAreRefused) {
   const TemporaryFolder folder;
   const auto path = folder / "axis.npz";
-  const auto refuses = [&](const char* what, const std::function<void(NestedComplex&)>& spoil) {
-    NestedComplex nested = sample_nested();
+  const auto refuses = [&](const char* what, const std::function<void(AxisRows&)>& spoil) {
+    AxisRows nested = sample_nested();
     spoil(nested);
-    EXPECT_THROW(write_medial(path, sample_complex(), nested), InvalidMesh) << what;
+    EXPECT_THROW(write_medial(path, sample_complex(), nested, least_theta), InvalidMesh) << what;
   };
-  refuses("least theta", [](NestedComplex& n) { n.least_theta = 181; });
-  refuses("vertex angles", [](NestedComplex& n) { n.vertex_until.pop_back(); });
-  refuses("vertex angle", [](NestedComplex& n) { n.vertex_until[1] = std::nanf(""); });
-  refuses("position", [](NestedComplex& n) { n.vertices[1].position.x = std::nan(""); });
-  refuses("edge's vertex", [](NestedComplex& n) { n.edges[0].vertices[1] = 99; });
-  refuses("edge's angle", [](NestedComplex& n) { n.edges[0].from = std::nanf(""); });
-  refuses("edge's role", [](NestedComplex& n) { n.edges[0].role = MedialRole::junction; });
-  refuses("triangle's vertex", [](NestedComplex& n) { n.triangles[0].vertices[1] = 99; });
-  refuses("triangle's angle", [](NestedComplex& n) { n.triangles[0].until = std::nanf(""); });
-  refuses("sheets", [](NestedComplex& n) { n.sheet_count = 99; });
+  EXPECT_THROW(write_medial(path, sample_complex(), sample_nested(), 181), InvalidMesh);
+  EXPECT_THROW(write_medial(path, sample_complex(), sample_complex(), least_theta), InvalidOption) << "no levels";
+  refuses("vertex angle", [](AxisRows& n) { n.vertices[1].until = std::nanf(""); });
+  refuses("position", [](AxisRows& n) { n.vertices[1].position.x = std::nan(""); });
+  refuses("edge's vertex", [](AxisRows& n) { n.edges[0].vertices[1] = 99; });
+  refuses("edge's angle", [](AxisRows& n) { n.edges[0].from = std::nanf(""); });
+  refuses("edge's role", [](AxisRows& n) { n.edges[0].role = MedialRole::junction; });
+  refuses("triangle's vertex", [](AxisRows& n) { n.triangles[0].vertices[1] = 99; });
+  refuses("triangle's angle", [](AxisRows& n) { n.triangles[0].until = std::nanf(""); });
+  refuses("sheets", [](AxisRows& n) { n.triangles[0].sheet = 99; });
 }
 
 }  // namespace

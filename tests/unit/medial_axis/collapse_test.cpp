@@ -8,10 +8,10 @@
 #include <stop_token>
 #include <vector>
 
+#include "blum/certificate/certificate.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
 #include "blum/grid/voxel_topology.hpp"
-#include "blum/medial_axis/certificate.hpp"
 #include "support/voxel_sets.hpp"
 
 namespace blum {

@@ -7,18 +7,25 @@
 #include <algorithm>
 #include <vector>
 
+#include "blum/certificate/certificate.hpp"
+#include "blum/complex/incidence.hpp"
 #include "blum/core/random.hpp"
-#include "blum/medial_axis/certificate.hpp"
+#include "support/medial_rows.hpp"
 
 namespace blum {
 namespace {
 
+using test::AxisRows;
+using test::EdgeRow;
+using test::TriangleRow;
+using test::VertexRow;
+
 using Face = std::array<std::uint32_t, 3>;
 using Edge = std::array<std::uint32_t, 2>;
 
-MedialComplex complex_of(const std::vector<Vec3d>& places, const std::vector<Face>& faces,
-                         const std::vector<Edge>& curves = {}) {
-  MedialComplex complex;
+AxisRows complex_of(const std::vector<Vec3d>& places, const std::vector<Face>& faces,
+                    const std::vector<Edge>& curves = {}) {
+  AxisRows complex;
   for (const Vec3d& place : places) complex.vertices.emplace_back().position = place;
   for (const Face& face : faces) {
     complex.triangles.push_back({face, static_cast<float>(10 + complex.triangles.size()), 0});
@@ -27,17 +34,19 @@ MedialComplex complex_of(const std::vector<Vec3d>& places, const std::vector<Fac
   return complex;
 }
 
-BettiNumbers betti_of(const MedialComplex& complex) {
-  std::vector<Edge> edges;
-  std::vector<Face> faces;
-  for (const MedialEdge& edge : complex.edges) edges.push_back(edge.vertices);
-  for (const MedialTriangle& triangle : complex.triangles) faces.push_back(triangle.vertices);
-  return homology({complex.vertices.size(), edges, faces});
+void contract_points(AxisRows& axis) {
+  Complex complex = axis;
+  blum::contract_points(complex, Incidence(complex.view()));
+  axis = complex;
 }
 
-std::vector<std::array<double, 3>> places_of(const MedialComplex& complex) {
+BettiNumbers betti_of(const Complex& complex) {
+  return homology(complex.view());
+}
+
+std::vector<std::array<double, 3>> places_of(const AxisRows& complex) {
   std::vector<std::array<double, 3>> places;
-  for (const MedialVertex& v : complex.vertices) places.push_back({v.position.x, v.position.y, v.position.z});
+  for (const VertexRow& v : complex.vertices) places.push_back({v.position.x, v.position.y, v.position.z});
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
   return places;
@@ -53,12 +62,12 @@ TEST(ContractPoints, ARibbonBecomesItsCurve) {
     faces.push_back({2 * k, 2 * k + 2, 2 * k + 3});
     faces.push_back({2 * k, 2 * k + 3, 2 * k + 1});
   }
-  MedialComplex complex = complex_of(places, faces);
+  AxisRows complex = complex_of(places, faces);
   contract_points(complex);
   EXPECT_TRUE(complex.triangles.empty());
   ASSERT_EQ(complex.vertices.size(), steps + 1);
   ASSERT_EQ(complex.edges.size(), steps);
-  for (const MedialEdge& edge : complex.edges) {
+  for (const EdgeRow& edge : complex.edges) {
     EXPECT_EQ(edge.role, MedialRole::curve);
     EXPECT_GE(edge.separation_angle, 10) << "that of a triangle that it was a side of";
     EXPECT_EQ(length(complex.vertices[edge.vertices[0]].position - complex.vertices[edge.vertices[1]].position), 1);
@@ -66,7 +75,7 @@ TEST(ContractPoints, ARibbonBecomesItsCurve) {
 }
 
 TEST(ContractPoints, ACircleStaysOne) {
-  MedialComplex complex = complex_of({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}, {}, {{0, 1}, {1, 2}, {2, 0}});
+  AxisRows complex = complex_of({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}, {}, {{0, 1}, {1, 2}, {2, 0}});
   contract_points(complex);
   EXPECT_EQ(complex.edges.size(), 3U) << "two edges between the same vertices would be left";
   complex = complex_of({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}});
@@ -77,20 +86,20 @@ TEST(ContractPoints, ACircleStaysOne) {
 
 TEST(ContractPoints, ASphereStaysOne) {
   const std::vector<Face> faces{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
-  MedialComplex complex = complex_of({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, faces);
+  AxisRows complex = complex_of({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, faces);
   contract_points(complex);
   EXPECT_EQ(complex.triangles.size(), 4U) << "two triangles with the same corners would be left";
 }
 
 TEST(ContractPoints, AllAtOnePlaceBecomeOneVertex) {
-  MedialComplex complex = complex_of(std::vector<Vec3d>(5), {{0, 1, 2}, {2, 1, 3}}, {{3, 4}});
+  AxisRows complex = complex_of(std::vector<Vec3d>(5), {{0, 1, 2}, {2, 1, 3}}, {{3, 4}});
   contract_points(complex);
   EXPECT_EQ(complex.vertices.size(), 1U);
   EXPECT_TRUE(complex.triangles.empty() && complex.edges.empty());
 }
 
 /// Triangles and edges between random vertices; the edges are sides of no triangle.
-MedialComplex random_complex(Random& random) {
+AxisRows random_complex(Random& random) {
   const auto count = static_cast<std::uint32_t>(4 + random.below(9));
   std::vector<Vec3d> places;
   for (std::uint32_t v = 0; v < count; ++v) places.push_back({static_cast<double>(random.below(count / 2)), 0, 0});
@@ -119,15 +128,15 @@ MedialComplex random_complex(Random& random) {
   return complex_of(places, faces, edges);
 }
 
-bool has_duplicates(const MedialComplex& complex) {
+bool has_duplicates(const AxisRows& complex) {
   std::vector<Face> faces;
-  for (const MedialTriangle& triangle : complex.triangles) {
+  for (const TriangleRow& triangle : complex.triangles) {
     faces.push_back(triangle.vertices);
     std::sort(faces.back().begin(), faces.back().end());
     if (std::adjacent_find(faces.back().begin(), faces.back().end()) != faces.back().end()) return true;
   }
   std::vector<Edge> edges;
-  for (const MedialEdge& edge : complex.edges) {
+  for (const EdgeRow& edge : complex.edges) {
     const auto [a, b] = edge.vertices;
     if (a == b) return true;
     edges.push_back({std::min(a, b), std::max(a, b)});
@@ -146,14 +155,14 @@ TEST(ContractPoints, RandomComplexesKeepTheirTopologyAndPlaces) {
   Random random(5);
   std::size_t contracted = 0;
   for (int n = 0; n < 5000; ++n) {
-    const MedialComplex before = random_complex(random);
-    MedialComplex after = before;
+    const AxisRows before = random_complex(random);
+    AxisRows after = before;
     contract_points(after);
     ASSERT_EQ(betti_of(after), betti_of(before)) << "complex " << n;
     ASSERT_EQ(places_of(after), places_of(before)) << "complex " << n;
     ASSERT_FALSE(has_duplicates(after)) << "complex " << n;
     contracted += before.vertices.size() - after.vertices.size();
-    MedialComplex again = after;
+    AxisRows again = after;
     contract_points(again);
     ASSERT_EQ(again.vertices.size(), after.vertices.size()) << "complex " << n;
   }

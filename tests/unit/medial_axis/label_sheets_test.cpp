@@ -1,5 +1,7 @@
 // Proves that sheets, rims, seams, curves and junctions are told apart, on complexes made by hand.
 #include "medial_axis/label_sheets.hpp"
+#include "blum/complex/incidence.hpp"
+#include "support/medial_rows.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +13,23 @@
 namespace blum {
 namespace {
 
+using test::AxisRows;
+using test::EdgeRow;
+using test::TriangleRow;
+using test::VertexRow;
+
 using enum MedialRole;
 using Face = std::array<std::uint32_t, 3>;
 using Edge = std::array<std::uint32_t, 2>;
 
-MedialComplex labelled(std::size_t vertices, const std::vector<Face>& faces, const std::vector<Edge>& curves = {}) {
-  MedialComplex complex;
+void label_sheets(AxisRows& axis) {
+  Complex complex = axis;
+  blum::label_sheets(complex, Incidence(complex.view()));
+  axis = complex;
+}
+
+AxisRows labelled(std::size_t vertices, const std::vector<Face>& faces, const std::vector<Edge>& curves = {}) {
+  AxisRows complex;
   complex.vertices.resize(vertices);
   for (const Face& face : faces) {
     complex.triangles.push_back({face, static_cast<float>(10 + complex.triangles.size()), 99});
@@ -26,29 +39,29 @@ MedialComplex labelled(std::size_t vertices, const std::vector<Face>& faces, con
   return complex;
 }
 
-std::vector<MedialRole> roles_of(const MedialComplex& complex) {
+std::vector<MedialRole> roles_of(const AxisRows& complex) {
   std::vector<MedialRole> roles;
-  for (const MedialVertex& vertex : complex.vertices) roles.push_back(vertex.role);
+  for (const VertexRow& vertex : complex.vertices) roles.push_back(vertex.role);
   return roles;
 }
 
-std::vector<std::uint32_t> sheets_of(const MedialComplex& complex) {
+std::vector<std::uint32_t> sheets_of(const AxisRows& complex) {
   std::vector<std::uint32_t> sheets;
-  for (const MedialTriangle& triangle : complex.triangles) sheets.push_back(triangle.sheet);
+  for (const TriangleRow& triangle : complex.triangles) sheets.push_back(triangle.sheet);
   return sheets;
 }
 
 /// The edges of a role, smaller vertex first.
-std::vector<Edge> edges_of(const MedialComplex& complex, MedialRole role) {
+std::vector<Edge> edges_of(const AxisRows& complex, MedialRole role) {
   std::vector<Edge> edges;
-  for (const MedialEdge& edge : complex.edges) {
+  for (const EdgeRow& edge : complex.edges) {
     if (edge.role == role) edges.push_back(edge.vertices);
   }
   return edges;
 }
 
 TEST(LabelSheets, ASquareIsASheetWithARim) {
-  const MedialComplex complex = labelled(4, {{0, 1, 2}, {0, 2, 3}});
+  const AxisRows complex = labelled(4, {{0, 1, 2}, {0, 2, 3}});
   EXPECT_EQ(complex.sheet_count, 1U);
   EXPECT_EQ(sheets_of(complex), (std::vector<std::uint32_t>{0, 0}));
   EXPECT_EQ(edges_of(complex, rim), (std::vector<Edge>{{0, 1}, {0, 3}, {1, 2}, {2, 3}}));
@@ -57,7 +70,7 @@ TEST(LabelSheets, ASquareIsASheetWithARim) {
 }
 
 TEST(LabelSheets, AnInnerVertexIsInTheSheet) {
-  const MedialComplex complex = labelled(5, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
+  const AxisRows complex = labelled(5, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
   EXPECT_EQ(roles_of(complex), (std::vector<MedialRole>{rim, rim, rim, rim, sheet}));
 }
 
@@ -70,7 +83,7 @@ TEST(LabelSheets, ThreeSheetsMeetInASeam) {
       faces.push_back({k + 1, first + k + 1, first + k});
     }
   }
-  const MedialComplex complex = labelled(12, faces);
+  const AxisRows complex = labelled(12, faces);
   EXPECT_EQ(complex.sheet_count, 3U);
   EXPECT_EQ(sheets_of(complex), (std::vector<std::uint32_t>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
   EXPECT_EQ(edges_of(complex, seam), (std::vector<Edge>{{0, 1}, {1, 2}}));
@@ -89,9 +102,9 @@ Vec3d on_page(double x, double distance, double degrees) {
 
 /// A book of two pages, folded by some angle along the x axis, with a third page of which one edge, of 16, is missing
 /// at the fold.
-MedialComplex torn_book(double fold) {
+AxisRows torn_book(double fold) {
   constexpr std::uint32_t steps = 16;
-  MedialComplex complex;
+  AxisRows complex;
   const auto row_of_vertices = [&](double distance, double degrees) {
     std::vector<std::uint32_t> row;
     for (std::uint32_t k = 0; k <= steps; ++k) {
@@ -124,7 +137,7 @@ TEST(LabelSheets, ATornSeamDoesNotJoinSheets) {
 }
 
 TEST(LabelSheets, ASharpFoldIsOneSheetWhereNoSeamIsNear) {
-  MedialComplex complex;
+  AxisRows complex;
   for (const Vec3d& at : {Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
     complex.vertices.emplace_back().position = at;
   }
@@ -134,8 +147,8 @@ TEST(LabelSheets, ASharpFoldIsOneSheetWhereNoSeamIsNear) {
 }
 
 TEST(LabelSheets, EdgesHaveTheLargestAngleOfTheirTriangles) {
-  const MedialComplex complex = labelled(5, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}});
-  for (const MedialEdge& edge : complex.edges) {
+  const AxisRows complex = labelled(5, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}});
+  for (const EdgeRow& edge : complex.edges) {
     const float expected = edge.role == seam                                    ? 12
                            : std::max(edge.vertices[0], edge.vertices[1]) == 2U ? 10
                            : std::max(edge.vertices[0], edge.vertices[1]) == 3U ? 11
@@ -146,34 +159,34 @@ TEST(LabelSheets, EdgesHaveTheLargestAngleOfTheirTriangles) {
 }
 
 TEST(LabelSheets, SheetsThatTouchInAVertexAreApart) {
-  const MedialComplex rims = labelled(5, {{0, 1, 2}, {0, 3, 4}});
+  const AxisRows rims = labelled(5, {{0, 1, 2}, {0, 3, 4}});
   EXPECT_EQ(rims.sheet_count, 2U);
   EXPECT_EQ(roles_of(rims), (std::vector<MedialRole>{junction, rim, rim, rim, rim}));
   // Two closed surfaces.
-  const MedialComplex closed =
+  const AxisRows closed =
       labelled(7, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 4, 5}, {0, 4, 6}, {0, 5, 6}, {4, 5, 6}});
   EXPECT_EQ(closed.sheet_count, 2U);
   EXPECT_TRUE(closed.edges.empty());
   EXPECT_EQ(roles_of(closed), (std::vector<MedialRole>{junction, sheet, sheet, sheet, sheet, sheet, sheet}));
   // A rim that touches a closed surface.
-  const MedialComplex both = labelled(6, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 4, 5}});
+  const AxisRows both = labelled(6, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 4, 5}});
   EXPECT_EQ(roles_of(both), (std::vector<MedialRole>{junction, sheet, sheet, sheet, rim, rim}));
 }
 
 TEST(LabelSheets, ACurveEndsOnASheet) {
   const std::vector<Face> fan{{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
-  const MedialComplex inside = labelled(7, fan, {{4, 5}, {5, 6}});
+  const AxisRows inside = labelled(7, fan, {{4, 5}, {5, 6}});
   EXPECT_EQ(roles_of(inside), (std::vector<MedialRole>{rim, rim, rim, rim, junction, curve, curve}));
-  const MedialComplex at_rim = labelled(6, fan, {{5, 0}});
+  const AxisRows at_rim = labelled(6, fan, {{5, 0}});
   EXPECT_EQ(roles_of(at_rim), (std::vector<MedialRole>{junction, rim, rim, rim, sheet, curve}));
   EXPECT_EQ(edges_of(at_rim, curve), (std::vector<Edge>{{5, 0}}));
 }
 
 TEST(LabelSheets, CurvesMeetInJunctions) {
-  const MedialComplex circle = labelled(3, {}, {{0, 1}, {1, 2}, {2, 0}});
+  const AxisRows circle = labelled(3, {}, {{0, 1}, {1, 2}, {2, 0}});
   EXPECT_EQ(roles_of(circle), std::vector<MedialRole>(3, curve));
   EXPECT_EQ(circle.sheet_count, 0U);
-  const MedialComplex star = labelled(4, {}, {{0, 1}, {0, 2}, {3, 0}});
+  const AxisRows star = labelled(4, {}, {{0, 1}, {0, 2}, {3, 0}});
   EXPECT_EQ(roles_of(star), (std::vector<MedialRole>{junction, curve, curve, curve}));
 }
 
@@ -182,7 +195,7 @@ TEST(LabelSheets, AVertexAloneIsOnNoSheet) {
 }
 
 TEST(LabelSheets, ACurveThatEndsOnASeamIsAJunction) {
-  const MedialComplex complex = labelled(6, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}, {{0, 5}});
+  const AxisRows complex = labelled(6, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}, {{0, 5}});
   EXPECT_EQ(roles_of(complex), (std::vector<MedialRole>{junction, junction, rim, rim, rim, curve}));
 }
 

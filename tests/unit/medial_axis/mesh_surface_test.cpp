@@ -8,8 +8,8 @@
 
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
-#include "blum/geometry/shape_catalog.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 #include "support/mesh_places.hpp"
 
 namespace blum {
@@ -46,7 +46,7 @@ TEST(MeshSurface, NearestIsTheNearestOfAllTriangles) {
     const Sample s(mesh);
     for (const Vec3d& query : test::places_around(s.mesh, 200, 4)) {
       const double scale = bounds(s.mesh).diagonal() + length(query);
-      const SurfacePoint found = s.surface.nearest(query, s.footprint_on(0, query));
+      const NearestPoint found = s.surface.nearest(query, s.footprint_on(0, query));
       ASSERT_NEAR(found.distance, s.brute.nearest(query).distance, tolerance * scale);
       ASSERT_NEAR(length(query - found.point), found.distance, tolerance * scale);
       ASSERT_LE(s.brute.site_distance(found.site, found.point), tolerance * scale);
@@ -61,7 +61,7 @@ TEST(MeshSurface, InsideIsWhatAClosedMeshBounds) {
     const MeshSurface open(s.mesh, s.sites, false, {});
     std::size_t inside = 0;
     for (const Vec3d& query : test::places_around(s.mesh, 400, 4)) {
-      const SurfacePoint nearest = s.surface.nearest(query, s.footprint_on(0, query));
+      const NearestPoint nearest = s.surface.nearest(query, s.footprint_on(0, query));
       if (nearest.distance < 1e-9) continue;
       const bool expected = reference::winding_number(s.mesh, query) > 0.5;
       ASSERT_EQ(s.surface.is_inside(query, nearest), expected);

@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
 #include "blum/grid/image_generators.hpp"
+#include "blum/grid/selected_voxels.hpp"
+#include "blum/shapes/generators.hpp"
 #include "medial_axis/axis_piece.hpp"
 #include "medial_axis/mesh_surface.hpp"
 #include "medial_axis/voxel_surface.hpp"
@@ -22,10 +23,15 @@
 namespace blum {
 namespace {
 
+SolidBody first_body(const TriangleMesh& mesh) {
+  const Solid solid = Solid::of(mesh);
+  return solid.bodies().front();
+}
+
 /// A body, its voxels, and the vertices of its axis.
 struct Sample {
   Sample(const TriangleMesh& input, double spacing)
-      : mesh(split_into_bodies(input, SiteTable(input), {}).bodies.at(0)),
+      : mesh(first_body(input)),
         sites(mesh.mesh),
         surface(mesh.mesh, sites, true, {}),
         solid(voxelize_body(mesh, spacing, {}).solid),
@@ -62,7 +68,7 @@ TEST(PlaceVertices, VerticesOfABoxLieOnItsBisectors) {
   const Sample s(make_box({.size = half * 2.0}), h);
   std::size_t inside = 0;
   for (std::size_t n = 0; n < s.piece.vertices.size(); ++n) {
-    const MedialVertex& v = s.piece.vertices[n];
+    const AxisVertex& v = s.piece.vertices[n];
     const std::array<double, 6> distance = distances_to_walls(half, v.position);
     ASSERT_GE(distance[0], 0) << "outside";
     ASSERT_NEAR(v.radius, distance[0], 1e-12);
@@ -79,7 +85,7 @@ TEST(PlaceVertices, RadiiAndFootprintsAreExact) {
                                    make_cylinder({.sides = 12}), make_void_cube({.segments = 1, .frequency = 2})}) {
     const Sample s(mesh, 0.06);
     const reference::BruteForce brute(s.mesh.mesh);
-    for (const MedialVertex& v : s.piece.vertices) {
+    for (const AxisVertex& v : s.piece.vertices) {
       const double distance = brute.nearest(v.position).distance;
       ASSERT_NEAR(v.radius, distance, 1e-12);
       for (std::size_t f = 0; f < 2; ++f) {
@@ -106,12 +112,12 @@ TEST(PlaceVertices, VerticesStayNearTheirCorners) {
 TEST(PlaceVertices, VerticesOfARoundBodySeeTwoWalls) {
   const double h = 0.04;
   const Sample s(make_torus({.ring_segments = 48, .tube_segments = 24}), h);
-  MedialComplex circle;
+  AxisLists circle;
   append_at(s.piece, 60, circle);
   ASSERT_GT(circle.vertices.size(), 100U);
   std::vector<double> off;
   std::size_t one_wall = 0;
-  for (const MedialVertex& v : circle.vertices) {
+  for (const AxisVertex& v : circle.vertices) {
     off.push_back(std::hypot(std::hypot(v.position.x, v.position.y) - 1, v.position.z));
     one_wall += v.separation_angle > 0 ? 0 : 1;
   }
@@ -125,12 +131,12 @@ TEST(PlaceVertices, RadiiOfImagesAreDistancesToVoxelFaces) {
   VoxelImage image = make_tube_image({.nodes = 2, .pitch = 10, .radius = 2.5, .spacing = {1, 1.25, 0.8}});
   image.grid.direction = test::turned_grid(image.grid.size).direction;
   std::array<std::int64_t, 3> first{};
-  const VoxelSolid solid = voxelize_image(image, {}, first, {}).solid;
+  const VoxelSolid solid = voxelize_image(selected_voxels(image, {}), image.grid, first, {}).solid;
   const VoxelSurface surface(solid.voxels, solid.grid);
   std::vector<PhaseTime> phases;
   const AxisPiece piece = make_axis_piece(GovernorField(solid, surface), {20, 120, 3, 0}, phases, {});
   ASSERT_GT(piece.vertices.size(), 50U);
-  for (const MedialVertex& v : piece.vertices) {
+  for (const AxisVertex& v : piece.vertices) {
     double least = 1e9;
     test::for_each_voxel(solid.grid.size, 0, [&](auto i, auto j, auto k) {
       const Vec3d from = solid.grid.direction.transposed_times(v.position - solid.grid.position(i, j, k));

@@ -12,6 +12,7 @@
 #include "blum/core/error.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "blum/grid/image_generators.hpp"
+#include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
 #include "support/voxel_sets.hpp"
 

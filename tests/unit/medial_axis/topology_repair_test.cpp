@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
-#include "blum/geometry/generators.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/grid/voxel_topology.hpp"
+#include "blum/shapes/generators.hpp"
 #include "medial_axis/voxelize.hpp"
 #include "support/voxel_sets.hpp"
 
@@ -156,11 +156,11 @@ TEST(TopologyRepair, WedgesHaveNoHandlesAtAnySize) {
   for (const double angle : {3.0, 10.0, 25.0}) {
     TriangleMesh wedge = make_wedge({.angle = angle});
     for (Vec3d& v : wedge.vertices) v = test::turned_grid({}).direction * v;
-    const SolidBodies split = split_into_bodies(wedge, SiteTable(wedge), {});
+    const blum::Solid solid = blum::Solid::of(wedge);
     for (const int resolution : {8, 16, 32, 64, 100}) {
-      const Voxelized out = voxelize_body(split.bodies[0], 1.0 / resolution, {});
+      const Voxelized out = voxelize_body(solid.bodies().front(), 1.0 / resolution, {});
       EXPECT_EQ(betti_numbers(out.solid.voxels), (BettiNumbers{1, 0, 0})) << angle << " degrees, " << resolution;
-      EXPECT_TRUE(out.report.is_right);
+      EXPECT_TRUE(out.report.topology_matches);
       EXPECT_LE(out.report.deviation, std::sqrt(3.0) / resolution);
       const VoxelSet inside = test::voxels_where(out.solid.grid.size, [&](auto i, auto j, auto k) {
         return out.solid.depth[out.solid.grid.index(i, j, k)] > 0;

@@ -12,6 +12,7 @@
 
 #include "blum/field/distance_transform.hpp"
 #include "blum/grid/image_generators.hpp"
+#include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_image.hpp"
 #include "support/voxel_sets.hpp"
 
@@ -88,7 +89,7 @@ TEST(VoxelSurface, NearestIsTheNearestOfAllVoxels) {
   for (const auto& s : samples()) {
     for (int n = 0; n < 60; ++n) {
       const Vec3d query = s->random_point(random);
-      const SurfacePoint found = s->surface.nearest(query, s->random_footprint(random));
+      const NearestPoint found = s->surface.nearest(query, s->random_footprint(random));
       ASSERT_NEAR(found.distance, s->distance(query), 1e-12);
       ASSERT_NEAR(found.distance, length(query - found.point), 1e-12);
       ASSERT_TRUE(s->is_other(s->place(found.element)));
@@ -103,8 +104,8 @@ TEST(VoxelSurface, NearestStaysWhereTheNearestIsKnown) {
   for (const auto& s : samples()) {
     for (int n = 0; n < 20; ++n) {
       const Vec3d query = s->random_point(random);
-      const SurfacePoint first = s->surface.nearest(query, s->random_footprint(random));
-      const SurfacePoint again = s->surface.nearest(query, {first.point, first.element, 7});
+      const NearestPoint first = s->surface.nearest(query, s->random_footprint(random));
+      const NearestPoint again = s->surface.nearest(query, {first.point, first.element, 7});
       ASSERT_NEAR(again.distance, first.distance, 1e-13);
     }
   }

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/field/distance_transform.hpp"
 #include "blum/field/image_reference.hpp"
 #include "blum/field/reference.hpp"
-#include "blum/geometry/generators.hpp"
+#include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
+#include "blum/shapes/generators.hpp"
 #include "support/mesh_places.hpp"
 #include "support/voxel_sets.hpp"
 
@@ -20,7 +22,8 @@ namespace blum {
 namespace {
 
 SolidBody body_of(const TriangleMesh& mesh) {
-  return split_into_bodies(mesh, SiteTable(mesh), {}).bodies.at(0);
+  const Solid solid = Solid::of(mesh);
+  return solid.bodies().front();
 }
 
 void expect_free_layer(const VoxelSolid& solid) {
@@ -54,7 +57,7 @@ TEST(Voxelize, BodiesAreTheVoxelsWithTheirCentreInside) {
         test::moved(make_sphere({.frequency = 3}), 0.5, {100, 0, -3})}) {
     const SolidBody body = body_of(mesh);
     const Voxelized out = voxelize_body(body, 0.09, {});
-    EXPECT_TRUE(out.report.is_right);
+    EXPECT_TRUE(out.report.topology_matches);
     EXPECT_EQ(out.report.solid, body.betti);
     EXPECT_EQ(out.report.voxels, betti_numbers(out.solid.voxels));
     EXPECT_EQ(out.report.spacing, 0.09);
@@ -81,7 +84,7 @@ TEST(Voxelize, OpenMeshesAreTheVoxelsOfWindingNumberAboveAHalf) {
   TriangleMesh mesh = make_box({.segments = {2, 2, 2}});
   mesh.triangles.pop_back();
   const Voxelized out = voxelize_by_winding(mesh, 0.11, {});
-  EXPECT_TRUE(out.report.is_right);
+  EXPECT_TRUE(out.report.topology_matches);
   EXPECT_EQ(out.report.solid, out.report.voxels);
   EXPECT_EQ(out.report.voxels, (BettiNumbers{1, 0, 0}));
   expect_free_layer(out.solid);
@@ -116,11 +119,11 @@ TEST(Voxelize, ImagesAreTheSelectedVoxelsWhereTheyLie) {
          {LabelSelection{}, LabelSelection::of_label(2), LabelSelection::at_least(2)}) {
       const VoxelSet selected = selected_voxels(image, selection);
       std::array<std::int64_t, 3> first{};
-      const Voxelized out = voxelize_image(image, selection, first, {});
+      const Voxelized out = voxelize_image(selected_voxels(image, selection), image.grid, first, {});
       ASSERT_EQ(out.report.voxel_count, selected.count());
       ASSERT_EQ(out.report.voxels, betti_numbers(selected));
       ASSERT_EQ(out.report.spacing, 0.5);
-      ASSERT_TRUE(out.report.is_right);
+      ASSERT_TRUE(out.report.topology_matches);
       expect_free_layer(out.solid);
       test::for_each_voxel(out.solid.grid.size, 0, [&](auto i, auto j, auto k) {
         ASSERT_EQ(out.solid.voxels.contains(i, j, k), selected.contains(i + first[0], j + first[1], k + first[2]));
@@ -135,7 +138,7 @@ TEST(Voxelize, VoxelsOfImagesKnowTheClosestOfTheOtherKind) {
   Random random(2);
   const VoxelImage image = labelled_image(test::turned_grid({8, 7, 6}), random);
   std::array<std::int64_t, 3> first{};
-  const Voxelized out = voxelize_image(image, {}, first, {});
+  const Voxelized out = voxelize_image(selected_voxels(image, {}), image.grid, first, {});
   std::vector<std::uint8_t> inside;
   test::for_each_voxel(out.solid.grid.size, 0,
                        [&](auto i, auto j, auto k) { inside.push_back(out.solid.voxels.contains(i, j, k)); });
@@ -147,13 +150,6 @@ TEST(Voxelize, VoxelsOfImagesKnowTheClosestOfTheOtherKind) {
     ASSERT_NEAR(out.solid.depth[voxel], sign * std::sqrt(nearest.squared), 1e-6);
     ASSERT_NEAR(reference::squared_distance(out.solid.grid, voxel, out.solid.site[voxel].value), nearest.squared, 1e-9);
   }
-}
-
-TEST(Voxelize, AnImageWithoutSelectedVoxelsIsRefused) {
-  Random random(3);
-  const VoxelImage image = labelled_image(test::turned_grid({4, 4, 4}), random);
-  std::array<std::int64_t, 3> first{};
-  EXPECT_THROW((void)voxelize_image(image, LabelSelection::of_label(7), first, {}), InvalidImage);
 }
 
 TEST(Voxelize, SidesTooSmallToCountAreRefused) {

@@ -1,0 +1,113 @@
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "blum/field/zero_surface.hpp"
+#include "blum/io/field_io.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "commands.hpp"
+#include "common_options.hpp"
+#include "files.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum surface part.nrrd -o part.ply                 the boundary of the shape, from its signed field
+  blum surface part.nrrd -o shell.stl --level 0.5    what is half a unit outside of it; -0.5: inside)";
+
+struct Arguments {
+  std::string field;
+  std::string output;
+  std::optional<std::string> level, threads;
+  ReportOptions report;
+};
+
+/// Why the surface may not be what was wanted; empty where it is.
+std::string doubt(const Field& field, double level) {
+  if (field.band && std::abs(level) >= *field.band) {
+    return "the field holds distances up to " + rounded_text(*field.band) + " only, and the level is beyond them";
+  }
+  if (field.sign_rule == SignRule::none && level <= 0) {
+    return "the field has no signs, and no surface at a level of 0 or less; give --level";
+  }
+  return {};
+}
+
+void run(const Arguments& a) {
+  const fs::path input = a.field;
+  const fs::path output = a.output;
+  check_extension("--output", output, file_extensions(FileContent::mesh, FileAccess::write));
+  const double level = a.level ? parse_number("--level", *a.level) : 0;
+  const int threads = parse_threads(a.threads);
+  check_may_be_field(input);
+  std::vector<fs::path> outputs = a.report.files();
+  outputs.push_back(output);
+  check_outputs(outputs, files_of_field(input));
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  const Field field = read_field(input);
+  const double read_seconds = watch.lap();
+  const TriangleMesh surface = zero_surface(field, level, context);
+  const double surface_seconds = watch.lap();
+  const std::string reason = doubt(field, level);
+  if (surface.triangles.empty()) {
+    throw FileError("'" + input.string() + "' has no surface at the level " + rounded_text(level) +
+                    (reason.empty() ? ": all its distances are on one side of it" : ": " + reason));
+  }
+  write_mesh(output, surface);
+  progress.clear();
+
+  std::vector<std::string> warnings;
+  if (!reason.empty()) warnings.push_back(reason);
+  const double write_seconds = watch.lap();
+  const Json json = {{"blum_version", BLUM_VERSION},
+                     {"command", "surface"},
+                     {"field", input.string()},
+                     {"grid", to_json(field.grid)},
+                     {"level", level},
+                     {"surface", {{"vertices", surface.vertices.size()}, {"triangles", surface.triangles.size()}}},
+                     {"seconds", {{"read", read_seconds}, {"surface", surface_seconds}, {"write", write_seconds}}},
+                     {"total_seconds", read_seconds + surface_seconds + write_seconds},
+                     {"peak_memory_bytes", peak_memory()},
+                     {"threads", thread_count(context)},
+                     {"warnings", warnings},
+                     {"outputs", {output.string()}}};
+  TextTable table;
+  table.add("field", input.string() + ": " + size_text(field.grid) + " nodes");
+  table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +
+                           " triangles at the level " + rounded_text(level));
+  table.add("wrote", output.string());
+  report(a.report, json, table.text());
+  if (!a.report.quiet) warn(warnings);
+}
+
+}  // namespace
+
+void add_surface_command(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("surface", "The surface of a field at a level, as a mesh");
+  command->add_option("FIELD", a->field, extensions_help({FileContent::field}, FileAccess::read))->required();
+  command->add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::write))
+      ->required()
+      ->type_name("FILE");
+  add_text_option(*command, "--level", a->level, "L",
+                  "Where the distance is L, mesh units: outside of the shape, or inside where negative (default 0)");
+  add_threads_option(*command, a->threads);
+  add_report_options(*command, a->report);
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

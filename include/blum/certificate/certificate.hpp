@@ -1,0 +1,142 @@
+// Blum: whether a medial axis is what it claims to be. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "blum/complex/complex.hpp"
+#include "blum/complex/homology.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/voxel_set.hpp"
+#include "blum/solid/solid_rule.hpp"
+
+namespace blum {
+
+/// Components, tunnels and voids of one body of the solid, and of the parts of the axis that lie in it.
+struct BodyCheck {
+  BettiNumbers solid{};
+  BettiNumbers axis{};
+};
+
+/// How far the vertices of an axis are from what they claim. Distances are to the shells of the body that a vertex lies
+/// in (its outer shell and the voids in it), or of the closest one. Allowed is 1e-6 of the diagonal of that body's box,
+/// or twice the rounding of its coordinates where that is more. Against the voxels of a mesh (SolidRule::winding) a
+/// vertex is outside where it is further from them than the diagonal of a voxel.
+struct GeometryCheck {
+  std::size_t vertices = 0;          ///< looked at
+  std::size_t not_finite = 0;        ///< of them, those with a coordinate or radius that is no finite number
+  std::size_t outside = 0;           ///< of them, those outside of the solid by more than is allowed
+  double outside_by = 0;             ///< largest distance of a vertex from the solid, mesh units
+  double radius_error = 0;           ///< largest |radius - exact distance to the surface|, mesh units
+  double footprint_off_surface = 0;  ///< largest distance of a footprint from the surface, mesh units
+  double footprint_error = 0;        ///< largest |distance to a footprint - radius|, mesh units
+  double site_error = 0;             ///< largest distance of a footprint from the site that is named for it, mesh units
+  double angle_error = 0;            ///< largest |separation angle - angle between the footprints|, degrees
+  double tolerance = 0;              ///< what is allowed in the largest body, mesh units
+  bool holds = false;                ///< no vertex is outside or not finite, and no error above what is allowed for it
+};
+
+/// Whether the edges of an axis, those of its triangles too, lie in the solid between their ends: found from distances
+/// along each, so that nothing is left out. An edge may cut a corner, by 1/64 of the diagonal of the
+/// body at most, if it can be pushed into the solid: its point that is furthest out goes through the closest point of
+/// the surface, then those of both parts, until all lies in the solid. That fails for an edge across a gap, however
+/// narrow. Against the voxels of an image a corner may be cut by half the diagonal of a voxel where that is more, and
+/// 1/64 of it is not out. Against the voxels of a mesh the diagonal of a voxel is allowed, and nothing is pushed.
+struct EdgeCheck {
+  std::size_t edges = 0;    ///< looked at, each once
+  std::size_t pushed = 0;   ///< of them, those that cut a corner of the body that their ends lie in
+  double pushed_by = 0;     ///< how far the furthest of these is out, mesh units
+  std::size_t outside = 0;  ///< those that leave that body otherwise
+  double outside_by = 0;    ///< how far the furthest of these is out, at least, mesh units
+  Vec3d where;              ///< and there, mesh units
+  double tolerance = 0;     ///< ten times GeometryCheck::tolerance; the diagonal of a voxel more for SolidRule::winding
+  bool holds = false;       ///< none is outside
+};
+
+/// How much of a solid the balls around the vertices of an axis fill. Told, and not judged: coarse axes fill less.
+struct BallUnionCheck {
+  /// How far the surface of the solid is from the union of the balls at most, over samples of the surface, the corners
+  /// of a mesh among them; the diagonal of the solid where there are no balls.
+  double solid_to_balls = 0;
+  double mean_solid_to_balls = 0;  ///< the same, its mean over the area of the surface
+  /// How far the balls reach out of the solid at most: largest radius - exact distance, which is negative outside of
+  /// the solid; 0 for exact radii.
+  double balls_beyond_solid = 0;
+  /// How far points of the surface of the union are from the surface of the solid at most, over 32 points of each ball;
+  /// of more than 15,600 balls, over those of 7,800 to 15,600 of them.
+  double balls_to_surface = 0;
+  /// Each point of the surface is at most this far from a sample, mesh units: the median edge of the axis (1/256
+  /// of the diagonal, for an axis without edges), or more where that would take over 250,000 samples. Samples of
+  /// voxels are one or four points of each face; above 250,000 faces, one for each direction of faces in 4 x 4 x 4
+  /// voxels.
+  double step = 0;
+};
+
+/// What to look at besides numbers of components, tunnels and voids: for files that do not hold everything.
+struct CertificateOptions {
+  /// Where vertices and edges lie. Without it, the Betti numbers of the whole solid and the whole axis are compared,
+  /// and crossings of the mesh are not looked for.
+  bool positions = true;
+  bool radii = true;       ///< with positions
+  bool footprints = true;  ///< with radii
+  bool angles = true;      ///< of vertices; with footprints
+  bool sites = true;       ///< with footprints: a site that is none() is not looked at
+  bool balls = true;       ///< with radii: to measure what the balls fill
+};
+
+struct Certificate {
+  SolidRule against = SolidRule::polyhedron;
+  CertificateOptions checked;
+  BettiNumbers solid{};           ///< from its boundary, or its voxels: the sum of its bodies'
+  BettiNumbers axis{};            ///< of the complex, by homology()
+  std::vector<BodyCheck> bodies;  ///< each must agree; one for the whole without CertificateOptions::positions
+  bool topology_holds = false;
+  GeometryCheck geometry;
+  EdgeCheck edges;
+  BallUnionCheck balls;
+  std::vector<std::string> mismatches;  ///< one sentence each; empty where all holds
+
+  [[nodiscard]] bool holds() const { return mismatches.empty(); }
+};
+
+/// What the solid of a mesh is: SolidRule::polyhedron where it is closed, manifold and has a single side, and where its
+/// triangles neither cross nor, within one body, touch; else SolidRule::winding.
+struct MeshSolidRule {
+  SolidRule rule = SolidRule::polyhedron;
+  std::string reason;  ///< one sentence
+};
+/// Found by the verifier's own reading of the mesh and find_self_intersections(). @throws InvalidMesh for what
+/// validate() refuses, Cancelled.
+[[nodiscard]] MeshSolidRule solid_rule(const MeshView& mesh, const Context& context = {});
+
+/// Checks an axis against the closed, manifold mesh whose solid it is said to have. Nothing of the
+/// construction is used: Betti numbers come from the homology of the surface and the nesting of its components by
+/// counting crossings of lines; distances from a search of its own. Shells may face either way, and touch. Triangles
+/// that name a vertex twice are left out.
+///
+/// Betti numbers are compared body by body: a connected part of the axis belongs to the body that its deepest vertex
+/// lies in. Homotopy classes are not compared: a loop that runs round nothing counts as much as one around a handle.
+/// @throws InvalidMesh where the mesh is not closed and manifold, or crosses itself, or a shell encloses nothing,
+/// or just what another one does; InvalidOption for a complex that is none (see homology()), or lacks a column of
+/// MedialView; Cancelled. Cost: on one
+/// core about 2 s for 100,000 vertices and as many triangles.
+[[nodiscard]] Certificate certify(const Complex& axis, const MeshView& mesh, const CertificateOptions& options = {},
+                                  const Context& context = {});
+
+/// The same against voxels whose closed union is the solid: of an image, with distances to their faces; or of a mesh
+/// that is no polyhedron (SolidRule::winding), with distances to that mesh, where voxels_inside() makes them. The
+/// voxels are taken as given: who makes them as the construction does shares its errors.
+/// @param grid  of the voxels' centres.  @param surface  the mesh; nullptr for an image.
+/// @throws InvalidGrid (also for a grid that does not cover the mesh), InvalidMesh, InvalidOption (also for a grid of
+/// another size than the voxels, and where there are no voxels), Cancelled.
+[[nodiscard]] Certificate certify(const Complex& axis, const VoxelSet& voxels, const GridSpec& grid,
+                                  const MeshView* surface, const CertificateOptions& options = {},
+                                  const Context& context = {});
+
+}  // namespace blum

@@ -1,0 +1,62 @@
+// Blum: medial axes and what their files claim, checked against their solids. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "blum/certificate/certificate.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/label_selection.hpp"
+#include "blum/grid/voxel_image.hpp"
+#include "blum/io/medial_io.hpp"
+
+namespace blum {
+
+/// What a file says of its axis.
+struct MedialClaims {
+  MedialMetadata metadata;
+  bool has_radii = true;
+  bool has_footprints = true;
+  bool has_sites = true;
+  bool has_angles = true;
+};
+[[nodiscard]] MedialClaims claims_of(const MedialFile& file);
+
+/// A mesh bounds no polyhedron, so that the solid of its axis is known by voxels, and the axis's file does not say
+/// which.
+class UntoldVoxels : public InvalidMesh {
+ public:
+  explicit UntoldVoxels(const std::string& reason)
+      : InvalidMesh("the mesh bounds no polyhedron (" + reason +
+                    "), so its axis is that of voxels: give grid, that of their centres"),
+        reason_(reason) {}
+  /// Why it bounds none, in one sentence.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  std::string reason_;
+};
+
+/// What a file says that is not so, one sentence each: its solid has another rule than it says; its voxels are of other
+/// sides than the image's; it lacks what Blum writes into every file, or has sites of another kind of solid.
+/// @param found  what the solid is.  @param image_grid  where it is an image: of the voxels' centres; else nullptr.
+[[nodiscard]] std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found,
+                                                    const GridSpec* image_grid);
+
+/// certify() against the solid of a mesh, with what is false of the claims among the mismatches: of the polyhedron, or,
+/// where the verifier finds none (solid_rule()), of the voxels inside on the grid that the claims name. What the file
+/// does not have is not checked, nor are sites that it does not have for this kind of solid.
+/// @param available_memory  bytes: a grid that takes more is refused.
+/// @throws UntoldVoxels where the claims name no grid and one is needed; OutOfMemory; as certify() and voxels_inside().
+[[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
+                                 const CertificateOptions& options = {}, double available_memory = 1e300,
+                                 const Context& context = {});
+
+/// The same against the union of the selected, closed voxels of an image. @throws as certify() and selected_voxels().
+[[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
+                                 const LabelSelection& selection, const CertificateOptions& options = {},
+                                 const Context& context = {});
+
+}  // namespace blum

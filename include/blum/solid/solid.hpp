@@ -1,0 +1,111 @@
+// Blum: the solid that a mesh or an image stands for. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "blum/core/betti_numbers.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/label_selection.hpp"
+#include "blum/grid/voxel_image.hpp"
+#include "blum/grid/voxel_set.hpp"
+#include "blum/solid/solid_rule.hpp"
+
+namespace blum {
+
+/// A closed shell of the surface of a polyhedron.
+struct SolidShell {
+  std::uint32_t body = 0;    ///< that it bounds from outside, or that it is a void of
+  std::uint32_t depth = 0;   ///< number of other shells that it lies in: at odd depth it is a void
+  std::int64_t parent = -1;  ///< the innermost shell that it lies in; -1 where there is none
+  std::int64_t genus = 0;    ///< number of handles
+  double volume = 0;         ///< that it encloses, > 0, cubic mesh units
+  bool is_reversed = false;  ///< whether it faced the solid in the input
+};
+
+/// A connected part of a solid, or the whole of it, and the triangles of the input around it.
+struct SolidBody {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> vertex_of;    ///< of each vertex of `mesh`, in the input
+  std::vector<std::uint32_t> triangle_of;  ///< of each triangle of `mesh`, in the input
+  BettiNumbers betti{};                    ///< SolidRule::polyhedron: of the body
+  std::vector<std::uint32_t> shells;       ///< SolidRule::polyhedron: the outer one, then its voids, rising
+
+  /// The site of the input that a site of `mesh` stands for.
+  [[nodiscard]] SiteId input_site(SiteId own, const SiteTable& own_sites, const SiteTable& input_sites) const;
+};
+
+/// The solid that a mesh or an image stands for: which rule tells its inside, its bodies and their topology. It is
+/// found once and passed on: copies share what was found, and all of it may be asked from many threads at once.
+///
+/// What of a grid's nodes lies inside, where no polyhedron is bounded (SolidRule::winding), depends on that grid and is
+/// not part of the solid: voxels_inside() tells it by the signs of fields.
+class Solid {
+ public:
+  /// Closed, manifold meshes that do not cross themselves are polyhedra (SolidRule::polyhedron), shell by shell: each
+  /// outer shell and the voids in it are one body, and bodies may touch. Triangles that face another way than most of
+  /// their shell are reversed, and so are shells that face the solid. For other meshes the solid is where the winding
+  /// number is above 1/2 (SolidRule::winding). The mesh may go away.
+  /// @throws InvalidMesh unless it passes validate(mesh), and where there are no triangles; Cancelled.
+  /// Cost: that of topology() and find_self_intersections(), and a copy of the mesh.
+  [[nodiscard]] static Solid of(const MeshView& mesh, const Context& context = {});
+
+  /// The union of the selected, closed voxels of an image; those that touch in a corner are one body.
+  /// @throws InvalidImage (also when no voxel is selected), InvalidOption, Cancelled.
+  [[nodiscard]] static Solid of(const VoxelImageView& image, const LabelSelection& selection = {},
+                                const Context& context = {});
+
+  [[nodiscard]] SolidRule rule() const;
+  /// One sentence: why this rule.
+  [[nodiscard]] const std::string& reason() const;
+
+  /// Components, tunnels and voids of the whole solid; nullopt for SolidRule::winding, where only voxels have numbers.
+  [[nodiscard]] std::optional<BettiNumbers> betti() const;
+  /// Polyhedra: each faces outwards. SolidRule::winding: one, of all triangles. Images: none.
+  [[nodiscard]] std::span<const SolidBody> bodies() const&;
+  std::span<const SolidBody> bodies() const&& = delete;  // they go away with the solid
+  /// Polyhedra: in the order of their smallest triangles. Else none.
+  [[nodiscard]] std::span<const SolidShell> shells() const&;
+  std::span<const SolidShell> shells() const&& = delete;
+  /// How many shells faced the solid and were reversed.
+  [[nodiscard]] std::size_t reversed_shells() const;
+  /// How many triangles faced another way than most of their shell and were reversed.
+  [[nodiscard]] std::size_t reversed_triangles() const;
+  /// SolidRule::winding: whether the triangles face inwards as a whole, so that hardly anything is inside: reversing
+  /// them all is what helps. Judged by the volume between them and the middle of their box.
+  [[nodiscard]] bool faces_inwards() const;
+
+  /// Meshes: the box around the input, mesh units. Images: that of all voxels of the image, selected or not.
+  [[nodiscard]] const Box3& box() const;
+  /// Meshes: the sites of the input. Images: empty.
+  [[nodiscard]] const SiteTable& sites() const;
+  /// Images: the selected voxels, on grid(). Meshes: empty.
+  [[nodiscard]] const VoxelSet& voxels() const;
+  /// Images: the grid of the voxels' centres.
+  [[nodiscard]] const GridSpec& grid() const;
+
+  /// Whether a point lies in the solid. Exact, for coordinates of magnitude 1e-80 to 1e100 or 0, where the mesh is
+  /// closed and consistently oriented: crossings of a ray are counted; points of the surface of a polyhedron lie in it.
+  /// Elsewhere as WindingNumber::is_inside(). For images exact up to the rounding of the grid's coordinates; voxels are
+  /// closed.
+  /// @param p  finite.  Cost: about a microsecond; the first call also builds what it searches in.
+  [[nodiscard]] bool inside(const Vec3d& p) const;
+
+ private:
+  struct Data;
+  explicit Solid(std::shared_ptr<const Data> data);
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace blum

@@ -1,0 +1,469 @@
+"""Medial axes as complexes, their files and their certificates."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arguments import (
+    FloatArray,
+    IntArray,
+    Integer,
+    PathLike,
+    Real,
+    as_array,
+    existing_file,
+    float_list,
+    float_rows,
+    indices,
+    integer,
+    number,
+    site_ids,
+)
+from ._certificate import Certificate, Claim, certified
+from ._errors import InvalidOption
+from ._field import Field
+from ._grid import Grid, grid_for
+from ._image import Image
+from ._medial_columns import ROLES, MedialColumns, NestedComplex
+from ._mesh import Bounds, Mesh
+from ._progress import Progress, reporting
+
+EVERYTHING = {"radii": True, "footprints": True, "angles": True, "sites": True, "labels": True}
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What a complex was made from, for its certificate and its files."""
+
+    shape: Mesh | Image | None = None
+    label: int | None = None
+    threshold: float | None = None
+    theta: float | None = None
+    lambda_: float | None = None
+    spacing: float | None = None
+    rule: str = ""
+    grid: Grid | None = None
+    source: str = ""
+    weld: float | None = None
+    site_ids: str = "features"
+    version: str = ""  #: of Blum, where a file that it wrote was read
+
+
+# A class that has a member `_core` cannot name the module in its annotations.
+_CoreComplex = _core.Complex
+
+
+class MedialComplex(MedialColumns):
+    """A medial axis as vertices, edges and triangles. Arrays are read-only views of the library's memory.
+
+    Made by :meth:`MedialAxis.simplify`, :func:`read_medial`, or from arrays: ``MedialComplex(vertices, radius=...,
+    edges=..., triangles=...)``.
+
+    >>> import blum
+    >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).simplify(60)
+    >>> axis.counts["sheets"] > 0, axis.certificate.holds
+    (True, True)
+    """
+
+    def __init__(
+        self,
+        vertices: Any,
+        *,
+        radius: Any = None,
+        footprints: Any = None,
+        sites: Any = None,
+        separation_angle: Any = None,
+        role: Any = None,
+        edges: Any = (),
+        edge_angle: Any = None,
+        edge_role: Any = None,
+        triangles: Any = (),
+        triangle_angle: Any = None,
+        triangle_sheet: Any = None,
+    ) -> None:
+        positions = float_rows(vertices, "vertices")
+        count = len(positions)
+        lines = indices(edges, "edges", 2, count)
+        faces = indices(triangles, "triangles", 3, count)
+        feet = np.zeros((count, 2, 3)) if footprints is None else _footprint_rows(footprints, count)
+        names = np.full((count, 2), -1, dtype=np.int32) if sites is None else site_ids(sites, "sites", 2)
+        sheet = (
+            np.zeros(len(faces), dtype=np.int32)
+            if triangle_sheet is None
+            else indices(triangle_sheet, "triangle_sheet", None, len(faces))
+        )
+        _check_length("sites", len(names), count)
+        _check_length("triangle_sheet", len(sheet), len(faces))
+        core = _core.Complex(
+            positions,
+            lines,
+            faces,
+            {
+                "radius": _numbers(radius, "radius", count),
+                "footprint_0": np.ascontiguousarray(feet[:, 0]),
+                "footprint_1": np.ascontiguousarray(feet[:, 1]),
+                "site_0": np.ascontiguousarray(names[:, 0]),
+                "site_1": np.ascontiguousarray(names[:, 1]),
+                "separation_angle": _numbers(separation_angle, "separation_angle", count),
+                "role": _roles(role, "role", count, 0),
+            },
+            {
+                "separation_angle": _numbers(edge_angle, "edge_angle", len(lines)).astype(np.float32),
+                "role": _roles(edge_role, "edge_role", len(lines), 3),
+            },
+            {
+                "separation_angle": _numbers(triangle_angle, "triangle_angle", len(faces)).astype(np.float32),
+                "sheet": sheet,
+            },
+        )
+        self._take(
+            core,
+            {
+                "radii": radius is not None,
+                "footprints": footprints is not None,
+                "angles": separation_angle is not None,
+                "sites": sites is not None,
+                "labels": triangle_sheet is not None,
+            },
+            Origin(),
+        )
+
+    @classmethod
+    def _of(
+        cls, core: _CoreComplex, has: dict[str, bool], origin: Origin, nested: NestedComplex | None = None
+    ) -> MedialComplex:
+        out = cls.__new__(cls)
+        out._take(core, has, origin)
+        out.nested = nested
+        return out
+
+    def _take(self, core: _CoreComplex, has: dict[str, bool], origin: Origin) -> None:
+        self._core = core
+        self._origin = origin
+        #: Which attributes the complex has: radii, footprints, angles, sites, labels (roles and sheets).
+        self.has = dict(has)
+        #: The axes of all angles, where a file that was read holds them (:meth:`MedialAxis.write`).
+        self.nested: NestedComplex | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        names = ("vertices", *_ATTRIBUTES)
+        return _restored, ({name: np.array(getattr(self, name)) for name in names}, self.has, self._origin)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Vertices, triangles, sheets, curve, rim and seam edges, junctions."""
+        return dict(_core.medial_counts(self._core))
+
+    @property
+    def theta(self) -> float | None:
+        """Degrees, if known."""
+        return self._origin.theta
+
+    @property
+    def grid(self) -> Grid | None:
+        """Voxel centres: of the first body, or of the image; None where that is not known."""
+        return self._origin.grid
+
+    @cached_property
+    def certificate(self) -> Certificate:
+        """The certificate against the shape that the axis was made from; see :func:`certify`."""
+        shape = self._origin.shape
+        if shape is None:
+            raise InvalidOption("what this axis was made from is not known here: use blum.certify(axis, shape)")
+        return certified(_claim(self), shape, label=self._origin.label, threshold=self._origin.threshold)
+
+    def prune_sheets(self, theta: Real, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
+        """Drops whole sheets whose largest separation angle is at most theta (degrees), smallest first."""
+        with reporting(progress) as report:
+            core = _core.prune_sheets(self._core, number(theta, "theta"), integer(threads, "threads"), report)
+        return MedialComplex._of(core, self.has, self._origin)
+
+    def reconstruct(
+        self,
+        *,
+        resolution: Integer = 256,
+        spacing: Real | None = None,
+        padding: Real = 0.1,
+        bounds: Any = None,
+        grid: Grid | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> Field:
+        """The union of the medial balls as a signed field; `.zero_surface()` is its boundary.
+
+        >>> import blum
+        >>> ball = blum.medial_axis(blum.generate("sphere"), resolution=32).simplify(60).reconstruct(resolution=32)
+        >>> blum.topology(ball.zero_surface()).betti
+        (1, 0, 0)
+        """
+        box: Bounds | None = None
+        if grid is None and bounds is None:
+            if len(self.vertices) == 0:
+                raise InvalidOption("the axis has no vertices, so there are no balls")
+            lower = (self.vertices - self.radius[:, None]).min(axis=0)
+            upper = (self.vertices + self.radius[:, None]).max(axis=0)
+            box = (tuple(map(float, lower)), tuple(map(float, upper)))  # type: ignore[assignment]
+        return ball_union_field(
+            self.vertices,
+            self.radius,
+            grid_for(box, grid, bounds, resolution, spacing, padding),
+            threads=threads,
+            progress=progress,
+        )
+
+    def write(self, path: PathLike) -> None:
+        """Writes .vtp, .ply, .obj, .ma or .npz; the file appears complete or not at all.
+
+        .npz files keep the axes of all angles, `nested`, where there are any.
+        """
+        is_npz = os.fspath(path).lower().endswith(".npz")
+        write_complex(path, self, self.nested if is_npz else None)
+
+    def to_trimesh(self) -> Any:
+        """A trimesh.Trimesh of the triangles with vertex attributes; (vertices, triangles) where it is missing."""
+        vertices, triangles = np.ascontiguousarray(self.vertices), np.ascontiguousarray(self.triangles)
+        try:
+            import trimesh
+        except ImportError:
+            return vertices, triangles
+        return trimesh.Trimesh(
+            vertices,
+            triangles,
+            process=False,
+            vertex_attributes={"radius": np.array(self.radius), "separation_angle": np.array(self.separation_angle)},
+        )
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.PolyData of triangles and edges with all attributes; a dict of arrays where PyVista is missing.
+
+        Cell data list the edges before the triangles, as PolyData does; `sheet` is -1 and `role` -1 where they do not
+        apply.
+        """
+        try:
+            import pyvista
+        except ImportError:
+            names = ("vertices", "radius", "separation_angle", "role", "edges", "triangles", "triangle_sheet")
+            return {name: getattr(self, name) for name in names}
+        from ._mesh import _padded
+
+        out = pyvista.PolyData(
+            np.ascontiguousarray(self.vertices),
+            faces=_padded(np.ascontiguousarray(self.triangles)),
+            lines=_padded(np.ascontiguousarray(self.edges)),
+        )
+        out.point_data["radius"] = np.array(self.radius)
+        out.point_data["separation_angle"] = np.array(self.separation_angle)
+        out.point_data["role"] = np.array(self.role)
+        lines, faces = len(self.edges), len(self.triangles)
+        out.cell_data["separation_angle"] = np.concatenate([self.edge_angle, self.triangle_angle])
+        out.cell_data["role"] = np.concatenate([self.edge_role.astype(np.int16), np.full(faces, -1, dtype=np.int16)])
+        out.cell_data["sheet"] = np.concatenate([np.full(lines, -1, dtype=np.int32), self.triangle_sheet])
+        return out
+
+    def __repr__(self) -> str:
+        counts = self.counts
+        parts = ", ".join(f"{counts[name]:,} {name}" for name in ("vertices", "triangles", "sheets"))
+        return f"MedialComplex({parts}{'' if self.theta is None else f', theta={self.theta:g}'})"
+
+
+_ATTRIBUTES = (
+    "radius",
+    "footprints",
+    "sites",
+    "separation_angle",
+    "role",
+    "edges",
+    "edge_angle",
+    "edge_role",
+    "triangles",
+    "triangle_angle",
+    "triangle_sheet",
+)
+
+
+def _restored(arrays: dict[str, Any], has: dict[str, bool], origin: Origin) -> MedialComplex:
+    return MedialComplex._of(MedialComplex(**arrays)._core, has, origin)
+
+
+def _claim(axis: MedialComplex) -> Claim:
+    origin = axis._origin
+    return Claim(
+        axis,
+        axis.has,
+        axis.grid,
+        origin.label,
+        origin.threshold,
+        origin.rule,
+        origin.site_ids,
+        origin.version,
+    )
+
+
+def _check_length(name: str, length: int, wanted: int) -> None:
+    if length != wanted:
+        raise InvalidOption(f"{name} has {length} entries, but must have {wanted}")
+
+
+def _numbers(value: Any, name: str, count: int) -> FloatArray:
+    if value is None:
+        return np.zeros(count)
+    array = float_list(value, name)
+    _check_length(name, len(array), count)
+    return array
+
+
+def _roles(value: Any, name: str, count: int, default: int) -> IntArray:
+    if value is None:
+        return np.full(count, default, dtype=np.int32)
+    array = indices(value, name, None, len(ROLES))
+    _check_length(name, len(array), count)
+    return array
+
+
+def _footprint_rows(value: Any, count: int) -> FloatArray:
+    array = as_array(value, "footprints")
+    if array.ndim != 3 or array.shape[1:] != (2, 3):
+        raise ValueError(f"footprints has the shape {array.shape}, but must have (n, 2, 3)")
+    _check_length("footprints", len(array), count)
+    return float_rows(array.reshape(-1, 3), "footprints").reshape(-1, 2, 3)
+
+
+def certify(
+    axis: MedialComplex,
+    shape: Any,
+    triangles: Any = None,
+    *,
+    label: Integer | None = None,
+    threshold: Real | None = None,
+    grid: Grid | None = None,
+    weld: Real | None = None,
+    positions: bool = True,
+    radii: bool | None = None,
+    footprints: bool | None = None,
+    angles: bool | None = None,
+    sites: bool | None = None,
+    balls: bool | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+) -> Certificate:
+    """Checks an axis against the mesh or image whose solid it is said to have.
+
+    Betti numbers are compared body by body; vertices, radii, footprints, sites and angles with exact searches; edges
+    must lie in the solid. Nothing of what made the axis is used. What the axis (or the file that it was read from)
+    says of itself is checked as `blum verify` does it: the rule of its solid, its voxels' sides, which attributes
+    it has.
+
+    Parameters
+    ----------
+    axis : MedialComplex
+    shape, triangles
+        The mesh, as for :func:`distance_field`, or the image, as for :func:`distance_transform`.
+    label, threshold
+        Of an image: which voxels are the solid. Default: those that the axis says, else all that are not zero.
+    grid : Grid, optional
+        Of a mesh that bounds no polyhedron: of the centres of the voxels that are the solid. Default: the axis's own.
+    weld : float, optional
+        Of a mesh: as for :func:`distance_field`.
+    positions, radii, footprints, angles, sites, balls : bool, optional
+        What to look at besides topology. Default: all that the axis has.
+
+    >>> import blum
+    >>> torus = blum.generate("torus")
+    >>> axis = blum.medial_axis(torus, resolution=32)
+    >>> print(blum.certify(axis.simplify(60), torus))
+    certified against the polyhedron: components, tunnels, voids (1, 1, 0)
+    """
+    if not isinstance(axis, MedialComplex):
+        raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
+    return certified(
+        _claim(axis),
+        shape,
+        triangles,
+        label=label,
+        threshold=threshold,
+        grid=grid,
+        weld=weld,
+        positions=positions,
+        radii=radii,
+        footprints=footprints,
+        angles=angles,
+        sites=sites,
+        balls=balls,
+        threads=threads,
+        progress=progress,
+    )
+
+
+def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, progress: Progress = False) -> Field:
+    """The smallest distance to any of some balls at every node of a grid, negative inside.
+
+    Parameters
+    ----------
+    centres : (n, 3) array
+    radii : (n,) array
+        Mesh units, >= 0.
+    """
+    if not isinstance(grid, Grid):
+        raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
+    with reporting(progress) as report:
+        return Field._of(
+            _core.ball_union_field(
+                float_rows(centres, "centres"),
+                float_list(radii, "radii"),
+                grid._spec,
+                integer(threads, "threads"),
+                report,
+            )
+        )
+
+
+def write_complex(path: PathLike, complex: MedialComplex, nested: NestedComplex | None) -> None:
+    origin = complex._origin
+    _core.write_medial(
+        Path(os.fspath(path)),
+        complex._core,
+        None if nested is None else nested._core,
+        0.0 if nested is None else nested.least_theta,
+        origin.source,
+        origin.site_ids,
+        origin.rule,
+        origin.theta,
+        origin.lambda_,
+        origin.spacing,
+        None if origin.grid is None else origin.grid._spec,
+        origin.label,
+        origin.threshold,
+        origin.weld,
+    )
+
+
+def read_medial(path: PathLike) -> MedialComplex:
+    """Reads an axis of .vtp, .ply, .obj, .ma or .npz; `.has` tells which attributes the file holds, and `.nested`
+    has the axes of all angles where it holds them."""
+    core, nested, metadata = _core.read_medial(existing_file(path))
+    grid = metadata.get("grid")
+    origin = Origin(
+        None,
+        metadata.get("label"),
+        metadata.get("threshold"),
+        metadata.get("theta"),
+        metadata.get("lambda"),
+        metadata.get("spacing"),
+        metadata["solid_rule"],
+        None if grid is None else Grid._of(grid),
+        metadata["source"],
+        metadata.get("weld"),
+        metadata["site_ids"],
+        metadata["version"],
+    )
+    has = {name: metadata[f"has_{name}"] for name in EVERYTHING}
+    return MedialComplex._of(
+        core, has, origin, None if nested is None else NestedComplex(nested, metadata["least_theta"])
+    )

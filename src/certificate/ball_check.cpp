@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "blum/core/parallel.hpp"
+#include "certificate/ball_union.hpp"
+#include "certificate/checks.hpp"
+
+namespace blum::verifier {
+namespace {
+
+constexpr double rounding_of_diagonal = 1e-9;
+
+/// A ball around a vertex, and the body that it should fill.
+struct OwnedBall {
+  Ball ball;
+  std::uint32_t body = 0;
+};
+
+/// The length of the median edge; of an axis without edges, a part of the solid.
+double default_step(const MedialView& axis, double diagonal) {
+  constexpr double parts_of_diagonal = 256;
+  std::vector<double> squares;
+  const auto add = [&](std::uint32_t a, std::uint32_t b) {
+    const double squared = squared_length(axis.positions[a] - axis.positions[b]);
+    if (squared > 0 && std::isfinite(squared)) squares.push_back(squared);
+  };
+  for (const auto& [a, b] : axis.edges) add(a, b);
+  for (const auto& triangle : axis.triangles) add(triangle[0], triangle[1]);
+  if (squares.empty()) return diagonal / parts_of_diagonal;
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  return std::max(std::sqrt(*middle), rounding_of_diagonal * diagonal);
+}
+
+/// Fills what the samples of the surface tell.
+void measure_surface(const std::vector<Sample>& samples, const BallUnion& balls, BallUnionCheck& check,
+                     const Context& context) {
+  struct Part {
+    double largest = 0, moment = 0, area = 0;
+  };
+  constexpr std::size_t grain = 512;
+  std::vector<Part> parts(samples.size() / grain + 1);
+  parallel_for(context, samples.size(), grain, "surface to balls", [&](const WorkRange& range) {
+    Part& part = parts[range.begin / grain];
+    std::uint32_t closest = 0;
+    for (std::size_t s = range.begin; s < range.end; ++s) {
+      const double gap = std::max(balls.gap(samples[s].point, closest), 0.0);
+      part.largest = std::max(part.largest, gap);
+      part.moment += gap * samples[s].area;
+      part.area += samples[s].area;
+    }
+  });
+  Part all;
+  for (const Part& part : parts) {
+    all.largest = std::max(all.largest, part.largest);
+    all.moment += part.moment;
+    all.area += part.area;
+  }
+  check.solid_to_balls = all.largest;
+  check.mean_solid_to_balls = all.area > 0 ? all.moment / all.area : 0;
+}
+
+constexpr std::size_t directions_per_ball = 32;
+constexpr std::size_t most_directions = 500'000;
+
+/// Directions spread evenly along a spiral from pole to pole.
+std::array<Vec3d, directions_per_ball> directions() {
+  std::array<Vec3d, directions_per_ball> result;
+  for (std::size_t k = 0; k < directions_per_ball; ++k) {
+    const double z = 1 - (2 * static_cast<double>(k) + 1) / directions_per_ball;
+    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / std::numbers::phi;
+    const double out = std::sqrt(1 - z * z);
+    result[k] = {out * std::cos(angle), out * std::sin(angle), z};
+  }
+  return result;
+}
+
+/// How far points of balls that are in no other ball are from the surface.
+double balls_to_surface(const std::vector<OwnedBall>& owned, const BallUnion& balls, const SolidOracle& solid,
+                        const Context& context) {
+  constexpr std::size_t grain = 64;
+  const double margin = rounding_of_diagonal * solid.diagonal();
+  // Of very many balls only every so many-th is looked at: neighbours are alike.
+  const std::size_t every = owned.size() * directions_per_ball / most_directions + 1;
+  const std::size_t count = (owned.size() + every - 1) / every;
+  const auto ways = directions();
+  std::vector<double> parts(count / grain + 1, 0);
+  parallel_for(context, count, grain, "balls to surface", [&](const WorkRange& range) {
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      const auto& [ball, body] = owned[b * every];
+      if (ball.radius <= margin) continue;
+      for (const Vec3d& way : ways) {
+        const Vec3d p = ball.centre + way * ball.radius;
+        if (balls.holds(p, margin)) continue;
+        parts[range.begin / grain] = std::max(parts[range.begin / grain], solid.distance(p, body));
+      }
+    }
+  });
+  return *std::max_element(parts.begin(), parts.end());
+}
+
+}  // namespace
+
+BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid, const std::vector<Location>& locations,
+                           const Context& context) {
+  BallUnionCheck check;
+  std::vector<OwnedBall> owned;
+  std::vector<Ball> balls;
+  for (std::size_t v = 0; v < axis.positions.size(); ++v) {
+    if (!all_finite(axis, v) || axis.radius[v] < 0) continue;
+    owned.push_back({{axis.positions[v], axis.radius[v]}, locations[v].body});
+    balls.push_back(owned.back().ball);
+    const double room = locations[v].outside_by > 0 ? -locations[v].outside_by : locations[v].distance;
+    check.balls_beyond_solid = std::max(check.balls_beyond_solid, axis.radius[v] - room);
+  }
+  if (balls.empty()) {
+    check.solid_to_balls = check.mean_solid_to_balls = solid.diagonal();
+    return check;
+  }
+  const BallUnion all(balls, context);
+  const Samples samples = solid.samples(default_step(axis, solid.diagonal()), context);
+  check.step = samples.step;
+  measure_surface(samples.list, all, check, context);
+  check.balls_to_surface = balls_to_surface(owned, all, solid, context);
+  return check;
+}
+
+}  // namespace blum::verifier

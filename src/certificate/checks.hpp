@@ -1,0 +1,65 @@
+// Blum: the parts of a certificate. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "blum/certificate/certificate.hpp"
+#include "blum/complex/medial_columns.hpp"
+#include "blum/core/context.hpp"
+#include "certificate/solid_oracle.hpp"
+
+namespace blum::verifier {
+
+[[nodiscard]] inline bool all_finite(const MedialView& axis, std::size_t vertex) {
+  return is_finite(axis.positions[vertex]) && std::isfinite(axis.radius[vertex]) &&
+         is_finite(axis.footprint(vertex, 0)) && is_finite(axis.footprint(vertex, 1)) &&
+         std::isfinite(axis.separation_angle[vertex]);
+}
+
+/// How far off positions may be in each body.
+[[nodiscard]] std::vector<double> tolerances(const KnownSolid& solid);
+
+/// An error that is the worst of its kind, measured by what is allowed for it.
+struct Worst {
+  double error = 0;
+  double allowed = 1;
+
+  void add(double other, double other_allowed) {
+    if (other * allowed > error * other_allowed) *this = {other, other_allowed};
+  }
+  void add(const Worst& other) { add(other.error, other.allowed); }
+  [[nodiscard]] bool is_too_much() const { return error > allowed; }
+};
+
+/// A part of an axis in each body.
+struct AxisParts {
+  std::vector<std::uint32_t> body_of;  ///< of each vertex: the body of the deepest vertex that is joined with it
+  std::vector<BettiNumbers> betti;     ///< of what is in each body
+};
+
+/// Sorts the parts of an axis into bodies. @throws as homology().
+[[nodiscard]] AxisParts parts_in_bodies(const ComplexView& axis, const std::vector<Location>& locations,
+                                        std::uint32_t body_count, const Context& context);
+
+/// Where each vertex lies; nowhere in particular where it is not finite.
+[[nodiscard]] std::vector<Location> locate_vertices(const MedialView& axis, const SolidOracle& solid,
+                                                    const Context& context);
+
+/// Looks at every vertex, and adds what is wrong. @param factor  lengths are this many times what the caller knows.
+[[nodiscard]] GeometryCheck check_vertices(const MedialView& axis, const KnownSolid& solid,
+                                           const std::vector<Location>& locations, const CertificateOptions& options,
+                                           double factor, std::vector<std::string>& mismatches, const Context& context);
+
+/// The same for what lies between vertices.
+[[nodiscard]] EdgeCheck check_edges(const MedialView& axis, const KnownSolid& solid,
+                                    const std::vector<Location>& locations, const AxisParts& parts, double factor,
+                                    std::vector<std::string>& mismatches, const Context& context);
+
+/// @throws Cancelled.
+[[nodiscard]] BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid,
+                                         const std::vector<Location>& locations, const Context& context);
+
+}  // namespace blum::verifier

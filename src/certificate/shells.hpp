@@ -1,0 +1,57 @@
+// Blum: the shells of a closed mesh and how they nest, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "blum/certificate/certificate.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/error.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "certificate/triangle_search.hpp"
+
+namespace blum::verifier {
+
+/// A connected part of the surface.
+struct ClosedShell {
+  std::int64_t genus = 0;
+  double volume = 0;        ///< that it encloses, > 0, whichever way it faces
+  std::uint32_t depth = 0;  ///< how many shells it lies in: at even depth it bounds a body, at odd depth a void
+  std::uint32_t body = 0;   ///< counts the shells at even depth; a void belongs to the body around it
+};
+
+struct ClosedShells {
+  std::vector<ClosedShell> shells;
+  std::vector<std::uint32_t> of_triangle;  ///< no_group for triangles that name a vertex twice: they bound nothing
+  std::uint32_t bodies = 0;
+};
+
+/// A mesh that bounds no polyhedron.
+class NoPolyhedron : public InvalidMesh {
+ public:
+  explicit NoPolyhedron(const std::string& reason) : InvalidMesh(reason), reason_(reason) {}
+  /// One sentence.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  std::string reason_;
+};
+
+/// @throws NoPolyhedron where triangles cross, or touch in too many places to look at them all; Cancelled.
+void check_crossings(const MeshView& mesh, const Context& context);
+
+/// Cuts a mesh into its shells. Which of them lies in which is not yet known.
+/// @throws NoPolyhedron unless every edge has two triangles that traverse it in opposite directions, and every vertex
+/// one fan of triangles; Cancelled.
+[[nodiscard]] ClosedShells cut_into_shells(const MeshView& mesh, const Context& context);
+
+/// Finds depths and bodies from lines through each shell. Shells may touch, but not cross.
+/// @param search  the triangles with their shells as groups.
+/// @throws NoPolyhedron where a shell encloses nothing, or just what another one does; Cancelled.
+void nest(ClosedShells& shells, const MeshView& mesh, const TriangleSearch& search, const Context& context);
+
+/// Of each body of the solid that nested shells bound.
+[[nodiscard]] std::vector<BettiNumbers> betti_numbers(const ClosedShells& shells);
+
+}  // namespace blum::verifier

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "blum/geometry/sites.hpp"
+#include "certificate/shells.hpp"
+#include "certificate/solid_oracle.hpp"
+#include "certificate/triangle_samples.hpp"
+#include "certificate/triangle_search.hpp"
+
+namespace blum::verifier {
+namespace {
+
+class ShellOracle : public SolidOracle {
+ public:
+  ShellOracle(const MeshView& mesh, const ClosedShells& shells, const TriangleSearch& shell_search,
+              const Context& context)
+      : mesh_(mesh), shells_(shells), body_of_(shells.of_triangle), boxes_(shells.bodies), sites_(mesh, context) {
+    for (std::size_t t = 0; t < body_of_.size(); ++t) {
+      if (body_of_[t] == no_group) continue;
+      body_of_[t] = shells_.shells[body_of_[t]].body;
+      for (const std::uint32_t v : mesh.triangles[t]) boxes_[body_of_[t]].extend(mesh.vertices[v]);
+    }
+    search_ = shells_.shells.size() == 1 ? shell_search : TriangleSearch(mesh, body_of_, context);
+  }
+
+  [[nodiscard]] double diagonal() const override { return search_.bounds().diagonal(); }
+
+  [[nodiscard]] Location locate(const Vec3d& p) const override {
+    if (const std::optional<std::uint32_t> shell = innermost_around(p)) {
+      const ClosedShell& around = shells_.shells[*shell];
+      const double own = distance(p, around.body);
+      const bool is_inside = around.depth % 2 == 0;
+      return {around.body, own, is_inside ? 0 : own, is_inside ? own : -own};
+    }
+    const TriangleSearch::Nearest nearest = search_.nearest(p);
+    const std::uint32_t body = body_of_[nearest.triangle];
+    return {body, nearest.distance, nearest.distance, -nearest.distance};
+  }
+
+  [[nodiscard]] double distance(const Vec3d& p, std::uint32_t body) const override {
+    return search_.nearest(p, body).distance;
+  }
+
+  [[nodiscard]] Samples samples(double step, const Context& context) const override {
+    return samples_of_triangles(mesh_, body_of_, step, context);
+  }
+
+  [[nodiscard]] Box3 box(std::uint32_t body) const override { return boxes_[body]; }
+
+  [[nodiscard]] double depth(const Vec3d& p, std::uint32_t body) const override {
+    const double own = distance(p, body);
+    const std::optional<std::uint32_t> shell = innermost_around(p);
+    return shell && shells_.shells[*shell].body == body && shells_.shells[*shell].depth % 2 == 0 ? own : -own;
+  }
+
+  [[nodiscard]] double depth_beside(const Vec3d& p, std::uint32_t body, const Vec3d& other, double other_depth,
+                                    double near) const override {
+    const double own = distance(p, body);
+    if (own < near) return -own;
+    if (std::abs(other_depth) <= near) return depth(p, body);
+    const bool other_is_inside = other_depth > 0;
+    const double reach = length(other - p);
+    const double nothing = 1e-13 * diagonal();
+    if (reach < own) return other_is_inside ? own : -own;
+    std::vector<Crossing> crossings;
+    if (!(reach > nothing) || !search_.crossings(line_between(p, other), crossings, reach)) return depth(p, body);
+    bool is_inside = other_is_inside;
+    for (const Crossing& crossing : crossings) {
+      if (body_of_[crossing.triangle] != body) continue;
+      if (std::abs(crossing.at) <= nothing || std::abs(crossing.at - reach) <= nothing) return depth(p, body);
+      if (crossing.at > 0 && crossing.at < reach) is_inside = !is_inside;
+    }
+    return is_inside ? own : -own;
+  }
+
+  [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t body) const override {
+    return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p, body).triangle));
+  }
+
+  [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
+    return verifier::distance_from_site(mesh_, sites_, p, site);
+  }
+
+ private:
+  /// The innermost shell around a point; nullopt where there is none, or the point lies on the surface.
+  [[nodiscard]] std::optional<std::uint32_t> innermost_around(const Vec3d& p) const {
+    constexpr std::uint32_t most_lines = 24;
+    const double nothing = 1e-13 * diagonal();
+    std::vector<Crossing> crossings;
+    std::vector<std::uint32_t> ahead;
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t attempt = 0; attempt < most_lines; ++attempt) {
+      if (!search_.crossings(line_through(p, attempt), crossings)) continue;
+      ahead.clear();
+      all.clear();
+      bool is_certain = true;
+      for (const Crossing& crossing : crossings) {
+        is_certain = is_certain && std::abs(crossing.at) > nothing;
+        const std::uint32_t shell = shells_.of_triangle[crossing.triangle];
+        all.push_back(shell);
+        if (crossing.at > 0) ahead.push_back(shell);
+      }
+      if (!is_certain || !odd_ones(all).empty()) continue;
+      std::optional<std::uint32_t> innermost;
+      for (const std::uint32_t shell : odd_ones(ahead)) {
+        if (!innermost || shells_.shells[shell].depth > shells_.shells[*innermost].depth) innermost = shell;
+      }
+      return innermost;
+    }
+    return std::nullopt;
+  }
+
+  /// Those that are named an odd number of times.
+  static std::vector<std::uint32_t> odd_ones(std::vector<std::uint32_t>& shells) {
+    std::sort(shells.begin(), shells.end());
+    std::vector<std::uint32_t> odd;
+    for (const std::uint32_t shell : shells) {
+      if (!odd.empty() && odd.back() == shell) {
+        odd.pop_back();
+      } else {
+        odd.push_back(shell);
+      }
+    }
+    return odd;
+  }
+
+  MeshView mesh_;
+  ClosedShells shells_;
+  std::vector<std::uint32_t> body_of_;  ///< of each triangle
+  std::vector<Box3> boxes_;             ///< of each body
+  SiteTable sites_;
+  TriangleSearch search_;  ///< bodies are its groups
+};
+
+}  // namespace
+
+KnownSolid solid_of_mesh(const MeshView& mesh, const Context& context) {
+  ClosedShells shells = cut_into_shells(mesh, context);
+  const TriangleSearch search(mesh, shells.of_triangle, context);
+  nest(shells, mesh, search, context);
+  std::vector<BettiNumbers> bodies = betti_numbers(shells);
+  return {std::make_unique<ShellOracle>(mesh, shells, search, context), std::move(bodies)};
+}
+
+}  // namespace blum::verifier

@@ -1,0 +1,91 @@
+// Blum: what the verifier asks a solid. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "blum/certificate/certificate.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/voxel_set.hpp"
+
+namespace blum::verifier {
+
+/// Where a point lies.
+struct Location {
+  std::uint32_t body = 0;  ///< that it lies in, or outside of all of them, the closest one
+  double distance = 0;     ///< from the surface of that body
+  double outside_by = 0;   ///< distance from the solid; 0 inside
+  double depth = 0;        ///< in that body, from its boundary; below 0 outside
+};
+
+/// A point of the surface, and how much of the surface it stands for.
+struct Sample {
+  Vec3d point;
+  double area = 0;
+};
+
+struct Samples {
+  std::vector<Sample> list;
+  double step = 0;  ///< each point of the surface is at most this far from a sample
+};
+
+/// A solid and its surface. All of it may be asked from many threads at once.
+class SolidOracle {
+ public:
+  SolidOracle() = default;
+  SolidOracle(const SolidOracle&) = delete;
+  SolidOracle& operator=(const SolidOracle&) = delete;
+  virtual ~SolidOracle() = default;
+
+  [[nodiscard]] virtual double diagonal() const = 0;  ///< of its box
+  [[nodiscard]] virtual Box3 box(std::uint32_t body) const = 0;
+  /// Of the box of a body, which may be turned.
+  [[nodiscard]] virtual double diagonal(std::uint32_t body) const { return box(body).diagonal(); }
+  [[nodiscard]] virtual Location locate(const Vec3d& p) const = 0;
+  /// Exact distance of a point from the surface of a body.
+  [[nodiscard]] virtual double distance(const Vec3d& p, std::uint32_t body) const = 0;
+  /// How deep a point lies in a body; below 0 outside of it. No two points differ by more than they are apart.
+  [[nodiscard]] virtual double depth(const Vec3d& p, std::uint32_t body) const = 0;
+  /// The same, but below 0 wherever the boundary is closer than `near`; and where `other_depth` is above that, or below
+  /// its negative, that of another point near by is used, which costs less.
+  [[nodiscard]] virtual double depth_beside(const Vec3d& p, std::uint32_t body, const Vec3d& /*other*/,
+                                            double /*other_depth*/, double /*near*/) const {
+    return depth(p, body);
+  }
+  /// The closest point of the surface of a body.
+  [[nodiscard]] virtual Vec3d closest_point(const Vec3d& p, std::uint32_t body) const = 0;
+  /// The diagonal of a voxel, where the solid is made of voxels; else 0.
+  [[nodiscard]] virtual double grain() const { return 0; }
+  /// How far outside of the solid is not outside: 0, unless only voxels tell inside from outside.
+  [[nodiscard]] virtual double slack() const { return 0; }
+  /// Distance of a point from a site; HUGE_VAL where there is no such site.
+  [[nodiscard]] virtual double distance_from_site(const Vec3d& p, SiteId site) const = 0;
+  /// Points of the surface, close enough together for `step` unless they would be too many. @throws Cancelled.
+  [[nodiscard]] virtual Samples samples(double step, const Context& context) const = 0;
+};
+
+/// No more samples than this are taken, unless there are more triangles.
+inline constexpr std::size_t most_samples = 250'000;
+
+/// A solid, and the Betti numbers of its bodies.
+struct KnownSolid {
+  std::unique_ptr<SolidOracle> solid;
+  std::vector<BettiNumbers> bodies;
+};
+
+/// What closed shells bound. @throws InvalidMesh, Cancelled. The mesh must outlive the solid.
+[[nodiscard]] KnownSolid solid_of_mesh(const MeshView& mesh, const Context& context);
+
+/// Closed voxels. @param surface  distances are to its triangles; nullptr: to the voxels' faces.
+/// @throws InvalidMesh where the surface has no triangles, InvalidGrid where the grid does not cover it, Cancelled. The
+/// voxels and the mesh must outlive the solid.
+[[nodiscard]] KnownSolid solid_of_voxels(const VoxelSet& voxels, const GridSpec& grid, const MeshView* surface,
+                                         const Context& context);
+
+}  // namespace blum::verifier

@@ -1,0 +1,232 @@
+#include "certificate/triangle_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "blum/core/random.hpp"
+
+namespace blum::verifier {
+namespace {
+
+Vec3d closest_of_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
+  const Vec3d along = b - a;
+  const double squared = squared_length(along);
+  const double t = squared > 0 ? std::clamp(dot(p - a, along) / squared, 0.0, 1.0) : 0.0;
+  return a + along * t;
+}
+
+enum class Meeting : std::uint8_t { none, crossing, doubtful };
+
+/// Whether a line meets a triangle, from the triangle's shadow across the line.
+Meeting meet(const ProbeLine& line, const std::array<Vec3d, 3>& corners, double& at) {
+  constexpr double rounding = 1e-14;
+  std::array<double, 3> x{};
+  std::array<double, 3> y{};
+  std::array<double, 3> z{};
+  std::array<double, 3> error{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d q = corners[k] - line.point;
+    x[k] = dot(line.across, q);
+    y[k] = dot(line.up, q);
+    z[k] = dot(line.along, q);
+    error[k] = rounding * length(q);
+  }
+  const auto is_beside = [&](const std::array<double, 3>& c) {
+    return (c[0] > error[0] && c[1] > error[1] && c[2] > error[2]) ||
+           (c[0] < -error[0] && c[1] < -error[1] && c[2] < -error[2]);
+  };
+  if (is_beside(x) || is_beside(y)) return Meeting::none;
+  std::array<double, 3> weight{};  // of the corner opposite to each edge
+  bool is_left = false;
+  bool is_right = false;
+  bool is_doubtful = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t a = (k + 1) % 3;
+    const std::size_t b = (k + 2) % 3;
+    weight[k] = x[a] * y[b] - x[b] * y[a];
+    const double doubt = (error[a] * error[b]) / rounding;
+    if (weight[k] > doubt)
+      is_left = true;
+    else if (weight[k] < -doubt)
+      is_right = true;
+    else
+      is_doubtful = true;
+  }
+  if (is_left && is_right) return Meeting::none;
+  if (is_doubtful) return Meeting::doubtful;
+  at = (weight[0] * z[0] + weight[1] * z[1] + weight[2] * z[2]) / (weight[0] + weight[1] + weight[2]);
+  return Meeting::crossing;
+}
+
+/// Whether a stretch of a line may meet a box, with room for rounding.
+bool may_meet(const ProbeLine& line, const Box3& box, double begin, double end, double slack) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double low = box.lower[axis] - line.point[axis];
+    const double high = box.upper[axis] - line.point[axis];
+    if (std::abs(line.along[axis]) < 1e-6) {  // beside it or not: rounding is no matter
+      const double room = std::abs(end) < HUGE_VAL ? slack + 1e-6 * end : HUGE_VAL;
+      if (low > room || high < -room) return false;
+      continue;
+    }
+    const double a = low / line.along[axis];
+    const double b = high / line.along[axis];
+    begin = std::max(begin, std::min(a, b));
+    end = std::min(end, std::max(a, b));
+  }
+  return begin <= end + slack;
+}
+
+}  // namespace
+
+ProbeLine line_through(const Vec3d& point, std::uint32_t attempt) {
+  Random random(0x5eedU + attempt);
+  Vec3d along;
+  do {
+    along = random.in_ball();
+  } while (std::min({std::abs(along.x), std::abs(along.y), std::abs(along.z)}) < 0.2);
+  along = along / length(along);
+  Vec3d across = cross(along, Vec3d{0, 0, 1});
+  across = across / length(across);
+  return {point, along, across, cross(along, across)};
+}
+
+Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  Vec3d best = a;
+  const auto look_at = [&](const Vec3d& other) {
+    if (squared_length(p - other) < squared_length(p - best)) best = other;
+  };
+  look_at(closest_of_segment(p, a, b));
+  look_at(closest_of_segment(p, b, c));
+  look_at(closest_of_segment(p, c, a));
+  // The foot on the plane, if it is in the triangle: whatever the rounding, a mean of the corners is a point of it.
+  const Vec3d normal = cross(b - a, c - a);
+  const double squared = squared_length(normal);
+  if (!(squared > 0)) return best;
+  const double to_b = dot(cross(p - a, c - a), normal) / squared;
+  const double to_c = dot(cross(b - a, p - a), normal) / squared;
+  if (to_b >= 0 && to_c >= 0 && to_b + to_c <= 1) look_at(a + (b - a) * to_b + (c - a) * to_c);
+  return best;
+}
+
+ProbeLine line_between(const Vec3d& from, const Vec3d& to) {
+  const Vec3d along = (to - from) / length(to - from);
+  std::size_t least = 0;
+  for (std::size_t a = 1; a < 3; ++a) {
+    if (std::abs(along[a]) < std::abs(along[least])) least = a;
+  }
+  Vec3d other;
+  other[least] = 1;
+  const Vec3d across = cross(along, other) / length(cross(along, other));
+  return {from, along, across, cross(along, across)};
+}
+
+double squared_distance(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
+  return squared_length(p - closest_point(p, corners));
+}
+
+double distance_from_site(const MeshView& mesh, const SiteTable& sites, const Vec3d& p, SiteId site) {
+  if (!site.has_value() || site.value >= sites.size()) return HUGE_VAL;
+  const std::array<std::int32_t, 3> vertices = sites.vertices(site);
+  std::array<Vec3d, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corners[k] = mesh.vertices[static_cast<std::size_t>(vertices[k] < 0 ? vertices[0] : vertices[k])];
+  }
+  return std::sqrt(squared_distance(p, corners));
+}
+
+TriangleSearch::TriangleSearch(const MeshView& mesh, std::span<const std::uint32_t> groups, const Context& context) {
+  std::vector<Box3> boxes;
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (t % 65536 == 0) throw_if_cancelled(context);
+    if (!groups.empty() && groups[t] == no_group) continue;
+    kept.push_back(t);
+    Box3& box = boxes.emplace_back();
+    for (const std::uint32_t v : mesh.triangles[t]) box.extend(mesh.vertices[v]);
+    bounds_.extend(box);
+  }
+  tree_ = BoxHierarchy(boxes, context);
+  for (const std::uint32_t place : tree_.order()) {
+    const std::uint32_t t = kept[place];
+    const Triangle& corner = mesh.triangles[t];
+    corners_.push_back({mesh.vertices[corner[0]], mesh.vertices[corner[1]], mesh.vertices[corner[2]]});
+    triangles_.push_back(t);
+    groups_.push_back(groups.empty() ? 0 : groups[t]);
+  }
+  make_flat_boxes(context);
+}
+
+void TriangleSearch::make_flat_boxes(const Context& context) {
+  constexpr std::size_t most_triangles = 64;
+  flat_boxes_.resize(tree_.node_count());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> range(tree_.node_count());  // of places; those below a node
+  for (std::uint32_t n = tree_.node_count(); n-- > 0;) {                           // children come after their parents
+    if (n % 16384 == 0) throw_if_cancelled(context);
+    const BoxHierarchy::Node& node = tree_.node(n);
+    range[n] = node.count > 0 ? std::pair(node.first, node.first + node.count)
+                              : std::pair(range[node.first].first, range[node.first + 1].second);
+    const auto [begin, end] = range[n];
+    if (end - begin <= most_triangles) flat_boxes_[n] = flat_box({corners_.data() + begin, end - begin});
+  }
+}
+
+TriangleSearch::FlatBox TriangleSearch::flat_box(std::span<const Corners> triangles) {
+  FlatBox flat;
+  flat.origin = triangles[0][0];
+  Vec3d normal;
+  for (const auto& [a, b, c] : triangles) normal += cross(b - a, c - a);
+  const Vec3d across = cross(normal, triangles[0][1] - triangles[0][0]);
+  if (length(normal) > 0 && length(across) > 0) {
+    flat.axes.columns[0] = normal / length(normal);
+    flat.axes.columns[1] = across / length(across);
+    flat.axes.columns[2] = cross(flat.axes.columns[0], flat.axes.columns[1]);
+  }
+  for (const Corners& corners : triangles) {
+    for (const Vec3d& v : corners) flat.box.extend(flat.axes.transposed_times(v - flat.origin));
+  }
+  return flat;
+}
+
+double TriangleSearch::bound(const Vec3d& p, std::uint32_t node) const {
+  const FlatBox& flat = flat_boxes_[node];
+  if (flat.box.is_empty()) return squared_distance(p, tree_.node(node).box);
+  return squared_distance(flat.axes.transposed_times(p - flat.origin), flat.box);
+}
+
+TriangleSearch::Nearest TriangleSearch::nearest(const Vec3d& p, std::uint32_t group) const {
+  double best = HUGE_VAL;
+  std::uint32_t triangle = 0;
+  tree_.search(
+      best, [&](std::uint32_t n) { return bound(p, n); },
+      [&](std::uint32_t place) {
+        if (group != no_group && groups_[place] != group) return best;
+        const double squared = squared_distance(p, corners_[place]);
+        if (squared < best) {
+          best = squared;
+          triangle = triangles_[place];
+        }
+        return best;
+      });
+  return {std::sqrt(best), triangle};
+}
+
+bool TriangleSearch::crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach) const {
+  found.clear();
+  bool is_certain = true;
+  const double slack = 1e-9 * (bounds_.diagonal() + length(line.point - bounds_.center()));
+  const double begin = reach < HUGE_VAL ? -slack : -HUGE_VAL;
+  tree_.search(
+      1, [&](std::uint32_t n) { return may_meet(line, tree_.node(n).box, begin, reach, slack) ? 0.0 : 2.0; },
+      [&](std::uint32_t place) {
+        double at = 0;
+        const Meeting meeting = meet(line, corners_[place], at);
+        if (meeting == Meeting::crossing) found.push_back({at, triangles_[place]});
+        if (meeting == Meeting::doubtful) is_certain = false;
+        return is_certain ? 1.0 : -1.0;
+      });
+  return is_certain;
+}
+
+}  // namespace blum::verifier

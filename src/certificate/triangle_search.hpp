@@ -1,0 +1,93 @@
+// Blum: closest points and crossings of triangles, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "certificate/box_hierarchy.hpp"
+
+namespace blum::verifier {
+
+/// The same for all triangles that go with no group.
+inline constexpr std::uint32_t no_group = 0xffffffffU;
+
+/// A line, and two directions across it, all of length 1 and at right angles.
+struct ProbeLine {
+  Vec3d point;
+  Vec3d along, across, up;
+};
+/// One of a fixed sequence of directions, none of them nearly along a plane of two axes.
+[[nodiscard]] ProbeLine line_through(const Vec3d& point, std::uint32_t attempt);
+/// From one point to another one.
+[[nodiscard]] ProbeLine line_between(const Vec3d& from, const Vec3d& to);
+
+/// Where a line meets a triangle.
+struct Crossing {
+  double at = 0;  ///< along the line, from its point; mesh units
+  std::uint32_t triangle = 0;
+};
+
+/// Triangles in a tree of boxes. The triangles of a mesh may belong to groups, of which one at a time is asked.
+class TriangleSearch {
+ public:
+  struct Nearest {
+    double distance = 0;
+    std::uint32_t triangle = 0;
+  };
+
+  TriangleSearch() = default;
+  /// @param groups  of each triangle; those of no_group are left out. Empty: all triangles are in group 0.
+  /// @throws Cancelled.
+  TriangleSearch(const MeshView& mesh, std::span<const std::uint32_t> groups, const Context& context);
+
+  /// The closest triangle of a group, or for no_group of all. Exact up to rounding. HUGE_VAL where there is none.
+  [[nodiscard]] Nearest nearest(const Vec3d& p, std::uint32_t group = no_group) const;
+
+  /// Finds all crossings of a line, those with triangles near its first `reach` at least; false if it comes too close
+  /// to an edge to tell.
+  [[nodiscard]] bool crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach = HUGE_VAL) const;
+
+  [[nodiscard]] const Box3& bounds() const { return bounds_; }
+
+ private:
+  using Corners = std::array<Vec3d, 3>;
+
+  /// A box along the mean normal of some triangles: flat where they are, so that far queries reach few of them.
+  struct FlatBox {
+    Vec3d origin;
+    Mat3 axes;
+    Box3 box;  ///< from the origin, along the axes; empty where there are too many triangles for it
+  };
+  void make_flat_boxes(const Context& context);
+  [[nodiscard]] static FlatBox flat_box(std::span<const Corners> triangles);
+  [[nodiscard]] double bound(const Vec3d& p, std::uint32_t node) const;
+
+  BoxHierarchy tree_;
+  std::vector<FlatBox> flat_boxes_;       ///< of each node of the tree
+  std::vector<Corners> corners_;          ///< in the tree's order
+  std::vector<std::uint32_t> triangles_;  ///< of the mesh, in the tree's order
+  std::vector<std::uint32_t> groups_;     ///< in the tree's order
+  Box3 bounds_;
+};
+
+/// Distance of a point from a vertex, an edge or a triangle of a mesh; HUGE_VAL where there is no such site.
+[[nodiscard]] double distance_from_site(const MeshView& mesh, const SiteTable& sites, const Vec3d& p, SiteId site);
+
+[[nodiscard]] inline std::array<Vec3d, 3> corners_of(const MeshView& mesh, std::uint32_t triangle) {
+  const Triangle& t = mesh.triangles[triangle];
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+/// The point of a triangle, which may be a segment or a point, that is closest to a point.
+[[nodiscard]] Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners);
+/// Squared distance of a point from a triangle, which may be a segment or a point.
+[[nodiscard]] double squared_distance(const Vec3d& p, const std::array<Vec3d, 3>& corners);
+
+}  // namespace blum::verifier

@@ -1,0 +1,57 @@
+// Blum: components, tunnels and voids of voxels, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "blum/certificate/certificate.hpp"
+#include "blum/core/context.hpp"
+#include "blum/grid/voxel_set.hpp"
+
+namespace blum::verifier {
+
+/// The bodies of a union of closed voxels: those that are joined over corners, numbered in the order of their first
+/// voxels.
+class VoxelBodies {
+ public:
+  /// @throws Cancelled.
+  VoxelBodies(const VoxelSet& voxels, const Context& context);
+
+  /// The voxels from `lower` to `upper`, both included, that a body lies within.
+  struct Extent {
+    std::array<std::int64_t, 3> lower, upper;
+  };
+
+  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(extents_.size()); }
+  [[nodiscard]] const Extent& extent(std::uint32_t body) const { return extents_[body]; }
+  /// The body of a voxel, which must be in the set.
+  [[nodiscard]] std::uint32_t of(std::int64_t i, std::int64_t j, std::int64_t k) const;
+
+ private:
+  /// Voxels begin to end - 1 of a row.
+  struct Run {
+    std::int32_t begin = 0, end = 0;
+    std::uint32_t body = 0;
+  };
+
+  void find_runs(const VoxelSet& voxels, const Context& context);
+  [[nodiscard]] std::size_t row(std::int64_t j, std::int64_t k) const {
+    return static_cast<std::size_t>(k * size_[1] + j);
+  }
+
+  std::array<std::int64_t, 3> size_{};
+  std::vector<std::size_t> first_;  ///< run of each row, and the end
+  std::vector<Run> runs_;
+  std::vector<Extent> extents_;
+};
+
+/// Betti numbers of each body: tunnels from the number of cells; a void, by flooding over faces, belongs to the body
+/// around it. @throws Cancelled. Memory: two more sets.
+[[nodiscard]] std::vector<BettiNumbers> voxel_betti_numbers(const VoxelSet& voxels, const VoxelBodies& bodies,
+                                                            const Context& context);
+/// Of all bodies together.
+[[nodiscard]] BettiNumbers voxel_betti_numbers(const VoxelSet& voxels, const Context& context);
+
+}  // namespace blum::verifier

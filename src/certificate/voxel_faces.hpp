@@ -1,0 +1,92 @@
+// Blum: distances to the faces of voxels, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/grid/grid_spec.hpp"
+#include "blum/grid/voxel_set.hpp"
+#include "certificate/box_hierarchy.hpp"
+
+namespace blum::verifier {
+
+/// The squares, edges or corners of voxels that lie between those in a set and those that are not.
+class VoxelFaces {
+ public:
+  /// The lower face of a voxel along an axis; the voxel may lie just beyond the box.
+  struct Face {
+    std::array<std::int64_t, 3> voxel{0, 0, 0};
+    std::size_t axis = 0;
+  };
+
+  /// The voxels must outlive it. @throws Cancelled.
+  VoxelFaces(const VoxelSet& voxels, const GridSpec& grid, const Context& context);
+
+  struct Nearest {
+    double distance = HUGE_VAL;
+    Face face;
+  };
+  /// Exact distance from a point of the world to the closest face; HUGE_VAL where there is none.
+  [[nodiscard]] Nearest nearest(const Vec3d& p) const;
+  [[nodiscard]] double distance(const Vec3d& p) const { return nearest(p).distance; }
+  /// The voxel of the set that a point lies in; where voxels meet, one of them; nullopt outside.
+  [[nodiscard]] std::optional<std::array<std::int64_t, 3>> voxel_at(const Vec3d& p) const;
+  [[nodiscard]] bool contains(const Vec3d& p) const { return voxel_at(p).has_value(); }
+
+  /// The number of bricks of 4 x 4 x 4 voxels that have faces.
+  [[nodiscard]] std::size_t brick_count() const { return bricks_.size(); }
+  /// Calls use(face) for the faces of a brick.
+  template <class Use>
+  void for_each_face(std::size_t brick, const Use& use) const;
+
+  /// The rectangle of a face: along the axes of the grid, from its first node.
+  [[nodiscard]] Box3 rectangle(const Face& face) const;
+  [[nodiscard]] const GridSpec& grid() const { return grid_; }
+  [[nodiscard]] const VoxelSet& voxels() const { return voxels_; }
+  /// The box around the faces, along the axes of the grid.
+  [[nodiscard]] const Box3& box() const { return box_; }
+
+ private:
+  using Brick = std::array<std::int32_t, 3>;  ///< in bricks
+  /// Voxels of a brick and those just before it: bit x of [y + 5 z] is voxel x - 1, y - 1, z - 1.
+  using Window = std::array<std::uint8_t, 25>;
+
+  [[nodiscard]] Window window(const Brick& brick) const;
+  [[nodiscard]] std::uint8_t five_bits(std::int64_t i, std::int64_t j, std::int64_t k) const;
+  void find_bricks(std::int32_t layer, std::vector<Brick>& found) const;
+  [[nodiscard]] Vec3d local(const Vec3d& p) const { return grid_.direction.transposed_times(p - grid_.origin); }
+
+  const VoxelSet& voxels_;
+  GridSpec grid_;
+  std::vector<Brick> bricks_;  ///< in the tree's order
+  std::vector<Box3> boxes_;    ///< around the faces of each
+  BoxHierarchy tree_;
+  Box3 box_;
+};
+
+template <class Use>
+void VoxelFaces::for_each_face(std::size_t brick, const Use& use) const {
+  const Window in = window(bricks_[brick]);
+  const Brick& at = bricks_[brick];
+  for (std::size_t z = 1; z < 5; ++z) {
+    for (std::size_t y = 1; y < 5; ++y) {
+      const unsigned row = in[y + 5 * z];
+      const std::array<unsigned, 3> before{row << 1U, in[y - 1 + 5 * z], in[y + 5 * (z - 1)]};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (unsigned differ = (row ^ before[axis]) & 0x1eU; differ != 0; differ &= differ - 1) {
+          use(Face{{4 * std::int64_t{at[0]} + std::countr_zero(differ) - 1,
+                    4 * std::int64_t{at[1]} + static_cast<std::int64_t>(y) - 1,
+                    4 * std::int64_t{at[2]} + static_cast<std::int64_t>(z) - 1},
+                   axis});
+        }
+      }
+    }
+  }
+}
+
+}  // namespace blum::verifier

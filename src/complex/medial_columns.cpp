@@ -1,0 +1,198 @@
+#include "blum/complex/medial_columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace blum {
+namespace {
+
+namespace names = medial_columns;
+
+/// @param count  of what the columns belong to.
+template <ColumnNumber T>
+std::span<const T> column(const Columns& columns, std::size_t count, std::string_view name,
+                          std::size_t components = 1) {
+  const std::span<const T> numbers = columns.get<T>(name, components);
+  if (numbers.size() != count * components) {
+    throw InvalidOption("column '" + std::string(name) + "' has " + std::to_string(numbers.size() / components) +
+                        " rows, but must have " + std::to_string(count));
+  }
+  return numbers;
+}
+
+std::string place(const char* what, std::size_t index) {
+  return std::string(what) + " " + std::to_string(index) + " (counted from 0)";
+}
+
+bool is_role(std::int32_t number) {
+  return number >= 0 && number <= static_cast<std::int32_t>(MedialRole::junction);
+}
+
+bool is_role_of_edges(std::int32_t number) {
+  return is_role(number) && number != static_cast<std::int32_t>(MedialRole::sheet) &&
+         number != static_cast<std::int32_t>(MedialRole::junction);
+}
+
+/// What is wrong with one vertex; null where nothing is.
+const char* vertex_problem(const MedialView& axis, std::size_t v, std::int32_t role) {
+  if (!std::isfinite(axis.radius[v]) || axis.radius[v] < 0) return "has a radius that is negative or not finite";
+  if (!is_finite(axis.footprint(v, 0)) || !is_finite(axis.footprint(v, 1))) return "has a footprint that is not finite";
+  if (!std::isfinite(axis.separation_angle[v])) return "has an angle that is not finite";
+  for (const std::size_t k : {0U, 1U}) {
+    const SiteId site = axis.site(v, k);
+    if (site.has_value() && site.value > max_id_count) return "has a site that is neither an index nor -1";
+  }
+  return is_role(role) ? nullptr : "has a role that is not known";
+}
+
+/// The first of some numbers that is wrong. @param is_wrong  asked of each number.
+template <class T, class Test>
+std::string problem_of_numbers(std::span<const T> numbers, const char* what, const char* problem,
+                               const Test& is_wrong) {
+  const auto at = std::find_if(numbers.begin(), numbers.end(), is_wrong);
+  if (at == numbers.end()) return {};
+  return place(what, static_cast<std::size_t>(at - numbers.begin())) + " " + problem;
+}
+
+/// Every sheet has a triangle, so that a file cannot make anyone count to more sheets than it has triangles.
+std::string problem_of_sheets(std::span<const std::int32_t> sheets) {
+  std::int64_t count = 0;
+  for (std::size_t t = 0; t < sheets.size(); ++t) {
+    if (sheets[t] < 0) return place("triangle", t) + " is on a sheet below 0";
+    count = std::max(count, std::int64_t{sheets[t]} + 1);
+  }
+  if (static_cast<std::size_t>(count) <= sheets.size()) return {};
+  return "there are " + std::to_string(count) + " sheets, but only " + std::to_string(sheets.size()) + " triangles";
+}
+
+std::string problem_of_levels(const MedialLevels& levels) {
+  const auto is_nan = [](float level) { return std::isnan(level); };
+  for (const auto& [numbers, what] :
+       {std::pair{levels.vertex_until, "vertex"}, std::pair{levels.edge_from, "edge"},
+        std::pair{levels.edge_until, "edge"}, std::pair{levels.triangle_until, "triangle"}}) {
+    std::string problem = problem_of_numbers(numbers, what, "has an angle that is not a number", is_nan);
+    if (!problem.empty()) return problem;
+  }
+  return {};
+}
+
+std::string problem_of_values(const Complex& axis) {
+  const MedialView view(axis);
+  const std::span<const std::int32_t> roles = axis.vertex_columns.get<std::int32_t>(names::role);
+  for (std::size_t v = 0; v < view.positions.size(); ++v) {
+    if (const char* problem = vertex_problem(view, v, roles[v])) return place("vertex", v) + " " + problem;
+  }
+  const auto is_not_finite = [](float angle) { return !std::isfinite(angle); };
+  for (std::string problem :
+       {problem_of_numbers(view.edge_angle, "edge", "has an angle that is not finite", is_not_finite),
+        problem_of_numbers(axis.edge_columns.get<std::int32_t>(names::role), "edge",
+                           "is neither curve nor rim nor seam",
+                           [](std::int32_t role) { return !is_role_of_edges(role); }),
+        problem_of_numbers(view.triangle_angle, "triangle", "has an angle that is not finite", is_not_finite),
+        problem_of_sheets(view.sheet)}) {
+    if (!problem.empty()) return problem;
+  }
+  return axis.vertex_columns.find(names::until) == nullptr ? std::string() : problem_of_levels(MedialLevels(axis));
+}
+
+template <ColumnNumber T>
+void add_missing(Columns& columns, std::string_view name, std::size_t components = 1, T fill = T{}) {
+  if (columns.find(name) == nullptr) columns.add<T>(std::string(name), components, fill);
+}
+
+}  // namespace
+
+MedialView::MedialView(const Complex& complex)
+    : positions(complex.positions),
+      radius(column<double>(complex.vertex_columns, positions.size(), names::radius)),
+      separation_angle(column<double>(complex.vertex_columns, positions.size(), names::separation_angle)),
+      edges(complex.edges),
+      edge_angle(column<float>(complex.edge_columns, edges.size(), names::separation_angle)),
+      triangles(complex.triangles),
+      triangle_angle(column<float>(complex.triangle_columns, triangles.size(), names::separation_angle)),
+      sheet(column<std::int32_t>(complex.triangle_columns, triangles.size(), names::sheet)),
+      roles_(column<std::int32_t>(complex.vertex_columns, positions.size(), names::role)),
+      edge_roles_(column<std::int32_t>(complex.edge_columns, edges.size(), names::role)) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    footprints_[k] = column<double>(complex.vertex_columns, positions.size(), names::footprints[k], 3);
+    sites_[k] = column<std::int32_t>(complex.vertex_columns, positions.size(), names::sites[k]);
+  }
+}
+
+MedialLevels::MedialLevels(const Complex& complex)
+    : vertex_until(column<float>(complex.vertex_columns, complex.positions.size(), names::until)),
+      edge_from(column<float>(complex.edge_columns, complex.edges.size(), names::from)),
+      edge_until(column<float>(complex.edge_columns, complex.edges.size(), names::until)),
+      triangle_until(column<float>(complex.triangle_columns, complex.triangles.size(), names::until)) {}
+
+void add_missing_medial_columns(Complex& complex) {
+  const auto prepared = [](Columns& columns, std::size_t count) -> Columns& {
+    if (columns.empty()) columns.resize(count);
+    return columns;
+  };
+  Columns& vertices = prepared(complex.vertex_columns, complex.positions.size());
+  add_missing<double>(vertices, names::radius);
+  for (const std::string_view name : names::footprints) add_missing<double>(vertices, name, 3);
+  for (const std::string_view name : names::sites) add_missing<std::int32_t>(vertices, name, 1, -1);
+  add_missing<double>(vertices, names::separation_angle);
+  add_missing<std::int32_t>(vertices, names::role, 1, static_cast<std::int32_t>(MedialRole::sheet));
+  Columns& edges = prepared(complex.edge_columns, complex.edges.size());
+  add_missing<float>(edges, names::separation_angle);
+  add_missing<std::int32_t>(edges, names::role, 1, static_cast<std::int32_t>(MedialRole::curve));
+  Columns& triangles = prepared(complex.triangle_columns, complex.triangles.size());
+  add_missing<float>(triangles, names::separation_angle);
+  add_missing<std::int32_t>(triangles, names::sheet);
+}
+
+std::string problem_of_medial(const Complex& axis) {
+  std::string problem = problem_of(axis);
+  if (!problem.empty()) return problem;
+  if (axis.positions.size() > max_id_count) return "there are more than 2^31 - 1 vertices";
+  try {
+    return problem_of_values(axis);
+  } catch (const InvalidOption& missing) {
+    return missing.what();
+  }
+}
+
+std::size_t sheet_count(const Complex& axis) {
+  std::int32_t largest = -1;
+  for (const std::int32_t sheet : axis.triangle_columns.get<std::int32_t>(names::sheet)) {
+    largest = std::max(largest, sheet);
+  }
+  return static_cast<std::size_t>(std::int64_t{largest} + 1);
+}
+
+MedialCounts count(const Complex& axis) {
+  const MedialView view(axis);
+  MedialCounts counts;
+  counts.vertices = view.positions.size();
+  counts.triangles = view.triangles.size();
+  counts.sheets = sheet_count(axis);
+  for (std::size_t e = 0; e < view.edges.size(); ++e) {
+    const MedialRole role = view.edge_role(e);
+    ++(role == MedialRole::rim ? counts.rim_edges : role == MedialRole::seam ? counts.seam_edges : counts.curve_edges);
+  }
+  for (std::size_t v = 0; v < view.positions.size(); ++v)
+    counts.junctions += view.role(v) == MedialRole::junction ? 1 : 0;
+  return counts;
+}
+
+std::string_view to_string(MedialRole role) {
+  switch (role) {
+    case MedialRole::sheet:
+      return "sheet";
+    case MedialRole::rim:
+      return "rim";
+    case MedialRole::seam:
+      return "seam";
+    case MedialRole::curve:
+      return "curve";
+    case MedialRole::junction:
+      return "junction";
+  }
+  return "unknown";
+}
+
+}  // namespace blum

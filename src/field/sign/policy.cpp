@@ -1,0 +1,148 @@
+#include "field/sign/policy.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/topology.hpp"
+
+namespace blum::sign {
+namespace {
+
+std::string describe_defects(const Orientation& facts) {
+  if (facts.boundary_edges + facts.nonmanifold_edges + facts.inconsistent_edges == 0) {
+    return "no triangle with three different corners";
+  }
+  return std::to_string(facts.boundary_edges) + " boundary edges, " + std::to_string(facts.nonmanifold_edges) +
+         " non-manifold edges and " + std::to_string(facts.inconsistent_edges) + " inconsistently oriented edges";
+}
+
+bool has_flat_triangles(const MeshView& mesh) {
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
+                     [&](const Triangle& t) { return is_too_flat(mesh, t); });
+}
+
+Plan by_winding(std::string reason) {
+  return {SignRule::winding, std::move(reason), Method::sums};
+}
+
+Plan plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  const std::string winding = "winding number above 1/2: the mesh ";
+  const Orientation facts = orientation(mesh, sites);
+  if (!mesh.segments.empty() || !mesh.points.empty()) {
+    return by_winding(winding + "has free segments or points, which have no sides");
+  }
+  if (!facts.closed || !facts.oriented) return by_winding(winding + "has " + describe_defects(facts));
+  if (!facts.outward && facts.signed_volume < 0) {
+    return by_winding(
+        winding + "is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles");
+  }
+  if (!facts.outward) {
+    return by_winding(winding + "is closed, but its shells cross each other or do not all face away from the solid");
+  }
+  if (has_flat_triangles(mesh)) return by_winding(winding + "is closed, but has triangles too flat for a normal");
+  const Context quiet{.threads = context.threads, .cancel = context.cancel};
+  if (!find_self_intersections(mesh, 0, quiet).complete) {
+    return by_winding(winding + "is closed and oriented, but it crosses itself, or touches itself");
+  }
+  return {SignRule::normals, "the mesh is closed, consistently oriented and faces outwards", Method::crossings, 0,
+          true};
+}
+
+/// Whether the mesh would face outwards if all triangles were turned.
+bool faces_inwards(const MeshView& mesh) {
+  const std::vector<Triangle> turned = turned_triangles(mesh.triangles);
+  MeshView view = mesh;
+  view.triangles = turned;
+  return orientation(view, SiteTable(view)).outward;
+}
+
+Plan plan_normals(const MeshView& mesh, const SiteTable& sites) {
+  const Orientation facts = orientation(mesh, sites);
+  if (!facts.closed || !facts.oriented) {
+    throw InvalidMesh("signs by normals need a closed, consistently oriented mesh; this one has " +
+                      describe_defects(facts) + ": use winding, or weld or repair the mesh");
+  }
+  if (!mesh.segments.empty() || !mesh.points.empty()) {
+    throw InvalidMesh(
+        "signs by normals were asked for, but the mesh has free segments or points, which have no sides: use winding");
+  }
+  if (facts.outward) return {SignRule::normals, "orientation, as asked for", Method::crossings};
+  Plan plan{SignRule::normals,
+            "orientation, as asked for, of a mesh whose shells cross each other or do not all face away from the "
+            "solid: flip it if the sign looks inverted",
+            Method::pseudonormals};
+  // Inside out, it has a winding number of -1 in the solid, and 0, which these signs call inside, around it.
+  if (faces_inwards(mesh)) {
+    plan.method = Method::crossings;
+    plan.level = -1;
+  }
+  return plan;
+}
+
+/// Whether every edge of the triangles is traversed equally often in both directions, so that winding numbers are whole
+/// off the surface.
+bool is_balanced(const MeshView& mesh, const SiteTable& sites) {
+  std::vector<std::int32_t> forward(sites.edge_count(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const EdgeId edge = sites.triangle_edges()[t][k];
+      if (edge.has_value()) forward[edge.value] += mesh.triangles[t][k] < mesh.triangles[t][(k + 1) % 3] ? 1 : -1;
+    }
+  }
+  return std::all_of(forward.begin(), forward.end(), [](std::int32_t count) { return count == 0; });
+}
+
+constexpr const char* no_triangles = "unsigned: there are no triangles, so there is no inside";
+constexpr const char* as_asked_for = "winding number above 1/2, as asked for";
+
+void throw_without_triangles() {
+  throw InvalidOption("a sign was asked for, but the mesh has no triangles, so it has no inside: ask for none");
+}
+
+Plan unsigned_plan(std::string reason) {
+  return {SignRule::none, std::move(reason)};
+}
+
+}  // namespace
+
+bool is_too_flat(const MeshView& mesh, const Triangle& triangle) {
+  const Vec3d u = mesh.vertices[triangle[1]] - mesh.vertices[triangle[0]];
+  const Vec3d v = mesh.vertices[triangle[2]] - mesh.vertices[triangle[0]];
+  const double longest = std::max({squared_length(u), squared_length(v), squared_length(u - v)});
+  return !(squared_length(cross(u, v)) > 1e-24 * longest * longest);
+}
+
+Plan plan_signs(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  if (mode == SignMode::none) return unsigned_plan("unsigned, as asked for");
+  if (mesh.triangles.empty()) {
+    if (mode == SignMode::automatic) return unsigned_plan(no_triangles);
+    throw_without_triangles();
+  }
+  if (mode == SignMode::normals) return plan_normals(mesh, sites);
+  Plan plan = mode == SignMode::winding ? by_winding(as_asked_for) : plan_automatically(mesh, sites, context);
+  if (plan.method == Method::sums && is_balanced(mesh, sites)) plan.method = Method::crossings;
+  return plan;
+}
+
+Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {
+  if (mode == SignMode::normals) {
+    throw InvalidOption(
+        "signs by normals need a mesh in the host's memory: ask for automatic, which tells the same sides of closed "
+        "meshes that face outwards");
+  }
+  if (mode == SignMode::none) return unsigned_plan("unsigned, as asked for");
+  if (triangles > 0) return by_winding(as_asked_for);
+  if (mode == SignMode::winding) throw_without_triangles();
+  return unsigned_plan(no_triangles);
+}
+
+Plan plan_image_signs(bool is_signed, const std::string& selection) {
+  if (!is_signed) return unsigned_plan("an unsigned field was asked for");
+  return {SignRule::label, "a voxel is inside where its value " + selection};
+}
+
+}  // namespace blum::sign

@@ -1,0 +1,226 @@
+// Loops over the lanes of a block, which the compiler vectorises: with Highway once for each of a few instruction sets,
+// of which the best that the machine has is chosen when the program starts; without it (BLUM_SIMD=OFF, or where Highway
+// is not installed) once, for the instructions that every machine has.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#ifdef BLUM_HIGHWAY
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)  // these do nothing for loops of doubles
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "geometry/lane_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#else
+#define HWY_BEFORE_NAMESPACE() static_assert(true)
+#define HWY_AFTER_NAMESPACE() static_assert(true)
+#define HWY_NAMESPACE baseline
+#define HWY_ONCE 1
+#endif
+
+#include "geometry/box_tree.hpp"
+#include "geometry/primitive_block.hpp"
+#include "geometry/winding_tree.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace blum::HWY_NAMESPACE {
+namespace {
+
+void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double x = std::max(std::max(block.lower[0][i] - query.x, query.x - block.upper[0][i]), 0.0);
+    const double y = std::max(std::max(block.lower[1][i] - query.y, query.y - block.upper[1][i]), 0.0);
+    const double z = std::max(std::max(block.lower[2][i] - query.z, query.z - block.upper[2][i]), 0.0);
+    out[i] = x * x + y * y + z * z;
+  }
+}
+
+void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]) {
+  const auto& p = block.corner;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double abx = p[1][0][i] - p[0][0][i], aby = p[1][1][i] - p[0][1][i], abz = p[1][2][i] - p[0][2][i];
+    const double acx = p[2][0][i] - p[0][0][i], acy = p[2][1][i] - p[0][1][i], acz = p[2][2][i] - p[0][2][i];
+    const double bcx = acx - abx, bcy = acy - aby, bcz = acz - abz;
+    const double ax = query.x - p[0][0][i], ay = query.y - p[0][1][i], az = query.z - p[0][2][i];
+    const double bx = query.x - p[1][0][i], by = query.y - p[1][1][i], bz = query.z - p[1][2][i];
+    const double ab2 = abx * abx + aby * aby + abz * abz;
+    const double ac2 = acx * acx + acy * acy + acz * acz;
+    const double bc2 = bcx * bcx + bcy * bcy + bcz * bcz;
+    constexpr double least = 1e-300;  // an edge of length zero has t = 0
+    const double dab = ax * abx + ay * aby + az * abz;
+    const double dac = ax * acx + ay * acy + az * acz;
+    const double dbc = bx * bcx + by * bcy + bz * bcz;
+    const double tab = std::min(std::max(dab / std::max(ab2, least), 0.0), 1.0);
+    const double tac = std::min(std::max(dac / std::max(ac2, least), 0.0), 1.0);
+    const double tbc = std::min(std::max(dbc / std::max(bc2, least), 0.0), 1.0);
+    const double x1 = ax - tab * abx, y1 = ay - tab * aby, z1 = az - tab * abz;
+    const double x2 = ax - tac * acx, y2 = ay - tac * acy, z2 = az - tac * acz;
+    const double x3 = bx - tbc * bcx, y3 = by - tbc * bcy, z3 = bz - tbc * bcz;
+    const double border =
+        std::min(std::min(x1 * x1 + y1 * y1 + z1 * z1, x2 * x2 + y2 * y2 + z2 * z2), x3 * x3 + y3 * y3 + z3 * z3);
+    const double nx = aby * acz - abz * acy, ny = abz * acx - abx * acz, nz = abx * acy - aby * acx;
+    const double n2 = nx * nx + ny * ny + nz * nz;
+    // Barycentric coordinates times n2: (n x ab) . aq etc.
+    const double over_c = (ny * abz - nz * aby) * ax + (nz * abx - nx * abz) * ay + (nx * aby - ny * abx) * az;
+    const double over_b = -((ny * acz - nz * acy) * ax + (nz * acx - nx * acz) * ay + (nx * acy - ny * acx) * az);
+    const double height = nx * ax + ny * ay + nz * az;
+    const double plane = height * height / std::max(n2, least);
+    const double inside = std::min(std::min(over_b, over_c), n2 - over_b - over_c);
+    const double squared = inside > 0 ? std::min(plane, border) : border;
+    out[i] = std::sqrt(squared) - block.sliver_altitude[i];
+  }
+}
+
+/// The first three terms of the multipole series, in steradians; d points from the query to the centre.
+inline double series(const MultipoleBlock& b, std::size_t i, double x, double y, double z, double inverse_squared,
+                     double inverse) {
+  const double xx = x * x, yy = y * y, zz = z * z;
+  const double first = b.dipole[0][i] * x + b.dipole[1][i] * y + b.dipole[2][i] * z;
+  const double second = b.quadrupole[0][i] * (xx - zz) + b.quadrupole[1][i] * (yy - zz) + b.quadrupole[2][i] * x * y +
+                        (b.quadrupole[3][i] * x + b.quadrupole[4][i] * y) * z;
+  const double third =
+      x * (b.octupole[0][i] * (xx - 3 * zz) + b.octupole[2][i] * (yy - zz)) +
+      y * (b.octupole[1][i] * (yy - 3 * zz) + b.octupole[3][i] * (xx - zz)) +
+      z * (b.octupole[4][i] * (3 * xx - zz) + b.octupole[5][i] * (3 * yy - zz) + b.octupole[6][i] * x * y);
+  const double inverse_cubed = inverse_squared * inverse;
+  return inverse_cubed * (first + inverse_squared * (second + inverse_squared * third));
+}
+
+// The kernel of the solid angle, n . (x - q) / |x - q|^3, is the normal derivative of the harmonic series of
+// 1 / |x - q| about the centre. Its term of degree l is at most l |s|^(l-1) / R^(l+1) (Laplace's integral for Legendre
+// polynomials), R the distance of the query from the centre. With t = radius / R, the terms from l = 4 on add up to at
+// most (integral of |s|^3) / R^5 (4 - 3 t) / (1 - t)^2.
+void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolerance, FarSum& sum, OpenLanes& others) {
+  // Local arrays, which cannot overlap the block, so that the loop vectorises without checks.
+  alignas(64) double taken_angle[lanes];
+  alignas(64) double taken_error[lanes];
+  alignas(64) double open[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double x = block.center[0][i] - query.x;
+    const double y = block.center[1][i] - query.y;
+    const double z = block.center[2][i] - query.z;
+    const double inverse = 1 / std::sqrt(std::max(x * x + y * y + z * z, 1e-60));
+    const double inverse_squared = inverse * inverse;
+    const double value = series(block, i, x, y, z, inverse_squared, inverse);
+    const double rest = 1 - block.radius[i] * inverse;
+    const double safe_rest = std::max(rest, 1e-3);
+    const double bound =
+        block.cubed[i] * inverse_squared * inverse_squared * inverse * (1 + 3 * safe_rest) / (safe_rest * safe_rest);
+    // Too close, the series does not converge. Factors instead of branches, again for the vectoriser.
+    const double penalty = std::max(1e-3 - rest, 0.0) * 1e300;
+    const double taken = bound + penalty <= tolerance ? 1.0 : 0.0;
+    taken_angle[i] = taken * value;
+    taken_error[i] = taken * bound;
+    open[i] = 1 - taken;
+  }
+  for (std::size_t i = 0; i < lanes; ++i) {
+    sum.solid_angle[i] += taken_angle[i];
+    sum.error[i] += taken_error[i];
+    others.open[i] = open[i];
+  }
+}
+
+void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double beta, FarSum& sum, OpenLanes& others) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double x = block.center[0][i] - query.x;
+    const double y = block.center[1][i] - query.y;
+    const double z = block.center[2][i] - query.z;
+    const double inverse = 1 / std::sqrt(std::max(x * x + y * y + z * z, 1e-60));
+    const double value = series(block, i, x, y, z, inverse * inverse, inverse);
+    // Lanes without a cluster have no radius, and are taken whatever beta is.
+    const double taken = block.radius[i] * beta * inverse >= 1 ? 0.0 : 1.0;
+    sum.solid_angle[i] += taken * value;
+    others.open[i] = 1 - taken;
+  }
+}
+
+void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum) {
+  const auto& p = block.corner;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double ax = p[0][0][i] - query.x, ay = p[0][1][i] - query.y, az = p[0][2][i] - query.z;
+    const double bx = p[1][0][i] - query.x, by = p[1][1][i] - query.y, bz = p[1][2][i] - query.z;
+    const double cx = p[2][0][i] - query.x, cy = p[2][1][i] - query.y, cz = p[2][2][i] - query.z;
+    const double ux = p[1][0][i] - p[0][0][i], uy = p[1][1][i] - p[0][1][i], uz = p[1][2][i] - p[0][2][i];
+    const double vx = p[2][0][i] - p[0][0][i], vy = p[2][1][i] - p[0][1][i], vz = p[2][2][i] - p[0][2][i];
+    const double la = std::sqrt(ax * ax + ay * ay + az * az);
+    const double lb = std::sqrt(bx * bx + by * by + bz * bz);
+    const double lc = std::sqrt(cx * cx + cy * cy + cz * cz);
+    // a . (b x c) = a . (u x v): with edges it loses nothing to the distance.
+    const double y = ax * (uy * vz - uz * vy) + ay * (uz * vx - ux * vz) + az * (ux * vy - uy * vx);
+    const double x = la * lb * lc + (ax * bx + ay * by + az * bz) * lc + (bx * cx + by * cy + bz * cz) * la +
+                     (cx * ax + cy * ay + cz * az) * lb;
+    const double size = std::abs(x) + std::abs(y);
+    const double inverse = 1 / size;
+    const double zx = size > 0 ? x * inverse : 1.0;
+    const double zy = size > 0 ? y * inverse : 0.0;
+    const double px = sum.re[i] * zx - sum.im[i] * zy;
+    const double py = sum.re[i] * zy + sum.im[i] * zx;
+    const double up = sum.im[i] >= 0 ? 1.0 : 0.0;
+    const double also_up = zy >= 0 ? 1.0 : 0.0;
+    const double now_up = py >= 0 ? 1.0 : 0.0;
+    // +1 where both were in the upper half and the product is not; -1 where both were below and it is above.
+    sum.turns[i] += up * also_up * (1 - now_up) - (1 - up) * (1 - also_up) * now_up;
+    // Keep the size of the product near 1: each factor is between 1/sqrt(2) and 1.
+    const double magnitude = 1 / (std::abs(px) + std::abs(py));
+    sum.re[i] = px * magnitude;
+    sum.im[i] = py * magnitude;
+  }
+}
+
+}  // namespace
+}  // namespace blum::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace blum {
+namespace {
+
+#if defined(BLUM_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1))
+/// Where the tables of functions have those of the best instruction set.
+std::size_t best_index() {
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return hwy::GetChosenTarget().GetIndex();
+}
+
+HWY_EXPORT(squared_distances);
+HWY_EXPORT(approximate_distances);
+HWY_EXPORT(add_clusters);
+HWY_EXPORT(add_clusters_beyond);
+HWY_EXPORT(add_triangles);
+#define BLUM_BEST(kernel) HWY_DISPATCH_TABLE(kernel)[best_index()]
+#else
+#define BLUM_BEST(kernel) (&HWY_NAMESPACE::kernel)
+#endif
+
+// Chosen once: the loops take tens of nanoseconds, and a look-up would be felt.
+const auto best_squared_distances = BLUM_BEST(squared_distances);
+const auto best_approximate_distances = BLUM_BEST(approximate_distances);
+const auto best_add_clusters = BLUM_BEST(add_clusters);
+const auto best_add_clusters_beyond = BLUM_BEST(add_clusters_beyond);
+const auto best_add_triangles = BLUM_BEST(add_triangles);
+
+}  // namespace
+
+void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]) {
+  best_squared_distances(block, query, out);
+}
+
+void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]) {
+  best_approximate_distances(block, query, out);
+}
+
+void add_clusters(const MultipoleBlock& block, const Vec3d& query, double tolerance, FarSum& sum, OpenLanes& others) {
+  best_add_clusters(block, query, tolerance, sum, others);
+}
+
+void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double beta, FarSum& sum, OpenLanes& others) {
+  best_add_clusters_beyond(block, query, beta, sum, others);
+}
+
+void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum) {
+  best_add_triangles(block, query, sum);
+}
+
+}  // namespace blum
+#endif  // HWY_ONCE

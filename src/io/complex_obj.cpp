@@ -1,0 +1,55 @@
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/io/mesh_io.hpp"
+#include "io/complex_files.hpp"
+#include "io/edge_set.hpp"
+#include "io/mesh_builder.hpp"
+#include "io/row_writer.hpp"
+
+namespace blum::complex_files {
+namespace {
+
+/// Stands in for the vertices of an empty complex: a file of no bytes might as well be one that was never written.
+constexpr std::string_view empty_file = "# a complex without vertices\n";
+
+template <std::size_t n>
+void write_cell(RowWriter& out, std::string_view keyword, const std::array<std::uint32_t, n>& vertices) {
+  out.text(keyword);
+  for (const std::uint32_t v : vertices) out.number(std::uint64_t{v} + 1);
+  out.text("\n");
+  out.end_row();
+}
+
+}  // namespace
+
+void write_obj(const std::filesystem::path& path, const Complex& complex, const Context& context) {
+  const std::vector<std::uint32_t> isolated = isolated_vertices(complex.view());
+  RowWriter out(path, complex.positions.size() + complex.triangles.size() + complex.edges.size() + isolated.size(),
+                context);
+  if (complex.positions.empty()) out.text(empty_file);
+  for (const Vec3d& position : complex.positions) {
+    out.text("v");
+    out.vector(position);
+    out.text("\n");
+    out.end_row();
+  }
+  for (const auto& triangle : complex.triangles) write_cell(out, "f", triangle);
+  for (const auto& edge : complex.edges) write_cell(out, "l", edge);
+  for (const std::uint32_t v : isolated) write_cell(out, "p", std::array{v});
+  out.finish();
+}
+
+ComplexFile read_obj(std::string_view text, std::string_view name) {
+  ComplexFile file;
+  if (text == empty_file) return file;
+  TriangleMesh mesh = blum::read_obj(text, name).mesh;
+  file.complex.positions = std::move(mesh.vertices);
+  file.complex.edges = std::move(mesh.segments);
+  file.complex.triangles = std::move(mesh.triangles);
+  return file;
+}
+
+}  // namespace blum::complex_files

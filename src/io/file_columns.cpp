@@ -1,0 +1,64 @@
+#include "io/file_columns.hpp"
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+#include "blum/io/complex_io.hpp"
+
+namespace blum::complex_files {
+
+volume_io::ScalarType scalar_type(const Column& column) {
+  using volume_io::ScalarType;
+  constexpr std::array types{ScalarType::f64, ScalarType::f32, ScalarType::i64, ScalarType::i32};
+  static_assert(types.size() == std::variant_size_v<Column::Values>);
+  return types[column.values.index()];
+}
+
+Column::Values widened(VoxelImage::Values values, const std::string& where) {
+  return std::visit(
+      [&]<class T>(std::vector<T>& v) -> Column::Values {
+        if constexpr (ColumnNumber<T>) {
+          return std::move(v);
+        } else if constexpr (sizeof(T) < 4) {
+          return std::vector<std::int32_t>(v.begin(), v.end());
+        } else {
+          const bool fits = std::all_of(v.begin(), v.end(), [](T x) { return std::in_range<std::int64_t>(x); });
+          if (!fits) throw FormatError(where + ": a value is too large");
+          return std::vector<std::int64_t>(v.begin(), v.end());
+        }
+      },
+      values);
+}
+
+void add_column(Columns& columns, Column column, const std::string& where) {
+  if (columns.size() == max_file_columns || column.components > max_file_columns) {
+    throw FormatError(where + ": more than " + std::to_string(max_file_columns) + " columns, or numbers in a row");
+  }
+  try {
+    columns.add(std::move(column));
+  } catch (const InvalidOption& error) {
+    throw FormatError(where + ": " + error.what());
+  }
+}
+
+Columns repeated(const Columns& columns, std::span<const std::uint32_t> counts, std::uint64_t file_size,
+                 const std::string& where) {
+  std::uint64_t rows = 0;
+  for (const std::uint32_t count : counts) rows += count;
+  // Every count is at most the file's size, so the sum cannot overflow, but copies of wide rows could fill any memory.
+  std::uint64_t width = 0;
+  for (const Column& column : columns) width += column.components;
+  constexpr std::uint64_t most_times = 8;
+  if (rows > counts.size() && rows > (most_times * file_size + 1000) / std::max<std::uint64_t>(width, 1)) {
+    throw FormatError(where + ": cells of many corners have so many attributes that cutting them takes more than " +
+                      std::to_string(most_times) + " times the file; save it with single edges and triangles");
+  }
+  std::vector<std::uint32_t> sources;
+  sources.reserve(rows);
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    sources.insert(sources.end(), counts[i], static_cast<std::uint32_t>(i));
+  return columns.pick(sources);
+}
+
+}  // namespace blum::complex_files

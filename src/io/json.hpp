@@ -1,0 +1,18 @@
+// Blum: metadata as JSON. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "blum/io/file_metadata.hpp"
+
+namespace blum::volume_io {
+
+/// One JSON object whose values are all strings, in ASCII (other characters are escaped; bytes that are not UTF-8
+/// become U+FFFD).
+[[nodiscard]] std::string to_json(const FileMetadata& metadata);
+
+/// Reads back what to_json writes. @throws FormatError with `name` for anything else.
+[[nodiscard]] FileMetadata from_json(std::string_view json, const std::string& name);
+
+}  // namespace blum::volume_io

@@ -1,0 +1,98 @@
+#include "blum/io/verify_medial.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/field/voxels_inside.hpp"
+#include "blum/grid/selected_voxels.hpp"
+#include "blum/solid/solid_rule.hpp"
+
+namespace blum {
+namespace {
+
+/// What can be checked of an axis whose file holds so much.
+CertificateOptions checkable(const MedialClaims& claims, SiteIds sites, CertificateOptions options) {
+  options.radii = options.radii && claims.has_radii;
+  options.balls = options.balls && claims.has_radii;
+  options.footprints = options.footprints && claims.has_footprints;
+  options.angles = options.angles && claims.has_angles;
+  options.sites = options.sites && claims.has_sites && claims.metadata.site_ids == sites;
+  return options;
+}
+
+bool has_same_sides(const GridSpec& a, const GridSpec& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(a.spacing[axis] - b.spacing[axis]) <= 1e-9 * b.spacing[axis])) return false;
+  }
+  return true;
+}
+
+std::string sides_text(const GridSpec& grid) {
+  return rounded_text(grid.spacing.x) + " " + rounded_text(grid.spacing.y) + " " + rounded_text(grid.spacing.z);
+}
+
+Certificate with_claims(Certificate certificate, const MedialClaims& claims, const GridSpec* image_grid) {
+  for (std::string& claim : false_claims(claims, certificate.against, image_grid)) {
+    certificate.mismatches.push_back(std::move(claim));
+  }
+  return certificate;
+}
+
+}  // namespace
+
+MedialClaims claims_of(const MedialFile& file) {
+  return {file.metadata, file.has_radii, file.has_footprints, file.has_sites, file.has_angles};
+}
+
+std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found, const GridSpec* image_grid) {
+  std::vector<std::string> out;
+  const MedialMetadata& metadata = claims.metadata;
+  const std::string rule(to_string(found));
+  if (!metadata.solid_rule.empty() && metadata.solid_rule != rule) {
+    out.push_back("the file says that its solid is '" + metadata.solid_rule + "', and it is '" + rule + "'");
+  }
+  if (image_grid != nullptr && metadata.grid && !has_same_sides(*metadata.grid, *image_grid)) {
+    out.push_back("the file says that its voxels have the sides " + sides_text(*metadata.grid) +
+                  ", and the image's have " + sides_text(*image_grid));
+  }
+  if (metadata.version.empty()) return out;  // of another program, which need not know all of it
+  const SiteIds sites = found == SolidRule::voxels ? SiteIds::voxels : SiteIds::features;
+  for (const auto& [is_there, what] :
+       {std::pair{claims.has_radii, "radii"}, std::pair{claims.has_footprints, "footprints"},
+        std::pair{claims.has_angles, "separation angles"}, std::pair{claims.has_sites, "sites"},
+        std::pair{!claims.has_sites || metadata.site_ids == sites, "sites of this kind of solid"}}) {
+    if (!is_there) out.push_back("the file says that Blum " + metadata.version + " wrote it, but holds no " + what);
+  }
+  return out;
+}
+
+Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
+                   const CertificateOptions& asked, double available_memory, const Context& context) {
+  const CertificateOptions options = checkable(claims, SiteIds::features, asked);
+  const MeshSolidRule found = solid_rule(mesh, context);
+  if (found.rule == SolidRule::polyhedron) {
+    return with_claims(certify(axis, mesh, options, context), claims, nullptr);
+  }
+  if (!claims.metadata.grid) throw UntoldVoxels(found.reason);
+  const GridSpec& grid = *claims.metadata.grid;
+  validate(grid);
+  // Distances, winding numbers, and what the fields beside them take.
+  const double bytes = 16.0 * static_cast<double>(grid.node_count());
+  if (bytes > available_memory) {
+    throw OutOfMemory("the grid that the axis names, of " + count_text(grid.node_count()) + " nodes, needs " +
+                      rounded_text(bytes / 1e9) + " GB of memory, which are not free; it is not one that Blum would " +
+                      "have made here");
+  }
+  const VoxelSet voxels = voxels_inside(mesh, grid, context);
+  return with_claims(certify(axis, voxels, grid, &mesh, options, context), claims, nullptr);
+}
+
+Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
+                   const LabelSelection& selection, const CertificateOptions& asked, const Context& context) {
+  const VoxelSet voxels = selected_voxels(image, selection, context);
+  const CertificateOptions options = checkable(claims, SiteIds::voxels, asked);
+  return with_claims(certify(axis, voxels, image.grid, nullptr, options, context), claims, &image.grid);
+}
+
+}  // namespace blum

@@ -1,0 +1,62 @@
+#include "medial_axis/axis_lists.hpp"
+
+#include <string>
+#include <utility>
+
+#include "blum/complex/medial_columns.hpp"
+
+namespace blum {
+namespace {
+
+/// The numbers of a column: what `numbers_of` gives for each vertex, one behind the other.
+template <ColumnNumber T, class NumbersOf>
+void add_column(Columns& columns, const std::vector<AxisVertex>& vertices, std::string_view name,
+                std::size_t components, const NumbersOf& numbers_of) {
+  std::vector<T> numbers;
+  numbers.reserve(vertices.size() * components);
+  for (const AxisVertex& vertex : vertices) {
+    for (std::size_t c = 0; c < components; ++c) numbers.push_back(numbers_of(vertex, c));
+  }
+  columns.add({std::string(name), components, std::move(numbers)});
+}
+
+Columns columns_of(const std::vector<AxisVertex>& vertices) {
+  using V = AxisVertex;
+  namespace names = medial_columns;
+  Columns columns(vertices.size());
+  add_column<double>(columns, vertices, names::radius, 1, [](const V& v, std::size_t) { return v.radius; });
+  for (std::size_t k = 0; k < 2; ++k) {
+    add_column<double>(columns, vertices, names::footprints[k], 3,
+                       [&](const V& v, std::size_t c) { return v.footprints[k][c]; });
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    add_column<std::int32_t>(columns, vertices, names::sites[k], 1,
+                             [&](const V& v, std::size_t) { return v.sites[k].to_file(); });
+  }
+  add_column<double>(columns, vertices, names::separation_angle, 1,
+                     [](const V& v, std::size_t) { return v.separation_angle; });
+  return columns;
+}
+
+Columns columns_of(std::vector<float> angles) {
+  Columns columns(angles.size());
+  columns.add({std::string(medial_columns::separation_angle), 1, std::move(angles)});
+  return columns;
+}
+
+}  // namespace
+
+Complex complex_of(AxisLists lists) {
+  Complex complex;
+  complex.positions.reserve(lists.vertices.size());
+  for (const AxisVertex& vertex : lists.vertices) complex.positions.push_back(vertex.position);
+  complex.edges = std::move(lists.edges);
+  complex.triangles = std::move(lists.triangles);
+  complex.vertex_columns = columns_of(lists.vertices);
+  complex.edge_columns = columns_of(std::move(lists.edge_angles));
+  complex.triangle_columns = columns_of(std::move(lists.triangle_angles));
+  add_missing_medial_columns(complex);
+  return complex;
+}
+
+}  // namespace blum

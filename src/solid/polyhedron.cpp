@@ -1,0 +1,263 @@
+#include "solid/polyhedron.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "blum/core/union_find.hpp"
+#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/topology.hpp"
+
+namespace blum {
+namespace detail {
+namespace {
+
+constexpr std::uint32_t nobody = 0xffffffffU;
+
+bool names_a_vertex_twice(const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// Closed shells, numbered as Topology::shells is: by their smallest triangle.
+std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites) {
+  UnionFind joined(mesh.triangles.size());
+  std::vector<std::uint32_t> first(sites.edge_count(), nobody);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (names_a_vertex_twice(mesh.triangles[t])) continue;
+    for (const EdgeId edge : sites.triangle_edges()[t]) {
+      if (first[edge.value] == nobody) first[edge.value] = t;
+      joined.join(first[edge.value], t);
+    }
+  }
+  std::vector<std::uint32_t> number(mesh.triangles.size(), nobody);
+  std::uint32_t count = 0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (names_a_vertex_twice(mesh.triangles[t])) continue;
+    const std::uint32_t r = joined.find(t);
+    number[t] = r == t ? count++ : number[r];
+  }
+  return number;
+}
+
+/// Reverses triangles of a closed manifold such that neighbours agree, by walking over its edges.
+class Reverser {
+ public:
+  Reverser(const MeshView& mesh, const SiteTable& sites)
+      : mesh_(mesh),
+        sites_(sites),
+        of_edge_(sites.edge_count(), {nobody, nobody}),
+        facing_(mesh.triangles.size(), 0),
+        triangles_(mesh.triangles.begin(), mesh.triangles.end()) {
+    for (std::uint32_t t = 0; t < facing_.size(); ++t) {
+      if (names_a_vertex_twice(mesh.triangles[t])) continue;
+      for (const EdgeId edge : sites.triangle_edges()[t]) {
+        auto& pair = of_edge_[edge.value];
+        pair[pair[0] == nobody ? 0 : 1] = t;
+      }
+    }
+  }
+
+  /// Shells keep the way that most of their triangles face. nullopt where a surface has only one side.
+  /// @param count  of the triangles that were reversed.
+  std::optional<std::vector<Triangle>> agreeing(std::size_t& count) {
+    for (std::uint32_t first = 0; first < facing_.size(); ++first) {
+      if (facing_[first] != 0 || names_a_vertex_twice(mesh_.triangles[first])) continue;
+      if (!agree_with(first)) return std::nullopt;
+    }
+    count = count_;
+    return std::move(triangles_);
+  }
+
+ private:
+  bool agree_with(std::uint32_t first) {
+    std::vector<std::uint32_t> shell{first};
+    facing_[first] = 1;
+    int sum = 0;
+    for (std::size_t next = 0; next < shell.size(); ++next) {
+      sum += facing_[shell[next]];
+      if (!tell_neighbours(shell[next], shell)) return false;
+    }
+    for (const std::uint32_t t : shell) {
+      if ((facing_[t] > 0) == (sum >= 0)) continue;
+      std::swap(triangles_[t][1], triangles_[t][2]);
+      ++count_;
+    }
+    return true;
+  }
+
+  /// Tells the neighbours of a triangle how they face; false where one was told otherwise.
+  bool tell_neighbours(std::uint32_t t, std::vector<std::uint32_t>& shell) {
+    for (const EdgeId edge : sites_.triangle_edges()[t]) {
+      const auto& pair = of_edge_[edge.value];
+      const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
+      if (other == nobody || other == t) continue;
+      const int wanted = rises(t, edge) != rises(other, edge) ? facing_[t] : -facing_[t];
+      if (facing_[other] == -wanted) return false;
+      if (facing_[other] == 0) shell.push_back(other);
+      facing_[other] = wanted;
+    }
+    return true;
+  }
+
+  /// Whether a triangle traverses an edge towards the larger vertex.
+  [[nodiscard]] bool rises(std::uint32_t t, EdgeId edge) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sites_.triangle_edges()[t][k] == edge) return mesh_.triangles[t][k] < mesh_.triangles[t][(k + 1) % 3];
+    }
+    return false;
+  }
+
+  const MeshView& mesh_;
+  const SiteTable& sites_;
+  std::vector<std::array<std::uint32_t, 2>> of_edge_;
+  std::vector<int> facing_;  ///< 1 or -1; 0 where it is not known
+  std::vector<Triangle> triangles_;
+  std::size_t count_ = 0;  ///< of those that were reversed
+};
+
+/// The body of each shell: outer shells by number, voids that of the shell around them. nullopt where a void's parent
+/// bounds no body, as depths and parents may say of shells that cross or coincide.
+std::optional<std::vector<std::uint32_t>> body_of_shells(const std::vector<Shell>& shells) {
+  std::vector<std::uint32_t> body(shells.size(), nobody);
+  std::uint32_t count = 0;
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    if (shells[s].depth % 2 == 0) body[s] = count++;
+  }
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    if (shells[s].depth % 2 == 0) continue;
+    const std::int64_t parent = shells[s].parent;
+    if (parent < 0 || shells[static_cast<std::size_t>(parent)].depth % 2 == 1) return std::nullopt;
+    body[s] = body[static_cast<std::size_t>(parent)];
+  }
+  return body;
+}
+
+/// Copies triangles, and the vertices that these name.
+SolidBody copy_of(const MeshView& mesh, const std::vector<std::uint32_t>& triangles,
+                  const std::vector<bool>& is_reversed) {
+  SolidBody body;
+  body.triangle_of = triangles;
+  for (const std::uint32_t t : triangles) {
+    for (const std::uint32_t v : mesh.triangles[t]) body.vertex_of.push_back(v);
+  }
+  std::sort(body.vertex_of.begin(), body.vertex_of.end());
+  body.vertex_of.erase(std::unique(body.vertex_of.begin(), body.vertex_of.end()), body.vertex_of.end());
+  for (const std::uint32_t v : body.vertex_of) body.mesh.vertices.push_back(mesh.vertices[v]);
+  for (const std::uint32_t t : triangles) {
+    Triangle own{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto at = std::lower_bound(body.vertex_of.begin(), body.vertex_of.end(), mesh.triangles[t][k]);
+      own[k] = static_cast<std::uint32_t>(at - body.vertex_of.begin());
+    }
+    if (is_reversed[t]) std::swap(own[1], own[2]);
+    body.mesh.triangles.push_back(own);
+  }
+  return body;
+}
+
+/// Why a mesh bounds no polyhedron as far as its edges tell; empty where it does.
+std::string obstacle(const Topology& t) {
+  const auto number = [](std::size_t n, const char* what) {
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+  };
+  if (t.boundary_edges > 0) return "it is open (" + number(t.boundary_edges, "boundary edge") + ")";
+  if (t.nonmanifold_edges > 0) return "it is not manifold (" + number(t.nonmanifold_edges, "edge") + ")";
+  if (t.inconsistent_edges > 0) {
+    return "its triangles do not face one way (" + number(t.inconsistent_edges, "edge") + ")";
+  }
+  if (t.nonmanifold_vertices > 0) return "it is not manifold (" + number(t.nonmanifold_vertices, "vertex") + ")";
+  return t.closed ? "" : "its triangles enclose nothing";
+}
+
+/// Whether triangles cross, or those of one body touch.
+std::string crossing(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_triangle, const Context& context) {
+  const SelfIntersections found = find_self_intersections(mesh, 100000, context);
+  if (found.crossing > 0) return "it crosses itself";
+  if (!found.complete) return "it touches itself";
+  for (const TrianglePair& pair : found.pairs) {
+    if (body_of_triangle[pair.first.value] == body_of_triangle[pair.second.value]) return "it touches itself";
+  }
+  return "";
+}
+
+MeshSolid whole(const MeshView& mesh, const Topology& topology, const std::string& why) {
+  MeshSolid out;
+  out.is_closed = topology.closed && topology.oriented;
+  out.rule = SolidRule::winding;
+  out.reason = "the mesh bounds no polyhedron: " + why + "; the solid is where the winding number is above 1/2";
+  std::vector<std::uint32_t> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  out.bodies.push_back(copy_of(mesh, all, std::vector<bool>(all.size(), false)));
+  return out;
+}
+
+/// Adds the shells of a polyhedron and the numbers of its bodies.
+void add_shells(const std::vector<Shell>& shells, const std::vector<std::uint32_t>& body, MeshSolid& solid) {
+  for (std::uint32_t s = 0; s < shells.size(); ++s) {
+    const Shell& one = shells[s];
+    solid.shells.push_back(
+        {body[s], one.depth, one.parent, one.genus, std::abs(one.signed_volume), !one.faces_outwards});
+    SolidBody& own = solid.bodies[body[s]];
+    ++own.betti[one.depth % 2 == 0 ? 0 : 2];
+    own.betti[1] += one.genus;
+    own.shells.insert(one.depth % 2 == 0 ? own.shells.begin() : own.shells.end(), s);
+  }
+}
+
+}  // namespace
+
+MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it has no interior");
+  const Topology topology = blum::topology(mesh, sites, context);
+  if (topology.closed && topology.inconsistent_edges > 0) {
+    std::size_t count = 0;
+    if (const auto triangles = Reverser(mesh, sites).agreeing(count)) {
+      const MeshView agreeing{mesh.vertices, *triangles};
+      MeshSolid out = split_into_bodies(agreeing, SiteTable(agreeing, context), context);
+      out.reversed_triangles = count;
+      out.reason += "; neighbouring triangles faced different ways and were reversed";
+      return out;
+    }
+  }
+  if (const std::string why = obstacle(topology); !why.empty()) return whole(mesh, topology, why);
+  const std::vector<std::uint32_t> shell = shell_of_triangles(mesh, sites);
+  const std::optional<std::vector<std::uint32_t>> body = body_of_shells(topology.shells);
+  if (!body) return whole(mesh, topology, "its shells do not lie in each other, they cross or coincide");
+  std::vector<std::vector<std::uint32_t>> triangles;
+  std::vector<std::uint32_t> body_of_triangle(mesh.triangles.size(), nobody);
+  std::vector<bool> is_reversed(mesh.triangles.size(), false);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (shell[t] == nobody) continue;
+    const std::uint32_t b = body_of_triangle[t] = (*body)[shell[t]];
+    if (b >= triangles.size()) triangles.resize(b + 1);
+    triangles[b].push_back(t);
+    is_reversed[t] = !topology.shells[shell[t]].faces_outwards;
+  }
+  if (const std::string why = crossing(mesh, body_of_triangle, context); !why.empty()) {
+    return whole(mesh, topology, why);
+  }
+  MeshSolid out;
+  out.is_closed = true;
+  for (const auto& own : triangles) out.bodies.push_back(copy_of(mesh, own, is_reversed));
+  add_shells(topology.shells, *body, out);
+  out.reason = "the mesh is closed, manifold and does not cross itself";
+  return out;
+}
+
+}  // namespace detail
+
+SiteId SolidBody::input_site(SiteId own, const SiteTable& own_sites, const SiteTable& input_sites) const {
+  const Site site = own_sites.site(own);
+  if (site.kind == SiteKind::vertex) return input_sites.id({SiteKind::vertex, vertex_of[site.index]});
+  if (site.kind == SiteKind::face) return input_sites.id({SiteKind::face, triangle_of[site.index]});
+  // Vertices keep their order, so that edges do.
+  const Segment& edge = own_sites.edges()[site.index];
+  const Segment input{vertex_of[edge[0]], vertex_of[edge[1]]};
+  const auto edges = input_sites.edges();
+  const auto at = std::lower_bound(edges.begin(), edges.end(), input);
+  return input_sites.id({SiteKind::edge, static_cast<std::uint32_t>(at - edges.begin())});
+}
+
+}  // namespace blum

@@ -1,0 +1,28 @@
+// Blum: the bodies that a mesh bounds. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/solid/solid.hpp"
+
+namespace blum::detail {
+
+/// What Solid::of() finds of a mesh.
+struct MeshSolid {
+  SolidRule rule = SolidRule::polyhedron;
+  std::string reason;
+  std::size_t reversed_triangles = 0;
+  bool is_closed = false;  ///< every edge has two triangles, which traverse it in opposite directions
+  std::vector<SolidShell> shells;
+  std::vector<SolidBody> bodies;
+};
+
+/// @throws InvalidMesh where there are no triangles; Cancelled.
+[[nodiscard]] MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const Context& context);
+
+}  // namespace blum::detail

@@ -1,0 +1,78 @@
+"""Proves that complexes of Python hold any columns, show them without copies, and say what is wrong with them."""
+
+import pickle
+
+import pytest
+
+blum = pytest.importorskip("blum")
+np = pytest.importorskip("numpy")
+
+SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+
+
+def sample():
+    return blum.Complex(
+        SQUARE,
+        edges=[[0, 1], [2, 3]],
+        triangles=[[0, 1, 2]],
+        vertex_columns={"weight": [1.0, 2.0, 3.0, 4.0], "normal": np.ones((4, 3), dtype=np.float32)},
+        edge_columns={"id": np.array([7, 2**40])},
+        triangle_columns={"part": np.array([3], dtype=np.int32), "flag": [True]},
+    )
+
+
+def test_columns_are_read_only_views():
+    complex = sample()
+    assert list(complex.vertex_columns) == ["weight", "normal"]
+    assert complex.vertex_columns["normal"].shape == (4, 3) and complex.vertex_columns["normal"].dtype == np.float32
+    assert complex.edge_columns["id"].dtype == np.int64 and complex.edge_columns["id"][1] == 2**40
+    assert complex.triangle_columns["part"].dtype == np.int32
+    assert complex.triangle_columns["flag"].tolist() == [1]
+    weight = complex.vertex_columns["weight"]
+    assert np.shares_memory(weight, complex._core.vertex_columns["weight"])
+    with pytest.raises(ValueError, match="read-only"):
+        weight[0] = 5
+    with pytest.raises(TypeError):
+        complex.vertex_columns["more"] = weight
+    del complex
+    assert weight.tolist() == [1, 2, 3, 4], "a view keeps what it shows alive"
+
+
+def test_topology_and_pickling():
+    complex = sample()
+    assert complex.homology() == (1, 0, 0) == blum.homology(4, complex.edges, complex.triangles)
+    again = pickle.loads(pickle.dumps(complex))
+    assert np.array_equal(again.vertices, complex.vertices) and np.array_equal(again.edges, complex.edges)
+    for name, column in complex.vertex_columns.items():
+        assert np.array_equal(again.vertex_columns[name], column) and again.vertex_columns[name].dtype == column.dtype
+    assert repr(again) == "Complex(4 vertices, 2 edges, 1 triangles)"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ({"vertex_columns": {"weight": [1.0]}}, "weight"),
+        ({"vertex_columns": {"": [1.0] * 4}}, "name"),
+        ({"edges": [[0, 4]]}, "edges"),
+        ({"edges": [[1, 1]]}, "twice"),
+        ({"vertex_columns": {"deep": np.zeros((4, 2, 2))}}, "axes"),
+    ],
+)
+def test_what_is_wrong_is_said(arguments, told):
+    with pytest.raises(ValueError, match=told):
+        blum.Complex(SQUARE, **arguments)
+    with pytest.raises(TypeError, match="numbers"):
+        blum.Complex(SQUARE, vertex_columns={"word": ["a", "b", "c", "d"]})
+
+
+def test_medial_axes_are_complexes():
+    axis = blum.medial_axis(blum.generate("box"), resolution=24)
+    piece, nested = axis.simplify(60), axis.nested()
+    assert isinstance(piece, blum.Complex) and isinstance(nested, blum.Complex)
+    assert list(piece.edge_columns) == ["separation_angle", "role"]
+    assert np.array_equal(piece.footprints[:, 1], piece.vertex_columns["footprint_1"])
+    assert np.array_equal(piece.sites[:, 0], piece.vertex_columns["site_0"])
+    assert set(nested.edge_columns) == {"separation_angle", "role", "from", "until"}
+    assert piece.homology() == piece.certificate.axis
+    again = pickle.loads(pickle.dumps(nested))
+    assert again.least_theta == nested.least_theta and np.array_equal(again.edge_from, nested.edge_from)

@@ -1,0 +1,13 @@
+// Blum: where tests find real shapes and images. SPDX-License-Identifier: Apache-2.0
+#include "support/data.hpp"
+
+#include <cstdlib>
+
+namespace blum::test {
+
+std::filesystem::path data_directory() {
+  const char* const chosen = std::getenv("BLUM_DATA_DIR");
+  return chosen != nullptr && *chosen != '\0' ? chosen : BLUM_DATA_DIR;
+}
+
+}  // namespace blum::test

@@ -1,0 +1,121 @@
+// Proves that the table of formats agrees with what readers and writers take, that every written file is known again by
+// its name and by its first bytes, and that drafts replace files or go.
+#include "blum/io/formats.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "blum/io/complex_io.hpp"
+#include "blum/io/draft.hpp"
+#include "blum/io/field_io.hpp"
+#include "blum/io/file_content.hpp"
+#include "blum/io/image_io.hpp"
+#include "unit/io/temporary_folder.hpp"
+
+namespace blum {
+namespace {
+
+using test::file_content;
+using test::TemporaryFolder;
+
+const TriangleMesh triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}, {}};
+
+TEST(Formats, MeshesAreKnownByNameAndContent) {
+  const TemporaryFolder folder;
+  for (const std::string& end : file_extensions(FileContent::mesh, FileAccess::write)) {
+    const auto path = folder / ("m" + end);
+    write_mesh(path, triangle);
+    EXPECT_EQ(content_of(path), FileContent::mesh) << end;
+    const auto by_name = format_by_name(FileContent::mesh, path);
+    ASSERT_TRUE(by_name.has_value());
+    EXPECT_EQ(by_name, format_by_name(FileContent::mesh, "M" + end));
+    if (end == ".stl") continue;  // binary: nothing tells
+    const auto nameless = folder / ("m" + end.substr(1));
+    std::filesystem::copy_file(path, nameless);
+    EXPECT_EQ(content_of(nameless), FileContent::mesh) << end;
+    EXPECT_EQ(read_mesh_of_any_name(nameless).mesh.triangles, triangle.triangles) << end;
+  }
+  EXPECT_EQ(extension_list(FileContent::mesh, FileAccess::read), ".obj .off .stl .ply");
+  EXPECT_FALSE(format_by_name(FileContent::mesh, "a.nrrd").has_value());
+}
+
+TEST(Formats, ImagesAndFieldsAreToldApart) {
+  const TemporaryFolder folder;
+  VoxelImage image;
+  image.grid.size = {2, 2, 2};
+  image.values = std::vector<std::uint8_t>(8, 1);
+  for (const std::string& end : file_extensions(FileContent::image, FileAccess::write)) {
+    const auto path = folder / ("i" + end);
+    write_image(path, image.view());
+    EXPECT_EQ(content_of(path), FileContent::image) << end;
+    EXPECT_FALSE(may_hold_field(path));
+    std::filesystem::copy_file(path, folder / ("i" + end.substr(1)));
+    EXPECT_EQ(read_image_of_any_name(folder / ("i" + end.substr(1))).values, image.values) << end;
+  }
+  EXPECT_EQ(image_format_name(folder / "inrrd"), "NRRD");
+  Field field;
+  field.grid.size = {2, 2, 2};
+  field.distance = Buffer<float>(8);
+  for (std::size_t i = 0; i < 8; ++i) field.distance[i] = 1;
+  for (const std::string& end : file_extensions(FileContent::field, FileAccess::write)) {
+    const auto path = folder / ("f" + end);
+    write_field(path, field);
+    EXPECT_EQ(content_of(path), FileContent::field) << end;
+    EXPECT_TRUE(may_hold_field(path) && !holds_complex(path)) << end;
+  }
+  EXPECT_EQ(files_of_field("a/b.nrrd"), (std::vector<std::filesystem::path>{"a/b.nrrd", "a/b.site.nrrd"}));
+  EXPECT_EQ(files_of_field("b.npz").size(), 1U);
+}
+
+TEST(Formats, ComplexesAreWrittenAndKnown) {
+  const TemporaryFolder folder;
+  Complex complex;
+  complex.positions = triangle.vertices;
+  complex.triangles = triangle.triangles;
+  complex.vertex_columns = Columns(3);
+  complex.edge_columns = Columns(0);
+  complex.triangle_columns = Columns(1);
+  for (const std::string& end : file_extensions(FileContent::complex, FileAccess::write)) {
+    if (end == ".ma") continue;  // of medial axes only
+    const auto path = folder / ("c" + end);
+    write_complex(path, complex);
+    EXPECT_EQ(read_complex(path).complex.triangles, complex.triangles);
+    EXPECT_EQ(holds_complex(path), end == ".vtp" || end == ".npz") << end;
+  }
+}
+
+TEST(Formats, NamesOfSeveralExtensions) {
+  EXPECT_EQ(file_extension("a/B.NII.GZ"), ".nii.gz");
+  EXPECT_EQ(file_extension("b.vol.gz"), ".gz");
+  EXPECT_EQ(file_extension("b"), "");
+  const TemporaryFolder folder;
+  std::ofstream(folder / "what") << "nothing known";
+  EXPECT_THROW((void)content_of(folder / "what"), FileError);
+  EXPECT_THROW((void)content_of(folder / "none.ply"), FileError);
+  EXPECT_THROW((void)content_of(folder.path()), FileError);
+}
+
+TEST(Drafts, TakeThePlaceOfAFileOrGo) {
+  const TemporaryFolder folder;
+  const auto path = folder / "out.txt";
+  std::ofstream(path) << "old";
+  {
+    const Draft draft(path);
+    EXPECT_EQ(draft.path().extension(), ".txt");
+    std::ofstream(draft.path()) << "new";
+    EXPECT_EQ(file_content(path), "old");
+  }
+  EXPECT_EQ(folder.entries(), 1);
+  Draft draft(path);
+  std::ofstream(draft.path()) << "new";
+  Draft moved(std::move(draft));
+  moved.keep();
+  EXPECT_EQ(file_content(path), "new");
+  EXPECT_EQ(folder.entries(), 1);
+  EXPECT_THROW(Draft(folder / "absent" / "a"), FileError);
+}
+
+}  // namespace
+}  // namespace blum
