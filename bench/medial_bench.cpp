@@ -36,7 +36,7 @@ void mesh_case(benchmark::State& state, const std::string& name, int resolution)
   double voxels = 0;
   const Times times = time_runs([&] {
     const MedialAxis axis = medial_axis(solid.mesh, options);
-    const Complex complex = axis.extract(theta);
+    const Complex complex = axis.simplify(theta);
     phases = axis.report().phases;
     const Times check = time_once([&] { is_certified = certify(complex, solid.mesh).holds(); });
     certificate_seconds = check.wall;

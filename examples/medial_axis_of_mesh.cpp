@@ -24,12 +24,12 @@ int main(int argc, char** argv) try {
 
   // Axes at rising angles are parts of each other.
   for (const double theta : {20.0, 60.0, 120.0}) {
-    const blum::MedialCounts counts = count(axis.extract(theta));
+    const blum::MedialCounts counts = count(axis.simplify(theta));
     std::cout << "theta " << theta << ": " << counts.triangles << " triangles in " << counts.sheets << " sheets, "
               << counts.curve_edges << " edges of curves\n";
   }
 
-  const blum::Complex complex = axis.extract(60);
+  const blum::Complex complex = axis.simplify(60);
 
   // Radii and footprints: how thick the solid is where the ball is the largest.
   const blum::MedialView view(complex);  // its columns

@@ -296,14 +296,14 @@ void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelS
   for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
   Json axes = Json::array();
   Complex whole;
-  if (r.prunes_sheets) whole = axis.extract(0);
+  if (r.prunes_sheets) whole = axis.simplify(0);
   for (const double theta : r.thetas) {
     const fs::path name = r.thetas.size() == 1 ? output : with_theta(output, theta);
     Stopwatch watch;
     // From one angle to the next, so that what is left is nested.
     if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
-    const Complex cut = r.prunes_sheets ? Complex{} : axis.extract(theta);
-    run.phases.push_back({"extract", watch.lap()});
+    const Complex cut = r.prunes_sheets ? Complex{} : axis.simplify(theta);
+    run.phases.push_back({"simplify", watch.lap()});
     add_axis(run, r, input, selection, axis, r.prunes_sheets ? whole : cut, theta, name, axes, context);
   }
   json["axes"] = axes;

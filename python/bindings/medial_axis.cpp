@@ -74,9 +74,9 @@ nb::dict report_of(const MedialAxisReport& report) {
 void bind_axis(nb::module_& m) {
   nb::class_<MedialAxis>(m, "MedialAxis")
       .def(
-          "extract",
+          "simplify",
           [](const MedialAxis& axis, double theta) {
-            return run({0, nb::none()}, [&](const Context&) { return axis.extract(theta); });
+            return run({0, nb::none()}, [&](const Context&) { return axis.simplify(theta); });
           },
           nb::arg("theta"))
       .def("nested",

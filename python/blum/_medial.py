@@ -104,7 +104,7 @@ class MedialAxis:
             self._origin.weld,
             "voxels" if is_image else "features",
         )
-        return MedialComplex._of(self._core.extract(angle), EVERYTHING, origin)
+        return MedialComplex._of(self._core.simplify(angle), EVERYTHING, origin)
 
     def nested(self) -> NestedComplex:
         """What simplify() gives for all angles from `least_theta` on, in one complex: the data of a slider.

@@ -39,7 +39,7 @@ void for_each_named(const MeshView& mesh, Visit visit) {
 
 }  // namespace
 
-std::vector<Triangle> turned_triangles(std::span<const Triangle> triangles) {
+std::vector<Triangle> reversed_triangles(std::span<const Triangle> triangles) {
   std::vector<Triangle> turned(triangles.begin(), triangles.end());
   for (Triangle& t : turned) std::swap(t[0], t[1]);
   return turned;

@@ -182,7 +182,7 @@ const MedialAxisReport& MedialAxis::report() const {
   return data_->report;
 }
 
-Complex MedialAxis::extract(double theta) const {
+Complex MedialAxis::simplify(double theta) const {
   if (!(theta >= data_->least_theta && theta <= 180)) {
     throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be " + exact_text(data_->least_theta) +
                         " to 180");

@@ -222,7 +222,7 @@ TriangleMesh cloud(const std::vector<Sample>& axis) {
 void expect_known_axis(const Known& known, const MedialAxis& axis, double theta) {
   SCOPED_TRACE(testing::Message() << "theta " << theta);
   const double bound = test::voxel_diagonal(axis);
-  const AxisRows complex = axis.extract(theta);
+  const AxisRows complex = axis.simplify(theta);
   const std::vector<Sample> expected = above(known.axis, theta);
   const TriangleMesh exact = cloud(expected);
   EXPECT_LE(test::furthest_from(test::shape_of(complex), exact.vertices), bound) << "the exact axis to the output";
@@ -244,7 +244,7 @@ void expect_known_axes(const Case& known_case, int resolution) {
   const Known known = known_case.make(step);
   const MedialAxis axis = medial_axis(known.mesh, {.resolution = resolution});
   test::expect_certified(axis, known.mesh, {1, 0, 0});
-  test::expect_exact_balls(axis.extract(0), known.mesh);
+  test::expect_exact_balls(axis.simplify(0), known.mesh);
   for (const double theta : {40.0, 60.0, 120.0}) expect_known_axis(known, axis, theta);
 }
 
@@ -252,7 +252,7 @@ TEST(SlowMedialAnalyticRod, TheAxisOfARodIsAsLongAtLargeAngles) {
   // Both footprints of the axis, on opposite sides, are seen at 180 degrees from all of it.
   const Known rod = cylinder(0.4, 2, 0.01);
   const MedialAxis axis = medial_axis(rod.mesh);
-  const double missing = test::furthest_from(test::shape_of(axis.extract(150)), cloud(above(rod.axis, 150)).vertices);
+  const double missing = test::furthest_from(test::shape_of(axis.simplify(150)), cloud(above(rod.axis, 150)).vertices);
   EXPECT_LE(missing, test::voxel_diagonal(axis));
 }
 

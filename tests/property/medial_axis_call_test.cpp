@@ -48,9 +48,9 @@ TEST(MedialCall, OptionsAreCheckedForImages) {
 TEST(MedialCall, AnglesOutOfRangeAreRefused) {
   const MedialAxis axis = medial_axis(make_box({}), {.resolution = 8});
   for (const double theta : {-1.0, -1e-9, 180.001, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW((void)axis.extract(theta), InvalidOption) << theta;
+    EXPECT_THROW((void)axis.simplify(theta), InvalidOption) << theta;
   }
-  EXPECT_FALSE(axis.extract(180).positions.empty());
+  EXPECT_FALSE(axis.simplify(180).positions.empty());
 }
 
 TEST(MedialCall, TheLeastAndTheMostResolutionWork) {

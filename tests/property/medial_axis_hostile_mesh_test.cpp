@@ -50,9 +50,9 @@ TEST(MedialHostileMesh, NestedShellsMayFaceEitherWay) {
 
 TEST(MedialHostileMesh, TurningShellsMovesNothing) {
   TriangleMesh mesh = make_shape("bracket");
-  const AxisRows straight = medial_axis(mesh, coarse).extract(60);
+  const AxisRows straight = medial_axis(mesh, coarse).simplify(60);
   reverse_triangles(mesh);
-  const AxisRows turned = medial_axis(mesh, coarse).extract(60);
+  const AxisRows turned = medial_axis(mesh, coarse).simplify(60);
   EXPECT_EQ(test::positions(turned), test::positions(straight));
 }
 
@@ -64,7 +64,7 @@ void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& option
   EXPECT_EQ(axis.report().solid, axis.report().voxels);
   EXPECT_GE(axis.report().voxels[0], 1);
   test::expect_betti(axis, axis.report().voxels);
-  const AxisRows complex = axis.extract(60);
+  const AxisRows complex = axis.simplify(60);
   test::expect_exact_balls(complex, mesh);
   const Field field = distance_field(mesh, axis.report().grid, {.sign = SignMode::winding});
   VoxelSet voxels(field.grid.size);
@@ -114,10 +114,10 @@ TEST(MedialHostileMesh, TrianglesThatDisagreeWithTheirNeighboursAreTurned) {
     // Turned back, it begins at its second corner: rounding tells which of a sphere's triangles is closer.
     std::rotate(agreeing.triangles[t].begin(), agreeing.triangles[t].begin() + 1, agreeing.triangles[t].end());
   }
-  const AxisRows right = medial_axis(agreeing, coarse).extract(60);
+  const AxisRows right = medial_axis(agreeing, coarse).simplify(60);
   const MedialAxis axis = medial_axis(mesh, coarse);
   test::expect_certified(axis, mesh, {1, 0, 0});
-  EXPECT_EQ(test::positions(axis.extract(60)), test::positions(right));
+  EXPECT_EQ(test::positions(axis.simplify(60)), test::positions(right));
 }
 
 TEST(MedialHostileMesh, TrianglesThatRepeatAreNoPolyhedron) {
@@ -228,7 +228,7 @@ TEST(MedialHostileMesh, PartsThinnerThanAVoxelAreKeptWhole) {
         const TriangleMesh mesh = test::turned(make_box({.size = size}), turn);
         const MedialAxis axis = medial_axis(mesh, coarse);
         test::expect_certified(axis, mesh, {1, 0, 0});
-        const AxisRows complex = axis.extract(60);
+        const AxisRows complex = axis.simplify(60);
         test::expect_exact_balls(complex, mesh);
         std::vector<double> radii;
         for (const VertexRow& vertex : complex.vertices) radii.push_back(vertex.radius);
@@ -281,7 +281,7 @@ TEST(MedialHostileMesh, AThinFinOnABlockIsKeptWhole) {
   add_side(corner[1][1], tip[1][1], tip[1][0], corner[1][0]);
   const MedialAxis axis = medial_axis(mesh, coarse);
   test::expect_certified(axis, mesh, {1, 0, 0});
-  const AxisRows complex = axis.extract(60);
+  const AxisRows complex = axis.simplify(60);
   test::expect_exact_balls(complex, mesh);
   std::vector<Vec3d> middle;
   for (int n = 0; n <= 40; ++n) middle.push_back({0.5 + 1.95 * n / 40, 0.45 * std::sin(n), 0});

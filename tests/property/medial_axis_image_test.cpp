@@ -56,7 +56,7 @@ void expect_axis(const VoxelImage& image, const BettiNumbers& betti, const Media
   EXPECT_EQ(axis.report().voxels, betti);
   test::expect_betti(axis, betti);
   for (const double theta : {0.0, 60.0}) {
-    const Certificate certificate = certify(axis.extract(theta), voxels, image.grid, nullptr);
+    const Certificate certificate = certify(axis.simplify(theta), voxels, image.grid, nullptr);
     EXPECT_TRUE(certificate.holds()) << certificate.mismatches.front();
   }
 }
@@ -74,7 +74,7 @@ TEST(MedialImage, OfOneVoxelIsAPoint) {
   for (const Size& size : {Size{1, 1, 1}, Size{3, 3, 3}, Size{9, 5, 7}}) {
     const VoxelImage image = image_of(size, {{size[0] / 2, size[1] / 2, size[2] / 2}});
     expect_axis(image, {1, 0, 0});
-    const AxisRows complex = medial_axis(image).extract(60);
+    const AxisRows complex = medial_axis(image).simplify(60);
     ASSERT_FALSE(complex.vertices.empty());
     const Vec3d centre = image.grid.position(size[0] / 2, size[1] / 2, size[2] / 2);
     for (const VertexRow& vertex : complex.vertices) EXPECT_LE(length(vertex.position - centre), std::sqrt(0.75));
@@ -177,7 +177,7 @@ TEST(MedialImage, SpacingAndDirectionChangeNoTopology) {
 double reach(const VoxelImage& image, double theta, const MedialAxisOptions& options = {}) {
   const Vec3d middle = bounds(image.grid).center();
   double furthest = 0;
-  for (const VertexRow& vertex : AxisRows(medial_axis(image, options).extract(theta)).vertices) {
+  for (const VertexRow& vertex : AxisRows(medial_axis(image, options).simplify(theta)).vertices) {
     furthest = std::max(furthest, length(vertex.position - middle));
   }
   return furthest / length(image.grid.spacing);

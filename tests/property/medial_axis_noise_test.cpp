@@ -23,13 +23,13 @@ void expect_stable(const TriangleMesh& clean, double amplitude, int resolution) 
   ASSERT_GE(shortest_edge(clean), 8 * amplitude);
   constexpr double theta = 60;
   const MedialAxis clean_axis = medial_axis(clean, {.resolution = resolution});
-  const TriangleMesh expected = test::shape_of(clean_axis.extract(theta));
+  const TriangleMesh expected = test::shape_of(clean_axis.simplify(theta));
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const TriangleMesh noisy = make_noisy(clean, amplitude, seed);
     const MedialAxis axis = medial_axis(noisy, {.resolution = resolution});
     test::expect_certified(axis, noisy, {1, 0, 0});
-    const Complex complex = axis.extract(theta);
+    const Complex complex = axis.simplify(theta);
     test::expect_exact_balls(complex, noisy);
     const double bound = 2 * axis.report().bodies[0].spacing;
     EXPECT_LE(test::furthest_from(expected, test::positions(complex)), bound) << "with noise to without";

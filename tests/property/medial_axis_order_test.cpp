@@ -66,10 +66,10 @@ bool is_part(const std::vector<T>& small, const std::vector<T>& large) {
 }
 
 void expect_nested(const MedialAxis& axis) {
-  Cells larger = cells_of(axis.extract(0));
+  Cells larger = cells_of(axis.simplify(0));
   std::size_t steps = 0;
   for (double theta = 10; theta <= 180; theta += 10) {
-    const Cells cells = cells_of(axis.extract(theta));
+    const Cells cells = cells_of(axis.simplify(theta));
     EXPECT_TRUE(is_part(cells.vertices, larger.vertices)) << "theta " << theta;
     EXPECT_TRUE(is_part(cells.edges, larger.edges)) << "theta " << theta;
     EXPECT_TRUE(is_part(cells.triangles, larger.triangles)) << "theta " << theta;
@@ -127,7 +127,7 @@ void expect_same_for_all_threads(const std::function<MedialAxis(const Context&)>
   for (const int threads : {2, 7}) {
     const MedialAxis many = make({.threads = threads});
     EXPECT_EQ(many.report().voxels, one.report().voxels);
-    for (const double theta : {0.0, 60.0}) expect_same(many.extract(theta), one.extract(theta));
+    for (const double theta : {0.0, 60.0}) expect_same(many.simplify(theta), one.simplify(theta));
   }
 }
 
@@ -152,10 +152,10 @@ TEST(MedialThreads, ChangeNoByteOfTheAxisOfAnImage) {
 TEST(MedialOrder, ALeastAngleChangesNoTopologyAndKeepsTheNesting) {
   const TriangleMesh mesh = make_shape("bracket");
   const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .least_theta = 60});
-  EXPECT_THROW((void)axis.extract(59), InvalidOption);
-  Cells larger = cells_of(axis.extract(60));
+  EXPECT_THROW((void)axis.simplify(59), InvalidOption);
+  Cells larger = cells_of(axis.simplify(60));
   for (const double theta : {70.0, 90.0, 120.0, 170.0}) {
-    const AxisRows complex = axis.extract(theta);
+    const AxisRows complex = axis.simplify(theta);
     const Cells cells = cells_of(complex);
     EXPECT_TRUE(is_part(cells.vertices, larger.vertices) && is_part(cells.triangles, larger.triangles)) << theta;
     EXPECT_EQ(test::betti_of(complex), (BettiNumbers{1, 4, 0})) << theta;
@@ -180,11 +180,11 @@ TEST_P(MedialLambda, LeavesLessTheLargerItIs) {
   const TriangleMesh mesh = make_shape(GetParam());
   const double extent = bounds(mesh).diagonal();
   constexpr double theta = 30;
-  AxisRows larger = medial_axis(mesh, {.resolution = 64}).extract(theta);
+  AxisRows larger = medial_axis(mesh, {.resolution = 64}).simplify(theta);
   for (const double part : {0.05, 0.1, 0.2}) {
     SCOPED_TRACE(testing::Message() << "lambda " << part << " of the diagonal");
     const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .lambda = part * extent});
-    const AxisRows complex = axis.extract(theta);
+    const AxisRows complex = axis.simplify(theta);
     EXPECT_LE(complex.triangles.size(), larger.triangles.size());
     EXPECT_LE(test::furthest_from(test::shape_of(larger), test::positions(complex)), test::voxel_diagonal(axis));
     EXPECT_TRUE(is_part(cells_of(kept_for_themselves(complex, theta)).triangles,
@@ -199,7 +199,7 @@ TEST_P(MedialLambda, KeepsPiecesWhoseFootprintsAreFurtherApart) {
   const TriangleMesh mesh = make_shape(GetParam());
   const double lambda = 0.06 * bounds(mesh).diagonal();
   const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .lambda = lambda});
-  const AxisRows complex = kept_for_themselves(axis.extract(30), 30);
+  const AxisRows complex = kept_for_themselves(axis.simplify(30), 30);
   double least = HUGE_VAL;
   for (const TriangleRow& triangle : complex.triangles) {
     double apart = 0;

@@ -37,14 +37,14 @@ inline BettiNumbers betti_of(const Complex& complex) {
 
 /// At every angle.
 inline void expect_betti(const MedialAxis& axis, const BettiNumbers& betti) {
-  for (const double theta : angles) EXPECT_EQ(betti_of(axis.extract(theta)), betti) << "theta " << theta;
+  for (const double theta : angles) EXPECT_EQ(betti_of(axis.simplify(theta)), betti) << "theta " << theta;
 }
 
 /// A certificate holds for an axis as it is given out: all of it at the smallest angle, of whose parts the others are
 /// made, and body by body at the largest one.
 inline void expect_certificates(const MedialAxis& axis, const MeshView& mesh, double least_theta = 0) {
   for (const double theta : {least_theta, angles.back()}) {
-    const Certificate certificate = certify(axis.extract(theta), mesh, {.balls = false});
+    const Certificate certificate = certify(axis.simplify(theta), mesh, {.balls = false});
     for (const std::string& mismatch : certificate.mismatches) ADD_FAILURE() << "theta " << theta << ": " << mismatch;
   }
 }

@@ -50,7 +50,7 @@ inline std::vector<Vec3d> places_around(const MeshView& mesh, std::size_t count,
 }
 
 /// A box from corner to corner; turned inside out where asked, and its triangles starting at another one.
-inline TriangleMesh box_between(const Vec3d& lower, const Vec3d& upper, bool is_turned = false, int first = 0) {
+inline TriangleMesh box_between(const Vec3d& lower, const Vec3d& upper, bool is_reversed = false, int first = 0) {
   TriangleMesh mesh = make_box({});
   const Box3 box = bounds(mesh);
   for (Vec3d& v : mesh.vertices) {
@@ -58,7 +58,7 @@ inline TriangleMesh box_between(const Vec3d& lower, const Vec3d& upper, bool is_
       v[a] = lower[a] + (v[a] - box.lower[a]) / (box.upper[a] - box.lower[a]) * (upper[a] - lower[a]);
     }
   }
-  if (is_turned) mesh.triangles = turned_triangles(mesh.triangles);
+  if (is_reversed) mesh.triangles = reversed_triangles(mesh.triangles);
   std::rotate(mesh.triangles.begin(), mesh.triangles.begin() + first, mesh.triangles.end());
   return mesh;
 }

@@ -53,7 +53,7 @@ void for_each_named_vertex(const MeshView& mesh, Visit visit) {
 }
 
 /// The triangles of a mesh, each turned to face the other way.
-[[nodiscard]] std::vector<Triangle> turned_triangles(std::span<const Triangle> triangles);
+[[nodiscard]] std::vector<Triangle> reversed_triangles(std::span<const Triangle> triangles);
 
 /// The box around all vertices that a triangle, segment or point names; empty where there are none.
 [[nodiscard]] Box3 bounds(const MeshView& mesh);

@@ -77,11 +77,11 @@ class MedialAxis {
   /// smaller one gives.
   /// @param theta  degrees, MedialAxisOptions::least_theta to 180.
   /// @throws InvalidOption. Cost: linear in the result.
-  [[nodiscard]] Complex extract(double theta) const;
+  [[nodiscard]] Complex simplify(double theta) const;
 
   /// The axes of all angles from least_theta() to 180 as sets of points, in one complex: to show, and to simplify
   /// without computing anything again. It has the columns of MedialView and MedialLevels; at an angle, the triangles,
-  /// curves and vertices that are there cover what extract() gives for it. Vertices at the same place are one, and
+  /// curves and vertices that are there cover what simplify() gives for it. Vertices at the same place are one, and
   /// pieces without extent are left out, so that its topology need not be that of the solid. Sheets and the roles of
   /// vertices are those at the least angle. Cost: near-linear in the axis at the least angle.
   [[nodiscard]] Complex nested() const;

@@ -10,8 +10,8 @@ namespace blum {
 /// Drops whole sheets whose separation angle, the largest of their triangles', is at most theta; the smallest first. A
 /// sheet goes only where elementary collapses from its rim consume it, so that the homotopy type stays; sheets that
 /// others kept from going are tried again when these are gone. Curves of at most theta go from their free ends. Where
-/// MedialAxis::extract() cuts sheets apart at theta, this keeps each as it is or drops it.
-/// @param axis   as extract() gives it, at a small theta: sheets are taken as they are labelled.
+/// MedialAxis::simplify() cuts sheets apart at theta, this keeps each as it is or drops it.
+/// @param axis   as simplify() gives it, at a small theta: sheets are taken as they are labelled.
 /// @param theta  degrees, 0 to 180.
 /// @return       part of the axis with its columns (edges have those of medial_columns only), labelled anew; what a
 /// larger theta leaves of the result is part of it.

@@ -35,11 +35,11 @@ struct ListBoundary {
 /// The two ends of an edge by position, in an order that its direction does not change.
 struct EdgePositions {
   Vec3d low, high;
-  bool is_turned;  ///< `from` is the higher end
+  bool is_reversed;  ///< `from` is the higher end
 
   BLUM_HD EdgePositions(const Vec3d* vertices, const BoundaryEdge& edge)
-      : low(vertices[edge.from]), high(vertices[edge.to]), is_turned(is_before(high, low)) {
-    if (!is_turned) return;
+      : low(vertices[edge.from]), high(vertices[edge.to]), is_reversed(is_before(high, low)) {
+    if (!is_reversed) return;
     const Vec3d other = low;
     low = high;
     high = other;
@@ -109,7 +109,7 @@ struct SumCoincident {
     for (std::size_t next = k + 1; next < count && key[next] == key[k]; ++next) {
       const BoundaryEdge& other = edges[edge[next]];
       const EdgePositions there(vertices, other);
-      if (there == at) own.count += there.is_turned == at.is_turned ? other.count : -other.count;
+      if (there == at) own.count += there.is_reversed == at.is_reversed ? other.count : -other.count;
     }
     sum[k] = own;
     is_kept[k] = own.count != 0 ? 1 : 0;

@@ -47,7 +47,7 @@ struct SignTiles {
     using Warp = typename Block::Warp;
     if (frame->fault != NormalFrame::Fault::none) return;  // there are no distances
     const NodeBox nodes = tiles.box(static_cast<std::uint32_t>(index));
-    const Place middle{{nodes.first[0] + nodes.count[0] / 2, nodes.first[1] + nodes.count[1] / 2,
+    const GridIndex middle{{nodes.first[0] + nodes.count[0] / 2, nodes.first[1] + nodes.count[1] / 2,
                         nodes.first[2] + nodes.count[2] / 2}};
     const double reach = norm(
         Vec3d{spacing.x * (nodes.count[0] / 2), spacing.y * (nodes.count[1] / 2), spacing.z * (nodes.count[2] / 2)});
@@ -73,7 +73,7 @@ struct SignTiles {
     block.each_warp([&](const Warp& warp) {
       const auto rows = static_cast<std::uint32_t>(nodes.count[1] * nodes.count[2]);
       for (std::uint32_t row = warp.index(); row < rows; row += warps) {
-        const Place first{{nodes.first[0], nodes.first[1] + static_cast<std::int32_t>(row) % nodes.count[1],
+        const GridIndex first{{nodes.first[0], nodes.first[1] + static_cast<std::int32_t>(row) % nodes.count[1],
                            nodes.first[2] + static_cast<std::int32_t>(row) / nodes.count[1]}};
         if (is_settled) {
           negate(warp, first, nodes.count[0]);
@@ -85,22 +85,22 @@ struct SignTiles {
   }
 
  private:
-  [[nodiscard]] BLUM_HD std::size_t offset(const Place& p) const {
+  [[nodiscard]] BLUM_HD std::size_t offset(const GridIndex& p) const {
     const auto line = static_cast<std::size_t>(p.at[2] - tiles.first_slice) * static_cast<std::size_t>(tiles.size[1]) +
                       static_cast<std::size_t>(p.at[1]);
     return line * static_cast<std::size_t>(tiles.size[0]) + static_cast<std::size_t>(p.at[0]);
   }
-  [[nodiscard]] BLUM_HD static Place moved(Place p, std::int32_t along_x) {
+  [[nodiscard]] BLUM_HD static GridIndex moved(GridIndex p, std::int32_t along_x) {
     p.at[0] += along_x;
     return p;
   }
-  [[nodiscard]] BLUM_HD double winding_above(const Place& p, double of_boundary) const {
+  [[nodiscard]] BLUM_HD double winding_above(const GridIndex& p, double of_boundary) const {
     return static_cast<double>(crossings[offset(p)] - level) - 0.5 + of_boundary;
   }
 
   /// The terms of edges first, first + step, ..., of which each lane takes its share.
   template <class Warp>
-  [[nodiscard]] BLUM_HD Sum sum_over_edges(const Warp& warp, const Place& place, double reach, std::uint32_t first,
+  [[nodiscard]] BLUM_HD Sum sum_over_edges(const Warp& warp, const GridIndex& place, double reach, std::uint32_t first,
                                            std::uint32_t step) const {
     const Vec3d node{static_cast<double>(place.at[0]), static_cast<double>(place.at[1]),
                      static_cast<double>(place.at[2])};
@@ -120,19 +120,19 @@ struct SignTiles {
   }
 
   template <class Warp>
-  BLUM_HD void negate(const Warp& warp, const Place& first, std::int32_t count) const {
+  BLUM_HD void negate(const Warp& warp, const GridIndex& first, std::int32_t count) const {
     warp.each([&](std::uint32_t lane) {
       if (static_cast<std::int32_t>(lane) < count) negate(moved(first, static_cast<std::int32_t>(lane)));
     });
   }
-  BLUM_HD void negate(const Place& place) const {
+  BLUM_HD void negate(const GridIndex& place) const {
     float& value = distance[offset(place)];
     if (value > 0) value = -value;
   }
 
   template <class Warp>
-  BLUM_HD void settle_row(const Warp& warp, const Place& first, std::int32_t count) const {
-    const Place middle = moved(first, count / 2);
+  BLUM_HD void settle_row(const Warp& warp, const GridIndex& first, std::int32_t count) const {
+    const GridIndex middle = moved(first, count / 2);
     const double reach = spacing.x * (count / 2);
     const Sum sum = sum_over_edges(warp, middle, reach, 0, warp_size);
     std::uint32_t open = warp.ballot([&](std::uint32_t lane) {
@@ -145,7 +145,7 @@ struct SignTiles {
       return false;
     });
     for (; open != 0; open &= open - 1) {
-      const Place place = moved(first, static_cast<std::int32_t>(lowest_bit(open)));
+      const GridIndex place = moved(first, static_cast<std::int32_t>(lowest_bit(open)));
       const Sum own = sum_over_edges(warp, place, 0, 0, warp_size);
       warp.each([&](std::uint32_t lane) {
         if (lane == 0 && winding_above(place, own.winding) > 0) negate(place);

@@ -148,7 +148,7 @@ struct ComputeTiles {
       Dominators out;
       out.point[0] = nearest_.point;
       for (int axis = 0; axis < 3; ++axis) {
-        Place next = job_.tiles.place(tile_);
+        GridIndex next = job_.tiles.place(tile_);
         next.at[axis] = smaller(next.at[axis] ^ 1, job_.tiles.tiles[axis] - 1);
         out.point[axis + 1] = job_.tile_points[job_.tiles.index(next)].point;
       }
@@ -184,7 +184,7 @@ struct ComputeTiles {
         warp.each([&](std::uint32_t lane) {
           LaneNodes& mine = lanes_.at(warp, lane);
           for (std::uint32_t k = 0; k < 2; ++k) {
-            const Place place = place_in(leaf, lane, k);
+            const GridIndex place = place_in(leaf, lane, k);
             mine.node[k] = {coordinate(0, place), coordinate(1, place), coordinate(2, place)};
             mine.winner[k] = Winner{};
           }
@@ -354,21 +354,21 @@ struct ComputeTiles {
     }
 
     /// The k-th node of a lane: x and y differ from lane to lane, z too, and by two within a lane.
-    [[nodiscard]] BLUM_HD static Place place_in(const NodeBox& leaf, std::uint32_t lane, std::uint32_t k) {
+    [[nodiscard]] BLUM_HD static GridIndex place_in(const NodeBox& leaf, std::uint32_t lane, std::uint32_t k) {
       return {{leaf.first[0] + static_cast<std::int32_t>(lane % 4),
                leaf.first[1] + static_cast<std::int32_t>(lane / 4 % 4),
                leaf.first[2] + static_cast<std::int32_t>(lane / 16 + 2 * k)}};
     }
-    [[nodiscard]] BLUM_HD static bool is_in(const NodeBox& box, const Place& place) {
+    [[nodiscard]] BLUM_HD static bool is_in(const NodeBox& box, const GridIndex& place) {
       bool is_in = true;
       for (int axis = 0; axis < 3; ++axis) is_in = is_in && place.at[axis] < box.first[axis] + box.count[axis];
       return is_in;
     }
-    [[nodiscard]] BLUM_HD float coordinate(int axis, const Place& place) const {
+    [[nodiscard]] BLUM_HD float coordinate(int axis, const GridIndex& place) const {
       return static_cast<float>(job_.frame->at(axis, static_cast<double>(place.at[axis])));
     }
     /// Where a node is in the output.
-    [[nodiscard]] BLUM_HD std::size_t offset(const Place& place) const {
+    [[nodiscard]] BLUM_HD std::size_t offset(const GridIndex& place) const {
       const auto slice = static_cast<std::size_t>(place.at[2] - job_.tiles.first_slice);
       const auto row = slice * static_cast<std::size_t>(job_.tiles.size[1]) + static_cast<std::size_t>(place.at[1]);
       return row * static_cast<std::size_t>(job_.tiles.size[0]) + static_cast<std::size_t>(place.at[0]);
@@ -384,7 +384,7 @@ struct ComputeTiles {
         warp.each([&](std::uint32_t lane) {
           const LaneNodes& mine = lanes_.at(warp, lane);
           for (std::uint32_t k = 0; k < 2; ++k) {
-            const Place place = place_in(leaf, lane, k);
+            const GridIndex place = place_in(leaf, lane, k);
             if (!is_in(leaf, place)) continue;
             const std::size_t at = offset(place);
             const float distance = root(mine.winner[k].squared) * to_world;
@@ -401,7 +401,7 @@ struct ComputeTiles {
       block_.each_warp([&](const Warp& warp) {
         warp.each([&](std::uint32_t lane) {
           for (std::uint32_t k = 0; k < 2; ++k) {
-            const Place place = place_in(leaf_box(warp.index()), lane, k);
+            const GridIndex place = place_in(leaf_box(warp.index()), lane, k);
             if (!is_in(nodes_, place)) continue;
             const std::size_t at = offset(place);
             job_.output.distance[at] = distance;

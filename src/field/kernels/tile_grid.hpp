@@ -28,8 +28,8 @@ BLUM_HD inline CenteredBox centered(const NormalFrame& frame, const NodeBox& box
   return out;
 }
 
-/// Place of a node or a tile along each axis.
-struct Place {
+/// Where a node or a tile along each axis.
+struct GridIndex {
   std::int32_t at[3];
 };
 
@@ -53,17 +53,17 @@ struct TileGrid {
   [[nodiscard]] std::size_t count() const {
     return static_cast<std::size_t>(tiles[0]) * static_cast<std::size_t>(tiles[1]) * static_cast<std::size_t>(tiles[2]);
   }
-  [[nodiscard]] BLUM_HD Place place(std::uint32_t index) const {
+  [[nodiscard]] BLUM_HD GridIndex place(std::uint32_t index) const {
     const auto x = static_cast<std::uint32_t>(tiles[0]);
     const auto y = static_cast<std::uint32_t>(tiles[1]);
     return {{static_cast<std::int32_t>(index % x), static_cast<std::int32_t>(index / x % y),
              static_cast<std::int32_t>(index / (x * y))}};
   }
-  [[nodiscard]] BLUM_HD std::uint32_t index(const Place& p) const {
+  [[nodiscard]] BLUM_HD std::uint32_t index(const GridIndex& p) const {
     return static_cast<std::uint32_t>((p.at[2] * tiles[1] + p.at[1]) * tiles[0] + p.at[0]);
   }
   [[nodiscard]] BLUM_HD NodeBox box(std::uint32_t tile) const {
-    const Place p = place(tile);
+    const GridIndex p = place(tile);
     NodeBox out{};
     for (int axis = 0; axis < 3; ++axis) {
       out.first[axis] = p.at[axis] * side + (axis == 2 ? first_slice : 0);

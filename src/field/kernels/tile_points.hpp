@@ -34,7 +34,7 @@ struct FindTilePoints {
       const Vec3f center = centered(*frame, tiles.box(tile)).center;
       SurfacePoint best;
       if (coarse != nullptr) {
-        Place place = tiles.place(tile);
+        GridIndex place = tiles.place(tile);
         for (auto& x : place.at) x = x * tiles.side / coarse_tiles.side;
         best = coarse[coarse_tiles.index(place)];
         best.squared_distance = squared_length(center - best.point);

@@ -36,7 +36,7 @@ void apply_winding(const Plan& plan, const MeshView& mesh, const SiteTable& site
     return;
   }
   // Above -1 where the winding number is, that of the mesh turned inside out is not above 1/2.
-  const std::vector<Triangle> turned = turned_triangles(mesh.triangles);
+  const std::vector<Triangle> turned = reversed_triangles(mesh.triangles);
   (void)apply_winding_sign(field, {mesh.vertices, turned, {}, {}}, sites, context);
   invert_signs(context, field);
 }

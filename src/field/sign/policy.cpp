@@ -54,7 +54,7 @@ Plan plan_automatically(const MeshView& mesh, const SiteTable& sites, const Cont
 
 /// Whether the mesh would face outwards if all triangles were turned.
 bool faces_inwards(const MeshView& mesh) {
-  const std::vector<Triangle> turned = turned_triangles(mesh.triangles);
+  const std::vector<Triangle> turned = reversed_triangles(mesh.triangles);
   MeshView view = mesh;
   view.triangles = turned;
   return orientation(view, SiteTable(view)).outward;

@@ -40,10 +40,10 @@ TriangleMesh some_shells_turned(TriangleMesh mesh, std::uint64_t seed) {
     part[root(t[1])] = root(t[0]);
     part[root(t[2])] = root(t[0]);
   }
-  std::vector<bool> is_turned(mesh.vertices.size());
-  for (std::size_t v = 0; v < is_turned.size(); ++v) is_turned[v] = random.uniform() < 0.5;
+  std::vector<bool> is_reversed(mesh.vertices.size());
+  for (std::size_t v = 0; v < is_reversed.size(); ++v) is_reversed[v] = random.uniform() < 0.5;
   for (Triangle& t : mesh.triangles) {
-    if (is_turned[root(t[0])]) std::swap(t[1], t[2]);
+    if (is_reversed[root(t[0])]) std::swap(t[1], t[2]);
   }
   return mesh;
 }

@@ -27,7 +27,7 @@ MedialClaims claims_for(const MedialAxis& axis) {
 TEST(VerifyMedial, FalseClaimsOfAnAxisOfAMeshAreRefused) {
   const TriangleMesh mesh = make_box({});
   const MedialAxis axis = medial_axis(mesh, {.resolution = 16});
-  const auto piece = axis.extract(60);
+  const auto piece = axis.simplify(60);
   const MedialClaims claims = claims_for(axis);
   EXPECT_TRUE(verify(piece, claims, mesh).holds());
   const auto refused = [&](const std::function<void(MedialClaims&)>& falsify, const std::string& reason) {
@@ -51,12 +51,12 @@ TEST(VerifyMedial, VoxelsOfAnOpenMeshMustBeNamed) {
   mesh.triangles.pop_back();
   const MedialAxis axis = medial_axis(mesh, {.resolution = 16});
   MedialClaims claims = claims_for(axis);
-  const Certificate certificate = verify(axis.extract(60), claims, mesh);
+  const Certificate certificate = verify(axis.simplify(60), claims, mesh);
   EXPECT_TRUE(certificate.holds());
   EXPECT_EQ(certificate.against, SolidRule::winding);
-  EXPECT_THROW((void)verify(axis.extract(60), claims, mesh, {}, 1000), OutOfMemory);
+  EXPECT_THROW((void)verify(axis.simplify(60), claims, mesh, {}, 1000), OutOfMemory);
   claims.metadata.grid.reset();
-  EXPECT_THROW((void)verify(axis.extract(60), claims, mesh), UntoldVoxels);
+  EXPECT_THROW((void)verify(axis.simplify(60), claims, mesh), UntoldVoxels);
 }
 
 TEST(VerifyMedial, SidesOfVoxelsAreThoseOfTheImage) {
@@ -68,9 +68,9 @@ TEST(VerifyMedial, SidesOfVoxelsAreThoseOfTheImage) {
   const LabelSelection selection = LabelSelection::of_label(2);
   const MedialAxis axis = medial_axis(image, {.selection = selection});
   MedialClaims claims = claims_for(axis);
-  EXPECT_TRUE(verify(axis.extract(60), claims, image, selection).holds());
+  EXPECT_TRUE(verify(axis.simplify(60), claims, image, selection).holds());
   claims.metadata.grid->spacing = {1, 1, 2};
-  EXPECT_FALSE(verify(axis.extract(60), claims, image, selection).holds());
+  EXPECT_FALSE(verify(axis.simplify(60), claims, image, selection).holds());
 }
 
 }  // namespace

@@ -92,8 +92,9 @@ bool is_same(const Column& a, const Column& b) {
   return std::visit(
       [&]<class T>(const std::vector<T>& values) {
         const auto& others = std::get<std::vector<T>>(b.values);
-        return values.size() == others.size() &&
-               std::memcmp(values.data(), others.data(), sizeof(T) * values.size()) == 0;
+        if (values.size() != others.size()) return false;
+        // Where there are no values, data() may be null, which memcmp refuses.
+        return values.empty() || std::memcmp(values.data(), others.data(), sizeof(T) * values.size()) == 0;
       },
       a.values);
 }

@@ -19,8 +19,8 @@ void expect_same(const MedialAxis& a, const MedialAxis& b) {
   EXPECT_EQ(a.report().rule, b.report().rule);
   EXPECT_EQ(a.report().reason, b.report().reason);
   EXPECT_EQ(a.report().voxels, b.report().voxels);
-  const auto first = a.extract(60);
-  const auto second = b.extract(60);
+  const auto first = a.simplify(60);
+  const auto second = b.simplify(60);
   EXPECT_EQ(first.triangles.size(), second.triangles.size());
   EXPECT_EQ(first.edges.size(), second.edges.size());
 }
@@ -55,7 +55,7 @@ std::string refusal_of(const TriangleMesh& mesh) {
 TEST(MedialAxis, MeshesThatFaceInwardsAreToldToBeFlipped) {
   TriangleMesh inwards = make_box({});
   inwards.triangles.pop_back();
-  inwards.triangles = turned_triangles(inwards.triangles);
+  inwards.triangles = reversed_triangles(inwards.triangles);
   EXPECT_TRUE(refusal_of(inwards).ends_with("; its triangles face inwards: flip them")) << refusal_of(inwards);
   TriangleMesh sheet;
   sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -1,4 +1,4 @@
-// Proves that the axes of all angles in one complex are those that extract() gives, angle by angle: the same triangles
+// Proves that the axes of all angles in one complex are those that simplify() gives, angle by angle: the same triangles
 // and lines at the same places, and the same components of them.
 #include <gtest/gtest.h>
 
@@ -142,12 +142,12 @@ TEST(NestedComplex, IsWhatExtractGivesAtEveryAngle) {
       const AxisRows nested = axis.nested();
       EXPECT_EQ(axis.least_theta(), least);
       for (const double theta : {0.0, 9.5, 20.0, 40.0, 60.0, 119.0, 170.0, 180.0}) {
-        if (theta >= least) expect_same(nested, axis.extract(theta), theta);
+        if (theta >= least) expect_same(nested, axis.simplify(theta), theta);
       }
       // An angle at which something goes counts as above it, in both.
       for (std::size_t t = 0; t < nested.triangles.size(); t += 1 + nested.triangles.size() / 3) {
         const double until = nested.triangles[t].until;
-        if (until <= 180) expect_same(nested, axis.extract(until), until);
+        if (until <= 180) expect_same(nested, axis.simplify(until), until);
       }
     }
   }
@@ -158,7 +158,7 @@ TEST(NestedComplex, OfPartsThatLieApartHasAsManyComponents) {
   const MedialAxis axis = medial_axis(image);
   const AxisRows nested = axis.nested();
   for (const double theta : {0.0, 60.0, 180.0}) {
-    expect_same(nested, axis.extract(theta), theta);
+    expect_same(nested, axis.simplify(theta), theta);
     EXPECT_EQ(components_at(nested, theta), static_cast<std::size_t>(axis.report().solid[0])) << theta;
   }
 }
@@ -167,7 +167,7 @@ TEST(NestedComplex, SheetsAreThoseOfTheLeastAngle) {
   MedialAxisOptions options;
   options.resolution = 48;
   const MedialAxis axis = medial_axis(make_shape("box"), options);
-  EXPECT_EQ(sheet_count(axis.nested()), sheet_count(axis.extract(0)));
+  EXPECT_EQ(sheet_count(axis.nested()), sheet_count(axis.simplify(0)));
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ TEST(PruneSheets, KeepsTheTopologyOfSolidsAndLeavesSheetsWhole) {
     MedialAxisOptions options;
     options.resolution = 48;
     const MedialAxis axis = medial_axis(make_shape(name), options);
-    const AxisRows whole = axis.extract(0);
+    const AxisRows whole = axis.simplify(0);
     AxisRows before = whole;
     for (const double theta : {20.0, 60.0, 100.0, 170.0}) {
       const AxisRows left = prune_sheets(before, theta);

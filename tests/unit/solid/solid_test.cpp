@@ -79,7 +79,7 @@ TEST(Solid, CatalogueShapesAddUpToTheirNumbers) {
 TEST(Solid, EachFacesOutwardsWhicheverWayItsShellsCame) {
   const TriangleMesh mesh = many_bodies();
   TriangleMesh turned = mesh;
-  turned.triangles = turned_triangles(mesh.triangles);
+  turned.triangles = reversed_triangles(mesh.triangles);
   for (const TriangleMesh& input : {mesh, turned}) {
     const Solid split = Solid::of(input);
     for (const SolidBody& body : split.bodies()) {
@@ -353,7 +353,7 @@ TEST(Solid, OpenMeshesThatFaceInwardsAreToldSo) {
   TriangleMesh mesh = make_box({});
   mesh.triangles.pop_back();
   EXPECT_FALSE(Solid::of(mesh).faces_inwards());
-  mesh.triangles = turned_triangles(mesh.triangles);
+  mesh.triangles = reversed_triangles(mesh.triangles);
   EXPECT_TRUE(Solid::of(mesh).faces_inwards());
 }
 
