@@ -56,7 +56,7 @@ endfunction()
 # The programs of bench/gpu: they need a compiler and CUDA, and nothing else.
 function(blum_add_gpu_programs)
   foreach(name check_gpu time_gpu)
-    add_executable(${name} ${PROJECT_SOURCE_DIR}/bench/gpu/${name}.cu ${PROJECT_SOURCE_DIR}/src/field/image_plan.cpp)
+    add_executable(${name} ${PROJECT_SOURCE_DIR}/bench/gpu/${name}.cu ${PROJECT_SOURCE_DIR}/src/field/image_request.cpp)
     blum_set_cuda(${name})
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/bench)
     target_link_libraries(${name} PRIVATE blum_field_reference blum_shapes blum_geometry blum_grid blum_core)

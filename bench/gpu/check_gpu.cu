@@ -39,19 +39,21 @@ struct Result {
 };
 
 template <class Device>
-Result compute(Device& device, const TriangleMesh& mesh, const kernels::EngineRequest& request,
+Result compute(Device& device, const TriangleMesh& mesh, FieldRequest request,
                std::size_t slab_nodes = std::size_t{1} << 23) {
   kernels::FieldEngine<Device> engine(device, slab_nodes);
   Result out;
   out.distance.resize(request.grid.node_count());
   out.site.resize(request.grid.node_count());
+  request.distance = out.distance.data();
+  request.site = out.site.data();
   engine.set_connectivity(mesh);
-  (void)engine.compute(mesh, request, out.distance.data(), out.site.data(), [] { return false; }, [](double) {});
+  (void)engine.compute(mesh, request, [] { return false; }, [](double) {});
   return out;
 }
 
 /// The same from arrays on the device, as others hold them, to arrays there.
-Result compute_there(cuda::CudaDevice& device, const TriangleMesh& mesh, const kernels::EngineRequest& request) {
+Result compute_there(cuda::CudaDevice& device, const TriangleMesh& mesh, FieldRequest request) {
   cuda::CudaArray<Vec3d> vertices;
   cuda::CudaArray<Triangle> triangles;
   cuda::CudaArray<Segment> segments;
@@ -71,7 +73,9 @@ Result compute_there(cuda::CudaDevice& device, const TriangleMesh& mesh, const k
   cuda::CudaArray<std::uint32_t> site;
   distance.resize(nodes);
   site.resize(nodes);
-  engine.compute(view.vertices, request, distance.data(), site.data());
+  request.distance = distance.data();
+  request.site = site.data();
+  engine.compute(view.vertices, request);
   Result out;
   out.distance.resize(nodes);
   out.site.resize(nodes);
@@ -96,7 +100,7 @@ struct Errors {
   std::size_t signs = 0;
 };
 
-Errors measure(const Case& c, const kernels::EngineRequest& request, const Result& device, const Result& host) {
+Errors measure(const Case& c, const FieldRequest& request, const Result& device, const Result& host) {
   const GridSpec& grid = request.grid;
   Box3 box = bounds(c.mesh);
   box.extend(bounds(grid));
@@ -130,10 +134,10 @@ Errors measure(const Case& c, const kernels::EngineRequest& request, const Resul
 }
 
 bool run(cuda::CudaDevice& device, const Case& c) {
-  kernels::EngineRequest request;
+  FieldRequest request;
   request.grid = grid_around(bounds(c.mesh), c.resolution, 0.1);
   request.band = c.band;
-  if (c.has_sides) request.level = 0;
+  if (c.has_sides) request.sign = sign::Method::sums;
   const Result first = compute(device, c.mesh, request);
   const Result again = compute(device, c.mesh, request);
   const Result slabs = compute(device, c.mesh, request, 1);
@@ -186,17 +190,19 @@ bool run_frames(cuda::CudaDevice& device, bool is_quick) {
   for (const auto& [triangles, resolution] :
        {std::pair{4'000, 24}, {is_quick ? 4'000 : 60'000, is_quick ? 70 : 260}, {500, 12}, {8'000, 40}}) {
     const TriangleMesh mesh = noisy_knot(triangles);
-    kernels::EngineRequest request;
+    FieldRequest request;
     request.grid = grid_around(bounds(mesh), resolution, 0.1);
     // Along z, where slabs are cut: 32 slices each.
     request.grid.size[2] = is_quick ? 70 : 170;
-    request.level = 0;
+    request.sign = sign::Method::sums;
     Result out;
     out.distance.resize(request.grid.node_count());
     out.site.resize(request.grid.node_count());
+    request.distance = out.distance.data();
+    request.site = out.site.data();
     engine.set_connectivity(mesh);
     for (int frame = 0; frame < 2; ++frame) {
-      (void)engine.compute(mesh, request, out.distance.data(), out.site.data(), [] { return false; }, [](double) {});
+      (void)engine.compute(mesh, request, [] { return false; }, [](double) {});
     }
     is_same = is_same && out == compute(device, mesh, request, std::size_t{1} << 28);
   }
@@ -215,22 +221,24 @@ bool run_image(cuda::CudaDevice& device, const std::array<std::int64_t, 3>& size
   std::vector<std::uint8_t> values(image.grid.node_count());
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = random.below(1 + k % 400) == 0 ? 1 : 0;
   image.values = values;
-  const detail::ImagePlan plan = detail::make_image_plan(image.grid, options);
+  detail::ImageRequest request = detail::make_image_request(image.grid, options);
   const auto transform = [&](auto& on) {
     kernels::ImageEngine<std::decay_t<decltype(on)>> engine(on);
     Result out;
     out.distance.resize(values.size());
     out.site.resize(values.size());
-    engine.set_image(image, plan);
-    (void)engine.select({});
-    engine.transform(out.distance.data(), out.site.data());
+    request.distance = out.distance.data();
+    request.site = out.site.data();
+    engine.set_image(image, request);
+    (void)engine.select(request);
+    engine.transform(request);
     return out;
   };
   kernels::EmulatedDevice emulated;
   const bool is_same = transform(device) == transform(emulated);
   std::printf("%-4s image %lldx%lldx%lld, %s, %s: %s\n", is_same ? "ok" : "FAIL", static_cast<long long>(size[0]),
               static_cast<long long>(size[1]), static_cast<long long>(size[2]),
-              options.is_signed ? "signed" : "unsigned", plan.integer ? "whole numbers" : "double",
+              options.is_signed ? "signed" : "unsigned", request.integer ? "whole numbers" : "double",
               is_same ? "the host's bytes" : "NOT THE HOST'S BYTES");
   return is_same;
 }

@@ -15,7 +15,7 @@
 
 #include "blum/grid/grid_spec.hpp"
 #include "field/cuda/cuda_device.cuh"
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 #include "field/kernels/crossings.hpp"
 #include "field/kernels/field_pipeline.hpp"
 #include "field/kernels/image_transform.hpp"
@@ -34,7 +34,7 @@ struct QueryPerNode {
   kernels::Forest forest;
   const kernels::NormalFrame* frame;
   std::int32_t size[3];
-  kernels::FieldOutput output;
+  FieldRequest request;
 
   __device__ void operator()(std::size_t index) const {
     const auto x = static_cast<double>(index % size[0]);
@@ -84,8 +84,8 @@ struct QueryPerNode {
       }
       if (nearest_squared < best) stack[top++] = kernels::Entry::make(entry.kind(), level, nearest).code;
     }
-    output.distance[index] = sqrtf(best) * static_cast<float>(1 / frame->scale);
-    output.site[index] = id;
+    request.distance[index] = sqrtf(best) * static_cast<float>(1 / frame->scale);
+    request.site[index] = id;
   }
 };
 
@@ -177,7 +177,10 @@ class Timer {
     kernels::CrossingSigns<CudaDevice> signs(device_);
     distance_.resize(grid.node_count());
     site_.resize(grid.node_count());
-    const kernels::FieldOutput output{0, distance_.data(), site_.data()};
+    FieldRequest request;
+    request.grid = grid;
+    request.distance = distance_.data();
+    request.site = site_.data();
     std::vector<std::vector<double>> samples;
     Laps laps;
     for (int k = -3; k < runs_; ++k) {  // three to warm up
@@ -190,10 +193,10 @@ class Timer {
       laps.lap();
       pipeline.prepare(mesh, grid);
       laps.lap();
-      pipeline.compute(0, grid.size[2], output);
+      pipeline.compute(0, grid.size[2], request);
       laps.lap();
       signs.prepare(mesh, grid);
-      signs.apply(0, grid.size[2], 0, pipeline.frame(), distance_.data());
+      signs.apply(0, grid.size[2], request, pipeline.frame());
       laps.lap();
       const std::vector<double> steps = laps.milliseconds();
       if (k >= 0) samples.push_back(steps);
@@ -208,7 +211,7 @@ class Timer {
       for (const auto& steps : samples) values.push_back(steps[s]);
       timing.steps.push_back(median(values));
     }
-    if (c.has_baseline) timing.baseline = baseline(pipeline, grid, output);
+    if (c.has_baseline) timing.baseline = baseline(pipeline, request);
     return timing;
   }
 
@@ -223,7 +226,7 @@ class Timer {
     GridSpec grid;
     grid.size = {side, side, side};
     kernels::ImageTransform<CudaDevice> transform(device_);
-    transform.set_plan(detail::make_image_plan(grid, {}));
+    transform.set_request(detail::make_image_request(grid, {}));
     std::vector<double> samples;
     Laps laps;
     for (int k = -3; k < runs_; ++k) {
@@ -251,13 +254,13 @@ class Timer {
             0};
   }
 
-  double baseline(const kernels::FieldPipeline<CudaDevice>& pipeline, const GridSpec& grid,
-                  const kernels::FieldOutput& output) {
+  double baseline(const kernels::FieldPipeline<CudaDevice>& pipeline, const FieldRequest& request) {
+    const GridSpec& grid = request.grid;
     const QueryPerNode body{pipeline.forest(),
                             pipeline.frame(),
                             {static_cast<std::int32_t>(grid.size[0]), static_cast<std::int32_t>(grid.size[1]),
                              static_cast<std::int32_t>(grid.size[2])},
-                            output};
+                            request};
     std::vector<double> values;
     Laps laps;
     for (int k = -1; k < 3; ++k) {

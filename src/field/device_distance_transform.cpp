@@ -7,17 +7,17 @@
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "field/cuda/device_queue.hpp"
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 
 namespace blum {
 
 struct DeviceDistanceTransform::State {
   State(const GridSpec& voxels, const DistanceTransformOptions& wanted, const Device& device)
-      : grid(voxels), options(wanted), plan(detail::make_image_plan(voxels, wanted)), queue(device) {}
+      : grid(voxels), options(wanted), request(detail::make_image_request(voxels, wanted)), queue(device) {}
 
   GridSpec grid;
   DistanceTransformOptions options;
-  detail::ImagePlan plan;
+  detail::ImageRequest request;  ///< without memory
   cuda::DeviceQueue queue;
 };
 
@@ -53,8 +53,10 @@ void DeviceDistanceTransform::compute(const DeviceArrayView& values, const Devic
   if (values.data == nullptr || field.distance == nullptr || field.site == nullptr) {
     throw InvalidOption("values, distances and sites on a device need memory");
   }
-  state_->queue.run(&cuda::Module::transform_there, &values, &state_->plan, &state_->options.selection, field.distance,
-                    field.site, stream);
+  detail::ImageRequest request = state_->request;
+  request.distance = field.distance;
+  request.site = field.site;
+  state_->queue.run(&cuda::Module::transform_there, &values, &request, stream);
 }
 
 DeviceProgress DeviceDistanceTransform::progress() const {

@@ -57,7 +57,7 @@ struct DeviceFieldSolver::State {
   GridSpec grid;
   FieldOptions options;
   cuda::DeviceQueue queue;
-  std::optional<SignRule> sign_rule;  ///< none before there is a connectivity
+  std::optional<sign::Plan> plan;  ///< none before there is a connectivity
 };
 
 DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context) {
@@ -84,31 +84,27 @@ const FieldOptions& DeviceFieldSolver::options() const {
 
 void DeviceFieldSolver::set_connectivity(const DeviceMeshView& mesh, void* stream) {
   check_mesh(mesh, state_->options);
-  const sign::Plan plan = sign::plan_unseen_signs(state_->options.sign, mesh.triangles.rows);
-  state_->sign_rule.reset();
+  sign::Plan plan = sign::plan_unseen_signs(state_->options.sign, mesh.triangles.rows);
+  state_->plan.reset();
   state_->queue.run(&cuda::Module::set_connectivity_there, &mesh, stream);
-  state_->sign_rule = plan.rule;
+  state_->plan = std::move(plan);
 }
 
 SignRule DeviceFieldSolver::sign_rule() const {
-  return state_->sign_rule.value_or(SignRule::none);
+  return state_->plan ? state_->plan->rule : SignRule::none;
 }
 
 void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFieldView& field, void* stream) {
-  if (!state_->sign_rule)
+  if (!state_->plan)
     throw InvalidOption("the first field of a solver needs the triangles, segments or points of its mesh");
   check_vertices(vertices);
   if (vertices.data == nullptr || field.distance == nullptr || field.site == nullptr) {
     throw InvalidOption("vertices, distances and sites on a device need memory");
   }
-  cuda::FieldMemory memory;
-  memory.grid = &state_->grid;
-  memory.band = state_->options.band.value_or(0);
-  memory.distance = field.distance;
-  memory.site = field.site;
-  memory.wants_signs = *state_->sign_rule == SignRule::winding;
-  memory.wants_triangles = state_->options.site_ids == SiteIds::triangles;
-  state_->queue.run(&cuda::Module::compute_there, &vertices, &memory, stream);
+  FieldRequest request = make_field_request(state_->grid, state_->options, *state_->plan);
+  request.distance = field.distance;
+  request.site = field.site;
+  state_->queue.run(&cuda::Module::compute_there, &vertices, &request, stream);
 }
 
 DeviceProgress DeviceFieldSolver::progress() const {

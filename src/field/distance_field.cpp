@@ -84,16 +84,16 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   const SiteTable& sites = engine->sites();
   const sign::Plan plan = sign::plan_signs(options.sign, mesh, sites, frame_context);
   connectivity_timer.lap("connectivity");
-  const bool with_sides = plan.method == sign::Method::pseudonormals;
-  const bool by_winding = plan.method == sign::Method::crossings || plan.method == sign::Method::sums;
-  FieldResult result = engine->compute({field.grid, options.band, with_sides && engine->can_tell_sides(),
-                                        by_winding ? std::optional<int>(plan.level) : std::nullopt},
-                                       frame_context, field);
+  FieldRequest request = make_field_request(field.grid, options, plan);
+  request.distance = field.distance.data();
+  request.site = &field.site.data()->value;
+  FieldResult result = engine->compute(request, frame_context, field.phases);
   PhaseTimer sign_timer(field.phases);
-  if (with_sides && !engine->can_tell_sides())
-    result.unsettled = sign::apply_pseudonormals(mesh, sites, frame_context, field);
-  settle_nodes(result.unsettled, mesh, sites, with_sides, frame_context, field);
-  if (by_winding && !result.is_signed) sign::apply_winding(plan, mesh, sites, frame_context, field);
+  const bool by_normals = plan.method == sign::Method::pseudonormals;
+  if (by_normals && !result.is_signed) result.unsettled = sign::apply_pseudonormals(mesh, sites, frame_context, field);
+  settle_nodes(result.unsettled, mesh, sites, by_normals, frame_context, field);
+  if (sign::is_by_winding(plan.method) && !result.is_signed)
+    sign::apply_winding(plan, mesh, sites, frame_context, field);
   field.sign_rule = plan.rule;
   field.sign_reason = plan.reason;
   sign_timer.lap("sign");

@@ -16,19 +16,20 @@ namespace {
 std::vector<Field> transforms_on(ImageBackend& device, const VoxelImageView& image,
                                  std::span<const LabelSelection> selections, const DistanceTransformOptions& options,
                                  const Context& context) {
-  const detail::ImagePlan plan = detail::make_image_plan(image.grid, options);
-  device.set_image(image, plan);
+  detail::ImageRequest request = detail::make_image_request(image.grid, options);
+  device.set_image(image, request);
   std::vector<Field> fields;
   fields.reserve(selections.size());
   for (const LabelSelection& selection : selections) {
     throw_if_cancelled(context);
     Field& field = fields.emplace_back();
     PhaseTimer timer(field.phases);
-    detail::check_selected(device.select(selection), plan, selection);
+    request.selection = selection;
+    detail::check_selected(device.select(request), request);
     timer.lap("select voxels");
-    detail::begin_field(image, selection, options, field);
+    detail::begin_field(image, options, request, field);
     field.device = device.device();
-    device.transform(field);
+    device.transform(request);
     timer.lap("transform");
   }
   return fields;

@@ -21,4 +21,14 @@ void check_site_ids(const FieldOptions& options, bool has_free_parts) {
   }
 }
 
+FieldRequest make_field_request(const GridSpec& grid, const FieldOptions& options, const sign::Plan& plan) {
+  FieldRequest request;
+  request.grid = grid;
+  request.band = options.band.value_or(0);
+  request.sign = plan.method;
+  request.site_ids = options.site_ids;
+  request.level = plan.level;
+  return request;
+}
+
 }  // namespace blum

@@ -23,24 +23,28 @@ std::string describe(const LabelSelection& selection) {
 
 }  // namespace
 
-void check_selected(std::size_t selected, const ImagePlan& plan, const LabelSelection& selection) {
+void check_selected(std::size_t selected, const ImageRequest& request) {
   if (selected == 0) {
-    throw InvalidImage("no voxel of the image " + describe(selection) + ", so there is nothing to measure to");
+    throw InvalidImage("no voxel of the image " + describe(request.selection) + ", so there is nothing to measure to");
   }
-  if (plan.is_signed && selected == plan.voxel_count()) {
-    throw InvalidImage("every voxel of the image " + describe(selection) +
+  if (request.is_signed && selected == request.voxel_count()) {
+    throw InvalidImage("every voxel of the image " + describe(request.selection) +
                        ", so a signed field has nothing to measure to; ask for an unsigned one or another selection");
   }
 }
 
-void begin_field(const VoxelImageView& image, const LabelSelection& selection, const DistanceTransformOptions& options,
+void begin_field(const VoxelImageView& image, const DistanceTransformOptions& options, ImageRequest& request,
                  Field& field) {
   field.grid = image.grid;
   field.distance = Buffer<float>(image.grid.node_count());
   field.site = Buffer<SiteId>(image.grid.node_count());
+  request.distance = field.distance.data();
+  // SiteId holds nothing but its 32-bit value.
+  static_assert(sizeof(SiteId) == sizeof(std::uint32_t));
+  request.site = &field.site.data()->value;
   field.site_ids = SiteIds::voxels;
   field.band = options.band;
-  const sign::Plan plan = sign::plan_image_signs(options.is_signed, describe(selection));
+  const sign::Plan plan = sign::plan_image_signs(request.is_signed, describe(request.selection));
   field.sign_rule = plan.rule;
   field.sign_reason = plan.reason;
 }

@@ -4,15 +4,16 @@
 #include <cstddef>
 
 #include "blum/field/distance_transform.hpp"
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 
 namespace blum::detail {
 
 /// @throws InvalidImage where the selected voxels leave nothing to measure to.
-void check_selected(std::size_t selected, const ImagePlan& plan, const LabelSelection& selection);
+void check_selected(std::size_t selected, const ImageRequest& request);
 
-/// Everything of an image's field but its values, for which there is memory then. @throws OutOfMemory.
-void begin_field(const VoxelImageView& image, const LabelSelection& selection, const DistanceTransformOptions& options,
+/// Everything of an image's field but its values, for which there is memory then, which the request is told of.
+/// @throws OutOfMemory.
+void begin_field(const VoxelImageView& image, const DistanceTransformOptions& options, ImageRequest& request,
                  Field& field);
 
 }  // namespace blum::detail

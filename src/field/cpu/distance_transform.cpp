@@ -11,17 +11,17 @@
 #include "blum/grid/selected_voxels.hpp"
 #include "field/cpu/distance_transform_kernels.hpp"
 #include "field/image_field.hpp"
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 
 namespace blum {
 namespace {
 
-using detail::ImagePlan;
+using detail::ImageRequest;
 using detail::TransformPlan;
 
 TransformPlan make_plan(const GridSpec& grid, const DistanceTransformOptions& options, const Context& context) {
   TransformPlan plan;
-  static_cast<ImagePlan&>(plan) = detail::make_image_plan(grid, options);
+  static_cast<ImageRequest&>(plan) = detail::make_image_request(grid, options);
   plan.x_bits = static_cast<unsigned>(std::bit_width(plan.size[0] - 1));
   plan.context = &context;
   return plan;
@@ -122,15 +122,12 @@ Field transform(const VoxelImageView& image, const LabelSelection& selection, co
   Field field;
   PhaseClock clock(field.phases);
   const std::size_t selected = detail::select_voxels(image, selection, plan.size[0], context, work.mask);
-  detail::check_selected(selected, plan, selection);
+  plan.selection = selection;
+  detail::check_selected(selected, plan);
   clock.lap("select voxels");
-  detail::begin_field(image, selection, options, field);
+  detail::begin_field(image, options, plan, field);
   plan.mask = work.mask.words.data();
   plan.mask_words_per_row = work.mask.words_per_row;
-  plan.distance = field.distance.data();
-  // SiteId holds nothing but its 32-bit value, and between passes the array holds partial sites.
-  static_assert(sizeof(SiteId) == sizeof(std::uint32_t));
-  plan.site = &field.site.data()->value;
   transform_planes(plan, work, context);
   clock.lap("rows and columns");
   transform_depth(plan, work, context);

@@ -6,7 +6,7 @@
 
 #include "blum/core/buffer.hpp"
 #include "blum/core/context.hpp"
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 
 namespace blum::detail {
 
@@ -18,12 +18,10 @@ inline constexpr std::size_t tile_width = 64;
 /// Between passes the site array holds packed partial sites: after the x pass the closest x in the row, after the y
 /// pass `y << x_bits | x` of the closest voxel in the plane; all ones where there is none. Both fit 32 bits, and all
 /// ones is no site, because an image has fewer than 2^31 voxels.
-struct TransformPlan : ImagePlan {
+struct TransformPlan : ImageRequest {
   unsigned x_bits = 0;                  ///< bits that hold an x coordinate
   const std::uint64_t* mask = nullptr;  ///< see MaskBits
   std::size_t mask_words_per_row = 0;
-  float* distance = nullptr;
-  std::uint32_t* site = nullptr;
   const Context* context = nullptr;  ///< looked at for cancellation inside long tasks
 };
 

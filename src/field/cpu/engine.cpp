@@ -77,28 +77,24 @@ void Engine::build_records(const FieldRequest& request, const Context& context) 
   build_cluster_forest(records_, context, forest_);
 }
 
-FieldResult Engine::compute(const FieldRequest& request, const Context& context, Field& field) {
-  PhaseTimer timer(field.phases);
+FieldResult Engine::compute(const FieldRequest& request, const Context& context, std::vector<PhaseTime>& phases) {
+  PhaseTimer timer(phases);
   build_records(request, context);
   FieldJob job;
+  job.request = request;
   job.sites = &records_;
   job.forest = &forest_;
   job.first_node = frame_.first_node;
   job.spacing = frame_.spacing;
-  job.size = request.grid.size;
   job.to_world = static_cast<float>(1 / frame_.scale);
-  if (request.band) {
-    job.band = static_cast<float>(*request.band * frame_.scale);
-    job.band_world = static_cast<float>(*request.band);
-  }
-  if (request.with_sides) job.vertex_sides = vertex_sides(mesh_, sites_, frame_, context);
-  job.distance = field.distance.data();
-  job.site = field.site.data();
-  job.is_streamed = field.distance.size() > fewest_streamed_nodes;
+  if (request.has_band()) job.band = static_cast<float>(request.band * frame_.scale);
+  const bool by_normals = request.sign == sign::Method::pseudonormals;
+  if (by_normals) job.vertex_sides = vertex_sides(mesh_, sites_, frame_, context);
+  job.is_streamed = request.grid.node_count() > fewest_streamed_nodes;
   job.cancel = context.cancel;
   timer.lap("sites and hierarchy");
 
-  const Tiling tiling(job.size, tile_size(job.size));
+  const Tiling tiling(request.grid.size, tile_size(request.grid.size));
   scratch_.resize(static_cast<std::size_t>(thread_count(context)));
   for (TileScratch& scratch : scratch_) scratch.unsettled.clear();
   parallel_for(context, tiling.count(), 1, "field", [&](const WorkRange& range) {
@@ -107,6 +103,7 @@ FieldResult Engine::compute(const FieldRequest& request, const Context& context,
     }
   });
   FieldResult result;
+  result.is_signed = by_normals;
   std::vector<std::size_t>& unsettled = result.unsettled;
   for (const TileScratch& scratch : scratch_) {
     unsettled.insert(unsettled.end(), scratch.unsettled.begin(), scratch.unsettled.end());

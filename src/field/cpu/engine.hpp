@@ -19,10 +19,10 @@ namespace blum::cpu {
 class Engine final : public FieldBackend {
  public:
   [[nodiscard]] Device device() const override { return Device::cpu(); }
-  [[nodiscard]] bool can_tell_sides() const override { return true; }
   void set_mesh(const MeshView& mesh, const Context& context) override;
   [[nodiscard]] const SiteTable& sites() const override { return sites_; }
-  [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context, Field& field) override;
+  [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context,
+                                    std::vector<PhaseTime>& phases) override;
 
  private:
   void build_records(const FieldRequest& request, const Context& context);

@@ -70,7 +70,7 @@ class TileWorker {
     if (side == 0 && job_.has_sides()) side = side_of(closest, center, job_.vertex_sides);
     const bool is_beyond_band = distance - length(half) * 1.0001F - box_slack > job_.band;
     if (!is_beyond_band || (side == 0 && job_.has_sides())) return false;
-    fill(box, side < 0 ? -job_.band_world : job_.band_world);
+    fill(box, side < 0 ? -job_.band_distance() : job_.band_distance());
     return true;
   }
 
@@ -84,8 +84,8 @@ class TileWorker {
       return;
     }
     for_each_row(box, [&](std::size_t, std::size_t node) {
-      std::fill_n(job_.distance + node, box.count[0], distance);
-      std::fill_n(job_.site + node, box.count[0], SiteId::none());
+      std::fill_n(job_.request.distance + node, box.count[0], distance);
+      std::fill_n(job_.request.site + node, box.count[0], SiteId::none().value);
     });
   }
 
@@ -96,14 +96,15 @@ class TileWorker {
     for_each_row(box, [&](std::size_t at, std::size_t node) {
       const float* distance = scratch_.output.distance.data() + at;
       const std::uint32_t* site = scratch_.output.site.data() + at;
-      auto* site_out = reinterpret_cast<std::uint32_t*>(job_.site + node);
+      float* const distance_out = job_.request.distance + node;
+      std::uint32_t* const site_out = job_.request.site + node;
       if (is_streamed && node * sizeof(float) % line == 0) {
         for (std::size_t k = 0; k < static_cast<std::size_t>(BoxOutput::side); k += lanes) {
-          hn::Stream(hn::Load(d, distance + k), d, job_.distance + node + k);
+          hn::Stream(hn::Load(d, distance + k), d, distance_out + k);
           hn::Stream(hn::Load(di, site + k), di, site_out + k);
         }
       } else {
-        std::memcpy(job_.distance + node, distance, static_cast<std::size_t>(box.count[0]) * sizeof(float));
+        std::memcpy(distance_out, distance, static_cast<std::size_t>(box.count[0]) * sizeof(float));
         std::memcpy(site_out, site, static_cast<std::size_t>(box.count[0]) * sizeof(std::uint32_t));
       }
     });
@@ -119,7 +120,7 @@ class TileWorker {
         const std::int64_t z = box.first[2] + k;
         const std::int64_t mask = BoxOutput::side - 1;
         visit(static_cast<std::size_t>((((z & mask) * BoxOutput::side) + (y & mask)) * BoxOutput::side + (x & mask)),
-              static_cast<std::size_t>((z * job_.size[1] + y) * job_.size[0] + x));
+              static_cast<std::size_t>((z * job_.request.grid.size[1] + y) * job_.request.grid.size[0] + x));
       }
     }
   }
@@ -366,8 +367,8 @@ class TileWorker {
 
   void clamp_to_band(LeafState& state, std::array<float, leaf_nodes>& value) const {
     for (std::size_t node = 0; node < leaf_nodes; ++node) {
-      if (!(std::abs(value[node]) > job_.band_world)) continue;
-      value[node] = std::signbit(value[node]) ? -job_.band_world : job_.band_world;
+      if (!(std::abs(value[node]) > job_.band_distance())) continue;
+      value[node] = std::signbit(value[node]) ? -job_.band_distance() : job_.band_distance();
       state.id[node] = SiteId::none().value;
     }
   }
@@ -394,7 +395,7 @@ class TileWorker {
 };
 
 void compute_tile_here(const FieldJob& job, const NodeBox& tile, TileScratch& scratch) {
-  TileWorker(job, scratch).tile(tile, tile_size(job.size));
+  TileWorker(job, scratch).tile(tile, tile_size(job.request.grid.size));
   hwy::FlushStream();
 }
 

@@ -16,6 +16,7 @@
 #include "blum/core/vec3.hpp"
 #include "field/cpu/cluster_forest.hpp"
 #include "field/cpu/site_records.hpp"
+#include "field/field_request.hpp"
 
 namespace blum::cpu {
 
@@ -23,22 +24,21 @@ namespace blum::cpu {
 struct FieldJob {
   const SiteRecords* sites = nullptr;
   const ClusterForest* forest = nullptr;
+  FieldRequest request;
   Vec3d first_node;                                     ///< normalised
   Vec3d spacing;                                        ///< normalised
-  std::array<std::int64_t, 3> size{};                   ///< nodes
   float band = std::numeric_limits<float>::infinity();  ///< half-width, normalised
-  float band_world = 0;                                 ///< half-width as it is written
   float to_world = 1;                                   ///< mesh units per normalised unit, a power of two
   /// Unit pseudonormals of all vertices; empty where the field gets no sign from them.
   std::vector<Vec3f> vertex_sides;
-  float* distance = nullptr;
-  SiteId* site = nullptr;
   /// Write past the caches: for fields that do not fit them.
   bool is_streamed = false;
   /// A tile that sees a request to stop leaves the rest of its nodes unwritten.
   std::stop_token cancel;
 
   [[nodiscard]] bool has_sides() const { return !vertex_sides.empty(); }
+  /// What nodes beyond the band get.
+  [[nodiscard]] float band_distance() const { return static_cast<float>(request.band); }
 };
 
 /// A box of nodes: the first one and how many along each axis.

@@ -1,6 +1,6 @@
 #include "field/cuda/cuda_backend.hpp"
 
-#include <utility>
+#include <vector>
 
 #include "blum/core/phase_timer.hpp"
 #include "field/connectivity_cache.hpp"
@@ -14,8 +14,6 @@ class CudaFieldBackend final : public FieldBackend {
   explicit CudaFieldBackend(int index) : index_(index), engine_(index) {}
 
   [[nodiscard]] Device device() const override { return Device::cuda(index_); }
-  [[nodiscard]] bool can_tell_sides() const override { return false; }
-
   void set_mesh(const MeshView& mesh, const Context& context) override {
     mesh_ = mesh;
     if (connectivity_.holds(mesh)) return;
@@ -26,14 +24,13 @@ class CudaFieldBackend final : public FieldBackend {
   }
   [[nodiscard]] const SiteTable& sites() const override { return sites_; }
 
-  [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context, Field& field) override {
-    PhaseTimer timer(field.phases);
-    FieldMemory memory{&request.grid, request.band.value_or(0), field.distance.data(), &field.site.data()->value};
-    memory.wants_signs = request.level.has_value();
-    memory.level = request.level.value_or(0);
-    engine_.run(&Module::compute, context, &mesh_, &memory);
+  [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context,
+                                    std::vector<PhaseTime>& phases) override {
+    PhaseTimer timer(phases);
+    FieldResult result;
+    engine_.run(&Module::compute, context, &mesh_, &request, &result.is_signed);
     timer.lap("field");
-    return {{}, memory.is_signed};
+    return result;
   }
 
  private:
@@ -49,16 +46,16 @@ class CudaImageBackend final : public ImageBackend {
   explicit CudaImageBackend(int index) : index_(index), engine_(index) {}
 
   [[nodiscard]] Device device() const override { return Device::cuda(index_); }
-  void set_image(const VoxelImageView& image, const detail::ImagePlan& plan) override {
-    engine_.run(&Module::set_image, Context{}, &image, &plan);
+  void set_image(const VoxelImageView& image, const detail::ImageRequest& request) override {
+    engine_.run(&Module::set_image, Context{}, &image, &request);
   }
-  [[nodiscard]] std::size_t select(const LabelSelection& selection) override {
+  [[nodiscard]] std::size_t select(const detail::ImageRequest& request) override {
     std::size_t selected = 0;
-    engine_.run(&Module::select_voxels, Context{}, &selection, &selected);
+    engine_.run(&Module::select_voxels, Context{}, &request, &selected);
     return selected;
   }
-  void transform(Field& field) override {
-    engine_.run(&Module::transform_image, Context{}, field.distance.data(), &field.site.data()->value);
+  void transform(const detail::ImageRequest& request) override {
+    engine_.run(&Module::transform_image, Context{}, &request);
   }
 
  private:

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <exception>
 #include <new>
-#include <optional>
 #include <string>
 
 #include "blum/core/error.hpp"
@@ -112,21 +111,14 @@ class ModuleFunctions {
     });
   }
 
-  static kernels::EngineRequest request_of(const FieldMemory& field) {
-    kernels::EngineRequest request{*field.grid, field.band};
-    if (field.wants_signs) request.level = field.level;
-    return request;
-  }
-
   static Status set_connectivity(void* engine, const MeshView* mesh, Call* call) {
     return with(engine, call, [&](Engine& own) { own.fields.set_connectivity(*mesh); });
   }
-  static Status compute(void* engine, const MeshView* mesh, FieldMemory* field, Call* call) {
+  static Status compute(void* engine, const MeshView* mesh, const FieldRequest* request, bool* is_signed, Call* call) {
     return with(engine, call, [&](Engine& own) {
-      const kernels::EngineResult result = own.fields.compute(
-          *mesh, request_of(*field), field->distance, field->site, [&] { return call->is_cancelled(call->context); },
+      *is_signed = own.fields.compute(
+          *mesh, *request, [&] { return call->is_cancelled(call->context); },
           [&](double fraction) { call->report(call->context, fraction); });
-      field->is_signed = result.is_signed;
     });
   }
   static Status set_connectivity_there(void* engine, const DeviceMeshView* mesh, void* stream, Call* call) {
@@ -135,22 +127,18 @@ class ModuleFunctions {
       own.fields.set_connectivity(*mesh);
     });
   }
-  static Status compute_there(void* engine, const DeviceArrayView* vertices, FieldMemory* field, void* stream,
+  static Status compute_there(void* engine, const DeviceArrayView* vertices, const FieldRequest* request, void* stream,
                               Call* call) {
     return with(engine, call, [&](Engine& own) {
       const Visit visit(own, stream);
-      kernels::EngineRequest request = request_of(*field);
-      request.limits = std::nullopt;
-      own.fields.compute(*vertices, request, field->distance, field->site);
-      if (field->wants_triangles) own.fields.show_triangles(field->grid->node_count(), field->site);
+      own.fields.compute(*vertices, *request);
     });
   }
-  static Status transform_there(void* engine, const DeviceArrayView* values, const detail::ImagePlan* plan,
-                                const LabelSelection* selection, float* distance, std::uint32_t* site, void* stream,
-                                Call* call) {
+  static Status transform_there(void* engine, const DeviceArrayView* values, const detail::ImageRequest* request,
+                                void* stream, Call* call) {
     return with(engine, call, [&](Engine& own) {
       const Visit visit(own, stream);
-      own.images.transform_there(*values, *plan, *selection, distance, site);
+      own.images.transform_there(*values, *request);
     });
   }
   static Status progress(void* engine, std::uint64_t* queued, std::uint64_t* finished, Call* call) {
@@ -177,14 +165,14 @@ class ModuleFunctions {
     (void)guarded(device, &call, [&] { Platform::release(memory); });
   }
 
-  static Status set_image(void* engine, const VoxelImageView* image, const detail::ImagePlan* plan, Call* call) {
-    return with(engine, call, [&](Engine& own) { own.images.set_image(*image, *plan); });
+  static Status set_image(void* engine, const VoxelImageView* image, const detail::ImageRequest* request, Call* call) {
+    return with(engine, call, [&](Engine& own) { own.images.set_image(*image, *request); });
   }
-  static Status select_voxels(void* engine, const LabelSelection* selection, std::size_t* selected, Call* call) {
-    return with(engine, call, [&](Engine& own) { *selected = own.images.select(*selection); });
+  static Status select_voxels(void* engine, const detail::ImageRequest* request, std::size_t* selected, Call* call) {
+    return with(engine, call, [&](Engine& own) { *selected = own.images.select(*request); });
   }
-  static Status transform_image(void* engine, float* distance, std::uint32_t* site, Call* call) {
-    return with(engine, call, [&](Engine& own) { own.images.transform(distance, site); });
+  static Status transform_image(void* engine, const detail::ImageRequest* request, Call* call) {
+    return with(engine, call, [&](Engine& own) { own.images.transform(*request); });
   }
 };
 

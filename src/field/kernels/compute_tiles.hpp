@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "field/field_request.hpp"
 #include "field/kernels/domain_tests.hpp"
 #include "field/kernels/leaf.hpp"
 #include "field/kernels/nearest.hpp"
@@ -27,13 +28,6 @@ struct alignas(16) PackedRecord {
     record.id = id;
     return record;
   }
-};
-
-/// Where a field goes.
-struct FieldOutput {
-  double band = 0;            ///< half-width in mesh units; 0: the full grid
-  float* distance = nullptr;  ///< of the slab's nodes, mesh units
-  std::uint32_t* site = nullptr;
 };
 
 /// One block per tile of 8^3 nodes. Its warps search the trees for sites that can matter to the tile, from a stack that
@@ -79,7 +73,7 @@ struct ComputeTiles {
   const NormalFrame* frame;
   TileGrid tiles;
   const SurfacePoint* tile_points;
-  FieldOutput output;
+  FieldRequest request;  ///< its memory is that of the slab's nodes
 
   template <class Block>
   BLUM_HD void operator()(const Block& block, Shared& shared, std::size_t index) const {
@@ -114,7 +108,7 @@ struct ComputeTiles {
         return;
       }
       if (is_beyond_band()) {
-        fill(static_cast<float>(job_.output.band));
+        fill(static_cast<float>(job_.request.band));
         return;
       }
       start();
@@ -138,9 +132,9 @@ struct ComputeTiles {
     [[nodiscard]] BLUM_HD double scale() const { return job_.frame->scale; }
 
     [[nodiscard]] BLUM_HD bool is_beyond_band() const {
-      if (!(job_.output.band > 0)) return false;
+      if (!(job_.request.band > 0)) return false;
       const float distance = root(squared_length(box_.center - nearest_.point));
-      return distance - norm(box_.half) * 1.0001F - box_slack > static_cast<float>(job_.output.band * scale());
+      return distance - norm(box_.half) * 1.0001F - box_slack > static_cast<float>(job_.request.band * scale());
     }
 
     /// The points of this tile and of those next door, which are the best at beating what lies beyond them.
@@ -376,7 +370,7 @@ struct ComputeTiles {
 
     BLUM_HD void write() {
       const auto to_world = static_cast<float>(1 / scale());
-      const float band = job_.output.band > 0 ? static_cast<float>(job_.output.band) : far_away * far_away;
+      const float band = job_.request.band > 0 ? static_cast<float>(job_.request.band) : far_away * far_away;
       block_.each_warp([&](const Warp& warp) {
         const NodeBox leaf = leaf_box(warp.index());
         if (leaf.is_empty()) return;
@@ -389,8 +383,8 @@ struct ComputeTiles {
             const std::size_t at = offset(place);
             const float distance = root(mine.winner[k].squared) * to_world;
             const bool is_beyond = distance > band;
-            job_.output.distance[at] = is_beyond ? band : distance;
-            job_.output.site[at] = is_beyond ? dead_record : mine.winner[k].id;
+            job_.request.distance[at] = is_beyond ? band : distance;
+            job_.request.site[at] = is_beyond ? dead_record : mine.winner[k].id;
           }
         });
       });
@@ -404,8 +398,8 @@ struct ComputeTiles {
             const GridIndex place = place_in(leaf_box(warp.index()), lane, k);
             if (!is_in(nodes_, place)) continue;
             const std::size_t at = offset(place);
-            job_.output.distance[at] = distance;
-            job_.output.site[at] = dead_record;
+            job_.request.distance[at] = distance;
+            job_.request.site[at] = dead_record;
           }
         });
       });

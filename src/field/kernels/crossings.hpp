@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "field/field_request.hpp"
 #include "field/kernels/boundary_signs.hpp"
 #include "field/kernels/connectivity.hpp"
 #include "field/kernels/row_crossings.hpp"
@@ -210,7 +211,6 @@ class CrossingSigns {
   /// Once per frame.
   void prepare(const DeviceMesh& mesh, const GridSpec& grid) {
     mesh_ = mesh;
-    grid_ = grid;
     units_ = NodeUnits(grid);
     places_.resize(mesh.vertex_count);
     large_.resize(mesh.triangle_count);
@@ -219,41 +219,42 @@ class CrossingSigns {
     if (boundary_.count() > 0) boundary_.place(mesh.vertices);
   }
 
-  /// Negates the unsigned distances of a slab inside: where the winding number is above `level`, or with a boundary
-  /// above level + 1/2.
-  /// @param frame  of the distances, in the device's memory.
-  void apply(std::int64_t first_slice, std::int64_t last_slice, std::int32_t level, const NormalFrame* frame,
-             float* distance) {
-    const auto width = static_cast<std::int32_t>(grid_.size[0]);
-    const auto rows = static_cast<std::size_t>(last_slice - first_slice) * static_cast<std::size_t>(grid_.size[1]);
+  /// Negates the unsigned distances of a slab inside: where the winding number is above the request's level, or with a
+  /// boundary above level + 1/2.
+  /// @param request  of the grid of the last prepare(); its memory is the device's, and that of these slices.
+  /// @param frame    of the distances, in the device's memory.
+  void apply(std::int64_t first_slice, std::int64_t last_slice, const FieldRequest& request, const NormalFrame* frame) {
+    const GridSpec& grid = request.grid;
+    const auto width = static_cast<std::int32_t>(grid.size[0]);
+    const auto rows = static_cast<std::size_t>(last_slice - first_slice) * static_cast<std::size_t>(grid.size[1]);
     const std::size_t row_blocks = (rows + RowsOfWarps::warps - 1) / RowsOfWarps::warps;
-    count_changes(first_slice, last_slice, rows);
+    count_changes(grid, first_slice, last_slice, rows);
     if (boundary_.count() == 0) {
-      device_.run_blocks(row_blocks, ApplyWinding{{}, change_.data(), rows, width, level, distance});
+      device_.run_blocks(row_blocks, ApplyWinding{{}, change_.data(), rows, width, request.level, request.distance});
       return;
     }
     device_.run_blocks(row_blocks, SumCrossings{{}, change_.data(), rows, width});
-    const TileGrid tiles{grid_.size, first_slice, last_slice, SignTiles::side};
-    device_.run_blocks(tiles.count(), SignTiles{{boundary_.kept(), boundary_.kept_count(), places_.data(),
-                                                 grid_.spacing, units_.is_mirrored},
+    const TileGrid tiles{grid.size, first_slice, last_slice, SignTiles::side};
+    device_.run_blocks(tiles.count(), SignTiles{{boundary_.kept(), boundary_.kept_count(), places_.data(), grid.spacing,
+                                                 units_.is_mirrored},
                                                 frame,
                                                 tiles,
-                                                grid_.spacing,
+                                                grid.spacing,
                                                 change_.data(),
-                                                level,
-                                                distance});
+                                                request.level,
+                                                request.distance});
   }
 
  private:
-  void count_changes(std::int64_t first_slice, std::int64_t last_slice, std::size_t rows) {
-    change_.resize(rows * static_cast<std::size_t>(grid_.size[0]));
+  void count_changes(const GridSpec& grid, std::int64_t first_slice, std::int64_t last_slice, std::size_t rows) {
+    change_.resize(rows * static_cast<std::size_t>(grid.size[0]));
     device_.fill(change_, std::int32_t{0});
     device_.fill(large_count_, 0U);
     const CrossingCount count{mesh_.triangles,
                               places_.data(),
                               units_.is_mirrored,
-                              {static_cast<std::int32_t>(grid_.size[0]), static_cast<std::int32_t>(grid_.size[1]),
-                               static_cast<std::int32_t>(grid_.size[2])},
+                              {static_cast<std::int32_t>(grid.size[0]), static_cast<std::int32_t>(grid.size[1]),
+                               static_cast<std::int32_t>(grid.size[2])},
                               static_cast<std::int32_t>(first_slice),
                               static_cast<std::int32_t>(last_slice),
                               change_.data()};
@@ -263,7 +264,6 @@ class CrossingSigns {
 
   Device& device_;
   DeviceMesh mesh_;
-  GridSpec grid_;
   NodeUnits units_;
   Boundary<Device> boundary_;
   typename Device::template Array<Vec3d> places_;

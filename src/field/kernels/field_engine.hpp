@@ -6,36 +6,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "blum/core/error.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "field/field_request.hpp"
 #include "field/kernels/crossings.hpp"
 #include "field/kernels/field_pipeline.hpp"
 #include "field/kernels/memory_arrays.hpp"
 #include "field/kernels/slabs.hpp"
 
 namespace blum::kernels {
-
-/// What a field is asked for.
-struct EngineRequest {
-  GridSpec grid;
-  double band = 0;  ///< half-width, mesh units; 0: the full grid
-  /// Nodes with a winding number above this, or with a boundary above it by more than 1/2, get negative distances.
-  std::optional<std::int32_t> level = {};
-  /// Where the boundary has more edges, or nodes times edges are more, there are no signs. No limits: for what must not
-  /// wait for the device.
-  struct Limits {
-    std::uint32_t edges = 1U << 14U;
-    double nodes_times_edges = 0x1p36;
-  };
-  std::optional<Limits> limits = Limits{};
-};
-
-struct EngineResult {
-  bool is_signed = false;
-};
 
 /// Keeps a mesh's connectivity and its memory from frame to frame. Fields go to the host's memory, slab by slab, or
 /// stay on the device.
@@ -79,22 +60,24 @@ class FieldEngine {
   }
 
   /// Computes the field of a mesh with the current connectivity.
+  /// @param request     its memory is the host's, and gets feature ids.
   /// @param is_stopped  callable: whether to give up.
   /// @param report      callable: fraction done.
+  /// @return  whether there are signs: those of winding numbers, unless the boundary has so many edges that to sum them
+  ///          up at every node would take too long.
   /// @throws InvalidGrid, Cancelled, and what the device throws.
   template <class IsStopped, class Report>
-  EngineResult compute(const MeshView& mesh, const EngineRequest& request, float* distance, std::uint32_t* site,
-                       const IsStopped& is_stopped, const Report& report) {
+  bool compute(const MeshView& mesh, const FieldRequest& request, const IsStopped& is_stopped, const Report& report) {
     check_size(request.grid);
     device_.upload(mesh.vertices, vertices_);
     pipeline_.prepare(mesh_, request.grid);
     pipeline_.check_frame();
-    const bool is_signed = prepare_signs(request);
+    const bool is_signed = prepare_signs(request) && has_few_boundary_edges(request);
     const Slabs slabs(request.grid, slab_nodes_);
     const auto fetch = [&](std::int64_t slab) {
       const Slab& from = slabs_[static_cast<std::size_t>(slab % 2)];
-      device_.fetch(from.distance.data(), slabs.nodes(slab), distance + slabs.first_node(slab));
-      device_.fetch(from.site.data(), slabs.nodes(slab), site + slabs.first_node(slab));
+      device_.fetch(from.distance.data(), slabs.nodes(slab), request.distance + slabs.first_node(slab));
+      device_.fetch(from.site.data(), slabs.nodes(slab), request.site + slabs.first_node(slab));
       report(static_cast<double>(slab + 1) / static_cast<double>(slabs.count()));
     };
     for (std::int64_t slab = 0; slab < slabs.count(); ++slab) {
@@ -102,7 +85,10 @@ class FieldEngine {
       Slab& to = slabs_[static_cast<std::size_t>(slab % 2)];
       to.distance.resize(slabs.nodes(slab));
       to.site.resize(slabs.nodes(slab));
-      compute_slab(slabs, slab, request, is_signed, to.distance.data(), to.site.data());
+      FieldRequest part = request;
+      part.distance = to.distance.data();
+      part.site = to.site.data();
+      compute_slab(slabs, slab, part, is_signed);
       device_.mark(static_cast<int>(slab % 2));
       // The slab before this one travels while this one is computed.
       if (slab > 0) {
@@ -112,14 +98,14 @@ class FieldEngine {
     }
     device_.wait();
     fetch(slabs.count() - 1);
-    return {is_signed};
+    return is_signed;
   }
 
   /// The same from vertices in the device's memory to arrays there; queued, without waiting for the device. Where mesh
   /// and grid span too much or too little for 32-bit distances, or a vertex is not finite, every node gets NaN and no
   /// site.
   /// @throws InvalidGrid, InvalidMesh where vertices are not as many as the connectivity was made for.
-  void compute(const MemoryArray& vertices, const EngineRequest& request, float* distance, std::uint32_t* site) {
+  void compute(const MemoryArray& vertices, const FieldRequest& request) {
     check_size(request.grid);
     if (vertices.rows != mesh_.vertex_count) {
       throw InvalidMesh(std::to_string(vertices.rows) + " vertices, but the connectivity is that of " +
@@ -130,10 +116,19 @@ class FieldEngine {
     const bool is_signed = prepare_signs(request);
     const Slabs slabs(request.grid, device_slab_nodes);
     for (std::int64_t slab = 0; slab < slabs.count(); ++slab) {
-      const std::size_t first = slabs.first_node(slab);
-      compute_slab(slabs, slab, request, is_signed, distance + first, site + first);
+      FieldRequest part = request;
+      part.distance += slabs.first_node(slab);
+      part.site += slabs.first_node(slab);
+      compute_slab(slabs, slab, part, is_signed);
     }
+    if (request.site_ids == SiteIds::triangles) show_triangles(request.grid.node_count(), request.site);
   }
+
+ private:
+  struct Slab {
+    typename Device::template Array<float> distance;
+    typename Device::template Array<std::uint32_t> site;
+  };
 
   /// Replaces sites, in the device's memory, by the smallest triangle that each lies on. Queued.
   void show_triangles(std::size_t count, std::uint32_t* site) {
@@ -148,12 +143,6 @@ class FieldEngine {
     device_.for_each(count, ShowTriangle{vertex_triangle_.data(), connectivity.edge_faces, mesh_.vertex_count,
                                          connectivity.edge_count, site});
   }
-
- private:
-  struct Slab {
-    typename Device::template Array<float> distance;
-    typename Device::template Array<std::uint32_t> site;
-  };
 
   static void check_size(const GridSpec& grid) {
     constexpr std::int64_t most_nodes = std::numeric_limits<std::int32_t>::max() - 63;  // whole tiles, in 32 bits
@@ -186,22 +175,27 @@ class FieldEngine {
   }
   void copy_vertices(const MemoryArray& from) { device_.for_each(from.rows, CopyVertices{from, vertices_.data()}); }
 
-  /// Whether there will be signs.
-  bool prepare_signs(const EngineRequest& request) {
-    if (!request.level) return false;
+  /// Whether signs are asked for that are found here.
+  bool prepare_signs(const FieldRequest& request) {
+    if (!sign::is_by_winding(request.sign)) return false;
     signs_.prepare(mesh_, request.grid);
-    if (!request.limits || signs_.boundary_count() == 0) return true;
-    const std::uint32_t edges = signs_.download_boundary_count();
-    return edges <= request.limits->edges &&
-           static_cast<double>(edges) * static_cast<double>(request.grid.node_count()) <=
-               request.limits->nodes_times_edges;
+    return true;
   }
-  void compute_slab(const Slabs& slabs, std::int64_t slab, const EngineRequest& request, bool is_signed,
-                    float* distance, std::uint32_t* site) {
+  /// Waits for the device.
+  bool has_few_boundary_edges(const FieldRequest& request) {
+    constexpr std::uint32_t most_edges = 1U << 14U;
+    constexpr double most_nodes_times_edges = 0x1p36;
+    if (signs_.boundary_count() == 0) return true;
+    const std::uint32_t edges = signs_.download_boundary_count();
+    return edges <= most_edges &&
+           static_cast<double>(edges) * static_cast<double>(request.grid.node_count()) <= most_nodes_times_edges;
+  }
+  /// @param request  its memory is the device's, and that of the slab.
+  void compute_slab(const Slabs& slabs, std::int64_t slab, const FieldRequest& request, bool is_signed) {
     const std::int64_t first = slabs.first_slice(slab);
     const std::int64_t last = slabs.last_slice(slab);
-    pipeline_.compute(first, last, {request.band, distance, site});
-    if (is_signed) signs_.apply(first, last, *request.level, pipeline_.frame(), distance);
+    pipeline_.compute(first, last, request);
+    if (is_signed) signs_.apply(first, last, request, pipeline_.frame());
   }
 
   Device& device_;

@@ -1,12 +1,12 @@
 // Blum: fields on a device, from vertices to distances. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 
 #include "blum/grid/grid_spec.hpp"
+#include "field/field_request.hpp"
 #include "field/kernels/build_records.hpp"
 #include "field/kernels/compute_tiles.hpp"
 #include "field/kernels/tile_points.hpp"
@@ -60,7 +60,6 @@ class FieldPipeline {
 
   /// Builds records and trees of this frame's vertices.
   void prepare(const DeviceMesh& mesh, const GridSpec& grid) {
-    grid_ = grid;
     bounds_.resize(1);
     frame_.resize(1);
     device_.reduce(connectivity_.named_count,
@@ -78,14 +77,16 @@ class FieldPipeline {
     throw_if_faulty(frame);
   }
 
-  /// Writes the slices [first_slice, last_slice) of the grid to a device's memory. Where the frame is faulty, distances
-  /// are NaN and there are no sites.
-  void compute(std::int64_t first_slice, std::int64_t last_slice, const FieldOutput& output) {
-    const TileGrid coarse{grid_.size, first_slice, last_slice, 4 * ComputeTiles::side};
-    const TileGrid tiles{grid_.size, first_slice, last_slice, ComputeTiles::side};
+  /// Writes the slices [first_slice, last_slice) of the grid, that of the last prepare(). Where the frame is faulty,
+  /// distances are NaN and there are no sites.
+  /// @param request  its memory is the device's, and that of these slices.
+  void compute(std::int64_t first_slice, std::int64_t last_slice, const FieldRequest& request) {
+    const std::array<std::int64_t, 3>& size = request.grid.size;
+    const TileGrid coarse{size, first_slice, last_slice, 4 * ComputeTiles::side};
+    const TileGrid tiles{size, first_slice, last_slice, ComputeTiles::side};
     find_points({forest_, frame_.data(), coarse, nullptr, coarse, 0, nullptr}, coarse_points_);
     find_points({forest_, frame_.data(), tiles, coarse_points_.data(), coarse, 0, nullptr}, points_);
-    device_.run_blocks(tiles.count(), ComputeTiles{forest_, frame_.data(), tiles, points_.data(), output});
+    device_.run_blocks(tiles.count(), ComputeTiles{forest_, frame_.data(), tiles, points_.data(), request});
   }
 
  private:
@@ -100,7 +101,6 @@ class FieldPipeline {
   }
 
   Device& device_;
-  GridSpec grid_;
   Connectivity<Device> connectivity_;
   typename Device::template Array<Bounds> bounds_;
   typename Device::template Array<NormalFrame> frame_;

@@ -19,38 +19,38 @@ class ImageEngine {
   explicit ImageEngine(Device& device) : device_(device), transform_(device) {}
 
   /// Uploads an image. @throws OutOfMemory where the device cannot hold it.
-  void set_image(const VoxelImageView& image, const detail::ImagePlan& plan) {
+  void set_image(const VoxelImageView& image, const detail::ImageRequest& request) {
     image_ = image.values;
-    transform_.set_plan(plan);
-    voxels_ = plan.voxel_count();
+    transform_.set_request(request);
+    voxels_ = request.voxel_count();
     std::visit([&](const auto& values) { device_.upload(std::as_bytes(values), values_); }, image.values);
     distance_.resize(voxels_);
     site_.resize(voxels_);
   }
 
   /// How many voxels are selected.
-  std::uint64_t select(const LabelSelection& selection) {
+  std::uint64_t select(const detail::ImageRequest& request) {
     std::visit(
         [&]<class T>(const std::span<const T>&) {
-          transform_.select(reinterpret_cast<const T*>(values_.data()), selection);
+          transform_.select(reinterpret_cast<const T*>(values_.data()), request.selection);
         },
         image_);
     return transform_.selected_count();
   }
 
-  /// Of the last selection.
-  void transform(float* distance, std::uint32_t* site) {
+  /// Of the last selection, to the host's memory.
+  void transform(const detail::ImageRequest& request) {
     transform_.run(distance_.data(), site_.data());
-    device_.download(distance_.data(), voxels_, distance);
-    device_.download(site_.data(), voxels_, site);
+    device_.download(distance_.data(), voxels_, request.distance);
+    device_.download(site_.data(), voxels_, request.site);
   }
 
   /// Transforms an image in the device's memory to arrays there. Queued, without waiting.
-  void transform_there(const DeviceArrayView& values, const detail::ImagePlan& plan, const LabelSelection& selection,
-                       float* distance, std::uint32_t* site) {
-    transform_.set_plan(plan);
-    with_type(values.type, [&]<class T>(T) { transform_.select(static_cast<const T*>(values.data), selection); });
-    transform_.run(distance, site);
+  void transform_there(const DeviceArrayView& values, const detail::ImageRequest& request) {
+    transform_.set_request(request);
+    with_type(values.type,
+              [&]<class T>(T) { transform_.select(static_cast<const T*>(values.data), request.selection); });
+    transform_.run(request.distance, request.site);
   }
 
  private:

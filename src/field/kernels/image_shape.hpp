@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 #include "field/kernels/host_device.hpp"
 
 namespace blum::kernels {
@@ -28,12 +28,12 @@ struct Divisor {
   }
 };
 
-/// Where a voxel is, along the axes of the plan.
+/// Where a voxel is, along the axes of the request.
 struct Voxel {
   std::uint32_t x, y, z;
 };
 
-/// The image of a plan, and which of its voxels are selected: bit x % 32 of word x / 32 of a row.
+/// The image of a request, and which of its voxels are selected: bit x % 32 of word x / 32 of a row.
 struct ImageShape {
   std::uint32_t size[3] = {1, 1, 1};
   std::uint32_t plane = 1;  ///< voxels of a slice
@@ -43,8 +43,8 @@ struct ImageShape {
   const std::uint32_t* mask = nullptr;
 
   ImageShape() = default;
-  explicit ImageShape(const detail::ImagePlan& plan) : is_signed(plan.is_signed) {
-    for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = static_cast<std::uint32_t>(plan.size[axis]);
+  explicit ImageShape(const detail::ImageRequest& request) : is_signed(request.is_signed) {
+    for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = static_cast<std::uint32_t>(request.size[axis]);
     plane = size[0] * size[1];
     by_row = Divisor(size[0]);
     by_plane = Divisor(plane);
@@ -85,8 +85,9 @@ struct IntegerCosts {
   bool exact_in_float;
   double unit;
 
-  explicit IntegerCosts(const detail::ImagePlan& plan) : exact_in_float(plan.exact_in_float), unit(plan.unit) {
-    for (std::size_t axis = 0; axis < 3; ++axis) weight[axis] = static_cast<Value>(plan.weight[axis]);
+  explicit IntegerCosts(const detail::ImageRequest& request)
+      : exact_in_float(request.exact_in_float), unit(request.unit) {
+    for (std::size_t axis = 0; axis < 3; ++axis) weight[axis] = static_cast<Value>(request.weight[axis]);
   }
   [[nodiscard]] BLUM_HD Value square(std::size_t axis, std::int32_t step) const { return step * step * weight[axis]; }
   [[nodiscard]] BLUM_HD static Value sum(Value a, Value b) { return a + b; }
@@ -118,11 +119,11 @@ struct RealCosts {
   Value weight[3];
   double unit;
 
-  explicit RealCosts(const detail::ImagePlan& plan) : unit(plan.unit) {
+  explicit RealCosts(const detail::ImageRequest& request) : unit(request.unit) {
     constexpr double rounding = 1.0 / (std::uint64_t{1} << 46U);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      weight[axis] = plan.weight[axis];
-      const auto extent = static_cast<double>(plan.size[axis] - 1);
+      weight[axis] = request.weight[axis];
+      const auto extent = static_cast<double>(request.size[axis] - 1);
       slack += rounding * weight[axis] * extent * extent;
     }
   }

@@ -10,7 +10,7 @@
 
 #include "blum/field/distance_transform.hpp"
 #include "blum/grid/voxel_test.hpp"
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 #include "field/kernels/image_columns.hpp"
 #include "field/kernels/image_rows.hpp"
 #include "field/kernels/image_shape.hpp"
@@ -36,8 +36,8 @@ class ImageTransform {
   explicit ImageTransform(Device& device, const BandTuning& tuning = {}) : device_(device), tuning_(tuning) {}
 
   /// Device memory that a transform takes, beside 8 bytes per voxel for its result and the image itself.
-  [[nodiscard]] static std::size_t scratch_bytes(const detail::ImagePlan& plan, const BandTuning& tuning = {}) {
-    const ImageShape shape(plan);
+  [[nodiscard]] static std::size_t scratch_bytes(const detail::ImageRequest& request, const BandTuning& tuning = {}) {
+    const ImageShape shape(request);
     std::size_t words = shape.mask_words();
     std::size_t band_words = 0;
     for (const bool along_z : {false, true}) {
@@ -49,9 +49,9 @@ class ImageTransform {
   }
 
   /// @throws OutOfMemory.
-  void set_plan(const detail::ImagePlan& plan) {
-    plan_ = plan;
-    shape_ = ImageShape(plan);
+  void set_request(const detail::ImageRequest& request) {
+    request_ = request;
+    shape_ = ImageShape(request);
     mask_.resize(shape_.mask_words());
     shape_.mask = mask_.data();
   }
@@ -83,7 +83,7 @@ class ImageTransform {
   /// Writes one distance and one site per voxel. Some voxel must be selected, and in a signed transform not all: else
   /// distances are infinite, or the band's.
   void run(float* distance, std::uint32_t* site) {
-    plan_.integer ? run_with(IntegerCosts(plan_), distance, site) : run_with(RealCosts(plan_), distance, site);
+    request_.integer ? run_with(IntegerCosts(request_), distance, site) : run_with(RealCosts(request_), distance, site);
   }
 
  private:
@@ -109,8 +109,8 @@ class ImageTransform {
     device_.run_blocks((shape_.rows() + TransformRows::warps - 1) / TransformRows::warps, TransformRows{shape_, site});
     if (shape_.size[1] > 1) transform_columns<Costs, false>(costs, distance, site);
     if (shape_.size[2] > 1) transform_columns<Costs, true>(costs, distance, site);
-    const float band = plan_.has_band ? plan_.band : std::numeric_limits<float>::infinity();
-    device_.for_each(plan_.voxel_count(), WriteDistances<Costs>{shape_, costs, band, site, distance});
+    const float band = request_.has_band ? request_.band : std::numeric_limits<float>::infinity();
+    device_.for_each(request_.voxel_count(), WriteDistances<Costs>{shape_, costs, band, site, distance});
   }
 
   template <class Costs, bool along_z>
@@ -148,7 +148,7 @@ class ImageTransform {
 
   Device& device_;
   BandTuning tuning_;
-  detail::ImagePlan plan_;
+  detail::ImageRequest request_;
   ImageShape shape_;
   Array<std::uint32_t> mask_;
   Array<std::uint32_t> bottom_, change_;  ///< see ColumnPass

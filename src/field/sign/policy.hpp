@@ -2,23 +2,15 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 
 #include "blum/core/context.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "field/sign/method.hpp"
 
 namespace blum::sign {
-
-/// How the sides of points are found.
-enum class Method : std::uint8_t {
-  none,          ///< unsigned
-  crossings,     ///< winding numbers, which are whole: every edge is run along equally often both ways
-  sums,          ///< generalized winding numbers of a surface with a boundary
-  pseudonormals  ///< the side of the closest site that its normal tells
-};
 
 /// The rule for a mesh and a mode: nothing else is looked at, so that grids, devices and queries cannot disagree.
 struct Plan {

@@ -15,7 +15,7 @@
 
 #include "blum/field/distance_transform.hpp"
 #include "blum/grid/selected_voxels.hpp"
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 #include "field/kernels/emulated_device.hpp"
 #include "field/kernels/image_transform.hpp"
 #include "support/back_ends.hpp"
@@ -41,7 +41,7 @@ Result transform(const VoxelImageView& image, const DistanceTransformOptions& op
                  const kernels::BandTuning& tuning) {
   kernels::EmulatedDevice device;
   kernels::ImageTransform<kernels::EmulatedDevice> transform(device, tuning);
-  transform.set_plan(detail::make_image_plan(image.grid, options));
+  transform.set_request(detail::make_image_request(image.grid, options));
   std::visit([&](const auto& values) { transform.select(values.data(), options.selection); }, image.values);
   Result result;
   result.distance.resize(image.grid.node_count());
@@ -194,7 +194,7 @@ TEST_P(ImageKernels, EqualTheCpuByteForByteForAnySpacing) {
 
 /// Brute force in double with the passes' arithmetic: the nearest voxel of each row, then row of each plane, then
 /// plane.
-std::uint32_t lowest_as_computed(const detail::ImagePlan& plan, const Mask& targets, std::size_t voxel) {
+std::uint32_t lowest_as_computed(const detail::ImageRequest& plan, const Mask& targets, std::size_t voxel) {
   const std::size_t at[3] = {voxel % plan.size[0], voxel / plan.size[0] % plan.size[1],
                              voxel / plan.size[0] / plan.size[1]};
   const auto square = [&](std::size_t axis, std::size_t to) {
@@ -228,7 +228,7 @@ TEST(ImageKernelsAlone, ChooseTheLowestComputedDistanceInDouble) {
       for (const double density : {0.004, 0.02, 0.1, 0.5}) {
         const VoxelImage image = image_of(size, spacing, random_mask(size, density, ++seed));
         const DistanceTransformOptions options{.is_signed = false};
-        const detail::ImagePlan plan = detail::make_image_plan(image.grid, options);
+        const detail::ImageRequest plan = detail::make_image_request(image.grid, options);
         if (plan.integer || !has_both_kinds(mask_of(image))) continue;
         SCOPED_TRACE(describe(size, spacing, seed));
         const Result result = transform(image, options, seed % 2 == 0 ? whole_columns : bands_of_seven);
@@ -319,7 +319,7 @@ TYPED_TEST(ImageKernelsOf, SelectLikeTheCpu) {
     expect_same_bytes(transform(image, options, bands_of_seven), distance_transform(image, options));
     kernels::EmulatedDevice device;
     kernels::ImageTransform<kernels::EmulatedDevice> counter(device);
-    counter.set_plan(detail::make_image_plan(grid, options));
+    counter.set_request(detail::make_image_request(grid, options));
     counter.select(values.data(), selection);
     EXPECT_EQ(counter.selected_count(), selected_voxels(image, selection).count());
   }
@@ -342,9 +342,9 @@ TEST(ImageKernelsAlone, SayHowMuchMemoryTheyNeed) {
   GridSpec grid;
   grid.size = {512, 512, 512};
   using Transform = kernels::ImageTransform<kernels::EmulatedDevice>;
-  EXPECT_EQ(Transform::scratch_bytes(detail::make_image_plan(grid, {})), std::size_t{512} * 512 * 64 + 8);
+  EXPECT_EQ(Transform::scratch_bytes(detail::make_image_request(grid, {})), std::size_t{512} * 512 * 64 + 8);
   grid.size = {100, 3200, 1};  // 100 bands of 32 rows
-  EXPECT_EQ(Transform::scratch_bytes(detail::make_image_plan(grid, {})), std::size_t{3200} * 16 + 100 * 100 * 8 + 8);
+  EXPECT_EQ(Transform::scratch_bytes(detail::make_image_request(grid, {})), std::size_t{3200} * 16 + 100 * 100 * 8 + 8);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "field/image_plan.hpp"
+#include "field/image_request.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -44,12 +44,12 @@ bool find_common_unit(const double (&spacing)[3], int used, CommonUnit& common) 
   return true;
 }
 
-/// Largest squared distance in the image, in units of the plan.
-double largest_square(const ImagePlan& plan) {
+/// Largest squared distance in the image, in units of the request.
+double largest_square(const ImageRequest& request) {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto extent = static_cast<double>(plan.size[axis] - 1);
-    sum += plan.weight[axis] * extent * extent;
+    const auto extent = static_cast<double>(request.size[axis] - 1);
+    sum += request.weight[axis] * extent * extent;
   }
   return sum;
 }
@@ -60,7 +60,7 @@ bool is_power_of_two(double value) {
 }
 
 /// Chooses whole-number arithmetic where the spacings allow it.
-void choose_arithmetic(ImagePlan& plan, const double (&spacing)[3], int used) {
+void choose_arithmetic(ImageRequest& request, const double (&spacing)[3], int used) {
   constexpr double integer_limit = 1 << 30;
   constexpr double float_limit = 1 << 24;
   CommonUnit common;
@@ -71,23 +71,23 @@ void choose_arithmetic(ImagePlan& plan, const double (&spacing)[3], int used) {
     for (const double factor : {undivided ? whole : 1.0, 1.0}) {
       for (int axis = 0; axis < used; ++axis) {
         const double multiple = factor * static_cast<double>(common.multiple[axis]);
-        plan.weight[axis] = multiple * multiple;
+        request.weight[axis] = multiple * multiple;
       }
-      plan.unit = common.unit / factor;
-      const double largest = largest_square(plan);
-      plan.integer = largest < integer_limit;
-      plan.exact_in_float =
-          largest < float_limit && is_power_of_two(plan.unit) && plan.unit > 1e-30 && plan.unit < 1e30;
-      if (plan.integer) return;
+      request.unit = common.unit / factor;
+      const double largest = largest_square(request);
+      request.integer = largest < integer_limit;
+      request.exact_in_float =
+          largest < float_limit && is_power_of_two(request.unit) && request.unit > 1e-30 && request.unit < 1e30;
+      if (request.integer) return;
     }
   }
-  plan.integer = false;
-  plan.exact_in_float = false;
-  plan.unit = 1;
+  request.integer = false;
+  request.exact_in_float = false;
+  request.unit = 1;
   // Divided by the largest spacing, so that squares neither overflow nor vanish.
   const double scale = *std::max_element(spacing, spacing + used);
-  for (int axis = 0; axis < used; ++axis) plan.weight[axis] = (spacing[axis] / scale) * (spacing[axis] / scale);
-  plan.unit = scale;
+  for (int axis = 0; axis < used; ++axis) request.weight[axis] = (spacing[axis] / scale) * (spacing[axis] / scale);
+  request.unit = scale;
 }
 
 /// Beyond this, float32 would hold infinities, or nothing but zeros.
@@ -105,28 +105,29 @@ void check_extent(const GridSpec& grid) {
 
 }  // namespace
 
-ImagePlan make_image_plan(const GridSpec& grid, const DistanceTransformOptions& options) {
-  ImagePlan plan;
+ImageRequest make_image_request(const GridSpec& grid, const DistanceTransformOptions& options) {
+  ImageRequest request;
   double spacing[3] = {1, 1, 1};
   int used = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (grid.size[axis] == 1) continue;
-    plan.size[used] = static_cast<std::size_t>(grid.size[axis]);
+    request.size[used] = static_cast<std::size_t>(grid.size[axis]);
     spacing[used] = grid.spacing[axis];
     ++used;
   }
   check_extent(grid);
-  choose_arithmetic(plan, spacing, std::max(used, 1));
-  plan.is_signed = options.is_signed;
+  choose_arithmetic(request, spacing, std::max(used, 1));
+  request.is_signed = options.is_signed;
+  request.selection = options.selection;
   if (options.band) {
     const double band = *options.band;
     if (!(band > 0)) throw InvalidOption("the band must be a positive width, not " + exact_text(band));
-    plan.has_band = band < static_cast<double>(std::numeric_limits<float>::max());
-    if (plan.has_band) {
-      plan.band = static_cast<float>(band);  // as distances are rounded, so that one equal to it stays within
+    request.has_band = band < static_cast<double>(std::numeric_limits<float>::max());
+    if (request.has_band) {
+      request.band = static_cast<float>(band);  // as distances are rounded, so that one equal to it stays within
     }
   }
-  return plan;
+  return request;
 }
 
 }  // namespace blum::detail
