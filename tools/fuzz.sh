@@ -29,7 +29,7 @@ export -f run_target
 tools/results.py check "$results" fuzz-build -- tools/build.sh fuzz
 # As many at once as there are cores.
 # shellcheck disable=SC2016  # $0 is the inner shell's
-for source in tests/fuzz/*.cpp; do basename "$source" .cpp; done |
+for folder in tests/fuzz/corpus/*; do basename "$folder"; done |
   xargs -P "${JOBS:-$(nproc)}" -I '{}' tools/results.py check "$results" '{}' -- \
     bash -c 'set -euo pipefail; run_target "$0"' '{}'
 [[ -n ${RESULTS:-} ]] || tools/results.py summary "$results"

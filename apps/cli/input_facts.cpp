@@ -13,7 +13,7 @@ namespace blum::cli {
 Json file_json(const std::filesystem::path& path, const MeshFile& file) {
   return {{"path", path.string()},
           {"kind", "mesh"},
-          {"format", to_string(file.info.format)},
+          {"format", file.info.format.name()},
           {"binary", file.info.binary},
           {"file_vertices", file.info.vertices},
           {"file_faces", file.info.faces},
@@ -29,7 +29,7 @@ Json file_json(const std::filesystem::path& path, const MeshFile& file) {
 }
 
 std::string file_text(const MeshFile& file) {
-  std::string text = std::string(to_string(file.info.format)) + (file.info.binary ? " (binary)" : " (text)") + ", " +
+  std::string text = file.info.format.name() + (file.info.binary ? " (binary)" : " (text)") + ", " +
                      plural(file.info.vertices, "vertex", "vertices") + ", " + plural(file.info.faces, "face", "faces");
   if (file.info.polygons > 0) text += ", " + count_text(file.info.polygons) + " of them with more than 3 corners";
   if (file.info.fan_polygons > 0) text += ", " + count_text(file.info.fan_polygons) + " not simple";

@@ -70,7 +70,7 @@ Request parse(const Arguments& a) {
   std::vector<std::string> known = file_extensions(FileContent::field, FileAccess::write);
   for (const std::string& end : file_extensions(FileContent::mesh, FileAccess::write)) known.push_back(end);
   check_extension("--output", r.output, known);
-  r.is_field = format_by_name(FileContent::field, r.output).has_value();
+  r.is_field = FieldFormat::by_name(r.output).has_value();
   exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
   exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
   if (a.input) r.input = *a.input;

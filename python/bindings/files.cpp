@@ -28,7 +28,7 @@ void bind_meshes(nb::module_& m) {
       [](const Path& path, std::optional<double> weld) {
         MeshFile file = run({0, nb::none()}, [&](const Context&) { return read_mesh_file(path, {weld}); });
         nb::dict info;
-        info["format"] = std::string(to_string(file.info.format));
+        info["format"] = file.info.format.name();
         info["binary"] = file.info.binary;
         info["vertices"] = file.info.vertices;
         info["faces"] = file.info.faces;

@@ -11,12 +11,19 @@
 
 namespace blum::complex_files {
 
+/// Refuses to write what a format cannot hold, unless the options allow the loss.
+/// @param format  its name.  @param kept  the only column that it holds, of vertices; may be empty.
+/// @throws InvalidOption naming what would be lost.
+void refuse_loss(const std::filesystem::path& path, std::string_view format, const Complex& complex,
+                 const FileMetadata& metadata, const ComplexWriteOptions& options, std::string_view kept = {});
+
 // The writers get complexes without problems (problem_of), and names and metadata that files can hold.
 void write_vtp(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
-               const Context& context);
+               const ComplexWriteOptions& options, const Context& context);
 void write_ply(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
-               const Context& context);
-void write_obj(const std::filesystem::path& path, const Complex& complex, const Context& context);
+               const ComplexWriteOptions& options, const Context& context);
+void write_obj(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
+               const ComplexWriteOptions& options, const Context& context);
 void write_npz(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                const ComplexWriteOptions& options, const Context& context);
 

@@ -9,22 +9,11 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
-#include "io/complex_files.hpp"
-#include "io/text_scan.hpp"
+#include "io/format_table.hpp"
 #include "io/whole_file.hpp"
 
 namespace blum {
 namespace {
-
-ComplexFormat format_of(const std::filesystem::path& path) {
-  const std::string extension = volume_io::lower_case(path.extension().string());
-  if (extension == ".vtp") return ComplexFormat::vtp;
-  if (extension == ".ply") return ComplexFormat::ply;
-  if (extension == ".obj") return ComplexFormat::obj;
-  if (extension == ".npz") return ComplexFormat::npz;
-  throw InvalidOption("'" + path.string() +
-                      "': complexes are kept in .vtp, .ply, .obj and .npz files; use one of these extensions");
-}
 
 bool is_letter_or_digit(char c) {
   return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
@@ -68,8 +57,9 @@ void check_metadata(const FileMetadata& metadata) {
 void check_further(const std::filesystem::path& path, ComplexFormat format,
                    const std::vector<NamedComplexRef>& further) {
   if (further.empty()) return;
-  if (format != ComplexFormat::npz) {
-    throw InvalidOption("'" + path.string() + "': only .npz files hold several complexes");
+  if (!formats::code_of(format).holds_further) {
+    throw InvalidOption("'" + path.string() + "': " + format.name() +
+                        " files do not hold several complexes; .npz files do");
   }
   std::set<std::string_view> names;
   for (const NamedComplexRef& f : further) {
@@ -86,36 +76,8 @@ void check_further(const std::filesystem::path& path, ComplexFormat format,
   }
 }
 
-std::string names_of(const Columns& columns) {
-  std::string names;
-  for (const Column& column : columns) names += (names.empty() ? "" : ", ") + column.name;
-  return names;
-}
-
-void check_obj_loses_nothing(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata) {
-  std::string lost;
-  const auto lose = [&](const std::string& what) { lost += (lost.empty() ? "" : "; ") + what; };
-  if (!complex.vertex_columns.empty()) lose("columns of vertices (" + names_of(complex.vertex_columns) + ")");
-  if (!complex.edge_columns.empty()) lose("columns of edges (" + names_of(complex.edge_columns) + ")");
-  if (!complex.triangle_columns.empty()) lose("columns of triangles (" + names_of(complex.triangle_columns) + ")");
-  if (!metadata.empty()) lose("metadata");
-  if (lost.empty()) return;
-  throw InvalidOption("'" + path.string() + "': .obj files hold positions, edges and triangles only, so that these " +
-                      "would be lost: " + lost + "; write .vtp, .ply or .npz, or allow the loss");
-}
-
-/// Formats whose arrays are read one by one, from where they are.
-bool is_read_in_parts(ComplexFormat format) {
-  return format == ComplexFormat::vtp || format == ComplexFormat::npz;
-}
-
-ComplexFile read_by_format(const volume_io::ByteSource& source, ComplexFormat format) {
-  return format == ComplexFormat::vtp ? complex_files::read_vtp(source) : complex_files::read_npz(source);
-}
-
-ComplexFile read_by_format(std::span<const std::byte> bytes, ComplexFormat format, const std::string& name) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return format == ComplexFormat::ply ? complex_files::read_ply(text, name) : complex_files::read_obj(text, name);
+std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// Reads, and looks at the result as a whole.
@@ -141,36 +103,28 @@ ComplexFile checked(const std::string& name, Read read) {
 
 void write_complex(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                    const ComplexWriteOptions& options, const Context& context) {
-  const ComplexFormat format = format_of(path);
+  const ComplexFormat format = ComplexFormat::of(path, FileAccess::write);
   check_complex(complex);
   check_metadata(metadata);
   check_further(path, format, options.further);
   throw_if_cancelled(context);
-  switch (format) {
-    case ComplexFormat::vtp:
-      return complex_files::write_vtp(path, complex, metadata, context);
-    case ComplexFormat::ply:
-      return complex_files::write_ply(path, complex, metadata, context);
-    case ComplexFormat::obj:
-      if (!options.allow_loss) check_obj_loses_nothing(path, complex, metadata);
-      return complex_files::write_obj(path, complex, context);
-    case ComplexFormat::npz:
-      return complex_files::write_npz(path, complex, metadata, options, context);
-  }
+  formats::code_of(format).write(path, complex, metadata, options, context);
 }
 
 ComplexFile read_complex(const std::filesystem::path& path) {
-  const ComplexFormat format = format_of(path);
+  const formats::ComplexCode& code = formats::code_of(ComplexFormat::of(path));
   return checked(path.string(), [&] {
-    if (is_read_in_parts(format)) return read_by_format(volume_io::FileSource(path), format);
-    return read_by_format(read_whole_file(path).span(), format, path.string());
+    if (code.read != nullptr) return code.read(volume_io::FileSource(path));
+    const FileBytes content = read_whole_file(path);
+    return code.read_text(as_text(content.span()), path.string());
   });
 }
 
 ComplexFile read_complex(std::span<const std::byte> bytes, ComplexFormat format, const std::string& name) {
+  const formats::ComplexCode& code = formats::code_of(format);
   return checked(name, [&] {
-    if (is_read_in_parts(format)) return read_by_format(volume_io::MemorySource(bytes, name), format);
-    return read_by_format(bytes, format, name);
+    if (code.read != nullptr) return code.read(volume_io::MemorySource(bytes, name));
+    return code.read_text(as_text(bytes), name);
   });
 }
 

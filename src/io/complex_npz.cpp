@@ -13,6 +13,7 @@
 #include "blum/core/ids.hpp"
 #include "io/complex_files.hpp"
 #include "io/file_columns.hpp"
+#include "io/format_table.hpp"
 #include "io/json.hpp"
 #include "io/npz.hpp"
 
@@ -229,6 +230,11 @@ class ComplexNpzReader {
   NpzReader npz_;
 };
 
+/// The end of an archive names its arrays.
+bool holds_complex(std::string_view, std::string_view tail) {
+  return tail.find("vertices.npy") != std::string_view::npos && tail.find("distance.npy") == std::string_view::npos;
+}
+
 }  // namespace
 
 void write_npz(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
@@ -253,3 +259,10 @@ ComplexFile read_npz(const volume_io::ByteSource& source) {
 }
 
 }  // namespace blum::complex_files
+
+namespace blum::formats {
+
+constinit const ComplexCode complex_npz{
+    complex_files::read_npz, nullptr, complex_files::write_npz, {.holds_this = complex_files::holds_complex}, true};
+
+}  // namespace blum::formats

@@ -6,11 +6,17 @@
 #include "blum/io/mesh_io.hpp"
 #include "io/complex_files.hpp"
 #include "io/edge_set.hpp"
+#include "io/format_table.hpp"
 #include "io/mesh_builder.hpp"
 #include "io/row_writer.hpp"
 
 namespace blum::complex_files {
 namespace {
+
+/// A file of vertices, edges and triangles may as well be a mesh.
+bool never_tells(std::string_view, std::string_view) {
+  return false;
+}
 
 /// Stands in for the vertices of an empty complex: a file of no bytes might as well be one that was never written.
 constexpr std::string_view empty_file = "# a complex without vertices\n";
@@ -25,7 +31,9 @@ void write_cell(RowWriter& out, std::string_view keyword, const std::array<std::
 
 }  // namespace
 
-void write_obj(const std::filesystem::path& path, const Complex& complex, const Context& context) {
+void write_obj(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
+               const ComplexWriteOptions& options, const Context& context) {
+  refuse_loss(path, "OBJ", complex, metadata, options);
   const std::vector<std::uint32_t> isolated = isolated_vertices(complex.view());
   RowWriter out(path, complex.positions.size() + complex.triangles.size() + complex.edges.size() + isolated.size(),
                 context);
@@ -45,7 +53,7 @@ void write_obj(const std::filesystem::path& path, const Complex& complex, const 
 ComplexFile read_obj(std::string_view text, std::string_view name) {
   ComplexFile file;
   if (text == empty_file) return file;
-  TriangleMesh mesh = blum::read_obj(text, name).mesh;
+  TriangleMesh mesh = formats::mesh_obj.read(text, name).mesh;
   file.complex.positions = std::move(mesh.vertices);
   file.complex.edges = std::move(mesh.segments);
   file.complex.triangles = std::move(mesh.triangles);
@@ -53,3 +61,10 @@ ComplexFile read_obj(std::string_view text, std::string_view name) {
 }
 
 }  // namespace blum::complex_files
+
+namespace blum::formats {
+
+constinit const ComplexCode complex_obj{
+    nullptr, complex_files::read_obj, complex_files::write_obj, {.holds_this = complex_files::never_tells}};
+
+}  // namespace blum::formats

@@ -5,6 +5,7 @@
 
 #include "io/complex_files.hpp"
 #include "io/complex_ply_names.hpp"
+#include "io/format_table.hpp"
 #include "io/json.hpp"
 #include "io/row_writer.hpp"
 
@@ -85,10 +86,16 @@ void write_vertices(RowWriter& out, const Complex& complex) {
   }
 }
 
+/// An axis that write_medial() wrote; of another complex, nothing tells that it is not a mesh.
+bool holds_axis(std::string_view head, std::string_view) {
+  const std::string_view header = head.substr(0, head.find("end_header"));
+  return header.find(R"(comment blum {"content": "medial axis"})") != std::string_view::npos;
+}
+
 }  // namespace
 
 void write_ply(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
-               const Context& context) {
+               const ComplexWriteOptions&, const Context& context) {
   RowWriter out(path, complex.positions.size() + complex.triangles.size() + 2 * complex.edges.size(), context);
   out.text(header_text(complex, metadata));
   write_vertices(out, complex);
@@ -110,3 +117,10 @@ void write_ply(const std::filesystem::path& path, const Complex& complex, const 
 }
 
 }  // namespace blum::complex_files
+
+namespace blum::formats {
+
+constinit const ComplexCode complex_ply{
+    nullptr, complex_files::read_ply, complex_files::write_ply, {.holds_this = complex_files::holds_axis}};
+
+}  // namespace blum::formats

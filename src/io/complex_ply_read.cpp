@@ -283,7 +283,7 @@ class ComplexPlyReader {
 
   ComplexFile finish() {
     Complex& complex = file_.complex;
-    TriangleMesh mesh = builder_.finish(MeshFormat::ply, true).mesh;
+    TriangleMesh mesh = builder_.finish(true).mesh;
     complex.positions = std::move(mesh.vertices);
     complex.triangles = std::move(mesh.triangles);
     if (complex.triangles.size() != triangle_counts_.size()) {

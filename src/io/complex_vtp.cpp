@@ -15,6 +15,7 @@
 #include "io/field_metadata.hpp"
 #include "io/field_sink.hpp"
 #include "io/file_columns.hpp"
+#include "io/format_table.hpp"
 #include "io/vtk_xml.hpp"
 
 namespace blum::complex_files {
@@ -223,7 +224,7 @@ std::string opening_text(const Complex& complex, std::size_t verts, const CellCo
 }  // namespace
 
 void write_vtp(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
-               const Context& context) {
+               const ComplexWriteOptions&, const Context& context) {
   const std::vector<std::uint32_t> verts = isolated_vertices(complex.view());
   const CellColumns columns(complex);
   const std::vector<Section> sections = sections_of(complex, columns.arrays, verts);
@@ -253,3 +254,9 @@ void write_vtp(const std::filesystem::path& path, const Complex& complex, const 
 }
 
 }  // namespace blum::complex_files
+
+namespace blum::formats {
+
+constinit const ComplexCode complex_vtp{complex_files::read_vtp, nullptr, complex_files::write_vtp};
+
+}  // namespace blum::formats

@@ -29,8 +29,8 @@ void write_field_vti(const std::filesystem::path& path, const Field& field, cons
 
 /// @param path  where the source came from, to find the sites; empty: they are not looked for.
 [[nodiscard]] Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& path);
-[[nodiscard]] Field read_field_npz(const ByteSource& source);
-[[nodiscard]] Field read_field_vti(const ByteSource& source);
+[[nodiscard]] Field read_field_npz(const ByteSource& source, const std::filesystem::path& path);
+[[nodiscard]] Field read_field_vti(const ByteSource& source, const std::filesystem::path& path);
 
 /// The bytes of a field's arrays, in the machine's order.
 [[nodiscard]] inline std::span<const std::byte> distance_bytes(const Field& field) {

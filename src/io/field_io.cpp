@@ -5,17 +5,10 @@
 #include <string>
 
 #include "blum/core/error.hpp"
-#include "blum/io/formats.hpp"
-#include "io/field_files.hpp"
+#include "io/format_table.hpp"
 
 namespace blum {
 namespace {
-
-FieldFormat format_of(const std::filesystem::path& path) {
-  if (const auto place = format_by_name(FileContent::field, path)) return static_cast<FieldFormat>(*place);
-  throw InvalidOption("'" + path.string() +
-                      "': fields are kept in .nrrd, .npz and .vti files; use one of these extensions");
-}
 
 void check_sizes(const Field& field) {
   validate(field.grid);
@@ -28,9 +21,7 @@ void check_sizes(const Field& field) {
 }
 
 Field read(const volume_io::ByteSource& source, FieldFormat format, const std::filesystem::path& path) {
-  Field field = format == FieldFormat::nrrd  ? volume_io::read_field_nrrd(source, path)
-                : format == FieldFormat::npz ? volume_io::read_field_npz(source)
-                                             : volume_io::read_field_vti(source);
+  Field field = formats::code_of(format).read(source, path);
   try {
     check_sizes(field);
   } catch (const InvalidGrid& error) {
@@ -43,20 +34,13 @@ Field read(const volume_io::ByteSource& source, FieldFormat format, const std::f
 
 void write_field(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
                  const Context& context) {
-  const FieldFormat format = format_of(path);
+  const FieldFormat format = FieldFormat::of(path, FileAccess::write);
   check_sizes(field);
-  switch (format) {
-    case FieldFormat::nrrd:
-      return volume_io::write_field_nrrd(path, field, info, context);
-    case FieldFormat::npz:
-      return volume_io::write_field_npz(path, field, info, context);
-    case FieldFormat::vti:
-      return volume_io::write_field_vti(path, field, info, context);
-  }
+  formats::code_of(format).write(path, field, info, context);
 }
 
 Field read_field(const std::filesystem::path& path) {
-  const FieldFormat format = format_of(path);
+  const FieldFormat format = FieldFormat::of(path);
   return read(volume_io::FileSource(path), format, path);
 }
 

@@ -9,6 +9,7 @@
 #include "io/field_files.hpp"
 #include "io/field_metadata.hpp"
 #include "io/field_sink.hpp"
+#include "io/format_table.hpp"
 #include "io/image_geometry.hpp"
 #include "io/npz.hpp"
 
@@ -99,7 +100,7 @@ void write_field_npz(const std::filesystem::path& path, const Field& field, cons
   file.commit();
 }
 
-Field read_field_npz(const ByteSource& source) {
+Field read_field_npz(const ByteSource& source, const std::filesystem::path&) {
   NpzReader npz(source);
   if (!npz.has("distance") && npz.has("vertices")) {
     throw FormatError(source.name() + ": it holds vertices, but no array 'distance': a medial axis, not a field");
@@ -128,3 +129,11 @@ Field read_field_npz(const ByteSource& source) {
 }
 
 }  // namespace blum::volume_io
+
+namespace blum::formats {
+
+using namespace volume_io;
+
+constinit const FieldCode field_npz{read_field_npz, write_field_npz};
+
+}  // namespace blum::formats

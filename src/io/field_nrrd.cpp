@@ -6,6 +6,7 @@
 #include "io/field_files.hpp"
 #include "io/field_metadata.hpp"
 #include "io/field_sink.hpp"
+#include "io/format_table.hpp"
 #include "io/image_geometry.hpp"
 #include "io/nrrd.hpp"
 
@@ -96,4 +97,21 @@ Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& pat
   return field;
 }
 
+namespace {
+
+/// A NRRD file whose header says that it is one of Blum's fields.
+bool holds_field(std::string_view head, std::string_view) {
+  return head.substr(0, head.find("\n\n")).find("sign_rule:=") != std::string_view::npos;
+}
+
+}  // namespace
+
 }  // namespace blum::volume_io
+
+namespace blum::formats {
+
+using namespace volume_io;
+
+constinit const FieldCode field_nrrd{read_field_nrrd, write_field_nrrd, {.holds_this = holds_field}};
+
+}  // namespace blum::formats

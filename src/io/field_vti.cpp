@@ -6,6 +6,7 @@
 #include "io/field_files.hpp"
 #include "io/field_metadata.hpp"
 #include "io/field_sink.hpp"
+#include "io/format_table.hpp"
 #include "io/vtk_xml.hpp"
 
 namespace blum::volume_io {
@@ -63,3 +64,11 @@ void write_field_vti(const std::filesystem::path& path, const Field& field, cons
 }
 
 }  // namespace blum::volume_io
+
+namespace blum::formats {
+
+using namespace volume_io;
+
+constinit const FieldCode field_vti{read_field_vti, write_field_vti};
+
+}  // namespace blum::formats

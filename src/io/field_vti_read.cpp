@@ -126,7 +126,7 @@ class VtiParser {
 
 }  // namespace
 
-Field read_field_vti(const ByteSource& source) {
+Field read_field_vti(const ByteSource& source, const std::filesystem::path&) {
   const std::string text = read_vtk_header(source);
   const VtiHeader header = VtiParser(text, source.name()).parse();
   const std::uint64_t count = header.grid.node_count();

@@ -11,6 +11,7 @@
 
 #include "blum/io/image_io.hpp"
 #include "io/field_files.hpp"
+#include "io/format_table.hpp"
 #include "io/whole_file.hpp"
 
 namespace blum {
@@ -42,10 +43,6 @@ std::string read_tail(const fs::path& path) {
   return tail;
 }
 
-bool is_field_header(std::string_view head) {
-  return head.substr(0, head.find("\n\n")).find("sign_rule:=") != std::string_view::npos;
-}
-
 /// Whether a NRRD header says that the values are floating-point numbers.
 bool holds_floats(std::string_view head) {
   std::istringstream lines{std::string(head.substr(0, head.find("\n\n")))};
@@ -60,37 +57,44 @@ bool holds_floats(std::string_view head) {
 }
 
 std::optional<ImageFormat> image_format(const fs::path& path, std::string_view head) {
-  auto place = format_by_name(FileContent::image, path);
-  if (!place) place = format_by_head(FileContent::image, head);
-  return place ? std::optional(static_cast<ImageFormat>(*place)) : std::nullopt;
+  const auto format = ImageFormat::by_name(path);
+  return format ? format : ImageFormat::by_head(head);
+}
+
+/// Whether a file is one of this content by its extension and, where that stands for others too, by its bytes.
+template <class Format>
+bool holds(const std::optional<Format>& format, std::string_view head, std::string_view tail) {
+  if (!format) return false;
+  const auto holds_this = formats::tells_of(format->row()).holds_this;
+  return holds_this == nullptr || holds_this(head, tail);
+}
+
+/// The content of a file whose extension stands for none.
+std::optional<FileContent> content_by_head(std::string_view head) {
+  if (const auto format = ImageFormat::by_head(head)) {
+    const auto field = FieldFormat::by_name("a" + file_formats()[format->row()].extensions.front());
+    return field && holds(field, head, {}) ? FileContent::field : FileContent::image;
+  }
+  return MeshFormat::by_head(head) ? std::optional(FileContent::mesh) : std::nullopt;
 }
 
 }  // namespace
 
 FileContent content_of(const fs::path& path) {
   const std::string head = read_head(path);
-  if (format_by_name(FileContent::mesh, path)) return FileContent::mesh;
-  if (format_by_name(FileContent::complex, path) && holds_complex(path)) return FileContent::complex;
-  const std::optional<ImageFormat> format = image_format(path, head);
-  if (format == ImageFormat::nrrd) return is_field_header(head) ? FileContent::field : FileContent::image;
-  if (format_by_name(FileContent::field, path)) return FileContent::field;
-  if (format) return FileContent::image;
-  if (format_by_head(FileContent::mesh, head)) return FileContent::mesh;
+  const std::string tail = read_tail(path);
+  if (MeshFormat::by_name(path)) return FileContent::mesh;
+  if (holds(ComplexFormat::by_name(path), head, tail)) return FileContent::complex;
+  if (holds(FieldFormat::by_name(path), head, tail)) return FileContent::field;
+  if (ImageFormat::by_name(path)) return FileContent::image;
+  if (const auto content = content_by_head(head)) return *content;
   throw FileError("'" + path.string() + "' is of no known kind; meshes are " +
                   extension_list(FileContent::mesh, FileAccess::read) + " files, images " +
                   extension_list(FileContent::image, FileAccess::read));
 }
 
 bool holds_complex(const fs::path& path) {
-  const std::string head = read_head(path);
-  const std::string end = file_extension(path);
-  if (end == ".vtp" || end == ".ma") return true;
-  if (end == ".npz") {
-    const std::string tail = read_tail(path);
-    return tail.find("vertices.npy") != std::string::npos && tail.find("distance.npy") == std::string::npos;
-  }
-  const std::string_view header = std::string_view(head).substr(0, head.find("end_header"));
-  return end == ".ply" && header.find(R"(comment blum {"content": "medial axis"})") != std::string_view::npos;
+  return holds(ComplexFormat::by_name(path), read_head(path), read_tail(path));
 }
 
 bool may_hold_field(const fs::path& path) {
@@ -100,22 +104,22 @@ bool may_hold_field(const fs::path& path) {
 }
 
 MeshFile read_mesh_of_any_name(const fs::path& path, const MeshReadOptions& options) {
-  if (format_by_name(FileContent::mesh, path)) return read_mesh_file(path, options);
-  const auto place = format_by_head(FileContent::mesh, read_head(path));
-  if (!place) return read_mesh_file(path, options);  // for its message
-  return read_mesh_file(read_whole_file(path).span(), static_cast<MeshFormat>(*place), options, path.string());
+  if (MeshFormat::by_name(path)) return read_mesh_file(path, options);
+  const auto format = MeshFormat::by_head(read_head(path));
+  if (!format) return read_mesh_file(path, options);  // for its message
+  return read_mesh_file(read_whole_file(path).span(), *format, options, path.string());
 }
 
 VoxelImage read_image_of_any_name(const fs::path& path) {
-  if (format_by_name(FileContent::image, path)) return read_image(path);
-  const auto place = format_by_head(FileContent::image, read_head(path));
-  if (!place) return read_image(path);
-  return read_image(read_whole_file(path).span(), static_cast<ImageFormat>(*place), path.string());
+  if (ImageFormat::by_name(path)) return read_image(path);
+  const auto format = ImageFormat::by_head(read_head(path));
+  if (!format) return read_image(path);
+  return read_image(read_whole_file(path).span(), *format, path.string());
 }
 
 std::string_view image_format_name(const fs::path& path) {
   const std::optional<ImageFormat> format = image_format(path, read_head(path));
-  return format ? format_name(FileContent::image, static_cast<std::size_t>(*format)) : "unknown";
+  return format ? std::string_view(format->name()) : "unknown";
 }
 
 std::vector<fs::path> files_of_field(const fs::path& path) {

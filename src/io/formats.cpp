@@ -2,82 +2,59 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <sstream>
 
+#include "blum/core/error.hpp"
+#include "io/format_table.hpp"
 #include "io/text_scan.hpp"
 
 namespace blum {
 namespace {
 
-using Words = std::span<const std::string_view>;
-
-// Whether a file begins as one of a format.
-
-bool begins_as_ply(std::string_view head) {
-  return head.starts_with("ply\n") || head.starts_with("ply\r");
-}
-bool begins_as_off(std::string_view head) {
-  return head.starts_with("OFF") || head.starts_with("COFF") || head.starts_with("NOFF");
-}
-bool begins_as_stl(std::string_view head) {
-  return head.starts_with("solid ") && head.find("facet") != std::string_view::npos;
-}
-bool begins_as_obj(std::string_view head) {
-  return head.starts_with("v ") || head.find("\nv ") != std::string_view::npos;
-}
-bool begins_as_nrrd(std::string_view head) {
-  return head.starts_with("NRRD000");
-}
-bool begins_as_npy(std::string_view head) {
-  return head.starts_with("\x93NUMPY");
-}
-bool begins_as_nifti(std::string_view head) {
-  return head.size() >= 348 && (head.substr(344, 3) == "n+1" || head.substr(4, 3) == "n+2");
-}
-bool begins_as_vol(std::string_view head) {
-  return head.starts_with("X: ") || head.starts_with("Center-X:");
+std::vector<std::string> words_of(std::string_view words) {
+  std::istringstream stream{std::string(words)};
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
-constexpr std::array<std::string_view, 1> obj{".obj"}, off{".off"}, stl{".stl"}, ply{".ply"}, nrrd{".nrrd"},
-    npy{".npy"}, vol{".vol"}, npz{".npz"}, vti{".vti"}, vtp{".vtp"}, ma{".ma"};
-constexpr std::array<std::string_view, 2> nrrds{".nrrd", ".nhdr"};
-constexpr std::array<std::string_view, 6> nifti{".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"};
-
-constexpr FileContent mesh = FileContent::mesh, image = FileContent::image, field = FileContent::field,
-                      complex = FileContent::complex;
-
-const std::array formats{
-    FileFormat{mesh, "OBJ", obj, obj, "triangles, polygons, segments, points; double precision", "Blender, MeshLab",
-               begins_as_obj},
-    FileFormat{mesh, "OFF", off, off, "triangles, polygons; double precision", "MeshLab, CGAL", begins_as_off},
-    FileFormat{mesh, "STL", stl, stl, "triangles without shared vertices; single precision", "CAD, slicers",
-               begins_as_stl},
-    FileFormat{mesh, "PLY", ply, ply, "triangles, polygons, segments; double precision", "MeshLab, Blender, ParaView",
-               begins_as_ply},
-    FileFormat{image, "NRRD", nrrds, nrrd, "scalars of any type, spacing, axes, space", "3D Slicer, ITK",
-               begins_as_nrrd},
-    FileFormat{image, "NIfTI", nifti, {}, "scalars of any type, spacing, axes", "3D Slicer, ITK, FSL", begins_as_nifti},
-    FileFormat{image, "NPY", npy, npy, "scalars of any type, [z, y, x]; no spacing", "NumPy", begins_as_npy},
-    FileFormat{image, "Vol", vol, {}, "bytes; no spacing", "DGtal", begins_as_vol},
-    FileFormat{field, "NRRD", nrrd, nrrd, "distances; sites in a second file, NAME.site.nrrd", "3D Slicer, ITK"},
-    FileFormat{field, "NPZ", npz, npz, "distances, sites, vertices of sites", "NumPy"},
-    FileFormat{field, "VTI", vti, vti, "distances, sites", "ParaView, VTK"},
-    FileFormat{complex, "VTP", vtp, vtp, "all columns, metadata", "ParaView, VTK, 3D Slicer"},
-    FileFormat{complex, "PLY", ply, ply, "all columns, metadata", "MeshLab, trimesh"},
-    FileFormat{complex, "OBJ", obj, obj, "positions, edges, triangles; no columns", "Blender, MeshLab"},
-    FileFormat{complex, "MA", ma, ma, "positions, radii, edges, triangles of medial axes", "Q-MAT"},
-    FileFormat{complex, "NPZ", npz, npz, "all columns, metadata, further complexes", "NumPy"},
-};
-
-/// The place among those of one content of the first format that fits.
+/// The first row of a content that fits.
 template <class Fits>
 std::optional<std::size_t> find(FileContent content, Fits fits) {
-  std::size_t place = 0;
-  for (const FileFormat& format : formats) {
-    if (format.content != content) continue;
-    if (fits(format)) return place;
-    ++place;
+  const std::vector<FileFormat>& formats = file_formats();
+  for (std::size_t row = 0; row < formats.size(); ++row) {
+    if (formats[row].content == content && fits(row)) return row;
   }
   return std::nullopt;
+}
+
+std::optional<std::size_t> find_extension(FileContent content, const std::string& extension) {
+  return find(content, [&](std::size_t row) {
+    const std::vector<std::string>& known = file_formats()[row].extensions;
+    return std::find(known.begin(), known.end(), extension) != known.end();
+  });
+}
+
+std::size_t find_named(FileContent content, std::string_view name) {
+  const std::string word = volume_io::lower_case(name);
+  auto row = find(content, [&](std::size_t k) { return volume_io::lower_case(file_formats()[k].name) == word; });
+  if (!row) row = find_extension(content, word.starts_with('.') ? word : "." + word);
+  if (row) return *row;
+  std::string known;
+  for (const FileFormat& format : file_formats()) {
+    if (format.content == content) known += (known.empty() ? "" : ", ") + format.name;
+  }
+  throw InvalidOption("there is no format '" + std::string(name) + "' of files of this content (" +
+                      std::string(to_string(content)) + "); the formats are " + known);
+}
+
+std::optional<std::size_t> find_head(FileContent content, std::string_view head) {
+  const auto fits = [&](std::size_t row) {
+    const auto begins_as = formats::tells_of(row).begins;
+    return begins_as != nullptr && begins_as(head);
+  };
+  // PLY and OFF files may have lines that look like those of OBJ.
+  const auto found = find(content, [&](std::size_t row) { return file_formats()[row].name != "OBJ" && fits(row); });
+  return found ? found : find(content, fits);
 }
 
 }  // namespace
@@ -87,9 +64,49 @@ std::string_view to_string(FileContent content) {
   return names[static_cast<std::size_t>(content)];
 }
 
-std::span<const FileFormat> file_formats() {
-  return formats;
+const std::vector<FileFormat>& file_formats() {
+  static const std::vector<FileFormat> all = [] {
+    std::vector<FileFormat> out;
+    for (const formats::Row& row : formats::table) {
+      out.push_back({static_cast<FileContent>(row.code.index()), std::string(row.name), words_of(row.extensions),
+                     words_of(row.written), std::string(row.holds), std::string(row.opens_in)});
+    }
+    return out;
+  }();
+  return all;
 }
+
+template <FileContent content>
+FormatOf<content>::FormatOf(std::string_view name) : row_(find_named(content, name)) {}
+
+template <FileContent content>
+std::optional<FormatOf<content>> FormatOf<content>::by_name(const std::filesystem::path& path) {
+  const auto row = find_extension(content, file_extension(path));
+  return row ? std::optional(FormatOf(*row)) : std::nullopt;
+}
+
+template <FileContent content>
+std::optional<FormatOf<content>> FormatOf<content>::by_head(std::string_view head) {
+  const auto row = find_head(content, head);
+  return row ? std::optional(FormatOf(*row)) : std::nullopt;
+}
+
+template <FileContent content>
+FormatOf<content> FormatOf<content>::of(const std::filesystem::path& path, FileAccess access) {
+  const std::string extension = file_extension(path);
+  const std::vector<std::string> known = file_extensions(content, access);
+  const auto format = by_name(path);
+  if (format && std::find(known.begin(), known.end(), extension) != known.end()) return *format;
+  constexpr std::array<std::string_view, 4> plural{"meshes", "images", "fields", "complexes, medial axes among them,"};
+  throw InvalidOption("'" + path.string() + "': " + std::string(plural[static_cast<std::size_t>(content)]) + " are " +
+                      (access == FileAccess::read ? "read from " : "written to ") +
+                      extension_list(content, access, ", ") + " files; use one of these extensions");
+}
+
+template class FormatOf<FileContent::mesh>;
+template class FormatOf<FileContent::image>;
+template class FormatOf<FileContent::field>;
+template class FormatOf<FileContent::complex>;
 
 std::string file_extension(const std::filesystem::path& path) {
   std::string last = volume_io::lower_case(path.extension().string());
@@ -98,33 +115,11 @@ std::string file_extension(const std::filesystem::path& path) {
   return inner == ".nii" || inner == ".hdr" || inner == ".img" ? inner + last : last;
 }
 
-std::optional<std::size_t> format_by_name(FileContent content, const std::filesystem::path& path) {
-  const std::string extension = file_extension(path);
-  return find(content, [&](const FileFormat& format) {
-    return std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end();
-  });
-}
-
-std::optional<std::size_t> format_by_head(FileContent content, std::string_view head) {
-  // PLY and OFF files may have lines that look like those of OBJ.
-  const auto found =
-      find(content, [&](const FileFormat& f) { return f.begins != nullptr && f.name != "OBJ" && f.begins(head); });
-  if (found) return found;
-  return find(content, [&](const FileFormat& format) { return format.begins != nullptr && format.begins(head); });
-}
-
-std::string_view format_name(FileContent content, std::size_t place) {
-  for (const FileFormat& format : formats) {
-    if (format.content == content && place-- == 0) return format.name;
-  }
-  return "unknown";
-}
-
 std::vector<std::string> file_extensions(FileContent content, FileAccess access) {
   std::vector<std::string> out;
-  for (const FileFormat& format : formats) {
+  for (const FileFormat& format : file_formats()) {
     if (format.content != content) continue;
-    const Words words = access == FileAccess::read ? format.extensions : format.written;
+    const std::vector<std::string>& words = access == FileAccess::read ? format.extensions : format.written;
     out.insert(out.end(), words.begin(), words.end());
   }
   return out;

@@ -12,11 +12,6 @@
 
 namespace blum::medial_files {
 
-/// Writes positions, the column `radius` of the vertices (float64), edges and triangles; nothing else.
-void write_ma(const std::filesystem::path& path, const Complex& complex, const Context& context);
-/// @throws FormatError. problem_of_medial() is to be asked afterwards.
-[[nodiscard]] Complex read_ma(std::string_view text, std::string_view name);
-
 [[nodiscard]] FileMetadata to_pairs(const MedialMetadata& metadata);
 /// @throws FormatError with `name` when a known key has a value that it cannot have.
 [[nodiscard]] MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name);

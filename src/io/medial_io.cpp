@@ -10,19 +10,13 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
+#include "io/format_table.hpp"
 #include "io/medial_columns.hpp"
 #include "io/medial_files.hpp"
 #include "io/text_scan.hpp"
-#include "io/whole_file.hpp"
 
 namespace blum {
 namespace {
-
-MedialFormat format_of(const std::filesystem::path& path) {
-  if (const auto place = format_by_name(FileContent::complex, path)) return static_cast<MedialFormat>(*place);
-  throw InvalidOption("'" + path.string() +
-                      "': medial axes are kept in .vtp, .ply, .obj, .ma and .npz files; use one of these extensions");
-}
 
 void check_metadata(const MedialMetadata& metadata) {
   for (const auto& [name, value] : {std::pair{"theta", metadata.theta}, std::pair{"lambda", metadata.lambda},
@@ -39,17 +33,6 @@ void check_metadata(const MedialMetadata& metadata) {
     throw InvalidOption("the metadata have a label and a threshold; a solid is selected by one of them");
   }
   if (metadata.grid) validate(*metadata.grid);
-}
-
-ComplexFormat complex_format(MedialFormat format) {
-  return format == MedialFormat::vtp   ? ComplexFormat::vtp
-         : format == MedialFormat::ply ? ComplexFormat::ply
-         : format == MedialFormat::obj ? ComplexFormat::obj
-                                       : ComplexFormat::npz;
-}
-
-std::string_view as_text(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 constexpr const char* nested_name = "nested";
@@ -104,9 +87,9 @@ namespace {
 /// @param nested  may be null.
 void write(const std::filesystem::path& path, const Complex& axis, const Complex* nested, double least_theta,
            const MedialMetadata& metadata, const Context& context) {
-  const MedialFormat format = format_of(path);
+  const ComplexFormat format = ComplexFormat::of(path, FileAccess::write);
   check_metadata(metadata);
-  if (nested != nullptr && format != MedialFormat::npz) {
+  if (nested != nullptr && !formats::code_of(format).holds_further) {
     throw InvalidOption("'" + path.string() + "': axes of all angles are kept in .npz files only");
   }
   static_cast<void>(MedialView(axis));  // throws where a column is missing
@@ -114,7 +97,6 @@ void write(const std::filesystem::path& path, const Complex& axis, const Complex
   const std::string problem = problem_of_axes(axis, nested, least_theta);
   if (!problem.empty()) throw InvalidMesh("a medial axis that cannot be written: " + problem);
   throw_if_cancelled(context);
-  if (format == MedialFormat::ma) return medial_files::write_ma(path, axis, context);
   FileMetadata pairs = medial_files::to_pairs(metadata);
   ComplexWriteOptions options;
   options.allow_loss = true;  // as the table of formats says
@@ -122,7 +104,7 @@ void write(const std::filesystem::path& path, const Complex& axis, const Complex
     options.further.push_back({nested_name, nested});
     pairs.emplace_back(nested_theta, exact_text(least_theta));
   }
-  if (format == MedialFormat::obj) {
+  if (format == ComplexFormat("OBJ")) {
     write_complex(path, medial_files::without_sides(axis), pairs, options, context);
   } else {
     write_complex(path, axis, pairs, options, context);
@@ -142,19 +124,11 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 }
 
 MedialFile read_medial(const std::filesystem::path& path) {
-  const MedialFormat format = format_of(path);
-  return checked(path.string(), [&] {
-    if (format != MedialFormat::ma) return as_axis(read_complex(path), path.string());
-    const FileBytes content = read_whole_file(path);
-    return as_axis({medial_files::read_ma(as_text(content.span()), path.string())}, path.string());
-  });
+  return checked(path.string(), [&] { return as_axis(read_complex(path), path.string()); });
 }
 
-MedialFile read_medial(std::span<const std::byte> bytes, MedialFormat format, const std::string& name) {
-  return checked(name, [&] {
-    if (format == MedialFormat::ma) return as_axis({medial_files::read_ma(as_text(bytes), name)}, name);
-    return as_axis(read_complex(bytes, complex_format(format), name), name);
-  });
+MedialFile read_medial(std::span<const std::byte> bytes, ComplexFormat format, const std::string& name) {
+  return checked(name, [&] { return as_axis(read_complex(bytes, format, name), name); });
 }
 
 }  // namespace blum

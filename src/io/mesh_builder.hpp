@@ -49,7 +49,7 @@ class MeshBuilder {
   /// The largest index, when it is out of range. To be asked before finish().
   [[nodiscard]] std::optional<BadIndex> bad_index() const;
   /// Cuts the polygons and applies the rule for point clouds. All indices must be in range.
-  [[nodiscard]] MeshFile finish(MeshFormat format, bool binary);
+  [[nodiscard]] MeshFile finish(bool binary);
 
  private:
   struct Polygon {
@@ -86,11 +86,5 @@ bool cut_polygon(std::span<const Vec3d> vertices, std::span<const std::uint32_t>
 /// file, which takes about a second. Usual polygons need a few dozen a corner, whatever their size.
 inline constexpr std::int64_t polygon_work_per_corner = 500;
 inline constexpr std::int64_t polygon_work = 200'000'000;
-
-// The readers, one a format. The builder's indices are all in range in what they return.
-[[nodiscard]] MeshFile read_obj(std::string_view text, std::string_view name);
-[[nodiscard]] MeshFile read_off(std::string_view text, std::string_view name);
-[[nodiscard]] MeshFile read_stl(std::string_view bytes, std::string_view name);
-[[nodiscard]] MeshFile read_ply(std::string_view bytes, std::string_view name);
 
 }  // namespace blum

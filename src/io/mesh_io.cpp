@@ -11,28 +11,22 @@
 #include "blum/core/error.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/io/formats.hpp"
+#include "io/format_table.hpp"
 #include "io/mesh_builder.hpp"
 #include "io/whole_file.hpp"
 
 namespace blum {
 namespace {
 
-MeshFile parse(std::string_view content, MeshFormat format, std::string_view name) {
-  switch (format) {
-    case MeshFormat::obj:
-      return read_obj(content, name);
-    case MeshFormat::off:
-      return read_off(content, name);
-    case MeshFormat::stl:
-      return read_stl(content, name);
-    case MeshFormat::ply:
-      return read_ply(content, name);
-  }
-  throw InvalidOption("unknown mesh format");
+/// @throws FileError for another extension.
+MeshFormat format_named(const std::filesystem::path& path) {
+  if (const auto format = MeshFormat::by_name(path)) return *format;
+  throw FileError("cannot tell the mesh format of '" + path.string() + "': its name must end in " +
+                  extension_list(FileContent::mesh, FileAccess::read, ", "));
 }
 
 void apply_weld(MeshFile& file, const MeshReadOptions& options) {
-  const bool wanted = options.weld.has_value() || file.info.format == MeshFormat::stl;
+  const bool wanted = options.weld.has_value() || file.info.format == MeshFormat("STL");
   if (!wanted) return;
   const std::size_t before = file.mesh.vertices.size();
   file.mesh = weld(file.mesh, options.weld.value_or(0.0));
@@ -42,19 +36,12 @@ void apply_weld(MeshFile& file, const MeshReadOptions& options) {
 
 }  // namespace
 
-std::optional<MeshFormat> mesh_format(const std::filesystem::path& path) {
-  const auto place = format_by_name(FileContent::mesh, path);
-  return place ? std::optional(static_cast<MeshFormat>(*place)) : std::nullopt;
-}
-
-std::string_view to_string(MeshFormat format) {
-  return format_name(FileContent::mesh, static_cast<std::size_t>(format));
-}
-
 MeshFile read_mesh_file(std::span<const std::byte> data, MeshFormat format, const MeshReadOptions& options,
                         std::string_view name) {
   try {
-    MeshFile file = parse({reinterpret_cast<const char*>(data.data()), data.size()}, format, name);
+    const std::string_view bytes(reinterpret_cast<const char*>(data.data()), data.size());
+    MeshFile file = formats::code_of(format).read(bytes, name);
+    file.info.format = format;
     apply_weld(file, options);
     return file;
   } catch (const std::bad_alloc&) {
@@ -64,13 +51,9 @@ MeshFile read_mesh_file(std::span<const std::byte> data, MeshFormat format, cons
 }
 
 MeshFile read_mesh_file(const std::filesystem::path& path, const MeshReadOptions& options) {
-  const auto format = mesh_format(path);
-  if (!format) {
-    throw FileError("cannot tell the mesh format of '" + path.string() +
-                    "': its name must end in .obj, .off, .stl or .ply");
-  }
+  const MeshFormat format = format_named(path);
   const FileBytes content = read_whole_file(path);
-  return read_mesh_file(content.span(), *format, options, path.string());
+  return read_mesh_file(content.span(), format, options, path.string());
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
@@ -80,6 +63,15 @@ TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions&
 TriangleMesh read_mesh(std::span<const std::byte> data, MeshFormat format, const MeshReadOptions& options,
                        std::string_view name) {
   return read_mesh_file(data, format, options, name).mesh;
+}
+
+void write_mesh(const std::filesystem::path& path, const MeshView& mesh) {
+  const MeshFormat format = format_named(path);
+  validate(mesh);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (!is_finite(mesh.vertices[i])) throw InvalidMesh("vertex " + std::to_string(i) + " is not finite");
+  }
+  formats::code_of(format).write(path, mesh);
 }
 
 void MeshBuilder::add_face(std::span<const std::uint32_t> corners, std::size_t where) {
@@ -97,13 +89,12 @@ std::optional<MeshBuilder::BadIndex> MeshBuilder::bad_index() const {
   return BadIndex{static_cast<std::uint32_t>(index_end_ - 1), index_where_};
 }
 
-MeshFile MeshBuilder::finish(MeshFormat format, bool binary) {
+MeshFile MeshBuilder::finish(bool binary) {
   MeshFile file;
-  file.info = {.format = format,
-               .binary = binary,
-               .vertices = mesh_.vertices.size(),
-               .faces = face_count(),
-               .polygons = polygons_.size()};
+  file.info.binary = binary;
+  file.info.vertices = mesh_.vertices.size();
+  file.info.faces = face_count();
+  file.info.polygons = polygons_.size();
   const std::span<Triangle> triangles = mesh_.triangles;
   std::int64_t work_left = polygon_work;
   for (const Polygon& polygon : polygons_) {

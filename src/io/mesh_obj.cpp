@@ -1,7 +1,10 @@
 #include <string>
 #include <vector>
 
+#include "io/format_table.hpp"
 #include "io/mesh_builder.hpp"
+#include "io/mesh_write.hpp"
+#include "io/row_writer.hpp"
 #include "io/text_cursor.hpp"
 
 namespace blum {
@@ -22,7 +25,7 @@ class ObjReader {
                                                " is named, but the file has only " +
                                                std::to_string(builder_.vertex_count()));
     }
-    return builder_.finish(MeshFormat::obj, false);
+    return builder_.finish(false);
   }
 
  private:
@@ -112,10 +115,40 @@ class ObjReader {
   std::vector<std::uint32_t> indices_;
 };
 
-}  // namespace
-
 MeshFile read_obj(std::string_view text, std::string_view name) {
   return ObjReader(text, name).read();
 }
+
+void write_obj(const std::filesystem::path& path, const MeshView& mesh) {
+  RowWriter out(path);
+  for (const Vec3d& v : mesh.vertices) {
+    out.text("v");
+    out.vector(v);
+    out.text("\n");
+  }
+  const auto write_all = [&](std::string_view keyword, const auto& items) {
+    for (const auto& item : items) {
+      out.text(keyword);
+      for (const std::uint32_t index : item) out.number(std::uint64_t{index} + 1);
+      out.text("\n");
+    }
+  };
+  write_all("f", mesh.triangles);
+  write_all("l", mesh.segments);
+  for (const std::uint32_t index : mesh.points) {
+    out.text("p");
+    out.number(std::uint64_t{index} + 1);
+    out.text("\n");
+  }
+  out.finish();
+}
+
+bool begins_as_obj(std::string_view head) {
+  return head.starts_with("v ") || head.find("\nv ") != std::string_view::npos;
+}
+
+}  // namespace
+
+constinit const formats::MeshCode formats::mesh_obj{read_obj, write_obj, {begins_as_obj}};
 
 }  // namespace blum

@@ -2,7 +2,10 @@
 #include <string>
 #include <vector>
 
+#include "io/format_table.hpp"
 #include "io/mesh_builder.hpp"
+#include "io/mesh_write.hpp"
+#include "io/row_writer.hpp"
 #include "io/text_cursor.hpp"
 
 namespace blum {
@@ -29,7 +32,7 @@ class OffReader {
       cursor_.fail("the file goes on after the last of " + std::to_string(faces) +
                    " faces: the counts in its header are wrong, or a line is broken in two");
     }
-    return builder_.finish(MeshFormat::off, false);
+    return builder_.finish(false);
   }
 
  private:
@@ -119,10 +122,33 @@ class OffReader {
   std::vector<std::uint32_t> indices_;
 };
 
-}  // namespace
-
 MeshFile read_off(std::string_view text, std::string_view name) {
   return OffReader(text, name).read();
 }
+
+void write_off(const std::filesystem::path& path, const MeshView& mesh) {
+  if (!mesh.segments.empty()) cannot_hold(path, "OFF", "segments");
+  refuse_points(path, "OFF", mesh);
+  RowWriter out(path);
+  out.text("OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.triangles.size()) + " 0\n");
+  for (const Vec3d& v : mesh.vertices) {
+    out.vector(v);
+    out.text("\n");
+  }
+  for (const Triangle& t : mesh.triangles) {
+    out.text("3");
+    for (const std::uint32_t index : t) out.number(index);
+    out.text("\n");
+  }
+  out.finish();
+}
+
+bool begins_as_off(std::string_view head) {
+  return head.starts_with("OFF") || head.starts_with("COFF") || head.starts_with("NOFF");
+}
+
+}  // namespace
+
+constinit const formats::MeshCode formats::mesh_off{read_off, write_off, {begins_as_off}};
 
 }  // namespace blum

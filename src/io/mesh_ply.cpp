@@ -2,9 +2,12 @@
 #include <string>
 #include <vector>
 
+#include "io/format_table.hpp"
 #include "io/mesh_builder.hpp"
+#include "io/mesh_write.hpp"
 #include "io/ply_header.hpp"
 #include "io/ply_values.hpp"
+#include "io/row_writer.hpp"
 #include "io/text_cursor.hpp"
 
 namespace blum {
@@ -27,7 +30,7 @@ class PlyReader {
       source_.fail_at(bad->where, "vertex " + std::to_string(bad->index) + " is named, but the file has only " +
                                       std::to_string(builder_.vertex_count()) + " (counted from 0)");
     }
-    return builder_.finish(MeshFormat::ply, header_.encoding != PlyEncoding::text);
+    return builder_.finish(header_.encoding != PlyEncoding::text);
   }
 
  private:
@@ -181,12 +184,43 @@ class PlyReader {
   std::vector<std::uint32_t> corners_;
 };
 
-}  // namespace
-
 MeshFile read_ply(std::string_view bytes, std::string_view name) {
   const PlyHeader header = read_ply_header(bytes, name);
   if (header.encoding == PlyEncoding::text) return PlyReader<PlyText>(header, PlyText(bytes, header, name)).read();
   return PlyReader<PlyBinary>(header, PlyBinary(bytes, header, name)).read();
 }
+
+void write_ply(const std::filesystem::path& path, const MeshView& mesh) {
+  refuse_points(path, "PLY", mesh);
+  RowWriter out(path);
+  out.text("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
+           "\nproperty double x\nproperty double y\nproperty double z\n");
+  if (!mesh.triangles.empty()) {
+    out.text("element face " + std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\n");
+  }
+  if (!mesh.segments.empty()) {
+    out.text("element edge " + std::to_string(mesh.segments.size()) + "\nproperty int vertex1\nproperty int vertex2\n");
+  }
+  out.text("end_header\n");
+  for (const Vec3d& v : mesh.vertices) {
+    for (std::size_t axis = 0; axis < 3; ++axis) out.bytes(v[axis]);
+  }
+  for (const Triangle& t : mesh.triangles) {
+    out.bytes(std::uint8_t{3});
+    for (const std::uint32_t index : t) out.bytes(index);
+  }
+  for (const Segment& s : mesh.segments) {
+    for (const std::uint32_t index : s) out.bytes(index);
+  }
+  out.finish();
+}
+
+bool begins_as_ply(std::string_view head) {
+  return head.starts_with("ply\n") || head.starts_with("ply\r");
+}
+
+}  // namespace
+
+constinit const formats::MeshCode formats::mesh_ply{read_ply, write_ply, {begins_as_ply}};
 
 }  // namespace blum

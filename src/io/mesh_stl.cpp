@@ -1,7 +1,10 @@
 #include <bit>
 #include <string>
 
+#include "io/format_table.hpp"
 #include "io/mesh_builder.hpp"
+#include "io/mesh_write.hpp"
+#include "io/row_writer.hpp"
 #include "io/text_cursor.hpp"
 
 namespace blum {
@@ -36,7 +39,7 @@ class BinaryStlReader {
     builder_.reserve_vertices(3 * count);
     builder_.reserve_triangles(count);
     for (std::size_t i = 0; i < count; ++i) read_triangle(header_size + i * triangle_size);
-    return builder_.finish(MeshFormat::stl, true);
+    return builder_.finish(true);
   }
 
  private:
@@ -82,7 +85,7 @@ class TextStlReader {
       read_solid();
     } while (cursor_.skip_space());
     if (builder_.face_count() == 0) cursor_.fail("the mesh has no triangles");
-    return builder_.finish(MeshFormat::stl, false);
+    return builder_.finish(false);
   }
 
  private:
@@ -156,8 +159,6 @@ bool is_binary(std::string_view bytes) {
   return bytes.substr(0, 1024).find('\0') != std::string_view::npos;
 }
 
-}  // namespace
-
 MeshFile read_stl(std::string_view bytes, std::string_view name) {
   if (!is_binary(bytes)) return TextStlReader(bytes, name).read();
   if (bytes.size() < header_size) {
@@ -167,5 +168,53 @@ MeshFile read_stl(std::string_view bytes, std::string_view name) {
   }
   return BinaryStlReader(bytes, name).read();
 }
+
+/// The unit normal of a triangle; zero when it has none.
+Vec3d normal_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d u = b - a;
+  const Vec3d v = c - a;
+  const double size =
+      std::max({std::abs(u.x), std::abs(u.y), std::abs(u.z), std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(size > 0) || !std::isfinite(size)) return {};
+  const Vec3d normal = cross(u / size, v / size);
+  const double norm = length(normal);
+  return norm > 0 ? normal / norm : Vec3d{};
+}
+
+void write_stl(const std::filesystem::path& path, const MeshView& mesh) {
+  if (!mesh.segments.empty()) cannot_hold(path, "STL", "segments");
+  if (!mesh.points.empty()) cannot_hold(path, "STL", "points");
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t index : t) {
+      const Vec3d& v = mesh.vertices[index];
+      if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= double{std::numeric_limits<float>::max()})
+        continue;
+      throw FileError("cannot write '" + path.string() + "': vertex " + std::to_string(index) +
+                      " is too far from the origin for the single precision of STL; write PLY instead");
+    }
+  }
+  RowWriter out(path);
+  std::string header = "binary STL, single precision";  // must not begin with "solid", as text STL does
+  header.resize(80, ' ');
+  out.text(header);
+  out.bytes(static_cast<std::uint32_t>(mesh.triangles.size()));
+  const auto write_vector = [&](const Vec3d& v) {
+    for (std::size_t axis = 0; axis < 3; ++axis) out.bytes(static_cast<float>(v[axis]));
+  };
+  for (const Triangle& t : mesh.triangles) {
+    write_vector(normal_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+    for (const std::uint32_t index : t) write_vector(mesh.vertices[index]);
+    out.bytes(std::uint16_t{0});
+  }
+  out.finish();
+}
+
+bool begins_as_stl(std::string_view head) {
+  return head.starts_with("solid ") && head.find("facet") != std::string_view::npos;
+}
+
+}  // namespace
+
+constinit const formats::MeshCode formats::mesh_stl{read_stl, write_stl, {begins_as_stl}};
 
 }  // namespace blum

@@ -15,9 +15,11 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/ids.hpp"
+#include "io/format_table.hpp"
 #include "io/image_files.hpp"
 #include "io/image_geometry.hpp"
 #include "io/scalar_type.hpp"
+#include "io/text_scan.hpp"
 
 namespace blum::volume_io {
 namespace {
@@ -289,4 +291,50 @@ VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source) {
   return image;
 }
 
+namespace {
+
+bool begins_as_nifti(std::string_view head) {
+  return head.size() >= 348 && (head.substr(344, 3) == "n+1" || head.substr(4, 3) == "n+2");
+}
+
+VoxelImage read(const ByteSource& source, const std::filesystem::path&) {
+  return read_nifti(source, nullptr);
+}
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+/// One half of a pair, compressed or not.
+std::filesystem::path half_of_pair(const std::filesystem::path& stem, const char* extension) {
+  std::filesystem::path plain = stem;
+  plain += extension;
+  std::filesystem::path packed = plain;
+  packed += ".gz";
+  return !is_there(plain) && is_there(packed) ? packed : plain;
+}
+
+/// An image whose header and data are two files, of which the path names either.
+std::optional<VoxelImage> read_pair(const std::filesystem::path& path) {
+  std::filesystem::path stem = path;
+  if (lower_case(stem.extension().string()) == ".gz") stem.replace_extension();
+  const std::string extension = lower_case(stem.extension().string());
+  if (extension != ".hdr" && extension != ".img") return std::nullopt;
+  stem.replace_extension();
+  const FileSource header(half_of_pair(stem, ".hdr"));
+  const FileSource data(half_of_pair(stem, ".img"));
+  return read_nifti(header, &data);
+}
+
+}  // namespace
+
 }  // namespace blum::volume_io
+
+namespace blum::formats {
+
+using namespace volume_io;
+
+constinit const ImageCode image_nifti{read, nullptr, {begins_as_nifti}, read_pair};
+
+}  // namespace blum::formats

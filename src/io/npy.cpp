@@ -6,6 +6,8 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "io/format_table.hpp"
 #include "io/image_geometry.hpp"
 
 namespace blum::volume_io {
@@ -250,7 +252,14 @@ std::array<std::int64_t, 3> npy_image_size(const NpyHeader& header, const std::s
   return size;
 }
 
-VoxelImage read_npy(ByteStream& stream) {
+namespace {
+
+bool begins_as_npy(std::string_view head) {
+  return head.starts_with("\x93NUMPY");
+}
+
+VoxelImage read_npy(const ByteSource& source, const std::filesystem::path&) {
+  PlainStream stream(source);
   const NpyHeader header = read_npy_header(stream);
   VoxelImage image;
   image.grid.size = npy_image_size(header, stream.name());
@@ -259,4 +268,25 @@ VoxelImage read_npy(ByteStream& stream) {
   return image;
 }
 
+void write_npy(const std::filesystem::path& path, const VoxelImageView& image) {
+  const auto& n = image.grid.size;
+  AtomicFile file(path);
+  file.write(npy_header(
+      npy_dtype(scalar_type(image.values)),
+      {static_cast<std::uint64_t>(n[2]), static_cast<std::uint64_t>(n[1]), static_cast<std::uint64_t>(n[0])}));
+  const auto bytes = as_bytes(image.values);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+
+}  // namespace
+
 }  // namespace blum::volume_io
+
+namespace blum::formats {
+
+using namespace volume_io;
+
+constinit const ImageCode image_npy{read_npy, write_npy, {begins_as_npy}};
+
+}  // namespace blum::formats

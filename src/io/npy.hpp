@@ -47,6 +47,4 @@ void read_npy_raw(ByteStream& stream, const NpyHeader& header, std::span<std::by
 /// axes.
 [[nodiscard]] std::array<std::int64_t, 3> npy_image_size(const NpyHeader& header, const std::string& name);
 
-[[nodiscard]] VoxelImage read_npy(ByteStream& stream);
-
 }  // namespace blum::volume_io

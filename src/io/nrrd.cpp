@@ -11,6 +11,8 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/ids.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "io/format_table.hpp"
 #include "io/image_geometry.hpp"
 #include "io/text_scan.hpp"
 
@@ -518,4 +520,28 @@ VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path
   return image;
 }
 
+namespace {
+
+bool begins_as_nrrd(std::string_view head) {
+  return head.starts_with("NRRD000");
+}
+
+void write_nrrd(const std::filesystem::path& path, const VoxelImageView& image) {
+  AtomicFile file(path);
+  file.write(nrrd_header(scalar_type(image.values), image.grid, image.space, {}));
+  const auto bytes = as_bytes(image.values);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+
+}  // namespace
+
 }  // namespace blum::volume_io
+
+namespace blum::formats {
+
+using namespace volume_io;
+
+constinit const ImageCode image_nrrd{read_nrrd, write_nrrd, {begins_as_nrrd}};
+
+}  // namespace blum::formats

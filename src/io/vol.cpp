@@ -5,6 +5,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
+#include "io/format_table.hpp"
 #include "io/image_files.hpp"
 #include "io/image_geometry.hpp"
 #include "io/scalar_type.hpp"
@@ -75,4 +76,24 @@ VoxelImage read_vol(const ByteSource& source) {
   return image;
 }
 
+namespace {
+
+bool begins_as_vol(std::string_view head) {
+  return head.starts_with("X: ") || head.starts_with("Center-X:");
+}
+
+VoxelImage read(const ByteSource& source, const std::filesystem::path&) {
+  return read_vol(source);
+}
+
+}  // namespace
+
 }  // namespace blum::volume_io
+
+namespace blum::formats {
+
+using namespace volume_io;
+
+constinit const ImageCode image_vol{read, nullptr, {begins_as_vol}};
+
+}  // namespace blum::formats

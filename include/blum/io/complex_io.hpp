@@ -12,6 +12,7 @@
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/io/file_metadata.hpp"
+#include "blum/io/formats.hpp"
 
 namespace blum {
 
@@ -32,8 +33,6 @@ struct ComplexFile {
   FileMetadata metadata = {};
   std::vector<NamedComplex> further = {};  ///< .npz only
 };
-
-enum class ComplexFormat : std::uint8_t { vtp, ply, obj, npz };
 
 struct ComplexWriteOptions {
   /// Whether columns and metadata that the format cannot hold (.obj: all of them) are left out instead of refused.

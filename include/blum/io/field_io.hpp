@@ -11,6 +11,7 @@
 #include "blum/field/field.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/io/formats.hpp"
 
 namespace blum {
 
@@ -52,8 +53,6 @@ void write_field(const std::filesystem::path& path, const Field& field, const Fi
                  const Context& context = {});
 
 /// The extensions that write_field and read_field know.
-enum class FieldFormat : unsigned char { nrrd, npz, vti };
-
 /// Reads a field that write_field wrote, from .nrrd (with OUT.site.nrrd where it is there), .npz or .vti.
 ///
 /// Also reads NRRD files of any scalar type without sites, .npz files of NumPy (compressed too) that hold at least

@@ -1,10 +1,10 @@
 // Blum: the table of file formats. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,34 +17,60 @@ enum class FileContent : std::uint8_t { mesh, image, field, complex };
 /// "mesh", "image", "field" or "complex".
 [[nodiscard]] std::string_view to_string(FileContent content);
 
-/// A format of files of one content. A name that stands for several contents (.ply) has a row for each.
+enum class FileAccess : std::uint8_t { read, write };
+
+/// A format of files of one content. A name that stands for several contents (PLY) has a row for each.
 struct FileFormat {
   FileContent content = FileContent::mesh;
-  std::string_view name;                         ///< "PLY"
-  std::span<const std::string_view> extensions;  ///< lower case, with their dots; the usual one first
-  std::span<const std::string_view> written;     ///< those that can be written as well
-  std::string_view holds;                        ///< what a file can hold, for people
-  std::string_view opens_in;                     ///< other programs, for people
-  /// Whether the first bytes of a file (8 KiB or all) are those of this format; null where nothing tells.
-  bool (*begins)(std::string_view head) = nullptr;
+  std::string name;                     ///< "PLY"
+  std::vector<std::string> extensions;  ///< that are read: lower case, with their dots; the usual one first
+  std::vector<std::string> written;     ///< those of them that are written as well
+  std::string holds;                    ///< what a file can hold, for people
+  std::string opens_in;                 ///< other programs, for people
 };
 
-/// All formats: those of one content in the order of its enumeration (MeshFormat, ImageFormat, FieldFormat,
-/// MedialFormat).
-[[nodiscard]] std::span<const FileFormat> file_formats();
+/// All formats, content by content.
+[[nodiscard]] const std::vector<FileFormat>& file_formats();
+
+/// One of the formats that files of a content have.
+template <FileContent content>
+class FormatOf {
+ public:
+  /// By its name in file_formats() or one of its extensions, in any case, with or without the dot: MeshFormat("stl").
+  /// @throws InvalidOption naming those that there are.
+  explicit FormatOf(std::string_view name);
+
+  /// As in file_formats(): "STL".
+  [[nodiscard]] const std::string& name() const { return file_formats()[row_].name; }
+  /// The place in file_formats().
+  [[nodiscard]] std::size_t row() const { return row_; }
+  friend bool operator==(FormatOf, FormatOf) = default;
+
+  /// The one that the extension of a path stands for; nullopt for none.
+  [[nodiscard]] static std::optional<FormatOf> by_name(const std::filesystem::path& path);
+  /// The one that the first bytes of a file (8 KiB, or all) are those of; nullopt where they do not tell.
+  [[nodiscard]] static std::optional<FormatOf> by_head(std::string_view head);
+  /// The one that the extension of a path stands for.
+  /// @throws InvalidOption naming the path and the extensions that can be read or written.
+  [[nodiscard]] static FormatOf of(const std::filesystem::path& path, FileAccess access = FileAccess::read);
+
+ private:
+  explicit FormatOf(std::size_t row) : row_(row) {}
+  std::size_t row_;
+};
+
+using MeshFormat = FormatOf<FileContent::mesh>;
+using ImageFormat = FormatOf<FileContent::image>;
+using FieldFormat = FormatOf<FileContent::field>;
+using ComplexFormat = FormatOf<FileContent::complex>;
+
+extern template class FormatOf<FileContent::mesh>;
+extern template class FormatOf<FileContent::image>;
+extern template class FormatOf<FileContent::field>;
+extern template class FormatOf<FileContent::complex>;
 
 /// The last extension of a name in lower case, with its dot; ".nii.gz", ".hdr.gz" and ".img.gz" count as one.
 [[nodiscard]] std::string file_extension(const std::filesystem::path& path);
-
-/// The place among the formats of this content of the one that the extension stands for; nullopt for none.
-[[nodiscard]] std::optional<std::size_t> format_by_name(FileContent content, const std::filesystem::path& path);
-/// The same by the first bytes.
-[[nodiscard]] std::optional<std::size_t> format_by_head(FileContent content, std::string_view head);
-
-/// The name of a format, by its place among those of its content; "unknown" for none.
-[[nodiscard]] std::string_view format_name(FileContent content, std::size_t place);
-
-enum class FileAccess : std::uint8_t { read, write };
 
 /// The extensions of a content's formats, as they come in the table.
 [[nodiscard]] std::vector<std::string> file_extensions(FileContent content, FileAccess access);

@@ -9,10 +9,9 @@
 
 #include "blum/core/error.hpp"
 #include "blum/grid/voxel_image.hpp"
+#include "blum/io/formats.hpp"
 
 namespace blum {
-
-enum class ImageFormat : std::uint8_t { nrrd, nifti, npy, vol };
 
 /// Reads a 3D image of scalars. Values keep the type that they have in the file, except as said below; the image's
 /// spacing, origin and direction are the file's, in its own world axes and units. A 2D image becomes one layer.

@@ -13,6 +13,7 @@
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
 #include "blum/grid/grid_spec.hpp"
+#include "blum/io/formats.hpp"
 
 namespace blum {
 
@@ -46,8 +47,6 @@ struct MedialFile {
   bool has_angles = false;  ///< of vertices, edges and triangles
   bool has_labels = false;  ///< sheets and roles
 };
-
-enum class MedialFormat : std::uint8_t { vtp, ply, obj, ma, npz };
 
 /// Writes a medial axis as a complex (see write_complex), or as .ma; the format goes by the extension.
 ///
@@ -85,7 +84,7 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 /// @throws FileError; FormatError naming the file and the reason; InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.
-[[nodiscard]] MedialFile read_medial(std::span<const std::byte> bytes, MedialFormat format,
+[[nodiscard]] MedialFile read_medial(std::span<const std::byte> bytes, ComplexFormat format,
                                      const std::string& name = "medial axis");
 
 }  // namespace blum

@@ -10,15 +10,9 @@
 
 #include "blum/core/error.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/io/formats.hpp"
 
 namespace blum {
-
-enum class MeshFormat { obj, off, stl, ply };
-
-/// The format that a file name stands for, by its extension in any case; nullopt for other extensions.
-[[nodiscard]] std::optional<MeshFormat> mesh_format(const std::filesystem::path& path);
-/// "OBJ", "OFF", "STL" or "PLY".
-[[nodiscard]] std::string_view to_string(MeshFormat format);
 
 struct MeshReadOptions {
   /// Merge vertices after reading (see weld()): a tolerance in mesh units, 0 for exactly equal ones.
@@ -28,7 +22,7 @@ struct MeshReadOptions {
 
 /// What a mesh file held, before Blum changed anything.
 struct MeshFileInfo {
-  MeshFormat format = MeshFormat::obj;
+  MeshFormat format{"OBJ"};
   bool binary = false;
   std::size_t vertices = 0;         ///< vertices in the file; 3 a triangle for STL
   std::size_t faces = 0;            ///< triangles and polygons in the file

@@ -274,7 +274,7 @@ TEST(ComplexVtp, FillsCellsWithoutTheColumn) {
   // Without the strings that say what is whose, all arrays are columns of both.
   std::string foreign = bytes;
   for (const char* name : {"\"edge_columns\"", "\"triangle_columns\""}) foreign = replaced(foreign, name, "\"what\"");
-  const Complex read = read_complex(std::as_bytes(std::span(foreign)), ComplexFormat::vtp).complex;
+  const Complex read = read_complex(std::as_bytes(std::span(foreign)), ComplexFormat("VTP")).complex;
   EXPECT_EQ(read.edge_columns.size(), 3U);
   EXPECT_EQ(read.triangle_columns.get<std::int32_t>("role")[1], -1);
 }
@@ -298,7 +298,7 @@ TEST(ComplexOthers, PlyOfOtherPrograms) {
       "n_z\nelement face 2\nproperty short part\nproperty list uchar uint vertex_indices\nend_header\n"
       "0 0 0 255 4294967295 2 1 2 1 2 3\n1 0 0 1 0 0 nan 0 0\n1 1 0 1 0 0 inf 0 0\n0 1 0 1 0 0 0 0 0\n"
       "-7 4 0 1 2 3\n8 3 0 1 2\n";
-  const Complex complex = parse(text, ComplexFormat::ply).complex;
+  const Complex complex = parse(text, ComplexFormat("PLY")).complex;
   EXPECT_EQ(complex.vertex_columns.get<std::int32_t>("red")[0], 255);
   EXPECT_EQ(complex.vertex_columns.get<std::int64_t>("id")[0], 4294967295);
   EXPECT_EQ(complex.vertex_columns.get<float>("n", 3)[2], 3.0F);
@@ -310,11 +310,11 @@ TEST(ComplexOthers, PlyOfOtherPrograms) {
   for (const char* comment :
        {"vertex red 2 pair", "vertex red 0 none", "vertex nothing 1 a", "vertex red x a", "face"}) {
     const std::string told = replaced(text, "1.0\n", "1.0\ncomment blum_column " + std::string(comment) + "\n");
-    EXPECT_EQ(parse(told, ComplexFormat::ply).complex.vertex_columns.size(), 3U) << comment;
+    EXPECT_EQ(parse(told, ComplexFormat("PLY")).complex.vertex_columns.size(), 3U) << comment;
   }
-  EXPECT_NE(refusal(replaced(text, "uchar red", "int64 n_x"), ComplexFormat::ply).find("is there twice"),
+  EXPECT_NE(refusal(replaced(text, "uchar red", "int64 n_x"), ComplexFormat("PLY")).find("is there twice"),
             std::string::npos);
-  EXPECT_NE(refusal(replaced(text, "1.0\n", "1.0\ncomment blum_column vertex red 1 id\n"), ComplexFormat::ply)
+  EXPECT_NE(refusal(replaced(text, "1.0\n", "1.0\ncomment blum_column vertex red 1 id\n"), ComplexFormat("PLY"))
                 .find("there is a column 'id' already"),
             std::string::npos);
 }
@@ -329,7 +329,7 @@ TEST(ComplexHostile, PolygonsOfManyAttributes) {
   text += "end_header\n0 0 0\n1 0 0\n0 1 0\n" + std::to_string(corners);
   for (std::size_t i = 0; i < corners; ++i) text += " " + std::to_string(i % 3);
   for (std::size_t i = 0; i < attributes; ++i) text += " 1";
-  EXPECT_NE(refusal(text + "\n", ComplexFormat::ply).find("save it with single edges and triangles"),
+  EXPECT_NE(refusal(text + "\n", ComplexFormat("PLY")).find("save it with single edges and triangles"),
             std::string::npos);
 }
 
@@ -345,15 +345,17 @@ TEST(ComplexHostile, VtpArraysUponEachOther) {
       "<DataArray type=\"Float64\" Name=\"a\" NumberOfComponents=\"100\" format=\"appended\" offset=\"0\"/>";
   std::string more = tag;
   for (int i = 0; i < 3; ++i) more += replaced(tag, "\"a\"", "\"a" + std::to_string(i) + "\"");
-  EXPECT_NE(refusal(replaced(good, tag, more), ComplexFormat::vtp).find("more bytes than the file has"),
+  EXPECT_NE(refusal(replaced(good, tag, more), ComplexFormat("VTP")).find("more bytes than the file has"),
             std::string::npos);
-  EXPECT_NE(refusal(replaced(good, "=\"100\"", "=\"1001\""), ComplexFormat::vtp).find("1001 components; 1 to 1000"),
+  EXPECT_NE(refusal(replaced(good, "=\"100\"", "=\"1001\""), ComplexFormat("VTP")).find("1001 components; 1 to 1000"),
             std::string::npos);
-  EXPECT_NE(refusal(replaced(good, "=\"100\"", "=\"0\""), ComplexFormat::vtp).find("0 components"), std::string::npos);
+  EXPECT_NE(refusal(replaced(good, "=\"100\"", "=\"0\""), ComplexFormat("VTP")).find("0 components"),
+            std::string::npos);
   // "b": "b" as the bytes of VTK's strings; the second column becomes the first once more.
-  EXPECT_NE(refusal(replaced(good, "99 34 125", "98 34 125"), ComplexFormat::vtp).find("two columns are the array 'b'"),
-            std::string::npos);
-  EXPECT_NE(refusal(replaced(good, "99 34 125", "97 34 125"), ComplexFormat::vtp).find("'CellData/a' is missing"),
+  EXPECT_NE(
+      refusal(replaced(good, "99 34 125", "98 34 125"), ComplexFormat("VTP")).find("two columns are the array 'b'"),
+      std::string::npos);
+  EXPECT_NE(refusal(replaced(good, "99 34 125", "97 34 125"), ComplexFormat("VTP")).find("'CellData/a' is missing"),
             std::string::npos);
 }
 
@@ -363,17 +365,17 @@ TEST(ComplexHostile, NpzColumnsOfWrongShapes) {
     return zip_bytes({{"vertices.npy", npy_bytes("<f8", "(1, 3)", false, bytes_of<double>({1, 2, 3}, order))},
                       {name + ".npy", npy_bytes("<f8", shape, false, bytes_of(std::vector<double>(numbers), order))}});
   };
-  EXPECT_EQ(refusal(with("a", "(1, 2, 3)", 6), ComplexFormat::npz), "read");
-  EXPECT_NE(refusal(with("a", "(2,)", 2), ComplexFormat::npz).find("its shape is [2], but should be [1]"),
+  EXPECT_EQ(refusal(with("a", "(1, 2, 3)", 6), ComplexFormat("NPZ")), "read");
+  EXPECT_NE(refusal(with("a", "(2,)", 2), ComplexFormat("NPZ")).find("its shape is [2], but should be [1]"),
             std::string::npos);
-  EXPECT_NE(refusal(with("a", "()", 1), ComplexFormat::npz).find("its shape is []"), std::string::npos);
-  EXPECT_NE(refusal(with("a", "(1, 0)", 0), ComplexFormat::npz).find("1 to 1000 numbers a row"), std::string::npos);
-  EXPECT_NE(refusal(with("a", "(1, 40, 40)", 1600), ComplexFormat::npz).find("1 to 1000"), std::string::npos);
-  EXPECT_NE(refusal(with("edge_a", "(1,)", 1), ComplexFormat::npz).find("should be [0]"), std::string::npos);
-  EXPECT_NE(refusal(with("edge_a", "(0, 18446744073709551615, 2)", 0), ComplexFormat::npz).find("1 to 1000"),
+  EXPECT_NE(refusal(with("a", "()", 1), ComplexFormat("NPZ")).find("its shape is []"), std::string::npos);
+  EXPECT_NE(refusal(with("a", "(1, 0)", 0), ComplexFormat("NPZ")).find("1 to 1000 numbers a row"), std::string::npos);
+  EXPECT_NE(refusal(with("a", "(1, 40, 40)", 1600), ComplexFormat("NPZ")).find("1 to 1000"), std::string::npos);
+  EXPECT_NE(refusal(with("edge_a", "(1,)", 1), ComplexFormat("NPZ")).find("should be [0]"), std::string::npos);
+  EXPECT_NE(refusal(with("edge_a", "(0, 18446744073709551615, 2)", 0), ComplexFormat("NPZ")).find("1 to 1000"),
             std::string::npos);
-  EXPECT_NE(refusal(with("vertex_", "(1,)", 1), ComplexFormat::npz).find("needs a name"), std::string::npos);
-  EXPECT_NE(refusal(with("distance", "(1,)", 1), ComplexFormat::npz).find("not a complex"), std::string::npos);
+  EXPECT_NE(refusal(with("vertex_", "(1,)", 1), ComplexFormat("NPZ")).find("needs a name"), std::string::npos);
+  EXPECT_NE(refusal(with("distance", "(1,)", 1), ComplexFormat("NPZ")).find("not a complex"), std::string::npos);
 }
 
 }  // namespace

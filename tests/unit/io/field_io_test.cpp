@@ -194,11 +194,11 @@ TEST_P(FieldFiles, CutAnywhereGiveAnError) {
   write_field(path, sample_field());
   const std::string bytes = file_content(path);
   const std::string extension = GetParam();
-  const FieldFormat format = extension == ".nrrd"  ? FieldFormat::nrrd
-                             : extension == ".npz" ? FieldFormat::npz
-                                                   : FieldFormat::vti;
+  const FieldFormat format = extension == ".nrrd"  ? FieldFormat("NRRD")
+                             : extension == ".npz" ? FieldFormat("NPZ")
+                                                   : FieldFormat("VTI");
   // The closing tags of a .vti file hold nothing that is needed.
-  const std::size_t needed = format == FieldFormat::vti ? bytes.rfind("\n  </AppendedData>") : bytes.size();
+  const std::size_t needed = format == FieldFormat("VTI") ? bytes.rfind("\n  </AppendedData>") : bytes.size();
   EXPECT_NO_THROW((void)read_field(std::as_bytes(std::span(bytes)), format));
   for (std::size_t length = 0; length < needed; ++length) {
     const auto part = std::as_bytes(std::span(bytes)).first(length);
@@ -209,9 +209,9 @@ TEST_P(FieldFiles, CutAnywhereGiveAnError) {
 TEST_P(FieldFiles, DamagedAnywhereNeverCrash) {
   write_field(path, sample_field());
   const std::string bytes = file_content(path);
-  const FieldFormat format = GetParam() == std::string(".nrrd")  ? FieldFormat::nrrd
-                             : GetParam() == std::string(".npz") ? FieldFormat::npz
-                                                                 : FieldFormat::vti;
+  const FieldFormat format = GetParam() == std::string(".nrrd")  ? FieldFormat("NRRD")
+                             : GetParam() == std::string(".npz") ? FieldFormat("NPZ")
+                                                                 : FieldFormat("VTI");
   std::size_t refused = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     for (const char c : {'\0', '9', '\xff'}) {
@@ -291,7 +291,7 @@ TEST(NrrdFields, AnyScalarTypeIsRead) {
 }
 
 Field read_npz_bytes(const std::string& bytes) {
-  return read_field(std::as_bytes(std::span(bytes)), FieldFormat::npz, "sample");
+  return read_field(std::as_bytes(std::span(bytes)), FieldFormat("NPZ"), "sample");
 }
 
 std::string distances(const std::string& shape = "(1, 2, 3)", const std::string& type = "<f4", int bytes = 24) {
@@ -377,7 +377,7 @@ std::string vti_bytes(const std::map<std::string, std::string>& changes = {}) {
 }
 
 Field read_vti_bytes(const std::string& bytes) {
-  return read_field(std::as_bytes(std::span(bytes)), FieldFormat::vti, "sample");
+  return read_field(std::as_bytes(std::span(bytes)), FieldFormat("VTI"), "sample");
 }
 
 TEST(VtiFields, OtherTypesOrdersAndExtentsAreRead) {

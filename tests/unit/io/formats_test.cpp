@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -28,9 +29,9 @@ TEST(Formats, MeshesAreKnownByNameAndContent) {
     const auto path = folder / ("m" + end);
     write_mesh(path, triangle);
     EXPECT_EQ(content_of(path), FileContent::mesh) << end;
-    const auto by_name = format_by_name(FileContent::mesh, path);
+    const auto by_name = MeshFormat::by_name(path);
     ASSERT_TRUE(by_name.has_value());
-    EXPECT_EQ(by_name, format_by_name(FileContent::mesh, "M" + end));
+    EXPECT_EQ(by_name, MeshFormat::by_name("M" + end));
     if (end == ".stl") continue;  // binary: nothing tells
     const auto nameless = folder / ("m" + end.substr(1));
     std::filesystem::copy_file(path, nameless);
@@ -38,7 +39,7 @@ TEST(Formats, MeshesAreKnownByNameAndContent) {
     EXPECT_EQ(read_mesh_of_any_name(nameless).mesh.triangles, triangle.triangles) << end;
   }
   EXPECT_EQ(extension_list(FileContent::mesh, FileAccess::read), ".obj .off .stl .ply");
-  EXPECT_FALSE(format_by_name(FileContent::mesh, "a.nrrd").has_value());
+  EXPECT_FALSE(MeshFormat::by_name("a.nrrd").has_value());
 }
 
 TEST(Formats, ImagesAndFieldsAreToldApart) {
@@ -78,12 +79,41 @@ TEST(Formats, ComplexesAreWrittenAndKnown) {
   complex.edge_columns = Columns(0);
   complex.triangle_columns = Columns(1);
   for (const std::string& end : file_extensions(FileContent::complex, FileAccess::write)) {
-    if (end == ".ma") continue;  // of medial axes only
+    if (end == ".ma") {  // of complexes whose vertices have a radius
+      EXPECT_THROW(write_complex(folder / "c.ma", complex), InvalidOption);
+      Complex balls = complex;
+      balls.vertex_columns.add({"radius", 1, std::vector<double>{1, 2, 3}});
+      write_complex(folder / "c.ma", balls);
+      const Complex back = read_complex(folder / "c.ma").complex;
+      EXPECT_EQ(back.triangles, complex.triangles);
+      EXPECT_EQ(back.edges.size(), 3U);
+      EXPECT_TRUE(holds_complex(folder / "c.ma"));
+      balls.triangle_columns.add({"kind", 1, std::vector<std::int32_t>{7}});
+      EXPECT_THROW(write_complex(folder / "c.ma", balls), InvalidOption);
+      write_complex(folder / "c.ma", balls, {}, {.allow_loss = true});
+      continue;
+    }
     const auto path = folder / ("c" + end);
     write_complex(path, complex);
     EXPECT_EQ(read_complex(path).complex.triangles, complex.triangles);
     EXPECT_EQ(holds_complex(path), end == ".vtp" || end == ".npz") << end;
   }
+}
+
+TEST(Formats, HaveOneNameAndExtensionEach) {
+  for (const FileFormat& format : file_formats()) {
+    EXPECT_FALSE(format.extensions.empty()) << format.name;
+    for (const FileFormat& other : file_formats()) {
+      if (&other == &format || other.content != format.content) continue;
+      EXPECT_NE(other.name, format.name);
+      for (const std::string& end : other.extensions) EXPECT_EQ(std::ranges::count(format.extensions, end), 0) << end;
+    }
+    for (const std::string& end : format.written) EXPECT_EQ(std::ranges::count(format.extensions, end), 1) << end;
+  }
+  EXPECT_EQ(ImageFormat("nifti"), ImageFormat::of("a.hdr.gz"));
+  EXPECT_THROW((void)ImageFormat::of("a.nii", FileAccess::write), InvalidOption);
+  EXPECT_THROW((void)ImageFormat::of("a.nhdr", FileAccess::write), InvalidOption);
+  EXPECT_THROW((void)FieldFormat::of("a.ply"), InvalidOption);
 }
 
 TEST(Formats, NamesOfSeveralExtensions) {

@@ -23,7 +23,7 @@ struct Hostile {
 };
 
 std::vector<Hostile> hostile_nrrds() {
-  const auto f = ImageFormat::nrrd;
+  const auto f = ImageFormat("NRRD");
   const std::string n = "NRRD0005\n";
   const std::string sizes = "dimension: 3\nsizes: 4 3 2\n";
   return {
@@ -79,9 +79,9 @@ std::vector<Hostile> hostile_nrrds() {
 }
 
 std::vector<Hostile> hostile_others() {
-  const auto nifti = ImageFormat::nifti;
-  const auto npy = ImageFormat::npy;
-  const auto vol = ImageFormat::vol;
+  const auto nifti = ImageFormat("NIfTI");
+  const auto npy = ImageFormat("NPY");
+  const auto vol = ImageFormat("Vol");
   const auto npy_of = [](const std::string& dtype, const std::string& shape, const std::string& data = data24) {
     return npy_bytes(dtype, shape, false, data);
   };
@@ -153,15 +153,15 @@ TEST(HostileImages, AreRefusedWithAReason) {
 
 TEST(HostileImages, CutAnywhereGiveAnErrorOrAnImage) {
   const std::array<std::pair<ImageFormat, std::string>, 4> files{
-      std::pair{ImageFormat::nrrd,
+      std::pair{ImageFormat("NRRD"),
                 "NRRD0005\ntype: uchar\nencoding: gzip\ndimension: 3\nsizes: 4 3 2\n\n" + gzipped(data24)},
-      std::pair{ImageFormat::nifti, gzipped(Nifti(2).bytes + data24)},
-      std::pair{ImageFormat::npy, npy_bytes("|u1", "(2, 3, 4)", false, data24)},
-      std::pair{ImageFormat::vol, vol_bytes("3", compressed(data24, 15))}};
+      std::pair{ImageFormat("NIfTI"), gzipped(Nifti(2).bytes + data24)},
+      std::pair{ImageFormat("NPY"), npy_bytes("|u1", "(2, 3, 4)", false, data24)},
+      std::pair{ImageFormat("Vol"), vol_bytes("3", compressed(data24, 15))}};
   for (const auto& [format, bytes] : files) {
     EXPECT_EQ(error_of(bytes, format), "");
     for (std::size_t length = 0; length < bytes.size(); ++length) {
-      EXPECT_NE(error_of(bytes.substr(0, length), format), "") << length << " bytes of format " << int(format);
+      EXPECT_NE(error_of(bytes.substr(0, length), format), "") << length << " bytes of format " << format.name();
     }
   }
 }

@@ -68,11 +68,11 @@ TYPED_TEST(ImageOfType, ReadsNrrdOfEveryEncodingAndOrder) {
     const std::string raw = bytes_of(values, order);
     const std::string head = nrrd_start + "type: " + nrrd_type<TypeParam>() +
                              "\nendian: " + (order == std::endian::little ? "little" : "big") + "\nencoding: ";
-    expect_values(read_text(head + "raw\n\n" + raw, ImageFormat::nrrd), values);
-    expect_values(read_text(head + "gzip\n\n" + gzipped(raw), ImageFormat::nrrd), values);
-    expect_values(read_text(head + "raw\r\n\r\n" + raw, ImageFormat::nrrd), values);
-    expect_values(read_text(head + "raw\nbyte skip: -1\n\nrubbish" + raw, ImageFormat::nrrd), values);
-    expect_values(read_text(head + "raw\nline skip: 2\nbyte skip: 3\n\na\nb\nccc" + raw, ImageFormat::nrrd), values);
+    expect_values(read_text(head + "raw\n\n" + raw, ImageFormat("NRRD")), values);
+    expect_values(read_text(head + "gzip\n\n" + gzipped(raw), ImageFormat("NRRD")), values);
+    expect_values(read_text(head + "raw\r\n\r\n" + raw, ImageFormat("NRRD")), values);
+    expect_values(read_text(head + "raw\nbyte skip: -1\n\nrubbish" + raw, ImageFormat("NRRD")), values);
+    expect_values(read_text(head + "raw\nline skip: 2\nbyte skip: 3\n\na\nb\nccc" + raw, ImageFormat("NRRD")), values);
   }
 }
 
@@ -83,7 +83,7 @@ TYPED_TEST(ImageOfType, ReadsNrrdAsText) {
   for (std::size_t i = 0; i < values.size(); ++i) text << +values[i] << (i % 4 == 3 ? "\n" : i % 4 == 1 ? ", " : " ");
   for (const std::string encoding : {"ascii", "text", "txt"}) {
     const std::string head = nrrd_start + "type: " + nrrd_type<TypeParam>() + "\nencoding: " + encoding + "\n\n";
-    expect_values(read_text(head + text.str(), ImageFormat::nrrd), values);
+    expect_values(read_text(head + text.str(), ImageFormat("NRRD")), values);
   }
 }
 
@@ -102,10 +102,11 @@ TYPED_TEST(ImageOfType, ReadsNpyOfEitherOrder) {
                            std::to_string(sizeof(T));
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     const std::string dtype = (sizeof(T) == 1 ? "|" : order == std::endian::little ? "<" : ">") + code;
-    const VoxelImage image = read_text(npy_bytes(dtype, "(2, 3, 4)", false, bytes_of(values, order)), ImageFormat::npy);
+    const VoxelImage image =
+        read_text(npy_bytes(dtype, "(2, 3, 4)", false, bytes_of(values, order)), ImageFormat("NPY"));
     EXPECT_EQ(image.grid.size, (std::array<std::int64_t, 3>{4, 3, 2}));
     expect_values(image, values);
-    expect_values(read_text(npy_bytes(dtype, "(2, 3, 4)", true, bytes_of(transposed, order)), ImageFormat::npy),
+    expect_values(read_text(npy_bytes(dtype, "(2, 3, 4)", true, bytes_of(transposed, order)), ImageFormat("NPY")),
                   values);
   }
 }
@@ -124,12 +125,12 @@ TYPED_TEST(ImageOfType, ReadsNiftiOfEitherOrder) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     const Nifti nifti(nifti_type<TypeParam>(), order);
     const std::string file = nifti.bytes + bytes_of(values, order);
-    const VoxelImage image = read_text(file, ImageFormat::nifti);
+    const VoxelImage image = read_text(file, ImageFormat("NIfTI"));
     EXPECT_EQ(image.grid.size, (std::array<std::int64_t, 3>{4, 3, 2}));
     expect_values(image, values);
-    expect_values(read_text(gzipped(file), ImageFormat::nifti), values);
+    expect_values(read_text(gzipped(file), ImageFormat("NIfTI")), values);
     // Several gzip members one after the other, as parallel compressors write them.
-    expect_values(read_text(gzipped(file.substr(0, 360)) + gzipped(file.substr(360)), ImageFormat::nifti), values);
+    expect_values(read_text(gzipped(file.substr(0, 360)) + gzipped(file.substr(360)), ImageFormat("NIfTI")), values);
   }
 }
 
@@ -159,7 +160,7 @@ TYPED_TEST(ImageOfType, WritesWhatItReads) {
 TEST(NrrdImages, KeepTheirSpace) {
   const auto space_of = [](const std::string& fields) {
     return read_text(nrrd_start + "type: uint8\nencoding: raw\n" + fields + "\n\n" + std::string(24, '\1'),
-                     ImageFormat::nrrd)
+                     ImageFormat("NRRD"))
         .space;
   };
   const std::string directions = "\nspace directions: (1,0,0) (0,1,0) (0,0,1)";
@@ -172,7 +173,7 @@ TEST(NrrdImages, KeepTheirSpace) {
 }
 
 GridSpec nrrd_grid(const std::string& fields) {
-  return read_text("NRRD0005\n" + head8 + fields + "\n\n" + std::string(1000, '\1'), ImageFormat::nrrd).grid;
+  return read_text("NRRD0005\n" + head8 + fields + "\n\n" + std::string(1000, '\1'), ImageFormat("NRRD")).grid;
 }
 
 TEST(NrrdGeometry, SpaceDirectionsGiveSpacingAndDirection) {
@@ -239,13 +240,13 @@ TEST(NrrdFiles, ReadsDetachedData) {
   expect_values(read_image(put_in(folder, "a.nhdr", fields + "data file: data.bin\n")), values);
   expect_values(read_image(put_in(folder, "b.nhdr", fields + "datafile: data.bin\n\n")), values);
   EXPECT_THROW((void)read_image(put_in(folder, "c.nhdr", fields + "data file: absent.bin\n")), FileError);
-  EXPECT_PRED2(contains, error_of(fields + "data file: data.bin\n\n", ImageFormat::nrrd), "in another file");
+  EXPECT_PRED2(contains, error_of(fields + "data file: data.bin\n\n", ImageFormat("NRRD")), "in another file");
 }
 
 TEST(NiftiGeometry, SformGivesTheFrame) {
   Nifti nifti(2);
   nifti.sform({0, -2, 0, 10, 0.5F, 0, 0, -20, 0, 0, 3, 30});
-  const GridSpec grid = read_text(nifti.bytes + data24, ImageFormat::nifti).grid;
+  const GridSpec grid = read_text(nifti.bytes + data24, ImageFormat("NIfTI")).grid;
   EXPECT_EQ(grid.spacing, (Vec3d{0.5, 2, 3}));
   EXPECT_EQ(grid.origin, (Vec3d{10, -20, 30}));
   EXPECT_EQ(grid.direction.columns[0], (Vec3d{0, 1, 0}));
@@ -271,21 +272,21 @@ void expect_qform(const GridSpec& grid) {
 }
 
 TEST(NiftiGeometry, QformGivesTheFrameWhereThereIsNoSform) {
-  expect_qform(read_text(with_qform().bytes + data24, ImageFormat::nifti).grid);
+  expect_qform(read_text(with_qform().bytes + data24, ImageFormat("NIfTI")).grid);
 }
 
 TEST(NiftiGeometry, AShearedSformGivesWayToTheQform) {
   Nifti nifti = with_qform();
   nifti.sform({1, 0.2F, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
-  expect_qform(read_text(nifti.bytes + data24, ImageFormat::nifti).grid);
+  expect_qform(read_text(nifti.bytes + data24, ImageFormat("NIfTI")).grid);
   nifti.set<std::int16_t>(252, 0);
-  EXPECT_PRED2(contains, error_of(nifti.bytes + data24, ImageFormat::nifti), "not perpendicular");
+  EXPECT_PRED2(contains, error_of(nifti.bytes + data24, ImageFormat("NIfTI")), "not perpendicular");
 }
 
 TEST(NiftiGeometry, SpacingsAloneWhereNoFormIsSet) {
   Nifti nifti(2);
   nifti.set<float>(80, 0.5F).set<float>(84, -2.0F);
-  const GridSpec grid = read_text(nifti.bytes + data24, ImageFormat::nifti).grid;
+  const GridSpec grid = read_text(nifti.bytes + data24, ImageFormat("NIfTI")).grid;
   EXPECT_EQ(grid.spacing, (Vec3d{0.5, 2, 1}));
   EXPECT_EQ(grid.origin, Vec3d{});
   EXPECT_EQ(grid.direction, Mat3{});
@@ -297,7 +298,7 @@ TEST(NiftiValues, ScaleGivesDoubles) {
   const std::string data = bytes_of(values, std::endian::little);
   const auto scaled = [&](float slope, float intercept) {
     nifti.set<float>(112, slope).set<float>(116, intercept);
-    return read_text(nifti.bytes + data, ImageFormat::nifti);
+    return read_text(nifti.bytes + data, ImageFormat("NIfTI"));
   };
   std::vector<double> expected;
   for (const auto v : values) expected.push_back(0.5 * v - 3);
@@ -315,8 +316,8 @@ TEST(NiftiFiles, ReadsPairsAndExtensionsAndUnsetOffsets) {
   const auto values = sample_values<std::uint8_t>();
   const std::string data = bytes_of(values, std::endian::little);
   Nifti nifti(2);
-  expect_values(read_text(nifti.set<float>(108, 0.0F).bytes + data, ImageFormat::nifti), values);
-  expect_values(read_text(nifti.set<float>(108, 384.0F).bytes + std::string(32, 'x') + data, ImageFormat::nifti),
+  expect_values(read_text(nifti.set<float>(108, 0.0F).bytes + data, ImageFormat("NIfTI")), values);
+  expect_values(read_text(nifti.set<float>(108, 384.0F).bytes + std::string(32, 'x') + data, ImageFormat("NIfTI")),
                 values);
   nifti.set<float>(108, 0.0F).bytes.replace(344, 3, "ni1");
   put_in(folder, "a.hdr", nifti.bytes.substr(0, 348));
@@ -326,7 +327,7 @@ TEST(NiftiFiles, ReadsPairsAndExtensionsAndUnsetOffsets) {
   put_in(folder, "b.hdr.gz", gzipped(nifti.bytes));
   put_in(folder, "b.img.gz", gzipped(data));
   expect_values(read_image(folder / "b.img.gz"), values);
-  EXPECT_PRED2(contains, error_of(nifti.bytes + data, ImageFormat::nifti), "another file");
+  EXPECT_PRED2(contains, error_of(nifti.bytes + data, ImageFormat("NIfTI")), "another file");
 }
 
 TEST(NiftiFiles, ReadsVersion2) {
@@ -339,7 +340,7 @@ TEST(NiftiFiles, ReadsVersion2) {
     for (std::size_t i = 0; i < 8; ++i) nifti.set<std::int64_t>(16 + 8 * i, dim[i]).set<double>(104 + 8 * i, 0.25);
     nifti.set<std::int32_t>(344, 1).set<double>(376, 0.1).set<double>(384, 0.2).set<double>(392, 0.3);
     const auto values = sample_values<std::int16_t>();
-    const VoxelImage image = read_text(nifti.bytes + bytes_of(values, order), ImageFormat::nifti);
+    const VoxelImage image = read_text(nifti.bytes + bytes_of(values, order), ImageFormat("NIfTI"));
     expect_values(image, values);
     EXPECT_EQ(image.grid.spacing, (Vec3d{0.25, 0.25, 0.25}));
     EXPECT_EQ(image.grid.origin, (Vec3d{0.1, 0.2, 0.3}));
@@ -348,21 +349,21 @@ TEST(NiftiFiles, ReadsVersion2) {
 
 TEST(NpyFiles, BoolAndFewerAxesAndOtherVersions) {
   const VoxelImage flat =
-      read_text(npy_bytes("|b1", "(2, 3)", false, std::string("\1\0\1\0\1\1", 6)), ImageFormat::npy);
+      read_text(npy_bytes("|b1", "(2, 3)", false, std::string("\1\0\1\0\1\1", 6)), ImageFormat("NPY"));
   EXPECT_EQ(flat.grid.size, (std::array<std::int64_t, 3>{3, 2, 1}));
   expect_values(flat, std::vector<std::uint8_t>{1, 0, 1, 0, 1, 1});
   std::string row = npy_bytes("|u1", "(6,)", false, "abcdef");
-  EXPECT_EQ(read_text(row, ImageFormat::npy).grid.size, (std::array<std::int64_t, 3>{6, 1, 1}));
+  EXPECT_EQ(read_text(row, ImageFormat("NPY")).grid.size, (std::array<std::int64_t, 3>{6, 1, 1}));
   row[6] = '\2';
   row.insert(10, 2, '\0');
-  expect_values(read_text(row, ImageFormat::npy), std::vector<std::uint8_t>{'a', 'b', 'c', 'd', 'e', 'f'});
+  expect_values(read_text(row, ImageFormat("NPY")), std::vector<std::uint8_t>{'a', 'b', 'c', 'd', 'e', 'f'});
 }
 
 TEST(VolFiles, ReadsBothVersions) {
   const auto values = sample_values<std::uint8_t>();
   const std::string data = bytes_of(values, std::endian::little);
-  expect_values(read_text(vol_bytes("2", data), ImageFormat::vol), values);
-  const VoxelImage image = read_text(vol_bytes("3", compressed(data, 15)), ImageFormat::vol);
+  expect_values(read_text(vol_bytes("2", data), ImageFormat("Vol")), values);
+  const VoxelImage image = read_text(vol_bytes("3", compressed(data, 15)), ImageFormat("Vol"));
   expect_values(image, values);
   EXPECT_EQ(image.grid.size, (std::array<std::int64_t, 3>{4, 3, 2}));
 }

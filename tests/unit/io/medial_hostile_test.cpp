@@ -21,18 +21,18 @@ namespace {
 
 using namespace test;
 
-constexpr MedialFormat vtp = MedialFormat::vtp;
-constexpr MedialFormat ply = MedialFormat::ply;
-constexpr MedialFormat obj = MedialFormat::obj;
-constexpr MedialFormat ma = MedialFormat::ma;
-constexpr MedialFormat npz = MedialFormat::npz;
+const ComplexFormat vtp = ComplexFormat("VTP");
+const ComplexFormat ply = ComplexFormat("PLY");
+const ComplexFormat obj = ComplexFormat("OBJ");
+const ComplexFormat ma = ComplexFormat("MA");
+const ComplexFormat npz = ComplexFormat("NPZ");
 
 /// Content, and parts of the message with which it must be refused.
 struct Hostile {
   std::string content, error, place;
 };
 
-void expect_refused(const std::vector<Hostile>& table, MedialFormat format) {
+void expect_refused(const std::vector<Hostile>& table, ComplexFormat format) {
   for (const Hostile& file : table) {
     const std::string message = medial_refusal(file.content, format);
     EXPECT_NE(message.find(file.error), std::string::npos) << message << "\nshould say: " << file.error;

@@ -88,12 +88,10 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-constexpr std::array<const char*, 5> extensions{".vtp", ".ply", ".obj", ".ma", ".npz"};  // as MedialFormat
-
-class MedialFiles : public testing::TestWithParam<MedialFormat> {
+class MedialFiles : public testing::TestWithParam<std::string> {
  protected:
-  MedialFormat format = GetParam();
-  std::string extension = extensions[static_cast<std::size_t>(format)];
+  std::string extension = GetParam();
+  ComplexFormat format = ComplexFormat(extension);
   TemporaryFolder folder;
   std::filesystem::path path = folder.path() / ("out" + extension);
   [[nodiscard]] bool keeps_all() const { return extension != ".obj" && extension != ".ma"; }
@@ -102,11 +100,8 @@ class MedialFiles : public testing::TestWithParam<MedialFormat> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Formats, MedialFiles,
-                         testing::Values(MedialFormat::vtp, MedialFormat::ply, MedialFormat::obj, MedialFormat::ma,
-                                         MedialFormat::npz),
-                         [](const auto& info) {
-                           return std::string(extensions[static_cast<std::size_t>(info.param)] + 1);
-                         });
+                         testing::ValuesIn(file_extensions(FileContent::complex, FileAccess::write)),
+                         [](const auto& info) { return info.param.substr(1); });
 
 TEST_P(MedialFiles, ReadBackAsWritten) {
   AxisRows complex = sample_complex();
@@ -313,7 +308,7 @@ TEST(MedialMa, HasAllEdgesOnce) {
 TEST(MedialOthers, MaWithCommentsTagsAndEdgesThatAreSides) {
   const MedialFile file = parse_medial(
       "# made elsewhere\n4 3 1\nv 0 0 0 1 7\n\nv 1 0 0 1\nv 0 1 0 1\nv 0 0 1 .5\ne 1 0 0 2\ne 3 2\ne 2 1\nf 2 1 0 0\n",
-      MedialFormat::ma);
+      ComplexFormat("MA"));
   ASSERT_EQ(AxisRows(file.complex).edges.size(), 1U);
   EXPECT_EQ(AxisRows(file.complex).edges[0].vertices, (std::array<std::uint32_t, 2>{3, 2}));
   EXPECT_EQ(AxisRows(file.complex).edges[0].role, MedialRole::curve);
@@ -323,7 +318,7 @@ TEST(MedialOthers, MaWithCommentsTagsAndEdgesThatAreSides) {
 
 TEST(MedialOthers, ObjWithPolygonsAndLines) {
   const MedialFile file =
-      parse_medial("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\nl 1 5 2 1\n", MedialFormat::obj);
+      parse_medial("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\nl 1 5 2 1\n", ComplexFormat("OBJ"));
   EXPECT_EQ(AxisRows(file.complex).triangles.size(), 2U);
   EXPECT_EQ(AxisRows(file.complex).edges.size(), 2U);  // the third step of the line is a side
   EXPECT_FALSE(file.has_radii);
@@ -335,7 +330,7 @@ TEST(MedialOthers, PlainPlyAsText) {
       "float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_index\nproperty float quality\n"
       "element edge 3\nproperty int vertex1\nproperty int vertex2\nelement material 1\nproperty int shade\nend_header\n"
       "0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n0 0 1 1\n4 0 1 2 3 0.5\n0 1\n4 0\n4 1\n9\n",
-      MedialFormat::ply);
+      ComplexFormat("PLY"));
   EXPECT_EQ(AxisRows(file.complex).vertices.size(), 5U);
   EXPECT_EQ(AxisRows(file.complex).triangles.size(), 2U);
   ASSERT_EQ(AxisRows(file.complex).edges.size(), 2U);
@@ -357,7 +352,7 @@ TEST(MedialOthers, PlyWithAttributesInTheEdges) {
         "element edge 2\nproperty int vertex1\nproperty int vertex2\nelement edge_attributes 2\nproperty uchar role\n"
         "property float separation_angle\nend_header\n" +
             points + "0 1\n2 1\n3 40.5\n1 50.5\n"}) {
-    const MedialFile file = parse_medial(head + edges, MedialFormat::ply);
+    const MedialFile file = parse_medial(head + edges, ComplexFormat("PLY"));
     ASSERT_EQ(AxisRows(file.complex).edges.size(), 2U);
     EXPECT_EQ(AxisRows(file.complex).edges[1].vertices, (std::array<std::uint32_t, 2>{2, 1}));
     EXPECT_EQ(AxisRows(file.complex).edges[1].separation_angle, 50.5F);
@@ -377,7 +372,7 @@ TEST(MedialOthers, PlyThatIsBigEndian) {
       "ply\nformat binary_big_endian 1.0\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n"
       "property double radius\nend_header\n" +
           data,
-      MedialFormat::ply);
+      ComplexFormat("PLY"));
   EXPECT_EQ(AxisRows(file.complex).vertices[0].position.z, 1.5);
   EXPECT_EQ(AxisRows(file.complex).vertices[1].radius, 0.25);
   EXPECT_TRUE(file.has_radii);
@@ -411,7 +406,7 @@ TEST(MedialOthers, VtpWithPolylinesOtherTypesAndOrders) {
       "<VTKFile type='PolyData' byte_order='BigEndian'><PolyData><Piece NumberOfPoints='4' NumberOfLines='1' "
       "NumberOfPolys='1'>" +
           arrays + "</Piece></PolyData><AppendedData encoding='raw'>_" + data,
-      MedialFormat::vtp);
+      ComplexFormat("VTP"));
   EXPECT_EQ(AxisRows(file.complex).vertices[3].position.z, 1.5);
   ASSERT_EQ(AxisRows(file.complex).edges.size(), 1U);  // the first step is a side of the triangle
   EXPECT_EQ(AxisRows(file.complex).edges[0].vertices, (std::array<std::uint32_t, 2>{1, 3}));

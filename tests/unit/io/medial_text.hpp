@@ -10,12 +10,12 @@
 
 namespace blum::test {
 
-inline MedialFile parse_medial(const std::string& content, MedialFormat format) {
+inline MedialFile parse_medial(const std::string& content, ComplexFormat format) {
   return read_medial(std::as_bytes(std::span(content)), format, "test.axis");
 }
 
 /// The message with which the content is refused; "read" when it is read.
-inline std::string medial_refusal(const std::string& content, MedialFormat format) {
+inline std::string medial_refusal(const std::string& content, ComplexFormat format) {
   try {
     (void)parse_medial(content, format);
   } catch (const FormatError& error) {

@@ -18,13 +18,13 @@ using test::parse_mesh;
 const std::vector<Vec3d> corner_vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
 TriangleMesh obj(std::string_view text) {
-  return parse_mesh(text, MeshFormat::obj).mesh;
+  return parse_mesh(text, MeshFormat("OBJ")).mesh;
 }
 TriangleMesh off(std::string_view text) {
-  return parse_mesh(text, MeshFormat::off).mesh;
+  return parse_mesh(text, MeshFormat("OFF")).mesh;
 }
 TriangleMesh ply(std::string_view text) {
-  return parse_mesh(text, MeshFormat::ply).mesh;
+  return parse_mesh(text, MeshFormat("PLY")).mesh;
 }
 
 TEST(MeshObj, EveryFormOfFace) {
@@ -56,7 +56,7 @@ TEST(MeshObj, LineEndsOfEveryKindCountTheSame) {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     const std::string text = "v 0 0 0" + end + "v 1 0 0" + end + end + "v 0 1 0" + end + "f 1 2 3" + end;
     EXPECT_EQ(obj(text).triangles.size(), 1U);
-    EXPECT_NE(test::refusal(text + "v 1 x 2" + end, MeshFormat::obj).find("line 6:"), std::string::npos);
+    EXPECT_NE(test::refusal(text + "v 1 x 2" + end, MeshFormat("OBJ")).find("line 6:"), std::string::npos);
   }
 }
 
@@ -107,7 +107,7 @@ constexpr std::string_view text_stl =
     "endsolid a part\nsolid\nendsolid\n";
 
 TEST(MeshStl, TextIsReadWithDoublesAndWelded) {
-  const MeshFile file = parse_mesh(text_stl, MeshFormat::stl);
+  const MeshFile file = parse_mesh(text_stl, MeshFormat("STL"));
   EXPECT_EQ(file.mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {0.1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
   EXPECT_EQ(file.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
   EXPECT_FALSE(file.info.binary);
@@ -120,7 +120,7 @@ TEST(MeshStl, BinaryIsKnownWhateverItsHeaderSays) {
   for (const char* header :
        {"binary", "solid", "solid facet normal 0 0 0\nouter loop\nvertex 0 0 0\n", "", "  solid x"}) {
     for (const std::uint32_t count : {1U, 7U, 300U}) {
-      const MeshFile file = parse_mesh(binary_stl(count, count, header), MeshFormat::stl);
+      const MeshFile file = parse_mesh(binary_stl(count, count, header), MeshFormat("STL"));
       EXPECT_TRUE(file.info.binary) << header;
       EXPECT_EQ(file.mesh.triangles.size(), count) << header;
       EXPECT_EQ(file.mesh.vertices.size(), 2 + count) << header;
@@ -130,12 +130,12 @@ TEST(MeshStl, BinaryIsKnownWhateverItsHeaderSays) {
 
 TEST(MeshWeld, DefaultsAndTolerance) {
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 0 1e-7\nv 0 -1 0\nf 1 2 3\nf 4 6 5\n";
-  EXPECT_EQ(parse_mesh(text, MeshFormat::obj).mesh.vertices.size(), 6U);
-  EXPECT_FALSE(parse_mesh(text, MeshFormat::obj).info.welded);
-  EXPECT_EQ(parse_mesh(text, MeshFormat::obj, {.weld = 0.0}).mesh.vertices.size(), 5U);
-  EXPECT_EQ(parse_mesh(text, MeshFormat::obj, {.weld = 1e-6}).mesh.vertices.size(), 4U);
-  EXPECT_EQ(parse_mesh(text, MeshFormat::obj, {.weld = 1e-6}).info.merged_vertices, 2U);
-  EXPECT_THROW((void)parse_mesh(text, MeshFormat::obj, {.weld = -1.0}), InvalidOption);
+  EXPECT_EQ(parse_mesh(text, MeshFormat("OBJ")).mesh.vertices.size(), 6U);
+  EXPECT_FALSE(parse_mesh(text, MeshFormat("OBJ")).info.welded);
+  EXPECT_EQ(parse_mesh(text, MeshFormat("OBJ"), {.weld = 0.0}).mesh.vertices.size(), 5U);
+  EXPECT_EQ(parse_mesh(text, MeshFormat("OBJ"), {.weld = 1e-6}).mesh.vertices.size(), 4U);
+  EXPECT_EQ(parse_mesh(text, MeshFormat("OBJ"), {.weld = 1e-6}).info.merged_vertices, 2U);
+  EXPECT_THROW((void)parse_mesh(text, MeshFormat("OBJ"), {.weld = -1.0}), InvalidOption);
 }
 
 TEST(MeshPly, TextWithOtherElementsAndProperties) {
@@ -224,13 +224,14 @@ TEST(MeshPly, TriangleStrips) {
 }
 
 TEST(MeshFormats, ExtensionsInAnyCase) {
-  EXPECT_EQ(mesh_format("a/b.OBJ"), MeshFormat::obj);
-  EXPECT_EQ(mesh_format("x.y.Stl"), MeshFormat::stl);
-  EXPECT_EQ(mesh_format("x.off"), MeshFormat::off);
-  EXPECT_EQ(mesh_format("x.pLY"), MeshFormat::ply);
-  EXPECT_FALSE(mesh_format("x.gltf").has_value());
-  EXPECT_FALSE(mesh_format("obj").has_value());
-  EXPECT_EQ(to_string(MeshFormat::ply), "PLY");
+  EXPECT_EQ(MeshFormat::by_name("a/b.OBJ"), MeshFormat("OBJ"));
+  EXPECT_EQ(MeshFormat::by_name("x.y.Stl"), MeshFormat("STL"));
+  EXPECT_EQ(MeshFormat::by_name("x.off"), MeshFormat("OFF"));
+  EXPECT_EQ(MeshFormat::by_name("x.pLY"), MeshFormat("PLY"));
+  EXPECT_FALSE(MeshFormat::by_name("x.gltf").has_value());
+  EXPECT_FALSE(MeshFormat::by_name("obj").has_value());
+  EXPECT_EQ(MeshFormat(".ply").name(), "PLY");
+  EXPECT_THROW(MeshFormat("gltf"), InvalidOption);
 }
 
 TEST(MeshFormats, FilesOfAnySizeAreReadWhole) {

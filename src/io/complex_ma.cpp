@@ -8,13 +8,16 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "io/complex_files.hpp"
 #include "io/edge_set.hpp"
-#include "io/medial_files.hpp"
+#include "io/format_table.hpp"
 #include "io/row_writer.hpp"
 #include "io/text_cursor.hpp"
 
-namespace blum::medial_files {
+namespace blum::complex_files {
 namespace {
+
+constexpr std::string_view radius_column = "radius";
 
 /// Reads vertices, edges and triangles in any order, as other programs may have them; whatever follows on their lines
 /// is left alone.
@@ -32,7 +35,7 @@ class MaReader {
     check_count(complex_.edges.size(), 1, "edges");
     check_count(complex_.triangles.size(), 2, "triangles");
     complex_.vertex_columns = Columns(radii_.size());
-    complex_.vertex_columns.add({"radius", 1, std::move(radii_)});
+    complex_.vertex_columns.add({std::string(radius_column), 1, std::move(radii_)});
     return std::move(complex_);
   }
 
@@ -113,12 +116,17 @@ class MaReader {
   std::array<std::uint64_t, 3> counts_{};  ///< of vertices, edges and triangles
 };
 
-}  // namespace
-
-void write_ma(const std::filesystem::path& path, const Complex& complex, const Context& context) {
-  using complex_files::EdgeSet;
+/// Positions, the column `radius` of the vertices, edges, also those that are sides of triangles, and triangles.
+void write_ma(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
+              const ComplexWriteOptions& options, const Context& context) {
+  const Column* const radius = complex.vertex_columns.find(radius_column);
+  if (radius == nullptr || radius->components != 1 || !std::holds_alternative<std::vector<double>>(radius->values)) {
+    throw InvalidOption("'" + path.string() + "': MA files hold a radius for each vertex, but the complex has no " +
+                        "column 'radius' of one float64 for each; write .vtp, .ply or .npz");
+  }
+  refuse_loss(path, "MA", complex, metadata, options, radius_column);
   const EdgeSet edges(complex.view(), EdgeSet::Of::edges_and_triangles, context);
-  const std::span<const double> radii = complex.vertex_columns.get<double>("radius");
+  const std::span<const double> radii = std::get<std::vector<double>>(radius->values);
   RowWriter out(path, complex.positions.size() + edges.size() + complex.triangles.size(), context);
   out.text(std::to_string(complex.positions.size()) + " " + std::to_string(edges.size()) + " " +
            std::to_string(complex.triangles.size()) + "\n");
@@ -145,8 +153,15 @@ void write_ma(const std::filesystem::path& path, const Complex& complex, const C
   out.finish();
 }
 
-Complex read_ma(std::string_view text, std::string_view name) {
-  return MaReader(text, name).read();
+ComplexFile read_ma(std::string_view text, std::string_view name) {
+  return {MaReader(text, name).read()};
 }
 
-}  // namespace blum::medial_files
+}  // namespace
+}  // namespace blum::complex_files
+
+namespace blum::formats {
+
+constinit const ComplexCode complex_ma{nullptr, complex_files::read_ma, complex_files::write_ma};
+
+}  // namespace blum::formats
