@@ -2,23 +2,35 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace blum::cli {
 
-/// Each adds its subcommand to the tool; its work runs when the command line has been read.
-void add_field_command(CLI::App& app);
-void add_slice_command(CLI::App& app);
-/// `arguments` are those of the tool, first to last: the parameters of the shape are taken out of them.
-void add_make_command(CLI::App& app, std::vector<std::string>& arguments);
-void add_info_command(CLI::App& app);
-void add_medial_command(CLI::App& app);
-void add_verify_command(CLI::App& app);
-void add_reconstruct_command(CLI::App& app);
-void add_surface_command(CLI::App& app);
-void add_view_command(CLI::App& app);
+/// What subcommands are added to.
+struct CommandLine {
+  CLI::App& app;
+  std::vector<std::string>& arguments;  ///< first to last; a subcommand may take some of its own out of them
+};
+
+// Each adds its subcommand to the tool; its work runs when the command line has been read.
+void add_field_command(const CommandLine& line);
+void add_slice_command(const CommandLine& line);
+void add_make_command(const CommandLine& line);
+void add_info_command(const CommandLine& line);
+void add_formats_command(const CommandLine& line);
+void add_medial_command(const CommandLine& line);
+void add_verify_command(const CommandLine& line);
+void add_reconstruct_command(const CommandLine& line);
+void add_surface_command(const CommandLine& line);
+void add_view_command(const CommandLine& line);
+
+/// All of them, in the order of the help. A new one is a file of its own, a line above and one here, and a test.
+inline constexpr std::array commands{
+    add_field_command,  add_slice_command,  add_make_command,        add_info_command,    add_formats_command,
+    add_medial_command, add_verify_command, add_reconstruct_command, add_surface_command, add_view_command};
 
 /// An axis that is not certified: exit status 3.
 class NotCertified : public std::runtime_error {

@@ -377,9 +377,9 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_field_command(CLI::App& app) {
+void add_field_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("field", "Exact distance and closest site at every node of a grid");
+  CLI::App* command = line.app.add_subcommand("field", "Exact distance and closest site at every node of a grid");
   command->add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       ->required();
   command->add_option("-o,--output", a->output, "Field file: .nrrd (and OUT.site.nrrd), .npz or .vti")

@@ -367,9 +367,9 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app) {
+void add_info_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("info", "What a mesh, an image, a field or a medial axis holds");
+  CLI::App* command = line.app.add_subcommand("info", "What a mesh, an image, a field or a medial axis holds");
   command->add_option("INPUT", a->input, "Mesh, image, field or medial axis")->required();
   add_weld_option(*command, a->weld);
   add_report_options(*command, a->report, "Write the facts as JSON; - is standard output");

@@ -90,15 +90,8 @@ void add_commands(CLI::App& app, std::vector<std::string>& arguments) {
   app.footer(examples);
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
-  add_field_command(app);
-  add_slice_command(app);
-  add_make_command(app, arguments);
-  add_info_command(app);
-  add_medial_command(app);
-  add_verify_command(app);
-  add_reconstruct_command(app);
-  add_surface_command(app);
-  add_view_command(app);
+  const CommandLine line{app, arguments};
+  for (const auto& add : commands) add(line);
 }
 
 int run(std::vector<std::string> arguments) {

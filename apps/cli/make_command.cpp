@@ -284,10 +284,10 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_make_command(CLI::App& app, std::vector<std::string>& arguments) {
+void add_make_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  if (!arguments.empty() && arguments[0] == "make") a->parameters = take_parameters(arguments);
-  CLI::App* command = app.add_subcommand("make", "Make a shape to test with or to start from");
+  if (!line.arguments.empty() && line.arguments[0] == "make") a->parameters = take_parameters(line.arguments);
+  CLI::App* command = line.app.add_subcommand("make", "Make a shape to test with or to start from");
   command->add_option("SHAPE", a->shape, "Name of a shape; its parameters are given as --name value");
   command
       ->add_option("-o,--output", a->output,

@@ -387,9 +387,9 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_medial_command(CLI::App& app) {
+void add_medial_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("medial", "Medial axis with the topology of the solid, certified");
+  CLI::App* command = line.app.add_subcommand("medial", "Medial axis with the topology of the solid, certified");
   command->add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       ->required();
   command

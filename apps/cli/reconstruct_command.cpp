@@ -176,10 +176,10 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_reconstruct_command(CLI::App& app) {
+void add_reconstruct_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command =
-      app.add_subcommand("reconstruct", "The union of the balls of a medial axis, as a field or a mesh");
+      line.app.add_subcommand("reconstruct", "The union of the balls of a medial axis, as a field or a mesh");
   command->add_option("AXIS", a->axis, "Medial axis: .vtp, .ply, .ma or .npz")->required();
   command
       ->add_option("-o,--output", a->output,

@@ -110,9 +110,9 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_slice_command(CLI::App& app) {
+void add_slice_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("slice", "A picture of one layer of a field");
+  CLI::App* command = line.app.add_subcommand("slice", "A picture of one layer of a field");
   command
       ->add_option("FIELD", a->input,
                    "Field file: .nrrd, .npz or .vti; also distances of other programs, .nrrd of floats")

@@ -95,9 +95,9 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_surface_command(CLI::App& app) {
+void add_surface_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("surface", "The surface of a field at a level, as a mesh");
+  CLI::App* command = line.app.add_subcommand("surface", "The surface of a field at a level, as a mesh");
   command->add_option("FIELD", a->field, extensions_help({FileContent::field}, FileAccess::read))->required();
   command->add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::write))
       ->required()

@@ -145,9 +145,9 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& app) {
+void add_verify_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("verify", "Check medial axes against their solid, from the files alone");
+  CLI::App* command = line.app.add_subcommand("verify", "Check medial axes against their solid, from the files alone");
   command->add_option("INPUT", a->input, "The mesh or image whose axis it is")->required();
   command->add_option("AXIS", a->axes, "Medial axes: .vtp, .ply, .obj, .ma or .npz")->required();
   add_label_option(*command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");

@@ -97,9 +97,9 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void add_view_command(CLI::App& app) {
+void add_view_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("view", "Shows files in a browser: meshes, images, fields, medial axes");
+  CLI::App* command = line.app.add_subcommand("view", "Shows files in a browser: meshes, images, fields, medial axes");
   command->add_option("FILE", a->inputs, "Meshes, images, fields and medial axes, any mixture")->required();
   add_text_option(*command, "-o,--output", a->output, "HTML", "Write the page to a file, with all that it shows");
   add_text_option(*command, "--port", a->port, "P", "Serve the page on this port (default: one that is free)");

@@ -2,6 +2,7 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <filesystem>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/io/field_io.hpp"
+#include "blum/io/formats.hpp"
 #include "blum/io/image_io.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/io/mesh_io.hpp"
@@ -142,9 +144,21 @@ void bind_medial_files(nb::module_& m) {
       nb::arg("weld").none());
 }
 
+void bind_formats(nb::module_& m) {
+  m.def("file_formats", [] {
+    nb::list out;
+    for (const FileFormat& format : file_formats()) {
+      out.append(nb::make_tuple(std::string(to_string(format.content)), format.name, format.extensions, format.written,
+                                format.holds, format.opens_in));
+    }
+    return out;
+  });
+}
+
 }  // namespace
 
 void bind_files(nb::module_& m) {
+  bind_formats(m);
   bind_meshes(m);
   bind_volumes(m);
   bind_medial_files(m);

@@ -47,6 +47,7 @@ from ._field import (
     selected_voxels,
     voxel_topology,
 )
+from ._formats import FileFormat, file_formats
 from ._grid import Grid
 from ._image import Image, read_image
 from ._medial import BodyReport, MedialAxis, MedialAxisReport, medial_axis
@@ -89,6 +90,7 @@ __all__ = [
     "Field",
     "FieldSolver",
     "FileError",
+    "FileFormat",
     "FormatError",
     "GeometryCheck",
     "Grid",
@@ -122,6 +124,7 @@ __all__ = [
     "distance_transform",
     "distance_transforms",
     "extrusion",
+    "file_formats",
     "generate",
     "homology",
     "known_betti",

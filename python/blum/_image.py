@@ -12,9 +12,10 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import PathLike, as_array, existing_file, source_name
 from ._errors import InvalidOption
+from ._formats import extensions
 from ._grid import Grid, image_grid
 
-_EXTENSIONS = (".nrrd", ".nhdr", ".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz", ".npy", ".vol")
+_EXTENSIONS = extensions("image")
 
 
 class Image:
@@ -92,7 +93,7 @@ class Image:
 
 
 def read_image(path: PathLike) -> Image:
-    """Reads .nrrd, .nhdr, .nii, .nii.gz, .hdr with .img, .npy or .vol; spacing, origin and direction are the file's."""
+    """Reads an image in any of `file_formats("image")`; spacing, origin and direction are the file's."""
     image = image_of_parts(*_core.read_image(existing_file(path)))
     image.source = source_name(path)
     return image

@@ -17,11 +17,14 @@ BLUM_HD constexpr std::uint32_t spread_bits(std::uint32_t x) {
   return x;
 }
 
-/// Place on a Morton curve of 1024 cells a side around the origin, for coordinates in [-1/2, 1/2].
+/// Place on a Morton curve of 1024 cells a side around the origin, for coordinates in [-1/2, 1/2]; others go to
+/// the nearest cell, and what is not a number to the first.
 BLUM_HD constexpr std::uint32_t morton_code(const Vec3d& p) {
   std::uint32_t code = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::uint32_t>(clamped((p[axis] + 0.5) * 1023.0, 0.0, 1023.0));
+    const double x = (p[axis] + 0.5) * 1023.0;
+    // What is not a number lies in the first cell: it has no integer to become.
+    const auto cell = x > 0 ? static_cast<std::uint32_t>(smaller(x, 1023.0)) : 0U;
     code |= spread_bits(cell) << axis;
   }
   return code;

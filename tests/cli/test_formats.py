@@ -1,0 +1,26 @@
+"""`blum formats` says what is read and written; each format has first inputs for its fuzz target."""
+
+import pathlib
+
+import pytest
+from tool import BLUM, run, run_json
+
+pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
+
+CORPUS = pathlib.Path(__file__).parents[1] / "fuzz" / "corpus"
+
+
+def test_formats_are_listed_for_people_and_programs():
+    formats = run_json("formats")["formats"]
+    assert {"mesh", "image", "field", "complex"} == {one["content"] for one in formats}
+    text, _ = run("formats")
+    for one in formats:
+        assert one["extensions"] and set(one["written"]) <= set(one["extensions"])
+        assert all(extension in text for extension in one["extensions"])
+        assert one["holds"] in text and one["opens_in"] in text
+
+
+def test_each_format_is_fuzzed():
+    wanted = {f"fuzz_{one['content']}_{one['name'].lower()}" for one in run_json("formats")["formats"]}
+    assert wanted == {folder.name for folder in CORPUS.iterdir()}
+    assert all(any(folder.iterdir()) for folder in CORPUS.iterdir())
