@@ -40,8 +40,8 @@ constexpr const char* examples = R"(Examples:
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> resolution, spacing, bounds, padding, sign, band, site_ids, threshold, weld, threads,
-      device;
+  std::optional<std::string> resolution, spacing, bounds, padding, threshold, weld, threads, device;
+  OptionTexts<FieldOptions> options;
   std::vector<std::string> labels;
   ReportOptions report;
 };
@@ -53,9 +53,8 @@ struct Request {
   std::optional<double> spacing;
   std::optional<Box3> bounds;
   double padding = 0.1;
-  SignMode sign = SignMode::automatic;
-  std::optional<Band> band;
-  SiteIds site_ids = SiteIds::features;
+  OptionTexts<FieldOptions> option_texts;
+  FieldOptions options;  ///< lengths in voxels are known with the grid only
   Selections selections;
   std::optional<double> weld;
   int threads = 0;
@@ -71,25 +70,13 @@ Request parse(const Arguments& a) {
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
   exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
   exclude(a.bounds.has_value(), "--bounds", a.padding.has_value(), "--padding", "the bounds are taken as they are");
-  exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
   if (a.resolution) r.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 2, 65536));
   if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
   if (a.bounds) r.bounds = parse_bounds("--bounds", *a.bounds);
   if (a.padding) r.padding = parse_non_negative("--padding", *a.padding);
-  if (a.sign) {
-    r.sign = parse_choice<SignMode>("--sign", *a.sign,
-                                    {{"auto", SignMode::automatic},
-                                     {"normals", SignMode::normals},
-                                     {"winding", SignMode::winding},
-                                     {"none", SignMode::none}});
-  }
-  if (a.band) r.band = parse_band("--band", *a.band);
-  if (a.site_ids) {
-    r.site_ids = parse_choice<SiteIds>("--site-ids", *a.site_ids,
-                                       {{"features", SiteIds::features}, {"triangles", SiteIds::triangles}});
-  }
-  r.selections.labels = parse_labels("--label", a.labels);
-  if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);
+  r.option_texts = a.options;
+  r.options = a.options.read(1);
+  r.selections = parse_selections(a.labels, a.threshold);
   r.weld = parse_weld(a.weld);
   r.threads = parse_threads(a.threads);
   if (a.device) r.device = parse_device(*a.device);
@@ -107,10 +94,10 @@ void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
                 {a.spacing.has_value(), "--spacing"},
                 {a.bounds.has_value(), "--bounds"},
                 {a.padding.has_value(), "--padding"},
-                {a.site_ids.has_value(), "--site-ids"},
+                {a.options.has("site_ids"), "--site-ids"},
                 {a.weld.has_value(), "--weld"},
-                {r.sign == SignMode::normals, "--sign normals"},
-                {r.sign == SignMode::winding, "--sign winding"}},
+                {r.options.sign == SignMode::normals, "--sign normals"},
+                {r.options.sign == SignMode::winding, "--sign winding"}},
                r.input, "an image", "meshes");
 }
 
@@ -166,6 +153,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   json["files"] = names;
   json["sign"] = {{"rule", to_string(field.sign_rule)}, {"reason", field.sign_reason}};
   json["device"] = to_string(field.device);
+  json["device_reason"] = field.device_reason.empty() ? Json(nullptr) : Json(field.device_reason);
   json["band"] = field.band ? Json(*field.band) : Json(nullptr);
   json["distance"] = {{"minimum", s.minimum}, {"maximum", s.maximum}, {"inside_nodes", s.inside_nodes}};
   json["sites"] = sites_json(s, field.site_ids);
@@ -175,6 +163,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   run.table.add("sign",
                 std::string(to_string(field.sign_rule)) + (field.sign_reason.empty() ? "" : ": " + field.sign_reason));
   if (run.names_device) run.table.add("device", to_string(field.device));
+  if (!field.device_reason.empty()) run.table.add("no device", field.device_reason);
   run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
                                 (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
   run.table.add("sites", sites_text(s, field.site_ids));
@@ -216,7 +205,7 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                      {"command", "field"},
                      {"input", run.input},
                      {"grid", to_json(grid)},
-                     {"sign_asked", to_string(request.sign)},
+                     {"sign_asked", to_string(request.options.sign)},
                      {"fields", run.fields},
                      {"seconds", spent.seconds},
                      {"field_seconds", run.field_seconds},
@@ -285,17 +274,13 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   const GridSpec grid = make_grid(r, bounds(mesh));
   check_field_memory(grid, 1);
   add_grid_text(run, grid);
-  FieldOptions options;
-  options.sign = r.sign;
-  options.site_ids = r.site_ids;
-  if (r.band) options.band = r.band->value * (r.band->voxels ? grid.spacing.x : 1.0);
   static_cast<void>(watch.lap());
-  const Field field = distance_field(mesh, grid, options, context);
+  const Field field = distance_field(mesh, grid, r.option_texts.read(grid.spacing.x), context);
   run.field_seconds = watch.lap();
   run.phases.insert(run.phases.end(), field.phases.begin(), field.phases.end());
   progress.clear();
 
-  const SiteTable* features = r.site_ids == SiteIds::features ? &sites : nullptr;
+  const SiteTable* features = r.options.site_ids == SiteIds::features ? &sites : nullptr;
   const FieldStatistics statistics = field_statistics(field, features, context);
   run.time("statistics", watch.lap());
   write_field(r.output, field, {&mesh, &sites, r.input.filename().string(), BLUM_VERSION}, context);
@@ -340,8 +325,8 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
   check_field_memory(image.grid, selections.size());
   add_grid_text(run, image.grid);
   DistanceTransformOptions options;
-  options.is_signed = r.sign != SignMode::none;
-  if (r.band) options.band = r.band->value * (r.band->voxels ? coarsest_step(image.grid) : 1.0);
+  options.is_signed = r.options.sign != SignMode::none;
+  options.band = r.option_texts.read(coarsest_step(image.grid)).band;
   static_cast<void>(watch.lap());
   std::vector<Field> fields = distance_transforms(image, selections, options, context);
   run.field_seconds = watch.lap();
@@ -393,9 +378,7 @@ void add_field_command(const CommandLine& line) {
   text("--bounds", a->bounds, "BOX",
        "Mesh: grid box x0,y0,z0,x1,y1,z1, grown to whole steps; a side of zero gives a 2D field");
   text("--padding", a->padding, "F", "Mesh: room around the shape, as a part of its longest side (default 0.1)");
-  text("--sign", a->sign, "RULE", "auto, normals, winding or none (default auto); image: auto or none");
-  text("--band", a->band, "W", "Only distances up to W, in mesh units, or in grid steps as in 3v");
-  text("--site-ids", a->site_ids, "KIND", "Mesh: number sites as features or triangles (default features)");
+  a->options.add_to(*command, "", {}, true);
   add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give a field each");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
   add_weld_option(*command, a->weld);

@@ -1,26 +1,25 @@
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "axis_info.hpp"
 #include "blum/core/error.hpp"
+#include "blum/field/cuda_devices.hpp"
 #include "blum/field/field.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
+#include "blum/grid/image_values.hpp"
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "field_statistics.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
+#include "medial_report.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "summary.hpp"
@@ -37,13 +36,13 @@ constexpr const char* examples = R"(Examples:
   blum info bunny.nrrd                             a field that Blum wrote
   blum info bunny.vtp                              a medial axis)";
 
-constexpr std::size_t contact_limit = 100000;   // looked for
-constexpr std::size_t pair_limit = 20;          // shown in JSON
-constexpr std::size_t label_limit = 20;         // shown
-constexpr std::size_t distinct_limit = 100000;  // counted; more values are no labels
+constexpr std::size_t contact_limit = 100000;  // looked for
+constexpr std::size_t pair_limit = 20;         // shown in JSON
+constexpr std::size_t label_limit = 20;        // shown, with what takes a pass over the image each
 
 struct Arguments {
   std::string input;
+  bool devices = false;
   std::optional<std::string> weld;
   ReportOptions report;
 };
@@ -54,53 +53,16 @@ const char* yes_no(bool value) {
 
 // ---- Meshes ----
 
-Json shell_json(const Shell& shell) {
-  return {{"triangles", shell.triangles},
-          {"genus", shell.genus},
-          {"euler_characteristic", shell.euler_characteristic},
-          {"signed_volume", shell.signed_volume},
-          {"area", shell.area},
-          {"depth", shell.depth},
-          {"parent", shell.parent},
-          {"faces_outwards", shell.faces_outwards},
-          {"bounds", to_json(shell.bounds)}};
-}
-
-Json topology_json(const Topology& t) {
-  Json json = {{"named_vertices", t.named_vertices},
-               {"edges", t.edges},
-               {"pieces", t.pieces},
-               {"components", t.surface_components},
-               {"closed_components", t.closed_components},
-               {"boundary_edges", t.boundary_edges},
-               {"boundary_loops", t.boundary_loops},
-               {"nonmanifold_edges", t.nonmanifold_edges},
-               {"nonmanifold_vertices", t.nonmanifold_vertices},
-               {"inconsistent_edges", t.inconsistent_edges},
-               {"degenerate_triangles", t.degenerate_triangles},
-               {"duplicate_triangles", t.duplicate_triangles},
-               {"closed", t.closed},
-               {"oriented", t.oriented},
-               {"manifold", t.manifold},
-               {"faces_outwards", t.closed && t.oriented ? Json(t.faces_outwards) : Json(nullptr)},
-               {"area", t.area},
-               {"signed_volume", t.closed && t.oriented ? Json(t.signed_volume) : Json(nullptr)},
-               {"euler_characteristic", t.euler_characteristic}};
-  Json shells = Json::array();
-  std::int64_t genus = 0;
-  for (const Shell& shell : t.shells) {
-    shells.push_back(shell_json(shell));
-    genus += shell.genus;
-  }
+/// What a mesh without a solid has no orientation or volume of is null.
+Json topology_json(const Topology& t, const SelfIntersections& contacts) {
+  Json json = to_json(t);
   const bool whole = t.closed && t.oriented;
+  std::int64_t genus = 0;
+  for (const Shell& shell : t.shells) genus += shell.genus;
   json["genus"] = whole ? Json(genus) : Json(nullptr);
-  json["shells"] = shells;
+  if (!whole) json["faces_outwards"] = json["signed_volume"] = nullptr;
+  if (contacts.crossing > 0) json["betti"] = nullptr;
   return json;
-}
-
-/// The Betti numbers of the solid; null where the surface bounds none, as far as is known.
-Json betti_json(const Topology& t, const SelfIntersections& contacts) {
-  return t.betti && contacts.crossing == 0 ? Json(*t.betti) : Json(nullptr);
 }
 
 std::string solid_text(const Topology& t, const SelfIntersections& contacts) {
@@ -170,8 +132,7 @@ std::string topology_text(const fs::path& path, const MeshFile& file, const Topo
   }
   table.add("pieces", count_text(t.pieces));
   if (t.triangles > 0) {
-    table.add("components",
-              count_text(t.surface_components) + ", of them " + count_text(t.closed_components) + " closed");
+    table.add("components", count_text(t.components) + ", of them " + count_text(t.closed_components) + " closed");
     table.add("boundary edges", count_text(t.boundary_edges) + " in " + plural(t.boundary_loops, "loop", "loops"));
     table.add("non-manifold", plural(t.nonmanifold_edges, "edge", "edges") + ", " +
                                   plural(t.nonmanifold_vertices, "vertex", "vertices"));
@@ -204,8 +165,7 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
   const SelfIntersections contacts = find_self_intersections(file.mesh, contact_limit, context);
   progress.clear();
   Json json = file_json(a.input, file);
-  json.update(topology_json(facts));
-  json["betti"] = betti_json(facts, contacts);
+  json.update(topology_json(facts, contacts));
   json["self_intersections"] = contacts_json(contacts);
   if (is_welded_away(file) && !a.report.quiet) warn({welded_away_text(file)});
   report(a.report, json, topology_text(a.input, file, facts, contacts));
@@ -213,69 +173,21 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
 
 // ---- Images ----
 
-struct ImageFacts {
-  double minimum = std::numeric_limits<double>::infinity();
-  double maximum = -std::numeric_limits<double>::infinity();
-  std::uint64_t nonzero = 0;
-  std::uint64_t not_numbers = 0;
-  bool labelled = true;                                        ///< whole numbers, few distinct ones
-  std::vector<std::pair<std::int64_t, std::uint64_t>> labels;  ///< with voxel counts, most frequent first
-};
-
-constexpr double exact_integer_limit = 9007199254740992.0;  // 2^53
-
-/// Whether a value can be named by --label.
-template <class T>
-bool is_label(T value) {
-  if constexpr (std::is_floating_point_v<T>) {
-    return std::trunc(value) == value && std::abs(static_cast<double>(value)) <= exact_integer_limit;
-  } else if constexpr (std::is_same_v<T, std::uint64_t>) {
-    return value <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-  } else {
-    return true;
-  }
+std::string labels_text(const ImageValues& values) {
+  if (!values.distinct) return "more than can be labels; use --threshold";
+  return plural(*values.distinct, "value", "values");
 }
 
-template <class T>
-ImageFacts image_facts(const std::vector<T>& values) {
-  ImageFacts facts;
-  std::unordered_map<std::int64_t, std::uint64_t> counts;
-  for (std::size_t i = 0; i < values.size();) {
-    const T value = values[i];
-    std::size_t end = i + 1;
-    while (end < values.size() && values[end] == value) ++end;  // runs are long in labelled images
-    const std::uint64_t run = end - i;
-    i = end;
-    const double number = static_cast<double>(value);
-    if (std::isnan(number)) {
-      facts.not_numbers += run;
-      continue;
-    }
-    facts.minimum = std::min(facts.minimum, number);
-    facts.maximum = std::max(facts.maximum, number);
-    if (value != T{}) facts.nonzero += run;
-    if (facts.labelled && is_label(value)) {
-      counts[static_cast<std::int64_t>(value)] += run;
-      facts.labelled = counts.size() <= distinct_limit;
-    } else {
-      facts.labelled = false;
-    }
+/// A line for each label, and one for those that are not shown.
+void add_labels(TextTable& table, const ImageValues& values) {
+  table.add("labels", labels_text(values));
+  for (const LabelFacts& facts : values.labels) {
+    std::string text = plural(facts.voxels, "voxel", "voxels") + ", volume " + rounded_text(facts.volume);
+    if (facts.betti) text += ": " + betti_text(*facts.betti);
+    table.add("label " + std::to_string(facts.label), text);
   }
-  if (facts.labelled) facts.labels.assign(counts.begin(), counts.end());
-  std::sort(facts.labels.begin(), facts.labels.end(), [](const auto& a, const auto& b) {
-    return a.second != b.second ? a.second > b.second : a.first < b.first;
-  });
-  return facts;
-}
-
-std::string labels_text(const ImageFacts& facts) {
-  if (!facts.labelled) return "more than can be labels; use --threshold";
-  std::string text = plural(facts.labels.size(), "value", "values") + ":";
-  for (std::size_t i = 0; i < std::min(label_limit, facts.labels.size()); ++i) {
-    text += std::string(i == 0 ? " " : ", ") + std::to_string(facts.labels[i].first) + " (" +
-            count_text(facts.labels[i].second) + ")";
-  }
-  return text + (facts.labels.size() > label_limit ? ", ..." : "");
+  const std::uint64_t more = values.distinct.value_or(0) - values.labels.size();
+  if (values.distinct && more > 0) table.add("", "and " + count_text(more) + " more, of fewer voxels");
 }
 
 void add_grid(TextTable& table, const GridSpec& grid) {
@@ -291,27 +203,22 @@ void add_grid(TextTable& table, const GridSpec& grid) {
 void run_image(const Arguments& a) {
   const VoxelImage image = read_image_of_any_name(a.input);
   validate(image);
-  const ImageFacts facts = std::visit([](const auto& values) { return image_facts(values); }, image.values);
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const ImageValues values = image_values(image, label_limit, make_context(0, progress, interrupt));
+  progress.clear();
   Json json = image_json(a.input, image);
-  const bool has_values = facts.minimum <= facts.maximum;
-  json["range"] = has_values ? Json::array({facts.minimum, facts.maximum}) : Json(nullptr);
-  json["nonzero"] = facts.nonzero;
-  json["not_numbers"] = facts.not_numbers;
-  json["distinct"] = facts.labelled ? Json(facts.labels.size()) : Json(nullptr);
-  Json labels = Json::array();
-  for (std::size_t i = 0; i < std::min(label_limit, facts.labels.size()); ++i) {
-    labels.push_back({{"label", facts.labels[i].first}, {"voxels", facts.labels[i].second}});
-  }
-  json["labels"] = labels;
+  json.update(to_json(values));
 
   TextTable table;
   table.add("file", a.input + ": " + std::string(image_format_name(a.input)) + " image of " + type_name(image.values));
   add_grid(table, image.grid);
   if (!image.space.empty()) table.add("world axes", image.space);
-  table.add("range", has_values ? rounded_text(facts.minimum) + " to " + rounded_text(facts.maximum) : "no numbers");
-  table.add("not zero", plural(facts.nonzero, "voxel", "voxels"));
-  if (facts.not_numbers > 0) table.add("not a number", plural(facts.not_numbers, "voxel", "voxels"));
-  table.add("labels", labels_text(facts));
+  table.add("range",
+            values.range ? rounded_text((*values.range)[0]) + " to " + rounded_text((*values.range)[1]) : "no numbers");
+  table.add("not zero", plural(values.nonzero, "voxel", "voxels"));
+  if (values.not_numbers > 0) table.add("not a number", plural(values.not_numbers, "voxel", "voxels"));
+  add_labels(table, values);
   report(a.report, json, table.text());
 }
 
@@ -345,7 +252,21 @@ void run_field(const Arguments& a) {
   report(a.report, json, table.text());
 }
 
+// ---- Devices ----
+
+void run_devices(const Arguments& a) {
+  const CudaDevices found = cuda_devices();
+  TextTable table;
+  if (found.devices.empty()) table.add("cuda", "none: " + found.reason);
+  for (const DeviceInfo& device : found.devices) {
+    table.add(device.device, device.name + ", " + bytes_text(static_cast<double>(device.memory)));
+  }
+  report(a.report, to_json(found), table.text());
+}
+
 void run(const Arguments& a) {
+  exclude(a.devices, "--devices", !a.input.empty(), "INPUT", "one asks for what can compute, the other for a file");
+  if (a.devices) return run_devices(a);
   if (a.input.empty()) throw UsageError("INPUT needs a file name");
   const std::optional<double> weld = parse_weld(a.weld);
   check_outputs(a.report.files(), {a.input});
@@ -370,7 +291,8 @@ void run(const Arguments& a) {
 void add_info_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = line.app.add_subcommand("info", "What a mesh, an image, a field or a medial axis holds");
-  command->add_option("INPUT", a->input, "Mesh, image, field or medial axis")->required();
+  command->add_option("INPUT", a->input, "Mesh, image, field or medial axis");
+  command->add_flag("--devices", a->devices, "Instead of a file: the CUDA devices there are, or why there are none");
   add_weld_option(*command, a->weld);
   add_report_options(*command, a->report, "Write the facts as JSON; - is standard output");
   command->footer(examples);

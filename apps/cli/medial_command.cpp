@@ -40,7 +40,8 @@ Exit status 3: the axis could not be certified, and no file was written.)";
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> resolution, spacing, theta, lambda, prune, threshold, max_resolution, weld, threads;
+  std::optional<std::string> theta, prune, threshold, weld, threads;
+  OptionTexts<MedialAxisOptions> options;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
   bool nested = false;
@@ -82,15 +83,12 @@ Request parse(const Arguments& a) {
   r.output = a.output;
   check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::write));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
-  exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the voxel size");
-  exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
-  if (a.resolution) r.options.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 8, 800));
-  if (a.spacing) r.options.spacing = parse_positive("--spacing", *a.spacing);
-  if (a.max_resolution) {
-    r.options.max_resolution = static_cast<int>(parse_integer("--max-resolution", *a.max_resolution, 8, 800));
-  }
+  exclude(a.options.has("resolution"), "--resolution", a.options.has("spacing"), "--spacing",
+          "each sets the voxel size");
+  r.options = a.options.read();
   if (a.theta) r.thetas = parse_thetas(*a.theta);
-  if (a.prune) r.prunes_sheets = parse_choice<bool>("--prune", *a.prune, {{"sheets", true}});
+  if (a.prune && *a.prune != "sheets") throw UsageError("--prune '" + *a.prune + "': must be sheets");
+  r.prunes_sheets = a.prune.has_value();
   r.nested = a.nested;
   if (r.nested && file_extension(r.output) != ".npz") {
     throw UsageError("--nested needs an output with the extension .npz: the other formats hold the axis of one angle");
@@ -102,9 +100,7 @@ Request parse(const Arguments& a) {
   if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
   // Sheets are pruned whole, so they must be whole first.
   r.options.least_theta = r.prunes_sheets ? 0 : *std::min_element(r.thetas.begin(), r.thetas.end());
-  if (a.lambda) r.options.lambda = parse_non_negative("--lambda", *a.lambda);
-  r.selections.labels = parse_labels("--label", a.labels);
-  if (a.threshold) r.selections.threshold = parse_number("--threshold", *a.threshold);
+  r.selections = parse_selections(a.labels, a.threshold);
   r.weld = parse_weld(a.weld);
   r.allow_uncertified = a.allow_uncertified;
   r.threads = parse_threads(a.threads);
@@ -117,9 +113,9 @@ void check_applicable(const Arguments& a, const fs::path& input, InputKind kind)
     refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, input, "a mesh", "images");
     return;
   }
-  refuse_given({{a.resolution.has_value(), "--resolution"},
-                {a.spacing.has_value(), "--spacing"},
-                {a.max_resolution.has_value(), "--max-resolution"},
+  refuse_given({{a.options.has("resolution"), "--resolution"},
+                {a.options.has("spacing"), "--spacing"},
+                {a.options.has("max_resolution"), "--max-resolution"},
                 {a.weld.has_value(), "--weld"}},
                input, "an image", "meshes");
 }
@@ -141,17 +137,6 @@ struct Run {
   std::vector<std::string> mismatches;
   TextTable table;
 };
-
-Json body_json(const BodyReport& body) {
-  return {{"solid_betti", to_json(body.solid)},
-          {"voxel_betti", to_json(body.voxels)},
-          {"topology_reached", body.topology_matches},
-          {"spacing", body.spacing},
-          {"voxels", body.voxel_count},
-          {"voxels_left_out", body.left_out},
-          {"voxels_taken_in", body.taken_in},
-          {"deviation", body.deviation}};
-}
 
 /// What the voxels of a solid miss, and what there is to do about it.
 std::vector<std::string> shortfalls(const MedialAxisReport& report) {
@@ -205,19 +190,14 @@ void add_report(Run& run, const MedialAxisReport& report, std::optional<double> 
   std::size_t voxels = 0;
   std::size_t moved = 0;
   double deviation = 0;
-  Json bodies = Json::array();
   for (const BodyReport& body : report.bodies) {
-    bodies.push_back(body_json(body));
     voxels += body.voxel_count;
     moved += body.left_out + body.taken_in;
     deviation = std::max(deviation, body.deviation);
   }
   json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
-  json["rule"] = to_string(report.rule);
-  json["reason"] = report.reason;
-  json["reversed_shells"] = report.reversed_shells;
-  json["grid"] = to_json(report.grid);
-  json["bodies"] = bodies;
+  json.update(to_json(report));
+  json.erase("seconds");  // those of all solids are told together
   run.table.add("solid", betti_text(report.solid) + " (" + report.reason + ")");
   run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
                               (moved > 0 ? "; " + count_text(moved) + " chosen otherwise than by their centre, up to " +
@@ -265,7 +245,7 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
-                  {"certificate", to_json(certificate)}});
+                  {"certificate", certificate_json(certificate)}});
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   add_certificate(run.table, certificate);
   for (const std::string& mismatch : certificate.mismatches) {
@@ -402,12 +382,8 @@ void add_medial_command(const CommandLine& line) {
   text("--theta", a->theta, "DEG",
        "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) are "
        "nested");
-  text("--lambda", a->lambda, "L", "Leave out where footprints are closer than L, mesh units (default 0)");
   text("--prune", a->prune, "sheets", "Drop whole sheets of at most --theta instead of cutting them there");
-  text("--resolution", a->resolution, "N", "Mesh: voxels along its longest side (default 256)");
-  text("--spacing", a->spacing, "H", "Mesh: side of a voxel, instead of --resolution");
-  text("--max-resolution", a->max_resolution, "N",
-       "Mesh: halve the voxels where the topology needs it, to at most N along the longest side (default 512)");
+  a->options.add_to(*command, "", {"least_theta"});
   add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
   command->add_flag("--nested", a->nested,

@@ -1,5 +1,6 @@
 #include "medial_report.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,58 +44,35 @@ NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std
         return "NOT certified: " + all + rest;
       }()) {}
 
-Json to_json(const BettiNumbers& betti) {
-  return Json::array({betti[0], betti[1], betti[2]});
-}
-
-Json to_json(const Certificate& c) {
+Json certificate_json(const Certificate& c) {
+  Json json = {{"certified", c.holds()}};
+  json.update(to_json(c));
+  json.erase("holds");
   Json checked = {"topology", "positions", "edges"};
-  for (const auto& [is_checked, what] :
-       {std::pair{c.checked.radii, "radii"}, std::pair{c.checked.footprints, "footprints"},
-        std::pair{c.checked.angles, "angles"}, std::pair{c.checked.sites, "sites"}}) {
-    if (is_checked) checked.push_back(what);
+  for (const char* const what : {"radii", "footprints", "angles", "sites"}) {
+    if (json["checked"][what]) checked.push_back(what);
   }
-  std::size_t wrong = 0;
-  for (const BodyCheck& body : c.bodies) wrong += body.solid == body.axis ? 0 : 1;
-  Json json = {{"certified", c.holds()},
-               {"against", to_string(c.against)},
-               {"checked", checked},
-               {"solid_betti", to_json(c.solid)},
-               {"axis_betti", to_json(c.axis)},
-               {"bodies", {{"count", c.bodies.size()}, {"wrong", wrong}}},
-               {"topology_holds", c.topology_holds},
-               {"mismatches", c.mismatches}};
-  json["geometry"] = {{"holds", c.geometry.holds},           {"vertices", c.geometry.vertices},
-                      {"not_finite", c.geometry.not_finite}, {"outside", c.geometry.outside},
-                      {"outside_by", c.geometry.outside_by}, {"tolerance", c.geometry.tolerance}};
-  json["edges"] = {{"holds", c.edges.holds},         {"edges", c.edges.edges},     {"pushed", c.edges.pushed},
-                   {"pushed_by", c.edges.pushed_by}, {"outside", c.edges.outside}, {"outside_by", c.edges.outside_by},
-                   {"tolerance", c.edges.tolerance}};
-  if (c.checked.radii) json["geometry"]["radius_error"] = c.geometry.radius_error;
-  if (c.checked.footprints) {
-    json["geometry"]["footprint_off_surface"] = c.geometry.footprint_off_surface;
-    json["geometry"]["footprint_error"] = c.geometry.footprint_error;
-  }
-  if (c.checked.sites) json["geometry"]["site_error"] = c.geometry.site_error;
-  if (c.checked.angles) json["geometry"]["angle_error"] = c.geometry.angle_error;
-  if (!c.checked.balls) return json;
-  json["balls"] = {{"solid_to_balls", c.balls.solid_to_balls},
-                   {"mean_solid_to_balls", c.balls.mean_solid_to_balls},
-                   {"balls_beyond_solid", c.balls.balls_beyond_solid},
-                   {"balls_to_surface", c.balls.balls_to_surface},
-                   {"sample_step", c.balls.step}};
+  json["checked"] = checked;
+  const auto wrong =
+      std::count_if(c.bodies.begin(), c.bodies.end(), [](const BodyCheck& body) { return body.solid != body.axis; });
+  json["bodies"] = {{"count", c.bodies.size()}, {"wrong", wrong}};
+  // What was not looked at is not told.
+  Json& geometry = json["geometry"];
+  if (!c.checked.radii) geometry.erase("radius_error");
+  if (!c.checked.footprints) geometry.erase("footprint_off_surface");
+  if (!c.checked.footprints) geometry.erase("footprint_error");
+  if (!c.checked.sites) geometry.erase("site_error");
+  if (!c.checked.angles) geometry.erase("angle_error");
+  if (!c.checked.balls) json.erase("balls");
   return json;
 }
 
 Json counts_json(const MedialCounts& counts, bool has_labels) {
-  const auto labelled = [&](std::size_t n) { return has_labels ? Json(n) : Json(nullptr); };
-  return {{"vertices", counts.vertices},
-          {"triangles", counts.triangles},
-          {"sheets", labelled(counts.sheets)},
-          {"curve_edges", counts.curve_edges},
-          {"rim_edges", labelled(counts.rim_edges)},
-          {"seam_edges", labelled(counts.seam_edges)},
-          {"junctions", labelled(counts.junctions)}};
+  Json json = to_json(counts);
+  if (!has_labels) {
+    for (const char* const told : {"sheets", "rim_edges", "seam_edges", "junctions"}) json[told] = nullptr;
+  }
+  return json;
 }
 
 std::string betti_text(const BettiNumbers& betti) {

@@ -18,8 +18,8 @@ namespace blum::cli {
 [[nodiscard]] Certificate certificate_of(const MedialFile& file, const SolidInput& input,
                                          const LabelSelection& selection, const Context& context);
 
-[[nodiscard]] Json to_json(const BettiNumbers& betti);
-[[nodiscard]] Json to_json(const Certificate& certificate);
+/// What was looked at, and of bodies only how many there are, and how many are wrong.
+[[nodiscard]] Json certificate_json(const Certificate& certificate);
 /// Where the file of an axis holds no labels, what they would say is null. Edges are then those of no triangle.
 [[nodiscard]] Json counts_json(const MedialCounts& counts, bool has_labels);
 /// "1 component, 5 tunnels, 0 voids".

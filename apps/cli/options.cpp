@@ -95,15 +95,6 @@ bool looks_like_number(std::string_view text) {
   return error != std::errc::invalid_argument && end == digits.data() + digits.size();
 }
 
-Band parse_band(std::string_view name, std::string_view text) {
-  if (!text.empty() && (text.back() == 'v' || text.back() == 'V')) {
-    const std::string_view voxels = text.substr(0, text.size() - 1);
-    if (!looks_like_number(voxels)) refuse(name, text, "is not a number of voxels, such as 3v");
-    return {parse_positive(name, voxels), true};
-  }
-  return {parse_positive(name, text), false};
-}
-
 Box3 parse_bounds(std::string_view name, std::string_view text) {
   const std::vector<std::string_view> parts = split(text, ',');
   if (parts.size() != 6) refuse(name, text, "needs six numbers x0,y0,z0,x1,y1,z1");
@@ -165,12 +156,7 @@ std::string hint(const std::vector<std::string>& words) {
 }
 
 std::string join_words(const std::vector<std::string>& words, std::string_view last) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) text += i + 1 == words.size() ? " " + std::string(last) + " " : std::string(", ");
-    text += words[i];
-  }
-  return text;
+  return blum::join_words(std::vector<std::string_view>(words.begin(), words.end()), last);
 }
 
 void check_spacing(double spacing, const Box3& box) {
@@ -180,12 +166,6 @@ void check_spacing(double spacing, const Box3& box) {
   if (box.is_empty() || nodes <= most) return;
   throw UsageError("--spacing " + rounded_text(spacing) + " is too small for a box of " + vector_text(size) +
                    ": it would take more than 2^40 steps; raise it");
-}
-
-void exclude(bool first, const char* first_name, bool second, const char* second_name, const char* reason) {
-  if (first && second) {
-    throw UsageError(std::string(first_name) + " and " + second_name + " cannot be used together: " + reason);
-  }
 }
 
 void refuse_given(const std::vector<std::pair<bool, const char*>>& given, const std::filesystem::path& input,

@@ -33,14 +33,6 @@ class UsageError : public std::runtime_error {
 /// Whether a text reads as a number of any kind, "nan" and "-1e999" included.
 [[nodiscard]] bool looks_like_number(std::string_view text);
 
-/// Half-width of a narrow band.
-struct Band {
-  double value = 0;     ///< > 0
-  bool voxels = false;  ///< whether it counts grid steps instead of mesh units
-};
-/// `0.5` (mesh units) or `3v` (voxels).
-[[nodiscard]] Band parse_band(std::string_view name, std::string_view text);
-
 /// `x0,y0,z0,x1,y1,z1` with x0 <= x1 and so on; not a single point.
 [[nodiscard]] Box3 parse_bounds(std::string_view name, std::string_view text);
 
@@ -64,23 +56,8 @@ void prepare_weld(std::vector<std::string>& arguments);
 /// "a, b and c"; "or" by `last`.
 [[nodiscard]] std::string join_words(const std::vector<std::string>& words, std::string_view last = "and");
 
-/// One of several words.
-template <class Value>
-[[nodiscard]] Value parse_choice(const std::string& option, const std::string& text,
-                                 const std::vector<std::pair<std::string, Value>>& choices) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : choices) {
-    if (name == text) return value;
-    names.push_back(name);
-  }
-  throw UsageError(option + " '" + text + "': must be " + join_words(names, "or"));
-}
-
 /// @throws UsageError where a box takes more than 2^40 steps of --spacing.
 void check_spacing(double spacing, const Box3& box);
-
-/// @throws UsageError where both options are given.
-void exclude(bool first, const char* first_name, bool second, const char* second_name, const char* reason);
 
 /// @throws UsageError for an option that is given but does not apply to this kind of input.
 void refuse_given(const std::vector<std::pair<bool, const char*>>& given, const std::filesystem::path& input,

@@ -72,11 +72,10 @@ Request parse(const Arguments& a) {
   check_extension("--output", r.output, known);
   r.is_field = FieldFormat::by_name(r.output).has_value();
   exclude(a.resolution.has_value(), "--resolution", a.spacing.has_value(), "--spacing", "each sets the spacing");
-  exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
   if (a.input) r.input = *a.input;
   if (a.resolution) r.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 2, 65536));
   if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
-  r.given.selections.labels = parse_labels("--label", a.labels);
+  r.given.selections = parse_selections(a.labels, a.threshold);
   if (r.given.selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
   if (a.threshold) r.given.selections.threshold = parse_number("--threshold", *a.threshold);
   r.given.weld = parse_weld(a.weld);

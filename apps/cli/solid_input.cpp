@@ -3,6 +3,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "input_facts.hpp"
+#include "options.hpp"
 #include "progress.hpp"
 
 namespace blum::cli {
@@ -39,6 +40,14 @@ std::vector<LabelSelection> Selections::all() const {
   for (const std::int64_t label : labels) selections.push_back(LabelSelection::of_label(label));
   if (selections.empty()) selections.emplace_back();
   return selections;
+}
+
+Selections parse_selections(const std::vector<std::string>& labels, const std::optional<std::string>& threshold) {
+  LabelSelection::exclude_both(!labels.empty(), threshold.has_value(), "--");
+  Selections out;
+  out.labels = parse_labels("--label", labels);
+  if (threshold) out.threshold = parse_number("--threshold", *threshold);
+  return out;
 }
 
 }  // namespace blum::cli

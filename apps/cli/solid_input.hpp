@@ -33,4 +33,8 @@ struct Selections {
   [[nodiscard]] std::vector<LabelSelection> all() const;
 };
 
+/// The values of --label and --threshold. @throws UsageError, InvalidOption.
+[[nodiscard]] Selections parse_selections(const std::vector<std::string>& labels,
+                                          const std::optional<std::string>& threshold);
+
 }  // namespace blum::cli

@@ -14,26 +14,6 @@
 
 namespace blum::cli {
 
-Json to_json(const Vec3d& v) {
-  return Json::array({v.x, v.y, v.z});
-}
-
-Json to_json(const Box3& box) {
-  if (box.is_empty()) return nullptr;
-  return {{"lower", to_json(box.lower)}, {"upper", to_json(box.upper)}};
-}
-
-Json to_json(const GridSpec& grid) {
-  Json json = {{"origin", to_json(grid.origin)},
-               {"spacing", to_json(grid.spacing)},
-               {"size", Json::array({grid.size[0], grid.size[1], grid.size[2]})},
-               {"nodes", grid.node_count()}};
-  Json columns = Json::array();
-  for (const Vec3d& column : grid.direction.columns) columns.push_back(to_json(column));
-  json["direction"] = columns;
-  return json;
-}
-
 std::string bytes_text(double bytes) {
   constexpr std::array<std::string_view, 7> units = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
   std::size_t unit = 0;
@@ -109,11 +89,8 @@ void print(std::string_view text) {
 
 PhaseSummary summarize(const std::vector<PhaseTime>& phases) {
   PhaseSummary out;
-  for (const PhaseTime& phase : phases) {
-    const double before = out.seconds.contains(phase.phase) ? out.seconds[phase.phase].get<double>() : 0.0;
-    out.seconds[phase.phase] = before + phase.seconds;
-    out.total += phase.seconds;
-  }
+  out.seconds = to_json(phases);
+  for (const PhaseTime& phase : phases) out.total += phase.seconds;
   const auto rounded = [](double seconds) { return rounded_text(std::round(seconds * 1e3) / 1e3); };
   std::string each;
   for (const auto& [phase, seconds] : out.seconds.items()) {

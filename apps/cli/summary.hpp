@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,10 +12,9 @@
 #include "blum/core/vec3.hpp"
 #include "blum/field/field.hpp"
 #include "blum/grid/grid_spec.hpp"
+#include "described.hpp"
 
 namespace blum::cli {
-
-using Json = nlohmann::ordered_json;
 
 /// Seconds since it was made or last asked.
 class Stopwatch {
@@ -31,11 +29,6 @@ class Stopwatch {
   using Clock = std::chrono::steady_clock;
   Clock::time_point last_ = Clock::now();
 };
-
-[[nodiscard]] Json to_json(const Vec3d& v);
-/// null where the box is empty.
-[[nodiscard]] Json to_json(const Box3& box);
-[[nodiscard]] Json to_json(const GridSpec& grid);
 
 /// "1.5 GiB".
 [[nodiscard]] std::string bytes_text(double bytes);

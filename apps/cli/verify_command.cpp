@@ -38,11 +38,9 @@ struct Arguments {
 };
 
 SolidChoice parse_solid(const Arguments& a, InputKind kind) {
-  exclude(!a.labels.empty(), "--label", a.threshold.has_value(), "--threshold", "each selects the voxels");
   SolidChoice given;
-  given.selections.labels = parse_labels("--label", a.labels);
+  given.selections = parse_selections(a.labels, a.threshold);
   if (given.selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
-  if (a.threshold) given.selections.threshold = parse_number("--threshold", *a.threshold);
   given.weld = parse_weld(a.weld);
   if (kind == InputKind::mesh) {
     refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, a.input, "a mesh",
@@ -71,7 +69,7 @@ class Verifier {
                         {"command", "verify"},
                         {"input", solid.json},
                         {"axis", {{"file", axis.string()}, {"counts", counts_json(counts, file.has_labels)}}},
-                        {"certificate", to_json(certificate)},
+                        {"certificate", certificate_json(certificate)},
                         {"warnings", choice.warnings}});
     warnings_.insert(warnings_.end(), choice.warnings.begin(), choice.warnings.end());
     if (!certificate.holds()) {

@@ -11,7 +11,7 @@
 #include "bindings.hpp"
 #include "call.hpp"
 #include "columns.hpp"
-#include "fields.hpp"
+#include "structs.hpp"
 
 namespace blum::python {
 namespace {
@@ -27,19 +27,18 @@ nb::tuple columns_of(std::vector<ClosestPoint> found) {
 }  // namespace
 
 void bind_closest_points(nb::module_& m) {
+  bind_options<ClosestPointOptions>(m);
   nb::class_<ClosestPointQuery>(m, "ClosestPointQuery")
       .def(
           "__init__",
-          [](ClosestPointQuery* self, const MeshArrays& mesh, const std::string& sign,
-             std::optional<double> max_distance, int threads, nb::object progress) {
+          [](ClosestPointQuery* self, const MeshArrays& mesh, const nb::dict& given, int threads, nb::object progress) {
             const MeshView view = mesh.view();
-            const ClosestPointOptions options{sign_mode(sign), max_distance};
+            const auto options = options_from<ClosestPointOptions>(given);
             new (self) ClosestPointQuery(run({threads, std::move(progress)}, [&](const Context& context) {
               return ClosestPointQuery(view, options, context);
             }));
           },
-          nb::arg("mesh"), nb::arg("sign"), nb::arg("max_distance").none(), nb::arg("threads"),
-          nb::arg("progress").none())
+          nb::arg("mesh"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none())
       .def(
           "nearest",
           [](const ClosestPointQuery& self, const PointsIn& points, int threads, nb::object progress) {

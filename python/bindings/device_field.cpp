@@ -16,8 +16,10 @@
 
 #include "bindings.hpp"
 #include "blum/core/error.hpp"
+#include "blum/field/cuda_devices.hpp"
 #include "blum/field/device_distance_transform.hpp"
-#include "fields.hpp"
+#include "call.hpp"
+#include "structs.hpp"
 
 namespace blum::python {
 namespace {
@@ -259,17 +261,22 @@ void bind_queue(nb::class_<Shared<Solver>>& type) {
 }  // namespace
 
 void bind_device_field(nb::module_& m) {
+  bind_struct<CudaDevices>(m);
+  m.def("cuda_devices", [] { return result_of(run({0, nb::none()}, [](const Context&) { return cuda_devices(); })); });
   bind_device_array(m);
   auto solver = nb::class_<FieldSolverHere>(m, "DeviceFieldSolver");
   solver
       .def(
           "__init__",
-          [](FieldSolverHere* self, const GridSpec& grid, const std::string& sign, std::optional<double> band,
-             const std::string& site_ids, const std::string& device) {
+          [](FieldSolverHere* self, const GridSpec& grid, const nb::dict& options, const std::string& device) {
             new (self)
-                FieldSolverHere(grid, field_options(sign, band, site_ids), Context{.device = parse_device(device)});
+                FieldSolverHere(grid, options_from<FieldOptions>(options), Context{.device = parse_device(device)});
           },
-          nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"), nb::arg("device"))
+          nb::arg("grid"), nb::arg("options"), nb::arg("device"))
+      .def_prop_ro("options",
+                   [](FieldSolverHere& self) {
+                     return dict_of(self.with([](const DeviceFieldSolver& own) { return own.options(); }));
+                   })
       .def_prop_ro(
           "sign_rule",
           [](FieldSolverHere& self) {
@@ -283,15 +290,15 @@ void bind_device_field(nb::module_& m) {
   transforms
       .def(
           "__init__",
-          [](TransformHere* self, const GridSpec& grid, std::optional<std::int64_t> label,
-             std::optional<double> threshold, bool is_signed, std::optional<double> band, const std::string& device) {
-            DistanceTransformOptions options{.is_signed = is_signed, .band = band};
-            if (label) options.selection = LabelSelection::of_label(*label);
-            if (threshold) options.selection = LabelSelection::at_least(*threshold);
-            new (self) TransformHere(grid, options, Context{.device = parse_device(device)});
+          [](TransformHere* self, const GridSpec& grid, const nb::dict& options, const std::string& device) {
+            new (self) TransformHere(grid, options_from<DistanceTransformOptions>(options),
+                                     Context{.device = parse_device(device)});
           },
-          nb::arg("grid"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("is_signed"),
-          nb::arg("band").none(), nb::arg("device"))
+          nb::arg("grid"), nb::arg("options"), nb::arg("device"))
+      .def_prop_ro("options",
+                   [](TransformHere& self) {
+                     return dict_of(self.with([](const DeviceDistanceTransform& own) { return own.options(); }));
+                   })
       .def("compute", &transform, nb::arg("values"), nb::arg("distance"), nb::arg("site"), nb::arg("stream"));
   bind_queue(transforms);
 }

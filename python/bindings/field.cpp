@@ -13,7 +13,7 @@
 #include "blum/field/interpolate.hpp"
 #include "blum/field/zero_surface.hpp"
 #include "call.hpp"
-#include "fields.hpp"
+#include "structs.hpp"
 
 namespace blum::python {
 namespace {
@@ -30,15 +30,6 @@ Buffer<T> copied(const Array& array) {
   return out;
 }
 
-/// One of some values by its name, as to_string() gives it.
-template <class Value>
-Value named(const std::string& name, std::initializer_list<Value> values) {
-  for (const Value value : values) {
-    if (name == to_string(value)) return value;
-  }
-  throw InvalidOption("'" + name + "' is not known");
-}
-
 Field field_of(const FloatsIn& distance, const GridSpec& grid, const std::optional<SitesIn>& site,
                const std::string& site_ids, std::optional<double> band, const std::string& sign_rule,
                std::string sign_reason) {
@@ -46,10 +37,9 @@ Field field_of(const FloatsIn& distance, const GridSpec& grid, const std::option
   field.grid = grid;
   field.distance = copied<float>(distance);
   if (site) field.site = copied<SiteId>(*site);
-  field.site_ids = named(site_ids, {SiteIds::features, SiteIds::triangles, SiteIds::voxels});
+  field.site_ids = parse_enum<SiteIds>("site_ids", site_ids);
   field.band = band;
-  field.sign_rule =
-      named(sign_rule, {SignRule::none, SignRule::normals, SignRule::winding, SignRule::label, SignRule::balls});
+  field.sign_rule = parse_enum<SignRule>("sign_rule", sign_rule);
   field.sign_reason = std::move(sign_reason);
   return field;
 }
@@ -81,7 +71,8 @@ void bind_field_class(nb::module_& m) {
       .def_prop_ro("sign_rule", [](const Field& field) { return std::string(to_string(field.sign_rule)); })
       .def_ro("sign_reason", &Field::sign_reason)
       .def_prop_ro("device", [](const Field& field) { return to_string(field.device); })
-      .def_prop_ro("phases", [](const Field& field) { return phases_of(field.phases); })
+      .def_ro("device_reason", &Field::device_reason)
+      .def_prop_ro("seconds", [](const Field& field) { return seconds_of(field.phases); })
       .def(
           "interpolate",
           [](const Field& field, const PointsIn& points, int threads, nb::object progress) {
@@ -104,11 +95,10 @@ void bind_solver(nb::module_& m) {
   nb::class_<FieldSolver>(m, "FieldSolver")
       .def(
           "__init__",
-          [](FieldSolver* self, const GridSpec& grid, const std::string& sign, std::optional<double> band,
-             const std::string& site_ids, const std::string& device) {
-            new (self) FieldSolver(grid, field_options(sign, band, site_ids), {.device = parse_device(device)});
+          [](FieldSolver* self, const GridSpec& grid, const nb::dict& options, const std::string& device) {
+            new (self) FieldSolver(grid, options_from<FieldOptions>(options), {.device = parse_device(device)});
           },
-          nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"), nb::arg("device"))
+          nb::arg("grid"), nb::arg("options"), nb::arg("device"))
       .def(
           "compute",
           [](FieldSolver& solver, const MeshArrays& mesh, int threads, nb::object progress) {
@@ -131,49 +121,21 @@ void bind_solver(nb::module_& m) {
 
 }  // namespace
 
-SignMode sign_mode(const std::string& name) {
-  if (name == "auto") return SignMode::automatic;
-  for (const SignMode mode : {SignMode::normals, SignMode::winding, SignMode::none}) {
-    if (name == to_string(mode)) return mode;
-  }
-  throw InvalidOption("sign is \"" + name + "\", but must be \"auto\", \"normals\", \"winding\" or \"none\"");
-}
-
-SiteIds site_ids_of(const std::string& name) {
-  for (const SiteIds ids : {SiteIds::features, SiteIds::triangles}) {
-    if (name == to_string(ids)) return ids;
-  }
-  throw InvalidOption("site_ids is \"" + name + "\", but must be \"features\" or \"triangles\"");
-}
-
-FieldOptions field_options(const std::string& sign, std::optional<double> band, const std::string& site_ids) {
-  FieldOptions options;
-  options.sign = sign_mode(sign);
-  options.band = band;
-  options.site_ids = site_ids_of(site_ids);
-  return options;
-}
-
-nb::list phases_of(const std::vector<PhaseTime>& phases) {
-  nb::list out;
-  for (const PhaseTime& phase : phases) out.append(nb::make_tuple(phase.phase, phase.seconds));
-  return out;
-}
-
 void bind_field(nb::module_& m) {
+  bind_options<FieldOptions>(m);
   bind_field_class(m);
   bind_solver(m);
   m.def(
       "distance_field",
-      [](const MeshArrays& mesh, const GridSpec& grid, const std::string& sign, std::optional<double> band,
-         const std::string& site_ids, int threads, const std::string& device, nb::object progress) {
+      [](const MeshArrays& mesh, const GridSpec& grid, const nb::dict& given, int threads, const std::string& device,
+         nb::object progress) {
         const MeshView view = mesh.view();
-        const FieldOptions options = field_options(sign, band, site_ids);
+        const auto options = options_from<FieldOptions>(given);
         return run({threads, std::move(progress), parse_device(device)},
                    [&](const Context& context) { return distance_field(view, grid, options, context); });
       },
-      nb::arg("mesh"), nb::arg("grid"), nb::arg("sign"), nb::arg("band").none(), nb::arg("site_ids"),
-      nb::arg("threads"), nb::arg("device"), nb::arg("progress").none());
+      nb::arg("mesh"), nb::arg("grid"), nb::arg("options"), nb::arg("threads"), nb::arg("device"),
+      nb::arg("progress").none());
 }
 
 }  // namespace blum::python

@@ -18,6 +18,7 @@
 #include "blum/io/mesh_io.hpp"
 #include "call.hpp"
 #include "images.hpp"
+#include "structs.hpp"
 
 namespace blum::python {
 namespace {
@@ -78,31 +79,14 @@ void bind_volumes(nb::module_& m) {
       nb::arg("threads"), nb::arg("progress").none());
 }
 
-template <class T>
-void set(nb::dict& out, const char* name, const std::optional<T>& value) {
-  if (value) out[name] = nb::cast(*value);
-}
-
-nb::dict metadata_of(const MedialFile& file) {
-  const MedialMetadata& metadata = file.metadata;
+/// Which attributes a file of an axis holds.
+nb::dict has_of(const MedialFile& file) {
   nb::dict out;
-  out["source"] = metadata.source;
-  out["version"] = metadata.version;
-  out["site_ids"] = std::string(to_string(metadata.site_ids));
-  out["solid_rule"] = metadata.solid_rule;
-  set(out, "theta", metadata.theta);
-  set(out, "lambda", metadata.lambda);
-  set(out, "spacing", metadata.spacing);
-  set(out, "grid", metadata.grid);
-  set(out, "label", metadata.label);
-  set(out, "threshold", metadata.threshold);
-  set(out, "weld", metadata.weld);
-  out["least_theta"] = file.least_theta;
-  out["has_radii"] = file.has_radii;
-  out["has_footprints"] = file.has_footprints;
-  out["has_sites"] = file.has_sites;
-  out["has_angles"] = file.has_angles;
-  out["has_labels"] = file.has_labels;
+  out["radii"] = file.has_radii;
+  out["footprints"] = file.has_footprints;
+  out["angles"] = file.has_angles;
+  out["sites"] = file.has_sites;
+  out["labels"] = file.has_labels;
   return out;
 }
 
@@ -111,37 +95,21 @@ void bind_medial_files(nb::module_& m) {
       "read_medial",
       [](const Path& path) {
         MedialFile file = run({0, nb::none()}, [&](const Context&) { return read_medial(path); });
-        nb::dict metadata = metadata_of(file);
-        return nb::make_tuple(std::move(file.complex), std::move(file.nested), metadata);
+        return nb::make_tuple(std::move(file.complex), std::move(file.nested), file.least_theta, dict_of(file.metadata),
+                              has_of(file));
       },
       nb::arg("path"));
   m.def(
       "write_medial",
-      [](const Path& path, const Complex& complex, const Complex* nested, double least_theta, const std::string& source,
-         const std::string& site_ids, const std::string& solid_rule, std::optional<double> theta,
-         std::optional<double> lambda, std::optional<double> spacing, const GridSpec* grid,
-         std::optional<std::int64_t> label, std::optional<double> threshold, std::optional<double> weld) {
-        MedialMetadata metadata;
-        metadata.source = source;
+      [](const Path& path, const Complex& complex, const Complex* nested, double least_theta, const nb::dict& given) {
+        auto metadata = options_from<MedialMetadata>(given);
         metadata.version = BLUM_VERSION;
-        metadata.site_ids = site_ids == to_string(SiteIds::voxels) ? SiteIds::voxels : SiteIds::features;
-        metadata.solid_rule = solid_rule;
-        metadata.theta = theta;
-        metadata.lambda = lambda;
-        metadata.spacing = spacing;
-        if (grid != nullptr) metadata.grid = *grid;
-        metadata.label = label;
-        metadata.threshold = threshold;
-        metadata.weld = weld;
         run_call({0, nb::none()}, [&](const Context& context) {
           if (nested != nullptr) return write_medial(path, complex, *nested, least_theta, metadata, context);
           write_medial(path, complex, metadata, context);
         });
       },
-      nb::arg("path"), nb::arg("complex"), nb::arg("nested").none(), nb::arg("least_theta"), nb::arg("source"),
-      nb::arg("site_ids"), nb::arg("solid_rule"), nb::arg("theta").none(), nb::arg("lambda_").none(),
-      nb::arg("spacing").none(), nb::arg("grid").none(), nb::arg("label").none(), nb::arg("threshold").none(),
-      nb::arg("weld").none());
+      nb::arg("path"), nb::arg("complex"), nb::arg("nested").none(), nb::arg("least_theta"), nb::arg("metadata"));
 }
 
 void bind_formats(nb::module_& m) {

@@ -23,64 +23,12 @@
 #include "blum/shapes/shape_catalog.hpp"
 #include "call.hpp"
 #include "images.hpp"
+#include "structs.hpp"
 
 namespace blum::python {
 namespace {
 
 constexpr std::size_t queries_per_range = 256;
-
-nb::object box_of(const Box3& box) {
-  if (box.is_empty()) return nb::none();
-  return nb::make_tuple(nb::make_tuple(box.lower.x, box.lower.y, box.lower.z),
-                        nb::make_tuple(box.upper.x, box.upper.y, box.upper.z));
-}
-
-nb::dict shell_of(const Shell& shell) {
-  nb::dict out;
-  out["triangles"] = shell.triangles;
-  out["bounds"] = box_of(shell.bounds);
-  out["signed_volume"] = shell.signed_volume;
-  out["area"] = shell.area;
-  out["euler_characteristic"] = shell.euler_characteristic;
-  out["genus"] = shell.genus;
-  out["depth"] = shell.depth;
-  out["parent"] = shell.parent < 0 ? nb::object(nb::none()) : nb::cast(shell.parent);
-  out["faces_outwards"] = shell.faces_outwards;
-  return out;
-}
-
-nb::dict topology_of(const Topology& t) {
-  nb::dict out;
-  out["vertices"] = t.vertices;
-  out["named_vertices"] = t.named_vertices;
-  out["edges"] = t.edges;
-  out["triangles"] = t.triangles;
-  out["segments"] = t.segments;
-  out["points"] = t.points;
-  out["bounds"] = box_of(t.bounds);
-  out["pieces"] = t.pieces;
-  out["surface_components"] = t.surface_components;
-  out["closed_components"] = t.closed_components;
-  out["boundary_edges"] = t.boundary_edges;
-  out["boundary_loops"] = t.boundary_loops;
-  out["nonmanifold_edges"] = t.nonmanifold_edges;
-  out["nonmanifold_vertices"] = t.nonmanifold_vertices;
-  out["inconsistent_edges"] = t.inconsistent_edges;
-  out["degenerate_triangles"] = t.degenerate_triangles;
-  out["duplicate_triangles"] = t.duplicate_triangles;
-  out["closed"] = t.closed;
-  out["oriented"] = t.oriented;
-  out["manifold"] = t.manifold;
-  out["faces_outwards"] = t.faces_outwards;
-  out["area"] = t.area;
-  out["signed_volume"] = t.signed_volume;
-  out["euler_characteristic"] = t.euler_characteristic;
-  nb::list shells;
-  for (const Shell& shell : t.shells) shells.append(shell_of(shell));
-  out["shells"] = shells;
-  out["betti"] = t.betti ? nb::object(nb::make_tuple((*t.betti)[0], (*t.betti)[1], (*t.betti)[2])) : nb::none();
-  return out;
-}
 
 /// One value per point, computed by all threads.
 template <class T, class Value>
@@ -189,11 +137,6 @@ nb::dict entry(const std::string& name, const std::string& description, const ch
   return out;
 }
 
-nb::object betti_of(const std::optional<std::array<std::int64_t, 3>>& betti) {
-  if (!betti) return nb::none();
-  return nb::make_tuple((*betti)[0], (*betti)[1], (*betti)[2]);
-}
-
 using OutlineIn = In<double, nb::shape<-1, 2>>;
 
 std::span<const Point2> polygon(const OutlineIn& points) {
@@ -254,10 +197,10 @@ void bind_shapes(nb::module_& m) {
       [](const std::string& name, const std::string& kind, const ParameterValues& given) {
         if (kind == "mesh") {
           const ShapeInfo& shape = find_shape(name);
-          return betti_of(shape.betti(complete_parameters(name, shape.parameters, given)));
+          return result_of(shape.betti(complete_parameters(name, shape.parameters, given)));
         }
         const ImageInfo& image = find_image(name);
-        return betti_of(image.betti(complete_parameters(name, image.parameters, given)));
+        return result_of(image.betti(complete_parameters(name, image.parameters, given)));
       },
       nb::arg("name"), nb::arg("kind"), nb::arg("parameters"));
 }
@@ -298,6 +241,7 @@ void bind_reference(nb::module_& m) {
 }  // namespace
 
 void bind_geometry(nb::module_& m) {
+  bind_struct<Topology>(m);
   nb::class_<MeshArrays>(m, "MeshArrays")
       .def(
           "__init__",
@@ -309,13 +253,13 @@ void bind_geometry(nb::module_& m) {
       .def("validate", [](const MeshArrays& mesh) { validate(mesh.view()); })
       .def("bounds", [](const MeshArrays& mesh) {
         validate(mesh.view());
-        return box_of(bounds(mesh.view()));
+        return result_of(bounds(mesh.view()));
       });
   m.def(
       "topology",
       [](const MeshArrays& mesh, int threads, nb::object progress) {
         const MeshView view = mesh.view();
-        return topology_of(
+        return result_of(
             run({threads, std::move(progress)}, [&](const Context& context) { return topology(view, context); }));
       },
       nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none());

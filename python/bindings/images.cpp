@@ -14,10 +14,11 @@
 #include "blum/core/parallel.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "blum/field/image_reference.hpp"
+#include "blum/grid/image_values.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
 #include "call.hpp"
-#include "fields.hpp"
+#include "structs.hpp"
 
 namespace blum::python {
 namespace {
@@ -36,21 +37,18 @@ VoxelImageView::Values values_of(const ValuesIn& array) {
   }
 }
 
-LabelSelection selection_of(std::optional<std::int64_t> label, std::optional<double> threshold) {
-  if (label) return LabelSelection::of_label(*label);
-  if (threshold) return LabelSelection::at_least(*threshold);
-  return {};
-}
-
 void bind_transforms(nb::module_& m) {
+  bind_options<DistanceTransformOptions>(m);
+  bind_struct<ImageValues>(m);
+  bind_struct<VoxelTopology>(m);
   m.def(
       "distance_transforms",
-      [](const ImageArrays& image, const std::vector<std::int64_t>& labels, std::optional<double> threshold,
-         bool is_signed, std::optional<double> band, int threads, const std::string& device, nb::object progress) {
+      [](const ImageArrays& image, const std::vector<std::int64_t>& labels, const nb::dict& given, int threads,
+         const std::string& device, nb::object progress) {
+        const auto options = options_from<DistanceTransformOptions>(given);
         std::vector<LabelSelection> selections;
         for (const std::int64_t label : labels) selections.push_back(LabelSelection::of_label(label));
-        if (labels.empty()) selections.push_back(selection_of({}, threshold));
-        const DistanceTransformOptions options{{}, is_signed, band};
+        if (labels.empty()) selections.push_back(options.selection);
         std::vector<Field> fields =
             run({threads, std::move(progress), parse_device(device)},
                 [&](const Context& context) { return distance_transforms(image.view, selections, options, context); });
@@ -58,25 +56,30 @@ void bind_transforms(nb::module_& m) {
         for (Field& field : fields) out.append(nb::cast(std::move(field)));
         return out;
       },
-      nb::arg("image"), nb::arg("labels"), nb::arg("threshold").none(), nb::arg("is_signed"), nb::arg("band").none(),
-      nb::arg("threads"), nb::arg("device"), nb::arg("progress").none());
+      nb::arg("image"), nb::arg("labels"), nb::arg("options"), nb::arg("threads"), nb::arg("device"),
+      nb::arg("progress").none());
+  m.def(
+      "image_values",
+      [](const ImageArrays& image, std::size_t most_labels, int threads, nb::object progress) {
+        return result_of(run({threads, std::move(progress)},
+                             [&](const Context& context) { return image_values(image.view, most_labels, context); }));
+      },
+      nb::arg("image"), nb::arg("most_labels"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
       "selected_voxels",
       [](const ImageArrays& image, std::optional<std::int64_t> label, std::optional<double> threshold, int threads,
          nb::object progress) {
-        return mask_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return selected_voxels(image.view, selection_of(label, threshold), context);
-        }));
+        const LabelSelection selection = LabelSelection::of(label, threshold);
+        return mask_of(run({threads, std::move(progress)},
+                           [&](const Context& context) { return selected_voxels(image.view, selection, context); }));
       },
       nb::arg("image"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("threads"),
       nb::arg("progress").none());
   m.def(
       "voxel_topology",
       [](const MaskIn& mask, int threads, nb::object progress) {
-        return run({threads, std::move(progress)}, [&](const Context& context) {
-          const VoxelSet voxels = voxel_set(mask);
-          return std::pair(betti_numbers(voxels, context), euler_characteristic(voxels, context));
-        });
+        return result_of(run({threads, std::move(progress)},
+                             [&](const Context& context) { return voxel_topology(voxel_set(mask), context); }));
       },
       nb::arg("mask").noconvert(), nb::arg("threads"), nb::arg("progress").none());
   m.def(

@@ -15,8 +15,8 @@
 #include "blum/field/ball_union.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "call.hpp"
-#include "fields.hpp"
 #include "images.hpp"
+#include "structs.hpp"
 
 namespace blum::python {
 namespace {
@@ -29,48 +29,6 @@ void check_length(const char* name, std::size_t length, std::size_t wanted) {
                       std::to_string(wanted));
 }
 
-nb::dict counts_of(const Complex& axis) {
-  const MedialCounts counts = count(axis);
-  nb::dict out;
-  out["vertices"] = counts.vertices;
-  out["triangles"] = counts.triangles;
-  out["sheets"] = counts.sheets;
-  out["curve_edges"] = counts.curve_edges;
-  out["rim_edges"] = counts.rim_edges;
-  out["seam_edges"] = counts.seam_edges;
-  out["junctions"] = counts.junctions;
-  return out;
-}
-
-nb::dict body_of(const BodyReport& body) {
-  nb::dict out;
-  out["solid"] = nb::cast(body.solid);
-  out["voxels"] = nb::cast(body.voxels);
-  out["topology_matches"] = body.topology_matches;
-  out["spacing"] = body.spacing;
-  out["voxel_count"] = body.voxel_count;
-  out["left_out"] = body.left_out;
-  out["taken_in"] = body.taken_in;
-  out["deviation"] = body.deviation;
-  return out;
-}
-
-nb::dict report_of(const MedialAxisReport& report) {
-  nb::dict out;
-  out["rule"] = std::string(to_string(report.rule));
-  out["reason"] = report.reason;
-  out["reversed_shells"] = report.reversed_shells;
-  out["solid"] = nb::cast(report.solid);
-  out["voxels"] = nb::cast(report.voxels);
-  out["topology_matches"] = report.topology_matches;
-  out["grid"] = nb::cast(report.grid);
-  nb::list bodies;
-  for (const BodyReport& body : report.bodies) bodies.append(body_of(body));
-  out["bodies"] = bodies;
-  out["phases"] = phases_of(report.phases);
-  return out;
-}
-
 void bind_axis(nb::module_& m) {
   nb::class_<MedialAxis>(m, "MedialAxis")
       .def(
@@ -81,44 +39,33 @@ void bind_axis(nb::module_& m) {
           nb::arg("theta"))
       .def("nested",
            [](const MedialAxis& axis) { return run({0, nb::none()}, [&](const Context&) { return axis.nested(); }); })
-      .def_prop_ro("report", [](const MedialAxis& axis) { return report_of(axis.report()); });
+      .def_prop_ro("report", [](const MedialAxis& axis) { return result_of(axis.report()); });
   m.def(
       "medial_axis_of_mesh",
-      [](const MeshArrays& mesh, int resolution, std::optional<double> spacing, int max_resolution, double lambda,
-         double least_theta, int threads, nb::object progress) {
+      [](const MeshArrays& mesh, const nb::dict& given, int threads, nb::object progress) {
         const MeshView view = mesh.view();
-        MedialAxisOptions options;
-        options.resolution = resolution;
-        options.spacing = spacing;
-        options.max_resolution = max_resolution;
-        options.lambda = lambda;
-        options.least_theta = least_theta;
+        const auto options = options_from<MedialAxisOptions>(given);
         return run({threads, std::move(progress)},
                    [&](const Context& context) { return medial_axis(view, options, context); });
       },
-      nb::arg("mesh"), nb::arg("resolution"), nb::arg("spacing").none(), nb::arg("max_resolution"), nb::arg("lambda_"),
-      nb::arg("least_theta"), nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("mesh"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
       "medial_axis_of_image",
-      [](const ImageArrays& image, std::optional<std::int64_t> label, std::optional<double> threshold, double lambda,
-         double least_theta, int threads, nb::object progress) {
-        MedialAxisOptions options;
-        if (label) options.selection = LabelSelection::of_label(*label);
-        if (threshold) options.selection = LabelSelection::at_least(*threshold);
-        options.lambda = lambda;
-        options.least_theta = least_theta;
+      [](const ImageArrays& image, const nb::dict& given, int threads, nb::object progress) {
+        const auto options = options_from<MedialAxisOptions>(given);
         return run({threads, std::move(progress)},
                    [&](const Context& context) { return medial_axis(image.view, options, context); });
       },
-      nb::arg("image"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("lambda_"),
-      nb::arg("least_theta"), nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("image"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }
 
 }  // namespace
 
 void bind_medial_axis(nb::module_& m) {
+  bind_options<MedialAxisOptions>(m);
+  bind_struct<MedialAxisReport>(m);
   bind_axis(m);
-  m.def("medial_counts", &counts_of, nb::arg("axis"));
+  m.def("medial_counts", [](const Complex& axis) { return dict_of(count(axis)); }, nb::arg("axis"));
   m.def("medial_problem", &problem_of_medial, nb::arg("axis"));
   m.def("sheet_count", &sheet_count, nb::arg("axis"));
   m.def(

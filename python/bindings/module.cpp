@@ -58,6 +58,8 @@ NB_MODULE(_core, m) {
   nb::register_exception_translator(translate);
   end_calls_at_exit();
   m.attr("version") = BLUM_VERSION;
+  m.attr("described") = nb::dict();
+  m.attr("enums") = nb::dict();
   m.def("thread_count", [](int threads) { return blum::thread_count({.threads = threads}); }, nb::arg("threads") = 0);
   bind_grid(m);
   bind_geometry(m);

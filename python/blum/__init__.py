@@ -9,19 +9,12 @@ inside is negative. The same verbs as in C++ and on the command line:
     axis.certificate.holds
 """
 
-from . import reference
-from ._certificate import (
-    BallUnionCheck,
-    Certificate,
-    EdgeCheck,
-    GeometryCheck,
-    SolidRule,
-    solid_rule,
-)
+from . import _structs, reference
+from ._certificate import solid_rule
 from ._complex import Complex, homology
 from ._core import thread_count
 from ._core import version as __version__
-from ._device import DeviceArray, DeviceDistanceTransform, DeviceField, DeviceFieldSolver
+from ._device import DeviceArray, DeviceDistanceTransform, DeviceField, DeviceFieldSolver, cuda_devices
 from ._errors import (
     Cancelled,
     DeviceError,
@@ -40,7 +33,6 @@ from ._field import (
     ClosestPoints,
     Field,
     FieldSolver,
-    VoxelTopology,
     closest_points,
     distance_field,
     read_field,
@@ -50,15 +42,13 @@ from ._field import (
 from ._formats import FileFormat, file_formats
 from ._grid import Grid
 from ._image import Image, read_image
-from ._medial import BodyReport, MedialAxis, MedialAxisReport, medial_axis
+from ._medial import MedialAxis, medial_axis
 from ._medial_columns import ROLES, NestedComplex, Present
 from ._medial_complex import MedialComplex, ball_union_field, certify, read_medial
 from ._mesh import (
     Mesh,
     SelfIntersections,
-    Shell,
     Sites,
-    Topology,
     WindingNumber,
     pseudonormals,
     read_mesh,
@@ -68,15 +58,13 @@ from ._mesh import (
     weld_clusters,
 )
 from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
+from ._structs import *  # noqa: F403
 from ._transform import distance_transform, distance_transforms
 from ._view import view
 
 __all__ = [
     "ROLES",
-    "BallUnionCheck",
-    "BodyReport",
     "Cancelled",
-    "Certificate",
     "ClosestPointQuery",
     "ClosestPoints",
     "Complex",
@@ -85,14 +73,12 @@ __all__ = [
     "DeviceError",
     "DeviceField",
     "DeviceFieldSolver",
-    "EdgeCheck",
     "Error",
     "Field",
     "FieldSolver",
     "FileError",
     "FileFormat",
     "FormatError",
-    "GeometryCheck",
     "Grid",
     "Image",
     "InputWarning",
@@ -101,7 +87,6 @@ __all__ = [
     "InvalidMesh",
     "InvalidOption",
     "MedialAxis",
-    "MedialAxisReport",
     "MedialComplex",
     "Mesh",
     "NestedComplex",
@@ -110,16 +95,13 @@ __all__ = [
     "SelfIntersections",
     "ShapeInfo",
     "ShapeParameter",
-    "Shell",
     "Sites",
-    "SolidRule",
-    "Topology",
-    "VoxelTopology",
     "WindingNumber",
     "__version__",
     "ball_union_field",
     "certify",
     "closest_points",
+    "cuda_devices",
     "distance_field",
     "distance_transform",
     "distance_transforms",
@@ -148,3 +130,4 @@ __all__ = [
     "weld",
     "weld_clusters",
 ]
+__all__ += _structs.__all__

@@ -147,12 +147,6 @@ def box(value: Any, name: str) -> tuple[tuple[float, float, float], tuple[float,
     return triple(value[0], f"{name}[0]"), triple(value[1], f"{name}[1]")
 
 
-def one_of(value: Any, name: str, allowed: Sequence[str]) -> str:
-    if isinstance(value, str) and value in allowed:
-        return str(value)
-    raise InvalidOption(f"{name} is {value!r}, but must be one of {', '.join(map(repr, allowed))}")
-
-
 def device_name(value: Any) -> str:
     """A device by its name, which the library reads."""
     if isinstance(value, str):

@@ -4,20 +4,33 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Integer, Real, device_name, integer, label_of, one_of, optional_number
+from ._arguments import device_name, integer
 from ._errors import InvalidOption
-from ._field import _SIGNS, _SITE_IDS, Sign, SiteIds
 from ._grid import Grid
+from ._options import takes
+from ._structs import CudaDevices, DistanceTransformOptions, FieldOptions
 
 _CUDA = 2  # DLPack's numbers of kinds of devices
 _MANAGED = 13
 _LEGACY = 1  # the legacy default stream, for CUDA and DLPack alike
+
+
+def cuda_devices() -> CudaDevices:
+    """The CUDA devices that `device=` may name, or why there are none.
+
+    >>> import blum
+    >>> found = blum.cuda_devices()
+    >>> bool(found.devices) != bool(found.reason)
+    True
+    """
+    found: CudaDevices = _core.cuda_devices()
+    return found
 
 
 class DeviceArray:
@@ -143,10 +156,10 @@ class _DeviceSolver:
 
     _instead = ""  # what takes arrays of the host
 
-    def __init__(self, grid: Grid, core: Any, band: float | None, site_ids: str) -> None:
+    def __init__(self, grid: Grid, core: Any, site_ids: str) -> None:
         self._solver = core
         self._grid = grid
-        self._band = band
+        self._band: float | None = core.options["band"]
         self._site_ids = site_ids
         self._held: deque[tuple[int, tuple[_core.DeviceArray, ...]]] = deque()
 
@@ -230,6 +243,7 @@ class _DeviceSolver:
         return array
 
 
+@takes("FieldOptions")
 class DeviceFieldSolver(_DeviceSolver):
     """Fields of deforming meshes that are in a CUDA device's memory, as arrays there: no copies, no waiting.
 
@@ -239,12 +253,10 @@ class DeviceFieldSolver(_DeviceSolver):
     Parameters
     ----------
     grid : Grid
-    sign : "auto", "winding" or "none"
-        "auto" and "winding" are both the winding number; the sides of closed meshes that face outwards are those of
-        "normals".
-    band, site_ids
-        As for :func:`distance_field`.
     device : "cuda" or "cuda:K"
+    **options
+        Of signs, "auto" and "winding" are both the winding number; the sides of closed meshes that face outwards are
+        those of "normals", which itself needs a mesh in the host's memory.
 
     Examples
     --------
@@ -262,21 +274,13 @@ class DeviceFieldSolver(_DeviceSolver):
         self,
         grid: Grid,
         *,
-        sign: Sign = "auto",
-        band: Real | None = None,
-        site_ids: SiteIds = "features",
         device: str = "cuda",
+        **options: Unpack[FieldOptions],
     ) -> None:
         if not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
-        core = _core.DeviceFieldSolver(
-            grid._spec,
-            one_of(sign, "sign", _SIGNS),
-            optional_number(band, "band"),
-            one_of(site_ids, "site_ids", _SITE_IDS),
-            device_name(device),
-        )
-        super().__init__(grid, core, optional_number(band, "band"), str(site_ids))
+        core = _core.DeviceFieldSolver(grid._spec, dict(options), device_name(device))
+        super().__init__(grid, core, core.options["site_ids"])
 
     @property
     def sign_rule(self) -> str:
@@ -330,6 +334,7 @@ class DeviceFieldSolver(_DeviceSolver):
         return DeviceField(*self._results(distance, site, out, pieces), self)
 
 
+@takes("DistanceTransformOptions")
 class DeviceDistanceTransform(_DeviceSolver):
     """Distance transforms of images that are in a CUDA device's memory: no copies, no waiting.
 
@@ -340,9 +345,8 @@ class DeviceDistanceTransform(_DeviceSolver):
     ----------
     grid : Grid
         Of the images: spacing, and where they are.
-    label, threshold, signed, band
-        As for :func:`distance_transform`.
     device : "cuda" or "cuda:K"
+    **options
 
     Examples
     --------
@@ -358,27 +362,14 @@ class DeviceDistanceTransform(_DeviceSolver):
         self,
         grid: Grid,
         *,
-        label: Integer | None = None,
-        threshold: Real | None = None,
-        signed: bool = True,
-        band: Real | None = None,
         device: str = "cuda",
+        **options: Unpack[DistanceTransformOptions],
     ) -> None:
         if not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
-        if label is not None and threshold is not None:
-            raise InvalidOption("label and threshold exclude each other")
-        width = optional_number(band, "band")
-        core = _core.DeviceDistanceTransform(
-            grid._spec,
-            None if label is None else label_of(label, "label"),
-            optional_number(threshold, "threshold"),
-            bool(signed),
-            width,
-            device_name(device),
-        )
-        super().__init__(grid, core, width, "voxels")
-        self._sign_rule = "label" if signed else "none"
+        core = _core.DeviceDistanceTransform(grid._spec, dict(options), device_name(device))
+        super().__init__(grid, core, "voxels")
+        self._sign_rule = "label" if core.options["signed"] else "none"
 
     @property
     def sign_rule(self) -> str:

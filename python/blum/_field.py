@@ -7,7 +7,7 @@ import threading
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, Unpack, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -25,22 +25,17 @@ from ._arguments import (
     integer,
     label_of,
     number,
-    one_of,
     optional_number,
     points_and_shape,
     source_name,
 )
-from ._errors import InputWarning, InvalidOption
+from ._errors import InputWarning
 from ._grid import Grid, grid_for, mask_array
 from ._image import as_image
-from ._mesh import Betti, Mesh, as_mesh, betti_of, mesh_of_arrays
+from ._mesh import Mesh, as_mesh, mesh_of_arrays
+from ._options import takes
 from ._progress import Progress, reporting
-
-Sign = Literal["auto", "normals", "winding", "none"]
-SiteIds = Literal["features", "triangles"]
-
-_SIGNS = ("auto", "normals", "winding", "none")
-_SITE_IDS = ("features", "triangles")
+from ._structs import ClosestPointOptions, FieldOptions, VoxelTopology
 
 
 class Field:
@@ -77,8 +72,8 @@ class Field:
         self._site = cast("IntArray | None", core.site)
         # Now rather than when they are asked for: a solver that reuses its field may be writing it then.
         self._grid = Grid._of(core.grid)
-        self._seconds = dict(core.phases)
-        self._device = str(core.device)
+        self._seconds = dict(core.seconds)
+        self._device, self._device_reason = str(core.device), str(core.device_reason)
         self._sign_rule, self._sign_reason = str(core.sign_rule), str(core.sign_reason)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -131,6 +126,11 @@ class Field:
     def device(self) -> str:
         """Where the field was computed: "cpu" or "cuda:K"."""
         return self._device
+
+    @property
+    def device_reason(self) -> str:
+        """Why on the CPU, in one sentence, where the device "auto" was asked for; else empty."""
+        return self._device_reason
 
     @property
     def sign_reason(self) -> str:
@@ -215,6 +215,7 @@ def _restored(
     return Field._of(core, mesh, source, space)
 
 
+@takes("FieldOptions")
 def distance_field(
     mesh: Any,
     triangles: Any = None,
@@ -225,12 +226,10 @@ def distance_field(
     bounds: Any = None,
     grid: Grid | None = None,
     weld: Real | None = None,
-    sign: Sign = "auto",
-    band: Real | None = None,
-    site_ids: SiteIds = "features",
     threads: int = 0,
     device: str = "cpu",
     progress: Progress = False,
+    **options: Unpack[FieldOptions],
 ) -> Field:
     """Exact distance and closest site at every node of a grid.
 
@@ -251,18 +250,13 @@ def distance_field(
         The grid itself.
     weld : float, optional
         Merge vertices closer than this first, mesh units; 0: equal ones. Default: as :func:`read_mesh` has it.
-    sign : "auto", "normals", "winding" or "none"
-        Inside is negative. "auto" goes by orientation where the mesh is closed and simple, else by winding numbers.
-    band : float, optional
-        Half-width of a narrow band, mesh units. Beyond it nodes get +-band and no site.
-    site_ids : "features" or "triangles"
-        What `Field.site` counts: vertices, edges and faces (see :class:`Sites`), or triangles.
     threads : int
         0: all cores. Results do not depend on it.
     device : "cpu", "auto", "cuda" or "cuda:K"
         Where distances are computed; "auto": on the first CUDA device if that works, else on the CPU.
     progress : bool or function
         True: a bar of tqdm. A function is called with (fraction, phase).
+    **options
 
     Returns
     -------
@@ -284,9 +278,7 @@ def distance_field(
         core = _core.distance_field(
             shape._arrays,
             nodes._spec,
-            one_of(sign, "sign", _SIGNS),
-            optional_number(band, "band"),
-            one_of(site_ids, "site_ids", _SITE_IDS),
+            dict(options),
             integer(threads, "threads"),
             device_name(device),
             report,
@@ -302,17 +294,19 @@ def distance_field(
     return field
 
 
+@takes("FieldOptions")
 class FieldSolver:
     """Fields of a deforming mesh on one grid, frame after frame.
 
     Parameters
     ----------
     grid : Grid
-    sign, band, site_ids, device
+    device
         As for :func:`distance_field`.
     reuse : bool
         Write every frame into the same arrays: faster, but a frame's arrays then change with the next one. Without it
         each frame has its own.
+    **options
 
     >>> import numpy as np, blum
     >>> mesh = blum.generate("sphere", frequency=4)
@@ -326,19 +320,15 @@ class FieldSolver:
         self,
         grid: Grid,
         *,
-        sign: Sign = "auto",
-        band: Real | None = None,
-        site_ids: SiteIds = "features",
         device: str = "cpu",
         reuse: bool = False,
+        **options: Unpack[FieldOptions],
     ) -> None:
         if not isinstance(grid, Grid):
             raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
         self._solver = _core.FieldSolver(
             grid._spec,
-            one_of(sign, "sign", _SIGNS),
-            optional_number(band, "band"),
-            one_of(site_ids, "site_ids", _SITE_IDS),
+            dict(options),
             device_name(device),
         )
         self._grid = grid
@@ -364,14 +354,6 @@ class FieldSolver:
                 self._owner = None
 
 
-@dataclass(frozen=True)
-class VoxelTopology:
-    """The topology of the union of closed voxels."""
-
-    betti: Betti  #: components (26-connected), tunnels, voids
-    euler_characteristic: int
-
-
 def selected_voxels(
     image: Any,
     *,
@@ -381,8 +363,6 @@ def selected_voxels(
     progress: Progress = False,
 ) -> npt.NDArray[np.bool_]:
     """The mask of the voxels that are not zero, of a label, or of at least a threshold."""
-    if label is not None and threshold is not None:
-        raise InvalidOption("label and threshold exclude each other")
     with reporting(progress) as report:
         mask: npt.NDArray[np.uint8] = _core.selected_voxels(
             as_image(image)._arrays,
@@ -402,8 +382,8 @@ def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -
     (1, 5, 0)
     """
     with reporting(progress) as report:
-        betti, euler = _core.voxel_topology(mask_array(mask, "mask"), integer(threads, "threads"), report)
-    return VoxelTopology(betti_of(betti), euler)
+        found: VoxelTopology = _core.voxel_topology(mask_array(mask, "mask"), integer(threads, "threads"), report)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -416,6 +396,7 @@ class ClosestPoints:
     triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
 
 
+@takes("ClosestPointOptions")
 class ClosestPointQuery:
     """Closest-point queries on one mesh, exact; may be called from many threads at once.
 
@@ -423,10 +404,7 @@ class ClosestPointQuery:
     ----------
     mesh, triangles, weld
         As for :func:`distance_field`.
-    sign : "auto", "normals", "winding" or "none"
-        "none" is cheapest.
-    max_distance : float, optional
-        Nothing further than this is looked for, mesh units.
+    **options
 
     >>> import blum
     >>> query = blum.ClosestPointQuery(blum.generate("box"))
@@ -440,17 +418,15 @@ class ClosestPointQuery:
         triangles: Any = None,
         *,
         weld: Real | None = None,
-        sign: Sign = "auto",
-        max_distance: Real | None = None,
         threads: int = 0,
         progress: Progress = False,
+        **options: Unpack[ClosestPointOptions],
     ) -> None:
         self._mesh = as_mesh(mesh, triangles, weld=weld)
         with reporting(progress) as report:
             self._query = _core.ClosestPointQuery(
                 self._mesh._arrays,
-                one_of(sign, "sign", _SIGNS),
-                optional_number(max_distance, "max_distance"),
+                dict(options),
                 integer(threads, "threads"),
                 report,
             )
@@ -478,26 +454,32 @@ class ClosestPointQuery:
         )
 
 
+@takes("ClosestPointOptions")
 def closest_points(
     mesh: Any,
     points: Any,
     *,
     weld: Real | None = None,
-    sign: Sign = "auto",
-    max_distance: Real | None = None,
     threads: int = 0,
     progress: Progress = False,
+    **options: Unpack[ClosestPointOptions],
 ) -> ClosestPoints:
     """The closest point of a mesh, its distance, site and triangle for every query; exact, not interpolated.
+
+    Parameters
+    ----------
+    mesh, weld, threads, progress
+        As for :func:`distance_field`.
+    points : array of the shape (..., 3)
+    **options
 
     >>> import blum
     >>> found = blum.closest_points(blum.generate("sphere"), [[0, 0, 3], [0, 0, 0.2]])
     >>> [round(distance, 2) for distance in found.distance.tolist()]
     [2.0, -0.8]
     """
-    return ClosestPointQuery(mesh, weld=weld, sign=sign, max_distance=max_distance, threads=threads, progress=progress)(
-        points, threads=threads, progress=progress
-    )
+    query = ClosestPointQuery(mesh, weld=weld, threads=threads, progress=progress, **options)
+    return query(points, threads=threads, progress=progress)
 
 
 def read_field(path: PathLike) -> Field:

@@ -10,7 +10,8 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, Integer, Real, as_array, box, integer, matrix, number, triple
 from ._errors import InvalidOption
-from ._mesh import Bounds, as_mesh
+from ._mesh import as_mesh
+from ._structs import Bounds
 
 
 class Grid:

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -26,14 +26,16 @@ from ._arguments import (
     number,
     site_ids,
 )
-from ._certificate import Certificate, Claim, certified
+from ._certificate import Claim, certified
 from ._errors import InvalidOption
 from ._field import Field
 from ._grid import Grid, grid_for
 from ._image import Image
 from ._medial_columns import ROLES, MedialColumns, NestedComplex
-from ._mesh import Bounds, Mesh
+from ._mesh import Mesh
+from ._options import takes
 from ._progress import Progress, reporting
+from ._structs import Bounds, Certificate, CertificateOptions
 
 EVERYTHING = {"radii": True, "footprints": True, "angles": True, "sites": True, "labels": True}
 
@@ -48,7 +50,7 @@ class Origin:
     theta: float | None = None
     lambda_: float | None = None
     spacing: float | None = None
-    rule: str = ""
+    solid_rule: str = ""
     grid: Grid | None = None
     source: str = ""
     weld: float | None = None
@@ -300,7 +302,7 @@ def _claim(axis: MedialComplex) -> Claim:
         axis.grid,
         origin.label,
         origin.threshold,
-        origin.rule,
+        origin.solid_rule,
         origin.site_ids,
         origin.version,
     )
@@ -335,6 +337,7 @@ def _footprint_rows(value: Any, count: int) -> FloatArray:
     return float_rows(array.reshape(-1, 3), "footprints").reshape(-1, 2, 3)
 
 
+@takes("CertificateOptions")
 def certify(
     axis: MedialComplex,
     shape: Any,
@@ -344,14 +347,9 @@ def certify(
     threshold: Real | None = None,
     grid: Grid | None = None,
     weld: Real | None = None,
-    positions: bool = True,
-    radii: bool | None = None,
-    footprints: bool | None = None,
-    angles: bool | None = None,
-    sites: bool | None = None,
-    balls: bool | None = None,
     threads: int = 0,
     progress: Progress = False,
+    **checks: Unpack[CertificateOptions],
 ) -> Certificate:
     """Checks an axis against the mesh or image whose solid it is said to have.
 
@@ -371,8 +369,10 @@ def certify(
         Of a mesh that bounds no polyhedron: of the centres of the voxels that are the solid. Default: the axis's own.
     weld : float, optional
         Of a mesh: as for :func:`distance_field`.
-    positions, radii, footprints, angles, sites, balls : bool, optional
-        What to look at besides topology. Default: all that the axis has.
+    threads, progress
+        As for :func:`distance_field`.
+    **options
+        What is not said: all that the axis has.
 
     >>> import blum
     >>> torus = blum.generate("torus")
@@ -390,14 +390,9 @@ def certify(
         threshold=threshold,
         grid=grid,
         weld=weld,
-        positions=positions,
-        radii=radii,
-        footprints=footprints,
-        angles=angles,
-        sites=sites,
-        balls=balls,
         threads=threads,
         progress=progress,
+        **checks,
     )
 
 
@@ -425,45 +420,14 @@ def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, 
 
 
 def write_complex(path: PathLike, complex: MedialComplex, nested: NestedComplex | None) -> None:
-    origin = complex._origin
-    _core.write_medial(
-        Path(os.fspath(path)),
-        complex._core,
-        None if nested is None else nested._core,
-        0.0 if nested is None else nested.least_theta,
-        origin.source,
-        origin.site_ids,
-        origin.rule,
-        origin.theta,
-        origin.lambda_,
-        origin.spacing,
-        None if origin.grid is None else origin.grid._spec,
-        origin.label,
-        origin.threshold,
-        origin.weld,
-    )
+    told = {name: value for name, value in vars(complex._origin).items() if name not in ("shape", "version")}
+    inner, least = (None, 0.0) if nested is None else (nested._core, nested.least_theta)
+    _core.write_medial(Path(os.fspath(path)), complex._core, inner, least, told)
 
 
 def read_medial(path: PathLike) -> MedialComplex:
     """Reads an axis of .vtp, .ply, .obj, .ma or .npz; `.has` tells which attributes the file holds, and `.nested`
     has the axes of all angles where it holds them."""
-    core, nested, metadata = _core.read_medial(existing_file(path))
-    grid = metadata.get("grid")
-    origin = Origin(
-        None,
-        metadata.get("label"),
-        metadata.get("threshold"),
-        metadata.get("theta"),
-        metadata.get("lambda"),
-        metadata.get("spacing"),
-        metadata["solid_rule"],
-        None if grid is None else Grid._of(grid),
-        metadata["source"],
-        metadata.get("weld"),
-        metadata["site_ids"],
-        metadata["version"],
-    )
-    has = {name: metadata[f"has_{name}"] for name in EVERYTHING}
-    return MedialComplex._of(
-        core, has, origin, None if nested is None else NestedComplex(nested, metadata["least_theta"])
-    )
+    core, nested, least_theta, metadata, has = _core.read_medial(existing_file(path))
+    inner = None if nested is None else NestedComplex(nested, least_theta)
+    return MedialComplex._of(core, has, Origin(None, **metadata), inner)

@@ -29,9 +29,9 @@ from ._arguments import (
     source_name,
 )
 from ._progress import Progress, reporting
+from ._structs import Bounds, Topology
 
 Betti = tuple[int, int, int]
-Bounds = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 
 def betti_of(values: Sequence[int]) -> Betti:
@@ -298,53 +298,6 @@ def weld_clusters(vertices: Any, tolerance: Real = 0.0) -> IntArray:
     return found
 
 
-@dataclass(frozen=True)
-class Shell:
-    """A closed, consistently oriented component of a surface."""
-
-    triangles: int
-    bounds: Bounds
-    signed_volume: float  #: cubic mesh units; positive where it faces away from what it encloses
-    area: float  #: square mesh units
-    euler_characteristic: int
-    genus: int  #: number of handles
-    depth: int  #: number of other shells that it lies in
-    parent: int | None  #: the innermost of these
-    faces_outwards: bool  #: away from the solid
-
-
-@dataclass(frozen=True)
-class Topology:
-    """Counts and facts of a mesh, as ``blum info`` prints them."""
-
-    vertices: int
-    named_vertices: int  #: those that a triangle, segment or point names
-    edges: int
-    triangles: int
-    segments: int
-    points: int
-    bounds: Bounds | None
-    pieces: int  #: sets connected through shared vertices
-    surface_components: int  #: sets of triangles connected through shared edges
-    closed_components: int
-    boundary_edges: int  #: edges with one triangle
-    boundary_loops: int  #: holes
-    nonmanifold_edges: int  #: edges with more than two triangles
-    nonmanifold_vertices: int
-    inconsistent_edges: int  #: traversed in the same direction by both triangles
-    degenerate_triangles: int
-    duplicate_triangles: int
-    closed: bool
-    oriented: bool
-    manifold: bool
-    faces_outwards: bool
-    area: float  #: square mesh units
-    signed_volume: float  #: cubic mesh units
-    euler_characteristic: int
-    shells: tuple[Shell, ...]
-    betti: Betti | None  #: components, tunnels, voids of the solid; None where the mesh bounds none
-
-
 def topology(
     mesh: Any, triangles: Any = None, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
 ) -> Topology:
@@ -355,9 +308,10 @@ def topology(
     (1, 1, 0)
     """
     with reporting(progress) as report:
-        found = _core.topology(as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report)
-    shells = tuple(Shell(**shell) for shell in found.pop("shells"))
-    return Topology(shells=shells, **found)
+        found: Topology = _core.topology(
+            as_mesh(mesh, triangles, weld=weld)._arrays, integer(threads, "threads"), report
+        )
+    return found
 
 
 @dataclass(frozen=True, eq=False)

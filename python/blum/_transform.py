@@ -3,32 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Integer, Real, device_name, integer, label_of, optional_number
+from ._arguments import Integer, device_name, integer, label_of
 from ._errors import InvalidOption
 from ._field import Field
-from ._image import as_image
+from ._image import Image, as_image
+from ._options import takes
 from ._progress import Progress, reporting
+from ._structs import DistanceTransformOptions
 
 
+@takes("DistanceTransformOptions")
 def distance_transform(
     image: Any,
     *,
     spacing: Any = None,
     origin: Any = None,
     direction: Any = None,
-    label: Integer | None = None,
-    threshold: Real | None = None,
-    signed: bool = True,
-    band: Real | None = None,
     threads: int = 0,
     device: str = "cpu",
     progress: Progress = False,
+    **options: Unpack[DistanceTransformOptions],
 ) -> Field:
     """Exact Euclidean distance and closest voxel at every voxel of an image, from centre to centre.
 
@@ -38,17 +38,9 @@ def distance_transform(
         Booleans or numbers; selected are the voxels that are not zero, unless `label` or `threshold` says otherwise.
     spacing, origin, direction
         As for :class:`Image`, in x, y, z order: the reverse of the array's axes.
-    label : int, optional
-        Select the voxels of this value.
-    threshold : float, optional
-        Select the voxels of at least this value.
-    signed : bool
-        True: distance to the nearest voxel of the other kind, negative at selected voxels. False: distance to the
-        nearest selected voxel, as ``scipy.ndimage.distance_transform_edt(~mask)``.
-    band : float, optional
-        Half-width of a band, in the units of the spacing.
     device : "cpu", "auto", "cuda" or "cuda:K"
         As for :func:`distance_field`. A device must hold the whole image, and 8 bytes per voxel.
+    **options
 
     Returns
     -------
@@ -61,10 +53,10 @@ def distance_transform(
     >>> blum.distance_transform(mask, signed=False).distance[1, 1].tolist()
     [1.0, 0.0, 1.0]
     """
-    labels = [] if label is None else [label_of(label, "label")]
-    return _transforms(image, spacing, origin, direction, labels, threshold, signed, band, threads, device, progress)[0]
+    return _transforms(as_image(image, spacing, origin, direction), [], options, threads, device, progress)[0]
 
 
+@takes("DistanceTransformOptions", "label", "threshold")
 def distance_transforms(
     image: Any,
     labels: Sequence[Integer] | npt.NDArray[Any],
@@ -72,17 +64,26 @@ def distance_transforms(
     spacing: Any = None,
     origin: Any = None,
     direction: Any = None,
-    signed: bool = True,
-    band: Real | None = None,
     threads: int = 0,
     device: str = "cpu",
     progress: Progress = False,
+    **options: Unpack[DistanceTransformOptions],
 ) -> list[Field]:
-    """One :func:`distance_transform` for each label, checked once and with shared working memory."""
+    """One :func:`distance_transform` for each label, checked once and with shared working memory.
+
+    Parameters
+    ----------
+    labels : integers
+    image, spacing, origin, direction, threads, device, progress
+        As for :func:`distance_transform`.
+    **options
+    """
+    if options.keys() & {"label", "threshold"}:
+        raise InvalidOption("labels excludes label and threshold: each selects the voxels")
     wanted = [label_of(label, "labels") for label in _several(labels)]
     if not wanted:
         return []
-    return _transforms(image, spacing, origin, direction, wanted, None, signed, band, threads, device, progress)
+    return _transforms(as_image(image, spacing, origin, direction), wanted, options, threads, device, progress)
 
 
 def _several(labels: Any) -> list[Any]:
@@ -92,30 +93,10 @@ def _several(labels: Any) -> list[Any]:
 
 
 def _transforms(
-    image: Any,
-    spacing: Any,
-    origin: Any,
-    direction: Any,
-    labels: list[int],
-    threshold: Real | None,
-    signed: bool,
-    band: Real | None,
-    threads: int,
-    device: str,
-    progress: Progress,
+    image: Image, labels: list[int], options: DistanceTransformOptions, threads: int, device: str, progress: Progress
 ) -> list[Field]:
-    if labels and threshold is not None:
-        raise InvalidOption("label and threshold exclude each other")
-    voxels = as_image(image, spacing, origin, direction)
     with reporting(progress) as report:
         fields = _core.distance_transforms(
-            voxels._arrays,
-            labels,
-            optional_number(threshold, "threshold"),
-            bool(signed),
-            optional_number(band, "band"),
-            integer(threads, "threads"),
-            device_name(device),
-            report,
+            image._arrays, labels, dict(options), integer(threads, "threads"), device_name(device), report
         )
-    return [Field._of(field, None, voxels.source, voxels.space) for field in fields]
+    return [Field._of(field, None, image.source, image.space) for field in fields]

@@ -9,17 +9,17 @@ namespace blum {
 namespace {
 
 /// What make_cuda(index) makes where the device is a CUDA device, or may be one and is there; else what make_cpu()
-/// does.
+/// does, and `reason` says why.
 template <class MakeCuda, class MakeCpu>
-auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& make_cpu) {
+auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& make_cpu, std::string& reason) {
   if (device.kind == DeviceKind::cuda) return make_cuda(device.index);
   if (device.kind == DeviceKind::automatic) {
     try {
       return make_cuda(0);
-    } catch (const DeviceError&) {
-      return make_cpu();
-    } catch (const OutOfMemory&) {  // of the device: others may fill it
-      return make_cpu();
+    } catch (const DeviceError& error) {
+      reason = error.what();
+    } catch (const OutOfMemory& error) {  // of the device: others may fill it
+      reason = error.what();
     }
   }
   return make_cpu();
@@ -27,13 +27,15 @@ auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& mak
 
 }  // namespace
 
-std::unique_ptr<FieldBackend> make_field_backend(const Context& context) {
-  return make_on(context.device, cuda::make_field_backend,
-                 []() -> std::unique_ptr<FieldBackend> { return std::make_unique<cpu::Engine>(); });
+std::unique_ptr<FieldBackend> make_field_backend(const Context& context, std::string& reason) {
+  return make_on(
+      context.device, cuda::make_field_backend,
+      []() -> std::unique_ptr<FieldBackend> { return std::make_unique<cpu::Engine>(); }, reason);
 }
 
-std::unique_ptr<ImageBackend> make_image_backend(const Context& context) {
-  return make_on(context.device, cuda::make_image_backend, []() -> std::unique_ptr<ImageBackend> { return nullptr; });
+std::unique_ptr<ImageBackend> make_image_backend(const Context& context, std::string& reason) {
+  return make_on(
+      context.device, cuda::make_image_backend, []() -> std::unique_ptr<ImageBackend> { return nullptr; }, reason);
 }
 
 }  // namespace blum

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -60,9 +61,10 @@ class ImageBackend {
   virtual void transform(const detail::ImageRequest& request) = 0;
 };
 
-/// The back end of context.device. @throws DeviceError.
-[[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context);
+/// The back end of context.device. @param reason  gets why it is the CPU's where `automatic` was asked for.
+/// @throws DeviceError.
+[[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context, std::string& reason);
 /// Likewise; none for the CPU. @throws DeviceError.
-[[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(const Context& context);
+[[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(const Context& context, std::string& reason);
 
 }  // namespace blum

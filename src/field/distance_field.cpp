@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct FieldSolver::State {
   FieldOptions options;
   Context context;
   std::unique_ptr<FieldBackend> engine;
+  std::string device_reason;
   Field field;
 
   void compute(const MeshView& mesh, const Context& frame_context);
@@ -77,6 +79,7 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   field.band = options.band;
   field.site_ids = SiteIds::features;
   field.device = engine->device();
+  field.device_reason = device_reason;
   field.phases.clear();
 
   PhaseTimer connectivity_timer(field.phases);
@@ -105,7 +108,7 @@ FieldSolver::FieldSolver(const GridSpec& grid, const FieldOptions& options, cons
   validate(grid);
   check_options(options);
   (void)thread_count(context);
-  state_->engine = make_field_backend(context);
+  state_->engine = make_field_backend(context, state_->device_reason);
   state_->options = options;
   state_->context = context;
   state_->field.grid = grid;

@@ -2,6 +2,7 @@
 #include "blum/field/distance_transform.hpp"
 
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "blum/core/context.hpp"
@@ -25,7 +26,7 @@ std::vector<Field> transforms_on(ImageBackend& device, const VoxelImageView& ima
     Field& field = fields.emplace_back();
     PhaseTimer timer(field.phases);
     request.selection = selection;
-    detail::check_selected(device.select(request), request);
+    detail::check_selected(device.select(request), image, request);
     timer.lap("select voxels");
     detail::begin_field(image, options, request, field);
     field.device = device.device();
@@ -40,10 +41,13 @@ std::vector<Field> transforms_on(ImageBackend& device, const VoxelImageView& ima
 std::vector<Field> distance_transforms(const VoxelImageView& image, std::span<const LabelSelection> selections,
                                        const DistanceTransformOptions& options, const Context& context) {
   validate(image);
-  if (const std::unique_ptr<ImageBackend> device = make_image_backend(context)) {
+  std::string device_reason;
+  if (const std::unique_ptr<ImageBackend> device = make_image_backend(context, device_reason)) {
     return transforms_on(*device, image, selections, options, context);
   }
-  return cpu::distance_transforms(image, selections, options, context);
+  std::vector<Field> fields = cpu::distance_transforms(image, selections, options, context);
+  for (Field& field : fields) field.device_reason = device_reason;
+  return fields;
 }
 
 Field distance_transform(const VoxelImageView& image, const DistanceTransformOptions& options, const Context& context) {

@@ -4,6 +4,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/grid/image_values.hpp"
 #include "field/sign/policy.hpp"
 
 namespace blum::detail {
@@ -23,10 +24,8 @@ std::string describe(const LabelSelection& selection) {
 
 }  // namespace
 
-void check_selected(std::size_t selected, const ImageRequest& request) {
-  if (selected == 0) {
-    throw InvalidImage("no voxel of the image " + describe(request.selection) + ", so there is nothing to measure to");
-  }
+void check_selected(std::size_t selected, const VoxelImageView& image, const ImageRequest& request) {
+  if (selected == 0) throw InvalidImage(nothing_selected_text(image, request.selection));
   if (request.is_signed && selected == request.voxel_count()) {
     throw InvalidImage("every voxel of the image " + describe(request.selection) +
                        ", so a signed field has nothing to measure to; ask for an unsigned one or another selection");

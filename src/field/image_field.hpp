@@ -9,7 +9,7 @@
 namespace blum::detail {
 
 /// @throws InvalidImage where the selected voxels leave nothing to measure to.
-void check_selected(std::size_t selected, const ImageRequest& request);
+void check_selected(std::size_t selected, const VoxelImageView& image, const ImageRequest& request);
 
 /// Everything of an image's field but its values, for which there is memory then, which the request is told of.
 /// @throws OutOfMemory.

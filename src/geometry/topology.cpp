@@ -244,7 +244,7 @@ Topology topology(const MeshView& mesh, const SiteTable& sites, const Context& c
   result.nonmanifold_edges = counts.nonmanifold;
   result.inconsistent_edges = counts.inconsistent;
   const SurfaceComponents components = detail::find_components(mesh, sites, tallies);
-  result.surface_components = components.count;
+  result.components = components.count;
   result.closed_components =
       static_cast<std::size_t>(std::count(components.is_closed.begin(), components.is_closed.end(), 1));
   throw_if_cancelled(context);

@@ -241,4 +241,8 @@ bool is_simple(Neighbourhood around) {
   return (beside & ~component) == 0;
 }
 
+VoxelTopology voxel_topology(const VoxelSet& voxels, const Context& context) {
+  return {betti_numbers(voxels, context), euler_characteristic(voxels, context)};
+}
+
 }  // namespace blum

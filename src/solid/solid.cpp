@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "blum/grid/image_values.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
 #include "solid/point_location.hpp"
@@ -87,7 +88,7 @@ Solid Solid::of(const VoxelImageView& image, const LabelSelection& selection, co
   auto data = std::make_shared<Data>();
   data->voxels = selected_voxels(image, selection, context);
   data->betti = betti_numbers(data->voxels, context);
-  if ((*data->betti)[0] == 0) throw InvalidImage("no voxel of the image is selected, so there is no solid");
+  if ((*data->betti)[0] == 0) throw InvalidImage(nothing_selected_text(image, selection));
   data->mesh.rule = SolidRule::voxels;
   data->mesh.reason = "the solid is the union of the selected voxels";
   data->grid = image.grid;

@@ -143,12 +143,14 @@ def test_summary_has_its_keys(solids, tmp_path):
     assert {"read", "write", "certificate", "collapse", "vertices"} <= set(summary["seconds"])
     assert summary["total_seconds"] == pytest.approx(sum(summary["seconds"].values()))
     (solid,) = summary["solids"]
-    assert {"rule", "reason", "reversed_shells", "asked_spacing", "grid", "bodies", "axes"} == set(solid)
+    assert {"rule", "reason", "reversed_shells", "solid_betti", "voxel_betti", "topology_matches", "asked_spacing",
+            "grid", "bodies", "axes"} == set(solid)
+    assert solid["solid_betti"] == solid["voxel_betti"] == [1, 1, 0] and solid["topology_matches"] is True
     assert solid["asked_spacing"] == 0.08
     assert solid["rule"] == "polyhedron" and isinstance(solid["reason"], str) and solid["reversed_shells"] == 0
     assert solid["grid"]["spacing"] == [0.08] * 3
     (body,) = solid["bodies"]
-    assert body["solid_betti"] == body["voxel_betti"] == [1, 1, 0] and body["topology_reached"] is True
+    assert body["solid_betti"] == body["voxel_betti"] == [1, 1, 0] and body["topology_matches"] is True
     assert body["spacing"] == 0.08 and body["voxels"] > 1000
     assert isinstance(body["voxels_left_out"], int) and isinstance(body["voxels_taken_in"], int)
     assert 0 <= body["deviation"] <= 0.08 * 3**0.5
@@ -267,7 +269,7 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(solids, tmp_pa
     assert summary["certified"] is False and summary["outputs"] == [str(tmp_path / "p.npz")]
     assert len(summary["mismatches"]) == 2
     body = summary["solids"][0]["bodies"][0]
-    assert body["topology_reached"] is False and body["solid_betti"] == [1, 6, 0] != body["voxel_betti"]
+    assert body["topology_matches"] is False and body["solid_betti"] == [1, 6, 0] != body["voxel_betti"]
     assert names(tmp_path) == ["p.npz"]
     assert "the solid has 6 tunnels" in run("verify", solids / "plate.obj", tmp_path / "p.npz", status=3)[1]
 

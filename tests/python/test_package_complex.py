@@ -73,6 +73,6 @@ def test_medial_axes_are_complexes():
     assert np.array_equal(piece.footprints[:, 1], piece.vertex_columns["footprint_1"])
     assert np.array_equal(piece.sites[:, 0], piece.vertex_columns["site_0"])
     assert set(nested.edge_columns) == {"separation_angle", "role", "from", "until"}
-    assert piece.homology() == piece.certificate.axis
+    assert piece.homology() == piece.certificate.axis_betti
     again = pickle.loads(pickle.dumps(nested))
     assert again.least_theta == nested.least_theta and np.array_equal(again.edge_from, nested.edge_from)

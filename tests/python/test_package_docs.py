@@ -93,6 +93,10 @@ def test_types_hold_under_mypy_strict(tmp_path):
         "piece: blum.MedialComplex = blum.medial_axis('part.stl').simplify(60)\n"
         "holds: bool = piece.certificate.holds\n"
         "wrong: int = piece.radius  # type: ignore[assignment]\n"
+        "near: blum.Field = blum.distance_field(np.zeros((3, 3)), band=np.float32(2), sign='none')\n"
+        "outside: int = blum.medial_axis('part.stl', lambda_=2).simplify().certificate.geometry.outside\n"
+        "blum.distance_field(np.zeros((3, 3)), sign='maybe')  # type: ignore[arg-type]\n"
+        "blum.distance_field(np.zeros((3, 3)), sgn='none')  # type: ignore[call-arg]\n"
     )
     package = pathlib.Path(blum.__file__).parent
     environment = {**os.environ, "MYPYPATH": str(package.parent)}

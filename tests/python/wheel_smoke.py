@@ -13,7 +13,7 @@ field = blum.distance_field(mesh, resolution=32)
 assert field.sign_rule == "normals"
 assert field.distance.min() < 0 < field.distance.max()
 axis = blum.medial_axis(mesh, resolution=32).simplify(60)
-assert axis.certificate.axis == (1, 1, 0)
+assert axis.certificate.axis_betti == (1, 1, 0)
 # Without the packages that conversions go to, arrays come back.
 assert isinstance(mesh.to_trimesh(), tuple)
 assert isinstance(field.to_pyvista(), dict)

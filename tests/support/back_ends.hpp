@@ -49,7 +49,8 @@ class OnBackEnd : public testing::Test {
     if (back_end == BackEnd::host) emulated_.emplace();
     if (back_end != BackEnd::device) return;
     try {
-      (void)make_field_backend(context());
+      std::string reason;
+      (void)make_field_backend(context(), reason);
     } catch (const DeviceError& error) {
       GTEST_SKIP() << "no CUDA device: " << error.what();
     }

@@ -43,6 +43,8 @@ struct EmulatedPlatform {
   static int device_of(const void*) { return 0; }
   static void* allocate(std::size_t bytes) { return ::operator new(bytes); }
   static void release(void* memory) { ::operator delete(memory); }
+  static std::string name_of(int) { return "emulated"; }
+  static std::uint64_t memory_of(int) { return 0; }
   static std::size_t slab_nodes() { return wanted_slab_nodes; }
 
   inline static std::size_t wanted_slab_nodes = kernels::FieldEngine<Device>::default_slab_nodes;

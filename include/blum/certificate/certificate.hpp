@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "blum/complex/complex.hpp"
 #include "blum/complex/homology.hpp"
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
@@ -22,6 +25,16 @@ namespace blum {
 struct BodyCheck {
   BettiNumbers solid{};
   BettiNumbers axis{};
+};
+
+template <>
+struct Description<BodyCheck> {
+  static constexpr std::string_view name = "BodyCheck";
+  static constexpr std::string_view doc = "Components, tunnels and voids of one body and of the axis in it";
+  static constexpr std::tuple members{
+      Member{"solid_betti", &BodyCheck::solid, "", "of the body"},
+      Member{"axis_betti", &BodyCheck::axis, "", "of the parts of the axis that lie in it"},
+  };
 };
 
 /// How far the vertices of an axis are from what they claim. Distances are to the shells of the body that a vertex lies
@@ -42,6 +55,30 @@ struct GeometryCheck {
   bool holds = false;                ///< no vertex is outside or not finite, and no error above what is allowed for it
 };
 
+template <>
+struct Description<GeometryCheck> {
+  static constexpr std::string_view name = "GeometryCheck";
+  static constexpr std::string_view doc = "How far vertices are from what they claim";
+  static constexpr std::tuple members{
+      Member{"vertices", &GeometryCheck::vertices, "", "looked at"},
+      Member{"not_finite", &GeometryCheck::not_finite, "",
+             "of them, those with a coordinate or radius that is no finite number"},
+      Member{"outside", &GeometryCheck::outside, "", "of them, those outside of the solid by more than is allowed"},
+      Member{"outside_by", &GeometryCheck::outside_by, "mesh units", "largest distance of a vertex from the solid"},
+      Member{"radius_error", &GeometryCheck::radius_error, "mesh units",
+             "largest |radius - exact distance to the surface|"},
+      Member{"footprint_off_surface", &GeometryCheck::footprint_off_surface, "mesh units",
+             "largest distance of a footprint from the surface"},
+      Member{"footprint_error", &GeometryCheck::footprint_error, "mesh units",
+             "largest |distance to a footprint - radius|"},
+      Member{"site_error", &GeometryCheck::site_error, "mesh units", "largest distance of a footprint from its site"},
+      Member{"angle_error", &GeometryCheck::angle_error, "degrees",
+             "largest |separation angle - angle between the footprints|"},
+      Member{"tolerance", &GeometryCheck::tolerance, "mesh units", "what is allowed in the largest body"},
+      Member{"holds", &GeometryCheck::holds, "", "whether no vertex is outside, and no error above what is allowed"},
+  };
+};
+
 /// Whether the edges of an axis, those of its triangles too, lie in the solid between their ends: found from distances
 /// along each, so that nothing is left out. An edge may cut a corner, by 1/64 of the diagonal of the
 /// body at most, if it can be pushed into the solid: its point that is furthest out goes through the closest point of
@@ -57,6 +94,22 @@ struct EdgeCheck {
   Vec3d where;              ///< and there, mesh units
   double tolerance = 0;     ///< ten times GeometryCheck::tolerance; the diagonal of a voxel more for SolidRule::winding
   bool holds = false;       ///< none is outside
+};
+
+template <>
+struct Description<EdgeCheck> {
+  static constexpr std::string_view name = "EdgeCheck";
+  static constexpr std::string_view doc = "Whether edges lie in the solid between their ends";
+  static constexpr std::tuple members{
+      Member{"edges", &EdgeCheck::edges, "", "looked at, each once"},
+      Member{"pushed", &EdgeCheck::pushed, "", "of them, those that cut a corner, and can be pushed into the solid"},
+      Member{"pushed_by", &EdgeCheck::pushed_by, "mesh units", "how far the furthest of these is out"},
+      Member{"outside", &EdgeCheck::outside, "", "those that leave the solid otherwise"},
+      Member{"outside_by", &EdgeCheck::outside_by, "mesh units", "how far the furthest of these is out, at least"},
+      Member{"where", &EdgeCheck::where, "mesh units", "and there"},
+      Member{"tolerance", &EdgeCheck::tolerance, "mesh units", "what is allowed"},
+      Member{"holds", &EdgeCheck::holds, "", "whether none is outside"},
+  };
 };
 
 /// How much of a solid the balls around the vertices of an axis fill. Told, and not judged: coarse axes fill less.
@@ -78,6 +131,23 @@ struct BallUnionCheck {
   double step = 0;
 };
 
+template <>
+struct Description<BallUnionCheck> {
+  static constexpr std::string_view name = "BallUnionCheck";
+  static constexpr std::string_view doc = "How much of the solid the balls of an axis fill: told, not judged";
+  static constexpr std::tuple members{
+      Member{"solid_to_balls", &BallUnionCheck::solid_to_balls, "mesh units",
+             "largest distance of the solid's surface from the union"},
+      Member{"mean_solid_to_balls", &BallUnionCheck::mean_solid_to_balls, "mesh units", "the same, its mean"},
+      Member{"balls_beyond_solid", &BallUnionCheck::balls_beyond_solid, "mesh units",
+             "how far balls reach out of the solid"},
+      Member{"balls_to_surface", &BallUnionCheck::balls_to_surface, "mesh units",
+             "largest distance of the union's surface from the solid's"},
+      Member{"sample_step", &BallUnionCheck::step, "mesh units",
+             "each point of the surface is at most this far from a sample"},
+  };
+};
+
 /// What to look at besides numbers of components, tunnels and voids: for files that do not hold everything.
 struct CertificateOptions {
   /// Where vertices and edges lie. Without it, the Betti numbers of the whole solid and the whole axis are compared,
@@ -88,6 +158,21 @@ struct CertificateOptions {
   bool angles = true;      ///< of vertices; with footprints
   bool sites = true;       ///< with footprints: a site that is none() is not looked at
   bool balls = true;       ///< with radii: to measure what the balls fill
+};
+
+template <>
+struct Description<CertificateOptions> {
+  static constexpr std::string_view name = "CertificateOptions";
+  static constexpr std::string_view doc =
+      "What a certificate looks at besides numbers of components, tunnels and voids";
+  static constexpr std::tuple members{
+      Member{"positions", &CertificateOptions::positions, "", "where vertices and edges lie"},
+      Member{"radii", &CertificateOptions::radii, "", "of vertices"},
+      Member{"footprints", &CertificateOptions::footprints, "", "of vertices; with radii"},
+      Member{"angles", &CertificateOptions::angles, "", "of vertices; with footprints"},
+      Member{"sites", &CertificateOptions::sites, "", "of vertices; with footprints"},
+      Member{"balls", &CertificateOptions::balls, "", "what the balls fill; with radii"},
+  };
 };
 
 struct Certificate {
@@ -105,12 +190,42 @@ struct Certificate {
   [[nodiscard]] bool holds() const { return mismatches.empty(); }
 };
 
+template <>
+struct Description<Certificate> {
+  static constexpr std::string_view name = "Certificate";
+  static constexpr std::string_view doc = "Whether an axis has the topology and the geometry of its solid";
+  static constexpr std::tuple members{
+      Member{"against", &Certificate::against, "", "what the solid is"},
+      Member{"checked", &Certificate::checked, "", "what was looked at"},
+      Member{"solid_betti", &Certificate::solid, "", "components, tunnels, voids of the solid: the sum of its bodies"},
+      Member{"axis_betti", &Certificate::axis, "", "of the axis"},
+      Member{"bodies", &Certificate::bodies, "",
+             "each must agree; one for the whole where positions were not looked at"},
+      Member{"topology_holds", &Certificate::topology_holds, "", "whether they all do"},
+      Member{"geometry", &Certificate::geometry, "", "vertices"},
+      Member{"edges", &Certificate::edges, "", "edges"},
+      Member{"balls", &Certificate::balls, "", "what the balls fill"},
+      Member{"mismatches", &Certificate::mismatches, "", "one sentence each; empty where all holds"},
+      Fact{"holds", &Certificate::holds, "", "whether nothing differs"},
+  };
+};
+
 /// What the solid of a mesh is: SolidRule::polyhedron where it is closed, manifold and has a single side, and where its
 /// triangles neither cross nor, within one body, touch; else SolidRule::winding.
 struct MeshSolidRule {
   SolidRule rule = SolidRule::polyhedron;
   std::string reason;  ///< one sentence
 };
+template <>
+struct Description<MeshSolidRule> {
+  static constexpr std::string_view name = "MeshSolidRule";
+  static constexpr std::string_view doc = "What the solid of a mesh is";
+  static constexpr std::tuple members{
+      Member{"rule", &MeshSolidRule::rule, "", "what its shells bound, or where its winding number is above 1/2"},
+      Member{"reason", &MeshSolidRule::reason, "", "one sentence"},
+  };
+};
+
 /// Found by the verifier's own reading of the mesh and find_self_intersections(). @throws InvalidMesh for what
 /// validate() refuses, Cancelled.
 [[nodiscard]] MeshSolidRule solid_rule(const MeshView& mesh, const Context& context = {});

@@ -7,8 +7,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "blum/complex/complex.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
@@ -109,6 +111,21 @@ void add_missing_medial_columns(Complex& complex);
 struct MedialCounts {
   std::size_t vertices = 0, triangles = 0, sheets = 0;
   std::size_t curve_edges = 0, rim_edges = 0, seam_edges = 0, junctions = 0;
+};
+
+template <>
+struct Description<MedialCounts> {
+  static constexpr std::string_view name = "MedialCounts";
+  static constexpr std::string_view doc = "How many of each a medial axis has";
+  static constexpr std::tuple members{
+      Member{"vertices", &MedialCounts::vertices, "", "points of the axis"},
+      Member{"triangles", &MedialCounts::triangles, "", "of its sheets"},
+      Member{"sheets", &MedialCounts::sheets, "", "connected parts without seams"},
+      Member{"curve_edges", &MedialCounts::curve_edges, "", "edges of no triangle"},
+      Member{"rim_edges", &MedialCounts::rim_edges, "", "edges of one triangle"},
+      Member{"seam_edges", &MedialCounts::seam_edges, "", "edges where sheets meet"},
+      Member{"junctions", &MedialCounts::junctions, "", "vertices where seams or curves meet"},
+  };
 };
 /// @throws InvalidOption as MedialView().
 [[nodiscard]] MedialCounts count(const Complex& axis);

@@ -5,9 +5,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
@@ -21,6 +24,18 @@ struct ClosestPointOptions {
   SignMode sign = SignMode::automatic;
   /// Nothing further than this is looked for; >= 0, in mesh units. Unset: no limit.
   std::optional<double> max_distance = {};
+};
+
+template <>
+struct Description<ClosestPointOptions> {
+  static constexpr std::string_view name = "ClosestPointOptions";
+  static constexpr std::string_view doc = "What closest points are asked for";
+  static constexpr std::tuple members{
+      Member{"sign", &ClosestPointOptions::sign, "",
+             "how the sign is found, by the same rule as for fields; 'none' is cheapest"},
+      Member{"max_distance", &ClosestPointOptions::max_distance, "mesh units",
+             "nothing further than this is looked for", Range::at_least(0)},
+  };
 };
 
 /// The point of a mesh that is closest to a query.

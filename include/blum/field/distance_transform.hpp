@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
 #include "blum/grid/label_selection.hpp"
@@ -22,6 +25,20 @@ struct DistanceTransformOptions {
   /// Half-width of a narrow band, > 0, in the units of the image's spacing. Voxels whose distance is larger get +-band
   /// and no site. Unset: the full grid.
   std::optional<double> band = {};
+};
+
+template <>
+struct Description<DistanceTransformOptions> {
+  static constexpr std::string_view name = "DistanceTransformOptions";
+  static constexpr std::string_view doc = "What a distance transform is asked for";
+  static constexpr std::tuple members{
+      Member{"selection", &DistanceTransformOptions::selection, "", "which voxels are selected"},
+      Member{"signed", &DistanceTransformOptions::is_signed, "",
+             "true: distance to the nearest voxel of the other kind, negative at selected voxels; false: to the "
+             "nearest selected voxel"},
+      Member{"band", &DistanceTransformOptions::band, "units of the spacing",
+             "half-width of a narrow band; beyond it voxels get +-band and no site", Range::positive()},
+  };
 };
 
 /// Exact Euclidean distance and closest voxel at every voxel of an image, from voxel centre to voxel centre, as

@@ -7,10 +7,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "blum/core/buffer.hpp"
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/device.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
@@ -48,9 +50,26 @@ enum class SiteIds : std::uint8_t {
   voxels      ///< linear indices of voxels (fields of images)
 };
 
-[[nodiscard]] std::string_view to_string(SignMode mode);
-[[nodiscard]] std::string_view to_string(SignRule rule);
-[[nodiscard]] std::string_view to_string(SiteIds ids);
+template <>
+struct Description<SignMode> {
+  static constexpr std::string_view name = "SignMode";
+  static constexpr std::array values{NamedValue{SignMode::automatic, "auto"}, NamedValue{SignMode::normals, "normals"},
+                                     NamedValue{SignMode::winding, "winding"}, NamedValue{SignMode::none, "none"}};
+};
+template <>
+struct Description<SignRule> {
+  static constexpr std::string_view name = "SignRule";
+  static constexpr std::array values{NamedValue{SignRule::none, "none"}, NamedValue{SignRule::normals, "normals"},
+                                     NamedValue{SignRule::winding, "winding"}, NamedValue{SignRule::label, "label"},
+                                     NamedValue{SignRule::balls, "balls"}};
+};
+template <>
+struct Description<SiteIds> {
+  static constexpr std::string_view name = "SiteIds";
+  static constexpr std::array values{NamedValue{SiteIds::features, "features"},
+                                     NamedValue{SiteIds::triangles, "triangles"},
+                                     NamedValue{SiteIds::voxels, "voxels"}};
+};
 
 struct FieldOptions {
   /// How the sign is found; the distance is negative inside.
@@ -59,6 +78,22 @@ struct FieldOptions {
   std::optional<double> band = {};
   /// What the site values count: features or triangles.
   SiteIds site_ids = SiteIds::features;
+};
+
+template <>
+struct Description<FieldOptions> {
+  static constexpr std::string_view name = "FieldOptions";
+  static constexpr std::string_view doc = "What a field is asked for";
+  static constexpr std::array of_meshes{SiteIds::features, SiteIds::triangles};
+  static constexpr std::tuple members{
+      Member{"sign", &FieldOptions::sign, "",
+             "how the sign is found; inside is negative. 'auto' goes by orientation where the mesh is closed and "
+             "simple, else by winding numbers"},
+      Member{"band", &FieldOptions::band, "mesh units",
+             "half-width of a narrow band; beyond it nodes get +-band and no site", Range::positive()},
+      Member{"site_ids", &FieldOptions::site_ids, "", "what sites count: vertices, edges and faces, or triangles",
+             Range{}, of_meshes},
+  };
 };
 
 /// Distance and closest site at every node of a grid.
@@ -71,8 +106,9 @@ struct Field {
   SiteIds site_ids = SiteIds::features;
   std::optional<double> band = {};  ///< half-width, mesh units
   SignRule sign_rule = SignRule::none;
-  std::string sign_reason;  ///< one sentence: why this rule
-  Device device;            ///< where it was computed: never `automatic`
+  std::string sign_reason;         ///< one sentence: why this rule
+  Device device;                   ///< where it was computed: never `automatic`
+  std::string device_reason = {};  ///< one sentence: why on the CPU, where `automatic` was asked for; else empty
   std::vector<PhaseTime> phases;
 };
 

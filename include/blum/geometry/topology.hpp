@@ -5,9 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -49,6 +52,25 @@ struct Shell {
   bool faces_outwards = false;  ///< away from the solid: positive volume at even depth, negative at odd depth
 };
 
+template <>
+struct Description<Shell> {
+  static constexpr std::string_view name = "Shell";
+  static constexpr std::string_view doc = "A closed, consistently oriented component of a surface";
+  static constexpr std::tuple members{
+      Member{"triangles", &Shell::triangles, "", "how many"},
+      Member{"bounds", &Shell::bounds, "mesh units", "box around it"},
+      Member{"signed_volume", &Shell::signed_volume, "cubic mesh units",
+             "positive where it faces away from what it encloses"},
+      Member{"area", &Shell::area, "square mesh units", "of its triangles"},
+      Member{"euler_characteristic", &Shell::euler_characteristic, "",
+             "vertices - edges + faces, a vertex counting once for each of its fans"},
+      Member{"genus", &Shell::genus, "", "number of handles"},
+      Member{"depth", &Shell::depth, "", "number of other shells that it lies in"},
+      Member{"parent", &Shell::parent, "", "the innermost of these; -1 where there is none"},
+      Member{"faces_outwards", &Shell::faces_outwards, "", "whether it faces away from the solid"},
+  };
+};
+
 /// Counts and facts of a mesh. Vertices are told apart by index, not position: weld a mesh first if its pieces should
 /// be connected. Self-intersections, and shells that cross each other, are not looked for: find_self_intersections().
 struct Topology {
@@ -61,7 +83,7 @@ struct Topology {
   Box3 bounds;  ///< of the named vertices, mesh units
 
   std::size_t pieces = 0;                ///< sets of triangles, segments and points connected through shared vertices
-  std::size_t surface_components = 0;    ///< sets of triangles connected through shared edges
+  std::size_t components = 0;            ///< sets of triangles connected through shared edges
   std::size_t closed_components = 0;     ///< those where every edge has exactly two triangles
   std::size_t boundary_edges = 0;        ///< edges with one triangle
   std::size_t boundary_loops = 0;        ///< chains of boundary edges, followed around each fan of triangles: holes
@@ -87,6 +109,49 @@ struct Topology {
   /// Betti numbers of the solid that the shells bound: components, tunnels, voids. Set where the triangles are closed,
   /// oriented and manifold, and every shell faces outwards.
   std::optional<std::array<std::int64_t, 3>> betti = {};
+};
+
+template <>
+struct Description<Topology> {
+  static constexpr std::string_view name = "Topology";
+  static constexpr std::string_view doc = "Counts and facts of a mesh, as `blum info` prints them";
+  static constexpr std::tuple members{
+      Member{"vertices", &Topology::vertices, "", "all vertices of the mesh"},
+      Member{"named_vertices", &Topology::named_vertices, "", "those that a triangle, segment or point names"},
+      Member{"edges", &Topology::edges, "", "distinct edges of triangles and segments"},
+      Member{"triangles", &Topology::triangles, "", "of the mesh"},
+      Member{"segments", &Topology::segments, "", "of the mesh"},
+      Member{"points", &Topology::points, "", "of the mesh"},
+      Member{"bounds", &Topology::bounds, "mesh units", "box around the named vertices"},
+      Member{"pieces", &Topology::pieces, "",
+             "sets of triangles, segments and points connected through shared vertices"},
+      Member{"components", &Topology::components, "", "sets of triangles connected through shared edges"},
+      Member{"closed_components", &Topology::closed_components, "", "those where every edge has exactly two triangles"},
+      Member{"boundary_edges", &Topology::boundary_edges, "", "edges with one triangle"},
+      Member{"boundary_loops", &Topology::boundary_loops, "", "holes: chains of boundary edges"},
+      Member{"nonmanifold_edges", &Topology::nonmanifold_edges, "", "edges with more than two triangles"},
+      Member{"nonmanifold_vertices", &Topology::nonmanifold_vertices, "",
+             "vertices whose triangles are not a single fan"},
+      Member{"inconsistent_edges", &Topology::inconsistent_edges, "",
+             "edges that both their triangles traverse in the same direction"},
+      Member{"degenerate_triangles", &Topology::degenerate_triangles, "",
+             "a vertex named twice, or corners exactly on one line"},
+      Member{"duplicate_triangles", &Topology::duplicate_triangles, "",
+             "triangles with the same three vertices as one before them"},
+      Member{"closed", &Topology::closed, "", "whether every edge of a triangle has exactly two triangles"},
+      Member{"oriented", &Topology::oriented, "", "whether no edge is inconsistent"},
+      Member{"manifold", &Topology::manifold, "", "whether no edge or vertex is non-manifold"},
+      Member{"faces_outwards", &Topology::faces_outwards, "",
+             "closed and oriented, and every shell faces away from the solid"},
+      Member{"area", &Topology::area, "square mesh units", "of all triangles"},
+      Member{"signed_volume", &Topology::signed_volume, "cubic mesh units",
+             "of the shells: the volume of the solid where betti is known"},
+      Member{"euler_characteristic", &Topology::euler_characteristic, "", "vertices - edges + faces of the triangles"},
+      Member{"shells", &Topology::shells, "",
+             "the closed, consistently oriented components, by their smallest triangle"},
+      Member{"betti", &Topology::betti, "",
+             "components, tunnels, voids of the solid; unknown where the mesh bounds none"},
+  };
 };
 
 /// Everything that `blum info` says of a mesh. Which shell lies in which is found by exact ray crossings.

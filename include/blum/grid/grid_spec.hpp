@@ -4,7 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
+#include <tuple>
 
+#include "blum/core/describe.hpp"
 #include "blum/core/vec3.hpp"
 
 namespace blum {
@@ -29,6 +32,19 @@ struct GridSpec {
                                       static_cast<double>(k) * spacing.z};
   }
   [[nodiscard]] friend bool operator==(const GridSpec&, const GridSpec&) = default;
+};
+
+template <>
+struct Description<GridSpec> {
+  static constexpr std::string_view name = "GridSpec";
+  static constexpr std::string_view doc = "Where the nodes of a grid lie";
+  static constexpr std::tuple members{
+      Member{"origin", &GridSpec::origin, "mesh units", "position of node (0, 0, 0)"},
+      Member{"spacing", &GridSpec::spacing, "mesh units", "distance between neighbouring nodes"},
+      Member{"size", &GridSpec::size, "", "number of nodes along x, y, z"},
+      Fact{"nodes", &GridSpec::node_count, "", "their number"},
+      Member{"direction", &GridSpec::direction, "", "orthonormal; column a is the direction of index axis a"},
+  };
 };
 
 /// @throws InvalidGrid unless sizes are >= 1, there are at most 2^40 nodes, spacing is positive and finite, the origin

@@ -2,6 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
+
+#include "blum/core/describe.hpp"
 
 namespace blum {
 
@@ -18,6 +22,17 @@ struct LabelSelection {
 
   [[nodiscard]] static constexpr LabelSelection of_label(std::int64_t value) { return {Rule::label, value, 0}; }
   [[nodiscard]] static constexpr LabelSelection at_least(double value) { return {Rule::threshold, 0, value}; }
+  /// What options say that may both be missing. @throws InvalidOption where both are given.
+  [[nodiscard]] static LabelSelection of(const std::optional<std::int64_t>& label,
+                                         const std::optional<double>& threshold) {
+    exclude_both(label.has_value(), threshold.has_value());
+    if (label) return of_label(*label);
+    return threshold ? at_least(*threshold) : LabelSelection{};
+  }
+  /// @param prefix  of the options' names in messages. @throws InvalidOption where both are given.
+  static void exclude_both(bool has_label, bool has_threshold, const std::string& prefix = {}) {
+    exclude(has_label, prefix + "label", has_threshold, prefix + "threshold", "each selects the voxels");
+  }
 };
 
 }  // namespace blum

@@ -3,8 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
+#include <tuple>
 
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/grid/voxel_set.hpp"
 
 namespace blum {
@@ -17,6 +20,22 @@ namespace blum {
 
 /// Vertices - edges + squares - cubes of the union of the closed voxels, each cell once.
 [[nodiscard]] std::int64_t euler_characteristic(const VoxelSet& voxels, const Context& context = {});
+
+/// Both.
+struct VoxelTopology {
+  std::array<std::int64_t, 3> betti{};  ///< components (26-connected), tunnels, voids
+  std::int64_t euler_characteristic = 0;
+};
+template <>
+struct Description<VoxelTopology> {
+  static constexpr std::string_view name = "VoxelTopology";
+  static constexpr std::string_view doc = "The topology of the union of closed voxels";
+  static constexpr std::tuple members{
+      Member{"betti", &VoxelTopology::betti, "", "components (26-connected), tunnels, voids"},
+      Member{"euler_characteristic", &VoxelTopology::euler_characteristic, "",
+             "vertices - edges + squares - cubes, each once"}};
+};
+[[nodiscard]] VoxelTopology voxel_topology(const VoxelSet& voxels, const Context& context = {});
 
 /// The 27 voxels around one, as bits: voxel (i + x, j + y, k + z) is bit 13 + x + 3 y + 9 z, for x, y, z in -1, 0, 1.
 using Neighbourhood = std::uint32_t;

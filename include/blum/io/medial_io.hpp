@@ -7,9 +7,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <tuple>
 
 #include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
 #include "blum/grid/grid_spec.hpp"
@@ -33,6 +36,25 @@ struct MedialMetadata {
   std::optional<std::int64_t> label = {};  ///< those of this value
   std::optional<double> threshold = {};    ///< those of this value or more, in image values
   std::optional<double> weld = {};  ///< MeshReadOptions::weld, >= 0, mesh units; unset: the default of the format
+};
+
+template <>
+struct Description<MedialMetadata> {
+  static constexpr std::string_view name = "MedialMetadata";
+  static constexpr std::string_view doc = "What a file of a medial axis says besides the complex";
+  static constexpr std::tuple members{
+      Member{"source", &MedialMetadata::source, "", "where the solid came from, for example a file name"},
+      Member{"version", &MedialMetadata::version, "", "of the Blum that wrote it"},
+      Member{"site_ids", &MedialMetadata::site_ids, "", "what sites count"},
+      Member{"theta", &MedialMetadata::theta, "degrees", "angle of the axis"},
+      Member{"lambda", &MedialMetadata::lambda, "mesh units", "MedialAxisOptions::lambda"},
+      Member{"spacing", &MedialMetadata::spacing, "mesh units", "smallest side of a voxel"},
+      Member{"solid_rule", &MedialMetadata::solid_rule, "", "what the topology is against"},
+      Member{"grid", &MedialMetadata::grid, "", "voxel centres"},
+      Member{"label", &MedialMetadata::label, "", "of the voxels of an image"},
+      Member{"threshold", &MedialMetadata::threshold, "", "least value of the voxels of an image"},
+      Member{"weld", &MedialMetadata::weld, "mesh units", "how the vertices of a mesh were merged"},
+  };
 };
 
 /// A medial axis as a file holds it.

@@ -6,12 +6,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "blum/complex/complex.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/betti_numbers.hpp"
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -40,6 +43,27 @@ struct MedialAxisOptions {
   LabelSelection selection = {};
 };
 
+template <>
+struct Description<MedialAxisOptions> {
+  static constexpr std::string_view name = "MedialAxisOptions";
+  static constexpr std::string_view doc = "What a medial axis is asked for";
+  static constexpr std::tuple members{
+      Member{"resolution", &MedialAxisOptions::resolution, "",
+             "meshes: voxels along the longest side of the box around the mesh", Range::between(8, 800)},
+      Member{"spacing", &MedialAxisOptions::spacing, "mesh units", "meshes: side of a voxel, instead of the resolution",
+             Range::positive()},
+      Member{"max_resolution", &MedialAxisOptions::max_resolution, "",
+             "meshes: a body whose topology its voxels cannot take is done again with finer ones, up to this many "
+             "along its longest side",
+             Range::between(8, 800)},
+      Member{"lambda", &MedialAxisOptions::lambda, "mesh units",
+             "pieces whose two footprints are closer than this count for nothing", Range::at_least(0)},
+      Member{"least_theta", &MedialAxisOptions::least_theta, "degrees",
+             "the smallest theta that will be asked for: more is faster", Range::between(0, 180)},
+      Member{"selection", &MedialAxisOptions::selection, "", "images: which voxels are the solid"},
+  };
+};
+
 /// How one body (a connected part of the solid) was voxelised.
 struct BodyReport {
   BettiNumbers solid{};           ///< of the body
@@ -52,6 +76,23 @@ struct BodyReport {
   double deviation = 0;      ///< how far from the surface the centre of such a voxel lies at most, mesh units
 };
 
+template <>
+struct Description<BodyReport> {
+  static constexpr std::string_view name = "BodyReport";
+  static constexpr std::string_view doc = "How one connected part of a solid was voxelised";
+  static constexpr std::tuple members{
+      Member{"solid_betti", &BodyReport::solid, "", "components, tunnels, voids of the body"},
+      Member{"voxel_betti", &BodyReport::voxels, "", "of the voxels that stand for it"},
+      Member{"topology_matches", &BodyReport::topology_matches, "", "whether they are equal"},
+      Member{"spacing", &BodyReport::spacing, "mesh units", "smallest side of a voxel"},
+      Member{"voxels", &BodyReport::voxel_count, "", "how many stand for it"},
+      Member{"voxels_left_out", &BodyReport::left_out, "", "voxels whose centre is inside, but that are left out"},
+      Member{"voxels_taken_in", &BodyReport::taken_in, "", "voxels whose centre is outside, but that are taken in"},
+      Member{"deviation", &BodyReport::deviation, "mesh units",
+             "how far from the surface the centre of such a voxel lies at most"},
+  };
+};
+
 struct MedialAxisReport {
   SolidRule rule = SolidRule::polyhedron;
   std::string reason;               ///< one sentence: why this rule
@@ -62,6 +103,24 @@ struct MedialAxisReport {
   GridSpec grid;                    ///< voxel centres: of the first body, or of the image
   std::vector<BodyReport> bodies;
   std::vector<PhaseTime> phases;  ///< seconds
+};
+
+template <>
+struct Description<MedialAxisReport> {
+  static constexpr std::string_view name = "MedialAxisReport";
+  static constexpr std::string_view doc = "What a medial axis took as the solid, and what became of it";
+  static constexpr std::tuple members{
+      Member{"rule", &MedialAxisReport::rule, "", "what the solid is"},
+      Member{"reason", &MedialAxisReport::reason, "", "why this rule, in one sentence"},
+      Member{"reversed_shells", &MedialAxisReport::reversed_shells, "",
+             "shells that faced the solid and were reversed"},
+      Member{"solid_betti", &MedialAxisReport::solid, "", "components, tunnels, voids of the whole solid"},
+      Member{"voxel_betti", &MedialAxisReport::voxels, "", "of its voxels; the axis has these, at every theta"},
+      Member{"topology_matches", &MedialAxisReport::topology_matches, "", "whether they are equal"},
+      Member{"grid", &MedialAxisReport::grid, "", "voxel centres: of the first body, or of the image"},
+      Member{"bodies", &MedialAxisReport::bodies, "", "one for each connected part of the solid"},
+      Member{"seconds", &MedialAxisReport::phases, "s", "wall-clock, of each phase"},
+  };
 };
 
 /// The medial axis of a solid for all angles theta at once: a complex of squares, edges and vertices that the solid's

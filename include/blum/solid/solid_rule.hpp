@@ -1,8 +1,11 @@
 // Blum: what a solid is. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
+
+#include "blum/core/describe.hpp"
 
 namespace blum {
 
@@ -14,16 +17,12 @@ enum class SolidRule : std::uint8_t {
   voxels    ///< the union of the selected, closed voxels of an image
 };
 
-[[nodiscard]] constexpr std::string_view to_string(SolidRule rule) {
-  switch (rule) {
-    case SolidRule::polyhedron:
-      return "polyhedron";
-    case SolidRule::winding:
-      return "winding";
-    case SolidRule::voxels:
-      return "voxels";
-  }
-  return "unknown";
-}
+template <>
+struct Description<SolidRule> {
+  static constexpr std::string_view name = "SolidRule";
+  static constexpr std::array values{NamedValue{SolidRule::polyhedron, "polyhedron"},
+                                     NamedValue{SolidRule::winding, "winding"},
+                                     NamedValue{SolidRule::voxels, "voxels"}};
+};
 
 }  // namespace blum

@@ -123,7 +123,7 @@ Field transform(const VoxelImageView& image, const LabelSelection& selection, co
   PhaseClock clock(field.phases);
   const std::size_t selected = detail::select_voxels(image, selection, plan.size[0], context, work.mask);
   plan.selection = selection;
-  detail::check_selected(selected, plan);
+  detail::check_selected(selected, image, plan);
   clock.lap("select voxels");
   detail::begin_field(image, options, plan, field);
   plan.mask = work.mask.words.data();

@@ -137,6 +137,13 @@ struct CudaPlatform {
     return memory;
   }
   static void release(void* memory) { (void)cudaFree(memory); }
+  static std::string name_of(int device) { return properties_of(device).name; }
+  static std::uint64_t memory_of(int device) { return properties_of(device).totalGlobalMem; }
+  static cudaDeviceProp properties_of(int device) {
+    cudaDeviceProp properties{};
+    check(cudaGetDeviceProperties(&properties, device), "asking what the device is");
+    return properties;
+  }
   static std::size_t slab_nodes() { return kernels::FieldEngine<CudaDevice>::default_slab_nodes; }
 };
 

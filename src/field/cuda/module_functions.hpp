@@ -24,15 +24,16 @@ namespace blum::cuda {
 ///   static void expect_runnable()                     of the current device
 ///   static int device_of(const void* memory)          -1 for the host's
 ///   static void* allocate(std::size_t bytes), static void release(void*)
+///   static std::string name_of(int index), static std::uint64_t memory_of(int index)
 ///   static std::size_t slab_nodes()                   of fields that go to the host's memory
 template <class Platform>
 class ModuleFunctions {
  public:
   [[nodiscard]] static const Module* table() {
     static const Module module{
-        module_version, create,          destroy,   set_connectivity, compute,        set_connectivity_there,
-        compute_there,  transform_there, progress,  follow,           order,          device_of,
-        allocate,       release,         set_image, select_voxels,    transform_image};
+        module_version, create,          destroy,   set_connectivity, compute,         set_connectivity_there,
+        compute_there,  transform_there, progress,  follow,           order,           device_of,
+        allocate,       release,         set_image, select_voxels,    transform_image, describe_device};
     return &module;
   }
 
@@ -173,6 +174,12 @@ class ModuleFunctions {
   }
   static Status transform_image(void* engine, const detail::ImageRequest* request, Call* call) {
     return with(engine, call, [&](Engine& own) { own.images.transform(*request); });
+  }
+  static Status describe_device(int device, char* name, std::size_t capacity, std::uint64_t* memory, Call* call) {
+    return guarded(device, call, [&] {
+      std::snprintf(name, capacity, "%s", Platform::name_of(device).c_str());
+      *memory = Platform::memory_of(device);
+    });
   }
 };
 

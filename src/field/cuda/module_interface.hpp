@@ -15,7 +15,7 @@
 namespace blum::cuda {
 
 /// To be raised with every change of this file, and of what crosses the border: FieldRequest, ImageRequest.
-inline constexpr std::uint32_t module_version = 5;
+inline constexpr std::uint32_t module_version = 6;
 inline constexpr const char* module_symbol = "blum_cuda_module";
 inline constexpr const char* module_file = "libblum_cuda.so";
 
@@ -76,6 +76,8 @@ struct Module {
                           Call* call) = nullptr;
   /// Transforms the last selection, to the host's memory.
   Status (*transform_image)(void* engine, const detail::ImageRequest* request, Call* call) = nullptr;
+  /// The name of a device, which ends with a 0 byte, and its bytes of memory.
+  Status (*describe_device)(int device, char* name, std::size_t capacity, std::uint64_t* memory, Call* call) = nullptr;
 };
 
 using ModuleFunction = const Module* (*)();

@@ -43,7 +43,7 @@ TEST(Topology, Tetrahedron) {
   EXPECT_EQ(t.edges, 6U);
   EXPECT_EQ(t.triangles, 4U);
   EXPECT_EQ(t.pieces, 1U);
-  EXPECT_EQ(t.surface_components, 1U);
+  EXPECT_EQ(t.components, 1U);
   EXPECT_EQ(t.closed_components, 1U);
   EXPECT_EQ(t.euler_characteristic, 2);
   EXPECT_TRUE(t.closed && t.oriented && t.manifold && t.faces_outwards);
@@ -66,7 +66,7 @@ TEST(Topology, TwoTetrahedraThatShareAVertex) {
   EXPECT_EQ(t.nonmanifold_vertices, 1U);
   EXPECT_EQ(t.nonmanifold_edges, 0U);
   EXPECT_EQ(t.pieces, 1U);
-  EXPECT_EQ(t.surface_components, 2U);
+  EXPECT_EQ(t.components, 2U);
   EXPECT_EQ(t.euler_characteristic, 3);
   for (const Shell& shell : t.shells) EXPECT_EQ(shell.euler_characteristic, 2);
   EXPECT_FALSE(t.betti.has_value());
@@ -80,7 +80,7 @@ TEST(Topology, TwoTetrahedraThatShareAnEdge) {
   const Topology t = topology(mesh);
   EXPECT_EQ(t.nonmanifold_edges, 1U);
   EXPECT_EQ(t.nonmanifold_vertices, 2U);
-  EXPECT_EQ(t.surface_components, 1U);
+  EXPECT_EQ(t.components, 1U);
   EXPECT_EQ(t.closed_components, 0U);
   EXPECT_FALSE(t.closed);
   EXPECT_TRUE(t.shells.empty());
@@ -251,7 +251,7 @@ TEST(Topology, SegmentsPointsAndUnnamedVertices) {
   EXPECT_EQ(t.edges, 3U);
   EXPECT_EQ(t.segments, 3U);
   EXPECT_EQ(t.points, 3U);
-  EXPECT_EQ(t.surface_components, 0U);
+  EXPECT_EQ(t.components, 0U);
   EXPECT_FALSE(t.closed);
   EXPECT_EQ(t.bounds.upper.x, 7);
 }

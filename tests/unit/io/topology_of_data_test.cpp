@@ -90,14 +90,14 @@ TEST(DataTopologyFacts, BrokenMeshesAreDescribed) {
   EXPECT_EQ(feature_type->boundary_edges, 576U);
   const auto soup = topology_of("soup.stl");
   ASSERT_TRUE(soup.has_value());
-  EXPECT_EQ(soup->surface_components, 100U);
+  EXPECT_EQ(soup->components, 100U);
   EXPECT_EQ(soup->boundary_edges, 300U);
   const auto not_convex = topology_of("not_convex.obj");
   ASSERT_TRUE(not_convex.has_value());
   EXPECT_EQ(not_convex->nonmanifold_edges, 12U);
   const auto multibody = topology_of("multibody.stl");
   ASSERT_TRUE(multibody.has_value());
-  EXPECT_EQ(multibody->surface_components, 2U);
+  EXPECT_EQ(multibody->components, 2U);
   EXPECT_EQ(multibody->inconsistent_edges, 12U);
   EXPECT_FALSE(multibody->betti.has_value());
 }

@@ -179,7 +179,7 @@ TEST(Generators, HolesOfTheOrganicShapeAreItsBoundaryLoops) {
     const Topology t = topology(make_organic({1, 59, 0.006, holes, 1}));
     EXPECT_EQ(t.boundary_loops, static_cast<std::size_t>(holes));
     EXPECT_TRUE(t.manifold && t.oriented && !t.closed);
-    EXPECT_EQ(t.surface_components, 1U);
+    EXPECT_EQ(t.components, 1U);
     EXPECT_EQ(t.euler_characteristic, 2 - holes);
   }
 }

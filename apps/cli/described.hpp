@@ -1,0 +1,183 @@
+// Blum: described structs as JSON and as options of the command line. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <initializer_list>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "blum/core/describe.hpp"
+#include "blum/core/phase_timer.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/grid/label_selection.hpp"
+
+namespace blum::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// Seconds by phase; those of one name are added.
+[[nodiscard]] Json to_json(const std::vector<PhaseTime>& phases);
+[[nodiscard]] Json to_json(const Vec3d& v);
+/// null where the box is empty.
+[[nodiscard]] Json to_json(const Box3& box);
+[[nodiscard]] Json to_json(const Mat3& columns);
+
+/// A value of a described struct, and what it consists of. null where there is no value.
+template <class T>
+  requires(DescribedStruct<T> || DescribedEnum<T> || std::is_arithmetic_v<T> || std::same_as<T, std::string>)
+[[nodiscard]] Json to_json(const T& value);
+template <class T>
+[[nodiscard]] Json to_json(const std::optional<T>& value);
+template <class T>
+[[nodiscard]] Json to_json(const std::vector<T>& values);
+template <class T, std::size_t count>
+[[nodiscard]] Json to_json(const std::array<T, count>& values);
+
+template <class T>
+  requires(DescribedStruct<T> || DescribedEnum<T> || std::is_arithmetic_v<T> || std::same_as<T, std::string>)
+Json to_json(const T& value) {
+  if constexpr (DescribedStruct<T>) {
+    Json json = Json::object();
+    for_each_member<T>([&](const auto& member) { json[std::string(member.name)] = to_json(member.of(value)); });
+    return json;
+  } else if constexpr (DescribedEnum<T>) {
+    return to_string(value);
+  } else {
+    return value;
+  }
+}
+template <class T>
+Json to_json(const std::optional<T>& value) {
+  return value ? to_json(*value) : Json(nullptr);
+}
+template <class T>
+Json to_json(const std::vector<T>& values) {
+  Json json = Json::array();
+  for (const T& value : values) json.push_back(to_json(value));
+  return json;
+}
+template <class T, std::size_t count>
+Json to_json(const std::array<T, count>& values) {
+  Json json = Json::array();
+  for (const T& value : values) json.push_back(to_json(value));
+  return json;
+}
+
+/// --site-ids for site_ids.
+[[nodiscard]] std::string option_name(std::string_view member);
+/// "The doc, unit (default x)".
+[[nodiscard]] std::string option_help(std::string_view prefix, std::string_view doc, std::string_view unit,
+                                      std::string_view fallback);
+/// Numbers of an option as its description allows them. @throws UsageError.
+[[nodiscard]] double number_in(const std::string& option, const std::string& text, const Range& range);
+[[nodiscard]] std::int64_t integer_in(const std::string& option, const std::string& text, const Range& range);
+/// `3v` as three steps where there are some, else as number_in(). @throws UsageError.
+[[nodiscard]] double length_in(const std::string& option, const std::string& text, const Range& range,
+                               std::optional<double> step);
+
+/// The members of a described struct as options of a command: words of enumerations, numbers in their range; a flag for
+/// what is true or false, `--no-NAME` where true is the default. A selection of voxels is no part of it.
+template <DescribedStruct T>
+class OptionTexts {
+ public:
+  /// @param prefix  of all help texts.  @param left_out  members that the command sets otherwise.
+  /// @param in_steps  whether lengths may be given in grid steps, too.
+  void add_to(CLI::App& command, std::string_view prefix = {}, std::initializer_list<std::string_view> left_out = {},
+              bool in_steps = false) {
+    const T defaults{};
+    for_each_option([&]<class Entry>(const Entry& member) {
+      using Value = typename Entry::Value;
+      if (std::find(left_out.begin(), left_out.end(), member.name) != left_out.end()) return;
+      const std::string name = option_name(member.name);
+      if constexpr (std::same_as<Value, bool>) {
+        const bool is_on = member.of(defaults);
+        command.add_flag_callback(
+            is_on ? "--no-" + name.substr(2) : name, [this, &member] { set(member.name, ""); },
+            option_help(prefix, is_on ? "not: " + std::string(member.doc) : std::string(member.doc), member.unit, {}));
+      } else {
+        std::string unit(member.unit);
+        if (in_steps && unit == "mesh units") unit += ", or in grid steps as in 3v";
+        command
+            .add_option_function<std::string>(
+                name, [this, &member](const std::string& text) { set(member.name, text); },
+                option_help(prefix, member.doc, unit, default_text(member, member.of(defaults))))
+            ->type_name(type_text(member.name));
+      }
+    });
+  }
+
+  [[nodiscard]] bool has(std::string_view member) const { return texts_.contains(std::string(member)); }
+  /// The given options, in their order, with dashes.
+  [[nodiscard]] std::vector<std::string> given() const {
+    std::vector<std::string> names;
+    for_each_option([&](const auto& member) {
+      if (has(member.name)) names.push_back(option_name(member.name));
+    });
+    return names;
+  }
+
+  /// The struct; what is not given keeps its default. @param step  of the grid, where lengths may be given in these.
+  /// @throws UsageError, InvalidOption.
+  [[nodiscard]] T read(std::optional<double> step = {}) const {
+    T out;
+    for_each_option([&](const auto& member) {
+      if (!has(member.name)) return;
+      read_value(member, texts_.at(std::string(member.name)), step, out.*member.pointer);
+    });
+    return out;
+  }
+
+ private:
+  template <class Visitor>
+  static void for_each_option(const Visitor& visit) {
+    for_each_member<T>([&]<class Entry>(const Entry& member) {
+      if constexpr (Entry::is_stored && !std::same_as<typename Entry::Value, LabelSelection>) visit(member);
+    });
+  }
+
+  void set(std::string_view member, const std::string& text) { texts_[std::string(member)] = text; }
+
+  static std::string type_text(std::string_view member) {
+    std::string text = option_name(member).substr(2);
+    for (char& letter : text) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+    return text;
+  }
+
+  template <class Entry, class Value>
+  static std::string default_text(const Entry& member, const Value& value) {
+    if constexpr (DescribedEnum<Value>) {
+      return join_words(names_of<Value>(member.choices), "or") + "; default " + std::string(to_string(value));
+    } else if constexpr (std::is_arithmetic_v<Value>) {
+      return "default " + Json(value).dump();
+    } else {
+      return {};
+    }
+  }
+
+  template <class Entry, class Value>
+  static void read_value(const Entry& member, const std::string& text, const std::optional<double>& step, Value& out) {
+    const std::string name = option_name(member.name);
+    if constexpr (DescribedEnum<Value>) {
+      out = parse_enum<Value>(name, text, member.choices);
+    } else if constexpr (std::same_as<Value, bool>) {
+      out = !out;
+    } else if constexpr (std::integral<Value>) {
+      out = static_cast<Value>(integer_in(name, text, member.range));
+    } else {
+      out = length_in(name, text, member.range, member.unit == "mesh units" ? step : std::nullopt);
+    }
+  }
+
+  std::map<std::string, std::string> texts_;
+};
+
+}  // namespace blum::cli

@@ -1,0 +1,48 @@
+// Blum: which CUDA devices there are. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "blum/core/describe.hpp"
+
+namespace blum {
+
+/// A CUDA device that can be asked for.
+struct DeviceInfo {
+  std::string device;        ///< what parse_device() reads: "cuda:0"
+  std::string name;          ///< as its maker calls it
+  std::uint64_t memory = 0;  ///< bytes
+};
+
+template <>
+struct Description<DeviceInfo> {
+  static constexpr std::string_view name = "DeviceInfo";
+  static constexpr std::string_view doc = "A CUDA device that can be asked for";
+  static constexpr std::tuple members{Member{"device", &DeviceInfo::device, "", "what it is asked for by"},
+                                      Member{"name", &DeviceInfo::name, "", "as its maker calls it"},
+                                      Member{"memory", &DeviceInfo::memory, "bytes", "what it holds"}};
+};
+
+/// The CUDA devices that there are.
+struct CudaDevices {
+  std::vector<DeviceInfo> devices;
+  std::string reason;  ///< why there are none, in one sentence; empty where there are some
+};
+
+template <>
+struct Description<CudaDevices> {
+  static constexpr std::string_view name = "CudaDevices";
+  static constexpr std::string_view doc = "The CUDA devices that there are";
+  static constexpr std::tuple members{
+      Member{"devices", &CudaDevices::devices, "", "each of them"},
+      Member{"reason", &CudaDevices::reason, "", "why there are none, in one sentence; empty where there are some"}};
+};
+
+/// Looks for the CUDA module, and asks it for devices. Cost: starting CUDA, once; up to a second.
+[[nodiscard]] CudaDevices cuda_devices();
+
+}  // namespace blum

@@ -1,0 +1,40 @@
+"""Options that functions take as the library describes them."""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from . import _core
+
+_Taker = TypeVar("_Taker", bound=Callable[..., Any])
+
+
+def takes(options: str, *left_out: str) -> Callable[[_Taker], _Taker]:
+    """For functions and classes that take **options: their signature names each option with its default, and a line
+    ``**options`` in their docstring becomes the documentation of all of them. For type checkers the annotation
+    ``Unpack[...]`` of blum._structs says the same."""
+    members = [member for member in _core.described[options]["members"] if member[0] not in left_out]
+
+    def documented(taker: _Taker) -> _Taker:
+        function: Any = taker.__init__ if isinstance(taker, type) else taker  # type: ignore[misc]
+        signature = inspect.signature(function)
+        own = [each for each in signature.parameters.values() if each.kind is not each.VAR_KEYWORD]
+        named = [
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
+            for name, kind, default, _, _ in members
+        ]
+        function.__signature__ = signature.replace(parameters=[*own, *named])
+        if taker.__doc__ is not None:
+            taker.__doc__ = taker.__doc__.replace("    **options\n", "".join(_documented(*each) for each in members))
+        return taker
+
+    return documented
+
+
+def _documented(name: str, kind: str, default: Any, unit: str, doc: str) -> str:
+    text = f"{doc}{f', {unit}' if unit else ''}. Default: {default!r}."
+    lines = textwrap.fill(text[0].upper() + text[1:], 110, initial_indent=8 * " ", subsequent_indent=8 * " ")
+    return f"    {name} : {_core.enums.get(kind, kind)}\n{lines}\n"

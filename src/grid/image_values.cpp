@@ -1,0 +1,119 @@
+#include "blum/grid/image_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/grid/selected_voxels.hpp"
+#include "blum/grid/voxel_topology.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t most_distinct = 100000;
+constexpr double exact_integer_limit = 9007199254740992.0;  // 2^53
+constexpr std::size_t most_named = 10;
+
+/// Whether a value can be a label.
+template <class T>
+bool is_label(T value) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return std::trunc(value) == value && std::abs(static_cast<double>(value)) <= exact_integer_limit;
+  } else if constexpr (std::is_same_v<T, std::uint64_t>) {
+    return value <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  } else {
+    return true;
+  }
+}
+
+template <class T>
+ImageValues counted(std::span<const T> values, const Context& context) {
+  ImageValues out;
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  bool are_labels = true;
+  std::unordered_map<std::int64_t, std::uint64_t> counts;
+  std::size_t runs = 0;
+  for (std::size_t i = 0; i < values.size();) {
+    if (++runs % (std::size_t{1} << 20U) == 0) throw_if_cancelled(context);
+    const T value = values[i];
+    std::size_t end = i + 1;
+    while (end < values.size() && values[end] == value) ++end;  // runs are long in labelled images
+    const std::uint64_t run = end - i;
+    i = end;
+    const auto number = static_cast<double>(value);
+    if (std::isnan(number)) {
+      out.not_numbers += run;
+      continue;
+    }
+    least = std::min(least, number);
+    most = std::max(most, number);
+    if (value != T{}) out.nonzero += run;
+    are_labels = are_labels && is_label(value);
+    if (!are_labels) continue;
+    counts[static_cast<std::int64_t>(value)] += run;
+    are_labels = counts.size() <= most_distinct;
+  }
+  if (least <= most) out.range = {least, most};
+  if (!are_labels) return out;
+  out.distinct = counts.size();
+  for (const auto& [label, voxels] : counts) out.labels.push_back({label, voxels, 0, {}});
+  std::sort(out.labels.begin(), out.labels.end(), [](const LabelFacts& a, const LabelFacts& b) {
+    return a.voxels != b.voxels ? a.voxels > b.voxels : a.label < b.label;
+  });
+  return out;
+}
+
+ImageValues counted(const VoxelImageView& image, const Context& context) {
+  return std::visit([&](const auto& values) { return counted(values, context); }, image.values);
+}
+
+}  // namespace
+
+ImageValues image_values(const VoxelImageView& image, std::size_t most_labels, const Context& context) {
+  ImageValues out = counted(image, context);
+  out.labels.resize(std::min(out.labels.size(), most_labels));
+  const Vec3d& side = image.grid.spacing;
+  for (LabelFacts& facts : out.labels) {
+    facts.volume = static_cast<double>(facts.voxels) * side.x * side.y * side.z;
+    if (facts.label == 0) continue;
+    facts.betti = betti_numbers(selected_voxels(image, LabelSelection::of_label(facts.label), context), context);
+  }
+  return out;
+}
+
+std::string nothing_selected_text(const VoxelImageView& image, const LabelSelection& selection) {
+  const ImageValues values = counted(image, {});
+  const std::string none = "no voxel of the image ";
+  if (!values.range) return none + "is a number";
+  if (selection.rule == LabelSelection::Rule::nonzero) return none + "is selected: none differs from 0";
+  if (selection.rule == LabelSelection::Rule::threshold || !values.distinct) {
+    const std::string wanted = selection.rule == LabelSelection::Rule::label
+                                   ? "has the label " + std::to_string(selection.label)
+                                   : "reaches the threshold " + rounded_text(selection.threshold);
+    return none + wanted + ": its values are " + rounded_text((*values.range)[0]) + " to " +
+           rounded_text((*values.range)[1]);
+  }
+  std::vector<std::int64_t> labels;
+  for (const LabelFacts& facts : values.labels) {
+    if (facts.label != 0 && labels.size() < most_named) labels.push_back(facts.label);
+  }
+  std::sort(labels.begin(), labels.end());
+  std::vector<std::string> texts;
+  for (const std::int64_t label : labels) texts.push_back(std::to_string(label));
+  std::vector<std::string_view> words(texts.begin(), texts.end());
+  const std::size_t there =
+      values.labels.size() - (values.nonzero < image.grid.node_count() - values.not_numbers ? 1 : 0);
+  const std::string more = there > labels.size() ? std::to_string(there - labels.size()) + " more" : std::string();
+  if (!more.empty()) words.emplace_back(more);
+  return none + "has the label " + std::to_string(selection.label) + ": there are " +
+         (words.empty() ? "none but 0" : join_words(words));
+}
+
+}  // namespace blum
