@@ -102,7 +102,8 @@ class OptionTexts {
         const bool is_on = member.of(defaults);
         command.add_flag_callback(
             is_on ? "--no-" + name.substr(2) : name, [this, &member] { set(member.name, ""); },
-            option_help(prefix, is_on ? "not: " + std::string(member.doc) : std::string(member.doc), member.unit, {}));
+            option_help(prefix, is_on ? "without " + std::string(member.doc) : std::string(member.doc), member.unit,
+                        {}));
       } else {
         std::string unit(member.unit);
         if (in_steps && unit == "mesh units") unit += ", or in grid steps as in 3v";

@@ -74,6 +74,7 @@ Request parse(const Arguments& a) {
   if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
   if (a.bounds) r.bounds = parse_bounds("--bounds", *a.bounds);
   if (a.padding) r.padding = parse_non_negative("--padding", *a.padding);
+  exclude(a.options.has("site_ids"), "--site-ids", a.options.has("sites"), "--no-sites", "there are none to number");
   r.option_texts = a.options;
   r.options = a.options.read(1);
   r.selections = parse_selections(a.labels, a.threshold);
@@ -95,6 +96,7 @@ void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
                 {a.bounds.has_value(), "--bounds"},
                 {a.padding.has_value(), "--padding"},
                 {a.options.has("site_ids"), "--site-ids"},
+                {a.options.has("sites"), "--no-sites"},
                 {a.weld.has_value(), "--weld"},
                 {r.options.sign == SignMode::normals, "--sign normals"},
                 {r.options.sign == SignMode::winding, "--sign winding"}},
@@ -119,7 +121,9 @@ Json kind_json(const KindCount& count) {
   return {{"nodes", count.nodes}, {"sites", count.sites}};
 }
 
-Json sites_json(const FieldStatistics& s, SiteIds ids) {
+Json sites_json(const Field& field, const FieldStatistics& s) {
+  if (field.site.empty()) return nullptr;
+  const SiteIds ids = field.site_ids;
   Json json = {{"count", to_string(ids)}, {"distinct", s.all.sites}, {"nodes_without", s.siteless_nodes}};
   if (ids == SiteIds::features) {
     json["vertices"] = kind_json(s.kinds[0]);
@@ -129,7 +133,9 @@ Json sites_json(const FieldStatistics& s, SiteIds ids) {
   return json;
 }
 
-std::string sites_text(const FieldStatistics& s, SiteIds ids) {
+std::string sites_text(const Field& field, const FieldStatistics& s) {
+  if (field.site.empty()) return "none, as asked for";
+  const SiteIds ids = field.site_ids;
   if (ids == SiteIds::voxels) return count_text(s.all.sites) + " closest voxels";
   if (ids == SiteIds::triangles) return count_text(s.all.sites) + " closest triangles";
   const auto part = [&](std::size_t kind, const char* name) {
@@ -156,7 +162,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   json["device_reason"] = field.device_reason.empty() ? Json(nullptr) : Json(field.device_reason);
   json["band"] = field.band ? Json(*field.band) : Json(nullptr);
   json["distance"] = {{"minimum", s.minimum}, {"maximum", s.maximum}, {"inside_nodes", s.inside_nodes}};
-  json["sites"] = sites_json(s, field.site_ids);
+  json["sites"] = sites_json(field, s);
   run.fields.push_back(json);
 
   if (label) run.table.add("label", std::to_string(*label));
@@ -166,7 +172,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   if (!field.device_reason.empty()) run.table.add("no device", field.device_reason);
   run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
                                 (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
-  run.table.add("sites", sites_text(s, field.site_ids));
+  run.table.add("sites", sites_text(field, s));
 }
 
 /// The largest spacing along which an image has neighbours.
@@ -231,8 +237,8 @@ GridSpec make_grid(const Request& r, const Box3& box) {
   return r.spacing ? grid_around_with_spacing(box, *r.spacing, r.padding) : grid_around(box, r.resolution, r.padding);
 }
 
-void check_field_memory(const GridSpec& grid, std::size_t fields) {
-  check_memory(8.0 * static_cast<double>(grid.node_count()) * static_cast<double>(fields),
+void check_field_memory(const GridSpec& grid, std::size_t fields, bool with_sites = true) {
+  check_memory((with_sites ? 8.0 : 4.0) * static_cast<double>(grid.node_count()) * static_cast<double>(fields),
                "a grid of " + size_text(grid) + " nodes", "use a coarser grid, or smaller bounds");
 }
 
@@ -249,7 +255,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   context.device = r.device;
   check_outputs(
       [&] {
-        std::vector<fs::path> files = files_of_field(r.output);
+        std::vector<fs::path> files = files_of_field(r.output, r.options.sites);
         for (const fs::path& file : r.report.files()) files.push_back(file);
         return files;
       }(),
@@ -272,7 +278,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   run.time("input facts", watch.lap());
 
   const GridSpec grid = make_grid(r, bounds(mesh));
-  check_field_memory(grid, 1);
+  check_field_memory(grid, 1, r.options.sites);
   add_grid_text(run, grid);
   static_cast<void>(watch.lap());
   const Field field = distance_field(mesh, grid, r.option_texts.read(grid.spacing.x), context);
@@ -286,7 +292,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   write_field(r.output, field, {&mesh, &sites, r.input.filename().string(), BLUM_VERSION}, context);
   run.time("write", watch.lap());
   progress.clear();
-  add_field(run, field, statistics, files_of_field(r.output), nullptr);
+  add_field(run, field, statistics, files_of_field(r.output, r.options.sites), nullptr);
   run.warnings = warnings_of(field, statistics, facts);
   if (is_welded_away(file)) run.warnings.push_back(welded_away_text(file));
   finish(r, run, grid, context);

@@ -100,7 +100,7 @@ std::vector<Ball> balls_of(const MedialFile& file, const fs::path& path) {
 
 void run(const Arguments& a) {
   const Request r = parse(a);
-  std::vector<fs::path> outputs = r.is_field ? files_of_field(r.output) : std::vector<fs::path>{r.output};
+  std::vector<fs::path> outputs = {r.output};
   std::vector<fs::path> inputs{r.axis};
   if (r.input) inputs.push_back(*r.input);
   {

@@ -195,14 +195,15 @@ class Shared {
 using FieldSolverHere = Shared<DeviceFieldSolver>;
 using TransformHere = Shared<DeviceDistanceTransform>;
 
-DeviceFieldView output_of(const DeviceArray& distance, const DeviceArray& site) {
-  return {static_cast<float*>(distance.data), static_cast<std::uint32_t*>(site.data)};
+/// @param site  may be null.
+DeviceFieldView output_of(const DeviceArray& distance, const DeviceArray* site) {
+  return {static_cast<float*>(distance.data), site == nullptr ? nullptr : static_cast<std::uint32_t*>(site->data)};
 }
 
 /// The number of pieces of work that are queued with this one.
 std::uint64_t compute(FieldSolverHere& solver, const DeviceArray& vertices, const DeviceArray* triangles,
                       const DeviceArray* segments, const DeviceArray* points, const DeviceArray& distance,
-                      const DeviceArray& site, std::uintptr_t stream) {
+                      const DeviceArray* site, std::uintptr_t stream) {
   const auto view = [](const DeviceArray* array) { return array == nullptr ? DeviceArrayView{} : array->view(); };
   const DeviceMeshView mesh{vertices.view(), view(triangles), view(segments), view(points)};
   const bool has_connectivity = triangles != nullptr || segments != nullptr || points != nullptr;
@@ -217,7 +218,7 @@ std::uint64_t compute(FieldSolverHere& solver, const DeviceArray& vertices, cons
 std::uint64_t transform(TransformHere& transform, const DeviceArray& values, const DeviceArray& distance,
                         const DeviceArray& site, std::uintptr_t stream) {
   const DeviceArrayView from = values.view(3);
-  const DeviceFieldView to = output_of(distance, site);
+  const DeviceFieldView to = output_of(distance, &site);
   return transform.with([&](DeviceDistanceTransform& own) {
     own.compute(from, to, stream_of(stream));
     return own.progress().queued;
@@ -283,7 +284,7 @@ void bind_device_field(nb::module_& m) {
             return self.with([](const DeviceFieldSolver& own) { return std::string(to_string(own.sign_rule())); });
           })
       .def("compute", &compute, nb::arg("vertices"), nb::arg("triangles").none(), nb::arg("segments").none(),
-           nb::arg("points").none(), nb::arg("distance"), nb::arg("site"), nb::arg("stream"));
+           nb::arg("points").none(), nb::arg("distance"), nb::arg("site").none(), nb::arg("stream"));
   bind_queue(solver);
 
   auto transforms = nb::class_<TransformHere>(m, "DeviceDistanceTransform");

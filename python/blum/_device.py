@@ -122,7 +122,7 @@ class DeviceField:
 
     @property
     def site(self) -> Any:
-        """Closest site, int32 (z, y, x); -1 where there is none."""
+        """Closest site, int32 (z, y, x); -1 where there is none. None where no sites were asked for."""
         return self._site
 
     @property
@@ -158,10 +158,11 @@ class _DeviceSolver:
 
     def __init__(self, grid: Grid, core: Any, site_ids: str) -> None:
         self._solver = core
+        self._sites: bool = core.options.get("sites", True)
         self._grid = grid
         self._band: float | None = core.options["band"]
         self._site_ids = site_ids
-        self._held: deque[tuple[int, tuple[_core.DeviceArray, ...]]] = deque()
+        self._held: deque[tuple[int, tuple[_core.DeviceArray | None, ...]]] = deque()
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self._grid!r}, device={self.device!r})"
@@ -189,7 +190,7 @@ class _DeviceSolver:
     def __del__(self) -> None:
         self.__dict__.pop("_solver", None)  # which waits for the device; only then may the arrays go
 
-    def _hold(self, arrays: tuple[_core.DeviceArray, ...]) -> None:
+    def _hold(self, arrays: tuple[_core.DeviceArray | None, ...]) -> None:
         """Keeps arrays for as long as what is queued uses them: those who gave them may let go of them at once."""
         self._held.append((self._solver.progress()[0], arrays))
 
@@ -199,29 +200,33 @@ class _DeviceSolver:
         while self._held and self._held[0][0] <= finished:
             self._held.popleft()
 
-    def _outputs(self, out: tuple[Any, Any] | None, stream: int) -> tuple[_core.DeviceArray, _core.DeviceArray]:
+    def _outputs(self, out: tuple[Any, Any] | None, stream: int) -> tuple[_core.DeviceArray, _core.DeviceArray | None]:
         shape = self._grid.shape
         if out is None:
             size = list(shape)
             return (
                 _core.DeviceArray.allocated(self.device, size, "<f4"),
-                _core.DeviceArray.allocated(self.device, size, "<i4"),
+                _core.DeviceArray.allocated(self.device, size, "<i4") if self._sites else None,
             )
         if not isinstance(out, (tuple, list)) or len(out) != 2:
             raise TypeError("out must be a pair of arrays on the device, (distance, site)")
+        if (out[1] is not None) != self._sites:
+            raise TypeError(f"out[1] must be {'an array' if self._sites else 'None'}, as `sites` is {self._sites}")
         for place, value in enumerate(out):
             interface = getattr(value, "__cuda_array_interface__", None)
             if interface is not None and interface["data"][1]:
                 raise ValueError(f"out[{place}] is read-only")
         distance = self._take(out[0], "out[0]", shape, ("<f4",), stream)
+        if not self._sites:
+            return distance, None
         return distance, self._take(out[1], "out[1]", shape, ("<i4", "<u4"), stream)
 
     def _results(
-        self, distance: _core.DeviceArray, site: _core.DeviceArray, out: tuple[Any, Any] | None, pieces: int
+        self, distance: _core.DeviceArray, site: _core.DeviceArray | None, out: tuple[Any, Any] | None, pieces: int
     ) -> tuple[Any, Any]:
         if out is not None:
             return out[0], out[1]
-        return DeviceArray(distance, self, pieces), DeviceArray(site, self, pieces)
+        return DeviceArray(distance, self, pieces), None if site is None else DeviceArray(site, self, pieces)
 
     def _take(
         self, value: Any, name: str, shape: tuple[int | None, ...], types: tuple[str, ...], stream: int
@@ -306,7 +311,8 @@ class DeviceFieldSolver(_DeviceSolver):
         triangles, segments, points : (m, 3), (m, 2), (m,) of int32, uint32 or int64, on the device
             Without any, those of the last call, which saves finding the edges, and waiting for it.
         out : (distance, site), optional
-            Arrays on the device to write to: float32 and int32 or uint32, of the grid's shape.
+            Arrays on the device to write to: float32 and int32 or uint32, of the grid's shape. Without sites, None is
+            the second.
         stream : int, or a stream of PyTorch or CuPy
             What to queue on; default: the legacy default stream.
 

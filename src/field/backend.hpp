@@ -39,6 +39,9 @@ class FieldBackend {
   virtual void set_mesh(const MeshView& mesh, const Context& context) = 0;
   [[nodiscard]] virtual const SiteTable& sites() const = 0;
 
+  /// Whether others find the signs of a method, with the sites of the field.
+  [[nodiscard]] virtual bool needs_sites_for(sign::Method method) const = 0;
+
   /// Fills the memory of a request, the host's, and appends phase times.
   [[nodiscard]] virtual FieldResult compute(const FieldRequest& request, const Context& context,
                                             std::vector<PhaseTime>& phases) = 0;

@@ -98,12 +98,13 @@ void DeviceFieldSolver::compute(const DeviceArrayView& vertices, const DeviceFie
   if (!state_->plan)
     throw InvalidOption("the first field of a solver needs the triangles, segments or points of its mesh");
   check_vertices(vertices);
-  if (vertices.data == nullptr || field.distance == nullptr || field.site == nullptr) {
+  const bool wants_sites = state_->options.sites;
+  if (vertices.data == nullptr || field.distance == nullptr || (wants_sites && field.site == nullptr)) {
     throw InvalidOption("vertices, distances and sites on a device need memory");
   }
   FieldRequest request = make_field_request(state_->grid, state_->options, *state_->plan);
   request.distance = field.distance;
-  request.site = field.site;
+  request.site = wants_sites ? field.site : nullptr;
   state_->queue.run(&cuda::Module::compute_there, &vertices, &request, stream);
 }
 

@@ -41,7 +41,7 @@ void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, c
       const bool is_beyond = field.band && nearest->distance > *field.band;
       const double distance = is_beyond ? *field.band : nearest->distance;
       field.distance[nodes[k]] = static_cast<float>(is_inside ? -distance : distance);
-      field.site[nodes[k]] = is_beyond ? SiteId::none() : nearest->site;
+      if (!field.site.empty()) field.site[nodes[k]] = is_beyond ? SiteId::none() : nearest->site;
     }
   });
 }
@@ -66,16 +66,26 @@ struct FieldSolver::State {
   Field field;
 
   void compute(const MeshView& mesh, const Context& frame_context);
+
+ private:
+  /// Gives field and request their memory; what the field has of it already, it keeps.
+  void allocate(bool with_sites, FieldRequest& request);
 };
+
+void FieldSolver::State::allocate(bool with_sites, FieldRequest& request) {
+  const std::size_t nodes = field.grid.node_count();
+  // One by one: where memory runs out between the two, the next frame finds the first one there already.
+  if (field.distance.size() != nodes) field.distance = Buffer<float>(nodes);
+  request.distance = field.distance.data();
+  if (!with_sites) return;
+  if (field.site.size() != nodes) field.site = Buffer<SiteId>(nodes);
+  request.site = &field.site.data()->value;
+}
 
 void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_context) {
   validate(mesh);
   check_site_ids(options, !mesh.segments.empty() || !mesh.points.empty());
   throw_if_cancelled(frame_context);
-  const std::size_t nodes = field.grid.node_count();
-  // One by one: where memory runs out between the two, the next frame_context finds the first one there already.
-  if (field.distance.size() != nodes) field.distance = Buffer<float>(nodes);
-  if (field.site.size() != nodes) field.site = Buffer<SiteId>(nodes);
   field.band = options.band;
   field.site_ids = SiteIds::features;
   field.device = engine->device();
@@ -88,8 +98,7 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   const sign::Plan plan = sign::plan_signs(options.sign, mesh, sites, frame_context);
   connectivity_timer.lap("connectivity");
   FieldRequest request = make_field_request(field.grid, options, plan);
-  request.distance = field.distance.data();
-  request.site = &field.site.data()->value;
+  allocate(options.sites || engine->needs_sites_for(plan.method), request);
   FieldResult result = engine->compute(request, frame_context, field.phases);
   PhaseTimer sign_timer(field.phases);
   const bool by_normals = plan.method == sign::Method::pseudonormals;
@@ -100,6 +109,7 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   field.sign_rule = plan.rule;
   field.sign_reason = plan.reason;
   sign_timer.lap("sign");
+  if (!options.sites) field.site = {};
   if (options.site_ids == SiteIds::triangles) show_triangles(sites, frame_context, field);
 }
 

@@ -21,7 +21,7 @@ struct FieldRequest {
   double band = 0;
   /// One per node, x fastest, mesh units; +-band beyond the band.
   float* distance = nullptr;
-  /// The closest sites, one per node; 0xffffffff beyond the band.
+  /// The closest sites, one per node; 0xffffffff beyond the band. Null where they are not wanted.
   std::uint32_t* site = nullptr;
   /// How nodes get their signs; see sign::Plan, also for the level. A back end may leave that to others: FieldResult.
   sign::Method sign = sign::Method::none;

@@ -46,7 +46,7 @@ Metadata field_metadata(const Field& field, const FieldFileInfo& info) {
   if (!field.sign_reason.empty()) pairs.emplace_back("sign_reason", field.sign_reason);
   if (field.band) {
     pairs.emplace_back("band", exact_text(*field.band));
-    pairs.emplace_back("beyond_band", "distance +-band, site -1");
+    pairs.emplace_back("beyond_band", field.site.empty() ? "distance +-band" : "distance +-band, site -1");
   }
   if (!field.site.empty()) {
     pairs.emplace_back("site_ids", to_string(field.site_ids));

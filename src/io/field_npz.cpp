@@ -73,7 +73,7 @@ void read_geometry(NpzReader& npz, const std::string& name, GridSpec& grid) {
 
 void write_field_npz(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
                      const Context& context) {
-  const bool has_mesh = info.mesh != nullptr && field.site_ids != SiteIds::voxels;
+  const bool has_mesh = info.mesh != nullptr && !field.site.empty() && field.site_ids != SiteIds::voxels;
   if (has_mesh) validate(*info.mesh);
   const SiteVertices corners = has_mesh ? site_vertices(field, info) : SiteVertices{};
   if (has_mesh) check_sites(field, corners.size());

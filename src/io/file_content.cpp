@@ -122,8 +122,8 @@ std::string_view image_format_name(const fs::path& path) {
   return format ? std::string_view(format->name()) : "unknown";
 }
 
-std::vector<fs::path> files_of_field(const fs::path& path) {
-  if (file_extension(path) != ".nrrd") return {path};
+std::vector<fs::path> files_of_field(const fs::path& path, bool with_sites) {
+  if (!with_sites || file_extension(path) != ".nrrd") return {path};
   return {path, volume_io::site_path(path)};
 }
 

@@ -219,6 +219,22 @@ def test_welding_everything_away_is_warned_of(shapes, tmp_path):
     assert "welding left no triangle" in err
 
 
+def test_fields_without_sites(shapes, tmp_path):
+    given = (shapes / "sphere.ply", "--resolution", 24, "--band", "3v")
+    run_json("field", *given, "-o", tmp_path / "with.npz")
+    with np.load(tmp_path / "with.npz") as file:
+        expected = file["distance"]
+    for name in ("a.npz", "a.nrrd", "a.vti"):
+        summary = run_json("field", *given, "--no-sites", "-o", tmp_path / name)
+        assert summary["outputs"] == summary["fields"][0]["files"] == [str(tmp_path / name)]
+        assert summary["fields"][0]["sites"] is None
+        assert run_json("info", tmp_path / name)["sites"] is None
+    with np.load(tmp_path / "a.npz") as file:
+        assert np.array_equal(file["distance"], expected)
+        assert not {"site", "site_vertices"} & set(file)
+    assert not (tmp_path / "a.site.nrrd").exists()
+
+
 def test_a_flat_box_gives_a_2d_field_and_picture(shapes, tmp_path):
     summary = run_json("field", shapes / "sphere.ply", "-o", tmp_path / "cut.nrrd", "--bounds",
                        "-1.5,0.25,-2,1.5,0.25,2", "--spacing", "0.1")
@@ -341,6 +357,7 @@ USAGE = [
     ["field", "sphere.ply", "-o", "out.nrrd", "--bounds", "0,0,0,1,1,1", "--padding", "0.1"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--sign", "maybe"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--band", "0"],
+    ["field", "sphere.ply", "-o", "out.nrrd", "--no-sites", "--site-ids", "features"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--band", "v"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--band", "-3v"],
     ["field", "sphere.ply", "-o", "out.nrrd", "--site-ids", "corners"],

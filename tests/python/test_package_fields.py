@@ -158,6 +158,24 @@ def test_a_solver_follows_a_deforming_mesh(torus):
     assert np.array_equal(kept, first), "without reuse each frame has its own arrays"
 
 
+@pytest.mark.parametrize("options", [{}, {"band": 0.1, "sign": "winding"}, {"site_ids": "triangles"}])
+def test_fields_without_sites_have_the_same_distances(torus, tmp_path, options):
+    grid = blum.Grid.around(torus, resolution=24)
+    expected = blum.distance_field(torus, grid=grid, **options).distance
+    field = blum.distance_field(torus, grid=grid, sites=False, **options)
+    assert field.site is None and np.array_equal(field.distance, expected)
+    solver = blum.FieldSolver(grid, sites=False, reuse=True, **options)
+    for _ in range(2):
+        frame = solver.compute(torus)
+        assert frame.site is None and np.array_equal(frame.distance, expected)
+    for name in ("field.nrrd", "field.npz", "field.vti"):
+        field.write(tmp_path / name)
+        back = blum.read_field(tmp_path / name)
+        assert back.site is None and np.array_equal(back.distance, expected)
+    assert len(list(tmp_path.iterdir())) == 3
+    assert field.interpolate([0, 0, 0]) == blum.distance_field(torus, grid=grid, **options).interpolate([0, 0, 0])
+
+
 def test_threads_call_at_once(torus):
     grid, expected = blum.Grid.around(torus, resolution=32), blum.distance_field(torus, resolution=32).distance
     solver, wrong = blum.FieldSolver(grid, reuse=False), []

@@ -30,7 +30,7 @@ struct DeviceMeshView {
 /// Where a field goes, in a CUDA device's memory: one value per node of the grid each, x fastest.
 struct DeviceFieldView {
   float* distance = nullptr;
-  std::uint32_t* site = nullptr;  ///< 0xffffffff where there is none
+  std::uint32_t* site = nullptr;  ///< 0xffffffff where there is none; not looked at where no sites are asked for
 };
 
 /// How many calls have queued work so far, and how many of those, from the first on, the device has completed: what

@@ -78,6 +78,8 @@ struct FieldOptions {
   std::optional<double> band = {};
   /// What the site values count: features or triangles.
   SiteIds site_ids = SiteIds::features;
+  /// Whether the field gets its closest sites. Without them it takes half the memory; distances are the same bytes.
+  bool sites = true;
 };
 
 template <>
@@ -93,6 +95,7 @@ struct Description<FieldOptions> {
              "half-width of a narrow band; beyond it nodes get +-band and no site", Range::positive()},
       Member{"site_ids", &FieldOptions::site_ids, "", "what sites count: vertices, edges and faces, or triangles",
              Range{}, of_meshes},
+      Member{"sites", &FieldOptions::sites, "", "the closest site of every node, which takes half of the memory"},
   };
 };
 
@@ -101,7 +104,7 @@ struct Field {
   GridSpec grid;
   /// Distance in mesh units, negative inside when signed; +-band beyond the band. One per node, x fastest.
   Buffer<float> distance;
-  /// Closest site; none() beyond the band. One per node, x fastest.
+  /// Closest site; none() beyond the band. One per node, x fastest; empty where no sites were asked for.
   Buffer<SiteId> site;
   SiteIds site_ids = SiteIds::features;
   std::optional<double> band = {};  ///< half-width, mesh units
@@ -123,7 +126,9 @@ struct Field {
 ///              or cross). The same bytes for any number of threads.
 ///              Devices agree within these bounds.
 /// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, DeviceError, Cancelled.
-/// Cost: about O(nodes + sites log sites); 8 bytes per node. Method: docs/theory/fields.md (Sud 2006, ch. 2).
+/// Cost: about O(nodes + sites log sites); 8 bytes per node, without sites 4. (A CUDA device takes 8 on the way where
+/// signs are found by sites: `normals` of shells that cross or face different ways.)
+/// Method: docs/theory/fields.md (Sud 2006, ch. 2).
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {},
                                    const Context& context = {});
 

@@ -35,6 +35,8 @@ namespace blum {
 [[nodiscard]] std::string_view image_format_name(const std::filesystem::path& path);
 
 /// Every file that stands for a field of this name: for .nrrd, its sites are in a second one, NAME.site.nrrd.
-[[nodiscard]] std::vector<std::filesystem::path> files_of_field(const std::filesystem::path& path);
+/// @param with_sites  whether the field has any.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_field(const std::filesystem::path& path,
+                                                                bool with_sites = true);
 
 }  // namespace blum

@@ -21,6 +21,7 @@ class Engine final : public FieldBackend {
   [[nodiscard]] Device device() const override { return Device::cpu(); }
   void set_mesh(const MeshView& mesh, const Context& context) override;
   [[nodiscard]] const SiteTable& sites() const override { return sites_; }
+  [[nodiscard]] bool needs_sites_for(sign::Method /*method*/) const override { return false; }
   [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context,
                                     std::vector<PhaseTime>& phases) override;
 

@@ -85,7 +85,7 @@ class TileWorker {
     }
     for_each_row(box, [&](std::size_t, std::size_t node) {
       std::fill_n(job_.request.distance + node, box.count[0], distance);
-      std::fill_n(job_.request.site + node, box.count[0], SiteId::none().value);
+      if (job_.request.site != nullptr) std::fill_n(job_.request.site + node, box.count[0], SiteId::none().value);
     });
   }
 
@@ -93,21 +93,24 @@ class TileWorker {
   void flush(const NodeBox& box) {
     constexpr std::size_t line = 64;
     const bool is_streamed = job_.is_streamed && box.count[0] == BoxOutput::side;
+    const auto count = static_cast<std::size_t>(box.count[0]);
     for_each_row(box, [&](std::size_t at, std::size_t node) {
-      const float* distance = scratch_.output.distance.data() + at;
-      const std::uint32_t* site = scratch_.output.site.data() + at;
-      float* const distance_out = job_.request.distance + node;
-      std::uint32_t* const site_out = job_.request.site + node;
-      if (is_streamed && node * sizeof(float) % line == 0) {
-        for (std::size_t k = 0; k < static_cast<std::size_t>(BoxOutput::side); k += lanes) {
-          hn::Stream(hn::Load(d, distance + k), d, distance_out + k);
-          hn::Stream(hn::Load(di, site + k), di, site_out + k);
-        }
-      } else {
-        std::memcpy(distance_out, distance, static_cast<std::size_t>(box.count[0]) * sizeof(float));
-        std::memcpy(site_out, site, static_cast<std::size_t>(box.count[0]) * sizeof(std::uint32_t));
-      }
+      const bool is_line = is_streamed && node * sizeof(float) % line == 0;
+      put_row(d, scratch_.output.distance.data() + at, job_.request.distance + node, count, is_line);
+      if (job_.request.site == nullptr) return;
+      put_row(di, scratch_.output.site.data() + at, job_.request.site + node, count, is_line);
     });
+  }
+
+  template <class Tag, class T>
+  static void put_row(Tag tag, const T* from, T* to, std::size_t count, bool is_line) {
+    if (is_line) {
+      for (std::size_t k = 0; k < static_cast<std::size_t>(BoxOutput::side); k += lanes) {
+        hn::Stream(hn::Load(tag, from + k), tag, to + k);
+      }
+    } else {
+      std::memcpy(to, from, count * sizeof(T));
+    }
   }
 
   /// Calls visit(place in the output buffer, node index) for the first node of each row of a box.

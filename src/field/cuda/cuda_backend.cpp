@@ -24,6 +24,9 @@ class CudaFieldBackend final : public FieldBackend {
   }
   [[nodiscard]] const SiteTable& sites() const override { return sites_; }
 
+  [[nodiscard]] bool needs_sites_for(sign::Method method) const override {
+    return method == sign::Method::pseudonormals;
+  }
   [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context,
                                     std::vector<PhaseTime>& phases) override {
     PhaseTimer timer(phases);

@@ -15,7 +15,7 @@
 namespace blum::cuda {
 
 /// To be raised with every change of this file, and of what crosses the border: FieldRequest, ImageRequest.
-inline constexpr std::uint32_t module_version = 6;
+inline constexpr std::uint32_t module_version = 7;
 inline constexpr const char* module_symbol = "blum_cuda_module";
 inline constexpr const char* module_file = "libblum_cuda.so";
 

@@ -384,7 +384,7 @@ struct ComputeTiles {
             const float distance = root(mine.winner[k].squared) * to_world;
             const bool is_beyond = distance > band;
             job_.request.distance[at] = is_beyond ? band : distance;
-            job_.request.site[at] = is_beyond ? dead_record : mine.winner[k].id;
+            if (job_.request.site != nullptr) job_.request.site[at] = is_beyond ? dead_record : mine.winner[k].id;
           }
         });
       });
@@ -399,7 +399,7 @@ struct ComputeTiles {
             if (!is_in(nodes_, place)) continue;
             const std::size_t at = offset(place);
             job_.request.distance[at] = distance;
-            job_.request.site[at] = dead_record;
+            if (job_.request.site != nullptr) job_.request.site[at] = dead_record;
           }
         });
       });

@@ -77,17 +77,19 @@ class FieldEngine {
     const auto fetch = [&](std::int64_t slab) {
       const Slab& from = slabs_[static_cast<std::size_t>(slab % 2)];
       device_.fetch(from.distance.data(), slabs.nodes(slab), request.distance + slabs.first_node(slab));
-      device_.fetch(from.site.data(), slabs.nodes(slab), request.site + slabs.first_node(slab));
+      if (request.site != nullptr) {
+        device_.fetch(from.site.data(), slabs.nodes(slab), request.site + slabs.first_node(slab));
+      }
       report(static_cast<double>(slab + 1) / static_cast<double>(slabs.count()));
     };
     for (std::int64_t slab = 0; slab < slabs.count(); ++slab) {
       if (is_stopped()) throw Cancelled();
       Slab& to = slabs_[static_cast<std::size_t>(slab % 2)];
       to.distance.resize(slabs.nodes(slab));
-      to.site.resize(slabs.nodes(slab));
+      if (request.site != nullptr) to.site.resize(slabs.nodes(slab));
       FieldRequest part = request;
       part.distance = to.distance.data();
-      part.site = to.site.data();
+      part.site = request.site != nullptr ? to.site.data() : nullptr;
       compute_slab(slabs, slab, part, is_signed);
       device_.mark(static_cast<int>(slab % 2));
       // The slab before this one travels while this one is computed.
@@ -118,10 +120,11 @@ class FieldEngine {
     for (std::int64_t slab = 0; slab < slabs.count(); ++slab) {
       FieldRequest part = request;
       part.distance += slabs.first_node(slab);
-      part.site += slabs.first_node(slab);
+      if (request.site != nullptr) part.site += slabs.first_node(slab);
       compute_slab(slabs, slab, part, is_signed);
     }
-    if (request.site_ids == SiteIds::triangles) show_triangles(request.grid.node_count(), request.site);
+    if (request.site != nullptr && request.site_ids == SiteIds::triangles)
+      show_triangles(request.grid.node_count(), request.site);
   }
 
  private:

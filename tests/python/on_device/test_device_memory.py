@@ -106,6 +106,22 @@ def test_options_are_those_of_fields(mesh, grid):
         assert field.site_ids == options.get("site_ids", "features")
 
 
+def test_fields_without_sites_have_the_same_distances(mesh, grid):
+    arrays = OnDevice(mesh.vertices), OnDevice(mesh.triangles)
+    expected = blum.distance_field(mesh, grid=grid, device="cuda").distance
+    assert blum.distance_field(mesh, grid=grid, device="cuda", sites=False).site is None
+    solver = blum.DeviceFieldSolver(grid, sites=False)
+    field = solver.compute(*arrays)
+    assert field.site is None and np.array_equal(on_host(field.distance), expected)
+    out = OnDevice(np.zeros(grid.shape, np.float32))
+    assert solver.compute(*arrays, out=(out, None)).distance is out
+    assert np.array_equal(out.values, expected)
+    with pytest.raises(TypeError, match="None"):
+        solver.compute(*arrays, out=(out, OnDevice(np.zeros(grid.shape, np.int32))))
+    with pytest.raises(TypeError, match="an array"):
+        blum.DeviceFieldSolver(grid).compute(*arrays, out=(out, None))
+
+
 def test_a_deforming_mesh_keeps_its_triangles(mesh, grid):
     solver = blum.DeviceFieldSolver(grid)
     with pytest.raises(blum.InvalidOption, match="triangles"):

@@ -106,6 +106,25 @@ TEST_F(DeviceField, TakesTheOptionsOfFields) {
   expect_field_of<double, std::int32_t>(open);
 }
 
+TEST_F(DeviceField, WithoutSitesDistancesAreTheSameBytesAndSitesNeedNoMemory) {
+  const TriangleMesh mesh = make_gear({});
+  const GridSpec grid = grid_around(bounds(mesh), 20, 0.2);
+  const Arrays<double, std::uint32_t> arrays(mesh);
+  for (FieldOptions options : {FieldOptions{}, FieldOptions{.band = 0.1, .site_ids = SiteIds::triangles}}) {
+    const Field field = distance_field(mesh, grid, options, {.device = Device::cuda()});
+    options.sites = false;
+    DeviceFieldSolver solver(grid, options);
+    solver.set_connectivity(arrays.view());
+    for (const bool with_memory : {false, true}) {
+      Output output(grid);
+      solver.compute(arrays.view().vertices, {output.distance.data(), with_memory ? output.site.data() : nullptr});
+      EXPECT_EQ(0, std::memcmp(output.distance.data(), field.distance.data(), field.distance.span().size_bytes()));
+      EXPECT_EQ(output.site.front(), 7U);
+      EXPECT_EQ(output.site.back(), 7U);
+    }
+  }
+}
+
 TEST_F(DeviceField, FollowsADeformingMeshAndANewOne) {
   TriangleMesh mesh = make_torus({});
   const GridSpec grid = grid_around(bounds(mesh), 20, 0.5);
@@ -200,6 +219,7 @@ TEST_F(DeviceField, WrongArgumentsAreToldOf) {
 
   solver.set_connectivity(arrays.view());
   EXPECT_THROW(solver.compute(arrays.view().vertices, {nullptr, output.site.data()}), InvalidOption);
+  EXPECT_THROW(solver.compute(arrays.view().vertices, {output.distance.data(), nullptr}), InvalidOption);
   EXPECT_THROW(solver.compute({nullptr, ElementType::float64, 8}, output.view()), InvalidOption);
   EXPECT_THROW(solver.compute({arrays.vertices.data(), ElementType::int64, 8}, output.view()), InvalidOption);
 }

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "blum/core/error.hpp"
 #include "blum/field/field.hpp"
@@ -97,6 +100,58 @@ TEST_P(DistanceField, BandsEqualTheFullFieldWithinAndAreClampedBeyond) {
     }
     EXPECT_GT(beyond, full.distance.size() / 10);
     EXPECT_LT(beyond, full.distance.size());
+  }
+}
+
+/// Shells of which one faces outwards and the other inwards: `normals` go by pseudonormals.
+TriangleMesh two_minds() {
+  TriangleMesh mesh = make_box({});
+  append(mesh, inverted(make_sphere({.frequency = 4})), {3, 0.3, 0.2});
+  return mesh;
+}
+
+void expect_same_without_sites(const Field& with, const Field& without) {
+  EXPECT_TRUE(without.site.empty());
+  ASSERT_EQ(with.distance.size(), without.distance.size());
+  EXPECT_EQ(0, std::memcmp(with.distance.data(), without.distance.data(), with.distance.span().size_bytes()));
+  EXPECT_EQ(with.sign_rule, without.sign_rule);
+  EXPECT_EQ(with.sign_reason, without.sign_reason);
+}
+
+TEST_P(DistanceField, WithoutSitesDistancesAreTheSameBytes) {
+  struct Case {
+    TriangleMesh mesh;
+    SignMode sign;
+    int nodes;
+  };
+  // The first grid is large enough to be written past the caches.
+  for (const Case& c : {Case{make_sphere({}), SignMode::automatic, usually(136, 40)},
+                        {make_gear({}), SignMode::none, 30},
+                        {make_gear({}), SignMode::winding, 30},
+                        {open_bowl(), SignMode::automatic, 24},
+                        {two_minds(), SignMode::normals, 40}}) {
+    const GridSpec grid = grid_for(c.mesh, c.nodes);
+    for (const std::optional<double> band : {std::optional<double>{}, std::optional<double>{3 * grid.spacing.x}}) {
+      FieldOptions options{.sign = c.sign, .band = band};
+      const Field with = compute(c.mesh, grid, options);
+      options.sites = false;
+      expect_same_without_sites(with, compute(c.mesh, grid, options));
+    }
+  }
+}
+
+TEST_P(DistanceField, SolversWithAndWithoutSitesFollowAMeshAlike) {
+  TriangleMesh mesh = two_minds();
+  const GridSpec grid = grid_around(bounds(mesh), 24, 0.3);
+  for (const SignMode sign : {SignMode::automatic, SignMode::normals}) {
+    FieldSolver with(grid, {.sign = sign, .band = 0.4}, context());
+    FieldSolver without(grid, {.sign = sign, .band = 0.4, .site_ids = SiteIds::triangles, .sites = false}, context());
+    for (int frame = 0; frame < 4; ++frame) {
+      for (Vec3d& v : mesh.vertices) v.x += 0.03 * v.y;
+      if (frame == 3) std::swap(mesh.triangles.front(), mesh.triangles.back());
+      expect_same_without_sites(with.compute(mesh), without.compute(mesh));
+      if (frame == 1) expect_same_without_sites(with.take(), without.take());
+    }
   }
 }
 

@@ -135,8 +135,10 @@ TEST_P(FieldFiles, WithoutSites) {
   Field field = sample_field();
   write_field(path, field);  // leaves a file of sites for .nrrd, which the next field must not be given
   field.site = {};
-  write_field(path, field);
-  EXPECT_TRUE(read_field(path).site.empty());
+  const TriangleMesh mesh = sample_mesh();
+  const MeshView view = mesh;
+  write_field(path, field, {&view, nullptr, "mesh.obj", "1.2.3"});
+  expect_same(read_field(path), field);
 }
 
 TEST_P(FieldFiles, LargerThanAnyBuffer) {

@@ -67,6 +67,7 @@ TEST(Formats, ImagesAndFieldsAreToldApart) {
     EXPECT_TRUE(may_hold_field(path) && !holds_complex(path)) << end;
   }
   EXPECT_EQ(files_of_field("a/b.nrrd"), (std::vector<std::filesystem::path>{"a/b.nrrd", "a/b.site.nrrd"}));
+  EXPECT_EQ(files_of_field("a/b.nrrd", false).size(), 1U);
   EXPECT_EQ(files_of_field("b.npz").size(), 1U);
 }
 
