@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from . import _core
+from . import _arguments, _core, _structs
 
 _Taker = TypeVar("_Taker", bound=Callable[..., Any])
 
@@ -23,7 +23,7 @@ def takes(options: str, *left_out: str) -> Callable[[_Taker], _Taker]:
         signature = inspect.signature(function)
         own = [each for each in signature.parameters.values() if each.kind is not each.VAR_KEYWORD]
         named = [
-            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=_type(kind))
             for name, kind, default, _, _ in members
         ]
         function.__signature__ = signature.replace(parameters=[*own, *named])
@@ -32,6 +32,11 @@ def takes(options: str, *left_out: str) -> Callable[[_Taker], _Taker]:
         return taker
 
     return documented
+
+
+def _type(kind: str) -> Any:
+    """The type that the library names so."""
+    return eval(kind, {**vars(_arguments), **vars(_structs)})
 
 
 def _documented(name: str, kind: str, default: Any, unit: str, doc: str) -> str:
