@@ -35,7 +35,7 @@ lint: ## Check format, clang-tidy of what changed, shell scripts, layer rules, w
 	@tools/setup.sh --lint --viewer
 	@tools/lint.sh
 
-tidy: ## Check everything with clang-tidy 19, and record the commit that passed (tools/tidy-base)
+tidy: ## Check everything with clang-tidy, and record the commit that passed (tools/tidy-base)
 	@tools/setup.sh --lint
 	@tools/build.sh release -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_header_check
 	@tools/tidy.py --all

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """clang-tidy over the sources that a build folder compiles, of the library, the tools, the examples and the bindings.
 
-  tools/tidy.py         what changed since the commit in tools/tidy-base: changed sources, and the sources that include a
-                        changed header (its nearest ones: those that name it, or name a header that does)
-  tools/tidy.py --all   all of it (`make tidy`); where all is well and committed, the commit becomes tools/tidy-base
+  tools/tidy.py          what changed since the commit in tools/tidy-base: changed sources, and sources that include
+                         a changed header (its nearest ones: those that name it, or name a header that does)
+  tools/tidy.py --all    all of it (`make tidy`); where all is well and committed, the commit becomes tools/tidy-base
+  tools/tidy.py --deep   all of it, and the static analyzer searches as deep as it does by itself: else it looks at
+                         20,000 states of a function, which takes a third of the time
 
 The commit in tools/tidy-base passed all of it. Where it is unknown (a shallow clone), or .clang-tidy changed, all is
 checked. Build folder: build/release, configured when it is not there. JOBS limits how many run at once.
@@ -26,6 +28,27 @@ from check_includes import INCLUDE, PROJECT, resolve
 FOLDERS = ("src", "apps", "examples", "python")
 BUILD = PROJECT / "build/release"
 BASE = PROJECT / "tools/tidy-base"
+CLANG_TIDY = PROJECT / "build/venv/bin/clang-tidy"
+#: The analyzer's own limit is 225,000 states of a function.
+QUICK = [f"--extra-arg={word}" for word in ("-Xclang", "-analyzer-config", "-Xclang", "max-nodes=20000")]
+
+
+def compile_commands() -> dict[str, list[str]]:
+    """The compiler's arguments for each source, without the compiler and its output."""
+    if not (BUILD / "compile_commands.json").is_file():
+        subprocess.run(["cmake", "--preset", "release"], cwd=PROJECT, check=True, stdout=subprocess.DEVNULL)
+    found = {}
+    for entry in json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8")):
+        file = pathlib.Path(entry["file"])
+        if not file.is_file() or not any(file.is_relative_to(PROJECT / folder) for folder in FOLDERS):
+            continue
+        words = shlex.split(entry["command"])
+        found[file.relative_to(PROJECT).as_posix()] = [
+            word
+            for before, word in zip(words, words[1:], strict=False)
+            if before == "-isystem" or word.startswith(("-I", "-D", "-std", "-f", "-isystem"))
+        ]
+    return found
 
 
 def git(*arguments: str) -> list[str]:
@@ -33,24 +56,22 @@ def git(*arguments: str) -> list[str]:
     return done.stdout.split("\0" if "-z" in arguments else "\n")
 
 
-def compiled_sources() -> set[str]:
-    if not (BUILD / "compile_commands.json").is_file():
-        subprocess.run(["cmake", "--preset", "release"], cwd=PROJECT, check=True, stdout=subprocess.DEVNULL)
-    commands = json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8"))
-    files = {pathlib.Path(command["file"]) for command in commands}
-    return {file.relative_to(PROJECT).as_posix() for file in files
-            if file.is_file() and any(file.is_relative_to(PROJECT / folder) for folder in FOLDERS)}
-
-
 def changed_files() -> set[str] | None:
     """What differs from the recorded commit; None where that cannot be said."""
     commit = BASE.read_text(encoding="utf-8").strip() if BASE.is_file() else ""
-    known = commit and subprocess.run(["git", "cat-file", "-e", f"{commit}^{{commit}}"], cwd=PROJECT, check=False,
-                                      capture_output=True).returncode == 0
+    known = (
+        commit
+        and subprocess.run(
+            ["git", "cat-file", "-e", f"{commit}^{{commit}}"], cwd=PROJECT, check=False, capture_output=True
+        ).returncode
+        == 0
+    )
     if not known:
         print("clang-tidy: the commit of tools/tidy-base is not here, so everything is checked")
         return None
-    changed = set(git("diff", "-z", "--name-only", commit)) | set(git("ls-files", "-z", "--others", "--exclude-standard"))
+    changed = set(git("diff", "-z", "--name-only", commit)) | set(
+        git("ls-files", "-z", "--others", "--exclude-standard")
+    )
     if ".clang-tidy" in changed:
         print("clang-tidy: .clang-tidy changed, so everything is checked")
         return None
@@ -90,18 +111,6 @@ def cache_folder() -> pathlib.Path:
     return (pathlib.Path(compiler_cache).parent if compiler_cache else pathlib.Path.home() / ".cache") / "blum-tidy"
 
 
-def commands() -> dict[str, list[str]]:
-    """The compiler's arguments for each source, without the compiler and its output."""
-    found = {}
-    for entry in json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8")):
-        words = shlex.split(entry["command"])
-        kept = [word for before, word in zip(words, words[1:], strict=False)
-                if before == "-isystem" or word.startswith(("-I", "-D", "-std", "-f", "-isystem"))]
-        if pathlib.Path(entry["file"]).is_relative_to(PROJECT):
-            found[pathlib.Path(entry["file"]).relative_to(PROJECT).as_posix()] = kept
-    return found
-
-
 def key_of(file: str, arguments: list[str], common: str) -> str | None:
     """Names what clang-tidy would see of a source; None where it cannot be preprocessed."""
     command = ["clang++-19", "-E", "-C", "-Wno-everything", *arguments, str(PROJECT / file)]
@@ -113,49 +122,53 @@ def key_of(file: str, arguments: list[str], common: str) -> str | None:
     return hashlib.sha256(b"\0".join([common.encode(), names.encode(), seen])).hexdigest()
 
 
-def tidy(file: str, arguments: list[str], common: str) -> str:
+def run_tidy(file: str, options: list[str]) -> str:
+    command = [str(CLANG_TIDY), "-p", str(BUILD), "--quiet", "--extra-arg=-Wno-unknown-warning-option", *options, file]
+    done = subprocess.run(command, cwd=PROJECT, check=False, capture_output=True, text=True)
+    return "" if done.returncode == 0 else f"{file}: exit status {done.returncode}\n{done.stdout}{done.stderr}"
+
+
+def tidy(file: str, arguments: list[str], options: list[str], common: str) -> str:
     key = key_of(file, arguments, common)
     known = cache_folder() / key if key else None
     if known and known.exists():
         return ""
-    report = run_tidy(file)
+    report = run_tidy(file, options)
     if known and not report:
         known.parent.mkdir(parents=True, exist_ok=True)
         known.touch()
     return report
 
 
-def run_tidy(file: str) -> str:
-    command = ["clang-tidy-19", "-p", str(BUILD), "--quiet", "--extra-arg=-Wno-unknown-warning-option", file]
-    done = subprocess.run(command, cwd=PROJECT, check=False, capture_output=True, text=True)
-    return "" if done.returncode == 0 else f"{file}: exit status {done.returncode}\n{done.stdout}{done.stderr}"
-
-
 def main(arguments: list[str]) -> int:
-    whole = arguments == ["--all"]
-    if arguments and not whole:
+    if arguments not in ([], ["--all"], ["--deep"]):
         print(__doc__, file=sys.stderr)
         return 2
-    sources = compiled_sources()
-    changed = None if whole else changed_files()
-    chosen = sources if changed is None else affected(changed, sources)
-    print(f"clang-tidy: {len(chosen)} of {len(sources)} files", flush=True)
+    options = [] if arguments == ["--deep"] else QUICK
+    commands = compile_commands()
+    changed = None if arguments else changed_files()
+    chosen = sorted(commands if changed is None else affected(changed, set(commands)))
+    print(f"clang-tidy: {len(chosen)} of {len(commands)} files", flush=True)
+    version = subprocess.run([CLANG_TIDY, "--version"], check=True, capture_output=True, text=True).stdout
+    common = version + " ".join(options) + (PROJECT / ".clang-tidy").read_text(encoding="utf-8")
     failed = 0
-    version = subprocess.run(["clang-tidy-19", "--version"], check=True, capture_output=True, text=True).stdout
-    common = version + (PROJECT / ".clang-tidy").read_text(encoding="utf-8")
-    arguments_of = commands()
     with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS") or os.cpu_count() or 1)) as pool:
-        for report in pool.map(lambda file: tidy(file, arguments_of[file], common), sorted(chosen)):
+        for report in pool.map(lambda file: tidy(file, commands[file], options, common), chosen):
             if report:
                 failed += 1
                 print(report, flush=True)
-    if whole and failed == 0:
-        if "".join(git("status", "--porcelain")):
-            print("clang-tidy: everything passed, with changes that are not committed: tools/tidy-base stays as it is")
-        else:
-            BASE.write_text(git("rev-parse", "HEAD")[0] + "\n", encoding="utf-8")
-            print("clang-tidy: everything passed; commit tools/tidy-base, which now names this commit")
+    if arguments and failed == 0:
+        record()
     return 1 if failed else 0
+
+
+def record() -> None:
+    """Everything passed: the commit is where the next runs begin."""
+    if "".join(git("status", "--porcelain")):
+        print("clang-tidy: everything passed, with changes that are not committed: tools/tidy-base stays as it is")
+        return
+    BASE.write_text(git("rev-parse", "HEAD")[0] + "\n", encoding="utf-8")
+    print("clang-tidy: everything passed; commit tools/tidy-base, which now names this commit")
 
 
 if __name__ == "__main__":

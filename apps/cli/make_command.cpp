@@ -71,7 +71,7 @@ std::vector<std::pair<std::string, std::string>> take_parameters(std::vector<std
     const std::size_t equals = argument.find('=');
     const std::string name = argument.substr(0, equals);
     const bool takes_value = argument == "-o" || argument == "--output" || argument == "--json";
-    if (name.size() < 3 || name.substr(0, 2) != "--" || is_own_option(name)) {
+    if (name.size() < 3 || !name.starts_with("--") || is_own_option(name)) {
       rest.push_back(argument);
       if (takes_value && i + 1 < arguments.size()) rest.push_back(arguments[++i]);
     } else if (equals != std::string::npos) {

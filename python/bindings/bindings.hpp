@@ -14,6 +14,7 @@ void bind_device_field(nb::module_& m);
 void bind_closest_points(nb::module_& m);
 void bind_images(nb::module_& m);
 void bind_complex(nb::module_& m);
+void bind_solid(nb::module_& m);
 void bind_medial_axis(nb::module_& m);
 void bind_certificate(nb::module_& m);
 void bind_files(nb::module_& m);

@@ -68,6 +68,7 @@ NB_MODULE(_core, m) {
   bind_closest_points(m);
   bind_images(m);
   bind_complex(m);
+  bind_solid(m);
   bind_medial_axis(m);
   bind_certificate(m);
   bind_files(m);

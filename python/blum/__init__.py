@@ -58,6 +58,7 @@ from ._mesh import (
     weld_clusters,
 )
 from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
+from ._solid import Solid, SolidBody
 from ._structs import *  # noqa: F403
 from ._transform import distance_transform, distance_transforms
 from ._view import view
@@ -96,6 +97,8 @@ __all__ = [
     "ShapeInfo",
     "ShapeParameter",
     "Sites",
+    "Solid",
+    "SolidBody",
     "WindingNumber",
     "__version__",
     "ball_union_field",

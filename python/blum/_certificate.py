@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Unpack
@@ -9,6 +11,7 @@ from typing import Any, Unpack
 from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number
 from ._complex import Complex
+from ._errors import InputWarning
 from ._grid import Grid
 from ._image import as_image, is_image
 from ._mesh import as_mesh
@@ -25,6 +28,7 @@ class Claim:
     grid: Grid | None  #: of the voxels' centres, where that is known
     label: int | None  #: of an image: the voxels of this value
     threshold: float | None  #: of an image: the voxels of this value or more
+    weld: float | None  #: of a mesh: how its vertices were merged
     rule: str  #: of its solid; empty where it does not say
     site_ids: str
     version: str  #: of the Blum that wrote its file; empty otherwise
@@ -55,6 +59,7 @@ def certified(
     found: Certificate
     if of_image:
         image = as_image(shape)
+        _warn_of_another(_selection(claim.label, claim.threshold), _selection(label, threshold))
         if label is None and threshold is None:
             label, threshold = claim.label, claim.threshold
         least = optional_number(threshold, "threshold")
@@ -64,10 +69,28 @@ def certified(
                 claim.complex._core, said, has, image._arrays, chosen, least, asked, count, report
             )
     else:
+        if claim.weld is not None:
+            _warn_of_another(f"weld={claim.weld:g}", "" if weld is None else f"weld={float(weld):g}")
+            if weld is None and isinstance(shape, (str, os.PathLike)):
+                weld = claim.weld
         mesh = as_mesh(shape, triangles, "shape", weld=weld)
         with reporting(progress) as report:
             found = _core.verify_mesh(claim.complex._core, said, has, mesh._arrays, asked, count, report)
     return found
+
+
+def _selection(label: Any, threshold: Any) -> str:
+    """As it was asked for; empty for all voxels that are not zero."""
+    if label is not None:
+        return f"label={label}"
+    return "" if threshold is None else f"threshold={threshold:g}"
+
+
+def _warn_of_another(recorded: str, given: str) -> None:
+    """Where an axis says how its solid was taken, and something else is asked for, as `blum verify` warns."""
+    if recorded and given and recorded != given:
+        text = f"the axis was made with {recorded}; {given} is used, as it was given"
+        warnings.warn(text, InputWarning, stacklevel=4)
 
 
 def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:

@@ -302,6 +302,7 @@ def _claim(axis: MedialComplex) -> Claim:
         axis.grid,
         origin.label,
         origin.threshold,
+        origin.weld,
         origin.solid_rule,
         origin.site_ids,
         origin.version,
@@ -368,7 +369,7 @@ def certify(
     grid : Grid, optional
         Of a mesh that bounds no polyhedron: of the centres of the voxels that are the solid. Default: the axis's own.
     weld : float, optional
-        Of a mesh: as for :func:`distance_field`.
+        Of a mesh: as for :func:`distance_field`; default for a path: as the file of the axis says.
     threads, progress
         As for :func:`distance_field`.
     **options

@@ -197,8 +197,9 @@ MeshSolid whole(const MeshView& mesh, const Topology& topology, const std::strin
 void add_shells(const std::vector<Shell>& shells, const std::vector<std::uint32_t>& body, MeshSolid& solid) {
   for (std::uint32_t s = 0; s < shells.size(); ++s) {
     const Shell& one = shells[s];
-    solid.shells.push_back(
-        {body[s], one.depth, one.parent, one.genus, std::abs(one.signed_volume), !one.faces_outwards});
+    solid.shells.push_back({body[s], one.depth,
+                            one.parent < 0 ? std::nullopt : std::optional(static_cast<std::uint32_t>(one.parent)),
+                            one.genus, std::abs(one.signed_volume), !one.faces_outwards});
     SolidBody& own = solid.bodies[body[s]];
     ++own.betti[one.depth % 2 == 0 ? 0 : 2];
     own.betti[1] += one.genus;

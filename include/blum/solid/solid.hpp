@@ -7,10 +7,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "blum/core/betti_numbers.hpp"
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
@@ -26,12 +29,25 @@ namespace blum {
 
 /// A closed shell of the surface of a polyhedron.
 struct SolidShell {
-  std::uint32_t body = 0;    ///< that it bounds from outside, or that it is a void of
-  std::uint32_t depth = 0;   ///< number of other shells that it lies in: at odd depth it is a void
-  std::int64_t parent = -1;  ///< the innermost shell that it lies in; -1 where there is none
-  std::int64_t genus = 0;    ///< number of handles
-  double volume = 0;         ///< that it encloses, > 0, cubic mesh units
-  bool is_reversed = false;  ///< whether it faced the solid in the input
+  std::uint32_t body = 0;                    ///< that it bounds from outside, or that it is a void of
+  std::uint32_t depth = 0;                   ///< number of other shells that it lies in: at odd depth it is a void
+  std::optional<std::uint32_t> parent = {};  ///< the innermost shell that it lies in
+  std::int64_t genus = 0;                    ///< number of handles
+  double volume = 0;                         ///< that it encloses, > 0, cubic mesh units
+  bool is_reversed = false;                  ///< whether it faced the solid in the input
+};
+
+template <>
+struct Description<SolidShell> {
+  static constexpr std::string_view name = "SolidShell";
+  static constexpr std::string_view doc = "A closed shell of the surface of a polyhedron";
+  static constexpr std::tuple members{
+      Member{"body", &SolidShell::body, "", "that it bounds from outside, or that it is a void of"},
+      Member{"depth", &SolidShell::depth, "", "number of other shells that it lies in: at odd depth it is a void"},
+      Member{"parent", &SolidShell::parent, "", "the innermost shell that it lies in"},
+      Member{"genus", &SolidShell::genus, "", "number of handles"},
+      Member{"volume", &SolidShell::volume, "cubic mesh units", "that it encloses, > 0"},
+      Member{"is_reversed", &SolidShell::is_reversed, "", "whether it faced the solid in the input"}};
 };
 
 /// A connected part of a solid, or the whole of it, and the triangles of the input around it.

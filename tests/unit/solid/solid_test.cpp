@@ -278,7 +278,7 @@ TEST(Solid, ShellsTellTheirDepthTheirBodyAndWhetherTheyWereReversed) {
   EXPECT_EQ(depths, (std::vector<std::uint32_t>{0, 1, 0, 0, 1, 2}));
   EXPECT_EQ(bodies, (std::vector<std::uint32_t>{0, 0, 1, 2, 2, 3}));
   EXPECT_EQ(reversed, (std::vector<bool>{false, true, false, false, true, false}));
-  EXPECT_EQ(solid.shells()[1].parent, 0);
+  EXPECT_EQ(solid.shells()[1].parent, 0U);
   EXPECT_EQ(solid.bodies()[2].shells, (std::vector<std::uint32_t>{3, 4}));
   EXPECT_EQ(solid.betti(), (BettiNumbers{4, 2, 2}));
 }

@@ -1,0 +1,142 @@
+"""Solids: what a mesh or an image stands for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arguments import Integer, Real, integer, label_of, optional_number, points_and_shape
+from ._errors import InvalidOption
+from ._image import as_image, is_image
+from ._mesh import Betti, Bounds, Mesh, as_mesh, betti_of, mesh_of_arrays
+from ._progress import Progress, reporting
+from ._structs import SolidShell
+
+
+@dataclass(frozen=True)
+class SolidBody:
+    """A connected part of a solid, or the whole of it, and the triangles of the input around it."""
+
+    mesh: Mesh  #: of a polyhedron, it faces outwards
+    vertex_of: npt.NDArray[np.uint32]  #: of each vertex of `mesh`, in the input
+    triangle_of: npt.NDArray[np.uint32]  #: of each triangle of `mesh`, in the input
+    betti: Betti  #: components, tunnels, voids; of polyhedra
+    shells: tuple[int, ...]  #: of polyhedra: the outer one, then its voids
+
+
+class Solid:
+    """The solid that a mesh or an image stands for: by which rule, its bodies, and their topology.
+
+    Closed meshes that do not cross themselves are polyhedra, shell by shell; shells and triangles that face the wrong
+    way are reversed. Of other meshes the solid is where the winding number is above 1/2. Of images it is the union of
+    the selected voxels, which touch in corners.
+
+    Parameters
+    ----------
+    shape, triangles
+        A mesh, as for :func:`distance_field`; or an image: an array [z, y, x], an :class:`Image`, a path.
+    label, threshold
+        Images: which voxels; default: those that are not zero.
+    weld : float, optional
+        Meshes: as for :func:`distance_field`.
+
+    Raises
+    ------
+    InvalidMesh, InvalidImage, InvalidOption (all ValueError), TypeError, KeyboardInterrupt
+
+    >>> import blum
+    >>> solid = blum.Solid(blum.generate("torus"))
+    >>> solid.rule, solid.betti, solid.inside([[0, 0, 0], [1, 0, 0]])
+    ('polyhedron', (1, 1, 0), array([False,  True]))
+    """
+
+    def __init__(
+        self,
+        shape: Any,
+        triangles: Any = None,
+        *,
+        label: Integer | None = None,
+        threshold: Real | None = None,
+        weld: Real | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> None:
+        count = integer(threads, "threads")
+        if triangles is None and is_image(shape):
+            image = as_image(shape)
+            chosen = None if label is None else label_of(label, "label")
+            least = optional_number(threshold, "threshold")
+            with reporting(progress) as report:
+                self._core = _core.solid_of_image(image._arrays, chosen, least, count, report)
+            return
+        if label is not None or threshold is not None:
+            raise InvalidOption("label and threshold select voxels of an image, and shape is a mesh")
+        mesh = as_mesh(shape, triangles, "shape", weld=weld)
+        with reporting(progress) as report:
+            self._core = _core.solid_of_mesh(mesh._arrays, count, report)
+
+    @property
+    def rule(self) -> str:
+        """What tells its inside: "polyhedron", "winding" or "voxels"."""
+        return self._core.rule
+
+    @property
+    def reason(self) -> str:
+        """One sentence: why this rule."""
+        return self._core.reason
+
+    @property
+    def betti(self) -> Betti | None:
+        """Components, tunnels and voids; None for "winding", where only voxels have numbers."""
+        numbers = self._core.betti
+        return None if numbers is None else betti_of(numbers)
+
+    @property
+    def bodies(self) -> tuple[SolidBody, ...]:
+        """Polyhedra: each faces outwards. "winding": one, of all triangles. Images: none."""
+        return tuple(
+            SolidBody(mesh_of_arrays(arrays), vertices, triangles, betti_of(betti), tuple(map(int, shells)))
+            for arrays, vertices, triangles, betti, shells in self._core.bodies
+        )
+
+    @property
+    def shells(self) -> tuple[SolidShell, ...]:
+        """Of polyhedra, in the order of their smallest triangles."""
+        return tuple(self._core.shells)
+
+    @property
+    def reversed_shells(self) -> int:
+        """How many shells faced the solid and were reversed."""
+        return self._core.reversed_shells
+
+    @property
+    def reversed_triangles(self) -> int:
+        """How many triangles faced another way than most of their shell and were reversed."""
+        return self._core.reversed_triangles
+
+    @property
+    def faces_inwards(self) -> bool:
+        """ "winding": whether the triangles face inwards as a whole, so that hardly anything is inside."""
+        return self._core.faces_inwards
+
+    @property
+    def bounds(self) -> Bounds:
+        """Meshes: the box around the input. Images: that of all voxels, selected or not."""
+        lower, upper = self._core.box
+        return tuple(lower), tuple(upper)
+
+    def inside(self, points: Any, *, threads: int = 0, progress: Progress = False) -> npt.NDArray[np.bool_]:
+        """Whether points (..., 3) lie in the solid; those of a polyhedron's surface do. Exact for closed ones."""
+        rows, shape = points_and_shape(points, "points")
+        if not np.isfinite(rows).all():
+            raise ValueError("points must be finite")
+        with reporting(progress) as report:
+            found: npt.NDArray[np.uint8] = self._core.inside(rows, integer(threads, "threads"), report)
+        return found.view(np.bool_).reshape(shape)
+
+    def __repr__(self) -> str:
+        return f"Solid(rule={self.rule!r}, betti={self.betti}, bodies={len(self._core.bodies)})"
