@@ -12,9 +12,9 @@ from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number, points_and_shape
 from ._errors import InvalidOption
 from ._image import as_image, is_image
-from ._mesh import Betti, Bounds, Mesh, as_mesh, betti_of, mesh_of_arrays
+from ._mesh import Betti, Mesh, as_mesh, betti_of, mesh_of_arrays
 from ._progress import Progress, reporting
-from ._structs import SolidShell
+from ._structs import Bounds, SolidShell
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Solid:
     @property
     def betti(self) -> Betti | None:
         """Components, tunnels and voids; None for "winding", where only voxels have numbers."""
-        numbers = self._core.betti
+        numbers: Any = self._core.betti
         return None if numbers is None else betti_of(numbers)
 
     @property
@@ -127,7 +127,7 @@ class Solid:
     def bounds(self) -> Bounds:
         """Meshes: the box around the input. Images: that of all voxels, selected or not."""
         lower, upper = self._core.box
-        return tuple(lower), tuple(upper)
+        return (lower[0], lower[1], lower[2]), (upper[0], upper[1], upper[2])
 
     def inside(self, points: Any, *, threads: int = 0, progress: Progress = False) -> npt.NDArray[np.bool_]:
         """Whether points (..., 3) lie in the solid; those of a polyhedron's surface do. Exact for closed ones."""
