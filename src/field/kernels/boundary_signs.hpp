@@ -48,7 +48,7 @@ struct SignTiles {
     if (frame->fault != NormalFrame::Fault::none) return;  // there are no distances
     const NodeBox nodes = tiles.box(static_cast<std::uint32_t>(index));
     const GridIndex middle{{nodes.first[0] + nodes.count[0] / 2, nodes.first[1] + nodes.count[1] / 2,
-                        nodes.first[2] + nodes.count[2] / 2}};
+                            nodes.first[2] + nodes.count[2] / 2}};
     const double reach = norm(
         Vec3d{spacing.x * (nodes.count[0] / 2), spacing.y * (nodes.count[1] / 2), spacing.z * (nodes.count[2] / 2)});
     // Distances are good to 1e-6 of the diagonal, which is at most 1 in normalised units.
@@ -74,7 +74,7 @@ struct SignTiles {
       const auto rows = static_cast<std::uint32_t>(nodes.count[1] * nodes.count[2]);
       for (std::uint32_t row = warp.index(); row < rows; row += warps) {
         const GridIndex first{{nodes.first[0], nodes.first[1] + static_cast<std::int32_t>(row) % nodes.count[1],
-                           nodes.first[2] + static_cast<std::int32_t>(row) / nodes.count[1]}};
+                               nodes.first[2] + static_cast<std::int32_t>(row) / nodes.count[1]}};
         if (is_settled) {
           negate(warp, first, nodes.count[0]);
         } else {
