@@ -38,7 +38,7 @@ TEST(Formats, MeshesAreKnownByNameAndContent) {
     EXPECT_EQ(content_of(nameless), FileContent::mesh) << end;
     EXPECT_EQ(read_mesh_of_any_name(nameless).mesh.triangles, triangle.triangles) << end;
   }
-  EXPECT_EQ(extension_list(FileContent::mesh, FileAccess::read), ".obj .off .stl .ply");
+  EXPECT_TRUE(extension_list(FileContent::mesh, FileAccess::read).starts_with(".obj .off .stl .ply"));
   EXPECT_FALSE(MeshFormat::by_name("a.nrrd").has_value());
 }
 
