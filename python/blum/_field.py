@@ -175,7 +175,11 @@ class Field:
             _core.write_field(Path(os.fspath(path)), self._core, arrays, self.source, self._space, 0, report)
 
     def to_pyvista(self) -> Any:
-        """A pyvista.ImageData with the point data `distance` and `site`; a dict of arrays where PyVista is missing."""
+        """A pyvista.ImageData with the point data `distance` and `site`; a dict of arrays where PyVista is missing.
+
+        The point data are copies: VTK would hold on to the library's memory beyond Python's end, which then tells of a
+        leak.
+        """
         try:
             import pyvista
         except ImportError:
@@ -190,9 +194,9 @@ class Field:
         out = pyvista.ImageData(
             dimensions=grid.size, spacing=grid.spacing, origin=grid.origin, direction_matrix=grid.direction
         )
-        out.point_data["distance"] = self.distance.ravel()
+        out.point_data["distance"] = np.array(self.distance).ravel()
         if self.site is not None:
-            out.point_data["site"] = self.site.ravel()
+            out.point_data["site"] = np.array(self.site).ravel()
         return out
 
     def __repr__(self) -> str:

@@ -256,7 +256,7 @@ class MedialComplex(MedialColumns):
         from ._mesh import _padded
 
         out = pyvista.PolyData(
-            np.ascontiguousarray(self.vertices),
+            np.array(self.vertices),  # VTK would hold on to the library's memory beyond Python's end
             faces=_padded(np.ascontiguousarray(self.triangles)),
             lines=_padded(np.ascontiguousarray(self.edges)),
         )

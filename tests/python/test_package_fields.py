@@ -1,6 +1,8 @@
 """Proves that the Python package's fields, closest points and transforms are those of brute force, SciPy and the
 command-line tool, for any kind of input, and that arrays are shared where that is promised."""
 
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -93,6 +95,21 @@ def test_objects_of_other_packages(torus, tmp_path):
     assert isinstance(torus.to_pyvista(), pyvista.PolyData)
     grid = blum.distance_field(torus, resolution=16).to_pyvista()
     assert np.array_equal(grid.point_data["distance"], expected.ravel())
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        'blum.generate("torus")',
+        'blum.distance_field(blum.generate("torus"), resolution=8)',
+        'blum.medial_axis(blum.generate("torus"), resolution=32).simplify(60)',
+    ],
+)
+def test_what_vtk_holds_until_python_ends_is_no_leak(shape):
+    pytest.importorskip("pyvista")
+    code = f"import blum; held = {shape}.to_pyvista()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == ""
 
 
 def test_signed_distances_agree_with_trimesh(torus):
