@@ -31,7 +31,7 @@ class FlatObject final : public nlohmann::json_sax<json> {
   FileMetadata pairs;
   std::size_t position = 0;  ///< of what the parser refused
 
-  bool start_object(std::size_t /*size*/) override { return std::exchange(is_open_, true) == false; }
+  bool start_object(std::size_t /*size*/) override { return !std::exchange(is_open_, true); }
   bool end_object() override { return true; }
   bool key(string_t& text) override {
     key_ = std::move(text);

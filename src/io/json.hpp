@@ -13,6 +13,6 @@ namespace blum::volume_io {
 [[nodiscard]] std::string to_json(const FileMetadata& metadata);
 
 /// Reads back what to_json writes. @throws FormatError with `name` for anything else.
-[[nodiscard]] FileMetadata from_json(std::string_view json, const std::string& name);
+[[nodiscard]] FileMetadata from_json(std::string_view text, const std::string& name);
 
 }  // namespace blum::volume_io
