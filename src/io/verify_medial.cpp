@@ -68,11 +68,11 @@ std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule foun
 }
 
 Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
-                   const CertificateOptions& asked, double available_memory, const Context& context) {
-  const CertificateOptions options = checkable(claims, SiteIds::features, asked);
+                   const CertificateOptions& options, double available_memory, const Context& context) {
+  const CertificateOptions checks = checkable(claims, SiteIds::features, options);
   const MeshSolidRule found = solid_rule(mesh, context);
   if (found.rule == SolidRule::polyhedron) {
-    return with_claims(certify(axis, mesh, options, context), claims, nullptr);
+    return with_claims(certify(axis, mesh, checks, context), claims, nullptr);
   }
   if (!claims.metadata.grid) throw UntoldVoxels(found.reason);
   const GridSpec& grid = *claims.metadata.grid;
@@ -85,14 +85,14 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshVi
                       "have made here");
   }
   const VoxelSet voxels = voxels_inside(mesh, grid, context);
-  return with_claims(certify(axis, voxels, grid, &mesh, options, context), claims, nullptr);
+  return with_claims(certify(axis, voxels, grid, &mesh, checks, context), claims, nullptr);
 }
 
 Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
-                   const LabelSelection& selection, const CertificateOptions& asked, const Context& context) {
+                   const LabelSelection& selection, const CertificateOptions& options, const Context& context) {
   const VoxelSet voxels = selected_voxels(image, selection, context);
-  const CertificateOptions options = checkable(claims, SiteIds::voxels, asked);
-  return with_claims(certify(axis, voxels, image.grid, nullptr, options, context), claims, &image.grid);
+  const CertificateOptions checks = checkable(claims, SiteIds::voxels, options);
+  return with_claims(certify(axis, voxels, image.grid, nullptr, checks, context), claims, &image.grid);
 }
 
 }  // namespace blum
