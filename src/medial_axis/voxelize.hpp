@@ -25,8 +25,8 @@ struct Voxelized {
 
 /// Voxels of an image, with a layer of others around the smallest box that holds them.
 /// @param first  the place in the image of the box's voxel (0, 0, 0); may be -1.
-/// @param voxels  at least one; on the grid of their centres.
-[[nodiscard]] Voxelized voxelize_image(const VoxelSet& voxels, const GridSpec& grid, std::array<std::int64_t, 3>& first,
+/// @param all  its voxels, at least one; on the grid of their centres.
+[[nodiscard]] Voxelized voxelize_image(const VoxelSet& all, const GridSpec& grid, std::array<std::int64_t, 3>& first,
                                        const Context& context);
 
 }  // namespace blum
