@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "blum/core/vec3.hpp"
+
 namespace blum::detail {
 
 /// A number held as a sum of doubles that do not overlap, by rising magnitude (Shewchuk 1997). Exact as long as nothing
@@ -35,6 +37,15 @@ class Expansion {
     const double product = x * y;
     add_product(std::fma(x, y, -product), z);
     add_product(product, z);
+  }
+  /// Adds sign * det(u, v, w). @param sign  1 or -1.
+  void add_determinant(double sign, const Vec3d& u, const Vec3d& v, const Vec3d& w) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      const std::size_t k = (i + 2) % 3;
+      add_product(sign * u[i], v[j], w[k]);
+      add_product(-sign * u[i], v[k], w[j]);
+    }
   }
   [[nodiscard]] int sign() const { return size_ == 0 ? 0 : parts_[size_ - 1] > 0 ? 1 : -1; }
 

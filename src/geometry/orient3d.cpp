@@ -59,16 +59,6 @@ double determinant(const Row& u, const Row& v, const Row& w) {
   return sum(sum(x, y), z).high;
 }
 
-template <class Sum>
-void add_determinant(Sum& out, double sign, const Vec3d& u, const Vec3d& v, const Vec3d& w) {
-  out.add_product(sign * u.x, v.y, w.z);
-  out.add_product(-sign * u.x, v.z, w.y);
-  out.add_product(sign * u.y, v.z, w.x);
-  out.add_product(-sign * u.y, v.x, w.z);
-  out.add_product(sign * u.z, v.x, w.y);
-  out.add_product(-sign * u.z, v.y, w.x);
-}
-
 bool is_rounded(const Row& row) {
   return row[0].low != 0 || row[1].low != 0 || row[2].low != 0;
 }
@@ -78,14 +68,14 @@ int exact_sign(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, c
   if (!is_rounded(u) && !is_rounded(v) && !is_rounded(w)) {
     const auto high = [](const Row& r) { return Vec3d{r[0].high, r[1].high, r[2].high}; };
     Expansion<24> exact;
-    add_determinant(exact, 1, high(u), high(v), high(w));
+    exact.add_determinant(1, high(u), high(v), high(w));
     return exact.sign();
   }
   Expansion<96> exact;
-  add_determinant(exact, 1, b, c, d);
-  add_determinant(exact, -1, a, c, d);
-  add_determinant(exact, 1, a, b, d);
-  add_determinant(exact, -1, a, b, c);
+  exact.add_determinant(1, b, c, d);
+  exact.add_determinant(-1, a, c, d);
+  exact.add_determinant(1, a, b, d);
+  exact.add_determinant(-1, a, b, c);
   return exact.sign();
 }
 

@@ -7,20 +7,6 @@
 #include "geometry/expansion.hpp"
 
 namespace blum::detail {
-namespace {
-
-template <class Sum>
-void add_determinant(Sum& out, double sign, const Vec3d& u, const Vec3d& v, const Vec3d& w) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    const std::size_t k = (i + 2) % 3;
-    out.add_product(sign * u[i], v[j], w[k]);
-    out.add_product(-sign * u[i], v[k], w[j]);
-  }
-}
-
-}  // namespace
-
 ScaledRay scaled_direction(const Ray& ray) {
   const Vec3d& d = ray.direction;
   const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
@@ -47,9 +33,9 @@ int ray_side(const Ray& ray, const Vec3d& a, const Vec3d& b) {
   if (magnitude == 0) return 0;  // every product has a factor that is 0, and differences are 0 only where exact
   // d, a - o, b - o: the part with o twice vanishes.
   Expansion<72> exact;
-  add_determinant(exact, 1, d, a, b);
-  add_determinant(exact, -1, d, ray.origin, b);
-  add_determinant(exact, -1, d, a, ray.origin);
+  exact.add_determinant(1, d, a, b);
+  exact.add_determinant(-1, d, ray.origin, b);
+  exact.add_determinant(-1, d, a, ray.origin);
   return exact.sign();
 }
 

@@ -112,6 +112,6 @@ namespace blum::formats {
 
 using namespace volume_io;
 
-constinit const FieldCode field_nrrd{read_field_nrrd, write_field_nrrd, {.holds_this = holds_field}};
+constinit const FieldCode field_nrrd{read_field_nrrd, write_field_nrrd, {begins_as_nrrd, holds_field}};
 
 }  // namespace blum::formats

@@ -61,40 +61,32 @@ std::optional<ImageFormat> image_format(const fs::path& path, std::string_view h
   return format ? format : ImageFormat::by_head(head);
 }
 
-/// Whether a file is one of this content by its extension and, where that stands for others too, by its bytes.
+/// Whether a file of this format, where there is one, holds its content: some formats hold others, too.
 template <class Format>
-bool holds(const std::optional<Format>& format, std::string_view head, std::string_view tail) {
+bool holds(const std::optional<Format>& format, const fs::path& path, std::string_view head) {
   if (!format) return false;
   const auto holds_this = formats::tells_of(format->row()).holds_this;
-  return holds_this == nullptr || holds_this(head, tail);
-}
-
-/// The content of a file whose extension stands for none.
-std::optional<FileContent> content_by_head(std::string_view head) {
-  if (const auto format = ImageFormat::by_head(head)) {
-    const auto field = FieldFormat::by_name("a" + file_formats()[format->row()].extensions.front());
-    return field && holds(field, head, {}) ? FileContent::field : FileContent::image;
-  }
-  return MeshFormat::by_head(head) ? std::optional(FileContent::mesh) : std::nullopt;
+  return holds_this == nullptr || holds_this(head, read_tail(path));
 }
 
 }  // namespace
 
 FileContent content_of(const fs::path& path) {
   const std::string head = read_head(path);
-  const std::string tail = read_tail(path);
   if (MeshFormat::by_name(path)) return FileContent::mesh;
-  if (holds(ComplexFormat::by_name(path), head, tail)) return FileContent::complex;
-  if (holds(FieldFormat::by_name(path), head, tail)) return FileContent::field;
+  if (holds(ComplexFormat::by_name(path), path, head)) return FileContent::complex;
+  if (holds(FieldFormat::by_name(path), path, head)) return FileContent::field;
   if (ImageFormat::by_name(path)) return FileContent::image;
-  if (const auto content = content_by_head(head)) return *content;
+  if (holds(FieldFormat::by_head(head), path, head)) return FileContent::field;
+  if (ImageFormat::by_head(head)) return FileContent::image;
+  if (MeshFormat::by_head(head)) return FileContent::mesh;
   throw FileError("'" + path.string() + "' is of no known kind; meshes are " +
                   extension_list(FileContent::mesh, FileAccess::read) + " files, images " +
                   extension_list(FileContent::image, FileAccess::read));
 }
 
 bool holds_complex(const fs::path& path) {
-  return holds(ComplexFormat::by_name(path), read_head(path), read_tail(path));
+  return holds(ComplexFormat::by_name(path), path, read_head(path));
 }
 
 bool may_hold_field(const fs::path& path) {

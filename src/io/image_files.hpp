@@ -14,6 +14,9 @@ namespace blum::volume_io {
 [[nodiscard]] VoxelImage read_nifti(const ByteSource& source, const ByteSource* data_source);
 [[nodiscard]] VoxelImage read_vol(const ByteSource& source);
 
+/// Writes a header and the values after it, in the machine's byte order; the file appears when it is complete.
+void write_values_after(const std::filesystem::path& path, const std::string& header, const VoxelImageView& image);
+
 /// The bytes of a source, decompressed where they begin as a gzip file does.
 [[nodiscard]] std::unique_ptr<ByteStream> open_plain_or_gzip(const ByteSource& source);
 

@@ -4,7 +4,10 @@
 #include <utility>
 
 #include "blum/core/error.hpp"
+#include "blum/io/atomic_file.hpp"
 #include "io/format_table.hpp"
+#include "io/image_files.hpp"
+#include "io/scalar_type.hpp"
 
 namespace blum {
 namespace {
@@ -21,6 +24,15 @@ VoxelImage checked(VoxelImage image, const std::string& name) {
 }
 
 }  // namespace
+
+void volume_io::write_values_after(const std::filesystem::path& path, const std::string& header,
+                                   const VoxelImageView& image) {
+  AtomicFile file(path);
+  file.write(header);
+  const auto bytes = as_bytes(image.values);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
 
 VoxelImage read_image(const std::filesystem::path& path) {
   const formats::ImageCode& code = formats::code_of(ImageFormat::of(path));

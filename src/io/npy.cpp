@@ -6,8 +6,8 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
-#include "blum/io/atomic_file.hpp"
 #include "io/format_table.hpp"
+#include "io/image_files.hpp"
 #include "io/image_geometry.hpp"
 
 namespace blum::volume_io {
@@ -270,13 +270,9 @@ VoxelImage read_npy(const ByteSource& source, const std::filesystem::path&) {
 
 void write_npy(const std::filesystem::path& path, const VoxelImageView& image) {
   const auto& n = image.grid.size;
-  AtomicFile file(path);
-  file.write(npy_header(
-      npy_dtype(scalar_type(image.values)),
-      {static_cast<std::uint64_t>(n[2]), static_cast<std::uint64_t>(n[1]), static_cast<std::uint64_t>(n[0])}));
-  const auto bytes = as_bytes(image.values);
-  file.write(bytes.data(), bytes.size());
-  file.commit();
+  const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(n[2]), static_cast<std::uint64_t>(n[1]),
+                                         static_cast<std::uint64_t>(n[0])};
+  write_values_after(path, npy_header(npy_dtype(scalar_type(image.values)), shape), image);
 }
 
 }  // namespace

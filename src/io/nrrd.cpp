@@ -11,8 +11,8 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/ids.hpp"
-#include "blum/io/atomic_file.hpp"
 #include "io/format_table.hpp"
+#include "io/image_files.hpp"
 #include "io/image_geometry.hpp"
 #include "io/text_scan.hpp"
 
@@ -502,6 +502,10 @@ std::filesystem::path nrrd_data_path(const NrrdHeader& header, const std::filesy
   return header_path.parent_path() / header.data_file;
 }
 
+bool begins_as_nrrd(std::string_view head) {
+  return head.starts_with("NRRD000");
+}
+
 VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path) {
   const NrrdHeader header = read_nrrd_header(source);
   check_count(header.grid.size, max_id_count, source.name());
@@ -522,16 +526,8 @@ VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path
 
 namespace {
 
-bool begins_as_nrrd(std::string_view head) {
-  return head.starts_with("NRRD000");
-}
-
 void write_nrrd(const std::filesystem::path& path, const VoxelImageView& image) {
-  AtomicFile file(path);
-  file.write(nrrd_header(scalar_type(image.values), image.grid, image.space, {}));
-  const auto bytes = as_bytes(image.values);
-  file.write(bytes.data(), bytes.size());
-  file.commit();
+  write_values_after(path, nrrd_header(scalar_type(image.values), image.grid, image.space, {}), image);
 }
 
 }  // namespace

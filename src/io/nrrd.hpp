@@ -53,6 +53,8 @@ void check_nrrd_data_size(const ByteSource& source, const NrrdHeader& header);
 [[nodiscard]] std::filesystem::path nrrd_data_path(const NrrdHeader& header, const std::filesystem::path& header_path);
 
 /// @param path  where the header came from, for detached data; empty: detached data are refused.
+/// Whether the first bytes of a file are those of a NRRD file.
+[[nodiscard]] bool begins_as_nrrd(std::string_view head);
 [[nodiscard]] VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path);
 
 }  // namespace blum::volume_io
