@@ -181,7 +181,7 @@ describe("a page in a file", () => {
   it("a click on an axis says what its file holds", async () => {
     blum("view", "cut-theta60.npz", "-o", "axis.html");
     const { page } = await open(browser, fileUrl("axis.html"));
-    const { vertices, radius, footprints, sites } = readNpz(file("cut-theta60.npz"));
+    const axis = readNpz(file("cut-theta60.npz"));
     const box = (await page.locator("#canvas").boundingBox())!;
     let hits = 0;
     for (const [u, v] of [[0.5, 0.5], [0.4, 0.4], [0.35, 0.5], [0.5, 0.65], [0.6, 0.7], [0.3, 0.35]]) {
@@ -189,11 +189,11 @@ describe("a page in a file", () => {
       if (!(await page.locator(".readout").isVisible())) continue;
       ++hits;
       const vertex = Number(await fact(page, "vertex"));
-      expect(Number((await fact(page, "radius"))!.split(" ")[0])).toBe(radius.values[vertex]);
-      expect(await fact(page, "sites")).toBe(`${sites.values[2 * vertex]} and ${sites.values[2 * vertex + 1]}`);
+      expect(Number((await fact(page, "radius"))!.split(" ")[0])).toBe(axis.radius.values[vertex]);
+      expect(await fact(page, "sites")).toBe(`${axis.site_0.values[vertex]} and ${axis.site_1.values[vertex]}`);
       const numbers = [...(await fact(page, "footprint 2"))!.matchAll(/-?[\d.e-]+/g)].map(Number);
-      numbers.forEach((n, a) => expect(n).toBeCloseTo(footprints.values[6 * vertex + 3 + a], 4));
-      expect(vertices.shape[0]).toBeGreaterThan(vertex);
+      numbers.forEach((n, a) => expect(n).toBeCloseTo(axis.footprint_1.values[3 * vertex + a], 4));
+      expect(axis.vertices.shape[0]).toBeGreaterThan(vertex);
     }
     expect(hits).toBeGreaterThan(1);
     await page.close();
