@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -6,6 +5,7 @@
 #include "blum/io/formats.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
+#include "described.hpp"
 #include "summary.hpp"
 
 namespace blum::cli {
@@ -28,22 +28,13 @@ std::string access_text(const FileFormat& format) {
   return "read; " + joined(format.written) + " written";
 }
 
-Json to_json(const FileFormat& format) {
-  return {{"content", to_string(format.content)},
-          {"name", format.name},
-          {"extensions", format.extensions},
-          {"written", format.written},
-          {"holds", format.holds},
-          {"opens_in", format.opens_in}};
-}
-
 std::string table_text() {
   std::string text;
-  for (const FileContent content : {FileContent::mesh, FileContent::image, FileContent::field, FileContent::complex}) {
-    text += std::string(text.empty() ? "" : "\n") + std::string(to_string(content)) + "\n";
+  for (const auto& content : Description<FileContent>::values) {
+    text += (text.empty() ? "" : "\n") + std::string(content.name) + "\n";
     TextTable table;
     for (const FileFormat& format : file_formats()) {
-      if (format.content != content) continue;
+      if (format.content != content.value) continue;
       table.add("  " + joined(format.extensions),
                 access_text(format) + ": " + format.holds + " (" + format.opens_in + ")");
     }
@@ -53,9 +44,8 @@ std::string table_text() {
 }
 
 void run(const ReportOptions& options) {
-  Json formats = Json::array();
-  for (const FileFormat& format : file_formats()) formats.push_back(to_json(format));
-  report(options, {{"blum_version", BLUM_VERSION}, {"command", "formats"}, {"formats", formats}}, table_text());
+  report(options, {{"blum_version", BLUM_VERSION}, {"command", "formats"}, {"formats", to_json(file_formats())}},
+         table_text());
 }
 
 }  // namespace

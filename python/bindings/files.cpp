@@ -113,14 +113,8 @@ void bind_medial_files(nb::module_& m) {
 }
 
 void bind_formats(nb::module_& m) {
-  m.def("file_formats", [] {
-    nb::list out;
-    for (const FileFormat& format : file_formats()) {
-      out.append(nb::make_tuple(std::string(to_string(format.content)), format.name, format.extensions, format.written,
-                                format.holds, format.opens_in));
-    }
-    return out;
-  });
+  bind_struct<FileFormat>(m);
+  m.def("file_formats", [] { return result_of(file_formats()); });
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ from ._field import (
     selected_voxels,
     voxel_topology,
 )
-from ._formats import FileFormat, file_formats
+from ._formats import file_formats
 from ._grid import Grid
 from ._image import Image, read_image
 from ._medial import MedialAxis, medial_axis
@@ -78,7 +78,6 @@ __all__ = [
     "Field",
     "FieldSolver",
     "FileError",
-    "FileFormat",
     "FormatError",
     "Grid",
     "Image",

@@ -2,25 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from . import _core
-
-
-class FileFormat(NamedTuple):
-    """A format of files of one content; a name that stands for several contents (PLY) is there for each."""
-
-    content: str
-    """"mesh", "image", "field" or "complex" (medial axes are complexes)."""
-    name: str
-    extensions: list[str]
-    """Those that are read, in lower case, with their dots."""
-    written: list[str]
-    """Those of them that are written as well."""
-    holds: str
-    """What a file can hold, for people."""
-    opens_in: str
-    """Other programs, for people."""
+from ._structs import FileFormat
 
 
 def file_formats(content: str | None = None) -> list[FileFormat]:
@@ -30,7 +13,7 @@ def file_formats(content: str | None = None) -> list[FileFormat]:
     >>> [one.name for one in blum.file_formats("mesh")][:2]
     ['OBJ', 'OFF']
     """
-    rows = [FileFormat(*row) for row in _core.file_formats()]
+    rows: tuple[FileFormat, ...] = _core.file_formats()
     return [row for row in rows if content is None or row.content == content]
 
 

@@ -126,6 +126,12 @@ def image_of_parts(values: npt.NDArray[Any], spec: _core.GridSpec, space: str) -
     return Image(values, grid.spacing, grid.origin, grid.direction, space=space)
 
 
+def refuse_selection(label: Any, threshold: Any) -> None:
+    """Where the shape is no image."""
+    if label is not None or threshold is not None:
+        raise InvalidOption("label and threshold select voxels of an image, and shape is a mesh")
+
+
 def is_image_path(value: Any) -> bool:
     return isinstance(value, (str, os.PathLike)) and os.fspath(value).lower().endswith(_EXTENSIONS)
 

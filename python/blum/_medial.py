@@ -9,8 +9,8 @@ from typing import Any, Unpack
 
 from . import _core
 from ._arguments import PathLike, Real, integer, number, optional_number
-from ._errors import InputWarning, InvalidOption
-from ._image import Image, as_image, is_image
+from ._errors import InputWarning
+from ._image import Image, as_image, is_image, refuse_selection
 from ._medial_columns import NestedComplex
 from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
 from ._mesh import as_mesh
@@ -126,8 +126,7 @@ def medial_axis(
         chosen = None if label is None else int(label)
         origin = Origin(image, chosen, optional_number(threshold, "threshold"), lambda_=smallest, source=image.source)
         return MedialAxis(core, origin, least)
-    if label is not None or threshold is not None:
-        raise InvalidOption("label and threshold select voxels of an image, and shape is a mesh")
+    refuse_selection(label, threshold)
     mesh = as_mesh(shape, triangles, "shape", weld=weld)
     with reporting(progress) as report:
         core = _core.medial_axis_of_mesh(mesh._arrays, {**options, "spacing": spacing}, count, report)

@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number, points_and_shape
-from ._errors import InvalidOption
-from ._image import as_image, is_image
+from ._image import as_image, is_image, refuse_selection
 from ._mesh import Betti, Mesh, as_mesh, betti_of, mesh_of_arrays
 from ._progress import Progress, reporting
 from ._structs import Bounds, SolidShell
@@ -73,8 +72,7 @@ class Solid:
             with reporting(progress) as report:
                 self._core = _core.solid_of_image(image._arrays, chosen, least, count, report)
             return
-        if label is not None or threshold is not None:
-            raise InvalidOption("label and threshold select voxels of an image, and shape is a mesh")
+        refuse_selection(label, threshold)
         mesh = as_mesh(shape, triangles, "shape", weld=weld)
         with reporting(progress) as report:
             self._core = _core.solid_of_mesh(mesh._arrays, count, report)

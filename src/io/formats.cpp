@@ -59,11 +59,6 @@ std::optional<std::size_t> find_head(FileContent content, std::string_view head)
 
 }  // namespace
 
-std::string_view to_string(FileContent content) {
-  constexpr std::array<std::string_view, 4> names{"mesh", "image", "field", "complex"};
-  return names[static_cast<std::size_t>(content)];
-}
-
 const std::vector<FileFormat>& file_formats() {
   static const std::vector<FileFormat> all = [] {
     std::vector<FileFormat> out;

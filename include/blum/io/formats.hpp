@@ -1,21 +1,30 @@
 // Blum: the table of file formats. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
+
+#include "blum/core/describe.hpp"
 
 namespace blum {
 
 /// What a file holds. Medial axes are complexes.
 enum class FileContent : std::uint8_t { mesh, image, field, complex };
 
-/// "mesh", "image", "field" or "complex".
-[[nodiscard]] std::string_view to_string(FileContent content);
+template <>
+struct Description<FileContent> {
+  static constexpr std::string_view name = "FileContent";
+  static constexpr std::array values{NamedValue{FileContent::mesh, "mesh"}, NamedValue{FileContent::image, "image"},
+                                     NamedValue{FileContent::field, "field"},
+                                     NamedValue{FileContent::complex, "complex"}};
+};
 
 enum class FileAccess : std::uint8_t { read, write };
 
@@ -27,6 +36,21 @@ struct FileFormat {
   std::vector<std::string> written;     ///< those of them that are written as well
   std::string holds;                    ///< what a file can hold, for people
   std::string opens_in;                 ///< other programs, for people
+};
+
+template <>
+struct Description<FileFormat> {
+  static constexpr std::string_view name = "FileFormat";
+  static constexpr std::string_view doc =
+      "A format of files of one content; a name that stands for several contents (PLY) is there for each";
+  static constexpr std::tuple members{
+      Member{"content", &FileFormat::content, "", "what the files hold; medial axes are complexes"},
+      Member{"name", &FileFormat::name, "", "of the format"},
+      Member{"extensions", &FileFormat::extensions, "", "those that are read, in lower case, with their dots"},
+      Member{"written", &FileFormat::written, "", "those of them that are written as well"},
+      Member{"holds", &FileFormat::holds, "", "what a file can hold, for people"},
+      Member{"opens_in", &FileFormat::opens_in, "", "other programs, for people"},
+  };
 };
 
 /// All formats, content by content.
