@@ -1,9 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -23,13 +28,29 @@ constexpr std::size_t most_meetings = std::size_t{1} << 22;
 struct Query {
   Vec3d point;  ///< permuted: the ray goes along z
   std::uint32_t shell = 0;
-  std::uint32_t probe = 0;  ///< counts all queries of a round
 };
 
-/// A triangle of one shell above a query of another one.
+constexpr std::uint32_t no_shell = no_component;
+constexpr std::uint32_t several_shells = no_component - 1;
+
+/// Joins what is known of a set of shells with one more: none, one, or several.
+void include_shell(std::uint32_t shell, std::uint32_t& set) {
+  set = set == no_shell || set == shell ? shell : several_shells;
+}
+bool has_other_shell(std::uint32_t set, std::uint32_t than) {
+  return set != no_shell && set != than;
+}
+
+/// Queries at one point. Shells that lie upon each other ask the same, and are answered once.
+struct Place {
+  Vec3d point;
+  std::uint32_t number = 0;
+  std::uint32_t shells = no_shell;  ///< that ask
+};
+
+/// A triangle of a shell above a place.
 struct Crossing {
-  std::uint32_t probe = 0;
-  std::uint32_t inner = 0;
+  std::uint32_t place = 0;
   std::uint32_t outer = 0;
   std::int32_t direction = 0;  ///< 1 where the ray leaves through the triangle, -1 where it enters
 };
@@ -48,24 +69,24 @@ struct Frame {
   [[nodiscard]] Box3 operator()(const Box3& b) const { return {(*this)(b.lower), (*this)(b.upper)}; }
 };
 
-/// Queries binned by x and y; within a bin sorted by z.
-class QueryGrid {
+/// The places of queries, binned by x and y; within a bin sorted by z.
+class PlaceGrid {
  public:
-  QueryGrid(std::vector<Query> queries, const Box3& bounds) : queries_(std::move(queries)), bounds_(bounds) {
-    const double wanted = std::ceil(std::sqrt(static_cast<double>(queries_.size())));
+  /// @param place_of  receives the place of each query.
+  PlaceGrid(const std::vector<Query>& queries, const Box3& bounds, std::vector<std::uint32_t>& place_of)
+      : bounds_(bounds) {
+    gather(queries, place_of);
+    const double wanted = std::ceil(std::sqrt(static_cast<double>(places_.size())));
     side_ = static_cast<std::int64_t>(std::clamp(wanted, 1.0, 1024.0));
-    std::sort(queries_.begin(), queries_.end(), [&](const Query& a, const Query& b) {
-      const std::int64_t bin_a = bin(a.point);
-      const std::int64_t bin_b = bin(b.point);
-      if (bin_a != bin_b) return bin_a < bin_b;
-      return a.point.z != b.point.z ? a.point.z < b.point.z : a.probe < b.probe;
-    });
+    const auto key = [&](const Place& p) { return std::tuple(bin(p.point), p.point.z, p.number); };
+    std::sort(places_.begin(), places_.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
     start_.assign(static_cast<std::size_t>(side_ * side_) + 1, 0);
-    for (const Query& q : queries_) ++start_[static_cast<std::size_t>(bin(q.point)) + 1];
+    for (const Place& place : places_) ++start_[static_cast<std::size_t>(bin(place.point)) + 1];
     for (std::size_t b = 0; b + 1 < start_.size(); ++b) start_[b + 1] += start_[b];
   }
+  [[nodiscard]] std::size_t size() const { return places_.size(); }
 
-  /// Calls visit(query) for those in bins that the x and y range of the first box touches, with z in the range of the
+  /// Calls visit(place) for those in bins that the x and y range of the first box touches, with z in the range of the
   /// second; stops when it returns true.
   template <class Visit>
   bool visit_in(const Box3& columns, const Box3& heights, Visit visit) const {
@@ -74,11 +95,11 @@ class QueryGrid {
     for (std::int64_t y = cell(columns.lower.y, 1); y <= y1; ++y) {
       for (std::int64_t x = cell(columns.lower.x, 0); x <= x1; ++x) {
         const auto b = static_cast<std::size_t>(y * side_ + x);
-        const Query* end = queries_.data() + start_[b + 1];
-        const Query* query = queries_.data() + start_[b];
-        query = std::lower_bound(query, end, heights.lower.z, [](const Query& q, double z) { return q.point.z < z; });
-        for (; query != end && query->point.z <= heights.upper.z; ++query) {
-          if (visit(*query)) return true;
+        const Place* end = places_.data() + start_[b + 1];
+        const Place* place = places_.data() + start_[b];
+        place = std::lower_bound(place, end, heights.lower.z, [](const Place& q, double z) { return q.point.z < z; });
+        for (; place != end && place->point.z <= heights.upper.z; ++place) {
+          if (visit(*place)) return true;
         }
       }
     }
@@ -94,7 +115,26 @@ class QueryGrid {
   }
   [[nodiscard]] std::int64_t bin(const Vec3d& p) const { return cell(p.y, 1) * side_ + cell(p.x, 0); }
 
-  std::vector<Query> queries_;
+  void gather(const std::vector<Query>& queries, std::vector<std::uint32_t>& place_of) {
+    std::vector<std::uint32_t> order(queries.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto key = [&](std::uint32_t q) {
+      const Vec3d& p = queries[q].point;
+      return std::tuple(p.x, p.y, p.z);
+    };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    place_of.resize(queries.size());
+    for (const std::uint32_t q : order) {
+      const Query& query = queries[q];
+      if (places_.empty() || places_.back().point != query.point) {
+        places_.push_back({query.point, static_cast<std::uint32_t>(places_.size()), no_shell});
+      }
+      include_shell(query.shell, places_.back().shells);
+      place_of[q] = places_.back().number;
+    }
+  }
+
+  std::vector<Place> places_;
   Box3 bounds_;
   std::int64_t side_ = 1;
   std::vector<std::uint32_t> start_;
@@ -143,24 +183,27 @@ class Nesting {
     bounds_ = frame_(bounds_);
   }
 
-  /// @return  how often a triangle met a point.
+  /// @return  how often a triangle met a place.
   std::size_t run() {
+    choices_.resize(set_.shells.size());
     const std::size_t without_end = std::numeric_limits<std::size_t>::max();
-    const Answers first = ask(first_vertices(), without_end);
-    const std::vector<std::uint32_t> doubtful = keep_certain(first);
+    rounds_[0] = ask(first_vertices(), without_end);
+    const std::vector<std::uint32_t> doubtful = choose_certain(0);
     if (!doubtful.empty()) {
-      std::vector<Query> queries = many_points(doubtful);
-      const std::size_t most = most_meetings + 16 * (queries.size() + mesh_.triangles.size());
-      const Answers more = ask(std::move(queries), most);
-      keep_first(more.is_complete ? more : first, more.is_complete ? keep_certain(more) : doubtful);
+      const std::vector<Query> queries = many_points(doubtful);
+      rounds_[1] = ask(queries, most_meetings + 16 * (queries.size() + mesh_.triangles.size()));
+      if (rounds_[1].is_complete) {
+        choose_first(1, choose_certain(1));
+      } else {
+        choose_first(0, doubtful);
+      }
     }
     set_depths();
+    set_parents();
     return meetings_;
   }
 
  private:
-  static constexpr std::uint32_t no_probe = 0xffffffffU;
-
   static Box3 total_bounds(const ShellSet& set) {
     Box3 box;
     for (const Shell& shell : set.shells) box.extend(shell.bounds);
@@ -198,87 +241,132 @@ class Nesting {
   }
 
   void add_query(const Vec3d& point, std::uint32_t shell, std::vector<Query>& queries) const {
-    queries.push_back({frame_(point), shell, static_cast<std::uint32_t>(queries.size())});
+    queries.push_back({frame_(point), shell});
   }
 
-  /// What was found above the points of a round.
+  /// What was found above the places of a round.
   struct Answers {
-    std::vector<std::uint32_t> shell;  ///< of each point
-    std::vector<bool> is_doubtful;     ///< each point: it may lie on another shell
-    std::vector<Crossing> found;
+    std::vector<std::uint32_t> shell;       ///< of each query
+    std::vector<std::uint32_t> place;       ///< of each query
+    std::vector<std::uint32_t> touched_by;  ///< of each place: the shells that it may lie on
+    std::vector<Crossing> containers;  ///< by place and outer shell: winding numbers around the place that are not 0
+    std::vector<std::size_t> start;    ///< in containers, of each place, and the end
     bool is_complete = true;
+
+    [[nodiscard]] std::span<const Crossing> around(std::uint32_t place) const {
+      return {containers.data() + start[place], containers.data() + start[place + 1]};
+    }
+    [[nodiscard]] bool is_doubtful(std::size_t query) const {
+      return has_other_shell(touched_by[place[query]], shell[query]);
+    }
   };
 
-  /// Finds the crossings above points of shells; gives up after so many meetings.
-  Answers ask(std::vector<Query> queries, std::size_t most) {
+  /// Finds the shells around places of shells; gives up after so many meetings.
+  Answers ask(const std::vector<Query>& queries, std::size_t most) {
     Answers out;
     for (const Query& query : queries) out.shell.push_back(query.shell);
-    out.is_doubtful.assign(queries.size(), false);
-    const QueryGrid grid(std::move(queries), bounds_);
+    const PlaceGrid grid(queries, bounds_, out.place);
+    out.touched_by.assign(grid.size(), no_shell);
     const std::vector<bool> may_contain = find_candidates(grid);
     const std::size_t before = meetings_;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    for (std::size_t t = 0; t < mesh_.triangles.size() && out.is_complete; ++t) {
       if (t % 4096 == 0) throw_if_cancelled(context_);
       const std::uint32_t outer = set_.of_triangle[t];
       if (outer == no_component || !may_contain[outer]) continue;
-      std::array<Vec3d, 3> corners;
-      Box3 box;
-      for (std::size_t k = 0; k < 3; ++k) {
-        corners[k] = frame_(mesh_.vertices[mesh_.triangles[t][k]]);
-        box.extend(corners[k]);
-      }
-      Box3 heights = frame_(set_.shells[outer].bounds);
-      heights.upper.z = box.upper.z;
-      out.is_complete = !grid.visit_in(box, heights, [&](const Query& query) {
-        if (++meetings_ - before > most) return true;
-        if (query.shell == outer || !is_within(frame_(set_.shells[outer].bounds), query.point)) return false;
-        const int winding = projected_winding(corners, query.point);
-        const bool is_beside = is_within(box, query.point) && query.point.z >= box.lower.z;
-        if (winding == 0 && !is_beside) return false;
-        const Height height = compare_height(corners, query.point, winding);
-        // A point on an upright wall has no winding number in the projection, but must not count as beyond the wall.
-        if (!height.is_certain) out.is_doubtful[query.probe] = true;
-        if (winding != 0 && height.is_above) out.found.push_back({query.probe, query.shell, outer, winding});
-        return false;
-      });
-      if (!out.is_complete) break;
+      out.is_complete = meet(t, grid, most == std::numeric_limits<std::size_t>::max() ? most : before + most, out);
     }
+    sum_up(grid.size(), out);
     return out;
   }
 
-  /// Keeps the crossings of each shell's first point of which there is no doubt that it lies on no other shell.
-  /// @return  the shells that have none, rising.
-  std::vector<std::uint32_t> keep_certain(const Answers& answers) {
-    std::vector<bool> is_asked(set_.shells.size(), false);
-    std::vector<std::uint32_t> chosen(set_.shells.size(), no_probe);
-    for (std::uint32_t probe = 0; probe < answers.shell.size(); ++probe) {
-      const std::uint32_t shell = answers.shell[probe];
-      is_asked[shell] = true;
-      if (chosen[shell] == no_probe && !answers.is_doubtful[probe]) chosen[shell] = probe;
+  /// Compares a triangle with the places below and beside it. @return  false when there were too many meetings.
+  bool meet(std::size_t triangle, const PlaceGrid& grid, std::size_t most, Answers& out) {
+    const std::uint32_t outer = set_.of_triangle[triangle];
+    const Box3 shell = frame_(set_.shells[outer].bounds);
+    std::array<Vec3d, 3> corners;
+    Box3 box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = frame_(mesh_.vertices[mesh_.triangles[triangle][k]]);
+      box.extend(corners[k]);
     }
-    keep(answers, chosen);
+    Box3 heights = shell;
+    heights.upper.z = box.upper.z;
+    return !grid.visit_in(box, heights, [&](const Place& place) {
+      if (++meetings_ > most) return true;
+      if (!has_other_shell(place.shells, outer) || !is_within(shell, place.point)) return false;
+      const int winding = projected_winding(corners, place.point);
+      const bool is_beside = is_within(box, place.point) && place.point.z >= box.lower.z;
+      if (winding == 0 && !is_beside) return false;
+      const Height height = compare_height(corners, place.point, winding);
+      // A place on an upright wall has no winding number in the projection, but must not count as beyond the wall.
+      if (!height.is_certain) include_shell(outer, out.touched_by[place.number]);
+      if (winding != 0 && height.is_above) out.containers.push_back({place.number, outer, winding});
+      return false;
+    });
+  }
+
+  /// Sums crossings up to winding numbers, place by place and shell by shell.
+  static void sum_up(std::size_t places, Answers& answers) {
+    std::vector<Crossing>& all = answers.containers;
+    std::sort(all.begin(), all.end(), [](const Crossing& a, const Crossing& b) {
+      return a.place != b.place ? a.place < b.place : a.outer < b.outer;
+    });
+    std::vector<Crossing> sums;
+    for (const Crossing& crossing : all) {
+      if (!sums.empty() && sums.back().place == crossing.place && sums.back().outer == crossing.outer) {
+        sums.back().direction += crossing.direction;
+      } else {
+        sums.push_back(crossing);
+      }
+    }
+    std::erase_if(sums, [](const Crossing& sum) { return sum.direction == 0; });
+    all = std::move(sums);
+    answers.start.assign(places + 1, 0);
+    for (const Crossing& sum : all) ++answers.start[sum.place + 1];
+    for (std::size_t p = 0; p < places; ++p) answers.start[p + 1] += answers.start[p];
+  }
+
+  /// The place that decides about a shell.
+  struct Choice {
+    std::optional<std::size_t> round;
+    std::uint32_t place = 0;
+    friend auto operator<=>(const Choice&, const Choice&) = default;
+  };
+
+  [[nodiscard]] std::span<const Crossing> around(const Choice& choice) const {
+    return rounds_[*choice.round].around(choice.place);
+  }
+
+  /// Chooses each shell's first point of which there is no doubt that it lies on no other shell.
+  /// @return  the shells that have none, rising.
+  std::vector<std::uint32_t> choose_certain(std::size_t round) {
+    const Answers& answers = rounds_[round];
+    std::vector<bool> is_asked(set_.shells.size(), false);
+    std::vector<bool> is_chosen(set_.shells.size(), false);
+    for (std::size_t query = 0; query < answers.shell.size(); ++query) {
+      const std::uint32_t shell = answers.shell[query];
+      is_asked[shell] = true;
+      if (is_chosen[shell] || answers.is_doubtful(query)) continue;
+      is_chosen[shell] = true;
+      choices_[shell] = {round, answers.place[query]};
+    }
     std::vector<std::uint32_t> doubtful;
-    for (std::uint32_t s = 0; s < chosen.size(); ++s) {
-      if (is_asked[s] && chosen[s] == no_probe) doubtful.push_back(s);
+    for (std::uint32_t s = 0; s < is_asked.size(); ++s) {
+      if (is_asked[s] && !is_chosen[s]) doubtful.push_back(s);
     }
     return doubtful;
   }
 
-  /// Keeps the crossings of the first point of these shells, doubtful as it is.
-  void keep_first(const Answers& answers, const std::vector<std::uint32_t>& shells) {
+  /// Chooses the first point of these shells, doubtful as it is.
+  void choose_first(std::size_t round, const std::vector<std::uint32_t>& shells) {
+    const Answers& answers = rounds_[round];
     std::vector<bool> is_wanted(set_.shells.size(), false);
     for (const std::uint32_t s : shells) is_wanted[s] = true;
-    std::vector<std::uint32_t> chosen(set_.shells.size(), no_probe);
-    for (std::uint32_t probe = 0; probe < answers.shell.size(); ++probe) {
-      const std::uint32_t shell = answers.shell[probe];
-      if (is_wanted[shell] && chosen[shell] == no_probe) chosen[shell] = probe;
-    }
-    keep(answers, chosen);
-  }
-
-  void keep(const Answers& answers, const std::vector<std::uint32_t>& chosen) {
-    for (const Crossing& crossing : answers.found) {
-      if (chosen[crossing.inner] == crossing.probe) crossings_.push_back(crossing);
+    for (std::size_t query = 0; query < answers.shell.size(); ++query) {
+      const std::uint32_t shell = answers.shell[query];
+      if (!is_wanted[shell]) continue;
+      is_wanted[shell] = false;
+      choices_[shell] = {round, answers.place[query]};
     }
   }
 
@@ -287,40 +375,56 @@ class Nesting {
   }
 
   /// The shells whose box holds a query of another shell.
-  [[nodiscard]] std::vector<bool> find_candidates(const QueryGrid& grid) const {
+  [[nodiscard]] std::vector<bool> find_candidates(const PlaceGrid& grid) const {
     std::vector<bool> result(set_.shells.size(), false);
     for (std::uint32_t s = 0; s < result.size(); ++s) {
       const Box3 box = frame_(set_.shells[s].bounds);
-      result[s] =
-          grid.visit_in(box, box, [&](const Query& query) { return query.shell != s && is_within(box, query.point); });
+      result[s] = grid.visit_in(box, box, [&](const Place& place) {
+        return has_other_shell(place.shells, s) && is_within(box, place.point);
+      });
     }
     return result;
   }
 
+  /// How many other shells each one lies in.
   void set_depths() {
-    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
-      return a.inner != b.inner ? a.inner < b.inner : a.outer < b.outer;
-    });
-    std::vector<Crossing> containments;  // direction holds the winding number
-    for (const Crossing& crossing : crossings_) {
-      const bool is_same = !containments.empty() && containments.back().inner == crossing.inner &&
-                           containments.back().outer == crossing.outer;
-      if (is_same) {
-        containments.back().direction += crossing.direction;
-      } else {
-        containments.push_back(crossing);
+    for (std::uint32_t s = 0; s < choices_.size(); ++s) {
+      if (!choices_[s].round) continue;
+      const std::span<const Crossing> outers = around(choices_[s]);
+      const auto own = std::lower_bound(outers.begin(), outers.end(), s,
+                                        [](const Crossing& c, std::uint32_t shell) { return c.outer < shell; });
+      const bool is_in_itself = own != outers.end() && own->outer == s;
+      set_.shells[s].depth = static_cast<std::uint32_t>(outers.size()) - (is_in_itself ? 1 : 0);
+    }
+  }
+
+  /// The deepest of the shells around each one; of several, that with the smallest number.
+  void set_parents() {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t s = 0; s < choices_.size(); ++s) {
+      if (choices_[s].round) order.push_back(s);
+    }
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return choices_[a] < choices_[b]; });
+    std::array<std::int64_t, 2> deepest{-1, -1};  // around the place of the last shell looked at
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::uint32_t s = order[k];
+      if (k == 0 || choices_[order[k - 1]] != choices_[s]) deepest = two_deepest(around(choices_[s]));
+      set_.shells[s].parent = deepest[0] == s ? deepest[1] : deepest[0];
+    }
+  }
+
+  /// -1 where there are fewer.
+  [[nodiscard]] std::array<std::int64_t, 2> two_deepest(std::span<const Crossing> outers) const {
+    std::array<std::int64_t, 2> best{-1, -1};
+    const auto depth = [&](std::int64_t s) { return set_.shells[static_cast<std::size_t>(s)].depth; };
+    for (const Crossing& c : outers) {
+      if (best[0] < 0 || depth(c.outer) > depth(best[0])) {
+        best = {c.outer, best[0]};
+      } else if (best[1] < 0 || depth(c.outer) > depth(best[1])) {
+        best[1] = c.outer;
       }
     }
-    for (const Crossing& c : containments) {
-      if (c.direction != 0) ++set_.shells[c.inner].depth;
-    }
-    for (const Crossing& c : containments) {
-      if (c.direction == 0) continue;
-      std::int64_t& parent = set_.shells[c.inner].parent;
-      const bool is_deeper =
-          parent < 0 || set_.shells[c.outer].depth > set_.shells[static_cast<std::size_t>(parent)].depth;
-      if (is_deeper) parent = c.outer;
-    }
+    return best;
   }
 
   const MeshView& mesh_;
@@ -328,7 +432,8 @@ class Nesting {
   const Context& context_;
   Box3 bounds_;
   Frame frame_;
-  std::vector<Crossing> crossings_;
+  std::array<Answers, 2> rounds_;
+  std::vector<Choice> choices_;  ///< of each shell
   std::size_t meetings_ = 0;
 };
 

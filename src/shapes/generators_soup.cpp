@@ -194,7 +194,6 @@ void append(TriangleMesh& mesh, const MeshView& other, const Vec3d& offset) {
   if (first + other.vertices.size() > max_id_count)
     throw InvalidMesh("the joined mesh has more than 2^31 - 1 vertices");
   const auto shift = static_cast<std::uint32_t>(first);
-  mesh.vertices.reserve(first + other.vertices.size());
   for (const Vec3d& p : other.vertices) mesh.vertices.push_back(p + offset);
   for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
   for (const Segment& s : other.segments) mesh.segments.push_back({s[0] + shift, s[1] + shift});

@@ -1,10 +1,12 @@
 #include "shapes/polygon.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/geometry/ear_clipping.hpp"
 #include "blum/geometry/orient2d.hpp"
 #include "shapes/generator_parts.hpp"
 
@@ -152,68 +154,6 @@ class JoinedLoop {
   std::vector<std::uint32_t> loop_;
 };
 
-/// Cuts ears off a weakly simple loop.
-class EarCutter {
- public:
-  EarCutter(const std::vector<Point>& points, const std::vector<std::uint32_t>& loop)
-      : points_(points), loop_(loop), previous_(loop.size()), next_(loop.size()) {
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      next_[k] = (k + 1) % loop.size();
-      previous_[next_[k]] = k;
-    }
-  }
-
-  [[nodiscard]] std::vector<Triangle> cut() {
-    std::vector<Triangle> triangles;
-    std::size_t left = loop_.size();
-    std::size_t at = 0;
-    for (std::size_t tries = 0; left > 3;) {
-      if (is_ear(at)) {
-        triangles.push_back({loop_[previous_[at]], loop_[at], loop_[next_[at]]});
-        next_[previous_[at]] = next_[at];
-        previous_[next_[at]] = previous_[at];
-        --left;
-        tries = 0;
-        at = next_[next_[at]];  // not next to the last one: long fans around one point make needles
-      } else {
-        if (++tries > left) throw InvalidOption("the polygon cannot be triangulated: its outline or holes cross");
-        at = next_[at];
-      }
-    }
-    triangles.push_back({loop_[previous_[at]], loop_[at], loop_[next_[at]]});
-    return triangles;
-  }
-
- private:
-  [[nodiscard]] bool is_ear(std::size_t at) const {
-    const Point& a = points_[loop_[previous_[at]]];
-    const Point& b = points_[loop_[at]];
-    const Point& c = points_[loop_[next_[at]]];
-    if (orient2d(a, b, c) <= 0) return false;
-    const Point lower{std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})};
-    const Point upper{std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})};
-    for (std::size_t k = next_[next_[at]]; k != previous_[at]; k = next_[k]) {
-      const Point& p = points_[loop_[k]];
-      if (p[0] < lower[0] || p[0] > upper[0] || p[1] < lower[1] || p[1] > upper[1]) continue;
-      if (p == b && passes_between(k, a, b, c)) return false;
-      if (p == a || p == b || p == c) continue;  // the other end of a bridge
-      if (orient2d(a, b, p) >= 0 && orient2d(b, c, p) >= 0 && orient2d(c, a, p) >= 0) return false;
-    }
-    return true;
-  }
-
-  /// Whether the loop, which comes through the ear's tip b once more at k, goes through the ear there.
-  [[nodiscard]] bool passes_between(std::size_t k, const Point& a, const Point& b, const Point& c) const {
-    const auto is_between = [&](const Point& q) { return orient2d(a, b, q) > 0 && orient2d(b, c, q) > 0; };
-    return is_between(points_[loop_[previous_[k]]]) || is_between(points_[loop_[next_[k]]]);
-  }
-
-  const std::vector<Point>& points_;
-  const std::vector<std::uint32_t>& loop_;
-  std::vector<std::size_t> previous_;
-  std::vector<std::size_t> next_;
-};
-
 }  // namespace
 
 void Polygon::add_loop(std::span<const Point> loop) {
@@ -235,7 +175,18 @@ std::uint32_t Polygon::loop_end(std::size_t loop) const {
 std::vector<Triangle> triangulate(const Polygon& polygon) {
   require_simple(polygon);
   const JoinedLoop joined(polygon);
-  return EarCutter(polygon.points, joined.indices()).cut();
+  const std::vector<std::uint32_t>& loop = joined.indices();
+  std::vector<Point> points;
+  for (const std::uint32_t index : loop) points.push_back(polygon.points[index]);
+  std::vector<Triangle> triangles(loop.size() - 2);
+  std::int64_t work_left = std::numeric_limits<std::int64_t>::max();
+  if (!clip_ears(points, EarOrder::every_other, triangles, work_left)) {
+    throw InvalidOption("the polygon cannot be triangulated: its outline or holes cross");
+  }
+  for (Triangle& triangle : triangles) {
+    for (std::uint32_t& corner : triangle) corner = loop[corner];
+  }
+  return triangles;
 }
 
 }  // namespace blum::detail

@@ -1,0 +1,279 @@
+#include "blum/geometry/ear_clipping.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "blum/geometry/orient2d.hpp"
+
+namespace blum::detail {
+namespace {
+
+using Point = std::array<double, 2>;
+
+/// The corners that may be in the way of an ear, as a balanced tree of boxes over them; corners can be taken out.
+class PointTree {
+ public:
+  PointTree() = default;
+  PointTree(std::span<const Point> points, std::vector<std::uint32_t> members)
+      : points_(points.data()),
+        members_(std::move(members)),
+        leaf_of_(points.size(), none),
+        leaves_(std::bit_ceil(members_.size() / leaf_size + 1)) {
+    nodes_.resize(2 * leaves_);
+    build(1, 0, members_.size());
+  }
+
+  /// Does nothing for a corner that is not in the tree.
+  void remove(std::uint32_t corner) {
+    const std::uint32_t leaf = std::exchange(leaf_of_[corner], none);
+    if (leaf == none) return;
+    for (std::uint32_t node = leaf; node > 0; node /= 2) --nodes_[node].count;
+  }
+
+  /// Whether a corner lies in the triangle, edges included. Corners at exactly the place of one of its own do not
+  /// count: the ends of bridges to holes meet so.
+  /// @param work_left  is lowered by the number of boxes and corners looked at.
+  [[nodiscard]] bool any_inside(const std::array<Point, 3>& t, std::int64_t& work_left) {
+    stack_.assign(1, 1);
+    while (!stack_.empty()) {
+      const std::uint32_t index = stack_.back();
+      stack_.pop_back();
+      --work_left;
+      const Node& node = nodes_[index];
+      if (node.count == 0 || is_apart(node, t)) continue;
+      if (index < leaves_) {
+        stack_.push_back(2 * index);
+        stack_.push_back(2 * index + 1);
+        continue;
+      }
+      for (std::size_t k = node.begin; k < node.end; ++k, --work_left) {
+        if (leaf_of_[members_[k]] != none && is_inside(points_[members_[k]], t)) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffffU;
+  static constexpr std::size_t leaf_size = 4;
+  struct Node {
+    Point lower{HUGE_VAL, HUGE_VAL}, upper{-HUGE_VAL, -HUGE_VAL};
+    std::uint32_t count = 0;           ///< members that have not been taken out
+    std::uint32_t begin = 0, end = 0;  ///< of a leaf, in members_
+  };
+
+  void build(std::uint32_t index, std::size_t begin, std::size_t end) {
+    Node& node = nodes_[index];
+    node.count = static_cast<std::uint32_t>(end - begin);
+    for (std::size_t k = begin; k < end; ++k) {
+      const Point& p = points_[members_[k]];
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        node.lower[axis] = std::min(node.lower[axis], p[axis]);
+        node.upper[axis] = std::max(node.upper[axis], p[axis]);
+      }
+    }
+    if (index >= leaves_) {
+      node.begin = static_cast<std::uint32_t>(begin);
+      node.end = static_cast<std::uint32_t>(end);
+      for (std::size_t k = begin; k < end; ++k) leaf_of_[members_[k]] = index;
+      return;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    const std::size_t axis = node.upper[0] - node.lower[0] >= node.upper[1] - node.lower[1] ? 0 : 1;
+    const auto at = [&](std::size_t k) { return members_.begin() + static_cast<std::ptrdiff_t>(k); };
+    std::nth_element(at(begin), at(middle), at(end),
+                     [&](std::uint32_t a, std::uint32_t b) { return points_[a][axis] < points_[b][axis]; });
+    build(2 * index, begin, middle);
+    build(2 * index + 1, middle, end);
+  }
+
+  /// Whether the box holds no point of the triangle: it lies beside its box, or the corner of it that is farthest to
+  /// the left of an edge is right of that edge.
+  static bool is_apart(const Node& box, const std::array<Point, 3>& t) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      if (box.upper[axis] < std::min({t[0][axis], t[1][axis], t[2][axis]})) return true;
+      if (box.lower[axis] > std::max({t[0][axis], t[1][axis], t[2][axis]})) return true;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point& a = t[k];
+      const Point& b = t[(k + 1) % 3];
+      const Point best = {b[1] > a[1] ? box.lower[0] : box.upper[0], b[0] > a[0] ? box.upper[1] : box.lower[1]};
+      if (orient2d(a, b, best) < 0) return true;
+    }
+    return false;
+  }
+
+  static bool is_inside(const Point& p, const std::array<Point, 3>& t) {
+    return p != t[0] && p != t[1] && p != t[2] && orient2d(t[0], t[1], p) >= 0 && orient2d(t[1], t[2], p) >= 0 &&
+           orient2d(t[2], t[0], p) >= 0;
+  }
+
+  const Point* points_ = nullptr;
+  std::vector<std::uint32_t> members_;
+  std::vector<std::uint32_t> leaf_of_;  ///< of every corner of the polygon; none for those that are not in the tree
+  std::vector<Node> nodes_;             ///< the root is 1; the children of i are 2i and 2i + 1
+  std::vector<std::uint32_t> stack_;
+  std::size_t leaves_ = 0;
+};
+
+class EarClipper {
+ public:
+  EarClipper(std::span<const Point> points, std::span<Triangle> triangles, std::int64_t& work_left)
+      : points_(points),
+        triangles_(triangles),
+        links_(points.size()),
+        twin_(points.size()),
+        is_queued_(points.size()),
+        work_left_(work_left) {
+    const auto n = static_cast<std::uint32_t>(points.size());
+    for (std::uint32_t i = 0; i < n; ++i) links_[i] = {i == 0 ? n - 1 : i - 1, i + 1 == n ? 0 : i + 1};
+    link_twins();
+    std::vector<std::uint32_t> blocking;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (turn(i) <= 0) blocking.push_back(i);
+    }
+    blockers_ = PointTree(points, std::move(blocking));
+  }
+
+  bool run(EarOrder order) { return order == EarOrder::in_turn ? run_in_turn() : run_every_other(); }
+
+ private:
+  struct Link {
+    std::uint32_t previous, next;
+  };
+
+  static constexpr std::uint32_t gone = 0xffffffffU;
+
+  /// Corners at one place form a ring.
+  void link_twins() {
+    std::vector<std::uint32_t> sorted(points_.size());
+    std::iota(sorted.begin(), sorted.end(), 0U);
+    twin_ = sorted;
+    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return points_[a] != points_[b] ? points_[a] < points_[b] : a < b;
+    });
+    for (std::size_t k = 1; k < sorted.size(); ++k) {
+      if (points_[sorted[k]] == points_[sorted[k - 1]]) std::swap(twin_[sorted[k]], twin_[sorted[k - 1]]);
+    }
+  }
+
+  bool run_in_turn() {
+    std::size_t left = points_.size();
+    std::uint32_t corner = 0;
+    bool flat_allowed = false;
+    while (left > 3) {
+      // One pass over all that is left. Corners beside a new ear get another turn at the end of the queue, not at once:
+      // that would make a fan of needles.
+      queue_.clear();
+      for (std::size_t i = 0; i < left; ++i, corner = links_[corner].next) enter(corner);
+      const std::size_t before = left;
+      for (std::size_t at = 0; at < queue_.size() && left > 3; ++at) {
+        if (--work_left_ < 0) return false;
+        const std::uint32_t candidate = queue_[at];
+        is_queued_[candidate] = false;
+        if (links_[candidate].next == gone) continue;
+        const int side = turn(candidate);
+        if (!(side > 0 ? is_ear(candidate) : side == 0 && flat_allowed)) continue;
+        const Link link = links_[candidate];
+        clip(candidate);
+        --left;
+        enter(link.next);
+        enter(link.previous);
+        corner = link.next;
+      }
+      if (work_left_ < 0) return false;
+      if (left < before) {
+        flat_allowed = false;
+      } else if (!std::exchange(flat_allowed, true)) {
+        continue;  // nothing turns left: corners that turn nowhere may go, too
+      } else {
+        return false;
+      }
+    }
+    if (turn(corner) < 0) return false;
+    emit(corner);
+    return true;
+  }
+
+  bool run_every_other() {
+    std::uint32_t corner = 0;
+    for (std::size_t left = points_.size(), tries = 0; left > 3;) {
+      if (--work_left_ < 0 || tries > left) return false;
+      const Link link = links_[corner];
+      if (turn(corner) > 0 && is_ear(corner)) {
+        clip(corner);
+        --left;
+        tries = 0;
+        corner = links_[link.next].next;
+      } else {
+        ++tries;
+        corner = link.next;
+      }
+    }
+    if (turn(corner) < 0) return false;
+    emit(corner);
+    return true;
+  }
+
+  void enter(std::uint32_t corner) {
+    if (is_queued_[corner]) return;
+    is_queued_[corner] = true;
+    queue_.push_back(corner);
+  }
+
+  [[nodiscard]] int turn(std::uint32_t i) const {
+    return orient2d(points_[links_[i].previous], points_[i], points_[links_[i].next]);
+  }
+
+  bool is_ear(std::uint32_t corner) {
+    const Point& a = points_[links_[corner].previous];
+    const Point& b = points_[corner];
+    const Point& c = points_[links_[corner].next];
+    for (std::uint32_t twin = twin_[corner]; twin != corner; twin = twin_[twin]) {
+      if (--work_left_ < 0 || (links_[twin].next != gone && passes_between(twin, a, b, c))) return false;
+    }
+    return !blockers_.any_inside({a, b, c}, work_left_);
+  }
+
+  /// Whether the polygon, which comes through the ear's tip b once more at a twin, goes through the ear there.
+  [[nodiscard]] bool passes_between(std::uint32_t twin, const Point& a, const Point& b, const Point& c) const {
+    const auto is_between = [&](const Point& q) { return orient2d(a, b, q) > 0 && orient2d(b, c, q) > 0; };
+    return is_between(points_[links_[twin].previous]) || is_between(points_[links_[twin].next]);
+  }
+
+  void emit(std::uint32_t corner) { triangles_[emitted_++] = {links_[corner].previous, corner, links_[corner].next}; }
+
+  void clip(std::uint32_t corner) {
+    emit(corner);
+    const Link link = links_[corner];
+    links_[link.previous].next = link.next;
+    links_[link.next].previous = link.previous;
+    links_[corner] = {gone, gone};
+    blockers_.remove(corner);
+    if (turn(link.previous) > 0) blockers_.remove(link.previous);
+    if (turn(link.next) > 0) blockers_.remove(link.next);
+  }
+
+  std::span<const Point> points_;
+  std::span<Triangle> triangles_;
+  std::vector<Link> links_;
+  std::vector<std::uint32_t> twin_;  ///< of each corner: the next one at the same place
+  PointTree blockers_;               ///< corners that are left and did not turn left when last looked at
+  std::vector<char> is_queued_;
+  std::vector<std::uint32_t> queue_;
+  std::size_t emitted_ = 0;
+  std::int64_t& work_left_;
+};
+
+}  // namespace
+
+bool clip_ears(std::span<const Point> points, EarOrder order, std::span<Triangle> triangles, std::int64_t& work_left) {
+  return EarClipper(points, triangles, work_left).run(order);
+}
+
+}  // namespace blum::detail
