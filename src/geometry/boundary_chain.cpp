@@ -161,7 +161,7 @@ BoundaryChain::BoundaryChain(const MeshView& mesh, const SiteTable& sites, doubl
   }
 }
 
-double BoundaryChain::gradient_bound(const Box3& box) const {
+double BoundaryChain::gradient_bound(const Box3& box, double enough) const {
   if (levels_.empty()) return 0;
   struct Item {
     std::uint32_t index;
@@ -174,6 +174,7 @@ double BoundaryChain::gradient_bound(const Box3& box) const {
   stack[size++] = {0, static_cast<std::uint32_t>(levels_.size() - 1)};
   Vec3d field;      // at the box's centre
   double rest = 0;  // bound on what is missing from it
+  const auto bound_of = [](double sum) { return sum * (1 + 1e-9) / (4 * std::numbers::pi); };
   while (size > 0) {
     const Item item = stack[--size];
     const Cluster& cluster = levels_[item.level][item.index];
@@ -203,8 +204,9 @@ double BoundaryChain::gradient_bound(const Box3& box) const {
     } else {
       rest += plain;
     }
+    if (bound_of(rest) > enough) return bound_of(rest);
   }
-  return (length(field) + rest) * (1 + 1e-9) / (4 * std::numbers::pi);
+  return bound_of(length(field) + rest);
 }
 
 }  // namespace blum

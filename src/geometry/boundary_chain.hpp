@@ -1,6 +1,7 @@
 // Blum: the boundary of a triangle soup, and how strongly it is felt at a distance. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -25,8 +26,9 @@ class BoundaryChain {
   BoundaryChain(const MeshView& mesh, const SiteTable& sites, double scale, const Context& context);
 
   [[nodiscard]] bool is_empty() const { return levels_.empty(); }
-  /// A bound on |grad w| over a box, in scaled coordinates. Allocates nothing.
-  [[nodiscard]] double gradient_bound(const Box3& box) const;
+  /// A bound on |grad w| over a box, in scaled coordinates; where it is above `enough`, any number above that. Allocates
+  /// nothing.
+  [[nodiscard]] double gradient_bound(const Box3& box, double enough = HUGE_VAL) const;
 
  private:
   /// Pieces of edges, or clusters of them.

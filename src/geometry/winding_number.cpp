@@ -143,9 +143,9 @@ bool WindingNumber::is_piecewise_constant() const {
   return data_->boundary.is_empty();
 }
 
-double WindingNumber::gradient_bound(const Box3& box) const {
+double WindingNumber::gradient_bound(const Box3& box, double enough) const {
   const double scale = data_->tree.scale;
-  return data_->boundary.gradient_bound({box.lower * scale, box.upper * scale}) * scale;
+  return data_->boundary.gradient_bound({box.lower * scale, box.upper * scale}, enough / scale) * scale;
 }
 
 std::optional<bool> WindingNumber::side(const Vec3d& query, double change) const {

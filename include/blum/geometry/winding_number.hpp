@@ -1,6 +1,7 @@
 // Blum: generalized winding numbers of triangle soups. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -66,7 +67,8 @@ class WindingNumber {
   /// A bound on the length of the gradient of w over a box (which may be a point), where it exists: w jumps at the
   /// surface, and between two points the bound holds along paths that cross none. In 1 / mesh units; infinite where the
   /// box touches the boundary; 0 for closed meshes.
-  [[nodiscard]] double gradient_bound(const Box3& box) const;
+  /// @param enough  where the bound is above this, any number above it may be given: that takes less time.
+  [[nodiscard]] double gradient_bound(const Box3& box, double enough = HUGE_VAL) const;
 
   /// Whether w is constant wherever no triangle lies between: triangles meet at every edge in cancelling directions
   /// (edges are compared by the positions of their ends), so that w is an integer off the surface.

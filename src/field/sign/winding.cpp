@@ -95,8 +95,9 @@ class SignWriter {
                                       (corner & 2) != 0 ? last[1] - 1 : first[1],
                                       (corner & 4) != 0 ? last[2] - 1 : first[2]));
     }
-    const double change = winding_.gradient_bound(box) * radius;
-    if (!(change < 0.6)) return std::nullopt;
+    constexpr double most = 0.6;
+    const double change = winding_.gradient_bound(box, 1.001 * most / radius) * radius;
+    if (!(change < most)) return std::nullopt;
     ++queries_;
     return winding_.side(field_.grid.position(middle[0], middle[1], middle[2]), change);
   }

@@ -121,6 +121,9 @@ TEST(WindingNumber, BoundsItsGradient) {
       if (distances.nearest(center).distance < 2 * half) continue;
       const Vec3d corner{half, half, half};
       const double bound = winding.gradient_bound({center - corner, center + corner});
+      const double enough = bound * random.uniform(0.1, 2.0);
+      const double rough = winding.gradient_bound({center - corner, center + corner}, enough);
+      EXPECT_TRUE(bound > enough ? rough > enough && rough <= bound * (1 + 1e-12) : rough == bound);
       const Vec3d a = center + (random.in_cube() * 2.0 - Vec3d{1, 1, 1}) * half;
       const Vec3d b = center + (random.in_cube() * 2.0 - Vec3d{1, 1, 1}) * half;
       const double change = std::abs(winding(a) - winding(b));
