@@ -20,6 +20,12 @@ namespace blum::cli {
 /// The colour of a site: the same for the same id in every picture, spread over hue and lightness.
 [[nodiscard]] Color region_color(std::uint32_t id);
 
+/// The colours of regions with fewer hues: a row for each lightness and chroma, in which the hue runs.
+inline constexpr std::uint32_t palette_rows = 16;
+inline constexpr std::uint32_t palette_hues = 256;
+/// @param place  row * palette_hues + number of the hue.
+[[nodiscard]] Color palette_color(std::uint32_t place);
+
 inline constexpr Color paper_color{1, 1, 1};
 inline constexpr Color ink_color{0.11F, 0.12F, 0.14F};
 /// Beyond the band, and where there is no site.

@@ -10,13 +10,10 @@
 #include "blum/io/atomic_file.hpp"
 
 namespace blum::cli {
-namespace {
 
 std::uint8_t byte_of(float component) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(component, 0.0F, 1.0F) * 255.0F));
 }
-
-}  // namespace
 
 void write_png(const std::filesystem::path& path, const Picture& picture) {
   std::vector<std::uint8_t> bytes;

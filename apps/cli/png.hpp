@@ -15,6 +15,9 @@ struct Color {
   return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t};
 }
 
+/// A component as pictures hold it.
+[[nodiscard]] std::uint8_t byte_of(float component);
+
 /// Rows from the top, pixels from the left.
 class Picture {
  public:

@@ -85,7 +85,7 @@ std::string SceneBlob::head(const Json& header) {
   std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.resize(aligned(text.size()), ' ');
   std::string head = "BLUMVIEW";
-  for (const std::uint32_t number : {std::uint32_t{1}, static_cast<std::uint32_t>(text.size())}) {
+  for (const std::uint32_t number : {std::uint32_t{2}, static_cast<std::uint32_t>(text.size())}) {
     for (unsigned shift = 0; shift < 32; shift += 8) head += static_cast<char>(number >> shift & 0xffU);
   }
   return head + text;

@@ -17,7 +17,7 @@ namespace blum::cli {
 /// A header of JSON and arrays of numbers:
 ///
 ///   bytes 0-7    "BLUMVIEW"
-///   bytes 8-11   version, 1 (all numbers are little endian)
+///   bytes 8-11   version, 2 (all numbers are little endian)
 ///   bytes 12-15  length of the header, a multiple of 8
 ///   then         the header, then the arrays, each at a multiple of 8 bytes behind the header
 ///

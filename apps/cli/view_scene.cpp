@@ -10,10 +10,12 @@
 #include <utility>
 
 #include "axis_item.hpp"
+#include "blum/complex/medial_columns.hpp"
 #include "blum/core/error.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
+#include "colors.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
 
@@ -239,6 +241,38 @@ Json item_of(SceneBlob& blob, const fs::path& path, std::optional<double> weld, 
   return {};
 }
 
+/// A table of colours: red, green, blue and opacity in a byte each, as textures want them.
+template <class ColorAt>
+Json add_colors(SceneBlob& blob, std::uint32_t count, ColorAt color_at) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(std::size_t{4} * count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Color color = color_at(i);
+    for (const float component : {color.r, color.g, color.b, 1.0F}) bytes.push_back(byte_of(component));
+  }
+  return blob.add(bytes);
+}
+
+/// The colours of the tool's pictures. Ramps run to 1, from -1 where they diverge.
+Json colors_json(SceneBlob& blob) {
+  constexpr std::uint32_t ramp_colors = 512;
+  constexpr std::uint32_t legend_regions = 12;
+  const auto add_ramp = [&](Color (*color_of)(double), double from) {
+    const double step = (1 - from) / (ramp_colors - 1);
+    return add_colors(blob, ramp_colors, [&](std::uint32_t i) { return color_of(from + step * i); });
+  };
+  return {{"diverging", add_ramp(diverging_color, -1)},
+          {"sequential", add_ramp(sequential_color, 0)},
+          {"palette", add_colors(blob, palette_rows * palette_hues, palette_color)},
+          {"regions", add_colors(blob, legend_regions, region_color)}};
+}
+
+Json roles_json() {
+  Json roles = Json::object();
+  for (const auto& [role, name] : Description<MedialRole>::values) roles[std::string(name)] = role;
+  return roles;
+}
+
 }  // namespace
 
 Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld, bool compresses,
@@ -263,7 +297,8 @@ Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld,
     scene.problems.push_back(message);
     items.push_back({{"kind", "error"}, {"name", path.filename().string()}, {"message", message}});
   }
-  scene.header = {{"blum", BLUM_VERSION}, {"items", items}};
+  scene.header = {
+      {"blum", BLUM_VERSION}, {"items", items}, {"colors", colors_json(scene.blob)}, {"roles", roles_json()}};
   return scene;
 }
 

@@ -12,7 +12,7 @@ namespace blum::cli {
 
 /// Files as the viewer shows them: one item each, in their order.
 struct Scene {
-  Json header;
+  Json header;  ///< the items, and what the page has from here only: colours, and the numbers of roles
   SceneBlob blob;
   std::vector<std::string> problems;  ///< of the files that could not be read
 };

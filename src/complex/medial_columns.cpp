@@ -179,20 +179,4 @@ MedialCounts count(const Complex& axis) {
   return counts;
 }
 
-std::string_view to_string(MedialRole role) {
-  switch (role) {
-    case MedialRole::sheet:
-      return "sheet";
-    case MedialRole::rim:
-      return "rim";
-    case MedialRole::seam:
-      return "seam";
-    case MedialRole::curve:
-      return "curve";
-    case MedialRole::junction:
-      return "junction";
-  }
-  return "unknown";
-}
-
 }  // namespace blum

@@ -14,7 +14,7 @@ class Scene:
     def __init__(self, data):
         assert data[:8] == b"BLUMVIEW"
         version, length = struct.unpack("<II", data[8:16])
-        assert version == 1 and length % 8 == 0
+        assert version == 2 and length % 8 == 0
         self.header = json.loads(data[16:16 + length])
         self.body = data[16 + length:]
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from scene import Scene, scene_of_page
-from tool import BLUM, run, run_json
+from tool import BLUM, read_png, run, run_json
 
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
@@ -65,6 +65,46 @@ def test_a_page_holds_an_axis_exactly(tmp_path, axes):
     assert torus["betti"] == [1, 1, 0] and box["betti"] == [1, 0, 0]
     assert "least_theta" not in torus
     assert "radii" in plain["vertices"] and "footprints" not in plain["vertices"]
+
+
+@pytest.fixture
+def scene(tmp_path, solids):
+    run("view", solids / "box.obj", "-o", tmp_path / "box.html")
+    return scene_of_page(tmp_path / "box.html")
+
+
+def slice_of_blocks(folder, distance, site, *options):
+    """The colours of pixels [block, 3] in a picture of a field of which each block has one distance and one site."""
+    blocks = [np.repeat(values, 8).reshape(1, 1, -1).repeat(8, axis=1) for values in (distance, site)]
+    np.savez(folder / "blocks.npz", distance=blocks[0].astype("<f4"), site=blocks[1].astype("<i4"),
+             origin=np.zeros(3), spacing=np.ones(3))
+    run("slice", folder / "blocks.npz", "-o", folder / "blocks.png", "--scale", 5, *options)
+    # Margins are 20 pixels wide, and a block is 40.
+    return read_png(folder / "blocks.png")[2][40, 40:40 + 40 * len(distance):40].astype(int)
+
+
+@pytest.mark.parametrize(("ramp", "least"), [("diverging", -1), ("sequential", 0)])
+def test_ramps_of_a_scene_are_those_of_pictures(tmp_path, scene, ramp, least):
+    table = scene.array(scene.header["colors"][ramp]).reshape(-1, 4)
+    assert table.shape == (512, 4) and (table[:, 3] == 255).all()
+    entries = np.arange(0, 512, 73)
+    distance = least + (1 - least) * entries / 511
+    # Distances are in single precision, which may round to the next byte.
+    assert np.abs(slice_of_blocks(tmp_path, distance, 0 * entries) - table[entries, :3]).max() <= 1
+
+
+def test_regions_of_a_scene_have_the_colours_of_pictures(tmp_path, scene):
+    regions, palette = (scene.array(scene.header["colors"][name]).reshape(-1, 4) for name in ("regions", "palette"))
+    ids = np.arange(len(regions))
+    assert np.array_equal(slice_of_blocks(tmp_path, ids, ids, "--show", "sites"), regions[:, :3])
+    assert palette.shape == (16 * 256, 4) and (palette[:, 3] == 255).all()
+    # The palette has fewer hues: 1.4 degrees from each other.
+    away = np.abs(regions[:, None].astype(int) - palette[None]).max(axis=2)
+    assert away.min(axis=1).max() <= 2
+
+
+def test_a_scene_names_roles(scene):
+    assert scene.header["roles"] == {"sheet": 0, "rim": 1, "seam": 2, "curve": 3, "junction": 4}
 
 
 def test_nested_axes(tmp_path, solids):

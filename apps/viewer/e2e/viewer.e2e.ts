@@ -28,11 +28,11 @@ afterAll(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Where a node of the field is in the browser's window. */
+/** Where a node of the field or image is in the browser's window. */
 const nodeOnPage = async (page: Page, node: number[]): Promise<{ x: number; y: number }> =>
   page.evaluate(([i, j, k]) => {
     const { page: shown } = window.blum;
-    const view = shown!.views.find((v) => v.item.kind === "field")!;
+    const view = shown!.views.find((v) => v.item.kind === "field" || v.item.kind === "image")!;
     const { grid } = view.item as { grid: { origin: number[]; spacing: number[] } };
     const at = [i, j, k].map((n, a) => grid.origin[a] + n * grid.spacing[a] - shown!.stage.center[a]);
     return shown!.stage.project(at as [number, number, number]);
@@ -234,6 +234,24 @@ describe("a page in a file", () => {
     await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
     expect(await fact(page, "value")).toMatch(/^\d+$/);
     expect(complaints).toEqual([]);
+    await page.close();
+  });
+
+  it("labels have the colours of regions", async () => {
+    // The labels 0 to 11 along x.
+    const header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 4 2\nencoding: raw\n\n";
+    const values = Uint8Array.from({ length: 12 * 4 * 2 }, (_, i) => i % 12);
+    writeFileSync(file("labels.nrrd"), Buffer.concat([Buffer.from(header), values]));
+    blum("view", "labels.nrrd", "-o", "labels.html");
+    const { page } = await open(browser, fileUrl("labels.html"));
+    await page.locator("#canvas").focus();
+    await page.keyboard.press("3");
+    const regions = await page.evaluate(() => [...window.blum.scene!.colors.regions]);
+    for (let label = 1; label < 12; ++label) {
+      const shown = await colorAt(page, await nodeOnPage(page, [label, 1, 0]));
+      // The palette of the shaders has 256 hues only.
+      shown.forEach((part, k) => expect(Math.abs(part - regions[4 * label + k]), `label ${label}`).toBeLessThanOrEqual(2));
+    }
     await page.close();
   });
 

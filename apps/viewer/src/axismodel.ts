@@ -1,9 +1,6 @@
 // A medial axis at any angle theta: which triangles, edges and vertices are there.
 import type { AxisItem } from "./scene.ts";
 
-/** Numbers of roles in files. */
-export const Role = { sheet: 0, rim: 1, seam: 2, curve: 3, junction: 4 } as const;
-
 export type AxisCounts = { triangles: number; sheets: number; curves: number; seams: number; rims: number };
 
 /** The part of an axis that is there at an angle. */
@@ -66,16 +63,18 @@ export class AxisModel {
     const angle = this.isNested ? theta : 0;
     const triangles = this.#countAt(angle);
     const edges: number[] = [];
-    const perRole = [0, 0, 0, 0, 0];
+    const { rim, seam, curve, junction } = item.roleNumbers;
+    const kinds = [rim, seam, curve];
+    const perKind = [0, 0, 0];
     const vertexCount = item.positions.length / 3;
-    const around = new Uint8Array(3 * vertexCount); // rims, seams, curves
+    const around = new Uint8Array(3 * vertexCount); // of each kind
     for (const e of this.edges) {
       if (!(item.edgeFrom[e] <= angle && angle < item.edgeUntil[e])) continue;
-      const role = item.edgeRoles[e];
+      const kind = kinds.indexOf(item.edgeRoles[e]);
       edges.push(e);
-      ++perRole[role];
+      ++perKind[kind];
       for (let k = 0; k < 2; ++k) {
-        const at = 3 * item.edges[2 * e + k] + role - 1;
+        const at = 3 * item.edges[2 * e + k] + kind;
         if (around[at] < 255) ++around[at];
       }
     }
@@ -86,7 +85,7 @@ export class AxisModel {
       const [rims, seams, curves] = [around[3 * v], around[3 * v + 1], around[3 * v + 2]];
       const isJunction = this.isNested
         ? isJunctionOf(rims, seams, curves, isOnTriangle)
-        : item.hasLabels && item.roles[v] === Role.junction;
+        : item.hasLabels && item.roles[v] === junction;
       if (isJunction) junctions.push(v);
       const isThere = item.vertexUntil === undefined || item.vertexUntil[v] > angle;
       if (isThere && !isOnTriangle && rims + seams + curves === 0) loose.push(v);
@@ -99,9 +98,9 @@ export class AxisModel {
       counts: {
         triangles,
         sheets: this.#sheetsAmong(triangles),
-        curves: perRole[Role.curve],
-        seams: perRole[Role.seam],
-        rims: perRole[Role.rim],
+        rims: perKind[0],
+        seams: perKind[1],
+        curves: perKind[2],
       },
     };
   }

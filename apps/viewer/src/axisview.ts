@@ -1,6 +1,6 @@
 // A medial axis on the stage.
 import * as THREE from "three";
-import { AxisModel, Role, type AxisPart } from "./axismodel.ts";
+import { AxisModel, type AxisPart } from "./axismodel.ts";
 import { coarsen, keptBelow, worthCoarsening, type Coarse } from "./coarse.ts";
 import { counted, plural, rounded } from "./format.ts";
 import { add, along, distance, dot, sub, tripleAt, type Ray } from "./geometry.ts";
@@ -218,10 +218,11 @@ export class AxisView implements View {
   /** Draws what is there at theta. */
   #showPart(): void {
     this.#geometry.setDrawRange(0, 3 * this.#part.triangles);
+    const roles = this.item.roleNumbers;
     for (const [name, role] of [
-      ["rims", Role.rim],
-      ["seams", Role.seam],
-      ["curves", Role.curve],
+      ["rims", roles.rim],
+      ["seams", roles.seam],
+      ["curves", roles.curve],
     ] as const) {
       const mesh = this.#lines[name];
       mesh.geometry.dispose();
@@ -280,7 +281,7 @@ export class AxisView implements View {
       if (t > 0 && beside < reach && (best === undefined || t < best.t)) best = { t, vertex };
     };
     for (const e of this.#part.edges) {
-      if (this.item.edgeRoles[e] !== Role.curve) continue;
+      if (this.item.edgeRoles[e] !== this.item.roleNumbers.curve) continue;
       consider(this.item.edges[2 * e]);
       consider(this.item.edges[2 * e + 1]);
     }

@@ -1,34 +1,32 @@
 // Legends of what is coloured, with units: on the page, and in saved pictures.
-import { cssColor, divergingColor, paletteIndex, regionPalette, sequentialColor } from "./colors.ts";
+import { cssColor, rampColor, type Colors } from "./colors.ts";
 import { rounded } from "./format.ts";
 import type { Legend } from "./view.ts";
 import { element } from "./widgets.ts";
 
 const steps = 24;
-const regions = 12;
 const digits = 4;
 
 export const titleOf = (legend: Legend): string => (legend.units ? `${legend.title} (${legend.units})` : legend.title);
 
 /** The colours from end to end; those of regions have sharp borders. */
-export function colorsOf(legend: Legend): string[] {
+export function colorsOf(legend: Legend, colors: Colors): string[] {
   if (legend.kind === "regions") {
-    const palette = regionPalette();
-    return Array.from({ length: regions }, (_, i) => cssColor(palette[paletteIndex(i)]));
+    return Array.from({ length: colors.regions.length / 4 }, (_, i) => cssColor(colors.regions, i));
   }
-  return Array.from({ length: steps + 1 }, (_, i) => colorAt(legend, i / steps));
+  return Array.from({ length: steps + 1 }, (_, i) => colorAt(legend, colors, i / steps));
 }
 
-function colorAt(legend: Extract<Legend, { kind: "ramp" }>, t: number): string {
+function colorAt(legend: Extract<Legend, { kind: "ramp" }>, colors: Colors, t: number): string {
   switch (legend.scale) {
     case "grey":
       return `hsl(0 0% ${6 + 90 * t}%)`;
     case "sequential":
-      return cssColor(sequentialColor(t));
+      return rampColor(colors.sequential, t);
     case "diverging": {
       const value = legend.from + (legend.to - legend.from) * t;
       const [inside, outside] = legend.extremes;
-      return cssColor(divergingColor(value < 0 ? value / inside : value / outside));
+      return rampColor(colors.diverging, 0.5 + (0.5 * value) / (value < 0 ? inside : outside));
     }
   }
 }
@@ -44,12 +42,12 @@ export function marksOf(legend: Legend): [text: string, at: number][] {
   return marks;
 }
 
-export function legendElement(legend: Legend): HTMLElement {
+export function legendElement(legend: Legend, tables: Colors): HTMLElement {
   const bar = element("div", "bar");
-  const colors = colorsOf(legend);
+  const colors = colorsOf(legend, tables);
   const stops =
     legend.kind === "regions"
-      ? colors.map((color, i) => `${color} ${(100 * i) / regions}% ${(100 * (i + 1)) / regions}%`)
+      ? colors.map((color, i) => `${color} ${(100 * i) / colors.length}% ${(100 * (i + 1)) / colors.length}%`)
       : colors;
   bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
   const ends = element("div", "ends");

@@ -9,6 +9,7 @@ import { MeshView } from "./meshview.ts";
 import { pictureName, pictureWithLegends } from "./picture.ts";
 import { Readout, withFootprint } from "./readout.ts";
 import { readScene, type Box, type ErrorItem, type Item, type Scene, type Triple } from "./scene.ts";
+import { useColors } from "./shaders.ts";
 import { sceneBytes } from "./source.ts";
 import { Stage } from "./stage.ts";
 import { ground, isDark, onTheme, toggleTheme } from "./theme.ts";
@@ -124,7 +125,7 @@ class Page {
     this.#stage.drawNow();
     const legends = this.#visible().flatMap((view) => view.legends());
     const link = element("a");
-    link.href = URL.createObjectURL(await pictureWithLegends(this.#stage.canvas, legends, isDark()));
+    link.href = URL.createObjectURL(await pictureWithLegends(this.#stage.canvas, legends, this.#scene.colors, isDark()));
     link.download = pictureName(this.#visible().map((view) => view.item.name));
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
@@ -156,7 +157,8 @@ class Page {
       this.#hitView = undefined;
       this.#showHit(undefined);
     }
-    byId("legends").replaceChildren(...visible.flatMap((view) => view.legends()).map(legendElement));
+    const legends = visible.flatMap((view) => view.legends());
+    byId("legends").replaceChildren(...legends.map((legend) => legendElement(legend, this.#scene.colors)));
     const live = (item: Item) => this.#views.find((view) => view.item === item)?.liveFacts() ?? [];
     this.#facts.replaceChildren(factsElement(this.#scene.items, live));
     this.#stage.draw();
@@ -210,6 +212,7 @@ window.blum = { isReady: false, milliseconds: 0 };
 function showScene(scene: Scene): void {
   const problems = scene.items.filter((item) => item.kind === "error").map((item) => item.message);
   const names = scene.items.filter((item) => item.kind !== "error").map((item) => item.name);
+  useColors(scene.colors);
   if (names.length > 0) document.title = `${names.join(", ")} – Blum`;
   let stage: Stage;
   try {

@@ -1,4 +1,5 @@
 // Pictures to keep: what the stage shows, with its legends.
+import type { Colors } from "./colors.ts";
 import { colorsOf, marksOf, titleOf } from "./legend.ts";
 import type { Legend } from "./view.ts";
 
@@ -11,7 +12,13 @@ const bar = 10;
 const height = 2 * padding + 2 * line + bar + 8;
 
 /** Draws the legends into the lower left corner of a picture, side by side and then above each other. */
-export function drawLegends(canvas: HTMLCanvasElement, legends: Legend[], scale: number, isDark: boolean): void {
+export function drawLegends(
+  canvas: HTMLCanvasElement,
+  legends: Legend[],
+  colors: Colors,
+  scale: number,
+  isDark: boolean,
+): void {
   const context = canvas.getContext("2d") as CanvasRenderingContext2D;
   const [wide, high] = [canvas.width / scale, canvas.height / scale];
   const perRow = Math.max(1, Math.floor((wide - margin) / (width + margin)));
@@ -28,18 +35,24 @@ export function drawLegends(canvas: HTMLCanvasElement, legends: Legend[], scale:
     context.roundRect(left, top, width, height, 10);
     context.fill();
     context.stroke();
-    drawLegend(context, legend, left + padding, top + padding, isDark);
+    drawLegend(context, legend, colorsOf(legend, colors), left + padding, top + padding, isDark);
   });
   context.restore();
 }
 
-function drawLegend(context: CanvasRenderingContext2D, legend: Legend, left: number, top: number, isDark: boolean): void {
+function drawLegend(
+  context: CanvasRenderingContext2D,
+  legend: Legend,
+  colors: string[],
+  left: number,
+  top: number,
+  isDark: boolean,
+): void {
   const inner = width - 2 * padding;
   context.font = "12px system-ui, sans-serif";
   context.textAlign = "left";
   context.fillStyle = isDark ? "rgb(232 236 242)" : "rgb(24 28 34)";
   context.fillText(titleOf(legend), left, top, inner);
-  const colors = colorsOf(legend);
   const step = inner / colors.length;
   colors.forEach((color, i) => {
     context.fillStyle = color;
@@ -56,12 +69,13 @@ function drawLegend(context: CanvasRenderingContext2D, legend: Legend, left: num
 export async function pictureWithLegends(
   stage: HTMLCanvasElement,
   legends: Legend[],
+  colors: Colors,
   isDark: boolean,
 ): Promise<Blob> {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [stage.width, stage.height];
   (canvas.getContext("2d") as CanvasRenderingContext2D).drawImage(stage, 0, 0);
-  drawLegends(canvas, legends, stage.width / stage.clientWidth, isDark);
+  drawLegends(canvas, legends, colors, stage.width / stage.clientWidth, isDark);
   return new Promise((resolve, reject) => {
     canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture could be made"))), "image/png");
   });

@@ -1,4 +1,5 @@
 // The scene that `blum view` hands over: a header of JSON, and arrays behind it. apps/cli/scene_blob.hpp says how.
+import type { Colors } from "./colors.ts";
 
 export type Numbers =
   | Float32Array
@@ -58,6 +59,7 @@ export type AxisItem = ItemBase & {
   leastTheta: number | undefined; // where the file holds all angles
   betti: Triple;
   positions: Float64Array;
+  roleNumbers: Roles;
   roles: Uint8Array;
   radii: Float64Array | undefined;
   angles: Float64Array | undefined;
@@ -74,9 +76,12 @@ export type AxisItem = ItemBase & {
   sheets: Int32Array;
 };
 
+/** Numbers of roles in files. */
+export type Roles = Record<"sheet" | "rim" | "seam" | "curve" | "junction", number>;
+
 export type ErrorItem = { kind: "error"; name: string; message: string };
 export type Item = MeshItem | FieldItem | ImageItem | AxisItem | ErrorItem;
-export type Scene = { version: string; items: Item[] };
+export type Scene = { version: string; items: Item[]; colors: Colors };
 
 export class SceneError extends Error {}
 
@@ -107,21 +112,33 @@ export async function readScene(bytes: Uint8Array): Promise<Scene> {
   if (bytes.length < 16 || new TextDecoder().decode(bytes.subarray(0, 8)) !== "BLUMVIEW") {
     throw new SceneError("this is no scene of blum view");
   }
-  if (view.getUint32(8, true) !== 1) throw new SceneError("the scene is of another version of blum than the page");
+  if (view.getUint32(8, true) !== 2) throw new SceneError("the scene is of another version of blum than the page");
   const start = 16 + view.getUint32(12, true);
   if (start > bytes.length) throw new SceneError("the scene is cut off");
   const header = JSON.parse(new TextDecoder().decode(bytes.subarray(16, start))) as Header;
   const body = bytes.subarray(start);
-  const items = await Promise.all(header.items.map((item) => readItem(item, (entry) => readArray(body, entry))));
-  return { version: header.blum, items };
+  const { items, colors, roles } = header;
+  if (colors === undefined || roles === undefined) throw new SceneError("the scene has no colours or roles");
+  const read = (entry: ArrayEntry) => readArray(body, entry);
+  const table = async (name: keyof Colors) => (await read(colors[name])) as Uint8Array;
+  return {
+    version: header.blum,
+    items: await Promise.all(items.map((item) => readItem(item, roles, read))),
+    colors: {
+      diverging: await table("diverging"),
+      sequential: await table("sequential"),
+      palette: await table("palette"),
+      regions: await table("regions"),
+    },
+  };
 }
 
 // What the header holds: arrays as entries, and names as C++ has them.
 // eslint-disable-next-line @typescript-eslint/no-explicit-any
 type Raw = Record<string, any>;
-type Header = { blum: string; items: Raw[] };
+type Header = { blum: string; items: Raw[]; colors?: Record<keyof Colors, ArrayEntry>; roles?: Roles };
 
-async function readItem(raw: Raw, read: (entry: ArrayEntry) => Promise<Numbers>): Promise<Item> {
+async function readItem(raw: Raw, roles: Roles, read: (entry: ArrayEntry) => Promise<Numbers>): Promise<Item> {
   const array = async <T extends Numbers>(entry: ArrayEntry | undefined): Promise<T> =>
     (entry === undefined ? undefined : await read(entry)) as T;
   const base = { name: raw.name, units: raw.units, facts: raw.facts, bounds: raw.bounds };
@@ -169,6 +186,7 @@ async function readItem(raw: Raw, read: (entry: ArrayEntry) => Promise<Numbers>)
         leastTheta: raw.least_theta,
         betti: raw.betti,
         positions: await array<Float64Array>(raw.vertices.positions),
+        roleNumbers: roles,
         roles: await array<Uint8Array>(raw.vertices.roles),
         radii: await array<Float64Array>(raw.vertices.radii),
         angles: await array<Float64Array>(raw.vertices.angles),

@@ -1,32 +1,28 @@
 // What draws surfaces, lines, dots and slices. Colours are what the screen shows: no conversion follows.
 import * as THREE from "three";
-import { divergingColor, paletteHues, paletteRows, regionPalette, sequentialColor, type Color } from "./colors.ts";
+import type { Color, Colors } from "./colors.ts";
 
-const rampSize = 512;
-
-function colorTexture(colors: Color[], width: number, height: number, filter: THREE.MagnificationTextureFilter) {
-  const bytes = new Uint8Array(colors.flatMap((c) => [...c.map((part) => Math.round(255 * part)), 255]));
-  const texture = new THREE.DataTexture(bytes, width, height);
+function colorTexture(table: Uint8Array, width: number, filter: THREE.MagnificationTextureFilter): THREE.DataTexture {
+  const texture = new THREE.DataTexture(table, width, table.length / 4 / width);
   texture.magFilter = filter;
   texture.minFilter = filter;
   texture.needsUpdate = true;
   return texture;
 }
 
-const ramp = (color: (t: number) => Color, from: number) =>
-  colorTexture(
-    Array.from({ length: rampSize }, (_, i) => color(from + ((1 - from) * i) / (rampSize - 1))),
-    rampSize,
-    1,
-    THREE.LinearFilter,
-  );
+type Shared = Record<"diverging" | "sequential" | "palette", { value: THREE.DataTexture | null }>;
+const shared: Shared = { diverging: { value: null }, sequential: { value: null }, palette: { value: null } };
 
-const shared = {
-  diverging: { value: ramp(divergingColor, -1) },
-  sequential: { value: ramp(sequentialColor, 0) },
-  palette: { value: colorTexture(regionPalette(), paletteHues, paletteRows, THREE.NearestFilter) },
-};
+/** Gives all materials the colours of the scene: once, when it has been read. */
+export function useColors({ diverging, sequential, palette }: Colors): void {
+  shared.diverging.value = colorTexture(diverging, diverging.length / 4, THREE.LinearFilter);
+  shared.sequential.value = colorTexture(sequential, sequential.length / 4, THREE.LinearFilter);
+  shared.palette.value = colorTexture(palette, paletteHues, THREE.NearestFilter);
+}
 
+// Where the colour of a region is in the palette, as region_color() in apps/cli/colors.cpp scrambles its number: what is
+// there twice, as a graphics card has no table of all numbers.
+const paletteHues = 256;
 const regionColor = /* glsl */ `
   uniform sampler2D palette;
   vec3 regionColor(int id) {
@@ -305,7 +301,8 @@ const sliceFragment = /* glsl */ `
     } else {
       bool isBeyond = band > 0.0 && abs(value) >= band * (1.0 - 1e-6);
       float t = value < 0.0 ? max(value / extremes.x, -1.0) : min(value / extremes.y, 1.0);
-      color = hasSign ? texture(diverging, vec2(0.5 + 0.5 * t * ${(rampSize - 1) / rampSize}, 0.5)).rgb
+      float colors = float(textureSize(diverging, 0).x);
+      color = hasSign ? texture(diverging, vec2(0.5 + 0.5 * t * (colors - 1.0) / colors, 0.5)).rgb
                       : texture(sequential, vec2(t, 0.5)).rgb;
       if (isBeyond) color = nothing;
     }

@@ -1,7 +1,10 @@
 // Proves which part of an axis is there at an angle, and where junctions are.
 import { describe, expect, it } from "vitest";
-import { AxisModel, isJunctionOf, Role } from "../src/axismodel.ts";
-import type { AxisItem } from "../src/scene.ts";
+import { AxisModel, isJunctionOf } from "../src/axismodel.ts";
+import type { AxisItem, Roles } from "../src/scene.ts";
+
+// Not those of files: the scene says which.
+const role: Roles = { sheet: 2, rim: 9, seam: 0, curve: 5, junction: 7 };
 
 // Two triangles at a common side, of which the first goes at 30 and the second at 60; then a curve is left until 90, and
 // then a vertex. A third triangle has no extent: two of its corners are at the same place.
@@ -17,14 +20,15 @@ const item: AxisItem = {
   leastTheta: 10,
   betti: [1, 0, 0],
   positions: Float64Array.from([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0]),
-  roles: Uint8Array.from([0, 0, 0, 0, 0]),
+  roleNumbers: role,
+  roles: Uint8Array.from([role.junction, role.sheet, role.sheet, role.sheet, role.sheet]),
   radii: undefined,
   angles: undefined,
   footprints: undefined,
   sites: undefined,
   vertexUntil: Float32Array.from([Infinity, 90, 30, 60, Infinity]),
   edges: Uint32Array.from([0, 1, 0, 1, 0, 2, 0, 4]),
-  edgeRoles: Uint8Array.from([Role.rim, Role.curve, Role.rim, Role.curve]),
+  edgeRoles: Uint8Array.from([role.rim, role.curve, role.rim, role.curve]),
   edgeFrom: Float32Array.from([30, 60, 0, 0]),
   edgeUntil: Float32Array.from([60, 90, 30, Infinity]),
   triangles: Uint32Array.from([0, 1, 2, 0, 3, 1, 0, 4, 1]),
@@ -69,6 +73,7 @@ describe("AxisModel", () => {
       triangleUntil: new Float32Array(3).fill(Infinity),
     });
     expect(plain.at(170).counts).toMatchObject({ triangles: 2, curves: 1, rims: 2 });
+    expect([...plain.at(170).junctions]).toEqual([0]);
   });
 });
 

@@ -1,6 +1,6 @@
 // Proves that legends end where the data do, that their colours are those of the slice, and how pictures are named.
 import { describe, expect, it } from "vitest";
-import { cssColor, divergingColor } from "../src/colors.ts";
+import { cssColor, rampColor, type Colors } from "../src/colors.ts";
 import { colorsOf, marksOf, titleOf } from "../src/legend.ts";
 import { pictureName } from "../src/picture.ts";
 import { featureName } from "../src/readout.ts";
@@ -18,6 +18,28 @@ const distance = (from: number, to: number): Legend => ({
   extremes: extremes(from, to),
 });
 
+// Three colours, of which the middle one is that of 0, and two regions.
+const colors: Colors = {
+  diverging: Uint8Array.from([200, 100, 0, 255, 240, 240, 240, 255, 0, 0, 100, 255]),
+  sequential: Uint8Array.from([250, 250, 250, 255, 50, 0, 0, 255]),
+  palette: new Uint8Array(0),
+  regions: Uint8Array.from([1, 2, 3, 255, 4, 5, 6, 255]),
+};
+
+describe("colours", () => {
+  it("are those of the scene, and mixed between them", () => {
+    expect(cssColor(colors.diverging, 2)).toBe("rgb(0 0 100)");
+    expect([-1, 0, 0.5, 1, 2].map((t) => rampColor(colors.sequential, t))).toEqual([
+      "rgb(250 250 250)",
+      "rgb(250 250 250)",
+      "rgb(150 125 125)",
+      "rgb(50 0 0)",
+      "rgb(50 0 0)",
+    ]);
+    expect(rampColor(colors.diverging, 0.25)).toBe("rgb(220 170 120)");
+  });
+});
+
 describe("legends", () => {
   it("end where the data do, not where the colours would", () => {
     expect(marksOf(distance(-0.143, 1.529))).toEqual([
@@ -30,9 +52,14 @@ describe("legends", () => {
   });
 
   it("have the colours of the slice: each side to its own extreme, at most four times the other's", () => {
-    const colors = colorsOf(distance(-0.1, 1));
-    expect(colors[0]).toBe(cssColor(divergingColor(-0.1 / 0.25)));
-    expect(colors.at(-1)).toBe(cssColor(divergingColor(1)));
+    const shown = colorsOf(distance(-0.1, 1), colors);
+    expect(shown[0]).toBe(rampColor(colors.diverging, 0.5 - (0.5 * 0.1) / 0.25));
+    expect(shown.at(-1)).toBe("rgb(0 0 100)");
+  });
+
+  it("of regions have the first ones", () => {
+    const legend: Legend = { kind: "regions", title: "sheet", units: "", note: "" };
+    expect(colorsOf(legend, colors)).toEqual(["rgb(1 2 3)", "rgb(4 5 6)"]);
   });
 });
 

@@ -1,6 +1,5 @@
-// Proves that numbers, colours, grids, rays and level surfaces are right.
+// Proves that numbers, grids, rays and level surfaces are right.
 import { describe, expect, it } from "vitest";
-import { divergingColor, paletteIndex, regionPalette, sequentialColor } from "../src/colors.ts";
 import { exactFloat32, roundStep, rounded } from "../src/format.ts";
 import { closestOnMesh, closestOnTriangle, distance } from "../src/geometry.ts";
 import { copyLayer, nearestNode, nodeIndex, toIndex, toWorld } from "../src/grid.ts";
@@ -31,23 +30,7 @@ describe("text of numbers", () => {
   });
 });
 
-describe("colours", () => {
-  it("are those of blum slice", () => {
-    const bytes = (color: number[]) => color.map((c) => Math.round(255 * c));
-    expect(bytes(divergingColor(0))).toEqual(bytes(divergingColor(1e-12)));
-    expect(divergingColor(-1)[0]).toBeGreaterThan(divergingColor(-1)[2]); // warm inside
-    expect(divergingColor(1)[2]).toBeGreaterThan(divergingColor(1)[0]); // blue outside
-    expect(sequentialColor(0)[1]).toBeGreaterThan(sequentialColor(1)[1]); // light to dark
-  });
-
-  it("of neighbouring regions differ", () => {
-    const palette = regionPalette();
-    const indices = new Set(Array.from({ length: 200 }, (_, id) => paletteIndex(id)));
-    expect(indices.size).toBeGreaterThan(180);
-    for (const index of indices) expect(palette[index]).toBeDefined();
-    expect(paletteIndex(2147483647)).toBeLessThan(palette.length);
-  });
-
+describe("extremes of colours", () => {
   it("each side of the distance has a scale, at most four times the other's", () => {
     expect(extremes(-0.1, 4)).toEqual([1, 4]);
     expect(extremes(-3, 4)).toEqual([3, 4]);

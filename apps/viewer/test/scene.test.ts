@@ -4,9 +4,9 @@ import { describe, expect, it } from "vitest";
 import { readScene, undoDelta, type MeshItem } from "../src/scene.ts";
 import { fromBase64 } from "../src/source.ts";
 
-type Part = { numbers: Float32Array | Uint32Array; coding: "raw" | "deflate" | "delta" };
+type Part = { numbers: Float32Array | Uint32Array | Uint8Array; coding: "raw" | "deflate" | "delta" };
 
-function delta(numbers: Float32Array | Uint32Array): Uint8Array {
+function delta(numbers: Part["numbers"]): Uint8Array {
   const bits = new Uint32Array(numbers.buffer.slice(0));
   const out = new Uint8Array(4 * bits.length);
   bits.forEach((value, i) => {
@@ -23,7 +23,7 @@ function sceneOf(header: (entries: object[]) => object, parts: Part[]): Uint8Arr
   const entries = parts.map(({ numbers, coding }) => {
     const bytes = new Uint8Array(numbers.buffer);
     const data = coding === "raw" ? bytes : deflateSync(coding === "delta" ? delta(numbers) : bytes);
-    const type = numbers instanceof Float32Array ? "f4" : "u4";
+    const type = numbers instanceof Float32Array ? "f4" : numbers instanceof Uint32Array ? "u4" : "u1";
     const entry = { type, count: numbers.length, offset, bytes: data.length, coding };
     const padded = new Uint8Array(Math.ceil(data.length / 8) * 8);
     padded.set(data);
@@ -35,7 +35,7 @@ function sceneOf(header: (entries: object[]) => object, parts: Part[]): Uint8Arr
   while (text.length % 8 !== 0) text += " ";
   const out = new Uint8Array(16 + text.length + offset);
   out.set(new TextEncoder().encode("BLUMVIEW"));
-  new DataView(out.buffer).setUint32(8, 1, true);
+  new DataView(out.buffer).setUint32(8, 2, true);
   new DataView(out.buffer).setUint32(12, text.length, true);
   out.set(new TextEncoder().encode(text), 16);
   let at = 16 + text.length;
@@ -48,10 +48,13 @@ function sceneOf(header: (entries: object[]) => object, parts: Part[]): Uint8Arr
 
 const positions = Float32Array.from({ length: 300 }, (_, i) => Math.sin(i) * 1e3);
 const triangles = Uint32Array.from({ length: 300 }, (_, i) => (i * 7) % 100);
+const colors = Uint8Array.from([1, 2, 3, 255, 4, 5, 6, 255]);
 const meshScene = (coding: Part["coding"]) =>
   sceneOf(
-    ([p, t, s, d]) => ({
+    ([p, t, s, d, c]) => ({
       blum: "1.2.3",
+      colors: { diverging: c, sequential: c, palette: c, regions: c },
+      roles: { sheet: 0, rim: 1, seam: 2, curve: 3, junction: 4 },
       items: [
         { kind: "mesh", name: "a.ply", units: "mesh units", facts: [], bounds: null, origin: [1, 2, 3], positions: p, triangles: t, segments: s, points: d },
         { kind: "error", name: "b.ply", message: "'b.ply': broken" },
@@ -63,6 +66,7 @@ const meshScene = (coding: Part["coding"]) =>
       { numbers: triangles, coding },
       { numbers: new Uint32Array(0), coding: "raw" },
       { numbers: new Uint32Array(0), coding: "raw" },
+      { numbers: colors, coding: "raw" },
     ],
   );
 
@@ -74,6 +78,7 @@ describe("readScene", () => {
     expect(mesh.positions).toEqual(positions);
     expect(mesh.triangles).toEqual(triangles);
     expect(mesh.segments.length).toBe(0);
+    for (const table of Object.values(scene.colors)) expect(table).toEqual(colors);
   });
 
   it("reads a scene that does not begin at a multiple of anything", async () => {
@@ -95,8 +100,9 @@ describe("readScene", () => {
     const bytes = meshScene("delta");
     await expect(readScene(bytes.slice(0, bytes.length - 600))).rejects.toThrow("cut off");
     await expect(readScene(bytes.slice(0, 40))).rejects.toThrow("cut off");
-    bytes[8] = 2;
+    bytes[8] = 1;
     await expect(readScene(bytes)).rejects.toThrow("version");
+    await expect(readScene(sceneOf(() => ({ blum: "1.2.3", items: [] }), []))).rejects.toThrow("no colours");
   });
 });
 

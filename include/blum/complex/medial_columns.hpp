@@ -25,7 +25,14 @@ enum class MedialRole : std::uint8_t {
   curve,     ///< on no triangle
   junction,  ///< a vertex where seams or curves begin, end or meet, or sheets touch
 };
-[[nodiscard]] std::string_view to_string(MedialRole role);
+
+template <>
+struct Description<MedialRole> {
+  static constexpr std::string_view name = "MedialRole";
+  static constexpr std::array values{NamedValue{MedialRole::sheet, "sheet"}, NamedValue{MedialRole::rim, "rim"},
+                                     NamedValue{MedialRole::seam, "seam"}, NamedValue{MedialRole::curve, "curve"},
+                                     NamedValue{MedialRole::junction, "junction"}};
+};
 
 /// A medial axis is a complex with these columns, here by name. Vertices are centres of balls that the solid holds.
 /// Edges are curves, rims and seams: the inner edges of sheets are not listed.
