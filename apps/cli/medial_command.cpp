@@ -229,7 +229,7 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   record(selection, r.weld, input.kind, metadata);
   run.drafts.emplace_back(name);
   if (r.nested) {
-    write_medial(run.drafts.back().path(), complex, axis.nested(), axis.least_theta(), metadata, context);
+    write_medial(run.drafts.back().path(), complex, axis.nested(context), axis.least_theta(), metadata, context);
   } else {
     write_medial(run.drafts.back().path(), complex, metadata, context);
   }
@@ -276,13 +276,13 @@ void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelS
   for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
   Json axes = Json::array();
   Complex whole;
-  if (r.prunes_sheets) whole = axis.simplify(0);
+  if (r.prunes_sheets) whole = axis.simplify(0, context);
   for (const double theta : r.thetas) {
     const fs::path name = r.thetas.size() == 1 ? output : with_theta(output, theta);
     Stopwatch watch;
     // From one angle to the next, so that what is left is nested.
     if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
-    const Complex cut = r.prunes_sheets ? Complex{} : axis.simplify(theta);
+    const Complex cut = r.prunes_sheets ? Complex{} : axis.simplify(theta, context);
     run.phases.push_back({"simplify", watch.lap()});
     add_axis(run, r, input, selection, axis, r.prunes_sheets ? whole : cut, theta, name, axes, context);
   }

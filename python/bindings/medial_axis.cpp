@@ -34,11 +34,13 @@ void bind_axis(nb::module_& m) {
       .def(
           "simplify",
           [](const MedialAxis& axis, double theta) {
-            return run({0, nb::none()}, [&](const Context&) { return axis.simplify(theta); });
+            return run({0, nb::none()}, [&](const Context& context) { return axis.simplify(theta, context); });
           },
           nb::arg("theta"))
       .def("nested",
-           [](const MedialAxis& axis) { return run({0, nb::none()}, [&](const Context&) { return axis.nested(); }); })
+           [](const MedialAxis& axis) {
+             return run({0, nb::none()}, [&](const Context& context) { return axis.nested(context); });
+           })
       .def_prop_ro("report", [](const MedialAxis& axis) { return result_of(axis.report()); });
   m.def(
       "medial_axis_of_mesh",

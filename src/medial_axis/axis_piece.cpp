@@ -55,13 +55,15 @@ class Remainder {
     }
   }
 
-  void append() {
+  void append(const Context& context) {
     for (const std::size_t c : left_) {
       if (dimension_of(piece_.cells[c].cell) == 0) append_vertex(node_of(piece_.cells[c].cell));
     }
+    throw_if_cancelled(context);
     for (const std::size_t c : left_) {
       if (dimension_of(piece_.cells[c].cell) == 2) append_square(piece_.cells[c]);
     }
+    throw_if_cancelled(context);
     for (const std::size_t c : left_) {
       if (dimension_of(piece_.cells[c].cell) == 1 && !in_square_[c]) append_curve(piece_.cells[c]);
     }
@@ -155,8 +157,9 @@ AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floo
   return piece;
 }
 
-void append_at(const AxisPiece& piece, double theta, AxisLists& lists) {
-  Remainder(piece, theta, lists).append();
+void append_at(const AxisPiece& piece, double theta, AxisLists& lists, const Context& context) {
+  throw_if_cancelled(context);
+  Remainder(piece, theta, lists).append(context);
 }
 
 }  // namespace blum

@@ -44,6 +44,7 @@ struct AxisPiece {
 [[nodiscard]] std::array<std::array<std::uint32_t, 3>, 2> triangles_of(const AxisPiece& piece, Cell square);
 
 /// Adds what is left of a piece at theta; edges are those of curves only.
-void append_at(const AxisPiece& piece, double theta, AxisLists& lists);
+/// @throws Cancelled.
+void append_at(const AxisPiece& piece, double theta, AxisLists& lists, const Context& context);
 
 }  // namespace blum

@@ -182,16 +182,17 @@ const MedialAxisReport& MedialAxis::report() const {
   return data_->report;
 }
 
-Complex MedialAxis::simplify(double theta) const {
+Complex MedialAxis::simplify(double theta, const Context& context) const {
   if (!(theta >= data_->least_theta && theta <= 180)) {
     throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be " + exact_text(data_->least_theta) +
                         " to 180");
   }
   AxisLists lists;
-  for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, lists);
+  for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, lists, context);
   Complex complex = complex_of(std::move(lists));
-  Incidence incidence(complex.view());
-  if (contract_points(complex, incidence)) incidence = Incidence(complex.view());
+  Incidence incidence(complex.view(), context);
+  if (contract_points(complex, incidence)) incidence = Incidence(complex.view(), context);
+  throw_if_cancelled(context);
   label_sheets(complex, incidence);
   return complex;
 }
@@ -200,8 +201,8 @@ double MedialAxis::least_theta() const {
   return data_->least_theta;
 }
 
-Complex MedialAxis::nested() const {
-  return nest_pieces(data_->pieces, data_->least_theta);
+Complex MedialAxis::nested(const Context& context) const {
+  return nest_pieces(data_->pieces, data_->least_theta, context);
 }
 
 MedialAxis medial_axis(const Solid& solid, const MedialAxisOptions& options, const Context& context) {

@@ -18,6 +18,9 @@ namespace {
 
 using Pair = std::array<std::uint32_t, 2>;
 
+/// Looks at whether it is cancelled after so many cells: a few milliseconds.
+constexpr std::size_t cells_between_looks = 65536;
+
 struct HashOfPlace {
   std::size_t operator()(const Vec3d& p) const {
     std::size_t hash = 0;
@@ -40,7 +43,7 @@ struct Stay {
 
 class Nest {
  public:
-  explicit Nest(double least_theta) : least_theta_(least_theta) {}
+  Nest(double least_theta, const Context& context) : least_theta_(least_theta), context_(context) {}
 
   void add(const AxisPiece& piece) {
     std::vector<std::uint32_t> vertex(piece.vertices.size(), 0);
@@ -50,7 +53,9 @@ class Nest {
       const std::size_t place = piece.place_of(node_of(cell.cell));
       vertex[place] = vertex_at(piece.vertices[place], cell.level);
     }
+    std::size_t seen = 0;
     for (const AxisCell& cell : piece.cells) {
+      if (seen++ % cells_between_looks == 0) throw_if_cancelled(context_);
       if (!is_there(cell)) continue;
       if (dimension_of(cell.cell) == 1) {
         const auto [a, b] = ends_of(piece, cell.cell);
@@ -112,7 +117,7 @@ class Nest {
   /// Gives each pair of vertices that anything joins its roles: a seam while it has three triangles, a rim while it has
   /// one, a curve when it has none.
   void add_edges() {
-    const Incidence incidence({lists_.vertices.size(), threads_, lists_.triangles});
+    const Incidence incidence({lists_.vertices.size(), threads_, lists_.triangles}, context_);
     // Every side of a triangle is a thread, too, but for diagonals.
     std::vector<Stay> threads(incidence.edges().size());
     for (std::size_t t = 0; t < threads_.size(); ++t) threads[incidence.edge_of_listed()[t]].extend(stays_[t]);
@@ -149,7 +154,8 @@ class Nest {
       if (is_curve && edge_from_[e] <= least_theta_) lists_.add_edge(edges_[e], edge_angles_[e]);
     }
     Complex complex = complex_of(std::move(lists_));
-    label_sheets(complex, Incidence(complex.view()));
+    label_sheets(complex, Incidence(complex.view(), context_));
+    throw_if_cancelled(context_);
     return complex;
   }
 
@@ -166,6 +172,7 @@ class Nest {
   }
 
   double least_theta_;
+  const Context& context_;
   AxisLists lists_;  ///< vertices and triangles
   std::unordered_map<Vec3d, std::uint32_t, HashOfPlace> place_;
   std::vector<float> vertex_until_, triangle_until_;
@@ -179,8 +186,8 @@ class Nest {
 
 }  // namespace
 
-Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta) {
-  Nest nest(least_theta);
+Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta, const Context& context) {
+  Nest nest(least_theta, context);
   for (const AxisPiece& piece : pieces) nest.add(piece);
   return nest.finish();
 }

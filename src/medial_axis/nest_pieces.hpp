@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "blum/complex/complex.hpp"
+#include "blum/core/context.hpp"
 #include "medial_axis/axis_piece.hpp"
 
 namespace blum {
 
 /// What append_at() and contract_points() make of pieces at the angles from `least_theta` on.
-[[nodiscard]] Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta);
+/// @throws Cancelled.
+[[nodiscard]] Complex nest_pieces(const std::vector<AxisPiece>& pieces, double least_theta, const Context& context);
 
 }  // namespace blum

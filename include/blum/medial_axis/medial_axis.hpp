@@ -135,15 +135,16 @@ class MedialAxis {
   /// with the columns of MedialView and the Betti numbers report().voxels. What a larger theta gives is part of what a
   /// smaller one gives.
   /// @param theta  degrees, MedialAxisOptions::least_theta to 180.
-  /// @throws InvalidOption. Cost: linear in the result.
-  [[nodiscard]] Complex simplify(double theta) const;
+  /// @throws InvalidOption, Cancelled. Cost: linear in the result; about 0.5 s for a million triangles.
+  [[nodiscard]] Complex simplify(double theta, const Context& context = {}) const;
 
   /// The axes of all angles from least_theta() to 180 as sets of points, in one complex: to show, and to simplify
   /// without computing anything again. It has the columns of MedialView and MedialLevels; at an angle, the triangles,
   /// curves and vertices that are there cover what simplify() gives for it. Vertices at the same place are one, and
   /// pieces without extent are left out, so that its topology need not be that of the solid. Sheets and the roles of
-  /// vertices are those at the least angle. Cost: near-linear in the axis at the least angle.
-  [[nodiscard]] Complex nested() const;
+  /// vertices are those at the least angle. @throws Cancelled. Cost: near-linear in the axis at the least angle; about 1 s
+  /// for a million triangles.
+  [[nodiscard]] Complex nested(const Context& context = {}) const;
 
   /// MedialAxisOptions::least_theta.
   [[nodiscard]] double least_theta() const;

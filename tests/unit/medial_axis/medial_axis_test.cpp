@@ -64,5 +64,15 @@ TEST(MedialAxis, MeshesThatFaceInwardsAreToldToBeFlipped) {
   EXPECT_EQ(refusal_of(sheet).find("flip"), std::string::npos);
 }
 
+TEST(MedialAxis, CancelStopsWhatIsMadeOfIt) {
+  const MedialAxis axis = medial_axis(make_box({}), {.resolution = 12});
+  std::stop_source source;
+  source.request_stop();
+  const Context stopped{.cancel = source.get_token()};
+  EXPECT_THROW((void)axis.simplify(60, stopped), Cancelled);
+  EXPECT_THROW((void)axis.nested(stopped), Cancelled);
+  EXPECT_FALSE(axis.simplify(60).triangles.empty());
+}
+
 }  // namespace
 }  // namespace blum

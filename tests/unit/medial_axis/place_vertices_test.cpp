@@ -113,7 +113,7 @@ TEST(PlaceVertices, VerticesOfARoundBodySeeTwoWalls) {
   const double h = 0.04;
   const Sample s(make_torus({.ring_segments = 48, .tube_segments = 24}), h);
   AxisLists circle;
-  append_at(s.piece, 60, circle);
+  append_at(s.piece, 60, circle, {});
   ASSERT_GT(circle.vertices.size(), 100U);
   std::vector<double> off;
   std::size_t one_wall = 0;
