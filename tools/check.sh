@@ -42,7 +42,7 @@ for folder in (*folders, pathlib.Path("tests/property"), pathlib.Path("tests/reg
 targets |= {f"example_{path.stem}" for path in pathlib.Path("examples").glob("*.cpp") if wanted.search(f"example.{path.stem}")}
 if any(wanted.search(f"pytest.{path.stem}") for folder in ("cli", "python") for path in pathlib.Path("tests", folder).glob("test_*.py")):
     targets |= {path.stem for path in pathlib.Path("tests/support").glob("*_sample.cpp")}
-    targets |= {"blum_cli", "blum_python", "blum_emulated_cuda"}
+    targets |= {"blum_cli", "blum_python", "blum_python_stub", "blum_emulated_cuda"}
 print(*sorted(targets), sep="\n")
 PYTHON
 )

@@ -5,7 +5,10 @@ cd "$(dirname "$0")/.."
 
 mapfile -t files < <(git ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp' '*.cu' '*.cuh')
 if [[ ${1:-} == --check ]]; then
-  clang-format-19 --dry-run --Werror "${files[@]}"
+  if ! clang-format-19 --dry-run --Werror "${files[@]}"; then
+    echo "format: run make format" >&2
+    exit 1
+  fi
 else
   clang-format-19 -i "${files[@]}"
 fi

@@ -13,6 +13,10 @@ shell_scripts() {
 
 # The Python package, its tests and its examples: ruff's rules and form.
 python_sources() {
+  if [[ ! -x build/venv/bin/ruff ]]; then
+    echo "lint: ruff is missing: run make lint, or tools/setup.sh --lint" >&2
+    return 1
+  fi
   build/venv/bin/ruff check --quiet && build/venv/bin/ruff format --check
 }
 

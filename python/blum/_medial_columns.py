@@ -112,7 +112,7 @@ class NestedComplex(MedialColumns):
         self.least_theta = least_theta
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored_nested, (_core_arguments(self), self.least_theta)
+        return _restored_nested, (core_arguments(self), self.least_theta)
 
     @property
     def vertex_until(self) -> npt.NDArray[np.float32]:
@@ -156,7 +156,7 @@ class NestedComplex(MedialColumns):
         )
 
 
-def _core_arguments(axis: Complex) -> tuple[Any, ...]:
+def core_arguments(axis: Complex) -> tuple[Any, ...]:
     columns = (axis.vertex_columns, axis.edge_columns, axis.triangle_columns)
     return (
         np.array(axis.vertices),

@@ -31,7 +31,7 @@ from ._errors import InvalidOption
 from ._field import Field
 from ._grid import Grid, grid_for
 from ._image import Image
-from ._medial_columns import ROLES, MedialColumns, NestedComplex
+from ._medial_columns import ROLES, MedialColumns, NestedComplex, core_arguments
 from ._mesh import Mesh
 from ._options import takes
 from ._progress import Progress, reporting
@@ -155,8 +155,7 @@ class MedialComplex(MedialColumns):
         self.nested: NestedComplex | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        names = ("vertices", *_ATTRIBUTES)
-        return _restored, ({name: np.array(getattr(self, name)) for name in names}, self.has, self._origin)
+        return _restored, (core_arguments(self), self.has, self._origin, self.nested)
 
     @property
     def counts(self) -> dict[str, int]:
@@ -243,7 +242,8 @@ class MedialComplex(MedialColumns):
         )
 
     def to_pyvista(self) -> Any:
-        """A pyvista.PolyData of triangles and edges with all attributes; a dict of arrays where PyVista is missing.
+        """A pyvista.PolyData of triangles and edges with all columns of vertices, and angles, roles and sheets of cells;
+        a dict of arrays where PyVista is missing.
 
         Cell data list the edges before the triangles, as PolyData does; `sheet` is -1 and `role` -1 where they do not
         apply.
@@ -260,9 +260,8 @@ class MedialComplex(MedialColumns):
             faces=_padded(np.ascontiguousarray(self.triangles)),
             lines=_padded(np.ascontiguousarray(self.edges)),
         )
-        out.point_data["radius"] = np.array(self.radius)
-        out.point_data["separation_angle"] = np.array(self.separation_angle)
-        out.point_data["role"] = np.array(self.role)
+        for name, column in self.vertex_columns.items():
+            out.point_data[name] = np.array(column)
         lines, faces = len(self.edges), len(self.triangles)
         out.cell_data["separation_angle"] = np.concatenate([self.edge_angle, self.triangle_angle])
         out.cell_data["role"] = np.concatenate([self.edge_role.astype(np.int16), np.full(faces, -1, dtype=np.int16)])
@@ -275,23 +274,10 @@ class MedialComplex(MedialColumns):
         return f"MedialComplex({parts}{'' if self.theta is None else f', theta={self.theta:g}'})"
 
 
-_ATTRIBUTES = (
-    "radius",
-    "footprints",
-    "sites",
-    "separation_angle",
-    "role",
-    "edges",
-    "edge_angle",
-    "edge_role",
-    "triangles",
-    "triangle_angle",
-    "triangle_sheet",
-)
-
-
-def _restored(arrays: dict[str, Any], has: dict[str, bool], origin: Origin) -> MedialComplex:
-    return MedialComplex._of(MedialComplex(**arrays)._core, has, origin)
+def _restored(
+    arguments: tuple[Any, ...], has: dict[str, bool], origin: Origin, nested: NestedComplex | None
+) -> MedialComplex:
+    return MedialComplex._of(_core.Complex(*arguments), has, origin, nested)
 
 
 def _claim(axis: MedialComplex) -> Claim:

@@ -26,8 +26,8 @@ class BoundaryChain {
   BoundaryChain(const MeshView& mesh, const SiteTable& sites, double scale, const Context& context);
 
   [[nodiscard]] bool is_empty() const { return levels_.empty(); }
-  /// A bound on |grad w| over a box, in scaled coordinates; where it is above `enough`, any number above that. Allocates
-  /// nothing.
+  /// A bound on |grad w| over a box, in scaled coordinates; where it is above `enough`, any number above that.
+  /// Allocates nothing.
   [[nodiscard]] double gradient_bound(const Box3& box, double enough = HUGE_VAL) const;
 
  private:

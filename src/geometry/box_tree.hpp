@@ -26,17 +26,7 @@ struct alignas(64) BoxBlock {
 void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]);
 
 /// A bit for each box of a block that touches this box.
-[[nodiscard]] inline unsigned touching(const BoxBlock& block, const Box3& box) {
-  unsigned bits = 0;
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    bool apart = false;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      apart |= block.lower[axis][lane] > box.upper[axis] || block.upper[axis][lane] < box.lower[axis];
-    }
-    bits |= apart ? 0U : 1U << lane;
-  }
-  return bits;
-}
+[[nodiscard]] unsigned touching(const BoxBlock& block, const Box3& box);
 
 /// A complete tree over consecutive leaves: block i of level k holds the boxes of blocks (or leaves, for k = 0)
 /// 8 i ... 8 i + 7 of the level below. The last level has one block.

@@ -36,6 +36,19 @@ void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[
   }
 }
 
+unsigned touching(const BoxBlock& block, const Box3& box) {
+  alignas(64) double meet[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double x = block.lower[0][i] <= box.upper.x && block.upper[0][i] >= box.lower.x ? 1.0 : 0.0;
+    const double y = block.lower[1][i] <= box.upper.y && block.upper[1][i] >= box.lower.y ? 1.0 : 0.0;
+    const double z = block.lower[2][i] <= box.upper.z && block.upper[2][i] >= box.lower.z ? 1.0 : 0.0;
+    meet[i] = x * y * z;
+  }
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < lanes; ++i) bits |= static_cast<unsigned>(meet[i]) << i;
+  return bits;
+}
+
 void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]) {
   const auto& p = block.corner;
   for (std::size_t i = 0; i < lanes; ++i) {
@@ -184,6 +197,7 @@ std::size_t best_index() {
 }
 
 HWY_EXPORT(squared_distances);
+HWY_EXPORT(touching);
 HWY_EXPORT(approximate_distances);
 HWY_EXPORT(add_clusters);
 HWY_EXPORT(add_clusters_beyond);
@@ -195,6 +209,7 @@ HWY_EXPORT(add_triangles);
 
 // Chosen once: the loops take tens of nanoseconds, and a look-up would be felt.
 const auto best_squared_distances = BLUM_BEST(squared_distances);
+const auto best_touching = BLUM_BEST(touching);
 const auto best_approximate_distances = BLUM_BEST(approximate_distances);
 const auto best_add_clusters = BLUM_BEST(add_clusters);
 const auto best_add_clusters_beyond = BLUM_BEST(add_clusters_beyond);
@@ -204,6 +219,10 @@ const auto best_add_triangles = BLUM_BEST(add_triangles);
 
 void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]) {
   best_squared_distances(block, query, out);
+}
+
+unsigned touching(const BoxBlock& block, const Box3& box) {
+  return best_touching(block, box);
 }
 
 void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]) {

@@ -209,8 +209,10 @@ class ComplexNpzReader {
     VoxelImage::Values values = npz_.read(prefix + array, [&](ByteStream& stream, const NpyHeader& header) {
       const std::uint64_t rows = columns.rows();
       if (header.shape.empty() || header.shape[0] != rows) {
-        throw FormatError(stream.name() + ": its shape is " + shape_text(header.shape) + ", but should be [" +
-                          std::to_string(rows) + "] or [" + std::to_string(rows) + ", components]");
+        throw FormatError(
+            stream.name() + ": its shape is " + shape_text(header.shape) + ", but should be [" + std::to_string(rows) +
+            "] or [" + std::to_string(rows) + ", components]" +
+            (mark > 0 ? ": by its name it is a column, one row for each " + array.substr(0, mark - 1) : ""));
       }
       for (std::size_t axis = 1; axis < header.shape.size(); ++axis) {
         components *= std::min<std::uint64_t>(header.shape[axis], max_file_columns + 1);

@@ -555,8 +555,16 @@ def test_field_on_a_device(shapes, tmp_path):
     assert "cuda:K" in run("field", shapes / "sphere.ply", "-o", out, "--device", "gpu", status=2)[1]
 
 
-def test_field_on_the_host_as_a_device(shapes, tmp_path, monkeypatch):
-    monkeypatch.setenv("BLUM_CUDA_MODULE", str(Path(os.environ["BLUM_BIN_DIR"]) / "libblum_emulated_cuda.so"))
+@pytest.fixture(scope="module")
+def emulated_module():
+    """The module that runs CUDA's kernels on the host."""
+    path = Path(os.environ["BLUM_BIN_DIR"]) / "libblum_emulated_cuda.so"
+    assert path.is_file(), "build the target blum_emulated_cuda first"
+    return path
+
+
+def test_field_on_the_host_as_a_device(shapes, tmp_path, monkeypatch, emulated_module):
+    monkeypatch.setenv("BLUM_CUDA_MODULE", str(emulated_module))
     for source in ("sphere.ply", "ball.nrrd"):
         grid = ["--resolution", 16] if source.endswith("ply") else []
         found = []
@@ -569,7 +577,7 @@ def test_field_on_the_host_as_a_device(shapes, tmp_path, monkeypatch):
         assert np.array_equal(found[1], found[2])
 
 
-def test_the_module_beside_a_tool_that_path_finds(shapes, tmp_path, monkeypatch):
+def test_the_module_beside_a_tool_that_path_finds(shapes, tmp_path, monkeypatch, emulated_module):
     place = tmp_path / "bin"
     place.mkdir()
     shutil.copy(BLUM, place / "blum")
@@ -578,7 +586,7 @@ def test_the_module_beside_a_tool_that_path_finds(shapes, tmp_path, monkeypatch)
     command = ["blum", "field", str(shapes / "sphere.ply"), "-o", "out.npz", "--resolution", "8", "--device", "auto"]
 
     def device(module):
-        shutil.copy(Path(os.environ["BLUM_BIN_DIR"]) / "libblum_emulated_cuda.so", module)
+        shutil.copy(emulated_module, module)
         done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
         module.unlink()
         return next(line.split()[-1] for line in done.stdout.splitlines() if line.startswith("device"))

@@ -55,7 +55,10 @@ def drop_a_triangle(arrays):
 
 
 def add_a_vertex(arrays):
-    for name in ("vertices", "radius", "separation_angle", "role", *FOOTPRINTS, *SITES):
+    count = len(arrays["vertices"])
+    of_cells = ("edge", "triangle", "metadata")
+    for name in [name for name in arrays if not name.startswith(of_cells)]:
+        assert len(arrays[name]) == count
         arrays[name] = np.concatenate([arrays[name], arrays[name][:1]])
 
 

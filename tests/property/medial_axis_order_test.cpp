@@ -102,23 +102,10 @@ TEST(MedialOrder, LargerAnglesKeepPartsOfWhatSmallerOnesKeepInImages) {
 }
 
 void expect_same(const AxisRows& a, const AxisRows& b) {
-  ASSERT_EQ(a.vertices.size(), b.vertices.size());
-  ASSERT_EQ(a.edges.size(), b.edges.size());
-  ASSERT_EQ(a.triangles.size(), b.triangles.size());
+  EXPECT_TRUE(a.vertices == b.vertices);
+  EXPECT_TRUE(a.edges == b.edges);
+  EXPECT_TRUE(a.triangles == b.triangles);
   EXPECT_EQ(a.sheet_count, b.sheet_count);
-  const auto is_same_vertex = [](const VertexRow& v, const VertexRow& w) {
-    return v.position == w.position && v.radius == w.radius && v.footprints == w.footprints && v.sites == w.sites &&
-           v.separation_angle == w.separation_angle && v.role == w.role;
-  };
-  const auto is_same_edge = [](const EdgeRow& e, const EdgeRow& f) {
-    return e.vertices == f.vertices && e.separation_angle == f.separation_angle && e.role == f.role;
-  };
-  const auto is_same_triangle = [](const TriangleRow& s, const TriangleRow& t) {
-    return s.vertices == t.vertices && s.separation_angle == t.separation_angle && s.sheet == t.sheet;
-  };
-  EXPECT_TRUE(std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), is_same_vertex));
-  EXPECT_TRUE(std::equal(a.edges.begin(), a.edges.end(), b.edges.begin(), is_same_edge));
-  EXPECT_TRUE(std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), is_same_triangle));
 }
 
 /// @param make  gives the axis, made as a context says.

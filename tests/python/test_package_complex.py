@@ -1,5 +1,6 @@
 """Proves that complexes of Python hold any columns, show them without copies, and say what is wrong with them."""
 
+import copy
 import pickle
 
 import pytest
@@ -76,3 +77,19 @@ def test_medial_axes_are_complexes():
     assert piece.homology() == piece.certificate.axis_betti
     again = pickle.loads(pickle.dumps(nested))
     assert again.least_theta == nested.least_theta and np.array_equal(again.edge_from, nested.edge_from)
+
+
+def test_copies_of_medial_axes_keep_all_columns_and_all_angles(tmp_path):
+    axis = blum.medial_axis(blum.generate("box"), resolution=16)
+    axis.write(tmp_path / "axis.npz")
+    arrays = dict(np.load(tmp_path / "axis.npz"))
+    arrays["extra"] = np.arange(len(arrays["vertices"]))
+    np.savez(tmp_path / "more.npz", **arrays)
+    read = blum.read_medial(tmp_path / "more.npz")
+    for again in (pickle.loads(pickle.dumps(read)), copy.deepcopy(read)):
+        assert list(again.vertex_columns) == list(read.vertex_columns) and "extra" in again.vertex_columns
+        assert np.array_equal(again.vertex_columns["extra"], arrays["extra"])
+        assert read.nested is not None and again.nested is not None
+        assert np.array_equal(again.nested.edge_until, read.nested.edge_until)
+    pytest.importorskip("pyvista")
+    assert set(read.to_pyvista().point_data) == set(read.vertex_columns)

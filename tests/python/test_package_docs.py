@@ -81,6 +81,9 @@ def test_the_table_of_verbs_names_what_there_is():
     assert not {name for name in named if not hasattr(blum, name)}
     verbs = {name for name in blum.__all__ if callable(getattr(blum, name)) and name[0].islower()}
     assert not verbs - named - {"thread_count"}
+    tool = subprocess.run([os.environ["BLUM_CLI"], "--help"], capture_output=True, text=True, check=True).stdout
+    commands = re.findall(r"^  (\w+)  ", tool.split("Subcommands:")[1].split("Examples:")[0], re.M)
+    assert len(commands) > 5 and not [name for name in commands if f"`blum {name}" not in text]
 
 
 def test_types_hold_under_mypy_strict(tmp_path):
@@ -99,6 +102,7 @@ def test_types_hold_under_mypy_strict(tmp_path):
         "blum.distance_field(np.zeros((3, 3)), sgn='none')  # type: ignore[call-arg]\n"
     )
     package = pathlib.Path(blum.__file__).parent
+    assert (package / "_core.pyi").is_file(), "build the target blum_python_stub first"
     environment = {**os.environ, "MYPYPATH": str(package.parent)}
     for arguments in (["-p", "blum"], [str(user)]):
         done = subprocess.run(

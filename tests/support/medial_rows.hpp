@@ -22,6 +22,7 @@ struct VertexRow {
   double separation_angle = 0;
   MedialRole role = MedialRole::sheet;
   float until = always;
+  friend bool operator==(const VertexRow&, const VertexRow&) = default;
 };
 
 struct EdgeRow {
@@ -30,6 +31,7 @@ struct EdgeRow {
   MedialRole role = MedialRole::curve;
   float from = 0;
   float until = always;
+  friend bool operator==(const EdgeRow&, const EdgeRow&) = default;
 };
 
 struct TriangleRow {
@@ -37,6 +39,7 @@ struct TriangleRow {
   float separation_angle = 0;
   std::uint32_t sheet = 0;
   float until = always;
+  friend bool operator==(const TriangleRow&, const TriangleRow&) = default;
 };
 
 /// A medial axis as rows; becomes a complex with all columns wherever one is asked for.

@@ -36,6 +36,7 @@ struct Description<MedialRole> {
 
 /// A medial axis is a complex with these columns, here by name. Vertices are centres of balls that the solid holds.
 /// Edges are curves, rims and seams: the inner edges of sheets are not listed.
+/// Names of vertex columns begin with none of vertex_, edge_ and triangle_, by which .npz files tell kinds apart.
 namespace medial_columns {
 
 /// Vertices, float64: exact distance to the surface, mesh units.

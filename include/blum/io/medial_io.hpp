@@ -100,8 +100,8 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
                   const MedialMetadata& metadata = {}, const Context& context = {});
 
 /// Reads a file that write_medial wrote, or one of the same form by another program (see read_complex), with any of the
-/// columns; others are left out. .vtp, .ply and .npz give back exactly what was written. Where a file does not say what
-/// its edges are, those that are sides of triangles are left out, as the triangles imply them, and the others are
+/// columns; further ones follow them. .vtp, .ply and .npz give back exactly what was written. Where a file does not say
+/// what its edges are, those that are sides of triangles are left out, as the triangles imply them, and the others are
 /// curves; without sheets all triangles are on sheet 0.
 /// @throws FileError; FormatError naming the file and the reason; InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);

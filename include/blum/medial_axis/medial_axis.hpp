@@ -142,8 +142,8 @@ class MedialAxis {
   /// without computing anything again. It has the columns of MedialView and MedialLevels; at an angle, the triangles,
   /// curves and vertices that are there cover what simplify() gives for it. Vertices at the same place are one, and
   /// pieces without extent are left out, so that its topology need not be that of the solid. Sheets and the roles of
-  /// vertices are those at the least angle. @throws Cancelled. Cost: near-linear in the axis at the least angle; about 1 s
-  /// for a million triangles.
+  /// vertices are those at the least angle. @throws Cancelled. Cost: near-linear in the axis at the least angle; about
+  /// 1 s for a million triangles.
   [[nodiscard]] Complex nested(const Context& context = {}) const;
 
   /// MedialAxisOptions::least_theta.

@@ -22,30 +22,10 @@ namespace {
 
 using namespace test;
 
-void expect_same_vertex(const VertexRow& a, const VertexRow& b) {
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.radius, b.radius);
-  EXPECT_EQ(a.footprints, b.footprints);
-  EXPECT_EQ(a.sites, b.sites);
-  EXPECT_EQ(a.separation_angle, b.separation_angle);
-  EXPECT_EQ(a.role, b.role);
-}
-
 void expect_same(const AxisRows& a, const AxisRows& b) {
-  ASSERT_EQ(a.vertices.size(), b.vertices.size());
-  for (std::size_t i = 0; i < a.vertices.size(); ++i) expect_same_vertex(a.vertices[i], b.vertices[i]);
-  ASSERT_EQ(a.edges.size(), b.edges.size());
-  for (std::size_t i = 0; i < a.edges.size(); ++i) {
-    EXPECT_EQ(a.edges[i].vertices, b.edges[i].vertices);
-    EXPECT_EQ(a.edges[i].separation_angle, b.edges[i].separation_angle);
-    EXPECT_EQ(a.edges[i].role, b.edges[i].role);
-  }
-  ASSERT_EQ(a.triangles.size(), b.triangles.size());
-  for (std::size_t i = 0; i < a.triangles.size(); ++i) {
-    EXPECT_EQ(a.triangles[i].vertices, b.triangles[i].vertices);
-    EXPECT_EQ(a.triangles[i].separation_angle, b.triangles[i].separation_angle);
-    EXPECT_EQ(a.triangles[i].sheet, b.triangles[i].sheet);
-  }
+  EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.edges, b.edges);
+  EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.sheet_count, b.sheet_count);
 }
 
