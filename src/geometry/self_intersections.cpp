@@ -41,11 +41,56 @@ std::vector<TriangleId> triangles_with_area(const MeshView& mesh) {
   return out;
 }
 
+/// The plane of a triangle a, b, c, to reject in a few operations most of what does not touch it.
+struct Plane {
+  Vec3d point;      ///< a
+  Vec3d normal;     ///< (b - a) x (c - a)
+  Vec3d magnitude;  ///< of the products that are summed up to the normal
+
+  explicit Plane(const std::array<Vec3d, 3>& p) : point(p[0]) {
+    const Vec3d v = p[1] - p[0];
+    const Vec3d w = p[2] - p[0];
+    for (std::size_t x = 0; x < 3; ++x) {
+      const double left = v[(x + 1) % 3] * w[(x + 2) % 3];
+      const double right = v[(x + 2) % 3] * w[(x + 1) % 3];
+      normal[x] = left - right;
+      magnitude[x] = std::abs(left) + std::abs(right);
+    }
+  }
+
+  /// 1 or -1 where a point lies on that side for certain, by the filter of orient3d; else 0.
+  [[nodiscard]] int side(const Vec3d& p) const {
+    const Vec3d offset = p - point;
+    const double height = dot(normal, offset);
+    const double bound =
+        std::abs(offset.x) * magnitude.x + std::abs(offset.y) * magnitude.y + std::abs(offset.z) * magnitude.z;
+    constexpr double rounding = 8e-16;
+    return std::abs(height) > rounding * bound ? (height > 0 ? 1 : -1) : 0;
+  }
+};
+
+/// Whether all corners of a triangle that another one does not have are on one side of the other's plane: then the two
+/// have nothing in common but common corners.
+bool is_beside(const Plane& plane, const detail::ContactTriangle& of, const detail::ContactTriangle& triangle) {
+  int common = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t corner = triangle.corners[k];
+    if (corner == of.corners[0] || corner == of.corners[1] || corner == of.corners[2]) continue;
+    const int side = plane.side(triangle.points[k]);
+    if (side == 0 || side == -common) return false;
+    common = side;
+  }
+  return common != 0;
+}
+
 /// Triangles with an area, and a hierarchy of boxes over them. "Leaves" are eight triangles of neighbouring ranks.
 class Search {
  public:
   Search(const MeshView& mesh, const Context& context)
-      : ids_(triangles_with_area(mesh)), triangles_(read(mesh, ids_)), bvh_(boxes(triangles_), context) {}
+      : ids_(triangles_with_area(mesh)), triangles_(read(mesh, ids_)), bvh_(boxes(triangles_), context) {
+    planes_.reserve(triangles_.size());
+    for (const detail::ContactTriangle& triangle : triangles_) planes_.emplace_back(triangle.points);
+  }
 
   [[nodiscard]] std::size_t leaf_count() const { return (ids_.size() + leaf_size - 1) / leaf_size; }
 
@@ -86,13 +131,17 @@ class Search {
   }
 
   void test(std::uint32_t i, std::uint32_t other, std::vector<TrianglePair>& out) const {
-    const detail::Contact found = detail::contact(triangles_[i], triangles_[other]);
+    const detail::ContactTriangle& a = triangles_[i];
+    const detail::ContactTriangle& b = triangles_[other];
+    if (is_beside(planes_[i], a, b) || is_beside(planes_[other], b, a)) return;
+    const detail::Contact found = detail::contact(a, b);
     if (found == detail::Contact::none) return;
     out.push_back({std::min(ids_[i], ids_[other]), std::max(ids_[i], ids_[other]), found == detail::Contact::crossing});
   }
 
   std::vector<TriangleId> ids_;
   std::vector<detail::ContactTriangle> triangles_;  ///< of these ids
+  std::vector<Plane> planes_;                       ///< of the triangles
   BoxBvh bvh_;
 };
 
