@@ -18,7 +18,18 @@ CODE = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".ts"}
 TEXT = CODE | {".txt", ".md", ".json", ".cff", ".in", ".yml", ".yaml", ".toml", ""}
 UNFINISHED = re.compile(r"\b(TODO|FIXME|XXX|HACK|[Nn]ot implemented|[Ss]tub|[Pp]laceholder)\b")
 # Names that code had once, and the terms of docs/glossary.md that stand for them.
-REPLACED = {"turned_shells": "reversed_shells", "turned_triangles": "reversed_triangles"}
+REPLACED = {
+    "bounding_box": "bounds",
+    "cavity": "void",
+    "contender": "candidate",
+    "narrow_band": "band",
+    "object_angle": "separation_angle",
+    "suspect": "candidate",
+    "surface_components": "components",
+    "topology_reached": "topology_matches",
+    "turned_shells": "reversed_shells",
+    "turned_triangles": "reversed_triangles",
+}
 REPLACED_NAME = re.compile(r"\b(" + "|".join(REPLACED) + r")\b")
 MACHINE_PATH = re.compile(r"(?<![\w.}/)<-])/(home|root|work|workspace|Users|mnt|scratch)/\w")
 

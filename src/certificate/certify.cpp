@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blum/certificate/certificate.hpp"
+#include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
 #include "certificate/checks.hpp"
 #include "certificate/scaling.hpp"
@@ -102,7 +103,30 @@ CertificateOptions consistent(CertificateOptions options) {
   return options;
 }
 
+/// Nothing but places.
+constexpr CertificateOptions only_places{
+    .positions = true, .radii = false, .footprints = false, .angles = false, .sites = false, .balls = false};
+
+/// The cells of a complex, with columns of which nothing is looked at.
+Complex with_medial_columns(const Complex& complex) {
+  Complex out;
+  out.positions = complex.positions;
+  out.edges = complex.edges;
+  out.triangles = complex.triangles;
+  add_missing_medial_columns(out);
+  return out;
+}
+
 }  // namespace
+
+Certificate certify_topology(const Complex& complex, const MeshView& mesh, const Context& context) {
+  return certify(with_medial_columns(complex), mesh, only_places, context);
+}
+
+Certificate certify_topology(const Complex& complex, const VoxelSet& voxels, const GridSpec& grid,
+                             const MeshView* surface, const Context& context) {
+  return certify(with_medial_columns(complex), voxels, grid, surface, only_places, context);
+}
 
 Certificate certify(const Complex& axis, const MeshView& mesh, const CertificateOptions& options,
                     const Context& context) {

@@ -42,7 +42,7 @@ bool has_other_shell(std::uint32_t set, std::uint32_t than) {
 }
 
 /// Queries at one point. Shells that lie upon each other ask the same, and are answered once.
-struct Place {
+struct QueryPoint {
   Vec3d point;
   std::uint32_t number = 0;
   std::uint32_t shells = no_shell;  ///< that ask
@@ -70,18 +70,19 @@ struct Frame {
 };
 
 /// The places of queries, binned by x and y; within a bin sorted by z.
-class PlaceGrid {
+class QueryPointGrid {
  public:
   /// @param place_of  receives the place of each query.
-  PlaceGrid(const std::vector<Query>& queries, const Box3& bounds, std::vector<std::uint32_t>& place_of)
+  QueryPointGrid(const std::vector<Query>& queries, const Box3& bounds, std::vector<std::uint32_t>& place_of)
       : bounds_(bounds) {
     gather(queries, place_of);
     const double wanted = std::ceil(std::sqrt(static_cast<double>(places_.size())));
     side_ = static_cast<std::int64_t>(std::clamp(wanted, 1.0, 1024.0));
-    const auto key = [&](const Place& p) { return std::tuple(bin(p.point), p.point.z, p.number); };
-    std::sort(places_.begin(), places_.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
+    const auto key = [&](const QueryPoint& p) { return std::tuple(bin(p.point), p.point.z, p.number); };
+    std::sort(places_.begin(), places_.end(),
+              [&](const QueryPoint& a, const QueryPoint& b) { return key(a) < key(b); });
     start_.assign(static_cast<std::size_t>(side_ * side_) + 1, 0);
-    for (const Place& place : places_) ++start_[static_cast<std::size_t>(bin(place.point)) + 1];
+    for (const QueryPoint& place : places_) ++start_[static_cast<std::size_t>(bin(place.point)) + 1];
     for (std::size_t b = 0; b + 1 < start_.size(); ++b) start_[b + 1] += start_[b];
   }
   [[nodiscard]] std::size_t size() const { return places_.size(); }
@@ -95,9 +96,10 @@ class PlaceGrid {
     for (std::int64_t y = cell(columns.lower.y, 1); y <= y1; ++y) {
       for (std::int64_t x = cell(columns.lower.x, 0); x <= x1; ++x) {
         const auto b = static_cast<std::size_t>(y * side_ + x);
-        const Place* end = places_.data() + start_[b + 1];
-        const Place* place = places_.data() + start_[b];
-        place = std::lower_bound(place, end, heights.lower.z, [](const Place& q, double z) { return q.point.z < z; });
+        const QueryPoint* end = places_.data() + start_[b + 1];
+        const QueryPoint* place = places_.data() + start_[b];
+        place =
+            std::lower_bound(place, end, heights.lower.z, [](const QueryPoint& q, double z) { return q.point.z < z; });
         for (; place != end && place->point.z <= heights.upper.z; ++place) {
           if (visit(*place)) return true;
         }
@@ -134,7 +136,7 @@ class PlaceGrid {
     }
   }
 
-  std::vector<Place> places_;
+  std::vector<QueryPoint> places_;
   Box3 bounds_;
   std::int64_t side_ = 1;
   std::vector<std::uint32_t> start_;
@@ -265,7 +267,7 @@ class Nesting {
   Answers ask(const std::vector<Query>& queries, std::size_t most) {
     Answers out;
     for (const Query& query : queries) out.shell.push_back(query.shell);
-    const PlaceGrid grid(queries, bounds_, out.place);
+    const QueryPointGrid grid(queries, bounds_, out.place);
     out.touched_by.assign(grid.size(), no_shell);
     const std::vector<bool> may_contain = find_candidates(grid);
     const std::size_t before = meetings_;
@@ -280,7 +282,7 @@ class Nesting {
   }
 
   /// Compares a triangle with the places below and beside it. @return  false when there were too many meetings.
-  bool meet(std::size_t triangle, const PlaceGrid& grid, std::size_t most, Answers& out) {
+  bool meet(std::size_t triangle, const QueryPointGrid& grid, std::size_t most, Answers& out) {
     const std::uint32_t outer = set_.of_triangle[triangle];
     const Box3 shell = frame_(set_.shells[outer].bounds);
     std::array<Vec3d, 3> corners;
@@ -291,7 +293,7 @@ class Nesting {
     }
     Box3 heights = shell;
     heights.upper.z = box.upper.z;
-    return !grid.visit_in(box, heights, [&](const Place& place) {
+    return !grid.visit_in(box, heights, [&](const QueryPoint& place) {
       if (++meetings_ > most) return true;
       if (!has_other_shell(place.shells, outer) || !is_within(shell, place.point)) return false;
       const int winding = projected_winding(corners, place.point);
@@ -375,11 +377,11 @@ class Nesting {
   }
 
   /// The shells whose box holds a query of another shell.
-  [[nodiscard]] std::vector<bool> find_candidates(const PlaceGrid& grid) const {
+  [[nodiscard]] std::vector<bool> find_candidates(const QueryPointGrid& grid) const {
     std::vector<bool> result(set_.shells.size(), false);
     for (std::uint32_t s = 0; s < result.size(); ++s) {
       const Box3 box = frame_(set_.shells[s].bounds);
-      result[s] = grid.visit_in(box, box, [&](const Place& place) {
+      result[s] = grid.visit_in(box, box, [&](const QueryPoint& place) {
         return has_other_shell(place.shells, s) && is_within(box, place.point);
       });
     }

@@ -254,4 +254,13 @@ struct Description<MeshSolidRule> {
                                   const MeshView* surface, const CertificateOptions& options = {},
                                   const Context& context = {});
 
+/// Whether any complex, of a medial axis or not, has the topology of the solid of a mesh: what certify() checks of
+/// places, without the columns of MedialView. Betti numbers agree body by body; vertices and edges lie in the solid.
+/// @throws as certify().
+[[nodiscard]] Certificate certify_topology(const Complex& complex, const MeshView& mesh, const Context& context = {});
+
+/// The same against voxels, as certify() takes them.
+[[nodiscard]] Certificate certify_topology(const Complex& complex, const VoxelSet& voxels, const GridSpec& grid,
+                                           const MeshView* surface, const Context& context = {});
+
 }  // namespace blum
