@@ -343,9 +343,17 @@ class FieldSolver:
     def __repr__(self) -> str:
         return f"FieldSolver({self._grid!r}{', reuse=True' if self._reuse else ''})"
 
-    def compute(self, mesh: Any, triangles: Any = None, *, threads: int = 0, progress: Progress = False) -> Field:
+    def compute(
+        self,
+        mesh: Any,
+        triangles: Any = None,
+        *,
+        weld: Real | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> Field:
         """The field of this frame's mesh. Threads that share a solver wait for each other."""
-        shape = as_mesh(mesh, triangles)
+        shape = as_mesh(mesh, triangles, weld=weld)
         compute = self._solver.compute_in_place if self._reuse else self._solver.compute
         count = integer(threads, "threads")
         if self._owner == threading.get_ident():

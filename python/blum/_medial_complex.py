@@ -242,8 +242,9 @@ class MedialComplex(MedialColumns):
         )
 
     def to_pyvista(self) -> Any:
-        """A pyvista.PolyData of triangles and edges with all columns of vertices, and angles, roles and sheets of cells;
-        a dict of arrays where PyVista is missing.
+        """A pyvista.PolyData of triangles and edges, with all columns of vertices, and angles, roles, sheets of cells.
+
+        Where PyVista is missing: a dict of arrays.
 
         Cell data list the edges before the triangles, as PolyData does; `sheet` is -1 and `role` -1 where they do not
         apply.

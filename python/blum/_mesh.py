@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -28,6 +29,7 @@ from ._arguments import (
     points_and_shape,
     source_name,
 )
+from ._errors import InputWarning
 from ._progress import Progress, reporting
 from ._structs import Bounds, Topology
 
@@ -171,7 +173,10 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh", *, weld: Any =
     it); a PyVista dataset.
     """
     if weld is None:
-        return _converted(mesh, triangles, name)
+        own = _converted(mesh, triangles, name)
+        if triangles is None and not isinstance(mesh, (Mesh, str, os.PathLike, tuple, list)):
+            _tell_of_seams(own, type(mesh).__name__)
+        return own
     if triangles is None and isinstance(mesh, (str, os.PathLike)):
         return read_mesh(mesh, weld=weld)
     given = _converted(mesh, triangles, name)
@@ -179,6 +184,22 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh", *, weld: Any =
     welded = mesh_of_arrays(_core.weld(given._arrays, tolerance))
     welded.source, welded._weld = given.source, tolerance
     return welded
+
+
+def _tell_of_seams(mesh: Mesh, name: str) -> None:
+    """Other packages keep a vertex for each texture coordinate at it: the mesh is then open along seams."""
+    welded = mesh_of_arrays(_core.weld(mesh._arrays, 0.0))
+    if len(welded.vertices) == len(mesh.vertices) or _is_closed(mesh) or not _is_closed(welded):
+        return
+    text = f"the {name} is open only where equal vertices are apart, as along texture seams: weld=0 merges them"
+    warnings.warn(text, InputWarning, stacklevel=4)
+
+
+def _is_closed(mesh: Mesh) -> bool:
+    corners = np.asarray(mesh.triangles, dtype=np.int64)
+    sides = np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    _, counts = np.unique(sides[:, 0] * len(mesh.vertices) + sides[:, 1], return_counts=True)
+    return len(counts) > 0 and bool((counts == 2).all())
 
 
 def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:

@@ -120,7 +120,7 @@ def extrusion(outline: Any, holes: Any = (), *, thickness: Real = 1.0, stacks: I
     )
 
 
-def noisy(mesh: Any, amplitude: Real, *, seed: Integer = 1) -> Mesh:
+def noisy(mesh: Any, amplitude: Real, *, seed: Integer = 1, weld: Real | None = None) -> Mesh:
     """A copy whose vertices are each moved by a random vector, uniform in a ball of this radius; it may cross itself.
 
     >>> import blum, numpy as np
@@ -132,10 +132,10 @@ def noisy(mesh: Any, amplitude: Real, *, seed: Integer = 1) -> Mesh:
     chosen = integer(seed, "seed")
     if not 0 <= chosen < 2**64:
         raise InvalidOption(f"seed is {chosen}, but must be 0 to 2^64 - 1")
-    return mesh_of_arrays(_core.noisy(as_mesh(mesh)._arrays, number(amplitude, "amplitude"), chosen))
+    return mesh_of_arrays(_core.noisy(as_mesh(mesh, weld=weld)._arrays, number(amplitude, "amplitude"), chosen))
 
 
-def subdivided(mesh: Any, levels: Integer = 1) -> Mesh:
+def subdivided(mesh: Any, levels: Integer = 1, *, weld: Real | None = None) -> Mesh:
     """The same shape with each triangle cut into four at the midpoints of its edges, and each segment into two.
 
     Parameters
@@ -147,4 +147,4 @@ def subdivided(mesh: Any, levels: Integer = 1) -> Mesh:
     >>> blum.subdivided(blum.generate("box"), 2)
     Mesh(98 vertices, 192 triangles)
     """
-    return mesh_of_arrays(_core.subdivided(as_mesh(mesh)._arrays, integer(levels, "levels")))
+    return mesh_of_arrays(_core.subdivided(as_mesh(mesh, weld=weld)._arrays, integer(levels, "levels")))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from . import _core
-from ._arguments import FloatArray, IntArray, indices, integer, points_and_shape
+from ._arguments import FloatArray, IntArray, Real, indices, integer, points_and_shape
 from ._grid import Grid, mask_array
 from ._mesh import as_mesh
 from ._progress import Progress, reporting
@@ -13,7 +13,9 @@ from ._progress import Progress, reporting
 __all__ = ["nearest", "nearest_voxel", "winding_number"]
 
 
-def nearest(mesh: Any, points: Any, *, threads: int = 0, progress: Progress = False) -> tuple[FloatArray, IntArray]:
+def nearest(
+    mesh: Any, points: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+) -> tuple[FloatArray, IntArray]:
     """Distance and closest site of each point of the shape (..., 3), over all sites: O(points * sites).
 
     >>> import blum
@@ -23,16 +25,20 @@ def nearest(mesh: Any, points: Any, *, threads: int = 0, progress: Progress = Fa
     """
     rows, shape = points_and_shape(points, "points")
     with reporting(progress) as report:
-        distance, site = _core.reference_nearest(as_mesh(mesh)._arrays, rows, integer(threads, "threads"), report)
+        distance, site = _core.reference_nearest(
+            as_mesh(mesh, weld=weld)._arrays, rows, integer(threads, "threads"), report
+        )
     return distance.reshape(shape), site.reshape(shape)
 
 
-def winding_number(mesh: Any, points: Any, *, threads: int = 0, progress: Progress = False) -> FloatArray:
+def winding_number(
+    mesh: Any, points: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False
+) -> FloatArray:
     """The sum of all solid angles at each point of the shape (..., 3): O(points * triangles)."""
     rows, shape = points_and_shape(points, "points")
     with reporting(progress) as report:
         values: FloatArray = _core.reference_winding_number(
-            as_mesh(mesh)._arrays, rows, integer(threads, "threads"), report
+            as_mesh(mesh, weld=weld)._arrays, rows, integer(threads, "threads"), report
         )
     return values.reshape(shape)
 

@@ -40,3 +40,25 @@ def test_seams_are_welded_wherever_a_mesh_is_taken():
     assert blum.closest_points(seams, [[0, 0, 3]], weld=0).distance.shape == (1,)
     with pytest.raises(blum.InvalidOption, match="tolerance"):
         blum.topology(seams, weld=-1)
+    points = [[0, 0, 3]]
+    solver = blum.FieldSolver(blum.Grid.around(seams, resolution=8))
+    assert solver.compute(seams).sign_rule == "winding" and solver.compute(seams, weld=0).sign_rule == "normals"
+    assert len(blum.noisy(seams, 0.01, weld=0).vertices) == len(blum.weld(seams).vertices)
+    assert len(blum.subdivided(seams, weld=0).vertices) == len(blum.subdivided(box).vertices)
+    assert blum.reference.nearest(seams, points, weld=0)[0] == blum.reference.nearest(seams, points)[0]
+    assert abs(blum.reference.winding_number(seams, points, weld=0)[0]) < 1e-9
+
+
+def test_meshes_of_others_that_are_open_only_along_seams_are_told(recwarn):
+    box = blum.generate("box")
+    corners = box.triangles.ravel()
+    apart = SimpleNamespace(vertices=box.vertices[corners], faces=np.arange(len(corners)).reshape(-1, 3))
+    with pytest.warns(blum.InputWarning, match="weld=0 merges them"):
+        assert not blum.topology(apart).closed
+    recwarn.clear()
+    assert blum.topology(apart, weld=0).closed
+    whole = SimpleNamespace(vertices=box.vertices, faces=box.triangles)
+    opened = SimpleNamespace(vertices=apart.vertices[3:], faces=apart.faces[:-1])
+    for mesh in (whole, opened, blum.Mesh(apart.vertices, apart.faces), (apart.vertices, apart.faces)):
+        blum.topology(mesh)
+    assert not recwarn.list
