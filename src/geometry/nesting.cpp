@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -20,14 +21,22 @@ namespace {
 
 /// A shell that touches others is looked at from many of its points, of which one lies on none of them.
 constexpr std::size_t most_probes_per_shell = 8192;
+/// A shell whose points all lie on others is looked at from this many points a little within it, at this part of the
+/// size of a triangle.
+constexpr std::size_t most_inner_points = 64;
+constexpr double inner_depth = 1e-7;
 /// Looking from many points ends when triangles and points have met this often, and 16 times for each of them besides:
 /// heaps of shells that lie upon each other would take the square of their number, and say no more in the end.
 constexpr std::size_t most_meetings = std::size_t{1} << 22;
 
+/// The middle of a triangle, computed, is this close to it, along each axis, where coordinates are below 2.
+constexpr double middle_rounding = 2e-15;
+
 /// A point of a shell that we look outwards from.
 struct Query {
-  Vec3d point;  ///< permuted: the ray goes along z
+  Vec3d point;  ///< in the frame: the ray goes along z
   std::uint32_t shell = 0;
+  double rounding = 0;  ///< how far the shell may be from the point, along each axis
 };
 
 constexpr std::uint32_t no_shell = no_component;
@@ -46,6 +55,7 @@ struct QueryPoint {
   Vec3d point;
   std::uint32_t number = 0;
   std::uint32_t shells = no_shell;  ///< that ask
+  double rounding = 0;              ///< the largest of the queries'
 };
 
 /// A triangle of a shell above a place.
@@ -55,17 +65,25 @@ struct Crossing {
   std::int32_t direction = 0;  ///< 1 where the ray leaves through the triangle, -1 where it enters
 };
 
-/// Puts the axis of shortest extent last, keeping the handedness: rays along it meet the fewest shells.
+/// Puts the axis of shortest extent last, keeping the handedness: rays along it meet the fewest shells. Scales by a
+/// power of two so that the largest coordinate is 1 to 2, and products neither overflow nor underflow.
 struct Frame {
   std::size_t first = 0;
-  explicit Frame(const Vec3d& extent) {
+  double scale = 1;
+  explicit Frame(const Box3& bounds) {
+    const Vec3d extent = bounds.size();
     std::size_t shortest = 0;
-    for (std::size_t axis = 1; axis < 3; ++axis) {
+    double largest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       if (extent[axis] < extent[shortest]) shortest = axis;
+      largest = std::max({largest, std::abs(bounds.lower[axis]), std::abs(bounds.upper[axis])});
     }
     first = (shortest + 1) % 3;
+    if (largest > 0 && std::isfinite(largest)) scale = std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1000, 1000));
   }
-  [[nodiscard]] Vec3d operator()(const Vec3d& p) const { return {p[first], p[(first + 1) % 3], p[(first + 2) % 3]}; }
+  [[nodiscard]] Vec3d operator()(const Vec3d& p) const {
+    return Vec3d{p[first], p[(first + 1) % 3], p[(first + 2) % 3]} * scale;
+  }
   [[nodiscard]] Box3 operator()(const Box3& b) const { return {(*this)(b.lower), (*this)(b.upper)}; }
 };
 
@@ -86,6 +104,7 @@ class QueryPointGrid {
     for (std::size_t b = 0; b + 1 < start_.size(); ++b) start_[b + 1] += start_[b];
   }
   [[nodiscard]] std::size_t size() const { return places_.size(); }
+  [[nodiscard]] double most_rounding() const { return most_rounding_; }
 
   /// Calls visit(place) for those in bins that the x and y range of the first box touches, with z in the range of the
   /// second; stops when it returns true.
@@ -129,15 +148,18 @@ class QueryPointGrid {
     for (const std::uint32_t q : order) {
       const Query& query = queries[q];
       if (places_.empty() || places_.back().point != query.point) {
-        places_.push_back({query.point, static_cast<std::uint32_t>(places_.size()), no_shell});
+        places_.push_back({query.point, static_cast<std::uint32_t>(places_.size()), no_shell, 0});
       }
       include_shell(query.shell, places_.back().shells);
+      places_.back().rounding = std::max(places_.back().rounding, query.rounding);
+      most_rounding_ = std::max(most_rounding_, query.rounding);
       place_of[q] = places_.back().number;
     }
   }
 
   std::vector<QueryPoint> places_;
   Box3 bounds_;
+  double most_rounding_ = 0;
   std::int64_t side_ = 1;
   std::vector<std::uint32_t> start_;
 };
@@ -158,13 +180,33 @@ int projected_winding(const std::array<Vec3d, 3>& corners, const Vec3d& p) {
   return winding;
 }
 
+/// Whether a vertical line through a point misses a triangle for certain, as do lines that differ from it by no more
+/// than the point's rounding: the point lies beyond an edge, seen from above. Of upright triangles, beside their line.
+bool passes_beside(const std::array<Vec3d, 3>& corners, const Vec3d& p, double rounding) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d& a = corners[k];
+    const Vec3d edge = corners[(k + 1) % 3] - a;
+    const Vec3d other = corners[(k + 2) % 3] - a;
+    const Vec3d offset = p - a;
+    const double inner = edge.x * other.y - edge.y * other.x;
+    const double left = edge.x * offset.y;
+    const double right = edge.y * offset.x;
+    const double unknown =
+        4e-16 * (std::abs(left) + std::abs(right) + std::abs(edge.x * other.y) + std::abs(edge.y * other.x)) +
+        rounding * (std::abs(edge.x) + std::abs(edge.y));
+    if ((inner >= 0 && left - right < -unknown) || (inner <= 0 && left - right > unknown)) return true;
+  }
+  return false;
+}
+
 struct Height {
   bool is_above = false;
   bool is_certain = true;
 };
 
-/// Whether a triangle that turns counter-clockwise (winding 1) or clockwise (-1) from above lies above a point.
-Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, int winding) {
+/// Whether a triangle that turns counter-clockwise (winding 1) or clockwise (-1) from above lies above a point, and all
+/// others that differ from it by no more than its rounding.
+Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, double rounding, int winding) {
   const Vec3d a = corners[0] - p;
   const Vec3d b = corners[1] - p;
   const Vec3d c = corners[2] - p;
@@ -175,13 +217,16 @@ Height compare_height(const std::array<Vec3d, 3>& corners, const Vec3d& p, int w
   const double determinant = dot(a, cross(b, c));
   const double permanent =
       ma.x * (mb.y * mc.z + mb.z * mc.y) + ma.y * (mb.z * mc.x + mb.x * mc.z) + ma.z * (mb.x * mc.y + mb.y * mc.x);
-  return {determinant * winding > 0, std::abs(determinant) > 1e-15 * permanent};
+  // The determinant's gradient is the normal of the triangle, twice its area long.
+  const Vec3d slope = magnitude(cross(corners[1] - corners[0], corners[2] - corners[0]));
+  const double unknown = 1e-15 * permanent + rounding * (slope.x + slope.y + slope.z);
+  return {determinant * winding > 0, std::abs(determinant) > unknown};
 }
 
 class Nesting {
  public:
   Nesting(const MeshView& mesh, ShellSet& set, const Context& context)
-      : mesh_(mesh), set_(set), context_(context), bounds_(total_bounds(set)), frame_(bounds_.size()) {
+      : mesh_(mesh), set_(set), context_(context), bounds_(total_bounds(set)), frame_(bounds_) {
     bounds_ = frame_(bounds_);
   }
 
@@ -192,12 +237,13 @@ class Nesting {
     rounds_[0] = ask(first_vertices(), without_end);
     const std::vector<std::uint32_t> doubtful = choose_certain(0);
     if (!doubtful.empty()) {
-      const std::vector<Query> queries = many_points(doubtful);
-      rounds_[1] = ask(queries, most_meetings + 16 * (queries.size() + mesh_.triangles.size()));
-      if (rounds_[1].is_complete) {
-        choose_first(1, choose_certain(1));
-      } else {
-        choose_first(0, doubtful);
+      rounds_[1] = ask(many_points(doubtful));
+      const std::size_t last = rounds_[1].is_complete ? 1 : 0;
+      std::vector<std::uint32_t> rest = last == 1 ? choose_certain(1) : doubtful;
+      if (!rest.empty()) {
+        rounds_[2] = ask(inner_points(rest));
+        if (rounds_[2].is_complete) rest = choose_common(2);
+        choose_first(last, rest);
       }
     }
     set_depths();
@@ -220,7 +266,7 @@ class Nesting {
       const std::uint32_t shell = set_.of_triangle[t];
       if (shell == no_component || is_seen[shell]) continue;
       is_seen[shell] = true;
-      add_query(mesh_.vertices[mesh_.triangles[t][0]], shell, queries);
+      queries.push_back({frame_(mesh_.vertices[mesh_.triangles[t][0]]), shell});
     }
     return queries;
   }
@@ -235,15 +281,36 @@ class Nesting {
       const std::uint32_t shell = set_.of_triangle[t];
       if (shell == no_component || step[shell] == 0 || seen[shell]++ % step[shell] != 0) continue;
       const Triangle& corner = mesh_.triangles[t];
-      const Vec3d a = mesh_.vertices[corner[0]];
-      add_query(a, shell, queries);
-      add_query(a + ((mesh_.vertices[corner[1]] - a) + (mesh_.vertices[corner[2]] - a)) * (1.0 / 3), shell, queries);
+      const Vec3d a = frame_(mesh_.vertices[corner[0]]);
+      const Vec3d b = frame_(mesh_.vertices[corner[1]]);
+      const Vec3d c = frame_(mesh_.vertices[corner[2]]);
+      queries.push_back({a, shell});
+      queries.push_back({a + ((b - a) + (c - a)) * (1.0 / 3), shell, middle_rounding});
     }
     return queries;
   }
 
-  void add_query(const Vec3d& point, std::uint32_t shell, std::vector<Query>& queries) const {
-    queries.push_back({frame_(point), shell});
+  /// Points a little within the shells, under the middles of some of their triangles: for shells all of whose points
+  /// lie on others. Far from the surface as roundings go, and near it as features do.
+  [[nodiscard]] std::vector<Query> inner_points(const std::vector<std::uint32_t>& shells) const {
+    std::vector<std::size_t> step(set_.shells.size(), 0);
+    for (const std::uint32_t s : shells) step[s] = set_.shells[s].triangles / most_inner_points + 1;
+    std::vector<std::size_t> seen(set_.shells.size(), 0);
+    std::vector<Query> queries;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const std::uint32_t shell = set_.of_triangle[t];
+      if (shell == no_component || step[shell] == 0 || seen[shell]++ % step[shell] != 0) continue;
+      const Triangle& corner = mesh_.triangles[t];
+      const Vec3d a = frame_(mesh_.vertices[corner[0]]);
+      const Vec3d ab = frame_(mesh_.vertices[corner[1]]) - a;
+      const Vec3d ac = frame_(mesh_.vertices[corner[2]]) - a;
+      const Vec3d normal = cross(ab, ac);
+      const double size = length(normal);
+      if (!(size > 0)) continue;
+      const double inwards = set_.shells[shell].signed_volume > 0 ? -1 : 1;
+      queries.push_back({a + (ab + ac) * (1.0 / 3) + normal * (inwards * inner_depth / std::sqrt(size)), shell});
+    }
+    return queries;
   }
 
   /// What was found above the places of a round.
@@ -263,7 +330,10 @@ class Nesting {
     }
   };
 
-  /// Finds the shells around places of shells; gives up after so many meetings.
+  /// Finds the shells around places of shells; gives up after too many meetings.
+  Answers ask(const std::vector<Query>& queries) {
+    return ask(queries, most_meetings + 16 * (queries.size() + mesh_.triangles.size()));
+  }
   Answers ask(const std::vector<Query>& queries, std::size_t most) {
     Answers out;
     for (const Query& query : queries) out.shell.push_back(query.shell);
@@ -291,15 +361,18 @@ class Nesting {
       corners[k] = frame_(mesh_.vertices[mesh_.triangles[triangle][k]]);
       box.extend(corners[k]);
     }
-    Box3 heights = shell;
-    heights.upper.z = box.upper.z;
-    return !grid.visit_in(box, heights, [&](const QueryPoint& place) {
+    Box3 heights = grown(shell, grid.most_rounding());
+    heights.upper.z = box.upper.z + grid.most_rounding();
+    return !grid.visit_in(grown(box, grid.most_rounding()), heights, [&](const QueryPoint& place) {
       if (++meetings_ > most) return true;
-      if (!has_other_shell(place.shells, outer) || !is_within(shell, place.point)) return false;
+      if (!has_other_shell(place.shells, outer) || !is_within(grown(shell, place.rounding), place.point)) {
+        return false;
+      }
       const int winding = projected_winding(corners, place.point);
-      const bool is_beside = is_within(box, place.point) && place.point.z >= box.lower.z;
-      if (winding == 0 && !is_beside) return false;
-      const Height height = compare_height(corners, place.point, winding);
+      const Box3 near = grown(box, place.rounding);
+      const bool is_beside = is_within(near, place.point) && place.point.z >= near.lower.z;
+      if (winding == 0 && (!is_beside || passes_beside(corners, place.point, place.rounding))) return false;
+      const Height height = compare_height(corners, place.point, place.rounding, winding);
       // A place on an upright wall has no winding number in the projection, but must not count as beyond the wall.
       if (!height.is_certain) include_shell(outer, out.touched_by[place.number]);
       if (winding != 0 && height.is_above) out.containers.push_back({place.number, outer, winding});
@@ -359,6 +432,49 @@ class Nesting {
     return doubtful;
   }
 
+  /// Chooses what is around all points of each shell that lie on no other one: what a shell lies in is around all
+  /// points within it, and what lies in it is not.
+  /// @return  the shells that have no such point, rising.
+  std::vector<std::uint32_t> choose_common(std::size_t round) {
+    Answers& answers = rounds_[round];
+    std::vector<bool> is_asked(set_.shells.size(), false);
+    std::vector<std::vector<std::uint32_t>> places(set_.shells.size());
+    for (std::size_t query = 0; query < answers.shell.size(); ++query) {
+      is_asked[answers.shell[query]] = true;
+      if (!answers.is_doubtful(query)) places[answers.shell[query]].push_back(answers.place[query]);
+    }
+    std::map<std::vector<std::uint32_t>, std::uint32_t> known;  // equal shells ask at equal points
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t s = 0; s < is_asked.size(); ++s) {
+      if (!is_asked[s]) continue;
+      if (places[s].empty()) {
+        rest.push_back(s);
+        continue;
+      }
+      std::sort(places[s].begin(), places[s].end());
+      const auto [entry, is_new] = known.try_emplace(places[s], 0);
+      if (is_new) entry->second = add_common(places[s], answers);
+      choices_[s] = {round, entry->second};
+    }
+    return rest;
+  }
+
+  /// Adds a place that has around it what is around all of these. @return  its number.
+  static std::uint32_t add_common(const std::vector<std::uint32_t>& places, Answers& answers) {
+    const std::span<const Crossing> first = answers.around(places.front());
+    std::vector<Crossing> common(first.begin(), first.end());
+    for (const std::uint32_t place : places) {
+      const std::span<const Crossing> here = answers.around(place);
+      std::erase_if(common, [&](const Crossing& c) {
+        return !std::binary_search(here.begin(), here.end(), c,
+                                   [](const Crossing& a, const Crossing& b) { return a.outer < b.outer; });
+      });
+    }
+    answers.containers.insert(answers.containers.end(), common.begin(), common.end());
+    answers.start.push_back(answers.containers.size());
+    return static_cast<std::uint32_t>(answers.start.size() - 2);
+  }
+
   /// Chooses the first point of these shells, doubtful as it is.
   void choose_first(std::size_t round, const std::vector<std::uint32_t>& shells) {
     const Answers& answers = rounds_[round];
@@ -372,6 +488,9 @@ class Nesting {
     }
   }
 
+  static Box3 grown(const Box3& box, double by) {
+    return {box.lower - Vec3d{by, by, by}, box.upper + Vec3d{by, by, by}};
+  }
   static bool is_within(const Box3& box, const Vec3d& p) {
     return box.lower.x <= p.x && p.x <= box.upper.x && box.lower.y <= p.y && p.y <= box.upper.y;
   }
@@ -380,7 +499,7 @@ class Nesting {
   [[nodiscard]] std::vector<bool> find_candidates(const QueryPointGrid& grid) const {
     std::vector<bool> result(set_.shells.size(), false);
     for (std::uint32_t s = 0; s < result.size(); ++s) {
-      const Box3 box = frame_(set_.shells[s].bounds);
+      const Box3 box = grown(frame_(set_.shells[s].bounds), grid.most_rounding());
       result[s] = grid.visit_in(box, box, [&](const QueryPoint& place) {
         return has_other_shell(place.shells, s) && is_within(box, place.point);
       });
@@ -434,7 +553,7 @@ class Nesting {
   const Context& context_;
   Box3 bounds_;
   Frame frame_;
-  std::array<Answers, 2> rounds_;
+  std::array<Answers, 3> rounds_;
   std::vector<Choice> choices_;  ///< of each shell
   std::size_t meetings_ = 0;
 };

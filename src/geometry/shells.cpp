@@ -107,12 +107,15 @@ ShellSet find_shells(const MeshView& mesh, const SurfaceComponents& components, 
     if (set.of_triangle[t] != no_component) measures[set.of_triangle[t]].add(mesh, mesh.triangles[t]);
   }
   throw_if_cancelled(context);
-  (void)nest_shells(mesh, set, context);
   for (std::size_t s = 0; s < measures.size(); ++s) {
     Shell& shell = set.shells[s];
     const double unit = 1 / measures[s].scale;
     shell.area = measures[s].area * unit * unit;
     shell.signed_volume = measures[s].volume * unit * unit * unit;
+  }
+  (void)nest_shells(mesh, set, context);
+  for (std::size_t s = 0; s < measures.size(); ++s) {
+    Shell& shell = set.shells[s];
     shell.faces_outwards = measures[s].sign() == (shell.depth % 2 == 0 ? 1 : -1);
   }
   return set;

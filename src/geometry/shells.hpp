@@ -50,9 +50,12 @@ struct ShellSet {
 /// Cost: linear, plus for each shell the triangles above one of its vertices that belong to shells around that vertex.
 [[nodiscard]] ShellSet find_shells(const MeshView& mesh, const SurfaceComponents& components, const Context& context);
 
-/// Sets depth and parent: for a vertex of each shell, the winding numbers of the others around it, by counting the
-/// triangles that a ray from it crosses. Where shells lie upon each other so often that no vertex free of others is
-/// found in bounded work, a vertex that lies on them decides.
+/// Sets depth and parent: for a point of each shell, the winding numbers of the others around it, by counting the
+/// triangles that a ray from it crosses. The point is a vertex that lies on no other shell; else the middle of such a
+/// triangle; where all of these lie on others, many points a little within the shell: it lies in what is around all of
+/// them. Where shells lie upon each other so often that none is found in bounded work, a vertex that lies on them
+/// decides.
+/// @param set  with signed volumes; their signs tell the inner side.
 /// @return  how often a triangle was compared with a point.
 std::size_t nest_shells(const MeshView& mesh, ShellSet& set, const Context& context);
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <stop_token>
 #include <vector>
 
@@ -377,21 +378,31 @@ TEST(Topology, ManyShellsInOne) {
   EXPECT_EQ(t.betti, (Betti{3001, 0, 1}));
 }
 
-/// Nests boxes that share the planes of two sides. @param growth  of the third side, from box to box.
-struct NestedBoxes {
+struct NestedShells {
   std::size_t meetings;
   detail::ShellSet set;
-  NestedBoxes(int boxes, double growth) {
+
+  explicit NestedShells(const TriangleMesh& mesh) {
+    const SiteTable sites(mesh);
+    set = detail::find_shells(mesh, detail::find_components(mesh, sites, detail::tally_edges(mesh, sites)), {});
+    for (Shell& shell : set.shells) shell.depth = 0;
+    meetings = detail::nest_shells(mesh, set, {});
+  }
+};
+
+/// Boxes that share the planes of two sides. @param growth  of the third side, from box to box.
+struct NestedBoxes : NestedShells {
+  NestedBoxes(int boxes, double growth) : NestedShells(mesh_of(boxes, growth)) {}
+
+ private:
+  static TriangleMesh mesh_of(int boxes, double growth) {
     TriangleMesh mesh;
     for (int k = 0; k < boxes; ++k) {
       BoxOptions box;
       box.size.x += growth * k;
       append(mesh, make_box(box));
     }
-    const SiteTable sites(mesh);
-    set = detail::find_shells(mesh, detail::find_components(mesh, sites, detail::tally_edges(mesh, sites)), {});
-    for (Shell& shell : set.shells) shell.depth = 0;
-    meetings = detail::nest_shells(mesh, set, {});
+    return mesh;
   }
 };
 
@@ -406,6 +417,99 @@ TEST(Topology, EqualShellsLieInAllOthers) {
   for (std::size_t s = 0; s < 5; ++s) {
     EXPECT_EQ(boxes.set.shells[s].depth, 4U);
     EXPECT_EQ(boxes.set.shells[s].parent, s == 0 ? 1 : 0);
+  }
+}
+
+/// The middles of triangles, rounded, may lie beside the walls that they are on: only free points decide.
+TEST(Topology, AVoidOnFiveOfItsWallsIsAVoid) {
+  TriangleMesh mesh;
+  mesh.vertices = {{8, 8, 8}, {10, 10, 6}, {6, 8, 6}, {8, 10, 4}, {10, 6, 10}, {12, 8, 8}, {8, 6, 8}, {10, 8, 6},
+                   {8, 8, 8}, {9, 9, 7},   {6, 8, 6}, {7, 9, 5},  {10, 6, 10}, {11, 7, 9}, {8, 6, 8}, {9, 7, 7}};
+  mesh.triangles = {{1, 3, 2},    {5, 7, 3},    {4, 6, 5},   {0, 2, 4},   {0, 5, 1},    {3, 7, 6},
+                    {2, 3, 6},    {0, 4, 5},    {1, 5, 3},   {0, 1, 2},   {2, 6, 4},    {6, 7, 5},
+                    {9, 12, 8},   {15, 11, 10}, {9, 13, 12}, {11, 13, 9}, {11, 15, 13}, {13, 15, 12},
+                    {14, 15, 10}, {10, 9, 8},   {12, 14, 8}, {14, 10, 8}, {15, 14, 12}, {10, 11, 9}};
+  const Topology found = topology(mesh);
+  ASSERT_EQ(found.shells.size(), 2U);
+  EXPECT_EQ(found.shells[0].depth, 0U);
+  EXPECT_EQ(found.shells[1].depth, 1U);
+  EXPECT_EQ(found.betti, (std::array<std::int64_t, 3>{1, 0, 1}));
+}
+
+TEST(Topology, APinFlushInAHoleLiesBesideThePlate) {
+  for (int sides = 3; sides < 40; ++sides) {
+    std::vector<Point2> hole;
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      hole.push_back({std::cos(angle), std::sin(angle)});
+    }
+    const std::vector<Point2> outline{{-2, -2}, {2, -2}, {2, 2}, {-2, 2}};
+    TriangleMesh mesh = make_extrusion(hole, {});
+    append(mesh, make_extrusion(outline, std::vector<std::vector<Point2>>{hole}));
+    const Topology found = topology(mesh);
+    ASSERT_EQ(found.shells.size(), 2U);
+    EXPECT_EQ(found.betti, (std::array<std::int64_t, 3>{2, 1, 0})) << sides << " sides";
+  }
+}
+
+/// A box, its sides cut along random diagonals.
+TriangleMesh box_of(const Vec3d& lower, const Vec3d& upper, bool is_reversed, Random& random) {
+  TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k) {
+    mesh.vertices.push_back(
+        {(k & 4) != 0 ? upper.x : lower.x, (k & 2) != 0 ? upper.y : lower.y, (k & 1) != 0 ? upper.z : lower.z});
+  }
+  constexpr std::array<std::array<std::uint32_t, 4>, 6> sides{
+      {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}};
+  for (const auto& side : sides) {
+    const std::size_t k = random.below(2);
+    mesh.triangles.push_back({side[k], side[k + 1], side[(k + 2) % 4]});
+    mesh.triangles.push_back({side[k], side[(k + 2) % 4], side[(k + 3) % 4]});
+  }
+  if (is_reversed) reverse_triangles(mesh);
+  return mesh;
+}
+
+/// Cubes all of whose points lie on others, and cubes of voids that fill what they lie in.
+TEST(Topology, BlocksThatTouchOnAllSidesAreBesideEachOther) {
+  Random random(5);
+  for (int run = 0; run < 10; ++run) {
+    TriangleMesh mesh;
+    for (int k = 0; k < 27; ++k) {
+      const Vec3d lower{static_cast<double>(k % 3), static_cast<double>(k / 3 % 3), static_cast<double>(k / 9)};
+      append(mesh, box_of(lower, lower + Vec3d{1, 1, 1}, false, random));
+    }
+    EXPECT_EQ(topology(mesh).betti, (std::array<std::int64_t, 3>{27, 0, 0}));
+  }
+}
+
+TEST(Topology, AVoidThatIsFilledByItsInsertsIsAroundThem) {
+  Random random(6);
+  for (int run = 0; run < 20; ++run) {
+    TriangleMesh mesh = box_of({0, 0, 0}, {4, 4, 4}, false, random);
+    append(mesh, box_of({0, 0, 0}, {4, 4, 2}, true, random));   // a void on five of its walls
+    append(mesh, box_of({0, 0, 0}, {4, 4, 1}, false, random));  // two bodies that fill it
+    append(mesh, box_of({0, 0, 1}, {4, 4, 2}, false, random));
+    const Topology found = topology(mesh);
+    ASSERT_EQ(found.shells.size(), 4U);
+    for (std::size_t s = 0; s < 4; ++s) {
+      EXPECT_EQ(found.shells[s].depth, std::min<std::size_t>(s, 2));
+      EXPECT_EQ(found.shells[s].parent, s == 0 ? -1 : s == 1 ? 0 : 1);
+    }
+  }
+}
+
+TEST(Topology, TinyAndHugeShellsNestAsOthersDo) {
+  for (const double size : {1e-120, 1e-20, 1.0, 1e20, 1e90}) {
+    TriangleMesh mesh;
+    for (const double side : {2.0, 1.0}) {
+      BoxOptions box;
+      box.size = Vec3d{side, side, side} * size;
+      TriangleMesh part = make_box(box);
+      if (side == 1.0) reverse_triangles(part);
+      append(mesh, part);
+    }
+    EXPECT_EQ(NestedShells(mesh).set.shells[1].depth, 1U) << size;
   }
 }
 
