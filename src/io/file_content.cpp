@@ -20,6 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t head_size = 8192;
+/// The directory of an archive of 1,000 arrays, the most that are read, with names of 200 characters.
+constexpr std::size_t tail_size = std::size_t{1} << 18U;
 
 std::string read_head(const fs::path& path) {
   std::error_code ignored;
@@ -37,7 +39,7 @@ std::string read_head(const fs::path& path) {
 std::string read_tail(const fs::path& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : 0;
-  std::string tail(std::min(head_size, static_cast<std::size_t>(std::max<std::streamoff>(size, 0))), '\0');
+  std::string tail(std::min(tail_size, static_cast<std::size_t>(std::max<std::streamoff>(size, 0))), '\0');
   file.seekg(size - static_cast<std::streamoff>(tail.size()));
   file.read(tail.data(), static_cast<std::streamsize>(tail.size()));
   return tail;

@@ -11,6 +11,7 @@
 #include <limits>
 #include <string>
 
+#include "blum/io/file_content.hpp"
 #include "support/image_bytes.hpp"
 #include "support/zip_bytes.hpp"
 #include "unit/io/medial_text.hpp"
@@ -192,6 +193,21 @@ TEST_P(ComplexFiles, AsManyColumnsAndComponentsAsThereMayBe) {
   for (std::size_t i = 0; i < max_file_columns; ++i) complex.edge_columns.add<float>("c" + std::to_string(i));
   write_complex(path, complex);
   expect_same(read_complex(path).complex, complex);
+}
+
+/// The directory is long, and has names that end as those of fields do.
+TEST(ComplexNpz, TellsWhatItHoldsByTheNamesOfItsArrays) {
+  const TemporaryFolder folder;
+  const auto path = folder / "out.npz";
+  for (const char* name : {"distance", "mydistance", "heat"}) {
+    Complex complex = two_triangles();
+    complex.vertex_columns.add<float>(name);
+    complex.edge_columns.add<float>("distance");
+    for (std::size_t i = 0; i < 500; ++i) complex.edge_columns.add<float>("column" + std::to_string(i));
+    write_complex(path, complex);
+    EXPECT_EQ(content_of(path), FileContent::complex) << name;
+    EXPECT_TRUE(holds_complex(path));
+  }
 }
 
 TEST(ComplexObj, HoldsPositionsAndCellsOnly) {
