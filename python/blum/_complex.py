@@ -107,19 +107,22 @@ class Complex:
         return homology(len(self.vertices), self.edges, self.triangles, threads=threads, progress=progress)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (
-            np.array(self.vertices),
-            np.array(self.edges),
-            np.array(self.triangles),
-            *(
-                {name: np.array(column) for name, column in columns.items()}
-                for columns in (self.vertex_columns, self.edge_columns, self.triangle_columns)
-            ),
-        )
+        return _restored, core_arguments(self)
 
     def __repr__(self) -> str:
         counts = f"{len(self.vertices):,} vertices, {len(self.edges):,} edges, {len(self.triangles):,} triangles"
         return f"Complex({counts})"
+
+
+def core_arguments(axis: Complex) -> tuple[Any, ...]:
+    """Copies of the arrays, in the order of the library's constructor."""
+    columns = (axis.vertex_columns, axis.edge_columns, axis.triangle_columns)
+    return (
+        np.array(axis.vertices),
+        np.array(axis.edges),
+        np.array(axis.triangles),
+        *({name: np.array(column) for name, column in of_cells.items()} for of_cells in columns),
+    )
 
 
 def _restored(

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import FloatArray, IntArray, Real, number
-from ._complex import Complex
+from ._complex import Complex, core_arguments
 from ._errors import InvalidOption
 
 #: What the numbers in `MedialComplex.role` and `edge_role` stand for.
@@ -154,16 +154,6 @@ class NestedComplex(MedialColumns):
             f"NestedComplex({len(self.vertices):,} vertices, {len(self.triangles):,} triangles, "
             f"theta >= {self.least_theta:g})"
         )
-
-
-def core_arguments(axis: Complex) -> tuple[Any, ...]:
-    columns = (axis.vertex_columns, axis.edge_columns, axis.triangle_columns)
-    return (
-        np.array(axis.vertices),
-        np.array(axis.edges),
-        np.array(axis.triangles),
-        *({name: np.array(column) for name, column in of_cells.items()} for of_cells in columns),
-    )
 
 
 def _restored_nested(arguments: tuple[Any, ...], least_theta: float) -> NestedComplex:

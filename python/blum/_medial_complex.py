@@ -27,11 +27,12 @@ from ._arguments import (
     site_ids,
 )
 from ._certificate import Claim, certified
+from ._complex import core_arguments
 from ._errors import InvalidOption
 from ._field import Field
 from ._grid import Grid, grid_for
 from ._image import Image
-from ._medial_columns import ROLES, MedialColumns, NestedComplex, core_arguments
+from ._medial_columns import ROLES, MedialColumns, NestedComplex
 from ._mesh import Mesh
 from ._options import takes
 from ._progress import Progress, reporting

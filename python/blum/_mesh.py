@@ -188,18 +188,11 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh", *, weld: Any =
 
 def _tell_of_seams(mesh: Mesh, name: str) -> None:
     """Other packages keep a vertex for each texture coordinate at it: the mesh is then open along seams."""
-    welded = mesh_of_arrays(_core.weld(mesh._arrays, 0.0))
-    if len(welded.vertices) == len(mesh.vertices) or _is_closed(mesh) or not _is_closed(welded):
+    welded = weld(mesh)
+    if len(welded.vertices) == len(mesh.vertices) or topology(mesh).closed or not topology(welded).closed:
         return
     text = f"the {name} is open only where equal vertices are apart, as along texture seams: weld=0 merges them"
     warnings.warn(text, InputWarning, stacklevel=4)
-
-
-def _is_closed(mesh: Mesh) -> bool:
-    corners = np.asarray(mesh.triangles, dtype=np.int64)
-    sides = np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    _, counts = np.unique(sides[:, 0] * len(mesh.vertices) + sides[:, 1], return_counts=True)
-    return len(counts) > 0 and bool((counts == 2).all())
 
 
 def _converted(mesh: Any, triangles: Any, name: str) -> Mesh:

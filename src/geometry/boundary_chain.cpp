@@ -204,7 +204,8 @@ double BoundaryChain::gradient_bound(const Box3& box, double enough) const {
     } else {
       rest += plain;
     }
-    if (bound_of(rest) > enough) return bound_of(rest);
+    // With room, so that callers may compare multiples of both.
+    if (bound_of(rest) > 1.001 * enough) return bound_of(rest);
   }
   return bound_of(length(field) + rest);
 }

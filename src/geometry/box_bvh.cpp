@@ -6,6 +6,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
+#include "geometry/box_scale.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/space_order.hpp"
 
@@ -16,12 +17,6 @@ constexpr std::size_t pair_grain = 256;
 
 Vec3d center_of(const Box3& box) {
   return box.is_empty() ? Vec3d{} : box.center();
-}
-
-Box3 grown(Box3 box, double margin) {
-  if (box.is_empty()) return box;
-  const Vec3d by{margin, margin, margin};
-  return {box.lower - by, box.upper + by};
 }
 
 Box3 box_at(const BoxBlock& block, std::size_t lane) {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "geometry/box_scale.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/primitive_block.hpp"
 #include "geometry/space_order.hpp"
-#include "geometry/triangle_frame.hpp"
 
 namespace blum {
 namespace {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "blum/geometry/orient2d.hpp"
+#include "geometry/box_scale.hpp"
 #include "geometry/shells.hpp"
 
 namespace blum::detail {
@@ -31,6 +32,10 @@ constexpr std::size_t most_meetings = std::size_t{1} << 22;
 
 /// The middle of a triangle, computed, is this close to it, along each axis, where coordinates are below 2.
 constexpr double middle_rounding = 2e-15;
+
+Vec3d middle_of(const std::array<Vec3d, 3>& corners) {
+  return corners[0] + ((corners[1] - corners[0]) + (corners[2] - corners[0])) * (1.0 / 3);
+}
 
 /// A point of a shell that we look outwards from.
 struct Query {
@@ -73,13 +78,11 @@ struct Frame {
   explicit Frame(const Box3& bounds) {
     const Vec3d extent = bounds.size();
     std::size_t shortest = 0;
-    double largest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 1; axis < 3; ++axis) {
       if (extent[axis] < extent[shortest]) shortest = axis;
-      largest = std::max({largest, std::abs(bounds.lower[axis]), std::abs(bounds.upper[axis])});
     }
     first = (shortest + 1) % 3;
-    if (largest > 0 && std::isfinite(largest)) scale = std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1000, 1000));
+    scale = coordinate_scale(bounds);
   }
   [[nodiscard]] Vec3d operator()(const Vec3d& p) const {
     return Vec3d{p[first], p[(first + 1) % 3], p[(first + 2) % 3]} * scale;
@@ -271,45 +274,45 @@ class Nesting {
     return queries;
   }
 
-  /// A corner and the middle of many triangles of these shells, spread evenly.
-  [[nodiscard]] std::vector<Query> many_points(const std::vector<std::uint32_t>& shells) const {
+  /// Calls visit(shell, corners in the frame) for triangles of these shells, spread evenly, about `most` of each.
+  template <class Visit>
+  void for_each_of_many(const std::vector<std::uint32_t>& shells, std::size_t most, Visit visit) const {
     std::vector<std::size_t> step(set_.shells.size(), 0);
-    for (const std::uint32_t s : shells) step[s] = set_.shells[s].triangles / (most_probes_per_shell / 2) + 1;
+    for (const std::uint32_t s : shells) step[s] = set_.shells[s].triangles / most + 1;
     std::vector<std::size_t> seen(set_.shells.size(), 0);
-    std::vector<Query> queries;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const std::uint32_t shell = set_.of_triangle[t];
       if (shell == no_component || step[shell] == 0 || seen[shell]++ % step[shell] != 0) continue;
-      const Triangle& corner = mesh_.triangles[t];
-      const Vec3d a = frame_(mesh_.vertices[corner[0]]);
-      const Vec3d b = frame_(mesh_.vertices[corner[1]]);
-      const Vec3d c = frame_(mesh_.vertices[corner[2]]);
-      queries.push_back({a, shell});
-      queries.push_back({a + ((b - a) + (c - a)) * (1.0 / 3), shell, middle_rounding});
+      visit(shell, corners_of(t));
     }
+  }
+
+  [[nodiscard]] std::array<Vec3d, 3> corners_of(std::size_t triangle) const {
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    return {frame_(mesh_.vertices[a]), frame_(mesh_.vertices[b]), frame_(mesh_.vertices[c])};
+  }
+
+  /// A corner and the middle of many triangles of these shells.
+  [[nodiscard]] std::vector<Query> many_points(const std::vector<std::uint32_t>& shells) const {
+    std::vector<Query> queries;
+    for_each_of_many(shells, most_probes_per_shell / 2, [&](std::uint32_t shell, const std::array<Vec3d, 3>& corners) {
+      queries.push_back({corners[0], shell});
+      queries.push_back({middle_of(corners), shell, middle_rounding});
+    });
     return queries;
   }
 
   /// Points a little within the shells, under the middles of some of their triangles: for shells all of whose points
   /// lie on others. Far from the surface as roundings go, and near it as features do.
   [[nodiscard]] std::vector<Query> inner_points(const std::vector<std::uint32_t>& shells) const {
-    std::vector<std::size_t> step(set_.shells.size(), 0);
-    for (const std::uint32_t s : shells) step[s] = set_.shells[s].triangles / most_inner_points + 1;
-    std::vector<std::size_t> seen(set_.shells.size(), 0);
     std::vector<Query> queries;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      const std::uint32_t shell = set_.of_triangle[t];
-      if (shell == no_component || step[shell] == 0 || seen[shell]++ % step[shell] != 0) continue;
-      const Triangle& corner = mesh_.triangles[t];
-      const Vec3d a = frame_(mesh_.vertices[corner[0]]);
-      const Vec3d ab = frame_(mesh_.vertices[corner[1]]) - a;
-      const Vec3d ac = frame_(mesh_.vertices[corner[2]]) - a;
-      const Vec3d normal = cross(ab, ac);
+    for_each_of_many(shells, most_inner_points, [&](std::uint32_t shell, const std::array<Vec3d, 3>& corners) {
+      const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
       const double size = length(normal);
-      if (!(size > 0)) continue;
+      if (!(size > 0)) return;
       const double inwards = set_.shells[shell].signed_volume > 0 ? -1 : 1;
-      queries.push_back({a + (ab + ac) * (1.0 / 3) + normal * (inwards * inner_depth / std::sqrt(size)), shell});
-    }
+      queries.push_back({middle_of(corners) + normal * (inwards * inner_depth / std::sqrt(size)), shell});
+    });
     return queries;
   }
 
@@ -332,20 +335,20 @@ class Nesting {
 
   /// Finds the shells around places of shells; gives up after too many meetings.
   Answers ask(const std::vector<Query>& queries) {
-    return ask(queries, most_meetings + 16 * (queries.size() + mesh_.triangles.size()));
+    return ask(queries, meetings_ + most_meetings + 16 * (queries.size() + mesh_.triangles.size()));
   }
+  /// @param most  meetings at the end, with those of earlier rounds.
   Answers ask(const std::vector<Query>& queries, std::size_t most) {
     Answers out;
     for (const Query& query : queries) out.shell.push_back(query.shell);
     const QueryPointGrid grid(queries, bounds_, out.place);
     out.touched_by.assign(grid.size(), no_shell);
     const std::vector<bool> may_contain = find_candidates(grid);
-    const std::size_t before = meetings_;
     for (std::size_t t = 0; t < mesh_.triangles.size() && out.is_complete; ++t) {
       if (t % 4096 == 0) throw_if_cancelled(context_);
       const std::uint32_t outer = set_.of_triangle[t];
       if (outer == no_component || !may_contain[outer]) continue;
-      out.is_complete = meet(t, grid, most == std::numeric_limits<std::size_t>::max() ? most : before + most, out);
+      out.is_complete = meet(t, grid, most, out);
     }
     sum_up(grid.size(), out);
     return out;
@@ -355,12 +358,9 @@ class Nesting {
   bool meet(std::size_t triangle, const QueryPointGrid& grid, std::size_t most, Answers& out) {
     const std::uint32_t outer = set_.of_triangle[triangle];
     const Box3 shell = frame_(set_.shells[outer].bounds);
-    std::array<Vec3d, 3> corners;
+    const std::array<Vec3d, 3> corners = corners_of(triangle);
     Box3 box;
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = frame_(mesh_.vertices[mesh_.triangles[triangle][k]]);
-      box.extend(corners[k]);
-    }
+    for (const Vec3d& corner : corners) box.extend(corner);
     Box3 heights = grown(shell, grid.most_rounding());
     heights.upper.z = box.upper.z + grid.most_rounding();
     return !grid.visit_in(grown(box, grid.most_rounding()), heights, [&](const QueryPoint& place) {
@@ -488,9 +488,6 @@ class Nesting {
     }
   }
 
-  static Box3 grown(const Box3& box, double by) {
-    return {box.lower - Vec3d{by, by, by}, box.upper + Vec3d{by, by, by}};
-  }
   static bool is_within(const Box3& box, const Vec3d& p) {
     return box.lower.x <= p.x && p.x <= box.upper.x && box.lower.y <= p.y && p.y <= box.upper.y;
   }

@@ -95,8 +95,7 @@ int orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   const double magnitude = std::abs(u.x) * (std::abs(yz) + std::abs(zy)) +
                            std::abs(u.y) * (std::abs(zx) + std::abs(xz)) +
                            std::abs(u.z) * (std::abs(xy) + std::abs(yx));
-  constexpr double rough_bound = 8e-16;  // (7 + 56 u) u, with u = 2^-53, rounded up
-  if (std::abs(rough) > rough_bound * magnitude) return rough > 0 ? 1 : -1;
+  if (std::abs(rough) > orient3d_rounding * magnitude) return rough > 0 ? 1 : -1;
   if (magnitude == 0) return 0;  // every product has a factor that is 0, and differences are 0 only where exact
 
   const Row u2 = row(b, a);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "blum/core/parallel.hpp"
+#include "geometry/box_scale.hpp"
 #include "geometry/triangle_frame.hpp"
 
 namespace blum {

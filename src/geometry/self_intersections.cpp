@@ -9,8 +9,10 @@
 
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/box_bvh.hpp"
+#include "blum/geometry/orient3d.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 #include "blum/geometry/weld.hpp"
+#include "geometry/box_scale.hpp"
 
 namespace blum {
 namespace {
@@ -19,20 +21,10 @@ namespace {
 constexpr std::size_t batch = 512;
 constexpr std::size_t grain = 8;
 
-/// A power of two that brings the largest coordinate to about 1, so that products neither overflow nor underflow.
-double scale_of(const MeshView& mesh) {
-  const Box3 box = bounds(mesh);
-  double largest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-  }
-  return largest > 0 ? std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1000, 1000)) : 1.0;
-}
-
 std::vector<TriangleId> triangles_with_area(const MeshView& mesh) {
   std::vector<TriangleId> out;
   out.reserve(mesh.triangles.size());
-  const double scale = scale_of(mesh);
+  const double scale = coordinate_scale(bounds(mesh));
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
     const std::array<Vec3d, 3> points{mesh.vertices[a] * scale, mesh.vertices[b] * scale, mesh.vertices[c] * scale};
@@ -64,8 +56,7 @@ struct Plane {
     const double height = dot(normal, offset);
     const double bound =
         std::abs(offset.x) * magnitude.x + std::abs(offset.y) * magnitude.y + std::abs(offset.z) * magnitude.z;
-    constexpr double rounding = 8e-16;
-    return std::abs(height) > rounding * bound ? (height > 0 ? 1 : -1) : 0;
+    return std::abs(height) > detail::orient3d_rounding * bound ? (height > 0 ? 1 : -1) : 0;
   }
 };
 
@@ -109,7 +100,7 @@ class Search {
   static constexpr std::size_t leaf_size = 8;
 
   static std::vector<detail::ContactTriangle> read(const MeshView& mesh, const std::vector<TriangleId>& ids) {
-    const double scale = scale_of(mesh);
+    const double scale = coordinate_scale(bounds(mesh));
     const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
     std::vector<detail::ContactTriangle> out(ids.size());
     for (std::size_t i = 0; i < ids.size(); ++i) {

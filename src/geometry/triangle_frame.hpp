@@ -1,7 +1,6 @@
 // Blum: orthonormal frames of triangles, whatever their shape. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -42,13 +41,6 @@ struct TriangleFrame {
   frame.altitude = length(v);
   if (frame.altitude > 0) frame.v = v / frame.altitude;
   return frame;
-}
-
-/// A power of two that brings the box's longest side to about 1, so that products neither overflow nor underflow.
-[[nodiscard]] inline double unit_scale(const Box3& box) {
-  const Vec3d size = box.size();
-  const double longest = std::max({size.x, size.y, size.z});
-  return longest > 0 ? std::ldexp(1.0, std::clamp(-std::ilogb(longest), -1000, 1000)) : 1.0;
 }
 
 }  // namespace blum

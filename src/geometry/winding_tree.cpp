@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "blum/core/parallel.hpp"
+#include "geometry/box_scale.hpp"
 #include "geometry/space_order.hpp"
-#include "geometry/triangle_frame.hpp"
 
 namespace blum {
 namespace {

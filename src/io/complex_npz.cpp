@@ -232,20 +232,15 @@ class ComplexNpzReader {
   NpzReader npz_;
 };
 
-/// Whether the directory at the end of an archive has an entry of exactly this name, 46 bytes behind its mark.
-bool names(std::string_view tail, std::string_view entry) {
-  constexpr std::size_t before = 46;
-  for (std::size_t at = tail.find(entry); at != std::string_view::npos; at = tail.find(entry, at + 1)) {
-    if (at < before || tail.substr(at - before, 4) != "PK\1\2") continue;
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(tail[at - before + k]); };
-    if (std::size_t{byte(28)} + 256U * byte(29) == entry.size()) return true;
+/// A damaged archive holds nothing that can be told: its reader says what is wrong.
+bool holds_complex(std::string_view, const std::filesystem::path& path) {
+  try {
+    const volume_io::FileSource source(path);
+    const NpzReader npz(source);
+    return npz.has("vertices") && !npz.has("distance");
+  } catch (const FormatError&) {
+    return false;
   }
-  return false;
-}
-
-/// The end of an archive names its arrays.
-bool holds_complex(std::string_view, std::string_view tail) {
-  return names(tail, "vertices.npy") && !names(tail, "distance.npy");
 }
 
 }  // namespace

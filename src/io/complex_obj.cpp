@@ -14,7 +14,7 @@ namespace blum::complex_files {
 namespace {
 
 /// A file of vertices, edges and triangles may as well be a mesh.
-bool never_tells(std::string_view, std::string_view) {
+bool never_tells(std::string_view, const std::filesystem::path&) {
   return false;
 }
 

@@ -87,7 +87,7 @@ void write_vertices(RowWriter& out, const Complex& complex) {
 }
 
 /// An axis that write_medial() wrote; of another complex, nothing tells that it is not a mesh.
-bool holds_axis(std::string_view head, std::string_view) {
+bool holds_axis(std::string_view head, const std::filesystem::path&) {
   const std::string_view header = head.substr(0, head.find("end_header"));
   return header.find(R"(comment blum {"content": "medial axis"})") != std::string_view::npos;
 }

@@ -100,7 +100,7 @@ Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& pat
 namespace {
 
 /// A NRRD file whose header says that it is one of Blum's fields.
-bool holds_field(std::string_view head, std::string_view) {
+bool holds_field(std::string_view head, const std::filesystem::path&) {
   return head.substr(0, head.find("\n\n")).find("sign_rule:=") != std::string_view::npos;
 }
 

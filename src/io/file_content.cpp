@@ -20,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t head_size = 8192;
-/// The directory of an archive of 1,000 arrays, the most that are read, with names of 200 characters.
-constexpr std::size_t tail_size = std::size_t{1} << 18U;
 
 std::string read_head(const fs::path& path) {
   std::error_code ignored;
@@ -33,16 +31,6 @@ std::string read_head(const fs::path& path) {
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
   return head;
-}
-
-/// The last bytes of a file: of a zip archive, where it tells what is in it.
-std::string read_tail(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : 0;
-  std::string tail(std::min(tail_size, static_cast<std::size_t>(std::max<std::streamoff>(size, 0))), '\0');
-  file.seekg(size - static_cast<std::streamoff>(tail.size()));
-  file.read(tail.data(), static_cast<std::streamsize>(tail.size()));
-  return tail;
 }
 
 /// Whether a NRRD header says that the values are floating-point numbers.
@@ -68,7 +56,7 @@ template <class Format>
 bool holds(const std::optional<Format>& format, const fs::path& path, std::string_view head) {
   if (!format) return false;
   const auto holds_this = formats::tells_of(format->row()).holds_this;
-  return holds_this == nullptr || holds_this(head, read_tail(path));
+  return holds_this == nullptr || holds_this(head, path);
 }
 
 }  // namespace

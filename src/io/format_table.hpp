@@ -27,8 +27,8 @@ using volume_io::ByteSource;
 struct Tells {
   /// Whether the first bytes of a file are those of this format; null where they do not tell.
   bool (*begins)(std::string_view head) = nullptr;
-  /// Whether a file of this format's extension, with these first and last bytes, holds this content; null: always.
-  bool (*holds_this)(std::string_view head, std::string_view tail) = nullptr;
+  /// Whether a file of this format's extension, with these first bytes, holds this content; null: always.
+  bool (*holds_this)(std::string_view head, const fs::path& path) = nullptr;
 };
 
 struct MeshCode {

@@ -52,9 +52,10 @@ void check_nrrd_data_size(const ByteSource& source, const NrrdHeader& header);
 /// The detached data file of a header that was read from `header_path`.
 [[nodiscard]] std::filesystem::path nrrd_data_path(const NrrdHeader& header, const std::filesystem::path& header_path);
 
-/// @param path  where the header came from, for detached data; empty: detached data are refused.
 /// Whether the first bytes of a file are those of a NRRD file.
 [[nodiscard]] bool begins_as_nrrd(std::string_view head);
+
+/// @param path  where the header came from, for detached data; empty: detached data are refused.
 [[nodiscard]] VoxelImage read_nrrd(const ByteSource& source, const std::filesystem::path& path);
 
 }  // namespace blum::volume_io

@@ -5,6 +5,10 @@
 
 namespace blum::detail {
 
+/// A determinant of three differences in double is wrong by less than this part of the sum of the magnitudes of its
+/// products: (7 + 56 u) u, with u = 2^-53, rounded up.
+inline constexpr double orient3d_rounding = 8e-16;
+
 /// The sign (-1, 0, 1) of the determinant of b - a, c - a, d - a: 1 when d lies on the side of the plane a, b, c that
 /// the triangle turns counter-clockwise seen from. Exact for coordinates of magnitude 1e-80 to 1e100, or 0.
 ///

@@ -117,7 +117,7 @@ void Components::classify(const Context& context) {
   parallel_for(context, blocks_.count(), blocks_per_range, "", [&](const WorkRange& range) {
     for (std::size_t block = range.begin; block < range.end; ++block) {
       if (!winding_.is_piecewise_constant()) {
-        const double enough = 1.001 * static_cast<double>(change_to_ask_at) / longest_step_;
+        const double enough = static_cast<double>(change_to_ask_at) / longest_step_;
         change_[block] = rounded_up(winding_.gradient_bound(world_box(block), enough) * longest_step_);
       }
       if (change_[block] > change_to_ask_at) change_[block] = HUGE_VALF;

@@ -96,7 +96,7 @@ class SignWriter {
                                       (corner & 4) != 0 ? last[2] - 1 : first[2]));
     }
     constexpr double most = 0.6;
-    const double change = winding_.gradient_bound(box, 1.001 * most / radius) * radius;
+    const double change = winding_.gradient_bound(box, most / radius) * radius;
     if (!(change < most)) return std::nullopt;
     ++queries_;
     return winding_.side(field_.grid.position(middle[0], middle[1], middle[2]), change);

@@ -385,7 +385,6 @@ struct NestedShells {
   explicit NestedShells(const TriangleMesh& mesh) {
     const SiteTable sites(mesh);
     set = detail::find_shells(mesh, detail::find_components(mesh, sites, detail::tally_edges(mesh, sites)), {});
-    for (Shell& shell : set.shells) shell.depth = 0;
     meetings = detail::nest_shells(mesh, set, {});
   }
 };

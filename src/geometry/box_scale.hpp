@@ -1,0 +1,40 @@
+// Blum: powers of two that bring boxes to about 1, and boxes grown. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "blum/core/vec3.hpp"
+
+namespace blum {
+
+/// A power of two that brings a length to 1 to 2; 1 for 0 and what is not finite.
+[[nodiscard]] inline double scale_to_one(double length) {
+  if (!(length > 0) || !std::isfinite(length)) return 1;
+  return std::ldexp(1.0, std::clamp(-std::ilogb(length), -1000, 1000));
+}
+
+/// A power of two that brings the box's longest side to about 1, so that products neither overflow nor underflow.
+[[nodiscard]] inline double unit_scale(const Box3& box) {
+  const Vec3d size = box.size();
+  return scale_to_one(std::max({size.x, size.y, size.z}));
+}
+
+/// The same for its largest coordinate.
+[[nodiscard]] inline double coordinate_scale(const Box3& box) {
+  double largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+  }
+  return scale_to_one(largest);
+}
+
+/// Larger by a margin on all sides; an empty box stays empty.
+[[nodiscard]] inline Box3 grown(const Box3& box, double margin) {
+  if (box.is_empty()) return box;
+  const Vec3d by{margin, margin, margin};
+  return {box.lower - by, box.upper + by};
+}
+
+}  // namespace blum
