@@ -1,21 +1,9 @@
 #include "axis_solid.hpp"
 
+#include "options.hpp"
+
 namespace blum::cli {
 namespace {
-
-/// The selection as options; empty for all that is not 0.
-std::string selection_text(const std::optional<std::int64_t>& label, const std::optional<double>& threshold) {
-  if (label) return "--label " + std::to_string(*label);
-  return threshold ? "--threshold " + rounded_text(*threshold) : "";
-}
-
-std::string weld_text(double weld) {
-  return weld == 0 ? "--weld" : "--weld " + rounded_text(weld);
-}
-
-std::string contradiction(const std::filesystem::path& axis, const std::string& recorded, const std::string& given) {
-  return "'" + axis.string() + "' was made with " + recorded + "; " + given + " is used, as it was given";
-}
 
 /// Whether a file tells how it was made: .obj, .ma and those of other programs do not.
 bool tells_its_solid(const MedialMetadata& metadata) {
@@ -23,6 +11,23 @@ bool tells_its_solid(const MedialMetadata& metadata) {
 }
 
 }  // namespace
+
+SolidSelection parse_solid(const std::vector<std::string>& labels, const std::optional<std::string>& threshold,
+                           const std::optional<std::string>& weld) {
+  const Selections selections = parse_selections(labels, threshold);
+  if (selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
+  SolidSelection out;
+  if (!selections.labels.empty()) out.label = selections.labels.front();
+  out.threshold = selections.threshold;
+  out.weld = parse_weld(weld);
+  return out;
+}
+
+AxisSolid solid_of_axis(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
+                        const std::filesystem::path& axis) {
+  return blum::solid_of_axis(given, kind == InputKind::image, metadata, "'" + axis.string() + "'",
+                             OptionStyle::command_line);
+}
 
 void record(const LabelSelection& selection, std::optional<double> weld, InputKind kind, MedialMetadata& metadata) {
   if (kind == InputKind::mesh) {
@@ -33,33 +38,7 @@ void record(const LabelSelection& selection, std::optional<double> weld, InputKi
   if (selection.rule == LabelSelection::Rule::threshold) metadata.threshold = selection.threshold;
 }
 
-SolidChoice solid_of_axis(const SolidChoice& given, InputKind kind, const MedialMetadata& metadata,
-                          const std::filesystem::path& axis) {
-  SolidChoice out = given;
-  if (kind == InputKind::mesh) {
-    if (!given.weld) out.weld = metadata.weld;
-    if (metadata.weld && out.weld != metadata.weld) {
-      out.warnings.push_back(contradiction(axis, weld_text(*metadata.weld), weld_text(*out.weld)));
-    }
-    return out;
-  }
-  const bool is_given = !given.selections.labels.empty() || given.selections.threshold.has_value();
-  const std::string recorded = selection_text(metadata.label, metadata.threshold);
-  if (!is_given) {
-    if (metadata.label) out.selections.labels = {*metadata.label};
-    out.selections.threshold = metadata.threshold;
-    return out;
-  }
-  const std::optional<std::int64_t> label =
-      given.selections.labels.empty() ? std::nullopt : std::optional(given.selections.labels.front());
-  const bool is_same = label == metadata.label && given.selections.threshold == metadata.threshold;
-  if (!recorded.empty() && !is_same) {
-    out.warnings.push_back(contradiction(axis, recorded, selection_text(label, given.selections.threshold)));
-  }
-  return out;
-}
-
-std::string missing_options(const SolidChoice& given, InputKind kind, const MedialMetadata& metadata,
+std::string missing_options(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
                             bool topology_holds) {
   if (tells_its_solid(metadata)) return {};
   if (kind == InputKind::mesh) {
@@ -67,7 +46,7 @@ std::string missing_options(const SolidChoice& given, InputKind kind, const Medi
     if (given.weld || topology_holds) return {};
     return "; the file of the axis does not tell how the mesh was read: if --weld was given then, give it here too";
   }
-  if (!given.selections.labels.empty() || given.selections.threshold) return {};
+  if (given.label || given.threshold) return {};
   return "; the file of the axis does not tell which voxels it is of: if --label or --threshold was given then, give "
          "it here too";
 }

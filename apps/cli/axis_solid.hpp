@@ -6,28 +6,26 @@
 #include <string>
 #include <vector>
 
+#include "blum/io/axis_solid.hpp"
 #include "blum/io/medial_io.hpp"
 #include "solid_input.hpp"
 
 namespace blum::cli {
 
-/// What of a mesh or an image is the solid.
-struct SolidChoice {
-  Selections selections;  ///< of images; at most one label
-  std::optional<double> weld;
-  std::vector<std::string> warnings;
-};
+/// The values of --label, --threshold and --weld, for one axis. @throws UsageError, InvalidOption.
+[[nodiscard]] SolidSelection parse_solid(const std::vector<std::string>& labels,
+                                         const std::optional<std::string>& threshold,
+                                         const std::optional<std::string>& weld);
+
+/// blum::solid_of_axis() in the words of the command line. @param axis  its file.
+[[nodiscard]] AxisSolid solid_of_axis(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
+                                      const std::filesystem::path& axis);
 
 /// Writes into the metadata of an axis what of the input it is that of.
 void record(const LabelSelection& selection, std::optional<double> weld, InputKind kind, MedialMetadata& metadata);
 
-/// The solid of an axis: as the options say where they are given, else as its file says. Where the two contradict each
-/// other, one warning says so.
-[[nodiscard]] SolidChoice solid_of_axis(const SolidChoice& given, InputKind kind, const MedialMetadata& metadata,
-                                        const std::filesystem::path& axis);
-
 /// Which options may be missing where a certificate fails; empty where the axis's file tells of them, or none may be.
-[[nodiscard]] std::string missing_options(const SolidChoice& given, InputKind kind, const MedialMetadata& metadata,
+[[nodiscard]] std::string missing_options(const SolidSelection& given, InputKind kind, const MedialMetadata& metadata,
                                           bool topology_holds);
 
 }  // namespace blum::cli

@@ -46,7 +46,7 @@ struct Request {
   bool is_field = false;
   int resolution = 256;
   std::optional<double> spacing;
-  SolidChoice given;
+  SolidSelection given;
   int threads = 0;
 };
 
@@ -75,10 +75,7 @@ Request parse(const Arguments& a) {
   if (a.input) r.input = *a.input;
   if (a.resolution) r.resolution = static_cast<int>(parse_integer("--resolution", *a.resolution, 2, 65536));
   if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
-  r.given.selections = parse_selections(a.labels, a.threshold);
-  if (r.given.selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
-  if (a.threshold) r.given.selections.threshold = parse_number("--threshold", *a.threshold);
-  r.given.weld = parse_weld(a.weld);
+  r.given = parse_solid(a.labels, a.threshold, a.weld);
   if (!r.input) {
     refuse_given({{!a.labels.empty(), "--label"},
                   {a.threshold.has_value(), "--threshold"},
@@ -133,10 +130,11 @@ void run(const Arguments& a) {
   // Before anything is written, as it may fail.
   if (r.input) {
     const InputKind kind = input_kind(*r.input);
-    const SolidChoice solid = solid_of_axis(r.given, kind, file.metadata, r.axis);
-    warnings = solid.warnings;
-    const SolidInput input = load_solid(*r.input, solid.weld);
-    const Certificate certificate = certificate_of(file, input, solid.selections.all().front(), context);
+    const auto& [selection, warning] = solid_of_axis(r.given, kind, file.metadata, r.axis);
+    if (!warning.empty()) warnings.push_back(warning);
+    const SolidInput input = load_solid(*r.input, selection.weld);
+    const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
+    const Certificate certificate = certificate_of(file, input, voxels, context);
     json["input"] = input.json;
     json["distance"] = {{"solid_to_balls", certificate.balls.solid_to_balls},
                         {"mean_solid_to_balls", certificate.balls.mean_solid_to_balls},

@@ -37,11 +37,8 @@ struct Arguments {
   ReportOptions report;
 };
 
-SolidChoice parse_solid(const Arguments& a, InputKind kind) {
-  SolidChoice given;
-  given.selections = parse_selections(a.labels, a.threshold);
-  if (given.selections.labels.size() > 1) throw UsageError("--label: an axis is that of one label");
-  given.weld = parse_weld(a.weld);
+SolidSelection solid_of_options(const Arguments& a, InputKind kind) {
+  const SolidSelection given = parse_solid(a.labels, a.threshold, a.weld);
   if (kind == InputKind::mesh) {
     refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, a.input, "a mesh",
                  "images");
@@ -54,14 +51,20 @@ SolidChoice parse_solid(const Arguments& a, InputKind kind) {
 /// Certifies one axis after the other.
 class Verifier {
  public:
-  Verifier(fs::path path, InputKind kind, SolidChoice given, const Context& context)
-      : path_(std::move(path)), kind_(kind), given_(std::move(given)), context_(context) {}
+  Verifier(fs::path path, InputKind kind, SolidSelection given, const Context& context)
+      : path_(std::move(path)), kind_(kind), given_(given), context_(context) {}
 
   void verify(const fs::path& axis) {
     const MedialFile file = read_medial(axis);
-    const SolidChoice choice = solid_of_axis(given_, kind_, file.metadata, axis);
-    const SolidInput& solid = load(choice.weld);
-    const Certificate certificate = certificate_of(file, solid, choice.selections.all().front(), context_);
+    const auto& [selection, warning] = solid_of_axis(given_, kind_, file.metadata, axis);
+    const SolidInput& solid = load(selection.weld);
+    const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
+    const Certificate certificate = certificate_of(file, solid, voxels, context_);
+    Json warnings = Json::array();
+    if (!warning.empty()) {
+      warnings.push_back(warning);
+      warnings_.push_back(warning);
+    }
     const MedialCounts counts = count(file.complex);
     table_.add("axis", axis.string() + ": " + counts_text(counts, file.has_labels));
     add_certificate(table_, certificate);
@@ -70,8 +73,7 @@ class Verifier {
                         {"input", solid.json},
                         {"axis", {{"file", axis.string()}, {"counts", counts_json(counts, file.has_labels)}}},
                         {"certificate", certificate_json(certificate)},
-                        {"warnings", choice.warnings}});
-    warnings_.insert(warnings_.end(), choice.warnings.begin(), choice.warnings.end());
+                        {"warnings", warnings}});
     if (!certificate.holds()) {
       failures_.push_back(
           {axis, certificate.mismatches, missing_options(given_, kind_, file.metadata, certificate.topology_holds)});
@@ -110,7 +112,7 @@ class Verifier {
 
   fs::path path_;
   InputKind kind_;
-  SolidChoice given_;
+  SolidSelection given_;
   const Context& context_;
   std::optional<SolidInput> solid_;
   std::optional<double> weld_;
@@ -126,7 +128,7 @@ void run(const Arguments& a) {
   for (const fs::path& axis : axes)
     check_extension("AXIS", axis, file_extensions(FileContent::complex, FileAccess::write));
   const InputKind kind = input_kind(path);
-  const SolidChoice given = parse_solid(a, kind);
+  const SolidSelection given = solid_of_options(a, kind);
   std::vector<fs::path> inputs = axes;
   inputs.push_back(path);
   check_outputs(a.report.files(), inputs);

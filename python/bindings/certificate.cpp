@@ -4,16 +4,19 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/io/axis_solid.hpp"
 #include "blum/io/verify_medial.hpp"
 #include "call.hpp"
 #include "images.hpp"
@@ -42,6 +45,17 @@ void bind_certificate(nb::module_& m) {
             run({threads, std::move(progress)}, [&](const Context& context) { return solid_rule(view, context); }));
       },
       nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "solid_of_axis",
+      [](const nb::dict& metadata, bool is_image, std::optional<std::int64_t> label, std::optional<double> threshold,
+         std::optional<double> weld) {
+        const auto& [selection, warning] =
+            solid_of_axis({label, threshold, weld}, is_image, options_from<MedialMetadata>(metadata), "the axis",
+                          OptionStyle::python);
+        return std::tuple{selection.label, selection.threshold, selection.weld, warning};
+      },
+      nb::arg("metadata"), nb::arg("is_image"), nb::arg("label").none(), nb::arg("threshold").none(),
+      nb::arg("weld").none());
   m.def(
       "verify_mesh",
       [](const Complex& complex, const nb::dict& metadata, const nb::dict& has, const MeshArrays& mesh,

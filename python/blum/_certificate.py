@@ -56,41 +56,29 @@ def certified(
     count = integer(threads, "threads")
     of_image = triangles is None and is_image(shape)
     said = _claims(claim, grid, "voxels" if of_image else "features")
+    chosen, least, merged, warning = _core.solid_of_axis(
+        said,
+        of_image,
+        None if label is None else label_of(label, "label"),
+        optional_number(threshold, "threshold"),
+        optional_number(weld, "weld"),
+    )
+    if warning:
+        warnings.warn(warning, InputWarning, stacklevel=3)
     found: Certificate
     if of_image:
         image = as_image(shape)
-        _warn_of_another(_selection(claim.label, claim.threshold), _selection(label, threshold))
-        if label is None and threshold is None:
-            label, threshold = claim.label, claim.threshold
-        least = optional_number(threshold, "threshold")
-        chosen = None if label is None else label_of(label, "label")
         with reporting(progress) as report:
             found = _core.verify_image(
                 claim.complex._core, said, has, image._arrays, chosen, least, asked, count, report
             )
     else:
-        if claim.weld is not None:
-            _warn_of_another(f"weld={claim.weld:g}", "" if weld is None else f"weld={float(weld):g}")
-            if weld is None and isinstance(shape, (str, os.PathLike)):
-                weld = claim.weld
-        mesh = as_mesh(shape, triangles, "shape", weld=weld)
+        # Meshes in memory are as they are.
+        from_file = isinstance(shape, (str, os.PathLike))
+        mesh = as_mesh(shape, triangles, "shape", weld=merged if from_file else weld)
         with reporting(progress) as report:
             found = _core.verify_mesh(claim.complex._core, said, has, mesh._arrays, asked, count, report)
     return found
-
-
-def _selection(label: Any, threshold: Any) -> str:
-    """As it was asked for; empty for all voxels that are not zero."""
-    if label is not None:
-        return f"label={label}"
-    return "" if threshold is None else f"threshold={threshold:g}"
-
-
-def _warn_of_another(recorded: str, given: str) -> None:
-    """Where an axis says how its solid was taken, and something else is asked for, as `blum verify` warns."""
-    if recorded and given and recorded != given:
-        text = f"the axis was made with {recorded}; {given} is used, as it was given"
-        warnings.warn(text, InputWarning, stacklevel=4)
 
 
 def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
@@ -100,6 +88,9 @@ def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
         "solid_rule": claim.rule,
         "site_ids": claim.site_ids if claim.rule or claim.version else sites,
         "grid": claim.grid if grid is None else grid,
+        "label": claim.label,
+        "threshold": claim.threshold,
+        "weld": claim.weld,
     }
 
 

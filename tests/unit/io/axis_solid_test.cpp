@@ -1,0 +1,58 @@
+// Options of a solid beside what its axis says of it: what is used, and what is warned of in which words.
+
+#include "blum/io/axis_solid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace blum {
+namespace {
+
+AxisSolid of_image(const SolidSelection& given, const MedialMetadata& axis) {
+  return solid_of_axis(given, true, axis, "the axis", OptionStyle::python);
+}
+
+TEST(AxisSolid, WhatTheAxisSaysIsUsedWhereNothingIsGiven) {
+  MedialMetadata axis;
+  axis.label = 3;
+  axis.weld = 0.5;
+  EXPECT_EQ(of_image({}, axis).selection.label, 3);
+  EXPECT_EQ(solid_of_axis({}, false, axis, "a", OptionStyle::python).selection.weld, 0.5);
+  EXPECT_EQ(of_image({}, axis).warning, "");
+}
+
+TEST(AxisSolid, OptionsGoFirstAndContradictionsAreWarnedOf) {
+  MedialMetadata axis;
+  axis.label = 3;
+  const auto [used, warning] = of_image({.threshold = 2.5}, axis);
+  EXPECT_FALSE(used.label);
+  EXPECT_EQ(used.threshold, 2.5);
+  EXPECT_EQ(warning, "the axis was made with label=3; threshold=2.5 is used, as it was given");
+  EXPECT_EQ(of_image({.label = 3}, axis).warning, "");
+  EXPECT_EQ(of_image({.label = 1}, {}).warning, "") << "the axis says nothing";
+}
+
+TEST(AxisSolid, NumbersAreComparedAndNotTheirTexts) {
+  MedialMetadata axis;
+  axis.threshold = 1;
+  const double close = 1 + std::numeric_limits<double>::epsilon();
+  EXPECT_NE(of_image({.threshold = close}, axis).warning, "");
+}
+
+TEST(AxisSolid, EachInputIsAskedForItsOwnOptions) {
+  MedialMetadata axis;
+  axis.label = 3;
+  axis.weld = 1e-6;
+  EXPECT_EQ(of_image({.weld = 0.0}, axis).warning, "");
+  EXPECT_EQ(of_image({.weld = 0.0}, axis).selection.label, 3);
+  EXPECT_EQ(solid_of_axis({.label = 1}, false, axis, "a", OptionStyle::python).warning, "");
+  EXPECT_EQ(solid_of_axis({.weld = 0.0}, false, axis, "'a.npz'", OptionStyle::command_line).warning,
+            "'a.npz' was made with --weld 1e-06; --weld is used, as it was given");
+  EXPECT_EQ(solid_of_axis({.weld = 0.0}, false, axis, "the axis", OptionStyle::python).warning,
+            "the axis was made with weld=1e-06; weld=0 is used, as it was given");
+}
+
+}  // namespace
+}  // namespace blum
