@@ -28,7 +28,6 @@ OVERSAMPLING = 2  # pixels drawn for each one of the picture along each axis
 BAR_HEIGHT = 90  # pixels
 CAPTION_HEIGHT = 36  # pixels
 NARROW = 1 / 150  # of the whole axis: sheets of less than this width on average are drawn as lines
-CURVE = 3  # the role of edges that lie on no triangle, as MedialRole counts
 # Where the eye is, as seen from the middle of the solid: the first ones show the most.
 EYES = [(1, -1.6, 0.9), (-1.6, -1, 0.7), (0, 0, 1), (0, -1, 0), (1, 0, 0), (-1, 1.6, -0.9)]
 
@@ -125,8 +124,7 @@ class Axis:
         self.vertices = arrays["vertices"]
         self.edges = arrays["edges"].reshape(-1, 2).astype(np.int64)
         self.triangles = arrays["triangles"].reshape(-1, 3).astype(np.int64)
-        if "edge_role" in arrays:
-            self.edges = self.edges[arrays["edge_role"] == CURVE]
+        self.edges = self.curves()
         sheet = arrays["triangle_sheet"] if "triangle_sheet" in arrays else np.zeros(len(self.triangles), dtype=np.int64)
         self.edges = np.concatenate([self.edges, self.sides_of_narrow_sheets(sheet)])
         used = np.zeros(len(self.vertices), dtype=bool)
@@ -141,6 +139,13 @@ class Axis:
         metadata = json.loads(str(arrays["metadata"])) if "metadata" in arrays else {}
         theta = metadata.get("theta")
         self.caption = path.stem if theta is None else f"theta {theta} degrees"
+
+    def curves(self) -> np.ndarray:
+        """The edges that are sides of no triangle."""
+        count = len(self.vertices)
+        sides = np.sort(self.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        edges = np.sort(self.edges, axis=1)
+        return self.edges[~np.isin(edges @ [count, 1], sides @ [count, 1])]
 
     def sides_of_narrow_sheets(self, sheet: np.ndarray) -> np.ndarray:
         """Sheets of a pixel or two would not be seen, most of all along curves."""

@@ -64,6 +64,15 @@ void bind_axis(nb::module_& m) {
 }  // namespace
 
 void bind_medial_axis(nb::module_& m) {
+  // Columns hold numbers, and blum.ROLES is indexed by them.
+  static_assert([] {
+    std::size_t number = 0;
+    for (const auto& named : Description<MedialRole>::values) {
+      if (static_cast<std::size_t>(named.value) != number++) return false;
+    }
+    return true;
+  }());
+  static_cast<void>(type_name<MedialRole>(m, false));
   bind_options<MedialAxisOptions>(m);
   bind_struct<MedialAxisReport>(m);
   bind_axis(m);

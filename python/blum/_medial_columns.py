@@ -15,7 +15,7 @@ from ._complex import Complex, core_arguments
 from ._errors import InvalidOption
 
 #: What the numbers in `MedialComplex.role` and `edge_role` stand for.
-ROLES = ("sheet", "rim", "seam", "curve", "junction")
+ROLES: tuple[str, ...] = _core.enums["MedialRole"]
 
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex

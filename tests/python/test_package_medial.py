@@ -16,6 +16,20 @@ def axis(plate):
     return blum.medial_axis(plate, resolution=64)
 
 
+def test_roles_are_named_as_the_library_numbers_them(axis):
+    piece = axis.simplify(60)
+    assert blum.ROLES == ("sheet", "rim", "seam", "curve", "junction")
+    sides = {tuple(sorted(pair)) for a, b, c in piece.triangles.tolist() for pair in ((a, b), (b, c), (c, a))}
+    on_no_triangle = [tuple(sorted(edge)) not in sides for edge in piece.edges.tolist()]
+    assert np.array_equal(piece.edge_role == blum.ROLES.index("curve"), on_no_triangle)
+
+
+def test_what_is_not_asked_for_is_as_the_library_has_it(plate):
+    assert blum.medial_axis(plate, resolution=16).least_theta == 0
+    axis = blum.medial_axis(plate, resolution=16, least_theta=np.float32(20), lambda_=0.125)
+    assert (axis.least_theta, axis.nested().least_theta, axis._origin.lambda_) == (20, 20, 0.125)
+
+
 @pytest.mark.parametrize("theta", [0, 20, 60, 120])
 def test_axes_are_certified_at_every_angle(axis, plate, theta):
     piece = axis.simplify(theta)
