@@ -41,6 +41,7 @@ void bind_axis(nb::module_& m) {
            [](const MedialAxis& axis) {
              return run({0, nb::none()}, [&](const Context& context) { return axis.nested(context); });
            })
+      .def_prop_ro("least_theta", &MedialAxis::least_theta)
       .def_prop_ro("report", [](const MedialAxis& axis) { return result_of(axis.report()); });
   m.def(
       "medial_axis_of_mesh",

@@ -14,7 +14,7 @@ from ._image import Image, as_image, is_image, refuse_selection
 from ._medial_columns import NestedComplex
 from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
 from ._mesh import as_mesh
-from ._options import takes
+from ._options import default_of, takes
 from ._progress import Progress, reporting
 from ._structs import MedialAxisOptions, MedialAxisReport
 
@@ -28,11 +28,11 @@ class MedialAxis:
     True
     """
 
-    def __init__(self, core: _core.MedialAxis, origin: Origin, least_theta: Real) -> None:
+    def __init__(self, core: _core.MedialAxis, origin: Origin) -> None:
         self._core = core
         self._origin = origin
         #: The smallest angle that can be asked for, degrees.
-        self.least_theta = least_theta
+        self.least_theta: float = core.least_theta
 
     @cached_property
     def report(self) -> MedialAxisReport:
@@ -63,7 +63,7 @@ class MedialAxis:
 
         Cost: near-linear in the axis at the least angle.
         """
-        return NestedComplex(self._core.nested(), float(self.least_theta))
+        return NestedComplex(self._core.nested(), self.least_theta)
 
     def write(self, path: PathLike) -> None:
         """Writes the axis at the least angle with those of all larger ones, as `blum medial --nested` does: .npz.
@@ -118,19 +118,19 @@ def medial_axis(
     """
     count = integer(threads, "threads")
     label, threshold = options.get("label"), options.get("threshold")
-    least, smallest = (number(options.get(name, 0.0), name) for name in ("least_theta", "lambda_"))
+    smallest = number(options.get("lambda_", default_of("MedialAxisOptions", "lambda_")), "lambda_")
     if triangles is None and is_image(shape):
         image = as_image(shape, spacing)
         with reporting(progress) as report:
             core = _core.medial_axis_of_image(image._arrays, dict(options), count, report)
         chosen = None if label is None else int(label)
         origin = Origin(image, chosen, optional_number(threshold, "threshold"), lambda_=smallest, source=image.source)
-        return MedialAxis(core, origin, least)
+        return MedialAxis(core, origin)
     refuse_selection(label, threshold)
     mesh = as_mesh(shape, triangles, "shape", weld=weld)
     with reporting(progress) as report:
         core = _core.medial_axis_of_mesh(mesh._arrays, {**options, "spacing": spacing}, count, report)
-    axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), least)
+    axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld))
     turned = axis.report.reversed_shells
     if turned:
         text = (

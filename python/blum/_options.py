@@ -12,6 +12,11 @@ from . import _arguments, _core, _structs
 _Taker = TypeVar("_Taker", bound=Callable[..., Any])
 
 
+def default_of(options: str, option: str) -> Any:
+    """What the library takes where an option is not given."""
+    return next(default for name, _, default, _, _ in _core.described[options]["members"] if name == option)
+
+
 def takes(options: str, *left_out: str) -> Callable[[_Taker], _Taker]:
     """For functions and classes that take **options: their signature names each option with its default, and a line
     ``**options`` in their docstring becomes the documentation of all of them. For type checkers the annotation
