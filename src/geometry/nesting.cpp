@@ -238,15 +238,15 @@ class Nesting {
     choices_.resize(set_.shells.size());
     const std::size_t without_end = std::numeric_limits<std::size_t>::max();
     rounds_[0] = ask(first_vertices(), without_end);
-    const std::vector<std::uint32_t> doubtful = choose_certain(0);
-    if (!doubtful.empty()) {
+    choose_certain(0);
+    if (const std::vector<std::uint32_t> doubtful = without_choice(); !doubtful.empty()) {
       rounds_[1] = ask(many_points(doubtful));
       const std::size_t last = rounds_[1].is_complete ? 1 : 0;
-      std::vector<std::uint32_t> rest = last == 1 ? choose_certain(1) : doubtful;
-      if (!rest.empty()) {
+      if (last == 1) choose_certain(1);
+      if (const std::vector<std::uint32_t> rest = without_choice(); !rest.empty()) {
         rounds_[2] = ask(inner_points(rest));
-        if (rounds_[2].is_complete) rest = choose_common(2);
-        choose_first(last, rest);
+        if (rounds_[2].is_complete) choose_common(2);
+        choose_first(last);
       }
     }
     set_depths();
@@ -412,51 +412,40 @@ class Nesting {
     return rounds_[*choice.round].around(choice.place);
   }
 
+  /// The shells about which no round has decided, rising.
+  [[nodiscard]] std::vector<std::uint32_t> without_choice() const {
+    std::vector<std::uint32_t> shells;
+    for (std::uint32_t s = 0; s < choices_.size(); ++s) {
+      if (!choices_[s].round) shells.push_back(s);
+    }
+    return shells;
+  }
+
   /// Chooses each shell's first point of which there is no doubt that it lies on no other shell.
-  /// @return  the shells that have none, rising.
-  std::vector<std::uint32_t> choose_certain(std::size_t round) {
+  void choose_certain(std::size_t round) {
     const Answers& answers = rounds_[round];
-    std::vector<bool> is_asked(set_.shells.size(), false);
-    std::vector<bool> is_chosen(set_.shells.size(), false);
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
-      const std::uint32_t shell = answers.shell[query];
-      is_asked[shell] = true;
-      if (is_chosen[shell] || answers.is_doubtful(query)) continue;
-      is_chosen[shell] = true;
-      choices_[shell] = {round, answers.place[query]};
+      Choice& choice = choices_[answers.shell[query]];
+      if (!choice.round && !answers.is_doubtful(query)) choice = {round, answers.place[query]};
     }
-    std::vector<std::uint32_t> doubtful;
-    for (std::uint32_t s = 0; s < is_asked.size(); ++s) {
-      if (is_asked[s] && !is_chosen[s]) doubtful.push_back(s);
-    }
-    return doubtful;
   }
 
   /// Chooses what is around all points of each shell that lie on no other one: what a shell lies in is around all
   /// points within it, and what lies in it is not.
-  /// @return  the shells that have no such point, rising.
-  std::vector<std::uint32_t> choose_common(std::size_t round) {
+  void choose_common(std::size_t round) {
     Answers& answers = rounds_[round];
-    std::vector<bool> is_asked(set_.shells.size(), false);
     std::vector<std::vector<std::uint32_t>> places(set_.shells.size());
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
-      is_asked[answers.shell[query]] = true;
       if (!answers.is_doubtful(query)) places[answers.shell[query]].push_back(answers.place[query]);
     }
     std::map<std::vector<std::uint32_t>, std::uint32_t> known;  // equal shells ask at equal points
-    std::vector<std::uint32_t> rest;
-    for (std::uint32_t s = 0; s < is_asked.size(); ++s) {
-      if (!is_asked[s]) continue;
-      if (places[s].empty()) {
-        rest.push_back(s);
-        continue;
-      }
+    for (std::uint32_t s = 0; s < places.size(); ++s) {
+      if (places[s].empty()) continue;
       std::sort(places[s].begin(), places[s].end());
       const auto [entry, is_new] = known.try_emplace(places[s], 0);
       if (is_new) entry->second = add_common(places[s], answers);
       choices_[s] = {round, entry->second};
     }
-    return rest;
   }
 
   /// Adds a place that has around it what is around all of these. @return  its number.
@@ -475,16 +464,12 @@ class Nesting {
     return static_cast<std::uint32_t>(answers.start.size() - 2);
   }
 
-  /// Chooses the first point of these shells, doubtful as it is.
-  void choose_first(std::size_t round, const std::vector<std::uint32_t>& shells) {
+  /// Chooses the first point of each shell that has no choice, doubtful as it is.
+  void choose_first(std::size_t round) {
     const Answers& answers = rounds_[round];
-    std::vector<bool> is_wanted(set_.shells.size(), false);
-    for (const std::uint32_t s : shells) is_wanted[s] = true;
     for (std::size_t query = 0; query < answers.shell.size(); ++query) {
-      const std::uint32_t shell = answers.shell[query];
-      if (!is_wanted[shell]) continue;
-      is_wanted[shell] = false;
-      choices_[shell] = {round, answers.place[query]};
+      Choice& choice = choices_[answers.shell[query]];
+      if (!choice.round) choice = {round, answers.place[query]};
     }
   }
 
