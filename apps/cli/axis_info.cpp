@@ -66,7 +66,7 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
                      {"radius", has_radii ? Json::array({least, most}) : Json(nullptr)},
                      {"footprints", file.has_footprints},
                      {"source", or_null(m.source)},
-                     {"blum_version", or_null(m.version)},
+                     {"written_by", or_null(m.version)},
                      {"solid_rule", or_null(m.solid_rule)},
                      {"theta", or_null(m.theta)},
                      {"nested_theta", file.nested ? Json(file.least_theta) : Json(nullptr)},
@@ -86,7 +86,7 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
   if (file.nested) table.add("angles", angles_text(file.least_theta));
   table.add("of", source_text(m));
   table.add("made with", made_text(m));
-  report(options, json, table.text());
+  report(options, answer_json("info", json), table.text());
 }
 
 }  // namespace blum::cli

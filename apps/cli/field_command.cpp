@@ -207,21 +207,19 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
   const double rate = nodes / std::max(run.field_seconds, 1e-9);
   Json outputs = Json::array();
   for (const fs::path& file : run.outputs) outputs.push_back(file.string());
-  const Json json = {{"blum_version", BLUM_VERSION},
-                     {"command", "field"},
-                     {"input", run.input},
-                     {"grid", to_json(grid)},
-                     {"sign_asked", to_string(request.options.sign)},
-                     {"fields", run.fields},
-                     {"seconds", spent.seconds},
-                     {"field_seconds", run.field_seconds},
-                     {"total_seconds", spent.total},
-                     {"nodes_per_second", rate},
-                     {"peak_memory_bytes", peak_memory()},
-                     {"threads", thread_count(context)},
-                     {"thread_backend", thread_backend()},
-                     {"warnings", run.warnings},
-                     {"outputs", outputs}};
+  const Json json = answer_json("field", {{"input", run.input},
+                                          {"grid", to_json(grid)},
+                                          {"sign_asked", to_string(request.options.sign)},
+                                          {"fields", run.fields},
+                                          {"seconds", spent.seconds},
+                                          {"field_seconds", run.field_seconds},
+                                          {"total_seconds", spent.total},
+                                          {"nodes_per_second", rate},
+                                          {"peak_memory_bytes", peak_memory()},
+                                          {"threads", thread_count(context)},
+                                          {"thread_backend", thread_backend()},
+                                          {"warnings", run.warnings},
+                                          {"outputs", outputs}});
   run.table.add("time", spent.text);
   run.table.add("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
                              plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads") + ", " +

@@ -44,8 +44,7 @@ std::string table_text() {
 }
 
 void run(const ReportOptions& options) {
-  report(options, {{"blum_version", BLUM_VERSION}, {"command", "formats"}, {"formats", to_json(file_formats())}},
-         table_text());
+  report(options, answer_json("formats", {{"formats", to_json(file_formats())}}), table_text());
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
   json.update(topology_json(facts, contacts));
   json["self_intersections"] = contacts_json(contacts);
   if (is_welded_away(file) && !a.report.quiet) warn({welded_away_text(file)});
-  report(a.report, json, topology_text(a.input, file, facts, contacts));
+  report(a.report, answer_json("info", json), topology_text(a.input, file, facts, contacts));
 }
 
 // ---- Images ----
@@ -219,7 +219,7 @@ void run_image(const Arguments& a) {
   table.add("not zero", plural(values.nonzero, "voxel", "voxels"));
   if (values.not_numbers > 0) table.add("not a number", plural(values.not_numbers, "voxel", "voxels"));
   add_labels(table, values);
-  report(a.report, json, table.text());
+  report(a.report, answer_json("info", json), table.text());
 }
 
 // ---- Fields ----
@@ -249,7 +249,7 @@ void run_field(const Arguments& a) {
   table.add("sites", has_sites ? count_text(s.all.sites) + " distinct (" + std::string(to_string(field.site_ids)) +
                                      "), " + plural(s.siteless_nodes, "node", "nodes") + " without"
                                : "none in the file");
-  report(a.report, json, table.text());
+  report(a.report, answer_json("info", json), table.text());
 }
 
 // ---- Devices ----
@@ -261,7 +261,7 @@ void run_devices(const Arguments& a) {
   for (const DeviceInfo& device : found.devices) {
     table.add(device.device, device.name + ", " + bytes_text(static_cast<double>(device.memory)));
   }
-  report(a.report, to_json(found), table.text());
+  report(a.report, answer_json("info", to_json(found)), table.text());
 }
 
 void run(const Arguments& a) {

@@ -57,6 +57,10 @@ std::string leftover_text(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
+  if (word.size() == 2) {  // one letter: what begins with it
+    std::erase_if(names, [&](const std::string& name) { return name[2] != word[1]; });
+    return "there is no option " + word + hint(names);
+  }
   return "there is no option " + word + hint(similar_words(word, names));
 }
 

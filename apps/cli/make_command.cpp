@@ -199,8 +199,7 @@ void list(const Arguments& a) {
     text += recipe.name + " (" + kind + "): " + recipe.description + "\n" + parameters_text(recipe.parameters) + "\n";
   }
   text += "every mesh\n" + parameters_text(noise_parameters());
-  report(a.report,
-         {{"blum_version", BLUM_VERSION}, {"shapes", shapes}, {"every_mesh", parameters_json(noise_parameters())}},
+  report(a.report, answer_json("make", {{"shapes", shapes}, {"every_mesh", parameters_json(noise_parameters())}}),
          text);
 }
 
@@ -208,13 +207,11 @@ void list(const Arguments& a) {
 
 Json made_json(const Recipe& recipe, const ParameterValues& parameters, const fs::path& output,
                const std::optional<std::array<std::int64_t, 3>>& betti) {
-  return {{"blum_version", BLUM_VERSION},
-          {"command", "make"},
-          {"shape", recipe.name},
-          {"kind", recipe.mesh != nullptr ? "mesh" : "image"},
-          {"parameters", Json(parameters)},
-          {"betti", betti ? Json(*betti) : Json(nullptr)},
-          {"outputs", Json::array({output.string()})}};
+  return answer_json("make", {{"shape", recipe.name},
+                              {"kind", recipe.mesh != nullptr ? "mesh" : "image"},
+                              {"parameters", Json(parameters)},
+                              {"betti", betti ? Json(*betti) : Json(nullptr)},
+                              {"outputs", Json::array({output.string()})}});
 }
 
 void make_mesh(const Arguments& a, const Recipe& recipe, ParameterValues given) {

@@ -318,21 +318,19 @@ void finish(const Request& r, Run& run, const SolidInput& input, bool is_certifi
     outputs.push_back(draft.name().string());
     run.table.add("wrote", draft.name().string());
   }
-  const Json json = {{"blum_version", BLUM_VERSION},
-                     {"command", "medial"},
-                     {"input", input.json},
-                     {"certified", is_certified},
-                     {"mismatches", run.mismatches},
-                     {"lambda", r.options.lambda},
-                     {"prune", r.prunes_sheets ? Json("sheets") : Json(nullptr)},
-                     {"solids", run.solids},
-                     {"seconds", spent.seconds},
-                     {"total_seconds", spent.total},
-                     {"peak_memory_bytes", peak_memory()},
-                     {"threads", thread_count(context)},
-                     {"thread_backend", thread_backend()},
-                     {"warnings", run.warnings},
-                     {"outputs", outputs}};
+  const Json json = answer_json("medial", {{"input", input.json},
+                                           {"certified", is_certified},
+                                           {"mismatches", run.mismatches},
+                                           {"lambda", r.options.lambda},
+                                           {"prune", r.prunes_sheets ? Json("sheets") : Json(nullptr)},
+                                           {"solids", run.solids},
+                                           {"seconds", spent.seconds},
+                                           {"total_seconds", spent.total},
+                                           {"peak_memory_bytes", peak_memory()},
+                                           {"threads", thread_count(context)},
+                                           {"thread_backend", thread_backend()},
+                                           {"warnings", run.warnings},
+                                           {"outputs", outputs}});
   run.table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(r.report, json, input.text + run.table.text());
   if (!r.report.quiet) warn(run.warnings);

@@ -122,10 +122,8 @@ void run(const Arguments& a) {
   TextTable table;
   table.add("axis", r.axis.string() + ": " + counts_text(count(file.complex), file.has_labels));
   table.add("grid", size_text(grid) + " nodes, spacing " + rounded_text(grid.spacing.x));
-  Json json = {{"blum_version", BLUM_VERSION},
-               {"command", "reconstruct"},
-               {"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}},
-               {"grid", to_json(grid)}};
+  Json json = answer_json("reconstruct",
+                          {{"axis", {{"file", r.axis.string()}, {"balls", balls.size()}}}, {"grid", to_json(grid)}});
   std::vector<std::string> warnings;
   // Before anything is written, as it may fail.
   if (r.input) {

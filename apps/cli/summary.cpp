@@ -61,6 +61,12 @@ std::vector<std::filesystem::path> ReportOptions::files() const {
   return {*json};
 }
 
+Json answer_json(std::string_view command, const Json& facts) {
+  Json json = {{"blum_version", BLUM_VERSION}, {"command", command}};
+  json.update(facts);
+  return json;
+}
+
 void report(const ReportOptions& options, const Json& json, const std::string& text) {
   if (options.json) {
     // Names of files need not be valid UTF-8.

@@ -58,6 +58,9 @@ class TextTable {
 /// Peak memory of the process in bytes.
 [[nodiscard]] std::uint64_t peak_memory();
 
+/// What a command answers as JSON: Blum's version, the command, then these facts.
+[[nodiscard]] Json answer_json(std::string_view command, const Json& facts);
+
 /// Where a command's summary goes.
 struct ReportOptions {
   std::optional<std::string> json;  ///< a file, or "-" for stdout

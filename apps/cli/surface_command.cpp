@@ -72,18 +72,17 @@ void run(const Arguments& a) {
   std::vector<std::string> warnings;
   if (!reason.empty()) warnings.push_back(reason);
   const double write_seconds = watch.lap();
-  const Json json = {{"blum_version", BLUM_VERSION},
-                     {"command", "surface"},
-                     {"field", input.string()},
-                     {"grid", to_json(field.grid)},
-                     {"level", level},
-                     {"surface", {{"vertices", surface.vertices.size()}, {"triangles", surface.triangles.size()}}},
-                     {"seconds", {{"read", read_seconds}, {"surface", surface_seconds}, {"write", write_seconds}}},
-                     {"total_seconds", read_seconds + surface_seconds + write_seconds},
-                     {"peak_memory_bytes", peak_memory()},
-                     {"threads", thread_count(context)},
-                     {"warnings", warnings},
-                     {"outputs", {output.string()}}};
+  const Json json = answer_json(
+      "surface", {{"field", input.string()},
+                  {"grid", to_json(field.grid)},
+                  {"level", level},
+                  {"surface", {{"vertices", surface.vertices.size()}, {"triangles", surface.triangles.size()}}},
+                  {"seconds", {{"read", read_seconds}, {"surface", surface_seconds}, {"write", write_seconds}}},
+                  {"total_seconds", read_seconds + surface_seconds + write_seconds},
+                  {"peak_memory_bytes", peak_memory()},
+                  {"threads", thread_count(context)},
+                  {"warnings", warnings},
+                  {"outputs", {output.string()}}});
   TextTable table;
   table.add("field", input.string() + ": " + size_text(field.grid) + " nodes");
   table.add("surface", count_text(surface.vertices.size()) + " vertices, " + count_text(surface.triangles.size()) +

@@ -68,12 +68,11 @@ class Verifier {
     const MedialCounts counts = count(file.complex);
     table_.add("axis", axis.string() + ": " + counts_text(counts, file.has_labels));
     add_certificate(table_, certificate);
-    results_.push_back({{"blum_version", BLUM_VERSION},
-                        {"command", "verify"},
-                        {"input", solid.json},
-                        {"axis", {{"file", axis.string()}, {"counts", counts_json(counts, file.has_labels)}}},
-                        {"certificate", certificate_json(certificate)},
-                        {"warnings", warnings}});
+    results_.push_back(
+        answer_json("verify", {{"input", solid.json},
+                               {"axis", {{"file", axis.string()}, {"counts", counts_json(counts, file.has_labels)}}},
+                               {"certificate", certificate_json(certificate)},
+                               {"warnings", warnings}}));
     if (!certificate.holds()) {
       failures_.push_back(
           {axis, certificate.mismatches, missing_options(given_, kind_, file.metadata, certificate.topology_holds)});

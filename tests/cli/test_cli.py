@@ -4,7 +4,6 @@ import json
 import math
 import os
 import shutil
-import signal
 import struct
 import subprocess
 import time
@@ -416,6 +415,11 @@ def test_bad_usage_is_2_and_writes_nothing(shapes, arguments):
     assert {path: path.read_bytes() for path in shapes.iterdir()} == files
 
 
+def test_one_letter_for_an_option_is_told_what_begins_with_it(shapes):
+    assert "no option -q (did you mean --quiet?)" in run("info", shapes / "sphere.ply", "-q", status=2)[1]
+    assert "no option -x;" in run("info", shapes / "sphere.ply", "-x", status=2)[1]
+
+
 def hostile_inputs():
     yield "empty.ply", b""
     yield "text.obj", b"hello\n"
@@ -511,23 +515,6 @@ def test_numbers_do_not_depend_on_the_locale(shapes, tmp_path):
     done = subprocess.run([BLUM, "field", shapes / "sphere.ply", "-o", tmp_path / "l.nrrd", "--spacing", "0.5", "--json",
                            "-"], capture_output=True, check=True, env=environment)
     assert json.loads(done.stdout)["grid"]["spacing"] == [0.5, 0.5, 0.5]
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_interrupted_work_ends_by_the_signal_and_leaves_nothing(shapes, tmp_path, number):
-    (tmp_path / "out.nrrd").write_bytes(b"old")
-    run("make", "soup", "-o", tmp_path / "soup.ply", "--triangles", 20000)
-    with subprocess.Popen([BLUM, "field", tmp_path / "soup.ply", "-o", tmp_path / "out.nrrd", "--resolution", "500"],
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        time.sleep(0.7)
-        assert process.poll() is None, "the work was done before it could be interrupted"
-        process.send_signal(number)
-        start = time.monotonic()
-        _, err = process.communicate(timeout=30)
-    assert process.returncode == -number and err.endswith(b"blum: error: cancelled\n")
-    assert time.monotonic() - start < 3
-    assert (tmp_path / "out.nrrd").read_bytes() == b"old"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["out.nrrd", "soup.ply"]
 
 
 def test_real_meshes_when_there(tmp_path):
