@@ -33,7 +33,7 @@ class Progress {
 
 /// Turns the first Ctrl-C (SIGINT) or SIGTERM into a request to stop, and the second into the end of the process.
 /// While nothing listens to the request (reading files, say) even the first one ends the process at once: see
-/// Unattended. At most one may exist.
+/// Unattended. A signal that was ignored when the process started stays so. At most one may exist.
 class Interrupt {
  public:
   Interrupt();

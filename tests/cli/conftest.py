@@ -1,9 +1,13 @@
 # What the tests of the command-line tool share.
 import re
+import signal
 
 import pytest
 
 from tool import FORMATS, run
+
+# Where the tests run in the background of a script, SIGINT is ignored, and the tools that they start would inherit that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")

@@ -2,9 +2,7 @@
 # nothing written that is not certified.
 import json
 import re
-import signal
 import subprocess
-import time
 from pathlib import Path
 
 import numpy as np
@@ -377,18 +375,3 @@ def test_bad_usage_is_2_and_writes_nothing(solids, command, word):
     assert done.returncode == 2 and done.stdout == b"", done
     assert done.stderr.startswith(b"blum: error: ") and word.encode() in done.stderr, done
     assert {path: path.read_bytes() for path in solids.iterdir()} == files
-
-
-def test_interrupted_work_ends_by_the_signal_and_leaves_nothing(tmp_path):
-    run("make", "torus_knot", "-o", tmp_path / "knot.ply")
-    (tmp_path / "out.npz").write_bytes(b"old")
-    with subprocess.Popen([BLUM, "medial", tmp_path / "knot.ply", "-o", tmp_path / "out.npz", "--resolution", "700"],
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        time.sleep(0.5)
-        assert process.poll() is None, "the work was done before it could be interrupted"
-        process.send_signal(signal.SIGINT)
-        start = time.monotonic()
-        _, err = process.communicate(timeout=30)
-    assert process.returncode == -signal.SIGINT and err.endswith(b"blum: error: cancelled\n")
-    assert time.monotonic() - start < 3
-    assert (tmp_path / "out.npz").read_bytes() == b"old" and names(tmp_path) == ["knot.ply", "out.npz"]
