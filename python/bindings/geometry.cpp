@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string>
@@ -30,13 +31,19 @@ namespace {
 
 constexpr std::size_t queries_per_range = 256;
 
+/// How many queries of brute force are done between looks for cancellation: a few milliseconds.
+std::size_t queries_between_looks(const MeshView& mesh) {
+  return std::max<std::size_t>(1, 65536 / std::max<std::size_t>(1, mesh.triangles.size()));
+}
+
 /// One value per point, computed by all threads.
 template <class T, class Value>
-Out<T> for_each_point(const PointsIn& points, const Call& call, const char* phase, const Value& value) {
+Out<T> for_each_point(const PointsIn& points, const Call& call, const char* phase, const Value& value,
+                      std::size_t at_once = queries_per_range) {
   const std::span<const Vec3d> queries = vectors(points);
   return handed_over<T>(run(call, [&](const Context& context) {
     std::vector<T> out(queries.size());
-    parallel_for(context, queries.size(), queries_per_range, phase, [&](const WorkRange& range) {
+    parallel_for(context, queries.size(), at_once, phase, [&](const WorkRange& range) {
       for (std::size_t q = range.begin; q < range.end; ++q) out[q] = value(queries[q]);
     });
     return out;
@@ -151,8 +158,9 @@ void bind_makers(nb::module_& m) {
         std::vector<std::vector<Point2>> inner;
         for (const OutlineIn& hole : holes) inner.emplace_back(polygon(hole).begin(), polygon(hole).end());
         const ExtrusionOptions options{thickness, stacks};
-        return arrays_of(
-            run({0, nb::none()}, [&](const Context&) { return make_extrusion(polygon(outline), inner, options); }));
+        return arrays_of(run({0, nb::none()}, [&](const Context& context) {
+          return make_extrusion(polygon(outline), inner, options, context);
+        }));
       },
       nb::arg("outline").noconvert(), nb::arg("holes"), nb::arg("thickness"), nb::arg("stacks"));
   m.def(
@@ -216,13 +224,14 @@ void bind_reference(nb::module_& m) {
         run_call({threads, std::move(progress)}, [&](const Context& context) {
           validate(view);
           const reference::BruteForce brute(view);
-          parallel_for(context, queries.size(), 16, "brute force", [&](const WorkRange& range) {
-            for (std::size_t q = range.begin; q < range.end; ++q) {
-              const reference::Nearest nearest = brute.nearest(queries[q]);
-              distances[q] = nearest.distance;
-              sites[q] = nearest.site.to_file();
-            }
-          });
+          parallel_for(context, queries.size(), queries_between_looks(view), "brute force",
+                       [&](const WorkRange& range) {
+                         for (std::size_t q = range.begin; q < range.end; ++q) {
+                           const reference::Nearest nearest = brute.nearest(queries[q]);
+                           distances[q] = nearest.distance;
+                           sites[q] = nearest.site.to_file();
+                         }
+                       });
         });
         return nb::make_tuple(handed_over<double>(std::move(distances)), handed_over<std::int32_t>(std::move(sites)));
       },
@@ -232,8 +241,9 @@ void bind_reference(nb::module_& m) {
       [](const MeshArrays& mesh, const PointsIn& points, int threads, nb::object progress) {
         const MeshView view = mesh.view();
         validate(view);
-        return for_each_point<double>(points, {threads, std::move(progress)}, "brute force",
-                                      [&](const Vec3d& query) { return reference::winding_number(view, query); });
+        return for_each_point<double>(
+            points, {threads, std::move(progress)}, "brute force",
+            [&](const Vec3d& query) { return reference::winding_number(view, query); }, queries_between_looks(view));
       },
       nb::arg("mesh"), nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none());
 }

@@ -123,13 +123,15 @@ class PointTree {
 
 class EarClipper {
  public:
-  EarClipper(std::span<const Point> points, std::span<Triangle> triangles, std::int64_t& work_left)
+  EarClipper(std::span<const Point> points, std::span<Triangle> triangles, std::int64_t& work_left,
+             const Context& context)
       : points_(points),
         triangles_(triangles),
         links_(points.size()),
         twin_(points.size()),
         is_queued_(points.size()),
-        work_left_(work_left) {
+        work_left_(work_left),
+        context_(context) {
     const auto n = static_cast<std::uint32_t>(points.size());
     for (std::uint32_t i = 0; i < n; ++i) links_[i] = {i == 0 ? n - 1 : i - 1, i + 1 == n ? 0 : i + 1};
     link_twins();
@@ -173,6 +175,7 @@ class EarClipper {
       for (std::size_t i = 0; i < left; ++i, corner = links_[corner].next) enter(corner);
       const std::size_t before = left;
       for (std::size_t at = 0; at < queue_.size() && left > 3; ++at) {
+        throw_if_cancelled(context_);
         if (--work_left_ < 0) return false;
         const std::uint32_t candidate = queue_[at];
         is_queued_[candidate] = false;
@@ -203,6 +206,7 @@ class EarClipper {
   bool run_every_other() {
     std::uint32_t corner = 0;
     for (std::size_t left = points_.size(), tries = 0; left > 3;) {
+      throw_if_cancelled(context_);
       if (--work_left_ < 0 || tries > left) return false;
       const Link link = links_[corner];
       if (turn(corner) > 0 && is_ear(corner)) {
@@ -268,12 +272,14 @@ class EarClipper {
   std::vector<std::uint32_t> queue_;
   std::size_t emitted_ = 0;
   std::int64_t& work_left_;
+  const Context& context_;
 };
 
 }  // namespace
 
-bool clip_ears(std::span<const Point> points, EarOrder order, std::span<Triangle> triangles, std::int64_t& work_left) {
-  return EarClipper(points, triangles, work_left).run(order);
+bool clip_ears(std::span<const Point> points, EarOrder order, std::span<Triangle> triangles, std::int64_t& work_left,
+               const Context& context) {
+  return EarClipper(points, triangles, work_left, context).run(order);
 }
 
 }  // namespace blum::detail

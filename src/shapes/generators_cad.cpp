@@ -57,7 +57,7 @@ TriangleMesh make_wedge(const WedgeOptions& options) {
 }
 
 TriangleMesh make_extrusion(std::span<const Point2> outline, std::span<const std::vector<Point2>> holes,
-                            const ExtrusionOptions& options) {
+                            const ExtrusionOptions& options, const Context& context) {
   require_positive(options.thickness, "thickness");
   require_at_least(options.stacks, 1, "stacks");
   detail::Polygon polygon;
@@ -72,7 +72,7 @@ TriangleMesh make_extrusion(std::span<const Point2> outline, std::span<const std
     for (const Point2& p : polygon.points) mesh.vertices.push_back({p[0], p[1], z});
   }
   const std::uint32_t above = levels * count;
-  for (const Triangle& t : detail::triangulate(polygon)) {
+  for (const Triangle& t : detail::triangulate(polygon, context)) {
     mesh.triangles.push_back({t[0], t[2], t[1]});
     mesh.triangles.push_back({t[0] + above, t[1] + above, t[2] + above});
   }

@@ -40,7 +40,7 @@ bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& 
 }
 
 /// @throws InvalidOption where two sides cross or touch other than in a common corner. Sides are swept by rising x.
-void require_simple(const Polygon& polygon) {
+void require_simple(const Polygon& polygon, const Context& context) {
   struct Side {
     Point lower, upper;  // by (x, y)
   };
@@ -59,6 +59,7 @@ void require_simple(const Polygon& polygon) {
   }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.lower < b.lower; });
   for (std::size_t i = 0; i < sides.size(); ++i) {
+    throw_if_cancelled(context);
     for (std::size_t k = i + 1; k < sides.size() && sides[k].lower[0] <= sides[i].upper[0]; ++k) {
       const auto [low, high] = std::minmax(sides[i].lower[1], sides[i].upper[1]);
       if (std::max(sides[k].lower[1], sides[k].upper[1]) < low) continue;
@@ -73,7 +74,7 @@ void require_simple(const Polygon& polygon) {
 /// The outline with its holes joined to it by bridges: one loop of point indices, in which bridge ends come twice.
 class JoinedLoop {
  public:
-  explicit JoinedLoop(const Polygon& polygon) : polygon_(polygon) {
+  JoinedLoop(const Polygon& polygon, const Context& context) : polygon_(polygon), context_(context) {
     loop_.resize(polygon.loop_end(0));
     std::iota(loop_.begin(), loop_.end(), 0U);
     // The rightmost hole first: then the bridge of a hole can only cross the loop joined so far.
@@ -130,9 +131,15 @@ class JoinedLoop {
       const Point& q = polygon_.points[loop_[at]];
       return (q[0] - start[0]) * (q[0] - start[0]) + (q[1] - start[1]) * (q[1] - start[1]);
     };
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return squared(a) != squared(b) ? squared(a) < squared(b) : a < b; });
-    for (const std::size_t at : order) {
+    // The closest first, which nearly always is free.
+    const auto goes_later = [&](std::size_t a, std::size_t b) {
+      return squared(a) != squared(b) ? squared(a) > squared(b) : a > b;
+    };
+    std::make_heap(order.begin(), order.end(), goes_later);
+    for (auto end = order.end(); end != order.begin(); --end) {
+      throw_if_cancelled(context_);
+      std::pop_heap(order.begin(), end, goes_later);
+      const std::size_t at = *(end - 1);
       if (!is_free(hole.start, loop_[at])) continue;
       splice(at, hole);
       return;
@@ -151,6 +158,7 @@ class JoinedLoop {
   }
 
   const Polygon& polygon_;
+  const Context& context_;
   std::vector<std::uint32_t> loop_;
 };
 
@@ -172,15 +180,15 @@ std::uint32_t Polygon::loop_end(std::size_t loop) const {
   return loop + 1 < loop_starts.size() ? loop_starts[loop + 1] : static_cast<std::uint32_t>(points.size());
 }
 
-std::vector<Triangle> triangulate(const Polygon& polygon) {
-  require_simple(polygon);
-  const JoinedLoop joined(polygon);
+std::vector<Triangle> triangulate(const Polygon& polygon, const Context& context) {
+  require_simple(polygon, context);
+  const JoinedLoop joined(polygon, context);
   const std::vector<std::uint32_t>& loop = joined.indices();
   std::vector<Point> points;
   for (const std::uint32_t index : loop) points.push_back(polygon.points[index]);
   std::vector<Triangle> triangles(loop.size() - 2);
   std::int64_t work_left = std::numeric_limits<std::int64_t>::max();
-  if (!clip_ears(points, EarOrder::every_other, triangles, work_left)) {
+  if (!clip_ears(points, EarOrder::every_other, triangles, work_left, context)) {
     throw InvalidOption("the polygon cannot be triangulated: its outline or holes cross");
   }
   for (Triangle& triangle : triangles) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum::detail {
@@ -23,8 +24,8 @@ struct Polygon {
 
 /// Counter-clockwise triangles over the polygon's points, by cutting off ears; holes are first joined to the outline.
 /// Every edge of a loop is an edge of exactly one triangle, and no point is added.
-/// @throws InvalidOption where loops cross or touch, or a hole is not inside the outline. Cost: O(n^2) for n points, in
-/// practice.
-[[nodiscard]] std::vector<Triangle> triangulate(const Polygon& polygon);
+/// @throws InvalidOption where loops cross or touch, or a hole is not inside the outline; Cancelled. Cost: O(n^2) for n
+/// points, in practice.
+[[nodiscard]] std::vector<Triangle> triangulate(const Polygon& polygon, const Context& context);
 
 }  // namespace blum::detail

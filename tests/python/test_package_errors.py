@@ -146,7 +146,19 @@ def slow_call(progress=False):
     return blum.reference.nearest(mesh, np.random.default_rng(1).uniform(-2, 2, (100000, 3)), progress=progress)
 
 
-def test_ctrl_c_cancels_soon_and_leaves_everything_usable():
+def winding_numbers():
+    mesh = blum.generate("sphere", frequency=100)
+    return blum.reference.winding_number(mesh, np.random.default_rng(1).uniform(-2, 2, (1000, 3)))
+
+
+def extrusion_of_many_holes():
+    square = np.array([[-0.25, -0.25], [0.25, -0.25], [0.25, 0.25], [-0.25, 0.25]])
+    holes = [square + np.array([x, y]) for x in range(70) for y in range(70)]
+    return blum.extrusion([[-1, -1], [70, -1], [70, 70], [-1, 70]], holes)
+
+
+@pytest.mark.parametrize("slow_call", [slow_call, winding_numbers, extrusion_of_many_holes], ids=lambda f: f.__name__)
+def test_ctrl_c_cancels_soon_and_leaves_everything_usable(slow_call):
     # Shells let their background jobs ignore Ctrl-C, and Python then leaves it so.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "blum/core/context.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum::detail {
@@ -23,8 +24,9 @@ enum class EarOrder : std::uint8_t {
 /// @param triangles  receives indices of corners: points.size() - 2 entries.
 /// @param work_left  looks at a corner or at a box of corners that may be taken; becomes what is left.
 /// @return  false where the polygon crosses itself or takes too much work; `triangles` is then of no use.
+/// @throws Cancelled.
 /// Cost: a few dozen looks a corner for usual polygons, O(n^2) at worst.
 [[nodiscard]] bool clip_ears(std::span<const std::array<double, 2>> points, EarOrder order,
-                             std::span<Triangle> triangles, std::int64_t& work_left);
+                             std::span<Triangle> triangles, std::int64_t& work_left, const Context& context = {});
 
 }  // namespace blum::detail

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
 /// Lengths are in mesh units, angles in degrees. Unless a comment says otherwise a shape is centred at the origin and
@@ -204,10 +205,10 @@ struct ExtrusionOptions {
 /// Extrudes a polygon with holes along z, from -thickness / 2 to thickness / 2.
 /// @param outline  simple polygon, at least three corners, in either direction.
 /// @param holes    simple polygons inside it that touch neither it nor each other, in either direction.
-/// @throws InvalidOption also where the outline or holes cross or touch.
+/// @throws InvalidOption also where the outline or holes cross or touch; Cancelled.
 /// Cost: O(n^2) in the number of points, at most 20,000.
 [[nodiscard]] TriangleMesh make_extrusion(std::span<const Point2> outline, std::span<const std::vector<Point2>> holes,
-                                          const ExtrusionOptions& options = {});
+                                          const ExtrusionOptions& options = {}, const Context& context = {});
 
 struct StarOptions {
   int spikes = 5;             ///< >= 2

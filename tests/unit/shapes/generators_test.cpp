@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -237,6 +238,13 @@ TEST(Generators, ExtrusionOfRandomStarPolygonsKeepsArea) {
     EXPECT_EQ(t.betti, (std::array<std::int64_t, 3>{1, 1, 0})) << seed;
     EXPECT_NEAR(t.signed_volume, area - 0.02, 1e-9) << seed;
   }
+}
+
+TEST(Generators, ExtrusionCanBeCancelled) {
+  const std::vector<Point2> square = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(static_cast<void>(make_extrusion(square, {}, {}, {.cancel = stop.get_token()})), Cancelled);
 }
 
 TEST(Generators, CrossingOutlineIsRefused) {
