@@ -111,6 +111,7 @@ struct Run {
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
   std::vector<fs::path> outputs;
+  std::optional<fs::path> removed;  ///< sites of a field that was replaced by one without
   std::vector<std::string> warnings;
   TextTable table;
   bool names_device = false;  ///< one other than the CPU was asked for, which `auto` may be, too
@@ -219,12 +220,14 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                                           {"threads", thread_count(context)},
                                           {"thread_backend", thread_backend()},
                                           {"warnings", run.warnings},
-                                          {"outputs", outputs}});
+                                          {"outputs", outputs},
+                                          {"removed", run.removed ? Json(run.removed->string()) : Json(nullptr)}});
   run.table.add("time", spent.text);
   run.table.add("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
                              plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads") + ", " +
                              bytes_text(static_cast<double>(peak_memory())) + " at most");
   for (const fs::path& file : run.outputs) run.table.add("wrote", file.string());
+  if (run.removed) run.table.add("removed", run.removed->string() + ": sites of the field that was replaced");
   report(request.report, json, run.input_text + run.table.text());
   if (!request.report.quiet) warn(run.warnings);
 }
@@ -253,7 +256,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   context.device = r.device;
   check_outputs(
       [&] {
-        std::vector<fs::path> files = files_of_field(r.output, r.options.sites);
+        std::vector<fs::path> files = files_of_field(r.output);
         for (const fs::path& file : r.report.files()) files.push_back(file);
         return files;
       }(),
@@ -287,6 +290,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   const SiteTable* features = r.options.site_ids == SiteIds::features ? &sites : nullptr;
   const FieldStatistics statistics = field_statistics(field, features, context);
   run.time("statistics", watch.lap());
+  if (!r.options.sites) run.removed = sites_of_replaced_field(r.output);
   write_field(r.output, field, {&mesh, &sites, r.input.filename().string(), BLUM_VERSION}, context);
   run.time("write", watch.lap());
   progress.clear();

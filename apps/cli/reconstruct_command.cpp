@@ -97,11 +97,11 @@ std::vector<Ball> balls_of(const MedialFile& file, const fs::path& path) {
 
 void run(const Arguments& a) {
   const Request r = parse(a);
-  std::vector<fs::path> outputs = {r.output};
+  const std::vector<fs::path> outputs = {r.output};
   std::vector<fs::path> inputs{r.axis};
   if (r.input) inputs.push_back(*r.input);
   {
-    std::vector<fs::path> all = outputs;
+    std::vector<fs::path> all = r.is_field ? files_of_field(r.output) : outputs;
     for (const fs::path& file : a.report.files()) all.push_back(file);
     check_outputs(all, inputs);
   }
@@ -144,9 +144,10 @@ void run(const Arguments& a) {
                               rounded_text(certificate.balls.balls_to_surface) + " from the solid's");
   }
   if (r.is_field) {
+    const std::optional<fs::path> removed = sites_of_replaced_field(r.output);
     write_field(r.output, field, {nullptr, nullptr, r.axis.filename().string(), BLUM_VERSION}, context);
-    // Nothing is beside the distances: balls are no sites.
-    outputs = {r.output};
+    if (removed) table.add("removed", removed->string() + ": sites of the field that was replaced");
+    json["removed"] = removed ? Json(removed->string()) : Json(nullptr);
   } else {
     const TriangleMesh surface = zero_surface(field, 0, context);
     if (surface.triangles.empty()) throw FileError("the balls are smaller than the grid's spacing: use a finer grid");

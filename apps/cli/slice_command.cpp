@@ -92,7 +92,8 @@ void run(const Arguments& a) {
   if (sites && field.site.empty()) {
     throw FileError("'" + input.string() + "' has no closest sites" +
                     (file_extension(input) == ".nrrd"
-                         ? "; they are kept beside it, in '" + files_of_field(input).back().filename().string() + "'"
+                         ? ": it was written without them, or '" + files_of_field(input).back().filename().string() +
+                               "' is no longer beside it"
                          : std::string()));
   }
   const Slice slice = take_slice(field, *axis, index.value_or(layers / 2));

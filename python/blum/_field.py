@@ -169,7 +169,10 @@ class Field:
             return mesh_of_arrays(self._core.zero_surface(number(level, "level"), integer(threads, "threads"), report))
 
     def write(self, path: PathLike, *, progress: Progress = False) -> None:
-        """Writes .nrrd (sites beside it), .npz or .vti; the files appear complete or not at all."""
+        """Writes .nrrd (sites beside it), .npz or .vti; the files appear complete or not at all.
+
+        Written without sites over a field with, .nrrd loses the file of the old sites, too.
+        """
         with reporting(progress) as report:
             arrays = None if self.mesh is None else self.mesh._arrays
             _core.write_field(Path(os.fspath(path)), self._core, arrays, self.source, self._space, 0, report)

@@ -19,6 +19,8 @@ namespace blum::volume_io {
 
 /// The file of the site ids that go with OUT.nrrd: OUT.site.nrrd.
 [[nodiscard]] std::filesystem::path site_path(const std::filesystem::path& path);
+/// Whether that file is there and says that it holds the sites of OUT.nrrd.
+[[nodiscard]] bool has_own_sites_beside(const std::filesystem::path& path);
 
 void write_field_nrrd(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
                       const Context& context);

@@ -47,6 +47,15 @@ Buffer<SiteId> nrrd_sites(const std::filesystem::path& path, const GridSpec& gri
 
 }  // namespace
 
+bool has_own_sites_beside(const std::filesystem::path& path) {
+  try {
+    const NrrdHeader header = read_nrrd_header(FileSource(site_path(path)));
+    return find_value(header.key_values, distances_key) == path.filename().string();
+  } catch (const Error&) {
+    return false;  // there is none, or it is none of Blum's
+  }
+}
+
 std::filesystem::path site_path(const std::filesystem::path& path) {
   std::filesystem::path out = path;
   out.replace_extension();
@@ -75,6 +84,9 @@ void write_field_nrrd(const std::filesystem::path& path, const Field& field, con
   throw_if_cancelled(context);
   if (sites) sites->commit();
   distances.commit();
+  // Those of the field that was there; should they stay, the new file does not name them.
+  std::error_code ignored;
+  if (!sites && has_own_sites_beside(path)) std::filesystem::remove(site_path(path), ignored);
 }
 
 Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& path) {

@@ -109,4 +109,9 @@ std::vector<fs::path> files_of_field(const fs::path& path, bool with_sites) {
   return {path, volume_io::site_path(path)};
 }
 
+std::optional<fs::path> sites_of_replaced_field(const fs::path& path) {
+  if (file_extension(path) != ".nrrd" || !volume_io::has_own_sites_beside(path)) return std::nullopt;
+  return volume_io::site_path(path);
+}
+
 }  // namespace blum

@@ -232,6 +232,12 @@ def test_fields_without_sites(shapes, tmp_path):
         assert np.array_equal(file["distance"], expected)
         assert not {"site", "site_vertices"} & set(file)
     assert not (tmp_path / "a.site.nrrd").exists()
+    run("field", *given, "-o", tmp_path / "a.nrrd")
+    assert (tmp_path / "a.site.nrrd").exists()
+    assert f"removed   {tmp_path / 'a.site.nrrd'}" in run("field", *given, "--no-sites", "-o", tmp_path / "a.nrrd")[0]
+    assert not (tmp_path / "a.site.nrrd").exists()
+    _, err = run("slice", tmp_path / "a.nrrd", "-o", tmp_path / "a.png", "--show", "sites", status=1)
+    assert "written without them" in err
 
 
 def test_a_flat_box_gives_a_2d_field_and_picture(shapes, tmp_path):

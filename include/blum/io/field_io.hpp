@@ -44,7 +44,9 @@ struct FieldFileInfo {
 /// and how sites are numbered, with counts. A field without site values is written without them. Numbers are stored
 /// in the byte order of the machine, which the files state. The same input gives the same bytes.
 ///
-/// A file appears under its name only when it is complete; for .nrrd both are complete before either appears.
+/// A file appears under its name only when it is complete; for .nrrd both are complete before either appears. A field
+/// without sites that replaces one with sites takes its place as a whole: OUT.site.nrrd goes, where it says that it
+/// belongs to OUT.nrrd.
 /// @throws InvalidOption for another extension; FileError when the system refuses; InvalidGrid when the field does not
 /// fit its grid; InvalidMesh for a mesh (.npz files hold it) that validate() refuses or that lacks sites of the field;
 /// Cancelled.
@@ -52,7 +54,6 @@ struct FieldFileInfo {
 void write_field(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info = {},
                  const Context& context = {});
 
-/// The extensions that write_field and read_field know.
 /// Reads a field that write_field wrote, from .nrrd (with OUT.site.nrrd where it is there), .npz or .vti.
 ///
 /// Also reads NRRD files of any scalar type without sites, .npz files of NumPy (compressed too) that hold at least

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -38,5 +39,9 @@ namespace blum {
 /// @param with_sites  whether the field has any.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_field(const std::filesystem::path& path,
                                                                 bool with_sites = true);
+
+/// The file that write_field() removes when it writes a field without sites under this name: the sites of the field
+/// that it replaces, where they are in a file of their own.
+[[nodiscard]] std::optional<std::filesystem::path> sites_of_replaced_field(const std::filesystem::path& path);
 
 }  // namespace blum

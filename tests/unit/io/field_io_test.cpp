@@ -1,6 +1,7 @@
 // Proves that fields read back bit for bit from every format that they are written to, that the files hold what they
 // promise, that a failed or cancelled write leaves nothing behind, and that damaged files are refused with a reason.
 #include "blum/io/field_io.hpp"
+#include "blum/io/file_content.hpp"
 
 #include <gtest/gtest.h>
 
@@ -257,6 +258,23 @@ TEST(NrrdFields, TheFileOfSitesIsNotTakenForDistances) {
   } catch (const FormatError& error) {
     EXPECT_PRED2(contains, std::string(error.what()), "'a.nrrd'");
   }
+}
+
+TEST(NrrdFields, WithoutSitesReplaceThoseOfTheFieldThatWasThereAndNoOthers) {
+  const TemporaryFolder folder;
+  Field bare = sample_field();
+  bare.site = {};
+  write_field(folder / "a.nrrd", sample_field());
+  EXPECT_EQ(sites_of_replaced_field(folder / "a.nrrd"), folder / "a.site.nrrd");
+  write_field(folder / "a.nrrd", bare);
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"a.nrrd"}));
+  EXPECT_FALSE(sites_of_replaced_field(folder / "a.nrrd"));
+  write_field(folder / "b.nrrd", sample_field());
+  std::filesystem::rename(folder / "b.site.nrrd", folder / "a.site.nrrd");  // it says that it belongs to b.nrrd
+  put_in(folder, "b.site.nrrd", "none of Blum's");
+  for (const char* name : {"a.nrrd", "b.nrrd", "c.nrrd"}) write_field(folder / name, bare);
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.site.nrrd"));
+  EXPECT_EQ(file_content(folder / "b.site.nrrd"), "none of Blum's");
 }
 
 TEST(NrrdFields, NameTheSpaceOfTheirImage) {
