@@ -10,6 +10,7 @@ namespace {
 
 constexpr int most_steps = 64;
 
+// Not those of the search tree, which are slower and round otherwise: docs/decisions/0008-closest-points.md.
 Footprint closest_on_edge(const Vec3d& query, const Vec3d& a, const Vec3d& b, unsigned bit_a, unsigned bit_b) {
   const Vec3d along = b - a;
   const double squared = squared_length(along);
