@@ -53,6 +53,10 @@ const char* yes_no(bool value) {
 
 // ---- Meshes ----
 
+// Of the mesh as it stands, which topology() and find_self_intersections() tell. Solid::of() calls both, repairs first,
+// copies the bodies, and tells neither what is open nor what crosses: beside these two it would take longer than all of
+// `blum info` (a million triangles: 1.75 s of processor time on 1.35 s), for Betti numbers that are known by then.
+
 /// What a mesh without a solid has no orientation or volume of is null.
 Json topology_json(const Topology& t, const SelfIntersections& contacts) {
   Json json = to_json(t);
