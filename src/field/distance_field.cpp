@@ -63,6 +63,7 @@ struct FieldSolver::State {
   Context context;
   std::unique_ptr<FieldBackend> engine;
   std::string device_reason;
+  sign::Planner planner;
   Field field;
 
   void compute(const MeshView& mesh, const Context& frame_context);
@@ -95,7 +96,7 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   PhaseTimer connectivity_timer(field.phases);
   engine->set_mesh(mesh, frame_context);
   const SiteTable& sites = engine->sites();
-  const sign::Plan plan = sign::plan_signs(options.sign, mesh, sites, frame_context);
+  const sign::Plan plan = planner.plan(options.sign, mesh, sites, frame_context);
   connectivity_timer.lap("connectivity");
   FieldRequest request = make_field_request(field.grid, options, plan);
   allocate(options.sites || engine->needs_sites_for(plan.method), request);

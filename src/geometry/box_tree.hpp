@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -59,10 +60,8 @@ void for_each_touching(const BoxTree& tree, const Box3& box, std::size_t first_l
       continue;
     }
     const BoxBlock& block = tree.levels[static_cast<std::size_t>(item.level)][item.block];
-    const unsigned bits = touching(block, box);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if ((bits >> lane & 1U) == 0) continue;
-      const std::size_t child = item.block * lanes + lane;
+    for (unsigned bits = touching(block, box); bits != 0; bits &= bits - 1) {
+      const std::size_t child = item.block * lanes + static_cast<std::size_t>(std::countr_zero(bits));
       // A child of level k covers 8^k leaves.
       const std::size_t end = (child + 1) << (3 * static_cast<unsigned>(item.level));
       if (end > first_leaf) stack[size++] = {static_cast<std::uint32_t>(child), item.level - 1};

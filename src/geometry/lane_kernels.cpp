@@ -19,8 +19,10 @@
 #define HWY_ONCE 1
 #endif
 
+#include "blum/geometry/orient3d.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/primitive_block.hpp"
+#include "geometry/triangle_group.hpp"
 #include "geometry/winding_tree.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -36,17 +38,62 @@ void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[
   }
 }
 
+/// A bit for each lane with a 1; the others must hold 0.
+inline unsigned bits_of(const double (&flags)[lanes]) {
+  static_assert(lanes == 8);
+  alignas(64) constexpr double weights[lanes] = {1, 2, 4, 8, 16, 32, 64, 128};
+  double sum[4];
+  for (std::size_t i = 0; i < 4; ++i) sum[i] = flags[i] * weights[i] + flags[i + 4] * weights[i + 4];
+  return static_cast<unsigned>((sum[0] + sum[1]) + (sum[2] + sum[3]));
+}
+
+/// 1 where two boxes touch, else 0. One comparison per factor: with `&&` the compiler branches instead of vectorising.
+inline double touch(const BoxBlock& block, std::size_t i, const Box3& box) {
+  double all = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    all *= block.lower[axis][i] <= box.upper[axis] ? 1.0 : 0.0;
+    all *= block.upper[axis][i] >= box.lower[axis] ? 1.0 : 0.0;
+  }
+  return all;
+}
+
 unsigned touching(const BoxBlock& block, const Box3& box) {
   alignas(64) double meet[lanes];
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const double x = block.lower[0][i] <= box.upper.x && block.upper[0][i] >= box.lower.x ? 1.0 : 0.0;
-    const double y = block.lower[1][i] <= box.upper.y && block.upper[1][i] >= box.lower.y ? 1.0 : 0.0;
-    const double z = block.lower[2][i] <= box.upper.z && block.upper[2][i] >= box.lower.z ? 1.0 : 0.0;
-    meet[i] = x * y * z;
+  for (std::size_t i = 0; i < lanes; ++i) meet[i] = touch(block, i, box);
+  return bits_of(meet);
+}
+
+/// 1 where all corners of a triangle but those in common with another one lie on one side of the other's plane, by the
+/// filter of orient3d: then the two have nothing in common but these corners. Else 0. Sums of flags instead of maxima,
+/// which the compiler takes apart again.
+inline double is_beside(const TriangleGroup& group, std::size_t i, const GroupTriangle& other) {
+  double above = 1;
+  double below = 1;
+  double all_common = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double x = group.point[k][0][i] - other.points[0].x;
+    const double y = group.point[k][1][i] - other.points[0].y;
+    const double z = group.point[k][2][i] - other.points[0].z;
+    const double height = other.normal.x * x + other.normal.y * y + other.normal.z * z;
+    const double bound =
+        detail::orient3d_rounding *
+        (other.magnitude.x * std::abs(x) + other.magnitude.y * std::abs(y) + other.magnitude.z * std::abs(z));
+    const double number = group.corner[k][i];
+    double is_common = 0;  // at most one of these is 1, and then the height is 0 but for rounding
+    for (std::size_t j = 0; j < 3; ++j) is_common += number == other.corners[j] ? 1.0 : 0.0;
+    above *= is_common + (height > bound ? 1.0 : 0.0);
+    below *= is_common + (height < -bound ? 1.0 : 0.0);
+    all_common *= is_common;
   }
-  unsigned bits = 0;
-  for (std::size_t i = 0; i < lanes; ++i) bits |= static_cast<unsigned>(meet[i]) << i;
-  return bits;
+  return above + below - 2 * all_common;
+}
+
+unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle) {
+  alignas(64) double meet[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) meet[i] = touch(group.box, i, triangle.box);
+  if (bits_of(meet) == 0) return 0;
+  for (std::size_t i = 0; i < lanes; ++i) meet[i] *= 1 - is_beside(group, i, triangle);
+  return bits_of(meet);
 }
 
 void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]) {
@@ -198,6 +245,7 @@ std::size_t best_index() {
 
 HWY_EXPORT(squared_distances);
 HWY_EXPORT(touching);
+HWY_EXPORT(may_meet);
 HWY_EXPORT(approximate_distances);
 HWY_EXPORT(add_clusters);
 HWY_EXPORT(add_clusters_beyond);
@@ -210,6 +258,7 @@ HWY_EXPORT(add_triangles);
 // Chosen once: the loops take tens of nanoseconds, and a look-up would be felt.
 const auto best_squared_distances = BLUM_BEST(squared_distances);
 const auto best_touching = BLUM_BEST(touching);
+const auto best_may_meet = BLUM_BEST(may_meet);
 const auto best_approximate_distances = BLUM_BEST(approximate_distances);
 const auto best_add_clusters = BLUM_BEST(add_clusters);
 const auto best_add_clusters_beyond = BLUM_BEST(add_clusters_beyond);
@@ -223,6 +272,10 @@ void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[
 
 unsigned touching(const BoxBlock& block, const Box3& box) {
   return best_touching(block, box);
+}
+
+unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle) {
+  return best_may_meet(group, triangle);
 }
 
 void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]) {

@@ -2,151 +2,157 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <bit>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
-#include "blum/geometry/box_bvh.hpp"
-#include "blum/geometry/orient3d.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 #include "blum/geometry/weld.hpp"
 #include "geometry/box_scale.hpp"
+#include "geometry/box_tree.hpp"
+#include "geometry/space_order.hpp"
+#include "geometry/triangle_group.hpp"
 
 namespace blum {
 namespace {
 
-/// Leaves between two looks at the number of pairs: few enough that a search without end in sight stops soon.
+/// Groups between two looks at the number of pairs: few enough that a search without end in sight stops soon.
 constexpr std::size_t batch = 512;
 constexpr std::size_t grain = 8;
+constexpr std::size_t build_grain = 64;
 
-std::vector<TriangleId> triangles_with_area(const MeshView& mesh) {
-  std::vector<TriangleId> out;
-  out.reserve(mesh.triangles.size());
-  const double scale = coordinate_scale(bounds(mesh));
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+/// Groups this much looser than they were when they were made are made anew.
+constexpr double most_loosening = 1.25;
+
+double extent(const Box3& box) {
+  const Vec3d size = box.is_empty() ? Vec3d{} : box.size();
+  return size.x + size.y + size.z;
+}
+
+/// The triangles in the order of their middles in space.
+std::vector<std::uint32_t> order_in_space(const MeshView& mesh, double scale, const Context& context) {
+  const auto middle = [&](std::size_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    const std::array<Vec3d, 3> points{mesh.vertices[a] * scale, mesh.vertices[b] * scale, mesh.vertices[c] * scale};
-    if (!detail::has_no_area(points)) out.emplace_back(t);
-  }
-  return out;
+    const Vec3d& p = mesh.vertices[a];
+    const Vec3d& q = mesh.vertices[b];
+    const Vec3d& r = mesh.vertices[c];
+    return (min(min(p, q), r) * scale + max(max(p, q), r) * scale) * 0.5;
+  };
+  return space_order(mesh.triangles.size(), middle, context);
 }
 
-/// The plane of a triangle a, b, c, to reject in a few operations most of what does not touch it.
-struct Plane {
-  Vec3d point;      ///< a
-  Vec3d normal;     ///< (b - a) x (c - a)
-  Vec3d magnitude;  ///< of the products that are summed up to the normal
-
-  explicit Plane(const std::array<Vec3d, 3>& p) : point(p[0]) {
-    const Vec3d v = p[1] - p[0];
-    const Vec3d w = p[2] - p[0];
-    for (std::size_t x = 0; x < 3; ++x) {
-      const double left = v[(x + 1) % 3] * w[(x + 2) % 3];
-      const double right = v[(x + 2) % 3] * w[(x + 1) % 3];
-      normal[x] = left - right;
-      magnitude[x] = std::abs(left) + std::abs(right);
-    }
-  }
-
-  /// 1 or -1 where a point lies on that side for certain, by the filter of orient3d; else 0.
-  [[nodiscard]] int side(const Vec3d& p) const {
-    const Vec3d offset = p - point;
-    const double height = dot(normal, offset);
-    const double bound =
-        std::abs(offset.x) * magnitude.x + std::abs(offset.y) * magnitude.y + std::abs(offset.z) * magnitude.z;
-    return std::abs(height) > detail::orient3d_rounding * bound ? (height > 0 ? 1 : -1) : 0;
-  }
-};
-
-/// Whether all corners of a triangle that another one does not have are on one side of the other's plane: then the two
-/// have nothing in common but common corners.
-bool is_beside(const Plane& plane, const detail::ContactTriangle& of, const detail::ContactTriangle& triangle) {
-  int common = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t corner = triangle.corners[k];
-    if (corner == of.corners[0] || corner == of.corners[1] || corner == of.corners[2]) continue;
-    const int side = plane.side(triangle.points[k]);
-    if (side == 0 || side == -common) return false;
-    common = side;
-  }
-  return common != 0;
-}
-
-/// Triangles with an area, and a hierarchy of boxes over them. "Leaves" are eight triangles of neighbouring ranks.
+/// Triangles in groups of eight, and a tree of the groups' boxes.
 class Search {
  public:
-  Search(const MeshView& mesh, const Context& context)
-      : ids_(triangles_with_area(mesh)), triangles_(read(mesh, ids_)), bvh_(boxes(triangles_), context) {
-    planes_.reserve(triangles_.size());
-    for (const detail::ContactTriangle& triangle : triangles_) planes_.emplace_back(triangle.points);
+  /// @param corners  a number for each vertex: triangles have corners in common where these are equal.
+  Search(const MeshView& mesh, double scale, std::span<const std::uint32_t> order,
+         std::span<const std::uint32_t> corners, const Context& context)
+      : order_(order), groups_((order.size() + lanes - 1) / lanes), boxes_(groups_.size()) {
+    std::vector<double> sums(groups_.size());
+    parallel_for(context, groups_.size(), build_grain, "", [&](const WorkRange& range) {
+      for (std::size_t g = range.begin; g < range.end; ++g) sums[g] = make(mesh, scale, corners, g);
+    });
+    tree_ = make_box_tree(boxes_, context);
+    double own = 0;
+    double common = 0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      own += sums[g];
+      common += extent(boxes_[g]);
+    }
+    looseness_ = own > 0 ? common / own : 1;
   }
 
-  [[nodiscard]] std::size_t leaf_count() const { return (ids_.size() + leaf_size - 1) / leaf_size; }
+  [[nodiscard]] std::size_t group_count() const { return groups_.size(); }
 
-  /// Adds the pairs of a leaf's triangles with each other and with those of later ranks; at most about `limit`.
-  void find(std::size_t leaf, std::size_t limit, std::vector<TrianglePair>& out) const {
-    const std::size_t end = std::min((leaf + 1) * leaf_size, ids_.size());
-    for (std::size_t rank = leaf * leaf_size; rank < end && out.size() <= limit; ++rank) {
-      bvh_.for_each_later(rank, 0, [&](std::size_t later) {
-        test(bvh_.at_rank(rank), bvh_.at_rank(later), out);
-        return out.size() <= limit;
-      });
-    }
+  /// The extent of the groups' boxes for that of the triangles' boxes.
+  [[nodiscard]] double looseness() const { return looseness_; }
+
+  /// Adds the pairs of a group's triangles with each other and with those of later groups; at most about `limit`.
+  void find(std::size_t group, std::size_t limit, std::vector<TrianglePair>& out) const {
+    for_each_touching(tree_, boxes_[group], group, [&](std::size_t other) {
+      if (other >= group) find_between(group, other, limit, out);
+      return out.size() <= limit;
+    });
   }
 
  private:
-  static constexpr std::size_t leaf_size = 8;
-
-  static std::vector<detail::ContactTriangle> read(const MeshView& mesh, const std::vector<TriangleId>& ids) {
-    const double scale = coordinate_scale(bounds(mesh));
-    const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
-    std::vector<detail::ContactTriangle> out(ids.size());
-    for (std::size_t i = 0; i < ids.size(); ++i) {
+  /// @returns the sum of the extents of the group's triangles.
+  double make(const MeshView& mesh, double scale, std::span<const std::uint32_t> corners, std::size_t g) {
+    double sum = 0;
+    for (std::size_t rank = g * lanes; rank < std::min((g + 1) * lanes, order_.size()); ++rank) {
+      detail::ContactTriangle triangle;
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t v = mesh.triangles[ids[i].value][k];
-        out[i].points[k] = mesh.vertices[v] * scale;
-        out[i].corners[k] = corners[v];
+        const std::uint32_t v = mesh.triangles[order_[rank]][k];
+        triangle.points[k] = mesh.vertices[v] * scale;
+        triangle.corners[k] = corners.empty() ? v : corners[v];
+      }
+      groups_[g].set(rank % lanes, triangle);
+      const Box3 box = GroupTriangle(groups_[g], rank % lanes).box;
+      boxes_[g].extend(box);
+      sum += extent(box);
+    }
+    return sum;
+  }
+
+  void find_between(std::size_t group, std::size_t other, std::size_t limit, std::vector<TrianglePair>& out) const {
+    unsigned rows = touching(groups_[group].box, boxes_[other]);
+    for (; rows != 0 && out.size() <= limit; rows &= rows - 1) {
+      const auto row = static_cast<std::size_t>(std::countr_zero(rows));
+      const GroupTriangle triangle(groups_[group], row);
+      unsigned columns = may_meet(groups_[other], triangle);
+      if (group == other) columns &= ~0U << (row + 1);  // each pair once
+      for (; columns != 0; columns &= columns - 1) {
+        const auto column = static_cast<std::size_t>(std::countr_zero(columns));
+        test(triangle, order_[group * lanes + row], other, column, out);
       }
     }
-    return out;
   }
 
-  static std::vector<Box3> boxes(const std::vector<detail::ContactTriangle>& triangles) {
-    std::vector<Box3> out(triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      for (const Vec3d& p : triangles[i].points) out[i].extend(p);
-    }
-    return out;
-  }
-
-  void test(std::uint32_t i, std::uint32_t other, std::vector<TrianglePair>& out) const {
-    const detail::ContactTriangle& a = triangles_[i];
-    const detail::ContactTriangle& b = triangles_[other];
-    if (is_beside(planes_[i], a, b) || is_beside(planes_[other], b, a)) return;
-    const detail::Contact found = detail::contact(a, b);
+  void test(const GroupTriangle& a, std::uint32_t first, std::size_t group, std::size_t lane,
+            std::vector<TrianglePair>& out) const {
+    const GroupTriangle b(groups_[group], lane);
+    if (is_beside(a, b) || is_beyond_an_edge(a, b) || is_beyond_an_edge(b, a)) return;
+    const detail::Contact found = detail::contact(a.for_contact(), b.for_contact());
     if (found == detail::Contact::none) return;
-    out.push_back({std::min(ids_[i], ids_[other]), std::max(ids_[i], ids_[other]), found == detail::Contact::crossing});
+    const std::uint32_t second = order_[group * lanes + lane];
+    out.push_back(
+        {TriangleId(std::min(first, second)), TriangleId(std::max(first, second)), found == detail::Contact::crossing});
   }
 
-  std::vector<TriangleId> ids_;
-  std::vector<detail::ContactTriangle> triangles_;  ///< of these ids
-  std::vector<Plane> planes_;                       ///< of the triangles
-  BoxBvh bvh_;
+  std::span<const std::uint32_t> order_;
+  std::vector<TriangleGroup> groups_;
+  std::vector<Box3> boxes_;  ///< around each group
+  BoxTree tree_;
+  double looseness_ = 1;
 };
 
-/// The pairs of some leaves, in the order of the leaves.
+/// The pairs of some groups, in the order of the groups.
 std::vector<TrianglePair> find_in(const Search& search, std::size_t begin, std::size_t end, std::size_t limit,
                                   const Context& context) {
   std::vector<std::vector<TrianglePair>> found((end - begin + grain - 1) / grain);
   parallel_for(context, end - begin, grain, "", [&](const WorkRange& range) {
     std::vector<TrianglePair>& out = found[range.begin / grain];
-    for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) search.find(begin + leaf, limit, out);
+    for (std::size_t group = range.begin; group < range.end; ++group) search.find(begin + group, limit, out);
   });
   std::vector<TrianglePair> all;
   for (const std::vector<TrianglePair>& part : found) all.insert(all.end(), part.begin(), part.end());
   return all;
+}
+
+std::vector<TrianglePair> find_all(const Search& search, std::size_t limit, const Context& context) {
+  std::vector<TrianglePair> pairs;
+  for (std::size_t begin = 0; begin < search.group_count() && pairs.size() <= limit; begin += batch) {
+    const std::size_t end = std::min(begin + batch, search.group_count());
+    const std::vector<TrianglePair> found = find_in(search, begin, end, limit, context);
+    pairs.insert(pairs.end(), found.begin(), found.end());
+    if (context.progress) {
+      context.progress(static_cast<double>(end) / static_cast<double>(search.group_count()), "self-intersections");
+    }
+  }
+  return pairs;
 }
 
 }  // namespace
@@ -154,16 +160,11 @@ std::vector<TrianglePair> find_in(const Search& search, std::size_t begin, std::
 SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limit, const Context& context) {
   validate(mesh);
   throw_if_cancelled(context);
+  const double scale = coordinate_scale(bounds(mesh));
+  const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
+  const std::vector<std::uint32_t> order = order_in_space(mesh, scale, context);
   SelfIntersections result;
-  const Search search(mesh, context);
-  for (std::size_t begin = 0; begin < search.leaf_count() && result.pairs.size() <= limit; begin += batch) {
-    const std::size_t end = std::min(begin + batch, search.leaf_count());
-    const std::vector<TrianglePair> found = find_in(search, begin, end, limit, context);
-    result.pairs.insert(result.pairs.end(), found.begin(), found.end());
-    if (context.progress) {
-      context.progress(static_cast<double>(end) / static_cast<double>(search.leaf_count()), "self-intersections");
-    }
-  }
+  result.pairs = find_all(Search(mesh, scale, order, corners, context), limit, context);
   std::sort(result.pairs.begin(), result.pairs.end(), [](const TrianglePair& a, const TrianglePair& b) {
     return std::tie(a.first, a.second) < std::tie(b.first, b.second);
   });
@@ -171,6 +172,25 @@ SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limi
   if (!result.complete) result.pairs.resize(limit);
   for (const TrianglePair& pair : result.pairs) ++(pair.crosses ? result.crossing : result.touching);
   return result;
+}
+
+bool SelfIntersectionSearch::finds_any(const MeshView& mesh, const Context& context) {
+  validate(mesh);
+  throw_if_cancelled(context);
+  const double scale = coordinate_scale(bounds(mesh));
+  const bool is_new = order_.size() != mesh.triangles.size();
+  if (is_new) order_ = order_in_space(mesh, scale, context);
+  // Where corners at one place have several numbers, a pair is found that only has these in common: then the question
+  // is put again. Where none is found, there are no such corners.
+  const Search search(mesh, scale, order_, {}, context);
+  if (is_new) looseness_ = search.looseness();
+  bool found = !find_all(search, 0, context).empty();
+  if (found) {
+    const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
+    found = !find_all(Search(mesh, scale, order_, corners, context), 0, context).empty();
+  }
+  if (search.looseness() > most_loosening * looseness_) order_.clear();
+  return found;
 }
 
 }  // namespace blum

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -43,5 +44,20 @@ struct SelfIntersections {
 /// 0.8 s for 1.6 million on two cores; 250 bytes per triangle.
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limit = 100000,
                                                         const Context& context = {});
+
+/// Asks frame after frame whether a mesh that deforms crosses or touches itself. It keeps the order of the triangles in
+/// space, which takes as long to find as all the rest, for as long as groups of neighbours stay together; the answers
+/// do not depend on it.
+class SelfIntersectionSearch {
+ public:
+  /// Whether find_self_intersections() finds a pair. Meshes may have other triangles than the ones before.
+  /// @param mesh must pass validate(mesh). @throws InvalidMesh, Cancelled.
+  /// Cost: about 0.15 microseconds for each triangle of a fine mesh on two cores.
+  [[nodiscard]] bool finds_any(const MeshView& mesh, const Context& context = {});
+
+ private:
+  std::vector<std::uint32_t> order_;
+  double looseness_ = 0;  ///< of the groups when they were made
+};
 
 }  // namespace blum

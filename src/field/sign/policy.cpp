@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
-#include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
 
 namespace blum::sign {
@@ -27,29 +26,6 @@ bool has_flat_triangles(const MeshView& mesh) {
 
 Plan by_winding(std::string reason) {
   return {SignRule::winding, std::move(reason), Method::sums};
-}
-
-Plan plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
-  const std::string winding = "winding number above 1/2: the mesh ";
-  const Orientation facts = orientation(mesh, sites);
-  if (!mesh.segments.empty() || !mesh.points.empty()) {
-    return by_winding(winding + "has free segments or points, which have no sides");
-  }
-  if (!facts.closed || !facts.oriented) return by_winding(winding + "has " + describe_defects(facts));
-  if (!facts.outward && facts.signed_volume < 0) {
-    return by_winding(
-        winding + "is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles");
-  }
-  if (!facts.outward) {
-    return by_winding(winding + "is closed, but its shells cross each other or do not all face away from the solid");
-  }
-  if (has_flat_triangles(mesh)) return by_winding(winding + "is closed, but has triangles too flat for a normal");
-  const Context quiet{.threads = context.threads, .cancel = context.cancel};
-  if (!find_self_intersections(mesh, 0, quiet).complete) {
-    return by_winding(winding + "is closed and oriented, but it crosses itself, or touches itself");
-  }
-  return {SignRule::normals, "the mesh is closed, consistently oriented and faces outwards", Method::crossings, 0,
-          true};
 }
 
 /// Whether the mesh would face outwards if all triangles were turned.
@@ -116,7 +92,30 @@ bool is_too_flat(const MeshView& mesh, const Triangle& triangle) {
   return !(squared_length(cross(u, v)) > 1e-24 * longest * longest);
 }
 
-Plan plan_signs(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
+Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  const std::string winding = "winding number above 1/2: the mesh ";
+  const Orientation facts = orientation(mesh, sites);
+  if (!mesh.segments.empty() || !mesh.points.empty()) {
+    return by_winding(winding + "has free segments or points, which have no sides");
+  }
+  if (!facts.closed || !facts.oriented) return by_winding(winding + "has " + describe_defects(facts));
+  if (!facts.outward && facts.signed_volume < 0) {
+    return by_winding(
+        winding + "is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles");
+  }
+  if (!facts.outward) {
+    return by_winding(winding + "is closed, but its shells cross each other or do not all face away from the solid");
+  }
+  if (has_flat_triangles(mesh)) return by_winding(winding + "is closed, but has triangles too flat for a normal");
+  const Context quiet{.threads = context.threads, .cancel = context.cancel};
+  if (search_.finds_any(mesh, quiet)) {
+    return by_winding(winding + "is closed and oriented, but it crosses itself, or touches itself");
+  }
+  return {SignRule::normals, "the mesh is closed, consistently oriented and faces outwards", Method::crossings, 0,
+          true};
+}
+
+Plan Planner::plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
   if (mode == SignMode::none) return unsigned_plan("unsigned, as asked for");
   if (mesh.triangles.empty()) {
     if (mode == SignMode::automatic) return unsigned_plan(no_triangles);
@@ -126,6 +125,10 @@ Plan plan_signs(SignMode mode, const MeshView& mesh, const SiteTable& sites, con
   Plan plan = mode == SignMode::winding ? by_winding(as_asked_for) : plan_automatically(mesh, sites, context);
   if (plan.method == Method::sums && is_balanced(mesh, sites)) plan.method = Method::crossings;
   return plan;
+}
+
+Plan plan_signs(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  return Planner().plan(mode, mesh, sites, context);
 }
 
 Plan plan_unseen_signs(SignMode mode, std::size_t triangles) {

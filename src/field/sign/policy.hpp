@@ -6,6 +6,7 @@
 
 #include "blum/core/context.hpp"
 #include "blum/field/field.hpp"
+#include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "field/sign/method.hpp"
@@ -25,19 +26,30 @@ struct Plan {
   bool is_simple = false;
 };
 
-/// Plans the signs of a mesh. `automatic` takes
-/// - nothing where there are no triangles;
-/// - `normals` where the mesh is closed and consistently oriented, has no free segments or points, no triangles too
-/// flat
-///   for a normal, all of its shells face away from the solid, and no two of its triangles touch or cross but
-///   neighbours (find_self_intersections, which is exact);
-/// - `winding` elsewhere. The reason names the first of these that failed. A closed mesh that is inside out has a
-/// winding
-///   number of -1 inside, so `winding` finds no inside: the reason says so.
-/// @throws InvalidMesh when normals are asked for but the mesh is not closed and consistently oriented; InvalidOption
-/// when a sign is asked for but there are no triangles; Cancelled.
-/// Cost: O(triangles); with `automatic`, where everything else speaks for `normals`, the search for a pair of triangles
-/// that touch, which ends at the first one.
+/// Plans the signs of meshes, one after the other. It keeps what makes the next search for self-intersections faster
+/// where the next mesh is the last one deformed; the plans do not depend on it.
+class Planner {
+ public:
+  /// `automatic` takes
+  /// - nothing where there are no triangles;
+  /// - `normals` where the mesh is closed and consistently oriented, has no free segments or points, no triangles too
+  ///   flat for a normal, all of its shells face away from the solid, and no two of its triangles touch or cross but
+  ///   neighbours (find_self_intersections, which is exact);
+  /// - `winding` elsewhere. The reason names the first of these that failed. A closed mesh that is inside out has a
+  ///   winding number of -1 inside, so `winding` finds no inside: the reason says so.
+  /// @throws InvalidMesh when normals are asked for but the mesh is not closed and consistently oriented; InvalidOption
+  /// when a sign is asked for but there are no triangles; Cancelled.
+  /// Cost: O(triangles); with `automatic`, where everything else speaks for `normals`, the search for a pair of
+  /// triangles that touch, which ends at the first one.
+  [[nodiscard]] Plan plan(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context);
+
+ private:
+  [[nodiscard]] Plan plan_automatically(const MeshView& mesh, const SiteTable& sites, const Context& context);
+
+  SelfIntersectionSearch search_;
+};
+
+/// The plan for one mesh.
 [[nodiscard]] Plan plan_signs(SignMode mode, const MeshView& mesh, const SiteTable& sites, const Context& context);
 
 /// Plans the signs of a mesh that lies in a device's memory, where nobody looks at it: winding numbers for every mesh

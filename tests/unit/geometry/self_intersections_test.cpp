@@ -173,6 +173,99 @@ TEST(SelfIntersections, AreThoseOfEveryPair) {
   }
 }
 
+/// Triangles whose corners lie on a grid of a few points, or in a few planes of it when z is seldom drawn: most of them
+/// have corners, edges or planes in common with others.
+TriangleMesh grid_soup(std::uint64_t side, std::uint64_t heights, std::uint64_t seed) {
+  Random random(seed);
+  TriangleMesh mesh;
+  const auto vertex = [&] {
+    const auto x = static_cast<double>(random.below(side));
+    const auto y = static_cast<double>(random.below(side));
+    mesh.vertices.push_back({x, y, static_cast<double>(random.below(heights))});
+    return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  };
+  for (int t = 0; t < 200; ++t) {
+    const std::uint32_t a = vertex();
+    const std::uint32_t b = vertex();
+    mesh.triangles.push_back({a, b, vertex()});
+  }
+  return mesh;
+}
+
+TEST(SelfIntersections, OfTrianglesThatShareCornersAndPlanesAreThoseOfEveryPair) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    TriangleMesh mesh = grid_soup(3 + seed % 12, 1 + seed % 4, seed);
+    // Rotated by rounded factors: what lay in one plane nearly does.
+    if (seed % 2 == 0) {
+      for (Vec3d& v : mesh.vertices) v = {0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y, v.z + 0.1 * v.x};
+    }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (const TrianglePair& pair : find_self_intersections(mesh).pairs) {
+      pairs.emplace_back(pair.first.value, pair.second.value);
+    }
+    EXPECT_EQ(pairs, every_pair(mesh)) << seed;
+    EXPECT_GT(pairs.size(), 100U);
+  }
+}
+
+TEST(SelfIntersections, OfTiledPlanesAreNone) {
+  for (const double skew : {0.0, 1.0, 0.25}) {
+    TriangleMesh mesh;
+    const std::uint32_t n = 13;
+    for (std::uint32_t y = 0; y < n; ++y) {
+      for (std::uint32_t x = 0; x < n; ++x) mesh.vertices.push_back({1.0 * x, y + skew * x, skew * y});
+    }
+    for (std::uint32_t y = 0; y + 1 < n; ++y) {
+      for (std::uint32_t x = 0; x + 1 < n; ++x) {
+        const std::uint32_t v = y * n + x;
+        mesh.triangles.push_back({v, v + 1, v + n});
+        mesh.triangles.push_back({v + n + 1, v + n, v + 1});
+      }
+    }
+    EXPECT_TRUE(find_self_intersections(mesh).pairs.empty()) << skew;
+    SelfIntersectionSearch search;
+    EXPECT_FALSE(search.finds_any(mesh)) << skew;
+    std::swap(mesh.triangles[7][1], mesh.triangles[9][1]);  // two of them now overlap others
+    EXPECT_FALSE(find_self_intersections(mesh).pairs.empty()) << skew;
+    EXPECT_TRUE(search.finds_any(mesh)) << skew;
+  }
+}
+
+/// Each triangle with vertices of its own.
+TriangleMesh taken_apart(const TriangleMesh& mesh) {
+  TriangleMesh out;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    for (const std::uint32_t v : t) out.vertices.push_back(mesh.vertices[v]);
+    out.triangles.push_back({first, first + 1, first + 2});
+  }
+  return out;
+}
+
+TEST(SelfIntersections, FrameAfterFrameAreThoseOfEachFrame) {
+  const TriangleMesh torus =
+      make_torus({.ring_radius = 1, .tube_radius = 0.4, .ring_segments = 24, .tube_segments = 12});
+  const TriangleMesh box = make_box({});
+  SelfIntersectionSearch search;
+  int crossing = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    // The tube gets thicker until it crosses itself in the middle, and thin again, while all of it moves far away.
+    const double swell = 1.5 + 1.4 * std::sin(0.2 * frame);
+    TriangleMesh mesh = frame % 20 == 19 ? box : torus;
+    for (Vec3d& v : mesh.vertices) {
+      const double ring = std::hypot(v.x, v.y);
+      const double tube = swell * (ring - 1) + 1;
+      v = {v.x / ring * tube + frame * frame, v.y / ring * tube, v.z * swell * (1 + 0.5 * frame)};
+    }
+    const bool expected = !find_self_intersections(mesh).pairs.empty();
+    EXPECT_EQ(search.finds_any(mesh), expected) << frame;
+    EXPECT_EQ(search.finds_any(taken_apart(mesh)), expected) << frame;
+    crossing += expected ? 1 : 0;
+  }
+  EXPECT_GT(crossing, 5);
+  EXPECT_LT(crossing, 55);
+}
+
 TEST(SelfIntersections, OfShapesAreNone) {
   for (const char* name : {"sphere", "torus", "torus_knot", "gear", "box"}) {
     const SelfIntersections found = find_self_intersections(make_shape(name));
