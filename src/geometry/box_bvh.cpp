@@ -72,9 +72,6 @@ std::size_t BoxBvh::size() const {
 const Box3& BoxBvh::bounds() const {
   return data_->bounds;
 }
-std::uint32_t BoxBvh::at_rank(std::size_t rank) const {
-  return data_->order[rank];
-}
 
 void BoxBvh::for_each_touching(const Box3& box, FunctionRef<bool(std::uint32_t)> visit) const {
   if (box.is_empty()) return;

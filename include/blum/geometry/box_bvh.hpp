@@ -66,14 +66,11 @@ class BoxBvh {
                                                                 const Context& context = {}) const;
   [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> self_pairs(double margin, const Context& context = {}) const;
 
-  // Boxes have ranks, too, 0 to size() - 1, by which neighbours in space lie together; for searches that go through all
-  // boxes in parts.
-  [[nodiscard]] std::uint32_t at_rank(std::size_t rank) const;
-  /// Calls visit(rank) for the boxes of higher rank that are at most `margin` apart from the one at this rank along
-  /// every axis, until it returns false.
+ private:
+  /// Calls visit(rank) for the boxes of higher rank, along a curve through space, that are at most `margin` apart from
+  /// the one at this rank along every axis, until it returns false.
   void for_each_later(std::size_t rank, double margin, FunctionRef<bool(std::size_t)> visit) const;
 
- private:
   struct Data;
   std::unique_ptr<Data> data_;
 };
