@@ -148,7 +148,7 @@ def slow_call(progress=False):
 
 def winding_numbers():
     mesh = blum.generate("sphere", frequency=100)
-    return blum.reference.winding_number(mesh, np.random.default_rng(1).uniform(-2, 2, (1000, 3)))
+    return blum.reference.winding_number(mesh, np.random.default_rng(1).uniform(-2, 2, (10000, 3)))
 
 
 def extrusion_of_many_holes():
