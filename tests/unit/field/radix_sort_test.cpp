@@ -1,0 +1,40 @@
+// Proves that small keys are sorted as std::stable_sort sorts them, on both sides of the count where the digits change.
+#include "field/cpu/radix_sort.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "blum/core/random.hpp"
+
+namespace blum::cpu {
+namespace {
+
+TEST(RadixSort, IsThatOfAStableSort) {
+  Random random(1);
+  std::vector<KeyedIndex> scratch;
+  for (const std::uint32_t count : {0U, 1U, 2U, 255U, 2047U, 2048U, 5000U}) {
+    for (int kind = 0; kind < 5; ++kind) {
+      std::vector<KeyedIndex> items(count);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const auto any = static_cast<std::uint32_t>(random.below(std::uint64_t{1} << 32));
+        // All bits, few values, one value, distances as bits, and the largest and smallest keys alone.
+        const std::array<std::uint32_t, 5> keys{any, any % 7, 5,
+                                                std::bit_cast<std::uint32_t>(static_cast<float>(any) * 1e-9F),
+                                                any % 2 == 0 ? 0U : 0xffffffffU};
+        items[i] = {keys[static_cast<std::size_t>(kind)], i};
+      }
+      std::vector<KeyedIndex> expected = items;
+      std::stable_sort(expected.begin(), expected.end(),
+                       [](const KeyedIndex& a, const KeyedIndex& b) { return a.key < b.key; });
+      radix_sort(items, scratch);
+      const auto same = [](const KeyedIndex& a, const KeyedIndex& b) { return a.key == b.key && a.index == b.index; };
+      EXPECT_TRUE(std::equal(items.begin(), items.end(), expected.begin(), expected.end(), same))
+          << count << " items, kind " << kind;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace blum::cpu
