@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 
 #include "blum/core/error.hpp"
@@ -57,6 +58,21 @@ TEST(SignPolicy, TheReportedRuleDependsOnNoGrid) {
   const ClosestPointQuery query(mesh);
   EXPECT_EQ(query.sign_rule(), plan.rule);
   EXPECT_EQ(query.sign_reason(), plan.reason);
+}
+
+TEST(SignPolicy, OfAFrameIsThatOfItsMeshAlone) {
+  const TriangleMesh simple = make_sphere({});
+  TriangleMesh folded = simple;
+  folded.vertices.front() = folded.vertices.front() * -1.5;  // through the other side
+  const GridSpec grid = grid_around(bounds(simple), 12);
+  FieldSolver solver(grid);
+  for (const TriangleMesh* mesh : std::array<const TriangleMesh*, 5>{&simple, &folded, &simple, &simple, &folded}) {
+    const Plan plan = plan_of(*mesh);
+    EXPECT_EQ(plan.rule, mesh == &simple ? SignRule::normals : SignRule::winding) << plan.reason;
+    const Field& field = solver.compute(*mesh);
+    EXPECT_EQ(field.sign_rule, plan.rule);
+    EXPECT_EQ(field.sign_reason, plan.reason);
+  }
 }
 
 TEST(SignPolicy, SaysWhatIsInTheWay) {
