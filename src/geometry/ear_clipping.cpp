@@ -238,16 +238,57 @@ class EarClipper {
     const Point& a = points_[links_[corner].previous];
     const Point& b = points_[corner];
     const Point& c = points_[links_[corner].next];
+    bool is_doubtful = false;
     for (std::uint32_t twin = twin_[corner]; twin != corner; twin = twin_[twin]) {
-      if (--work_left_ < 0 || (links_[twin].next != gone && passes_between(twin, a, b, c))) return false;
+      if (--work_left_ < 0) return false;
+      if (links_[twin].next == gone) continue;
+      // The polygon comes through the ear's tip once more: beside the ear, through it, or along both of its edges,
+      // where no one can tell by looking at the tip on which side of them the inside is.
+      const Side before = side_of(points_[links_[twin].previous], a, b, c);
+      const Side after = side_of(points_[links_[twin].next], a, b, c);
+      if (before == Side::between || after == Side::between) return false;
+      is_doubtful = is_doubtful || (before == Side::along && after == Side::along);
     }
-    return !blockers_.any_inside({a, b, c}, work_left_);
+    return !blockers_.any_inside({a, b, c}, work_left_) && (!is_doubtful || is_wound_around(corner));
   }
 
-  /// Whether the polygon, which comes through the ear's tip b once more at a twin, goes through the ear there.
-  [[nodiscard]] bool passes_between(std::uint32_t twin, const Point& a, const Point& b, const Point& c) const {
-    const auto is_between = [&](const Point& q) { return orient2d(a, b, q) > 0 && orient2d(b, c, q) > 0; };
-    return is_between(points_[links_[twin].previous]) || is_between(points_[links_[twin].next]);
+  /// Where a point lies that the tip b of an ear a, b, c is joined to.
+  enum class Side : std::uint8_t { between, along, outside };
+  static Side side_of(const Point& q, const Point& a, const Point& b, const Point& c) {
+    const int left_of_first = orient2d(a, b, q);
+    const int left_of_second = orient2d(b, c, q);
+    if (left_of_first < 0 || left_of_second < 0) return Side::outside;
+    return left_of_first > 0 && left_of_second > 0 ? Side::between : Side::along;
+  }
+
+  /// Whether what is left of the polygon winds around what lies between the edges of a corner, right at its tip: around
+  /// the point tip + e (previous - tip) + e^2 (next - tip), for an e as small as need be.
+  [[nodiscard]] bool is_wound_around(std::uint32_t corner) {
+    const Link link = links_[corner];
+    const std::array<const Point*, 3> terms = {&points_[corner], &points_[link.previous], &points_[link.next]};
+    // Of a term where those before it are 0, only the sign counts.
+    const auto is_above = [&](const Point& p) {
+      const auto term = std::find_if(terms.begin(), terms.end(), [&](const Point* q) { return (*q)[1] != p[1]; });
+      return term != terms.end() && p[1] > (**term)[1];
+    };
+    const auto side_of_line = [&](const Point& from, const Point& to) {
+      int side = 0;
+      for (std::size_t k = 0; k < terms.size() && side == 0; ++k) side = orient2d(from, to, *terms[k]);
+      return side;
+    };
+    std::int64_t turns = 0;  // by the edges that a ray from the point to the right meets
+    std::uint32_t at = corner;
+    do {
+      if (--work_left_ < 0) return false;
+      const Point& from = points_[at];
+      at = links_[at].next;
+      const Point& to = points_[at];
+      const bool is_upward = !is_above(from) && is_above(to);
+      const bool is_downward = is_above(from) && !is_above(to);
+      if (is_upward && side_of_line(from, to) > 0) ++turns;
+      if (is_downward && side_of_line(from, to) < 0) --turns;
+    } while (at != corner);
+    return turns > 0;
   }
 
   void emit(std::uint32_t corner) { triangles_[emitted_++] = {links_[corner].previous, corner, links_[corner].next}; }

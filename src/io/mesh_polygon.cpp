@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blum/geometry/ear_clipping.hpp"
+#include "blum/geometry/orient2d.hpp"
 #include "io/mesh_builder.hpp"
 
 namespace blum {
@@ -13,13 +14,8 @@ namespace {
 /// A corner of a polygon, seen along a coordinate axis.
 using Point = std::array<double, 2>;
 
-/// Twice the signed area of a triangle: positive when its corners turn left.
-double area2(const Point& a, const Point& b, const Point& c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-/// The corners, seen along the axis nearest to the polygon's mean normal (Newell's) such that it turns left, as
-/// fractions of its size. Dropping a coordinate keeps the others exact, and is an affine map of the polygon's plane.
+/// The corners, seen along the axis nearest to the polygon's mean normal (Newell's) such that it turns left, times a
+/// power of two. This is exact, so that corners on edges stay there, and an affine map of the polygon's plane.
 /// @returns empty when the polygon has no area to speak of.
 std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const std::uint32_t> corners) {
   Box3 box;
@@ -47,8 +43,12 @@ std::vector<Point> flattened(std::span<const Vec3d> vertices, std::span<const st
   if (!(magnitude[axis] > rounding * static_cast<double>(corners.size()))) return {};
   std::vector<Point> points;
   points.reserve(corners.size());
+  double reach = 0;
+  for (const Vec3d& end : {box.lower, box.upper})
+    reach = std::max({reach, std::abs(end.x), std::abs(end.y), std::abs(end.z)});
+  const double scale = std::ldexp(1.0, std::clamp(-std::ilogb(reach), -1000, 1000));
   for (const std::uint32_t corner : corners) {
-    const Vec3d v = scaled(corner);
+    const Vec3d v = vertices[corner] * scale;
     const Point p = {v[(axis + 1) % 3], v[(axis + 2) % 3]};
     points.push_back(normal[axis] > 0 ? p : Point{p[1], p[0]});
   }
@@ -63,7 +63,7 @@ bool is_strictly_convex(const std::vector<Point>& points) {
     const Point& a = points[i];
     const Point& b = points[i + 1 < n ? i + 1 : i + 1 - n];
     const Point& c = points[i + 2 < n ? i + 2 : i + 2 - n];
-    if (!(area2(a, b, c) > 0)) return false;
+    if (detail::orient2d(a, b, c) <= 0) return false;
     const bool first_up = b[1] > a[1] || (b[1] == a[1] && b[0] > a[0]);
     const bool second_up = c[1] > b[1] || (c[1] == b[1] && c[0] > b[0]);
     upward_starts += !first_up && second_up ? 1 : 0;

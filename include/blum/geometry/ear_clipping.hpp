@@ -18,14 +18,18 @@ enum class EarOrder : std::uint8_t {
 
 /// Cuts a polygon into triangles that turn as it does, counter-clockwise, by cutting off ears: corners that turn left
 /// and whose triangle holds no other corner. The polygon may be weakly simple: holes joined to the outline by bridges,
-/// whose ends come twice at the same place. Then the triangles cover its inside exactly once, whatever ears were taken,
-/// because their winding numbers add up to the polygon's. Exact for the points as given (see orient2d).
+/// whose ends come twice at the same place, parts that meet in a corner or are joined by a bridge outside, corners on
+/// edges. Where `in_turn`, triangles of no area may be among the others. Triangles cover the inside exactly once,
+/// whatever ears were taken, because their winding numbers add up to the polygon's. Exact for the points as given (see
+/// orient2d).
 /// @param points     of the corners, in order; at least 3.
 /// @param triangles  receives indices of corners: points.size() - 2 entries.
 /// @param work_left  looks at a corner or at a box of corners that may be taken; becomes what is left.
-/// @return  false where the polygon crosses itself or takes too much work; `triangles` is then of no use.
+/// @return  false where the polygon crosses itself or takes too much work, and for some that are folded upon themselves
+/// along one line several times; `triangles` is then of no use.
 /// @throws Cancelled.
-/// Cost: a few dozen looks a corner for usual polygons, O(n^2) at worst.
+/// Cost: a few dozen looks a corner for usual polygons, and one at each corner where an ear's tip is that of another
+/// part and both edges lie upon that part's; O(n^2) at worst.
 [[nodiscard]] bool clip_ears(std::span<const std::array<double, 2>> points, EarOrder order,
                              std::span<Triangle> triangles, std::int64_t& work_left, const Context& context = {});
 

@@ -145,6 +145,52 @@ TEST(MeshPolygon, ShapesThatAFanGetsWrong) {
   }
 }
 
+double signed_area(const std::vector<Vec3d>& polygon) {
+  double area = 0;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) area += area_xy(polygon[0], polygon[i], polygon[i + 1]);
+  return area;
+}
+
+/// Checks a polygon that touches itself: areas are those of whole numbers, and add up exactly.
+void expect_exact_area(const std::vector<Vec3d>& polygon, const char* name) {
+  const Cut result = cut(polygon);
+  EXPECT_TRUE(result.proper) << name;
+  double area = 0;
+  for (const Triangle& t : result.triangles) {
+    const double part = area_xy(polygon[t[0]], polygon[t[1]], polygon[t[2]]);
+    EXPECT_GE(part, 0) << name;
+    area += part;
+  }
+  EXPECT_EQ(area, signed_area(polygon)) << name;
+}
+
+TEST(MeshPolygon, PartsThatMeetInACornerOrByABridge) {
+  expect_exact_area({{1, 2, 0}, {1, 0, 0}, {2, 1, 0}, {3, 1, 0}, {2, 1, 0}}, "a spike outside");
+  expect_exact_area({{3, 3, 0}, {4, 2, 0}, {3, 3, 0}, {1, 3, 0}, {3, 1, 0}}, "a spike at a corner");
+  expect_exact_area({{3, 0, 0}, {3, 1, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {4, 1, 0}}, "triangles that meet");
+  const std::vector<Vec3d> left = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+  const std::vector<Vec3d> right = {{5, 3, 0}, {7, 3, 0}, {7, 5, 0}, {5, 5, 0}};
+  for (std::size_t start = 0; start < 4; ++start) {
+    std::vector<Vec3d> dumbbell(left);  // around the right square from its corner that is nearest, and back
+    dumbbell.insert(dumbbell.begin() + 3, {right[0], right[1], right[2], right[3], right[0], left[2]});
+    std::rotate(dumbbell.begin(), dumbbell.begin() + static_cast<std::ptrdiff_t>(start), dumbbell.end());
+    expect_exact_area(dumbbell, "squares joined by a bridge");
+  }
+}
+
+TEST(MeshPolygon, CornersOnEdgesInAnyPlane) {
+  const Vec3d u = {1, 7, 3};
+  const Vec3d w = {-9, 2, 4};
+  const auto at = [&](int x, int y) { return Vec3d{1, 2, 3} + u * x + w * y; };
+  for (int tip = 1; tip < 9; ++tip) {  // of a notch, on the edge below
+    std::vector<Vec3d> polygon = {at(0, 0), at(9, 0), at(9, 3), at(tip, 0), at(0, 3)};
+    for (std::size_t start = 0; start < polygon.size(); ++start) {
+      EXPECT_TRUE(cut(polygon).proper) << tip << ", from corner " << start;
+      std::rotate(polygon.begin(), polygon.begin() + 1, polygon.end());
+    }
+  }
+}
+
 TEST(MeshPolygon, CollinearCornersGiveNoEmptyTriangleWhereItCanBeHelped) {
   const std::vector<Vec3d> square = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0},
                                      {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
