@@ -44,7 +44,7 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
   Progress progress(!options.quiet);
   const Interrupt interrupt;
   const Context context = make_context(0, progress, interrupt);
-  const MedialFile file = read_medial(path);
+  const MedialFile file = read_axis(path);
   const MedialCounts counts = count(file.complex);
   const BettiNumbers betti = homology(file.complex.view(), context);
   progress.clear();

@@ -93,7 +93,7 @@ void add_facts(Json& item, const MedialFile& file, const BettiNumbers& betti) {
 }  // namespace
 
 Json axis_item(SceneBlob& blob, const std::filesystem::path& path, const Context& context) {
-  const MedialFile file = read_medial(path);
+  const MedialFile file = read_axis(path);
   Box3 box;
   for (const Vec3d& position : file.complex.positions) box.extend(position);
   Json item = {{"kind", "axis"}, {"units", "mesh units"}};

@@ -234,7 +234,7 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
     write_medial(run.drafts.back().path(), complex, metadata, context);
   }
   run.phases.push_back({"write", watch.lap()});
-  MedialFile written = read_medial(run.drafts.back().path());
+  MedialFile written = read_axis(run.drafts.back().path());
   if (written.metadata.solid_rule.empty()) {  // .obj and .ma say nothing of it
     written.metadata.solid_rule = metadata.solid_rule;
     written.metadata.grid = metadata.grid;

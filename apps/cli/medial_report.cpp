@@ -25,6 +25,12 @@ constexpr const char* untold_rule =
 
 }  // namespace
 
+MedialFile read_axis(const std::filesystem::path& path) {
+  MedialFile file = read_medial(path);
+  add_missing_medial_columns(file.complex);
+  return file;
+}
+
 Certificate certificate_of(const MedialFile& file, const SolidInput& input, const LabelSelection& selection,
                            const Context& context) {
   if (input.kind == InputKind::image) {

@@ -1,6 +1,7 @@
 // Blum: what the commands say of medial axes and their certificates. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,9 @@
 #include "summary.hpp"
 
 namespace blum::cli {
+
+/// The axis of a file with all columns of MedialView, whatever the file holds (MedialFile::has_radii and so on).
+[[nodiscard]] MedialFile read_axis(const std::filesystem::path& path);
 
 /// The certificate of an axis as a file holds it, against a solid.
 /// @param selection  of the voxels, for images.

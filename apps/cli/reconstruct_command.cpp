@@ -109,7 +109,7 @@ void run(const Arguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(r.threads, progress, interrupt);
   Stopwatch watch;
-  const MedialFile file = read_medial(r.axis);
+  const MedialFile file = read_axis(r.axis);
   const std::vector<Ball> balls = balls_of(file, r.axis);
   const Box3 box = bounds(balls);
   if (r.spacing) check_spacing(*r.spacing, box);

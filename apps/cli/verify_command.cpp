@@ -55,7 +55,7 @@ class Verifier {
       : path_(std::move(path)), kind_(kind), given_(given), context_(context) {}
 
   void verify(const fs::path& axis) {
-    const MedialFile file = read_medial(axis);
+    const MedialFile file = read_axis(axis);
     const auto& [selection, warning] = solid_of_axis(given_, kind_, file.metadata, axis);
     const SolidInput& solid = load(selection.weld);
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);

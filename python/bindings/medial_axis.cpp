@@ -3,6 +3,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
 
 #include <algorithm>
 #include <optional>
@@ -77,8 +78,11 @@ void bind_medial_axis(nb::module_& m) {
   bind_options<MedialAxisOptions>(m);
   bind_struct<MedialAxisReport>(m);
   bind_axis(m);
-  m.def("medial_counts", [](const Complex& axis) { return dict_of(count(axis)); }, nb::arg("axis"));
-  m.def("medial_problem", &problem_of_medial, nb::arg("axis"));
+  m.def("medial_counts", [](const Complex& axis) { return dict_of(count(CompleteAxis(axis).get())); }, nb::arg("axis"));
+  m.def(
+      "medial_problem", [](const Complex& axis) { return problem_of_medial(CompleteAxis(axis).get()); },
+      nb::arg("axis"));
+  m.def("missing_medial_column", &missing_medial_column, nb::arg("kind"), nb::arg("name"));
   m.def("sheet_count", &sheet_count, nb::arg("axis"));
   m.def(
       "prune_sheets",

@@ -22,59 +22,68 @@ _CoreComplex = _core.Complex
 
 
 class MedialColumns(Complex):
-    """What axes of one angle and of all have in common: the columns of a medial axis as properties."""
+    """What axes of one angle and of all have in common: the columns of a medial axis as properties. One that is
+    missing, as in files that do not hold it, is an :class:`InvalidOption` that says so."""
+
+    def _needed(self, kind: str, name: str) -> npt.NDArray[Any]:
+        """A column of "vertices", "edges" or "triangles"."""
+        of_kind = {"vertices": self.vertex_columns, "edges": self.edge_columns, "triangles": self.triangle_columns}
+        column = of_kind[kind].get(name)
+        if column is None:
+            raise InvalidOption(_core.missing_medial_column(kind, name))
+        return column
 
     @property
     def radius(self) -> FloatArray:
         """(n,): exact distance from each vertex to the surface, mesh units."""
-        found: FloatArray = self.vertex_columns["radius"]
+        found: FloatArray = self._needed("vertices", "radius")
         return found
 
     @cached_property
     def footprints(self) -> FloatArray:
         """(n, 2, 3): the closest point of the surface, and that of the other wall; a copy of two columns."""
-        return _stacked(self.vertex_columns["footprint_0"], self.vertex_columns["footprint_1"])
+        return _stacked(self._needed("vertices", "footprint_0"), self._needed("vertices", "footprint_1"))
 
     @cached_property
     def sites(self) -> IntArray:
         """(n, 2): the sites that the footprints lie on: of the mesh (:class:`Sites`), or flat indices of voxels; a copy
         of two columns."""
-        return _stacked(self.vertex_columns["site_0"], self.vertex_columns["site_1"])
+        return _stacked(self._needed("vertices", "site_0"), self._needed("vertices", "site_1"))
 
     @property
     def separation_angle(self) -> FloatArray:
         """(n,): between the footprints as the vertex sees them, degrees."""
-        found: FloatArray = self.vertex_columns["separation_angle"]
+        found: FloatArray = self._needed("vertices", "separation_angle")
         return found
 
     @property
     def role(self) -> IntArray:
         """(n,): see ROLES."""
-        found: IntArray = self.vertex_columns["role"]
+        found: IntArray = self._needed("vertices", "role")
         return found
 
     @property
     def edge_angle(self) -> npt.NDArray[np.float32]:
         """(e,): degrees; 0 where only homotopy keeps an edge."""
-        found: npt.NDArray[np.float32] = self.edge_columns["separation_angle"]
+        found: npt.NDArray[np.float32] = self._needed("edges", "separation_angle")
         return found
 
     @property
     def edge_role(self) -> IntArray:
         """(e,): rim, seam or curve, see ROLES."""
-        found: IntArray = self.edge_columns["role"]
+        found: IntArray = self._needed("edges", "role")
         return found
 
     @property
     def triangle_angle(self) -> npt.NDArray[np.float32]:
         """(m,): degrees; 0 where only homotopy keeps a triangle."""
-        found: npt.NDArray[np.float32] = self.triangle_columns["separation_angle"]
+        found: npt.NDArray[np.float32] = self._needed("triangles", "separation_angle")
         return found
 
     @property
     def triangle_sheet(self) -> IntArray:
         """(m,): the sheet that each triangle is part of, 0 to sheet_count - 1."""
-        found: IntArray = self.triangle_columns["sheet"]
+        found: IntArray = self._needed("triangles", "sheet")
         return found
 
     @property

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._arguments import (
@@ -95,37 +96,34 @@ class MedialComplex(MedialColumns):
         count = len(positions)
         lines = indices(edges, "edges", 2, count)
         faces = indices(triangles, "triangles", 3, count)
-        feet = np.zeros((count, 2, 3)) if footprints is None else _footprint_rows(footprints, count)
-        names = np.full((count, 2), -1, dtype=np.int32) if sites is None else site_ids(sites, "sites", 2)
-        sheet = (
-            np.zeros(len(faces), dtype=np.int32)
-            if triangle_sheet is None
-            else indices(triangle_sheet, "triangle_sheet", None, len(faces))
-        )
-        _check_length("sites", len(names), count)
-        _check_length("triangle_sheet", len(sheet), len(faces))
+        feet = None if footprints is None else _footprint_rows(footprints, count)
+        names = None if sites is None else site_ids(sites, "sites", 2)
+        _check_length("sites", names, count)
         core = _core.Complex(
             positions,
             lines,
             faces,
-            {
-                "radius": _numbers(radius, "radius", count),
-                "footprint_0": np.ascontiguousarray(feet[:, 0]),
-                "footprint_1": np.ascontiguousarray(feet[:, 1]),
-                "site_0": np.ascontiguousarray(names[:, 0]),
-                "site_1": np.ascontiguousarray(names[:, 1]),
-                "separation_angle": _numbers(separation_angle, "separation_angle", count),
-                "role": _roles(role, "role", count, 0),
-            },
-            {
-                "separation_angle": _numbers(edge_angle, "edge_angle", len(lines)).astype(np.float32),
-                "role": _roles(edge_role, "edge_role", len(lines), 3),
-            },
-            {
-                "separation_angle": _numbers(triangle_angle, "triangle_angle", len(faces)).astype(np.float32),
-                "sheet": sheet,
-            },
+            _given(
+                radius=_numbers(radius, "radius", count),
+                footprint_0=None if feet is None else feet[:, 0],
+                footprint_1=None if feet is None else feet[:, 1],
+                site_0=None if names is None else names[:, 0],
+                site_1=None if names is None else names[:, 1],
+                separation_angle=_numbers(separation_angle, "separation_angle", count),
+                role=_numbers_below(len(ROLES), role, "role", count),
+            ),
+            _given(
+                separation_angle=_numbers(edge_angle, "edge_angle", len(lines), np.float32),
+                role=_numbers_below(len(ROLES), edge_role, "edge_role", len(lines)),
+            ),
+            _given(
+                separation_angle=_numbers(triangle_angle, "triangle_angle", len(faces), np.float32),
+                sheet=_numbers_below(len(faces), triangle_sheet, "triangle_sheet", len(faces)),
+            ),
         )
+        problem = _core.medial_problem(core)
+        if problem:
+            raise InvalidOption(problem)
         self._take(
             core,
             {
@@ -133,7 +131,9 @@ class MedialComplex(MedialColumns):
                 "footprints": footprints is not None,
                 "angles": separation_angle is not None,
                 "sites": sites is not None,
-                "labels": triangle_sheet is not None,
+                "labels": "role" in core.vertex_columns
+                and "role" in core.edge_columns
+                and "sheet" in core.triangle_columns,
             },
             Origin(),
         )
@@ -159,9 +159,13 @@ class MedialComplex(MedialColumns):
         return _restored, (core_arguments(self), self.has, self._origin, self.nested)
 
     @property
-    def counts(self) -> dict[str, int]:
-        """Vertices, triangles, sheets, curve, rim and seam edges, junctions."""
-        return dict(_core.medial_counts(self._core))
+    def counts(self) -> dict[str, Any]:
+        """Vertices, triangles, sheets, curve, rim and seam edges, junctions; None for what only roles and sheets tell,
+        where the axis has none. Edges are then those of no triangle."""
+        counts: dict[str, int | None] = dict(_core.medial_counts(self._core))
+        if not self.has["labels"]:
+            counts |= dict.fromkeys(("sheets", "rim_edges", "seam_edges", "junctions"))
+        return counts
 
     @property
     def theta(self) -> float | None:
@@ -239,7 +243,11 @@ class MedialComplex(MedialColumns):
             vertices,
             triangles,
             process=False,
-            vertex_attributes={"radius": np.array(self.radius), "separation_angle": np.array(self.separation_angle)},
+            vertex_attributes={
+                name: np.array(self.vertex_columns[name])
+                for name in ("radius", "separation_angle")
+                if name in self.vertex_columns
+            },
         )
 
     def to_pyvista(self) -> Any:
@@ -253,8 +261,10 @@ class MedialComplex(MedialColumns):
         try:
             import pyvista
         except ImportError:
-            names = ("vertices", "radius", "separation_angle", "role", "edges", "triangles", "triangle_sheet")
-            return {name: getattr(self, name) for name in names}
+            cells = {"vertices": self.vertices, "edges": self.edges, "triangles": self.triangles}
+            named = {name: self.vertex_columns.get(name) for name in ("radius", "separation_angle", "role")}
+            named["triangle_sheet"] = self.triangle_columns.get("sheet")
+            return {**cells, **{name: column for name, column in named.items() if column is not None}}
         from ._mesh import _padded
 
         out = pyvista.PolyData(
@@ -265,14 +275,19 @@ class MedialComplex(MedialColumns):
         for name, column in self.vertex_columns.items():
             out.point_data[name] = np.array(column)
         lines, faces = len(self.edges), len(self.triangles)
-        out.cell_data["separation_angle"] = np.concatenate([self.edge_angle, self.triangle_angle])
-        out.cell_data["role"] = np.concatenate([self.edge_role.astype(np.int16), np.full(faces, -1, dtype=np.int16)])
-        out.cell_data["sheet"] = np.concatenate([np.full(lines, -1, dtype=np.int32), self.triangle_sheet])
+        if "separation_angle" in self.edge_columns and "separation_angle" in self.triangle_columns:
+            out.cell_data["separation_angle"] = np.concatenate([self.edge_angle, self.triangle_angle])
+        if "role" in self.edge_columns:
+            roles = self.edge_role.astype(np.int16)
+            out.cell_data["role"] = np.concatenate([roles, np.full(faces, -1, dtype=np.int16)])
+        if "sheet" in self.triangle_columns:
+            out.cell_data["sheet"] = np.concatenate([np.full(lines, -1, dtype=np.int32), self.triangle_sheet])
         return out
 
     def __repr__(self) -> str:
         counts = self.counts
-        parts = ", ".join(f"{counts[name]:,} {name}" for name in ("vertices", "triangles", "sheets"))
+        told = [name for name in ("vertices", "triangles", "sheets") if counts[name] is not None]
+        parts = ", ".join(f"{counts[name]:,} {name}" for name in told)
         return f"MedialComplex({parts}{'' if self.theta is None else f', theta={self.theta:g}'})"
 
 
@@ -297,24 +312,29 @@ def _claim(axis: MedialComplex) -> Claim:
     )
 
 
-def _check_length(name: str, length: int, wanted: int) -> None:
-    if length != wanted:
-        raise InvalidOption(f"{name} has {length} entries, but must have {wanted}")
+def _given(**columns: npt.NDArray[Any] | None) -> dict[str, npt.NDArray[Any]]:
+    """The columns that there are."""
+    return {name: np.ascontiguousarray(column) for name, column in columns.items() if column is not None}
 
 
-def _numbers(value: Any, name: str, count: int) -> FloatArray:
+def _check_length(name: str, array: npt.NDArray[Any] | None, wanted: int) -> None:
+    if array is not None and len(array) != wanted:
+        raise InvalidOption(f"{name} has {len(array)} entries, but must have {wanted}")
+
+
+def _numbers(value: Any, name: str, count: int, dtype: type = np.float64) -> npt.NDArray[Any] | None:
     if value is None:
-        return np.zeros(count)
-    array = float_list(value, name)
-    _check_length(name, len(array), count)
+        return None if count > 0 else np.zeros(0, dtype)
+    array: npt.NDArray[Any] = float_list(value, name).astype(dtype, copy=False)
+    _check_length(name, array, count)
     return array
 
 
-def _roles(value: Any, name: str, count: int, default: int) -> IntArray:
+def _numbers_below(limit: int, value: Any, name: str, count: int) -> IntArray | None:
     if value is None:
-        return np.full(count, default, dtype=np.int32)
-    array = indices(value, name, None, len(ROLES))
-    _check_length(name, len(array), count)
+        return None if count > 0 else np.zeros(0, np.int32)
+    array = indices(value, name, None, limit)
+    _check_length(name, array, count)
     return array
 
 
@@ -322,7 +342,7 @@ def _footprint_rows(value: Any, count: int) -> FloatArray:
     array = as_array(value, "footprints")
     if array.ndim != 3 or array.shape[1:] != (2, 3):
         raise ValueError(f"footprints has the shape {array.shape}, but must have (n, 2, 3)")
-    _check_length("footprints", len(array), count)
+    _check_length("footprints", array, count)
     return float_rows(array.reshape(-1, 3), "footprints").reshape(-1, 2, 3)
 
 

@@ -9,10 +9,11 @@ namespace {
 
 namespace names = medial_columns;
 
-/// @param count  of what the columns belong to.
+/// @param count  of what the columns belong to.  @param kind  what that is.
 template <ColumnNumber T>
-std::span<const T> column(const Columns& columns, std::size_t count, std::string_view name,
+std::span<const T> column(const Columns& columns, std::size_t count, const char* kind, std::string_view name,
                           std::size_t components = 1) {
+  if (columns.find(name) == nullptr) throw InvalidOption(missing_medial_column(kind, name));
   const std::span<const T> numbers = columns.get<T>(name, components);
   if (numbers.size() != count * components) {
     throw InvalidOption("column '" + std::string(name) + "' has " + std::to_string(numbers.size() / components) +
@@ -93,7 +94,17 @@ std::string problem_of_values(const Complex& axis) {
         problem_of_sheets(view.sheet)}) {
     if (!problem.empty()) return problem;
   }
-  return axis.vertex_columns.find(names::until) == nullptr ? std::string() : problem_of_levels(MedialLevels(axis));
+  return {};
+}
+
+/// What a check says, or throws where a column is missing or of another type.
+template <class Check>
+std::string problem_in(const Check& check) {
+  try {
+    return check();
+  } catch (const InvalidOption& wrong) {
+    return wrong.what();
+  }
 }
 
 template <ColumnNumber T>
@@ -105,26 +116,44 @@ void add_missing(Columns& columns, std::string_view name, std::size_t components
 
 MedialView::MedialView(const Complex& complex)
     : positions(complex.positions),
-      radius(column<double>(complex.vertex_columns, positions.size(), names::radius)),
-      separation_angle(column<double>(complex.vertex_columns, positions.size(), names::separation_angle)),
+      radius(column<double>(complex.vertex_columns, positions.size(), "vertices", names::radius)),
+      separation_angle(column<double>(complex.vertex_columns, positions.size(), "vertices", names::separation_angle)),
       edges(complex.edges),
-      edge_angle(column<float>(complex.edge_columns, edges.size(), names::separation_angle)),
+      edge_angle(column<float>(complex.edge_columns, edges.size(), "edges", names::separation_angle)),
       triangles(complex.triangles),
-      triangle_angle(column<float>(complex.triangle_columns, triangles.size(), names::separation_angle)),
-      sheet(column<std::int32_t>(complex.triangle_columns, triangles.size(), names::sheet)),
-      roles_(column<std::int32_t>(complex.vertex_columns, positions.size(), names::role)),
-      edge_roles_(column<std::int32_t>(complex.edge_columns, edges.size(), names::role)) {
+      triangle_angle(column<float>(complex.triangle_columns, triangles.size(), "triangles", names::separation_angle)),
+      sheet(column<std::int32_t>(complex.triangle_columns, triangles.size(), "triangles", names::sheet)),
+      roles_(column<std::int32_t>(complex.vertex_columns, positions.size(), "vertices", names::role)),
+      edge_roles_(column<std::int32_t>(complex.edge_columns, edges.size(), "edges", names::role)) {
   for (std::size_t k = 0; k < 2; ++k) {
-    footprints_[k] = column<double>(complex.vertex_columns, positions.size(), names::footprints[k], 3);
-    sites_[k] = column<std::int32_t>(complex.vertex_columns, positions.size(), names::sites[k]);
+    footprints_[k] = column<double>(complex.vertex_columns, positions.size(), "vertices", names::footprints[k], 3);
+    sites_[k] = column<std::int32_t>(complex.vertex_columns, positions.size(), "vertices", names::sites[k]);
   }
 }
 
 MedialLevels::MedialLevels(const Complex& complex)
-    : vertex_until(column<float>(complex.vertex_columns, complex.positions.size(), names::until)),
-      edge_from(column<float>(complex.edge_columns, complex.edges.size(), names::from)),
-      edge_until(column<float>(complex.edge_columns, complex.edges.size(), names::until)),
-      triangle_until(column<float>(complex.triangle_columns, complex.triangles.size(), names::until)) {}
+    : vertex_until(column<float>(complex.vertex_columns, complex.positions.size(), "vertices", names::until)),
+      edge_from(column<float>(complex.edge_columns, complex.edges.size(), "edges", names::from)),
+      edge_until(column<float>(complex.edge_columns, complex.edges.size(), "edges", names::until)),
+      triangle_until(column<float>(complex.triangle_columns, complex.triangles.size(), "triangles", names::until)) {}
+
+std::string missing_medial_column(std::string_view kind, std::string_view name) {
+  const bool is_in_ma = kind == "vertices" && name == names::radius;
+  return "the axis has no column '" + std::string(name) + "' of " + std::string(kind) + ", which is needed; " +
+         (is_in_ma ? ".vtp, .ply, .npz and .ma files hold it, .obj files do not"
+                   : ".vtp, .ply and .npz files hold it, .obj and .ma files do not");
+}
+
+CompleteAxis::CompleteAxis(const Complex& axis) : axis_(axis) {
+  const auto has = [](const Columns& columns, auto... all) { return ((columns.find(all) != nullptr) && ...); };
+  if (has(axis.vertex_columns, names::radius, names::footprints[0], names::footprints[1], names::sites[0],
+          names::sites[1], names::separation_angle, names::role) &&
+      has(axis.edge_columns, names::separation_angle, names::role) &&
+      has(axis.triangle_columns, names::separation_angle, names::sheet)) {
+    return;
+  }
+  add_missing_medial_columns(copy_.emplace(axis));
+}
 
 void add_missing_medial_columns(Complex& complex) {
   const auto prepared = [](Columns& columns, std::size_t count) -> Columns& {
@@ -149,16 +178,18 @@ std::string problem_of_medial(const Complex& axis) {
   std::string problem = problem_of(axis);
   if (!problem.empty()) return problem;
   if (axis.positions.size() > max_id_count) return "there are more than 2^31 - 1 vertices";
-  try {
-    return problem_of_values(axis);
-  } catch (const InvalidOption& missing) {
-    return missing.what();
-  }
+  return problem_in([&] { return problem_of_values(axis); });
+}
+
+std::string problem_of_nested(const Complex& axes) {
+  std::string problem = problem_of_medial(axes);
+  return problem.empty() ? problem_in([&] { return problem_of_levels(MedialLevels(axes)); }) : problem;
 }
 
 std::size_t sheet_count(const Complex& axis) {
   std::int32_t largest = -1;
-  for (const std::int32_t sheet : axis.triangle_columns.get<std::int32_t>(names::sheet)) {
+  for (const std::int32_t sheet :
+       column<std::int32_t>(axis.triangle_columns, axis.triangles.size(), "triangles", names::sheet)) {
     largest = std::max(largest, sheet);
   }
   return static_cast<std::size_t>(std::int64_t{largest} + 1);

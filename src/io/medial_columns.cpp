@@ -145,7 +145,10 @@ Complex to_axis(Complex complex, const std::string& name, MedialColumns& found) 
   const bool is_labelled = complex.edge_columns.find(medial_columns::role) != nullptr;
   if (!is_labelled && !complex.edges.empty() && !complex.triangles.empty()) complex = without_sides(std::move(complex));
   found = take_columns(complex, name, nullptr);
-  add_missing_medial_columns(complex);
+  const CompleteAxis all(complex);
+  if (complex.positions.empty()) complex.vertex_columns = all.get().vertex_columns;
+  if (complex.edges.empty()) complex.edge_columns = all.get().edge_columns;
+  if (complex.triangles.empty()) complex.triangle_columns = all.get().triangle_columns;
   return complex;
 }
 

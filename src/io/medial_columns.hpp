@@ -14,11 +14,12 @@ struct MedialColumns {
   bool labels = false;  ///< sheets and roles
 };
 
-// Both give the complex of a file the columns that MedialView (MedialLevels) needs, in their order and types, from
-// columns of any numeric type that may hold them; other columns follow. Both throw FormatError with `name` for a column
-// that cannot be that of an axis.
+// Both give those columns of MedialView (MedialLevels) that the complex of a file has their order and types, from any
+// numeric type that may hold them; other columns follow. Both throw FormatError with `name` for a column that cannot be
+// that of an axis.
 
-/// Columns that are missing are filled in. Edges without roles that are sides of triangles are left out.
+/// Columns of vertices, edges or triangles that are missing stay so, but where there are none of these. Edges without
+/// roles that are sides of triangles are left out.
 [[nodiscard]] Complex to_axis(Complex complex, const std::string& name, MedialColumns& found);
 /// All columns must be there.
 [[nodiscard]] Complex to_nested(const Complex& complex, const std::string& name);

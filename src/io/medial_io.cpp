@@ -61,10 +61,10 @@ MedialFile as_axis(const ComplexFile& file, const std::string& name) {
 
 /// @param nested  may be null.
 std::string problem_of_axes(const Complex& axis, const Complex* nested, double least_theta) {
-  std::string problem = problem_of_medial(axis);
+  std::string problem = problem_of_medial(CompleteAxis(axis).get());
   if (!problem.empty() || nested == nullptr) return problem;
   if (!(least_theta >= 0 && least_theta <= 180)) return "the least theta is not between 0 and 180";
-  return problem_of_medial(*nested);
+  return problem_of_nested(*nested);
 }
 
 /// Reads, and looks at the result as a whole.
@@ -92,12 +92,15 @@ void write(const std::filesystem::path& path, const Complex& axis, const Complex
   if (nested != nullptr && !formats::code_of(format).holds_further) {
     throw InvalidOption("'" + path.string() + "': axes of all angles are kept in .npz files only");
   }
-  static_cast<void>(MedialView(axis));  // throws where a column is missing
+  const CompleteAxis all(axis);
+  static_cast<void>(MedialView(all.get()));  // throws where a column is of another type
   if (nested != nullptr) static_cast<void>(MedialLevels(*nested));
   const std::string problem = problem_of_axes(axis, nested, least_theta);
   if (!problem.empty()) throw InvalidMesh("a medial axis that cannot be written: " + problem);
   throw_if_cancelled(context);
-  FileMetadata pairs = medial_files::to_pairs(metadata);
+  MedialMetadata told = metadata;
+  if (all.is_copy()) told.version.clear();  // files of Blum have all columns, and verify() wants them
+  FileMetadata pairs = medial_files::to_pairs(told);
   ComplexWriteOptions options;
   options.allow_loss = true;  // as the table of formats says
   if (nested != nullptr) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/field/voxels_inside.hpp"
 #include "blum/grid/selected_voxels.hpp"
@@ -71,8 +72,9 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshVi
                    const CertificateOptions& options, double available_memory, const Context& context) {
   const CertificateOptions checks = checkable(claims, SiteIds::features, options);
   const MeshSolidRule found = solid_rule(mesh, context);
+  const CompleteAxis all(axis);
   if (found.rule == SolidRule::polyhedron) {
-    return with_claims(certify(axis, mesh, checks, context), claims, nullptr);
+    return with_claims(certify(all.get(), mesh, checks, context), claims, nullptr);
   }
   if (!claims.metadata.grid) throw UntoldVoxels(found.reason);
   const GridSpec& grid = *claims.metadata.grid;
@@ -85,14 +87,15 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshVi
                       "have made here");
   }
   const VoxelSet voxels = voxels_inside(mesh, grid, context);
-  return with_claims(certify(axis, voxels, grid, &mesh, checks, context), claims, nullptr);
+  return with_claims(certify(all.get(), voxels, grid, &mesh, checks, context), claims, nullptr);
 }
 
 Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
                    const LabelSelection& selection, const CertificateOptions& options, const Context& context) {
   const VoxelSet voxels = selected_voxels(image, selection, context);
   const CertificateOptions checks = checkable(claims, SiteIds::voxels, options);
-  return with_claims(certify(axis, voxels, image.grid, nullptr, checks, context), claims, &image.grid);
+  return with_claims(certify(CompleteAxis(axis).get(), voxels, image.grid, nullptr, checks, context), claims,
+                     &image.grid);
 }
 
 }  // namespace blum

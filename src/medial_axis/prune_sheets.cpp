@@ -222,18 +222,35 @@ class Pruner {
   std::size_t steps_ = 0;
 };
 
+/// @throws InvalidOption where a column that decides what goes is missing.
+void check_needed(const Complex& axis) {
+  const auto check = [](const Columns& columns, bool has_rows, const char* kind, std::string_view name) {
+    if (has_rows && columns.find(name) == nullptr) throw InvalidOption(missing_medial_column(kind, name));
+  };
+  check(axis.edge_columns, !axis.edges.empty(), "edges", medial_columns::separation_angle);
+  check(axis.triangle_columns, !axis.triangles.empty(), "triangles", medial_columns::separation_angle);
+  check(axis.triangle_columns, !axis.triangles.empty(), "triangles", medial_columns::sheet);
+}
+
 }  // namespace
 
 Complex prune_sheets(const Complex& axis, double theta, const Context& context) {
   if (!(theta >= 0 && theta <= 180)) {
     throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be 0 to 180");
   }
-  if (const std::string problem = problem_of_medial(axis); !problem.empty()) {
+  check_needed(axis);
+  const CompleteAxis all(axis);
+  if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
     throw InvalidOption("sheets cannot be dropped from what is no medial axis: " + problem);
   }
-  Pruner pruner(axis, theta, context);
+  Pruner pruner(all.get(), theta, context);
   pruner.prune();
-  return pruner.result();
+  Complex out = pruner.result();
+  for (const Column& column : all.get().vertex_columns) {
+    const bool was_there = axis.vertex_columns.find(column.name) != nullptr;
+    if (!was_there && column.name != medial_columns::role) out.vertex_columns.erase(column.name);
+  }
+  return out;
 }
 
 }  // namespace blum

@@ -22,9 +22,9 @@ void require_sound(const Complex& complex) {
 }
 
 void require_sound(const MedialFile& file) {
-  require(problem_of_medial(file.complex).empty());
+  require(problem_of_medial(CompleteAxis(file.complex).get()).empty());
   if (file.nested) {
-    require(problem_of_medial(*file.nested).empty());
+    require(problem_of_nested(*file.nested).empty());
     require(file.least_theta >= 0 && file.least_theta <= 180);
     static_cast<void>(MedialLevels(*file.nested));
   }

@@ -107,6 +107,32 @@ def test_a_wrong_axis_is_not_certified(axis, plate):
         _ = blum.MedialComplex(piece.vertices).certificate
 
 
+def test_columns_that_an_axis_lacks_are_not_invented(axis, plate, tmp_path):
+    piece = axis.simplify(60)
+    for extension, has in ((".obj", set()), (".ma", {"radii"})):
+        piece.write(tmp_path / f"few{extension}")
+        few = blum.read_medial(tmp_path / f"few{extension}")
+        few.write(tmp_path / "again.vtp")
+        again = blum.read_medial(tmp_path / "again.vtp")
+        assert {name for name, is_there in again.has.items() if is_there} == has
+        assert blum.certify(again, plate)
+        assert again.counts["sheets"] is None and "sheets" not in repr(again)
+        with pytest.raises(ValueError, match=r"'separation_angle'.*\.vtp, \.ply and \.npz files hold it"):
+            again.prune_sheets(60)
+        with pytest.raises(ValueError, match="footprint_0"):
+            _ = again.footprints
+        if not has:
+            with pytest.raises(ValueError, match=r"'radius'.*\.ma"):
+                again.reconstruct(resolution=16)
+        assert len(again.to_pyvista().point_data) == len(has)
+
+
+def test_arrays_of_an_axis_are_looked_at():
+    for wrong, given in (("radius", {"radius": [1, float("nan")]}), ("twice", {"edges": [[0, 0]]})):
+        with pytest.raises(ValueError, match=wrong):
+            blum.MedialComplex([[0, 0, 0], [1, 0, 0]], **given)
+
+
 def test_images_and_open_meshes():
     tubes = blum.generate("tube_image", nodes=2)
     piece = blum.medial_axis(tubes).simplify(60)

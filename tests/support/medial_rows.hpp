@@ -51,7 +51,9 @@ struct AxisRows {
   bool has_levels = false;        ///< whether `from` and `until` are columns
 
   AxisRows() = default;
-  AxisRows(const Complex& complex) {  // NOLINT(google-explicit-constructor): tests read better so
+  AxisRows(const Complex& given) {  // NOLINT(google-explicit-constructor): tests read better so
+    const CompleteAxis all(given);
+    const Complex& complex = all.get();
     const MedialView view(complex);
     for (std::size_t v = 0; v < view.positions.size(); ++v) {
       vertices.push_back({view.positions[v],

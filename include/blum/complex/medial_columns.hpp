@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -102,15 +103,34 @@ struct MedialLevels {
   std::span<const float> vertex_until, edge_from, edge_until, triangle_until;
 };
 
-/// Adds what a medial axis needs and a complex lacks: radii, footprints and angles of 0, no sites, one sheet; vertices
+/// What to tell where a column of medial_columns is needed and missing: its name, and which files hold it.
+/// @param kind  "vertices", "edges" or "triangles".
+[[nodiscard]] std::string missing_medial_column(std::string_view kind, std::string_view name);
+
+/// Adds what MedialView needs and a complex lacks: radii, footprints and angles of 0, no sites, one sheet; vertices
 /// of the role sheet and edges of the role curve.
 void add_missing_medial_columns(Complex& complex);
 
+/// An axis with all columns of MedialView, for what needs not look at those that it lacks: the complex itself where it
+/// has them, else a copy after add_missing_medial_columns(). Lives no longer than the complex.
+class CompleteAxis {
+ public:
+  explicit CompleteAxis(const Complex& axis);
+  [[nodiscard]] const Complex& get() const { return copy_ ? *copy_ : axis_; }
+  [[nodiscard]] bool is_copy() const { return copy_.has_value(); }
+
+ private:
+  const Complex& axis_;
+  std::optional<Complex> copy_;
+};
+
 /// What is wrong with a complex as a medial axis, in one sentence; empty where nothing is: it is a complex
-/// (problem_of), all columns of MedialView are there, and MedialLevels' where it has `until`; numbers are finite
-/// (levels may be infinite), no radius is negative, sites are -1 or more, roles are those of MedialRole (of edges
-/// curve, rim or seam), and sheets are numbered from 0 and no more than there are triangles.
+/// (problem_of), all columns of MedialView are there; numbers are finite, no radius is negative, sites are -1 or more,
+/// roles are those of MedialRole (of edges curve, rim or seam), and sheets are numbered from 0 and no more than there
+/// are triangles.
 [[nodiscard]] std::string problem_of_medial(const Complex& axis);
+/// The same of axes of all angles, which have the columns of MedialLevels, too: numbers, that may be infinite.
+[[nodiscard]] std::string problem_of_nested(const Complex& axes);
 
 /// One more than the largest sheet; 0 without triangles. @throws InvalidOption where there is no such column.
 [[nodiscard]] std::size_t sheet_count(const Complex& axis);

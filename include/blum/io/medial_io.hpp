@@ -23,7 +23,7 @@ namespace blum {
 /// What a file of a medial axis says besides the complex; what it does not know stays unset.
 struct MedialMetadata {
   std::string source = {};   ///< where the solid came from, for example a file name
-  std::string version = {};  ///< Blum's
+  std::string version = {};  ///< Blum's; written where the axis has all columns of MedialView
   SiteIds site_ids = SiteIds::features;
   std::optional<double> theta = {};    ///< degrees
   std::optional<double> lambda = {};   ///< mesh units
@@ -59,7 +59,7 @@ struct Description<MedialMetadata> {
 
 /// A medial axis as a file holds it.
 struct MedialFile {
-  Complex complex;  ///< with all columns of MedialView, whatever the file has
+  Complex complex;  ///< with those columns of MedialView that the file holds; CompleteAxis has all
   MedialMetadata metadata;
   std::optional<Complex> nested = {};  ///< the axes of all angles, where the file holds them (.npz)
   double least_theta = 0;              ///< of these, degrees
@@ -70,7 +70,8 @@ struct MedialFile {
   bool has_labels = false;  ///< sheets and roles
 };
 
-/// Writes a medial axis as a complex (see write_complex), or as .ma; the format goes by the extension.
+/// Writes a medial axis as a complex (see write_complex), or as .ma; the format goes by the extension. Columns of
+/// MedialView that it lacks are not written.
 ///
 /// The columns are, of vertices: `radius`, `footprint_0`, `footprint_1` (3 components), `separation_angle` (float64),
 /// `site_0`, `site_1` and `role` (int32); of edges: `separation_angle` (float32) and `role` (int32); of triangles:
@@ -83,10 +84,10 @@ struct MedialFile {
 ///         exchanged (Q-MAT); such files have no metadata.
 ///
 /// Coordinates keep double precision. A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension, a column of MedialView that is missing, or metadata that are not finite
-/// or not as said above; InvalidGrid; InvalidMesh when the complex names vertices that it does not have, or one twice
-/// in an edge or triangle, or holds numbers that are not finite, a negative radius, or a sheet beyond its count;
-/// FileError; Cancelled.
+/// @throws InvalidOption for another extension, a column of MedialView that is of another type, radii that are missing
+/// where .ma files need them, or metadata that are not finite or not as said above; InvalidGrid; InvalidMesh when the
+/// complex names vertices that it does not have, or one twice in an edge or triangle, or holds numbers that are not
+/// finite, a negative radius, or a sheet beyond its count; FileError; Cancelled.
 void write_medial(const std::filesystem::path& path, const Complex& complex, const MedialMetadata& metadata = {},
                   const Context& context = {});
 
@@ -102,7 +103,7 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
 /// Reads a file that write_medial wrote, or one of the same form by another program (see read_complex), with any of the
 /// columns; further ones follow them. .vtp, .ply and .npz give back exactly what was written. Where a file does not say
 /// what its edges are, those that are sides of triangles are left out, as the triangles imply them, and the others are
-/// curves; without sheets all triangles are on sheet 0.
+/// curves.
 /// @throws FileError; FormatError naming the file and the reason; InvalidOption for another extension.
 [[nodiscard]] MedialFile read_medial(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.

@@ -15,7 +15,8 @@ namespace blum {
 /// @param theta  degrees, 0 to 180.
 /// @return       part of the axis with its columns (edges have those of medial_columns only), labelled anew; what a
 /// larger theta leaves of the result is part of it.
-/// @throws InvalidOption, also saying problem_of_medial(axis); Cancelled.
+/// @throws InvalidOption, also where it has no sheets or no angles of edges and triangles, or saying
+/// problem_of_medial() of what it has; Cancelled.
 /// Cost: O(n log n), more where many sheets are tried in vain. Method: Sud 2006, 5.6.
 [[nodiscard]] Complex prune_sheets(const Complex& axis, double theta, const Context& context = {});
 

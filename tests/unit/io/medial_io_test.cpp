@@ -96,6 +96,34 @@ TEST_P(MedialFiles, ReadBackAsWritten) {
   EXPECT_EQ(file.has_labels, keeps_all());
 }
 
+TEST_P(MedialFiles, KeepToWhatAnAxisHas) {
+  write_medial(path, sample_complex(), sample_metadata());
+  const MedialFile file = read_medial(path);
+  write_medial(folder / "again.vtp", file.complex, sample_metadata());
+  const MedialFile again = read_medial(folder / "again.vtp");
+  EXPECT_EQ(again.complex.vertex_columns, file.complex.vertex_columns);
+  EXPECT_EQ(again.complex.edge_columns, file.complex.edge_columns);
+  EXPECT_EQ(again.complex.triangle_columns, file.complex.triangle_columns);
+  EXPECT_EQ(again.has_radii, extension != ".obj");
+  EXPECT_EQ(again.has_footprints || again.has_sites || again.has_angles || again.has_labels, keeps_all());
+  EXPECT_EQ(again.metadata.version.empty(), !keeps_all()) << "verify() wants all columns in what Blum wrote";
+  const auto to_ma = [&] { write_medial(folder / "again.ma", file.complex); };
+  if (extension == ".obj") {
+    EXPECT_THROW(to_ma(), InvalidOption);
+  } else {
+    EXPECT_NO_THROW(to_ma());
+  }
+}
+
+/// What axes of all angles have is any column of an axis of one.
+TEST_P(MedialFiles, MayHaveColumnsThatAreCalledAsLevels) {
+  if (!keeps_all()) return;
+  Complex axis = sample_complex();
+  axis.vertex_columns.add<std::int32_t>("until", 1, 7);
+  write_medial(path, axis);
+  EXPECT_EQ(read_medial(path).complex.vertex_columns.get<std::int32_t>("until").front(), 7);
+}
+
 TEST_P(MedialFiles, EveryKindOfSiteAndNoMetadata) {
   MedialMetadata metadata;
   for (const SiteIds ids : {SiteIds::features, SiteIds::triangles, SiteIds::voxels}) {

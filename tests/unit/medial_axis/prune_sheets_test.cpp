@@ -158,7 +158,25 @@ TEST(PruneSheets, RefusesAnglesThatAreNone) {
   EXPECT_THROW(static_cast<void>(prune_sheets(AxisRows{}, -1)), InvalidOption);
   EXPECT_THROW(static_cast<void>(prune_sheets(AxisRows{}, 181)), InvalidOption);
   EXPECT_TRUE(prune_sheets(AxisRows{}, 60).positions.empty());
-  EXPECT_THROW(static_cast<void>(prune_sheets(Complex{}, 60)), InvalidOption) << "its columns are missing";
+}
+
+TEST(PruneSheets, NamesTheColumnThatIsMissingAndInventsNone) {
+  Complex axis;
+  axis.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  axis.triangles = {{0, 1, 2}};
+  try {
+    static_cast<void>(prune_sheets(axis, 60));
+    FAIL() << "nothing says what goes";
+  } catch (const InvalidOption& error) {
+    EXPECT_NE(std::string(error.what()).find("'separation_angle' of triangles"), std::string::npos) << error.what();
+  }
+  axis.triangle_columns.resize(1);
+  axis.triangle_columns.add<float>("separation_angle", 1, 90);
+  axis.triangle_columns.add<std::int32_t>("sheet");
+  const Complex left = prune_sheets(axis, 60);
+  EXPECT_EQ(left.triangles.size(), 1U);
+  EXPECT_EQ(left.vertex_columns.find("radius"), nullptr);
+  EXPECT_NE(left.vertex_columns.find("role"), nullptr);
 }
 
 }  // namespace
