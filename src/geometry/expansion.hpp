@@ -4,14 +4,19 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
+#include <vector>
 
 #include "blum/core/vec3.hpp"
 
 namespace blum::detail {
 
+/// The capacity of expansions that grow.
+inline constexpr std::size_t unbounded = 0;
+
 /// A number held as a sum of doubles that do not overlap, by rising magnitude (Shewchuk 1997). Exact as long as nothing
 /// overflows or falls below the normal range. `capacity`: of the numbers that are added, products counting twice and
-/// products of three four times.
+/// products of three four times; or `unbounded`.
 template <std::size_t capacity>
 class Expansion {
  public:
@@ -25,7 +30,12 @@ class Expansion {
       if (error != 0) parts_[kept++] = error;
       value = sum;
     }
-    if (value != 0) parts_[kept++] = value;
+    if (value != 0) {
+      if constexpr (capacity == unbounded) {
+        if (kept == parts_.size()) parts_.push_back(0);
+      }
+      parts_[kept++] = value;
+    }
     size_ = kept;
   }
   void add_product(double x, double y) {
@@ -47,10 +57,12 @@ class Expansion {
       add_product(-sign * u[i], v[k], w[j]);
     }
   }
+  /// The number, rounded to within a few units of the last place.
+  [[nodiscard]] double value() const { return size_ == 0 ? 0 : parts_[size_ - 1]; }
   [[nodiscard]] int sign() const { return size_ == 0 ? 0 : parts_[size_ - 1] > 0 ? 1 : -1; }
 
  private:
-  std::array<double, capacity> parts_{};
+  std::conditional_t<capacity == unbounded, std::vector<double>, std::array<double, capacity>> parts_{};
   std::size_t size_ = 0;
 };
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "blum/core/union_find.hpp"
+#include "geometry/box_scale.hpp"
+#include "geometry/expansion.hpp"
 
 namespace blum::detail {
 namespace {
@@ -29,12 +32,41 @@ struct Measure {
     area += 0.5 * length(normal);
     volume += dot(a, normal) / 6;
   }
-  /// The sign of the volume; 0 where rounding could have made it.
-  [[nodiscard]] int sign() const {
-    if (!(std::abs(volume) > 1e-13 * area)) return 0;
-    return volume > 0 ? 1 : -1;
-  }
+  /// Whether rounding could have made the sign of the volume.
+  [[nodiscard]] bool is_doubtful() const { return !(std::abs(volume) > 1e-13 * area); }
+  [[nodiscard]] int sign() const { return volume > 0 ? 1 : volume < 0 ? -1 : 0; }
 };
+
+/// The volume of a shell without rounding but for the last: that of thin shells is a small difference of large sums.
+double exact_volume(const MeshView& mesh, std::span<const std::uint32_t> triangles, double scale,
+                    const Context& context) {
+  Expansion<unbounded> six_fold;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (i % 4096 == 0) throw_if_cancelled(context);
+    const auto& [a, b, c] = mesh.triangles[triangles[i]];
+    six_fold.add_determinant(1, mesh.vertices[a] * scale, mesh.vertices[b] * scale, mesh.vertices[c] * scale);
+  }
+  return six_fold.value() / 6;
+}
+
+/// Replaces volumes whose sign is in doubt.
+void settle_volumes(const MeshView& mesh, const ShellSet& set, std::vector<Measure>& measures, const Context& context) {
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (set.of_triangle[t] != no_component && measures[set.of_triangle[t]].is_doubtful()) triangles.push_back(t);
+  }
+  if (triangles.empty()) return;
+  std::stable_sort(triangles.begin(), triangles.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return set.of_triangle[a] < set.of_triangle[b]; });
+  for (std::size_t begin = 0, end = 0; begin < triangles.size(); begin = end) {
+    const std::uint32_t shell = set.of_triangle[triangles[begin]];
+    while (end < triangles.size() && set.of_triangle[triangles[end]] == shell) ++end;
+    const double scale = coordinate_scale(set.shells[shell].bounds);
+    const double factor = measures[shell].scale / scale;
+    measures[shell].volume =
+        exact_volume(mesh, std::span(triangles).subspan(begin, end - begin), scale, context) * factor * factor * factor;
+  }
+}
 
 }  // namespace
 
@@ -107,6 +139,7 @@ ShellSet find_shells(const MeshView& mesh, const SurfaceComponents& components, 
     if (set.of_triangle[t] != no_component) measures[set.of_triangle[t]].add(mesh, mesh.triangles[t]);
   }
   throw_if_cancelled(context);
+  settle_volumes(mesh, set, measures, context);
   for (std::size_t s = 0; s < measures.size(); ++s) {
     Shell& shell = set.shells[s];
     const double unit = 1 / measures[s].scale;

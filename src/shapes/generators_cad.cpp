@@ -172,6 +172,8 @@ TriangleMesh make_bodies(const BodiesOptions& options) {
                                                    : make_sphere({0.5 * options.size, options.frequency});
   int side = 1;
   while (static_cast<double>(side) * side * side < options.count) ++side;
+  require(options.size > 1e-12 * side * options.spacing, "size",
+          "above 1e-12 of the lattice's side, or bodies vanish in the rounding of their places", options.size);
   const double middle = 0.5 * (side - 1);
   TriangleMesh mesh;
   for (int i = 0; i < options.count; ++i) {

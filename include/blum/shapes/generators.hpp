@@ -150,7 +150,7 @@ struct NestedShellsOptions {
 
 struct BodiesOptions {
   int count = 27;      ///< >= 1
-  double size = 0.5;   ///< of each body, > 0
+  double size = 0.5;   ///< of each body, > 0, and above 1e-12 of the side of the lattice
   double spacing = 1;  ///< between centres, > size
   int frequency = 0;   ///< 0: boxes of 12 triangles; else spheres, as above
 };

@@ -239,6 +239,27 @@ TEST(Topology, DegenerateMeansExactlyOnALine) {
   EXPECT_FALSE(flat({0, 0, 0}, {1e150, 0, 0}, {0, 1e150, 0}));
 }
 
+TEST(Topology, ThinShellsKeepTheirSide) {
+  for (const double height : {1e-3, 1e-12, 1e-15, 1e-30, 1e-70}) {
+    const TriangleMesh plate = make_box({.size = {1, 2, height}});
+    const Topology t = topology(plate);
+    EXPECT_TRUE(t.faces_outwards) << height;
+    EXPECT_NEAR(t.signed_volume / (2 * height), 1, 1e-9) << height;
+    EXPECT_EQ(t.betti, (Betti{1, 0, 0}));
+    TriangleMesh reversed = plate;
+    reversed.triangles = reversed_triangles(plate.triangles);
+    EXPECT_FALSE(topology(reversed).faces_outwards) << height;
+    EXPECT_LT(topology(reversed).signed_volume, 0) << height;
+  }
+  // What encloses nothing has no side.
+  for (const Vec3d& to : {Vec3d{1, 1, 0}, Vec3d{0.1, 0.7, 0.3}}) {
+    TriangleMesh collapsed = make_box({.segments = {3, 3, 3}});
+    for (Vec3d& v : collapsed.vertices) v = v.x > 0 ? to : v.y > 0 ? to * 0.25 : -to;
+    EXPECT_FALSE(topology(collapsed).faces_outwards);
+    EXPECT_EQ(topology(collapsed).signed_volume, 0);
+  }
+}
+
 TEST(Topology, SegmentsPointsAndUnnamedVertices) {
   TriangleMesh mesh;
   mesh.vertices.assign(9, {});

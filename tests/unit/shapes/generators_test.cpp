@@ -371,6 +371,7 @@ TEST(Generators, RefuseWhatMakesNoSense) {
       {"gear", {{"openings", 20}}},
       {"void_cube", {{"void_radius", 0.5}}},
       {"bodies", {{"size", 1}}},
+      {"bodies", {{"size", 1e-9}, {"spacing", 1e9}}},
       {"bodies", {{"count", 4000000}, {"frequency", 10}}},
       {"menger", {{"level", 6}}},
       {"soup", {{"triangles", 0}}},
