@@ -178,7 +178,7 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
 // ---- Images ----
 
 std::string labels_text(const ImageValues& values) {
-  if (!values.distinct) return "more than can be labels; use --threshold";
+  if (!values.distinct) return "too many, or values that no label can be, such as above 2^63 - 1; use --threshold";
   return plural(*values.distinct, "value", "values");
 }
 

@@ -45,6 +45,10 @@ std::int64_t integer_from(nb::handle value, const std::string& name, int bits) {
   return nb::cast<std::int64_t>(nb::module_::import_("blum._arguments").attr("integer")(value, name, bits));
 }
 
+bool truth_from(nb::handle value, const std::string& name) {
+  return nb::cast<bool>(nb::module_::import_("blum._arguments").attr("truth")(value, name));
+}
+
 std::string word_from(nb::handle value) {
   return nb::cast<std::string>(nb::isinstance<nb::str>(value) ? nb::str(value) : nb::repr(value));
 }

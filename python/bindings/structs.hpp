@@ -38,6 +38,7 @@ namespace nb = nanobind;
 /// Numbers as blum._arguments reads them, which raises errors that name them.
 [[nodiscard]] double number_from(nb::handle value, const std::string& name);
 [[nodiscard]] std::int64_t integer_from(nb::handle value, const std::string& name, int bits);
+[[nodiscard]] bool truth_from(nb::handle value, const std::string& name);
 /// A word; what is no string stands as Python shows it.
 [[nodiscard]] std::string word_from(nb::handle value);
 /// @throws nanobind::type_error for a key that is none of the names.
@@ -124,7 +125,7 @@ template <class T>
   } else if constexpr (IsOptional<T>::value) {
     return value.is_none() ? T{} : T{from_python<typename T::value_type>(value, name)};
   } else if constexpr (std::same_as<T, bool>) {
-    return nb::bool_(nb::borrow(value)).operator bool();
+    return truth_from(value, name);
   } else if constexpr (std::integral<T>) {
     return static_cast<T>(integer_from(value, name, 8 * sizeof(T)));
   } else if constexpr (std::floating_point<T>) {

@@ -162,8 +162,15 @@ def integer(value: Any, name: str, bits: int = 32) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise TypeError(f"{name} must be an integer, not {type(value).__name__}")
     if not -(2 ** (bits - 1)) <= int(value) < 2 ** (bits - 1):
-        raise InvalidOption(f"{name} is {int(value)}, which is out of range")
+        raise InvalidOption(f"{name} is {int(value)}, but must be -2^{bits - 1} to 2^{bits - 1} - 1")
     return int(value)
+
+
+def truth(value: Any, name: str) -> bool:
+    """True or False of Python or NumPy: nothing else, as the word 'no' would count as true."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} must be True or False, not {type(value).__name__}")
+    return bool(value)
 
 
 def number(value: Any, name: str) -> float:

@@ -30,6 +30,10 @@ void check_columns(const Columns& columns, const char* kind) {
       throw InvalidOption("column '" + column.name + "' of " + kind +
                           " cannot be written: names in files are made of letters, digits, '_', '-' and '.'");
     }
+    if (column.name.size() > max_file_name) {
+      throw InvalidOption("a column of " + std::string(kind) + " has a name of " + std::to_string(column.name.size()) +
+                          " characters; files hold at most " + std::to_string(max_file_name));
+    }
     if (column.components > max_file_columns) {
       throw InvalidOption("column '" + column.name + "' of " + kind + " has more than " +
                           std::to_string(max_file_columns) + " components, which no file holds");
@@ -37,10 +41,13 @@ void check_columns(const Columns& columns, const char* kind) {
   }
 }
 
-void check_complex(const Complex& complex) {
-  check_columns(complex.vertex_columns, "vertices");
-  check_columns(complex.edge_columns, "edges");
-  check_columns(complex.triangle_columns, "triangles");
+/// @param holds_columns  whether the format does.
+void check_complex(const Complex& complex, bool holds_columns) {
+  if (holds_columns) {
+    check_columns(complex.vertex_columns, "vertices");
+    check_columns(complex.edge_columns, "edges");
+    check_columns(complex.triangle_columns, "triangles");
+  }
   std::string problem = problem_of(complex);
   if (problem.empty() && complex.positions.size() > max_id_count) problem = "there are more than 2^31 - 1 vertices";
   if (!problem.empty()) throw InvalidMesh("a complex that cannot be written: " + problem);
@@ -64,15 +71,16 @@ void check_further(const std::filesystem::path& path, ComplexFormat format,
   std::set<std::string_view> names;
   for (const NamedComplexRef& f : further) {
     const bool is_name = !f.name.empty() && std::all_of(f.name.begin(), f.name.end(), is_letter_or_digit) &&
-                         f.name != "vertex" && f.name != "edge" && f.name != "triangle";
+                         f.name.size() <= max_file_name && f.name != "vertex" && f.name != "edge" &&
+                         f.name != "triangle";
     if (!is_name) {
       throw InvalidOption("'" + f.name +
-                          "' cannot be the name of a complex in a file: letters and digits can, but not "
+                          "' cannot be the name of a complex in a file: up to 256 letters and digits can, but not "
                           "'vertex', 'edge' and 'triangle'");
     }
     if (!names.insert(f.name).second) throw InvalidOption("two complexes have the name '" + f.name + "'");
     if (f.complex == nullptr) throw InvalidOption("there is no complex for the name '" + f.name + "'");
-    check_complex(*f.complex);
+    check_complex(*f.complex, true);
   }
 }
 
@@ -104,7 +112,7 @@ ComplexFile checked(const std::string& name, Read read) {
 void write_complex(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                    const ComplexWriteOptions& options, const Context& context) {
   const ComplexFormat format = ComplexFormat::of(path, FileAccess::write);
-  check_complex(complex);
+  check_complex(complex, formats::code_of(format).holds_columns);
   check_metadata(metadata);
   check_further(path, format, options.further);
   throw_if_cancelled(context);

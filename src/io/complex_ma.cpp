@@ -162,6 +162,6 @@ ComplexFile read_ma(std::string_view text, std::string_view name) {
 
 namespace blum::formats {
 
-constinit const ComplexCode complex_ma{nullptr, complex_files::read_ma, complex_files::write_ma};
+constinit const ComplexCode complex_ma{nullptr, complex_files::read_ma, complex_files::write_ma, {}, false, false};
 
 }  // namespace blum::formats

@@ -32,12 +32,21 @@ std::string property_lines(const Columns& columns, const PlyNames& names) {
   return out;
 }
 
-/// The column that vertices have again for MeshLab; null where there is none.
+/// The column that vertices have again for MeshLab; null where there is none, or no room.
 const Column* derived_column(const Columns& columns) {
-  if (columns.find(derived_property) != nullptr) return nullptr;
+  if (columns.find(derived_property) != nullptr || columns.size() == max_file_columns) return nullptr;
   const Column* const column = columns.find(derived_from);
   const bool is_real = column != nullptr && column->components == 1 && column->type_name().starts_with("float");
   return is_real ? column : nullptr;
+}
+
+/// @throws InvalidOption where a row has more numbers than readers take.
+void check_row(const std::filesystem::path& path, const Columns& columns) {
+  std::size_t numbers = 0;
+  for (const Column& column : columns) numbers += column.components;
+  if (numbers + max_known_properties <= max_ply_properties) return;
+  throw InvalidOption("'" + path.string() + "': " + std::to_string(numbers) +
+                      " numbers for each vertex, edge or triangle are more than PLY files hold; write .npz");
 }
 
 std::string header_text(const Complex& complex, const FileMetadata& metadata) {
@@ -96,6 +105,9 @@ bool holds_axis(std::string_view head, const std::filesystem::path&) {
 
 void write_ply(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                const ComplexWriteOptions&, const Context& context) {
+  for (const Columns* columns : {&complex.vertex_columns, &complex.edge_columns, &complex.triangle_columns}) {
+    check_row(path, *columns);
+  }
   RowWriter out(path, complex.positions.size() + complex.triangles.size() + 2 * complex.edges.size(), context);
   out.text(header_text(complex, metadata));
   write_vertices(out, complex);

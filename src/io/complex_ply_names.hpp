@@ -16,6 +16,10 @@ namespace blum::complex_files {
 inline constexpr std::string_view derived_property = "quality";
 inline constexpr std::string_view derived_from = "radius";
 
+/// The most properties of an element, and those of them at most that are no columns.
+inline constexpr std::size_t max_ply_properties = 100'000;
+inline constexpr std::size_t max_known_properties = 4;
+
 /// Consecutive properties of an element that are one column.
 struct PlyColumn {
   std::string name;

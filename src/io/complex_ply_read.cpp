@@ -87,7 +87,7 @@ class ComplexPlyReader {
   /// @param known  names that are no columns; of `vertex_index`, the other name of `vertex_indices`, the one is meant.
   template <std::size_t n>
   Layout layout_of(const PlyElement& element, const std::array<std::string_view, n>& known) {
-    if (element.properties.size() > max_properties) source_.fail("the header has too many properties");
+    if (element.properties.size() > max_ply_properties) source_.fail("the header has too many properties");
     Layout layout;
     std::set<std::string_view> names;
     std::vector<PlyProperty> rest;
@@ -304,8 +304,6 @@ class ComplexPlyReader {
     }
     return pairs;
   }
-
-  static constexpr std::size_t max_properties = 100'000;
 
   const PlyHeader& header_;
   Source source_;

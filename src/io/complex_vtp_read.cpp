@@ -93,7 +93,7 @@ class VtpParser {
   }
 
   void read_array(const XmlTag& tag) {
-    const std::string_view name = tag.find("Name").value_or("");
+    const std::string name = volume_io::without_entities(tag.find("Name").value_or(""));
     const std::string_view type = tag.find("type").value_or("");
     if (section_ == "FieldData") return read_text(tag, name);
     const bool is_data = section_ == "PointData" || section_ == "CellData";
@@ -103,7 +103,8 @@ class VtpParser {
     const std::string shown(section_ == "Points" ? "Points" : name);
     const std::string key = std::string(section_) + "/" + shown;
     if (header_.find(key) != nullptr) fail("the array '" + key + "' is there twice");
-    if (header_.arrays.size() > 3 * max_file_columns) fail("it has too many arrays");
+    constexpr std::size_t others = 10;  // places, corners and ends of cells
+    if (header_.arrays.size() > 3 * max_file_columns + others) fail("it has too many arrays");
     header_.arrays.push_back({key, shown, volume_io::vtk_array(tag, name_)});
   }
 

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 #include "blum/io/complex_io.hpp"
+#include "io/text_cursor.hpp"
 
 namespace blum::complex_files {
 
@@ -31,7 +34,40 @@ Column::Values widened(VoxelImage::Values values, const std::string& where) {
       values);
 }
 
+namespace {
+
+/// Whether a name can be shown everywhere: UTF-8, without bytes of 0.
+bool is_text(std::string_view text) {
+  std::uint32_t code = 0;
+  std::uint32_t least = 0;  // of a sequence as long as this one
+  int left = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (left > 0) {
+      if (byte >> 6U != 2) return false;
+      code = code << 6U | (byte & 0x3FU);
+      const bool is_surrogate = code >> 11U == 0x1B;
+      if (--left == 0 && (code < least || is_surrogate || code > 0x10FFFF)) return false;
+    } else if (byte == 0 || (byte >= 0x80 && byte < 0xC0) || byte >= 0xF8) {
+      return false;
+    } else if (byte >= 0x80) {
+      left = byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : 3;
+      code = byte & (0x3FU >> static_cast<unsigned>(left));
+      least = left == 1 ? 0x80 : left == 2 ? 0x800 : 0x10000;
+    }
+  }
+  return left == 0;
+}
+
+}  // namespace
+
 void add_column(Columns& columns, Column column, const std::string& where) {
+  if (!is_text(column.name)) {
+    std::string place = where;
+    std::replace(place.begin(), place.end(), '\0', '?');  // which would end the message
+    throw FormatError(place + ": the name of the column " + in_quotes(column.name) +
+                      " is not UTF-8 text, or has a byte of 0; rename it in the program that wrote the file");
+  }
   if (columns.size() == max_file_columns || column.components > max_file_columns) {
     throw FormatError(where + ": more than " + std::to_string(max_file_columns) + " columns, or numbers in a row");
   }

@@ -24,8 +24,8 @@ namespace blum::complex_files {
 /// @throws FormatError with `where` for a uint64 beyond int64.
 [[nodiscard]] Column::Values widened(VoxelImage::Values values, const std::string& where);
 
-/// Adds a column that a file has. @throws FormatError with `where` for a name that is there twice, more than
-/// max_file_columns of them, components beyond it or none, or another count of rows.
+/// Adds a column that a file has. @throws FormatError with `where` for a name that is there twice or is no text, more
+/// than max_file_columns of them, components beyond it or none, or another count of rows.
 void add_column(Columns& columns, Column column, const std::string& where);
 
 /// The columns with row i as often as counts[i] says, for cells of files that become several.

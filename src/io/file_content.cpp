@@ -70,9 +70,14 @@ FileContent content_of(const fs::path& path) {
   if (holds(FieldFormat::by_head(head), path, head)) return FileContent::field;
   if (ImageFormat::by_head(head)) return FileContent::image;
   if (MeshFormat::by_head(head)) return FileContent::mesh;
-  throw FileError("'" + path.string() + "' is of no known kind; meshes are " +
-                  extension_list(FileContent::mesh, FileAccess::read) + " files, images " +
-                  extension_list(FileContent::image, FileAccess::read));
+  std::string known;
+  for (const auto& [content, what] :
+       {std::pair{FileContent::mesh, "meshes are "}, std::pair{FileContent::image, "images "},
+        std::pair{FileContent::field, "fields "},
+        std::pair{FileContent::complex, "medial axes and other complexes "}}) {
+    known += (known.empty() ? "; " : ", ") + std::string(what) + extension_list(content, FileAccess::read);
+  }
+  throw FileError("'" + path.string() + "' is of no known kind" + known);
 }
 
 bool holds_complex(const fs::path& path) {

@@ -65,6 +65,7 @@ struct ComplexCode {
                 const ComplexWriteOptions& options, const Context& context);
   Tells tells = {};
   bool holds_further = false;  ///< whether a file holds several complexes
+  bool holds_columns = true;   ///< any of them
 };
 
 extern const MeshCode mesh_obj, mesh_off, mesh_stl, mesh_ply;

@@ -16,6 +16,19 @@ constexpr std::array<std::string_view, 10> type_names{"UInt8", "Int8",   "UInt16
 
 }  // namespace
 
+std::string without_entities(std::string_view value) {
+  constexpr std::array<std::pair<std::string_view, char>, 5> entities{
+      {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}}};
+  std::string out;
+  while (!value.empty()) {
+    const auto entity = std::find_if(entities.begin(), entities.end(),
+                                     [&](const auto& known) { return value.starts_with(known.first); });
+    out += entity == entities.end() ? value.front() : entity->second;
+    value.remove_prefix(entity == entities.end() ? 1 : entity->first.size());
+  }
+  return out;
+}
+
 std::optional<XmlTag> XmlTags::next() {
   while ((at_ = text_.find('<', at_)) != std::string_view::npos) {
     if (text_.substr(at_).starts_with("<!--")) {

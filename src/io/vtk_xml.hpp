@@ -31,7 +31,10 @@ struct XmlTag {
   }
 };
 
-/// The opening tags of a text, one after the other. Knows no entities: nothing that is read here has any.
+/// The value of an attribute with its entities (&amp; and so on) as the characters that they stand for.
+[[nodiscard]] std::string without_entities(std::string_view value);
+
+/// The opening tags of a text, one after the other, with their entities.
 class XmlTags {
  public:
   XmlTags(std::string_view text, const std::string& name) : text_(text), name_(name) {}

@@ -54,6 +54,8 @@ def test_topology_and_pickling():
     [
         ({"vertex_columns": {"weight": [1.0]}}, "weight"),
         ({"vertex_columns": {"": [1.0] * 4}}, "name"),
+        ({"vertex_columns": {"a\0b": [1.0] * 4}}, "has a 0 in it"),
+        ({"vertex_columns": {"\ud800": [1.0] * 4}}, "UTF-8"),
         ({"edges": [[0, 4]]}, "edges"),
         ({"edges": [[1, 1]]}, "twice"),
         ({"vertex_columns": {"deep": np.zeros((4, 2, 2))}}, "axes"),
@@ -64,6 +66,17 @@ def test_what_is_wrong_is_said(arguments, told):
         blum.Complex(SQUARE, **arguments)
     with pytest.raises(TypeError, match="numbers"):
         blum.Complex(SQUARE, vertex_columns={"word": ["a", "b", "c", "d"]})
+
+
+def test_names_of_columns_in_files_are_text(tmp_path):
+    path = tmp_path / "axis.vtp"
+    blum.MedialComplex([[0, 0, 0], [1, 0, 0]], radius=[1, 1], edges=[[0, 1]]).write(path)
+    content = path.read_bytes()
+    path.write_bytes(content.replace(b'"radius"', b'"a&amp;b"'))
+    assert "a&b" in blum.read_medial(path).vertex_columns
+    path.write_bytes(content.replace(b'"radius"', b'"rad\xefus"'))
+    with pytest.raises(ValueError, match=r"axis\.vtp.*UTF-8"):
+        blum.read_medial(path)
 
 
 def test_medial_axes_are_complexes():

@@ -58,6 +58,8 @@ def test_wrong_meshes(vertices, triangles, error, text):
         ({"sign": "maybe"}, ValueError, "sign is 'maybe'"),
         ({"site_ids": "voxels"}, ValueError, "site_ids"),
         ({"band": -1.0}, ValueError, "band"),
+        ({"sites": "no"}, TypeError, "sites must be True or False"),
+        ({"sites": 0}, TypeError, "sites must be True or False"),
         ({"band": "wide"}, TypeError, "band"),
         ({"bounds": (0, 1)}, (TypeError, ValueError), "bounds"),
         ({"grid": "fine"}, TypeError, "grid"),

@@ -42,6 +42,8 @@ struct ComplexWriteOptions {
 
 /// The most columns that vertices, edges or triangles may have in a file, and the most components of a column.
 inline constexpr std::size_t max_file_columns = 1000;
+/// The most characters of a column's name, and of a further complex's, in a file.
+inline constexpr std::size_t max_file_name = 256;
 
 /// Writes a complex with all its columns; the format goes by the extension.
 ///
@@ -64,10 +66,11 @@ inline constexpr std::size_t max_file_columns = 1000;
 ///         its name and `_` before theirs, and no metadata.
 ///
 /// Indices count from 0 (in .obj from 1). A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension; column names of other characters than letters, digits, `_`, `-` and
-/// `.`; more columns or components than max_file_columns; metadata with an empty key or one key twice; what the format
-/// cannot hold, unless allow_loss says otherwise (further complexes are always refused). InvalidMesh saying
-/// problem_of(complex), or for more than 2^31 - 1 vertices; FileError; Cancelled.
+/// @throws InvalidOption for another extension; where the format holds columns, names of other characters than letters,
+/// digits, `_`, `-` and `.`, or more than max_file_name of them, more columns or components than max_file_columns, and
+/// in .ply files more than 100,000 numbers for a vertex, edge or triangle; metadata with an empty key or one key twice;
+/// what the format cannot hold, unless allow_loss says otherwise (further complexes are always refused). InvalidMesh
+/// saying problem_of(complex), or for more than 2^31 - 1 vertices; FileError; Cancelled.
 void write_complex(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata = {},
                    const ComplexWriteOptions& options = {}, const Context& context = {});
 
@@ -77,8 +80,8 @@ void write_complex(const std::filesystem::path& path, const Complex& complex, co
 /// 8 and 16 bits become int32, unsigned ones of 32 and 64 bits int64. Left out are lists and unknown elements of .ply,
 /// texts of .vtp, and whatever .obj files say beyond vertices, faces and lines. Cell data of .vtp files that Blum did
 /// not write are columns of the edges and of the triangles.
-/// @throws FileError; FormatError naming the file and the reason, also where problem_of() finds one; InvalidOption for
-/// another extension; OutOfMemory.
+/// @throws FileError; FormatError naming the file and the reason, also where problem_of() finds one or the name of a
+/// column is not UTF-8; InvalidOption for another extension; OutOfMemory.
 [[nodiscard]] ComplexFile read_complex(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.
 [[nodiscard]] ComplexFile read_complex(std::span<const std::byte> bytes, ComplexFormat format,

@@ -195,6 +195,41 @@ TEST_P(ComplexFiles, AsManyColumnsAndComponentsAsThereMayBe) {
   expect_same(read_complex(path).complex, complex);
 }
 
+TEST_P(ComplexFiles, AsManyColumnsOfEverythingAsThereMayBe) {
+  Complex complex = two_triangles();
+  add<double>(complex.vertex_columns, "radius");  // which .ply files have twice where there is room
+  const std::string longest(max_file_name - 4, 'n');
+  for (std::size_t i = 1; i < max_file_columns; ++i) {
+    complex.vertex_columns.add<float>("v" + std::to_string(i));
+    complex.edge_columns.add<float>("e" + std::to_string(i));
+    complex.triangle_columns.add<float>(longest + std::to_string(i));
+  }
+  write_complex(path, complex);
+  expect_same(read_complex(path).complex, complex);
+  complex.edge_columns = Columns(complex.edges.size());
+  complex.edge_columns.add<float>(std::string(max_file_name + 1, 'n'));
+  EXPECT_THROW(write_complex(path, complex), InvalidOption);
+}
+
+TEST(ComplexPly, RefusesRowsThatAreTooLong) {
+  const TemporaryFolder folder;
+  Complex complex = two_triangles();
+  for (int i = 0; i < 100; ++i) complex.edge_columns.add<float>("wide" + std::to_string(i), max_file_columns);
+  EXPECT_THROW(write_complex(folder / "a.ply", complex), InvalidOption);
+  EXPECT_EQ(folder.entries(), 0);
+}
+
+/// Names that files cannot hold are no obstacle where columns are lost anyway.
+TEST(ComplexObj, LosesColumnsOfAnyName) {
+  const TemporaryFolder folder;
+  Complex complex = two_triangles();
+  complex.vertex_columns.add<double>("radius");
+  complex.vertex_columns.add<double>("two words");
+  ComplexWriteOptions options;
+  options.allow_loss = true;
+  for (const char* name : {"a.obj", "a.ma"}) EXPECT_NO_THROW(write_complex(folder / name, complex, {}, options));
+}
+
 /// The directory is long, and has names that end as those of fields do.
 TEST(ComplexNpz, TellsWhatItHoldsByTheNamesOfItsArrays) {
   const TemporaryFolder folder;
@@ -391,6 +426,11 @@ TEST(ComplexHostile, NpzColumnsOfWrongShapes) {
   EXPECT_NE(refusal(with("edge_a", "(0, 18446744073709551615, 2)", 0), ComplexFormat("NPZ")).find("1 to 1000"),
             std::string::npos);
   EXPECT_NE(refusal(with("vertex_", "(1,)", 1), ComplexFormat("NPZ")).find("needs a name"), std::string::npos);
+  EXPECT_EQ(refusal(with("caf\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x98\x80", "(1,)", 1), ComplexFormat("NPZ")), "read");
+  using namespace std::string_literals;
+  for (const std::string& name : {"a\0b"s, "\xFF"s, "caf\xE9"s, "\xC0\x80"s, "\xED\xA0\x80"s, "\xC3"s}) {
+    EXPECT_NE(refusal(with(name, "(1,)", 1), ComplexFormat("NPZ")).find("is not UTF-8"), std::string::npos) << name;
+  }
   EXPECT_NE(refusal(with("distance", "(1,)", 1), ComplexFormat("NPZ")).find("not a complex"), std::string::npos);
 }
 
