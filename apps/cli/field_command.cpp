@@ -11,6 +11,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "blum/field/field.hpp"
+#include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
 #include "commands.hpp"
@@ -186,17 +187,23 @@ double coarsest_step(const GridSpec& grid) {
 }
 
 /// What deserves a look although the field was made as asked.
-std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& s, const Orientation& mesh) {
+std::vector<std::string> warnings_of(const Field& field, const FieldStatistics& s, const MeshView& mesh,
+                                     const Orientation& facts) {
   if (field.sign_rule == SignRule::none) return {};
-  if (mesh.closed && mesh.oriented && !mesh.outward) {
-    return {mesh.signed_volume < 0 ? "the mesh is inside out (its volume is negative), so signs are not those of a "
-                                     "solid: flip its triangles"
-                                   : "parts of the mesh face the wrong way or enclose nothing, so signs may not be "
-                                     "those of a solid; `blum info` says more of its shells"};
+  if (facts.closed && facts.oriented && !facts.outward) {
+    if (facts.signed_volume < 0) {
+      return {"the mesh is inside out (its volume is negative), so signs are not those of a solid: flip its triangles"};
+    }
+    // Shells that cross have no depth that would tell which way they must face; winding numbers join them.
+    if (field.sign_rule == SignRule::normals || !SelfIntersectionSearch().finds_any(mesh)) {
+      return {
+          "parts of the mesh face the wrong way or enclose nothing, so signs may not be those of a solid; `blum info` "
+          "says more of its shells"};
+    }
   }
   if (s.inside_nodes > 0) return {};
-  if (mesh.inconsistent_edges > 0) {
-    return {"no node is inside: " + plural(mesh.inconsistent_edges, "edge lies", "edges lie") +
+  if (facts.inconsistent_edges > 0) {
+    return {"no node is inside: " + plural(facts.inconsistent_edges, "edge lies", "edges lie") +
             " between triangles that face different ways, so that their winding numbers cancel; orient the mesh first"};
   }
   return {"no node is inside: the shape encloses nothing, lies elsewhere than the grid, or is too thin for it"};
@@ -295,7 +302,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   run.time("write", watch.lap());
   progress.clear();
   add_field(run, field, statistics, files_of_field(r.output, r.options.sites), nullptr);
-  run.warnings = warnings_of(field, statistics, facts);
+  run.warnings = warnings_of(field, statistics, mesh, facts);
   if (is_welded_away(file)) run.warnings.push_back(welded_away_text(file));
   finish(r, run, grid, context);
 }
@@ -358,9 +365,11 @@ void run_image(const Request& r, Progress& progress, const Interrupt& interrupt)
 void run(const Arguments& arguments) {
   const Request request = parse(arguments);
   const InputKind kind = input_kind(request.input);
-  const bool vector_field_file = kind == InputKind::field && file_extension(request.input) != ".nrrd";
-  if (vector_field_file) {
-    throw FileError("'" + request.input.string() + "' is a field file; `blum field` reads meshes and images");
+  // The distances of a .nrrd can be read as an image of numbers, but only a threshold makes sense of them.
+  const bool is_image = file_extension(request.input) == ".nrrd";
+  if (kind == InputKind::field && !(is_image && arguments.threshold)) {
+    throw FileError("'" + request.input.string() + "' is a field; a mesh or a voxel image is needed here" +
+                    (is_image ? ", or --threshold, to take it as an image" : ""));
   }
   check_applicable(arguments, request, kind);
   Progress progress(!request.report.quiet);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "blum/core/union_find.hpp"
 #include "geometry/box_scale.hpp"
@@ -56,8 +57,9 @@ void settle_volumes(const MeshView& mesh, const ShellSet& set, std::vector<Measu
     if (set.of_triangle[t] != no_component && measures[set.of_triangle[t]].is_doubtful()) triangles.push_back(t);
   }
   if (triangles.empty()) return;
-  std::stable_sort(triangles.begin(), triangles.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return set.of_triangle[a] < set.of_triangle[b]; });
+  std::sort(triangles.begin(), triangles.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(set.of_triangle[a], a) < std::pair(set.of_triangle[b], b);
+  });
   for (std::size_t begin = 0, end = 0; begin < triangles.size(); begin = end) {
     const std::uint32_t shell = set.of_triangle[triangles[begin]];
     while (end < triangles.size() && set.of_triangle[triangles[end]] == shell) ++end;

@@ -84,7 +84,7 @@ Vec3d vector_at(const double (&rows)[3][lanes], std::size_t lane) {
 
 }  // namespace
 
-TriangleGroup::TriangleGroup() : point{}, corner{}, normal{}, magnitude{} {
+TriangleGroup::TriangleGroup() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       box.lower[axis][lane] = std::numeric_limits<double>::infinity();

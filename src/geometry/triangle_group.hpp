@@ -16,10 +16,10 @@ namespace blum {
 /// Eight triangles a, b, c with their planes. Lanes that are not set have an empty box.
 struct alignas(64) TriangleGroup {
   BoxBlock box;
-  double point[3][3][lanes];   ///< of each corner, axis by axis
-  double corner[3][lanes];     ///< numbers of the corners, which two triangles have in common where these are equal
-  double normal[3][lanes];     ///< (b - a) x (c - a)
-  double magnitude[3][lanes];  ///< of the products that are summed up to the normal
+  double point[3][3][lanes] = {};  ///< of each corner, axis by axis
+  double corner[3][lanes] = {};    ///< numbers of the corners, which two triangles have in common where these are equal
+  double normal[3][lanes] = {};    ///< (b - a) x (c - a)
+  double magnitude[3][lanes] = {};  ///< of the products that are summed up to the normal
 
   TriangleGroup();
 

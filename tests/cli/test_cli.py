@@ -303,6 +303,33 @@ def test_warnings_go_to_stderr(tmp_path):
         assert run_json(*command, "--sign", "none")["warnings"] == []
 
 
+def test_shells_that_cross_face_the_right_way(shapes, tmp_path):
+    """Winding numbers join overlapping parts; a part within another that faces as that one does is a mistake."""
+    run("make", "box", "-o", tmp_path / "box.obj")
+    corners = [line for line in (tmp_path / "box.obj").read_text().splitlines() if line.startswith("v ")]
+    faces = [line for line in (tmp_path / "box.obj").read_text().splitlines() if line.startswith("f ")]
+    places = [[float(x) for x in line.split()[1:]] for line in corners]
+
+    def with_copy(scale, by):
+        copy = [" ".join(["v", *(repr(scale * x + d) for x, d in zip(p, by, strict=True))]) for p in places]
+        more = [" ".join(["f", *(str(int(k) + len(places)) for k in line.split()[1:])]) for line in faces]
+        (tmp_path / "two.obj").write_text("\n".join([*corners, *copy, *faces, *more]) + "\n")
+        return ["field", tmp_path / "two.obj", "-o", tmp_path / "two.npz", "--resolution", 12]
+
+    summary = run_json(*with_copy(1, (0.3, 0.2, 0.1)))
+    assert summary["warnings"] == [] and "crosses itself" in summary["fields"][0]["sign"]["reason"]
+    out, err = run(*with_copy(0.5, (0, 0, 0)), warns=True)
+    assert "face the wrong way" in err and "do not all face away" in out
+
+
+def test_a_field_is_no_image_but_with_a_threshold(shapes, tmp_path):
+    for end in ("nrrd", "npz"):
+        run("field", shapes / "torus.obj", "-o", tmp_path / f"t.{end}", "--resolution", 12)
+        err = run("field", tmp_path / f"t.{end}", "-o", tmp_path / "out.npz", status=1)[1]
+        assert "is a field; a mesh or a voxel image is needed here" in err and ("--threshold" in err) == (end == "nrrd")
+    run("field", tmp_path / "t.nrrd", "-o", tmp_path / "out.npz", "--threshold", 0)
+
+
 def test_fields_of_images(shapes, tmp_path):
     summary = run_json("field", shapes / "ball.nrrd", "-o", tmp_path / "ball.npz")
     assert summary["input"]["kind"] == "image" and summary["fields"][0]["sign"]["rule"] == "label"

@@ -103,14 +103,12 @@ Plan Planner::plan_automatically(const MeshView& mesh, const SiteTable& sites, c
     return by_winding(
         winding + "is closed but inside out (its volume is negative), so nothing counts as inside: flip its triangles");
   }
-  if (!facts.outward) {
-    return by_winding(winding + "is closed, but its shells cross each other or do not all face away from the solid");
-  }
   if (has_flat_triangles(mesh)) return by_winding(winding + "is closed, but has triangles too flat for a normal");
   const Context quiet{.threads = context.threads, .cancel = context.cancel};
   if (search_.finds_any(mesh, quiet)) {
     return by_winding(winding + "is closed and oriented, but it crosses itself, or touches itself");
   }
+  if (!facts.outward) return by_winding(winding + "is closed, but its shells do not all face away from the solid");
   return {SignRule::normals, "the mesh is closed, consistently oriented and faces outwards", Method::crossings, 0,
           true};
 }

@@ -95,6 +95,15 @@ TEST(SignPolicy, SaysWhatIsInTheWay) {
   TriangleMesh beside = test::box_between({0, 0, 0}, {1, 1, 1});
   append(beside, test::box_between({1, 0, 0}, {2, 1, 1}));
   expect(beside, SignRule::winding, Method::crossings, "touches itself");
+  // Shells that cross have no depth; which one the search for it happens to find must not be what is told.
+  for (const Vec3d& by : {Vec3d{0.3, 0.2, 0.1}, Vec3d{0.9, 0.8, 0.7}}) {
+    TriangleMesh across = test::box_between({0, 0, 0}, {1, 1, 1});
+    append(across, test::box_between(by, by + Vec3d{1, 1, 1}));
+    expect(across, SignRule::winding, Method::crossings, "crosses itself");
+  }
+  TriangleMesh within = test::box_between({0, 0, 0}, {3, 3, 3});
+  append(within, test::box_between({1, 1, 1}, {2, 2, 2}));
+  expect(within, SignRule::winding, Method::crossings, "do not all face away");
 }
 
 TEST(SignPolicy, OfMeshesThatNobodyLooksAt) {
