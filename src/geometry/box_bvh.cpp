@@ -19,15 +19,6 @@ Vec3d center_of(const Box3& box) {
   return box.is_empty() ? Vec3d{} : box.center();
 }
 
-Box3 box_at(const BoxBlock& block, std::size_t lane) {
-  Box3 box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = block.lower[axis][lane];
-    box.upper[axis] = block.upper[axis][lane];
-  }
-  return box;
-}
-
 }  // namespace
 
 struct BoxBvh::Data {

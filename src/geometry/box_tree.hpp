@@ -23,6 +23,11 @@ struct alignas(64) BoxBlock {
   double upper[3][lanes];
 };
 
+[[nodiscard]] inline Box3 box_at(const BoxBlock& block, std::size_t lane) {
+  return {{block.lower[0][lane], block.lower[1][lane], block.lower[2][lane]},
+          {block.upper[0][lane], block.upper[1][lane], block.upper[2][lane]}};
+}
+
 /// Squared distances from a point to eight boxes; 0 inside.
 void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]);
 

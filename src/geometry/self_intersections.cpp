@@ -90,7 +90,7 @@ class Search {
         triangle.corners[k] = corners.empty() ? v : corners[v];
       }
       groups_[g].set(rank % lanes, triangle);
-      const Box3 box = GroupTriangle(groups_[g], rank % lanes).box;
+      const Box3 box = box_at(groups_[g].box, rank % lanes);
       boxes_[g].extend(box);
       sum += extent(box);
     }

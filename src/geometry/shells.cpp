@@ -21,9 +21,8 @@ struct Measure {
   double volume = 0;
 
   void set_frame(const Box3& bounds) {
-    const double diagonal = bounds.diagonal();
     origin = bounds.lower;
-    if (diagonal > 0 && std::isfinite(diagonal)) scale = std::exp2(-std::ilogb(diagonal));
+    scale = scale_to_one(bounds.diagonal());
   }
   void add(const MeshView& mesh, const Triangle& t) {
     const Vec3d a = (mesh.vertices[t[0]] - origin) * scale;

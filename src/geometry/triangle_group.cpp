@@ -4,10 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include "blum/geometry/orient2d.hpp"
 #include "blum/geometry/orient3d.hpp"
 
 namespace blum {
 namespace {
+
+/// 1, -1, or 0 where a height may be a rounding.
+int certain_sign(double height, double magnitude) {
+  return std::abs(height) > detail::orient3d_rounding * magnitude ? (height > 0 ? 1 : -1) : 0;
+}
 
 /// A vector with a rounding bound for each component: the sum of the magnitudes of its products.
 struct RoundedNormal {
@@ -28,15 +34,10 @@ struct RoundedNormal {
   /// Whether the exact normal has a component other than 0 for certain: 2x2 determinants round less than 3x3 ones.
   [[nodiscard]] bool is_certain() const {
     bool found = false;
-    for (std::size_t x = 0; x < 3; ++x) found |= std::abs(normal[x]) > detail::orient3d_rounding * magnitude[x];
+    for (std::size_t x = 0; x < 3; ++x) found |= certain_sign(normal[x], magnitude[x]) != 0;
     return found;
   }
 };
-
-/// 1, -1, or 0 where a height may be a rounding.
-int certain_sign(double height, double magnitude) {
-  return std::abs(height) > detail::orient3d_rounding * magnitude ? (height > 0 ? 1 : -1) : 0;
-}
 
 int side_of_plane(const GroupTriangle& plane, const Vec3d& p) {
   const Vec3d offset = p - plane.points[0];
@@ -46,11 +47,8 @@ int side_of_plane(const GroupTriangle& plane, const Vec3d& p) {
 
 /// Which way a -> b -> c turns, looked at along an axis.
 int turn(const Vec3d& a, const Vec3d& b, const Vec3d& c, std::size_t axis) {
-  const std::size_t u = (axis + 1) % 3;
-  const std::size_t v = (axis + 2) % 3;
-  const double left = (b[u] - a[u]) * (c[v] - a[v]);
-  const double right = (b[v] - a[v]) * (c[u] - a[u]);
-  return certain_sign(left - right, std::abs(left) + std::abs(right));
+  const auto flat = [axis](const Vec3d& p) { return std::array{p[(axis + 1) % 3], p[(axis + 2) % 3]}; };
+  return detail::orient2d(flat(a), flat(b), flat(c));
 }
 
 /// Whether side(k) is the same sign other than 0 for all corners k of a triangle that another one does not have, of
@@ -61,8 +59,7 @@ bool has_own_corners_on_one_side(const GroupTriangle& triangle, const GroupTrian
   int common = wanted;
   bool has_own = false;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double corner = triangle.corners[k];
-    if (corner == other.corners[0] || corner == other.corners[1] || corner == other.corners[2]) continue;
+    if (other.has_corner(triangle.corners[k])) continue;
     const int found = side(triangle.points[k]);
     if (found == 0 || found == -common) return false;
     common = found;
@@ -108,11 +105,15 @@ void TriangleGroup::set(std::size_t lane, const detail::ContactTriangle& triangl
 }
 
 GroupTriangle::GroupTriangle(const TriangleGroup& group, std::size_t lane)
-    : box{vector_at(group.box.lower, lane), vector_at(group.box.upper, lane)},
+    : box(box_at(group.box, lane)),
       points{vector_at(group.point[0], lane), vector_at(group.point[1], lane), vector_at(group.point[2], lane)},
       corners{group.corner[0][lane], group.corner[1][lane], group.corner[2][lane]},
       normal(vector_at(group.normal, lane)),
       magnitude(vector_at(group.magnitude, lane)) {}
+
+bool GroupTriangle::has_corner(double number) const {
+  return number == corners[0] || number == corners[1] || number == corners[2];
+}
 
 detail::ContactTriangle GroupTriangle::for_contact() const {
   return {points,
@@ -130,8 +131,7 @@ bool is_beyond_an_edge(const GroupTriangle& triangle, const GroupTriangle& other
   if (way == 0) return false;
   for (std::size_t k = 0; k < 3; ++k) {
     // A common corner off the edge is on the wrong side.
-    const double opposite = other.corners[(k + 2) % 3];
-    if (opposite == triangle.corners[0] || opposite == triangle.corners[1] || opposite == triangle.corners[2]) continue;
+    if (triangle.has_corner(other.corners[(k + 2) % 3])) continue;
     const Vec3d& a = other.points[k];
     const Vec3d& b = other.points[(k + 1) % 3];
     const auto side = [&](const Vec3d& p) { return turn(a, b, p, axis); };

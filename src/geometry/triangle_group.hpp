@@ -1,5 +1,4 @@
-// Blum: triangles in groups of eight, which rules out in lanes most pairs that do not touch. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: triangles in groups of eight, of which most pairs are ruled out in lanes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -36,6 +35,7 @@ struct GroupTriangle {
   Vec3d magnitude;
 
   GroupTriangle(const TriangleGroup& group, std::size_t lane);
+  [[nodiscard]] bool has_corner(double number) const;
   [[nodiscard]] detail::ContactTriangle for_contact() const;
 };
 

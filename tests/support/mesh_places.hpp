@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "blum/core/random.hpp"
@@ -14,6 +15,17 @@ namespace blum::test {
 inline TriangleMesh moved(TriangleMesh mesh, double scale, const Vec3d& offset = {}) {
   for (Vec3d& v : mesh.vertices) v = v * scale + offset;
   return mesh;
+}
+
+/// Each triangle with its own three vertices.
+inline TriangleMesh unwelded(const MeshView& mesh) {
+  TriangleMesh out;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    for (const std::uint32_t v : t) out.vertices.push_back(mesh.vertices[v]);
+    out.triangles.push_back({first, first + 1, first + 2});
+  }
+  return out;
 }
 
 /// Triangles of every awkward kind, with free segments and points among them.

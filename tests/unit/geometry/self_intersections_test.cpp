@@ -231,17 +231,6 @@ TEST(SelfIntersections, OfTiledPlanesAreNone) {
   }
 }
 
-/// Each triangle with vertices of its own.
-TriangleMesh taken_apart(const TriangleMesh& mesh) {
-  TriangleMesh out;
-  for (const Triangle& t : mesh.triangles) {
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    for (const std::uint32_t v : t) out.vertices.push_back(mesh.vertices[v]);
-    out.triangles.push_back({first, first + 1, first + 2});
-  }
-  return out;
-}
-
 TEST(SelfIntersections, FrameAfterFrameAreThoseOfEachFrame) {
   const TriangleMesh torus =
       make_torus({.ring_radius = 1, .tube_radius = 0.4, .ring_segments = 24, .tube_segments = 12});
@@ -259,7 +248,7 @@ TEST(SelfIntersections, FrameAfterFrameAreThoseOfEachFrame) {
     }
     const bool expected = !find_self_intersections(mesh).pairs.empty();
     EXPECT_EQ(search.finds_any(mesh), expected) << frame;
-    EXPECT_EQ(search.finds_any(taken_apart(mesh)), expected) << frame;
+    EXPECT_EQ(search.finds_any(test::unwelded(mesh)), expected) << frame;
     crossing += expected ? 1 : 0;
   }
   EXPECT_GT(crossing, 5);

@@ -21,17 +21,6 @@ TriangleMesh bowl(double height) {
   return mesh;
 }
 
-/// Each triangle with its own three vertices.
-TriangleMesh unwelded(const MeshView& mesh) {
-  TriangleMesh out;
-  for (const Triangle& t : mesh.triangles) {
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    for (const std::uint32_t v : t) out.vertices.push_back(mesh.vertices[v]);
-    out.triangles.push_back({first, first + 1, first + 2});
-  }
-  return out;
-}
-
 void expect_like_brute_force(const TriangleMesh& mesh, std::uint64_t seed, std::size_t count = 300) {
   const WindingNumber winding(mesh);
   for (const Vec3d& q : test::places_around(mesh, count, seed)) {
@@ -99,7 +88,7 @@ TEST(WindingNumber, IsZeroWithoutTrianglesAndFarAway) {
 
 TEST(WindingNumber, KnowsWhichSurfacesHaveNoBoundary) {
   EXPECT_TRUE(WindingNumber(make_sphere({.frequency = 3})).is_piecewise_constant());
-  EXPECT_TRUE(WindingNumber(unwelded(make_sphere({.frequency = 3}))).is_piecewise_constant());
+  EXPECT_TRUE(WindingNumber(test::unwelded(make_sphere({.frequency = 3}))).is_piecewise_constant());
   EXPECT_TRUE(WindingNumber(make_void_cube({})).is_piecewise_constant());
   EXPECT_FALSE(WindingNumber(bowl(0.5)).is_piecewise_constant());
   TriangleMesh turned = make_sphere({.frequency = 3});
@@ -109,7 +98,7 @@ TEST(WindingNumber, KnowsWhichSurfacesHaveNoBoundary) {
 
 /// The bound holds for differences of w between points of boxes that are free of triangles.
 TEST(WindingNumber, BoundsItsGradient) {
-  for (const TriangleMesh& mesh : {bowl(0.2), make_soup({.triangles = 20, .seed = 4}), unwelded(bowl(0.6))}) {
+  for (const TriangleMesh& mesh : {bowl(0.2), make_soup({.triangles = 20, .seed = 4}), test::unwelded(bowl(0.6))}) {
     const WindingNumber winding(mesh);
     const reference::BruteForce distances(mesh);
     Random random(3);
