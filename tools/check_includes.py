@@ -22,7 +22,7 @@ LOWER = {
     "shapes": {"core", "geometry"},
     "grid": {"core"},
     "complex": {"core"},
-    "solid": {"core", "geometry", "grid"},
+    "solid": {"core", "geometry", "grid", "complex"},
     "field": {"core", "geometry", "grid"},
     "medial_axis": {"core", "geometry", "grid", "complex", "solid", "field"},
     "certificate": {"core", "complex"},

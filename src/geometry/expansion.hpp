@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -59,6 +60,8 @@ class Expansion {
   }
   /// The number, rounded to within a few units of the last place.
   [[nodiscard]] double value() const { return size_ == 0 ? 0 : parts_[size_ - 1]; }
+  /// What the number is the sum of, by rising magnitude.
+  [[nodiscard]] std::span<const double> parts() const { return {parts_.data(), size_}; }
   [[nodiscard]] int sign() const { return size_ == 0 ? 0 : parts_[size_ - 1] > 0 ? 1 : -1; }
 
  private:

@@ -1,8 +1,5 @@
 #include "medial_axis/cell_complex.hpp"
 
-#include <string>
-
-#include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 
 namespace blum {
@@ -28,16 +25,6 @@ std::array<std::uint8_t, 256> make_cell_table() {
 }
 
 }  // namespace
-
-CellLattice::CellLattice(const std::array<std::int64_t, 3>& voxels) {
-  for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = voxels[axis] + 1;
-  stride_ = {1, static_cast<std::size_t>(size_[0]), static_cast<std::size_t>(size_[0] * size_[1])};
-  count_ = stride_[2] * static_cast<std::size_t>(size_[2]);
-  if (count_ >= std::size_t{1} << 29U) {
-    throw InvalidImage("the solid spans " + std::to_string(voxels[0]) + " x " + std::to_string(voxels[1]) + " x " +
-                       std::to_string(voxels[2]) + " voxels, more than cells can be counted for: use a coarser grid");
-  }
-}
 
 CellComplex::CellComplex(const VoxelSet& voxels, const Context& context)
     : lattice_(voxels.size()), cells_(lattice_.node_count()) {

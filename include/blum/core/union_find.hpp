@@ -11,7 +11,14 @@ namespace blum::detail {
 /// Disjoint sets of indices; the smallest index of a set stands for it, so results do not depend on the order of joins.
 class UnionFind {
  public:
-  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  UnionFind() = default;
+  explicit UnionFind(std::size_t count) { reset(count); }
+
+  /// Makes it that many sets of one index each.
+  void reset(std::size_t count) {
+    parent_.resize(count);
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
 
   [[nodiscard]] std::uint32_t find(std::uint32_t item) {
     while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];

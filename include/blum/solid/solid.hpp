@@ -23,6 +23,7 @@
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
 #include "blum/grid/voxel_set.hpp"
+#include "blum/solid/cellular_model.hpp"
 #include "blum/solid/solid_rule.hpp"
 
 namespace blum {
@@ -117,6 +118,12 @@ class Solid {
   /// closed.
   /// @param p  finite.  Cost: about a microsecond; the first call also builds what it searches in.
   [[nodiscard]] bool inside(const Vec3d& p) const;
+
+  /// A cell complex with the homotopy type of a polyhedron: look at its report() for whether that is proven.
+  /// @throws InvalidOption, also for an image, whose voxels are such a complex; InvalidMesh for SolidRule::winding, and
+  /// where coordinates lie further apart than 45 orders of magnitude; InvalidGrid, OutOfMemory, Cancelled.
+  /// Cost: linear in triangles, and in the cubes that the surface meets; 3 bytes for each cube of the box.
+  [[nodiscard]] CellularModel model(const CellularModelOptions& options = {}, const Context& context = {}) const;
 
  private:
   struct Data;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "blum/core/parallel.hpp"
-#include "field/cpu/radix_sort.hpp"
+#include "blum/core/radix_sort.hpp"
 #include "field/kernels/morton.hpp"
 
 namespace blum::cpu {
@@ -66,14 +66,14 @@ void build_adjacency(const MeshView& mesh, const SiteTable& sites, const Context
 void order_sites(const MeshView& mesh, const SiteTable& sites, const Adjacency& adjacency,
                  std::span<const Vec3d> positions, const Context& context, SiteOrder& out) {
   const std::size_t named_count = adjacency.named_vertices.size();
-  std::vector<KeyedIndex> keyed(named_count);
+  std::vector<detail::KeyedIndex> keyed(named_count);
   parallel_for(context, named_count, grain, "", [&](const WorkRange& range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const std::uint32_t v = adjacency.named_vertices[i];
       keyed[i] = {kernels::morton_code(positions[v]), v};
     }
   });
-  radix_sort(keyed);
+  detail::radix_sort(keyed);
   std::vector<std::uint32_t>& rank = out.rank;
   rank.assign(mesh.vertices.size(), 0);
   out.vertices.resize(named_count);

@@ -200,7 +200,7 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const CenteredBox
 /// Adds the records of the found clusters that may matter to the tile to the order to sort.
 template <Kind kind>
 HWY_NOINLINE void find_records(const BlockTest<1>& test, const FieldJob& job,
-                               const std::vector<std::uint32_t>& clusters, std::vector<KeyedIndex>& out) {
+                               const std::vector<std::uint32_t>& clusters, std::vector<detail::KeyedIndex>& out) {
   const Record* records = job.sites->kinds[kind].records.data();
   NoClosest closest;
   for (const std::uint32_t cluster : clusters) {
@@ -241,9 +241,9 @@ HWY_INLINE void gather_records(const FieldJob& job, const CenteredBox& tile, con
         }
       }
     }
-    radix_sort(scratch.order, scratch.order_scratch);
+    detail::radix_sort(scratch.order, scratch.order_scratch);
     out[kind].reset(scratch.order.size());
-    for (const KeyedIndex& item : scratch.order) out[kind].append(records[item.index]);
+    for (const detail::KeyedIndex& item : scratch.order) out[kind].append(records[item.index]);
     out[kind].finish();
   }
 }

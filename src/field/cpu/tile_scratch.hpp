@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "field/cpu/radix_sort.hpp"
+#include "blum/core/radix_sort.hpp"
 #include "field/cpu/tile_kernel.hpp"
 
 namespace blum::cpu {
@@ -94,7 +94,7 @@ struct TileScratch::Impl {
   std::array<Level, 4> levels;  // boxes of 64, 32 and 16 nodes, and last those of 8, have children
   Candidates gathered;
   std::array<std::vector<std::uint32_t>, kind_count> clusters;  // of the tile at hand
-  std::vector<KeyedIndex> order, order_scratch;
+  std::vector<detail::KeyedIndex> order, order_scratch;
   std::array<LeafColumns, 3> leaf;  // vertices, edges, faces
 };
 

@@ -1,5 +1,5 @@
 // Proves that small keys are sorted as a stable sort does, on both sides of the count where the digits change.
-#include "field/cpu/radix_sort.hpp"
+#include "blum/core/radix_sort.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "blum/core/random.hpp"
 
-namespace blum::cpu {
+namespace blum::detail {
 namespace {
 
 TEST(RadixSort, IsThatOfAStableSort) {
@@ -43,4 +43,4 @@ TEST(RadixSort, IsThatOfAStableSort) {
 }
 
 }  // namespace
-}  // namespace blum::cpu
+}  // namespace blum::detail

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace blum::cpu {
+namespace blum::detail {
 
 struct KeyedIndex {
   std::uint32_t key = 0;
@@ -51,4 +51,4 @@ inline void radix_sort(std::vector<KeyedIndex>& items) {
   radix_sort(items, scratch);
 }
 
-}  // namespace blum::cpu
+}  // namespace blum::detail

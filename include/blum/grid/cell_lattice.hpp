@@ -1,0 +1,79 @@
+// Blum: the cells of a lattice of cubes. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "blum/core/error.hpp"
+
+namespace blum {
+
+/// A vertex, edge, square or cube of the lattice: 8 * node + axes. It spans one step from its node along each axis
+/// whose bit is set in `axes` (x 1, y 2, z 4).
+using Cell = std::uint32_t;
+using CellAxes = unsigned;
+
+constexpr CellAxes axes_of(Cell cell) {
+  return cell & 7U;
+}
+constexpr std::size_t node_of(Cell cell) {
+  return cell >> 3U;
+}
+constexpr Cell cell_at(std::size_t node, CellAxes axes) {
+  return static_cast<Cell>(node << 3U | axes);
+}
+constexpr int dimension_of(Cell cell) {
+  return std::popcount(axes_of(cell));
+}
+
+/// The lattice of the cubes of a box: node (i, j, k) is the corner that cube (i, j, k) has in common with
+/// (i - 1, j - 1, k - 1), and cell (node, all axes) is cube (i, j, k). Of an image, its cubes are the voxels.
+class CellLattice {
+ public:
+  CellLattice() = default;
+  /// @param cubes  along x, y, z, each >= 0.
+  /// @throws InvalidGrid for more cells than 32 bits count (boxes above 811^3 cubes).
+  explicit CellLattice(const std::array<std::int64_t, 3>& cubes);
+
+  [[nodiscard]] std::size_t node_count() const { return count_; }
+  [[nodiscard]] std::size_t node(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    return static_cast<std::size_t>((k * size_[1] + j) * size_[0] + i);
+  }
+  [[nodiscard]] std::array<std::int64_t, 3> place(std::size_t node) const {
+    const auto n = static_cast<std::int64_t>(node);
+    return {n % size_[0], n / size_[0] % size_[1], n / (size_[0] * size_[1])};
+  }
+  /// From a node to the next along an axis.
+  [[nodiscard]] std::size_t stride(std::size_t axis) const { return stride_[axis]; }
+  [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
+
+  /// Calls visit(face) for the cells of one dimension less in a cell's border.
+  template <class Visit>
+  void for_each_face(Cell cell, const Visit& visit) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const CellAxes bit = 1U << axis;
+      if ((cell & bit) == 0) continue;
+      visit(cell ^ bit);
+      visit(static_cast<Cell>((cell ^ bit) + 8 * stride_[axis]));
+    }
+  }
+  /// Calls visit(coface) for the cells of one dimension more around a cell; none may lie beyond the lattice.
+  template <class Visit>
+  void for_each_coface(Cell cell, const Visit& visit) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const CellAxes bit = 1U << axis;
+      if ((cell & bit) != 0) continue;
+      visit(cell | bit);
+      visit(static_cast<Cell>((cell | bit) - 8 * stride_[axis]));
+    }
+  }
+
+ private:
+  std::array<std::int64_t, 3> size_{0, 0, 0};  ///< nodes
+  std::array<std::size_t, 3> stride_{0, 0, 0};
+  std::size_t count_ = 0;
+};
+
+}  // namespace blum

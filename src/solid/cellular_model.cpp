@@ -1,0 +1,206 @@
+#include "blum/solid/cellular_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "blum/complex/homology.hpp"
+#include "blum/core/exact_text.hpp"
+#include "blum/core/union_find.hpp"
+#include "blum/solid/solid.hpp"
+#include "solid/model/collapse_cells.hpp"
+#include "solid/model/cut_grid.hpp"
+#include "solid/model/model_cells.hpp"
+#include "solid/model/model_regions.hpp"
+#include "solid/model/refined_region.hpp"
+#include "solid/model/surface_mesh.hpp"
+
+namespace blum {
+namespace {
+
+using detail::GridPlanes;
+using detail::Place;
+
+constexpr int most_resolution = 800;
+constexpr int most_splits_of_all = 200;
+/// Coordinates of a mesh that was scaled to about 1 for which predicates are exact, unless they are 0.
+constexpr double least_coordinate = 1e-45;
+
+void check(const CellularModelOptions& options) {
+  const auto refuse = [](const char* name, const std::string& value, const std::string& range) {
+    throw InvalidOption(std::string(name) + " is " + value + ", but must be " + range);
+  };
+  if (options.resolution < 1 || options.resolution > most_resolution) {
+    refuse("resolution", std::to_string(options.resolution), "1 to " + std::to_string(most_resolution));
+  }
+  if (options.spacing && !(*options.spacing > 0 && std::isfinite(*options.spacing))) {
+    refuse("spacing", exact_text(*options.spacing), "above 0");
+  }
+  if (!(options.shift >= 0 && options.shift <= 1)) refuse("shift", exact_text(options.shift), "0 to 1");
+  if (options.most_splits < 0 || options.most_splits > most_splits_of_all) {
+    refuse("most_splits", std::to_string(options.most_splits), "0 to " + std::to_string(most_splits_of_all));
+  }
+}
+
+double longest_side(const Box3& box) {
+  return std::max({box.size().x, box.size().y, box.size().z});
+}
+
+/// The power of two that brings the largest coordinate of a box to between 1/2 and 1.
+int scale_of(const Box3& box) {
+  double largest = 0;
+  for (std::size_t a = 0; a < 3; ++a) largest = std::max({largest, std::abs(box.lower[a]), std::abs(box.upper[a])});
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  return -exponent;
+}
+
+Vec3d scaled(const Vec3d& p, int exponent) {
+  return {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
+}
+
+TriangleMesh scaled(const TriangleMesh& mesh, int exponent) {
+  TriangleMesh out;
+  out.triangles = mesh.triangles;
+  out.vertices.reserve(mesh.vertices.size());
+  for (const Vec3d& v : mesh.vertices) {
+    out.vertices.push_back(scaled(v, exponent));
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (v[a] == 0 || std::abs(out.vertices.back()[a]) >= least_coordinate) continue;
+      throw InvalidMesh("a vertex has the coordinate " + exact_text(v[a]) +
+                        ", too small for exact answers beside others: round it to 0");
+    }
+  }
+  return out;
+}
+
+/// The planes of a grid that lie around a box, with a cube or more to spare.
+GridPlanes planes_around(const Box3& box, const Vec3d& origin, double spacing) {
+  Place first{};
+  Place last{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    first[a] = static_cast<std::int32_t>(std::floor((box.lower[a] - origin[a]) / spacing)) - 1;
+    last[a] = static_cast<std::int32_t>(std::floor((box.upper[a] - origin[a]) / spacing)) + 2;
+  }
+  return {origin, {spacing, spacing, spacing}, first, last};
+}
+
+/// The model of one body.
+struct BodyModel {
+  BodyModel(const TriangleMesh& body, int exponent, const Vec3d& origin, double spacing, const Context& context)
+      : mesh(scaled(body, exponent)),
+        surface(mesh, context),
+        grid(surface, planes_around(bounds(mesh), origin, spacing), context) {}
+
+  TriangleMesh mesh;
+  detail::SurfaceMesh surface;
+  detail::CutGrid grid;
+  std::vector<detail::RefinedRegion> regions;
+};
+
+ModelObstacle obstacle_of(detail::CellObstacle obstacle) {
+  switch (obstacle) {
+    case detail::CellObstacle::hole_in_square:
+      return ModelObstacle::hole_in_square;
+    case detail::CellObstacle::void_in_cube:
+      return ModelObstacle::void_in_cube;
+    case detail::CellObstacle::handle:
+      break;
+  }
+  return ModelObstacle::handle;
+}
+
+}  // namespace
+
+struct CellularModel::Data {
+  CellularModelReport report;
+  int exponent = 0;  ///< of the power of two that coordinates were scaled by
+  std::vector<std::unique_ptr<const BodyModel>> bodies;
+};
+
+CellularModel::CellularModel(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+const CellularModelReport& CellularModel::report() const {
+  return data_->report;
+}
+
+CellularModel CellularModel::of(const Solid& solid, const CellularModelOptions& options, const Context& context) {
+  check(options);
+  if (solid.rule() == SolidRule::voxels) {
+    throw InvalidOption("a union of voxels is its own cellular model: models are of meshes");
+  }
+  if (solid.rule() != SolidRule::polyhedron) throw InvalidMesh("no cellular model: " + solid.reason());
+  auto data = std::make_shared<Data>();
+  CellularModelReport& report = data->report;
+  PhaseTimer timer(report.phases);
+  data->exponent = scale_of(solid.box());
+  const double spacing =
+      std::ldexp(options.spacing.value_or(longest_side(solid.box()) / options.resolution), data->exponent);
+  const Box3 box{scaled(solid.box().lower, data->exponent), scaled(solid.box().upper, data->exponent)};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(box.size()[a] / spacing <= most_resolution + 1) || !(spacing > 64 * std::numeric_limits<double>::epsilon())) {
+      throw InvalidOption("spacing is " + exact_text(std::ldexp(spacing, -data->exponent)) +
+                          ", too small for this mesh: at most " + std::to_string(most_resolution) +
+                          " cubes along a side, and none smaller than coordinates are rounded");
+    }
+  }
+  const Vec3d origin = box.lower - Vec3d{1, 1, 1} * ((1 + options.shift) * spacing);
+  const double unit = std::ldexp(spacing, -data->exponent);
+  report.grid.origin = scaled(origin, -data->exponent);
+  report.grid.spacing = {unit, unit, unit};
+  for (std::size_t a = 0; a < 3; ++a) {
+    report.grid.size[a] = static_cast<std::int64_t>(std::floor((box.upper[a] - origin[a]) / spacing)) + 3;
+  }
+  for (const SolidBody& body : solid.bodies()) {
+    auto model = std::make_unique<BodyModel>(body.mesh, data->exponent, origin, spacing, context);
+    timer.lap("cells");
+    model->regions = detail::refine_regions(model->surface, model->grid, options.most_splits, context);
+    timer.lap("splits");
+    for (const Cell cell : model->grid.cut_cells()) report.cut_cubes += dimension_of(cell) == 3 ? 1U : 0U;
+    report.failing_cubes += model->grid.failing_cubes().size();
+    for (const detail::RefinedRegion& region : model->regions) {
+      report.splits = std::max(report.splits, region.depth());
+      report.boxes += region.split_boxes();
+      for (const detail::StuckBox& stuck : region.stuck()) {
+        report.failures.push_back({scaled(stuck.box.low, -data->exponent), scaled(stuck.box.high, -data->exponent),
+                                   obstacle_of(stuck.obstacle), static_cast<std::uint32_t>(data->bodies.size())});
+      }
+    }
+    const auto counts = detail::count_model_cells(model->grid, model->regions);
+    for (std::size_t d = 0; d < 4; ++d) report.cells[d] += counts[d];
+    data->bodies.push_back(std::move(model));
+  }
+  report.euler = report.cells[0] - report.cells[1] + report.cells[2] - report.cells[3];
+  report.passes = report.failures.empty();
+  return CellularModel(std::move(data));
+}
+
+Complex CellularModel::complex(const Context& context) const {
+  Complex out;
+  for (const auto& body : data_->bodies) {
+    const detail::ModelCells cells = detail::model_cells(body->surface, body->grid, body->regions, context);
+    const Complex own = detail::collapse_cells(cells, context);
+    const auto first = static_cast<std::uint32_t>(out.positions.size());
+    for (const Vec3d& p : own.positions) out.positions.push_back(scaled(p, -data_->exponent));
+    for (auto [a, b] : own.edges) out.edges.push_back({first + a, first + b});
+    for (auto [a, b, c] : own.triangles) out.triangles.push_back({first + a, first + b, first + c});
+  }
+  out.vertex_columns = Columns(out.positions.size());
+  out.edge_columns = Columns(out.edges.size());
+  out.triangle_columns = Columns(out.triangles.size());
+  return out;
+}
+
+BettiNumbers CellularModel::betti(const Context& context) const {
+  return homology(complex(context).view(), context);
+}
+
+CellularModel Solid::model(const CellularModelOptions& options, const Context& context) const {
+  return CellularModel::of(*this, options, context);
+}
+
+}  // namespace blum

@@ -1,0 +1,214 @@
+#include "solid/model/box_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace blum::detail {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+constexpr std::size_t next(std::size_t axis) {
+  return (axis + 1) % 3;
+}
+
+bool is_before(const Vec3d& a, const Vec3d& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+/// A line along an axis, and a coordinate on it.
+using OnLine = std::tuple<std::size_t, double, double, double>;
+
+OnLine on_line(std::size_t axis, const Vec3d& p) {
+  return {axis, p[next(axis)], p[next(next(axis))], p[axis]};
+}
+
+Vec3d corner_of(const BoxCell& box, std::size_t k) {
+  return {(k & 1U) != 0 ? box.high.x : box.low.x, (k & 2U) != 0 ? box.high.y : box.low.y,
+          (k & 4U) != 0 ? box.high.z : box.low.z};
+}
+
+}  // namespace
+
+BoxCells::BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, const CellLattice& lattice)
+    : boxes_(boxes), planes_(planes), lattice_(lattice) {
+  for (std::uint32_t b = 0; b < boxes.size(); ++b) boxes_of_cube_[boxes[b].cube].push_back(b);
+  find_corners();
+  find_segments();
+  find_rectangles();
+  order_sides();
+}
+
+void BoxCells::find_corners() {
+  for (const BoxCell& box : boxes_) {
+    for (std::size_t k = 0; k < 8; ++k) corners_.push_back(corner_of(box, k));
+  }
+  for (std::size_t across = 0; across < 3; ++across) find_crossings(across);
+  std::sort(corners_.begin(), corners_.end(), is_before);
+  corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+}
+
+/// Edges of boxes below and above a plane may cross within it.
+void BoxCells::find_crossings(std::size_t across) {
+  const std::size_t u = next(across);
+  const std::size_t v = next(u);
+  // Edges along u: plane, v, and where they begin and end. Edges along v: plane, u, begin, end.
+  using Edge = std::array<double, 4>;
+  std::vector<Edge> along_u;
+  std::vector<Edge> along_v;
+  for (const BoxCell& box : boxes_) {
+    for (const double plane : {box.low[across], box.high[across]}) {
+      for (const double at : {box.low[v], box.high[v]}) along_u.push_back({plane, at, box.low[u], box.high[u]});
+      for (const double at : {box.low[u], box.high[u]}) along_v.push_back({plane, at, box.low[v], box.high[v]});
+    }
+  }
+  for (auto* edges : {&along_u, &along_v}) {
+    std::sort(edges->begin(), edges->end());
+    edges->erase(std::unique(edges->begin(), edges->end()), edges->end());
+  }
+  for (const Edge& edge : along_u) {
+    const auto [plane, at_v, begin, end] = edge;
+    auto other = std::upper_bound(along_v.begin(), along_v.end(), Edge{plane, begin, infinity, infinity});
+    for (; other != along_v.end() && (*other)[0] == plane && (*other)[1] < end; ++other) {
+      if (!((*other)[2] < at_v && at_v < (*other)[3])) continue;
+      Vec3d p;
+      p[across] = plane;
+      p[u] = (*other)[1];
+      p[v] = at_v;
+      corners_.push_back(p);
+    }
+  }
+}
+
+std::uint32_t BoxCells::corner(const Vec3d& p) const {
+  return static_cast<std::uint32_t>(std::lower_bound(corners_.begin(), corners_.end(), p, is_before) -
+                                    corners_.begin());
+}
+
+void BoxCells::find_segments() {
+  std::vector<OnLine> lines;
+  for (const Vec3d& p : corners_) {
+    for (std::size_t axis = 0; axis < 3; ++axis) lines.push_back(on_line(axis, p));
+  }
+  std::sort(lines.begin(), lines.end());
+  std::vector<std::pair<OnLine, double>> pieces;  // where they begin, and their ends
+  for (const BoxCell& box : boxes_) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < 8; ++k) {
+        if ((k >> axis & 1U) != 0) continue;
+        auto at = std::lower_bound(lines.begin(), lines.end(), on_line(axis, corner_of(box, k)));
+        for (; std::get<3>(*at) < box.high[axis]; ++at) pieces.emplace_back(*at, std::get<3>(*(at + 1)));
+      }
+    }
+  }
+  std::sort(pieces.begin(), pieces.end());
+  pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
+  for (const auto& [begin, end] : pieces) {
+    const auto& [axis, u, v, low] = begin;
+    Vec3d p;
+    p[next(axis)] = u;
+    p[next(next(axis))] = v;
+    BoxSegment segment;
+    segment.axis = axis;
+    p[axis] = low;
+    segment.ends[0] = corner(p);
+    p[axis] = end;
+    segment.ends[1] = corner(p);
+    p[axis] = low;
+    for (std::size_t q = 0; q < 4; ++q) {
+      std::array<bool, 3> up{};
+      up[axis] = true;
+      up[next(axis)] = (q & 1U) != 0;
+      up[next(next(axis))] = (q & 2U) != 0;
+      segment.around[q] = locate(p, up);
+    }
+    segments_.push_back(segment);
+  }
+}
+
+BoxRef BoxCells::locate(const Vec3d& p, const std::array<bool, 3>& up) const {
+  Place cube = planes_.cube(p);
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!up[a] && p[a] == planes_.at(a, cube[a])) --cube[a];
+    if (cube[a] < 0 || cube[a] + 1 >= planes_.count(a)) return {};
+  }
+  const Cell cell = cell_at(lattice_.node(cube[0], cube[1], cube[2]), 7);
+  const auto found = boxes_of_cube_.find(cell);
+  if (found == boxes_of_cube_.end()) return {cell, false};
+  for (const std::uint32_t b : found->second) {
+    const BoxCell& box = boxes_[b];
+    bool holds = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      holds = holds && (up[a] ? box.low[a] <= p[a] && p[a] < box.high[a] : box.low[a] < p[a] && p[a] <= box.high[a]);
+    }
+    if (holds) return {b, true};
+  }
+  return {};
+}
+
+void BoxCells::find_rectangles() {
+  for (std::uint32_t s = 0; s < segments_.size(); ++s) {
+    const BoxSegment& segment = segments_[s];
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (std::size_t q = 0; q < 4; ++q) {
+        if ((q >> side & 1U) != 0) continue;
+        const BoxRef& below = segment.around[q];
+        const BoxRef& above = segment.around[q | 1U << side];
+        if (below == above || !below.exists() || !above.exists() || (!below.is_box && !above.is_box)) continue;
+        std::array<BoxRef, 2> key{below, above};
+        if (above < below) std::swap(key[0], key[1]);
+        const auto [at, is_new] = rectangle_of_.try_emplace(key, static_cast<std::uint32_t>(rectangles_.size()));
+        if (is_new) rectangles_.push_back({(segment.axis + 1 + side) % 3, {below, above}, {}});
+        // Sides are told apart later: first all segments are listed.
+        rectangles_[at->second].sides[0].push_back(s);
+      }
+    }
+  }
+}
+
+void BoxCells::order_sides() {
+  for (BoxRectangle& rectangle : rectangles_) {
+    std::vector<std::uint32_t> all = std::move(rectangle.sides[0]);
+    rectangle.sides = {};
+    const std::size_t lower = rectangle.axis == 0 ? 1 : 0;
+    const std::size_t upper = 3 - rectangle.axis - lower;
+    std::sort(all.begin(), all.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return segments_[a].ends[0] < segments_[b].ends[0]; });
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (const std::size_t axis : {lower, upper}) {
+      const std::size_t other = axis == lower ? upper : lower;
+      const auto height = [&](std::uint32_t s) { return corners_[segments_[s].ends[0]][other]; };
+      std::vector<std::uint32_t> along;
+      for (const std::uint32_t s : all) {
+        if (segments_[s].axis == axis) along.push_back(s);
+      }
+      double low = height(along.front());
+      for (const std::uint32_t s : along) low = std::min(low, height(s));
+      for (const std::uint32_t s : along) {
+        rectangle.sides[(axis == lower ? 0 : 2) + (height(s) == low ? 0U : 1U)].push_back(s);
+      }
+    }
+  }
+}
+
+std::uint32_t BoxCells::rectangle(const BoxRef& one, const BoxRef& other) const {
+  return rectangle_of_.at(one < other ? std::array{one, other} : std::array{other, one});
+}
+
+std::array<std::uint32_t, 2> BoxCells::rectangles_at(const BoxSegment& segment, const BoxRef& box) const {
+  std::array<std::uint32_t, 2> found{};
+  std::size_t count = 0;
+  for (std::size_t q = 0; q < 4 && count < 2; ++q) {
+    if (segment.around[q] != box) continue;
+    for (const std::size_t step : {1U, 2U}) {
+      const BoxRef& beside = segment.around[q ^ step];
+      if (beside != box && count < 2) found[count++] = rectangle(box, beside);
+    }
+  }
+  return found;
+}
+
+}  // namespace blum::detail

@@ -1,0 +1,86 @@
+// Blum: the cells of a decomposition into boxes. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "blum/grid/cell_lattice.hpp"
+#include "solid/model/grid_planes.hpp"
+
+namespace blum::detail {
+
+/// A part of a cube of a grid, or the whole of it.
+struct BoxCell {
+  Vec3d low;
+  Vec3d high;
+  Cell cube = 0;
+};
+
+/// A box by its index, or a cube of the grid around all boxes.
+struct BoxRef {
+  static constexpr std::uint32_t nothing = 0xffffffffU;
+  std::uint32_t id = nothing;  ///< of a box, or a cube (Cell)
+  bool is_box = false;
+
+  [[nodiscard]] bool exists() const { return is_box || id != nothing; }
+  [[nodiscard]] friend auto operator<=>(const BoxRef&, const BoxRef&) = default;
+};
+
+/// An edge of the decomposition: a part of edges of boxes around which the boxes stay the same.
+struct BoxSegment {
+  std::size_t axis = 0;
+  std::array<std::uint32_t, 2> ends{0, 0};  ///< corners, the lower one first
+  /// Below and above along the next axis (bit 0) and the one after (bit 1); two may be the same.
+  std::array<BoxRef, 4> around;
+};
+
+/// What two boxes have in common, of which at least one is no cube of the grid around: a rectangle.
+struct BoxRectangle {
+  std::size_t axis = 0;         ///< across which it lies
+  std::array<BoxRef, 2> boxes;  ///< below and above
+  /// Its border: the segments along the lower other axis, at its low and its high end, then those along the upper one,
+  /// each rising.
+  std::array<std::vector<std::uint32_t>, 4> sides;
+};
+
+/// The cells of the common refinement of boxes that fill some cubes of a grid, and of the cubes around them. Edges and
+/// rectangles may meet without sharing all of their ends: a corner of one may lie inside of a side of another.
+class BoxCells {
+ public:
+  /// @param boxes  that fill the cubes that they are parts of. The span must stay.
+  BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, const CellLattice& lattice);
+
+  [[nodiscard]] std::span<const Vec3d> corners() const { return corners_; }
+  [[nodiscard]] std::span<const BoxSegment> segments() const { return segments_; }
+  [[nodiscard]] std::span<const BoxRectangle> rectangles() const { return rectangles_; }
+  /// The rectangle of two boxes that have one.
+  [[nodiscard]] std::uint32_t rectangle(const BoxRef& one, const BoxRef& other) const;
+  /// The two rectangles of a box that have a segment around it in common.
+  [[nodiscard]] std::array<std::uint32_t, 2> rectangles_at(const BoxSegment& segment, const BoxRef& box) const;
+
+ private:
+  void find_corners();
+  void find_crossings(std::size_t across);
+  void find_segments();
+  void find_rectangles();
+  void order_sides();
+  [[nodiscard]] std::uint32_t corner(const Vec3d& p) const;
+  /// The box or cube that holds a point, moved down (false) or up along each axis by nearly nothing.
+  [[nodiscard]] BoxRef locate(const Vec3d& p, const std::array<bool, 3>& up) const;
+
+  std::span<const BoxCell> boxes_;
+  const GridPlanes& planes_;
+  const CellLattice& lattice_;
+  std::map<Cell, std::vector<std::uint32_t>> boxes_of_cube_;
+  std::vector<Vec3d> corners_;  ///< by x, y, z
+  std::vector<BoxSegment> segments_;
+  std::vector<BoxRectangle> rectangles_;
+  std::map<std::array<BoxRef, 2>, std::uint32_t> rectangle_of_;  ///< lesser box first
+};
+
+}  // namespace blum::detail

@@ -1,0 +1,384 @@
+#include "solid/model/model_cells.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "blum/core/error.hpp"
+
+namespace blum::detail {
+namespace {
+
+constexpr std::uint32_t none = 0xffffffffU;
+constexpr std::size_t most_cells = 0xfffffff0U;
+
+constexpr std::size_t axis_of(CellAxes bit) {
+  return bit == 1 ? 0 : bit == 2 ? 1 : 2;
+}
+constexpr std::size_t next(std::size_t axis) {
+  return (axis + 1) % 3;
+}
+
+/// The cells of a grid that belong to a cube that is part of a region, rising.
+std::vector<Cell> cells_of(const CutGrid& grid, std::span<const RefinedRegion> regions) {
+  std::vector<Cell> cells;
+  for (const RefinedRegion& region : regions) {
+    for (const Cell cube : region.cubes()) {
+      for (std::size_t corner = 0; corner < 8; ++corner) {
+        std::size_t node = node_of(cube);
+        for (std::size_t a = 0; a < 3; ++a) node += (corner >> a & 1U) * grid.lattice().stride(a);
+        for (CellAxes axes = 0; axes < 8; ++axes) {
+          if ((axes & corner) == 0) cells.push_back(cell_at(node, axes));
+        }
+      }
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+/// Where a line along an axis crosses the plane of a triangle.
+double crossing_height(const TriangleCorners& t, std::size_t axis, const Vec3d& on_line) {
+  const Vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
+  return on_line[axis] - dot(normal, on_line - t[0]) / normal[axis];
+}
+
+class Assembly {
+ public:
+  Assembly(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const RefinedRegion> regions, const Context& context)
+      : mesh_(mesh), grid_(grid), lattice_(grid.lattice()), regions_(regions), context_(context) {}
+
+  ModelCells assemble() {
+    name_cells();
+    out_.first_face.reserve(out_.size() + 1);
+    for (std::size_t node = 0; node < lattice_.node_count(); ++node) {
+      if (node % 65536 == 0) throw_if_cancelled(context_);
+      if (first_.contains_node(node)) add_faces_at(node);
+    }
+    for (std::uint32_t r = 0; r < regions_.size(); ++r) add_region_faces(r);
+    out_.first_face.push_back(static_cast<std::uint32_t>(out_.faces.size()));
+    spread_witnesses();
+    return std::move(out_);
+  }
+
+ private:
+  /// The first id of each cell of the grid that has any.
+  class FirstIds {
+   public:
+    void reset(const CellLattice& lattice) { ranked_ = RankedCells(lattice); }
+    void insert(Cell cell) { ranked_.insert(cell); }
+    void finish() {
+      ranked_.finish();
+      ids_.reserve(ranked_.size());
+    }
+    void push(std::uint32_t id) { ids_.push_back(id); }
+    [[nodiscard]] bool contains(Cell cell) const { return ranked_.contains(cell); }
+    [[nodiscard]] std::uint32_t of(Cell cell) const { return ids_[ranked_.number(cell)]; }
+    [[nodiscard]] bool contains_node(std::size_t node) const {
+      for (CellAxes axes = 0; axes < 8; ++axes) {
+        if (ranked_.contains(cell_at(node, axes))) return true;
+      }
+      return false;
+    }
+
+   private:
+    RankedCells ranked_;
+    std::vector<std::uint32_t> ids_;
+  };
+
+  struct RegionIds {
+    std::vector<std::uint32_t> boxes, rectangles, segments, corners;  ///< first ids
+  };
+
+  [[nodiscard]] bool is_refined(Cell cell) const { return std::binary_search(refined_.begin(), refined_.end(), cell); }
+
+  void push_cells(std::size_t dimension, std::uint32_t count) {
+    if (out_.dimension.size() + count > most_cells) {
+      throw InvalidGrid("the model has more cells than can be counted: use a coarser grid");
+    }
+    for (std::uint32_t k = 0; k < count; ++k) out_.dimension.push_back(static_cast<std::uint8_t>(dimension));
+  }
+
+  void name_cells() {
+    refined_ = cells_of(grid_, regions_);
+    first_.reset(lattice_);
+    std::vector<Cell> all;
+    for (std::size_t node = 0; node < lattice_.node_count(); ++node) {
+      for (CellAxes axes = 0; axes < 8; ++axes) {
+        const Cell cell = cell_at(node, axes);
+        if (grid_.components(cell) > 0 && (refined_.empty() || !is_refined(cell))) all.push_back(cell);
+      }
+    }
+    for (const Cell cell : all) first_.insert(cell);
+    first_.finish();
+    for (const Cell cell : all) {
+      first_.push(static_cast<std::uint32_t>(out_.size()));
+      push_cells(static_cast<std::size_t>(3 - dimension_of(cell)), grid_.components(cell));
+    }
+    for (const RefinedRegion& region : regions_) {
+      RegionIds& ids = of_region_.emplace_back();
+      const auto name = [&](std::vector<std::uint32_t>& first, std::size_t dimension, std::size_t count,
+                            const auto& components) {
+        for (std::uint32_t k = 0; k < count; ++k) {
+          first.push_back(static_cast<std::uint32_t>(out_.size()));
+          push_cells(dimension, components(k));
+        }
+      };
+      const BoxCells& cells = region.cells();
+      name(ids.boxes, 0, region.boxes().size(), [&](std::uint32_t k) { return region.components_of_box(k); });
+      name(ids.rectangles, 1, cells.rectangles().size(),
+           [&](std::uint32_t k) { return region.components_of_rectangle(k); });
+      name(ids.segments, 2, cells.segments().size(), [&](std::uint32_t k) { return region.components_of_segment(k); });
+      name(ids.corners, 3, cells.corners().size(), [&](std::uint32_t k) { return region.is_inside(k) ? 1U : 0U; });
+    }
+    out_.witness.assign(out_.size(), Vec3d{});
+    has_witness_.assign(out_.size(), false);
+  }
+
+  void begin_cell() { out_.first_face.push_back(static_cast<std::uint32_t>(out_.faces.size())); }
+  /// Of the cell that was begun last.
+  void set_witness(const Vec3d& p) {
+    out_.witness[out_.first_face.size() - 1] = p;
+    has_witness_[out_.first_face.size() - 1] = true;
+  }
+  /// Gives cells without a witness that of a cell around them, whose component lies in theirs.
+  void spread_witnesses() {
+    for (int dimension = 3; dimension > 0; --dimension) {
+      for (std::uint32_t cell = 0; cell < out_.size(); ++cell) {
+        if (out_.dimension[cell] != dimension || !has_witness_[cell]) continue;
+        for (const std::uint32_t face : out_.faces_of(cell)) {
+          if (!has_witness_[face]) out_.witness[face] = out_.witness[cell];
+          has_witness_[face] = true;
+        }
+      }
+    }
+  }
+
+  /// The middle of an interval of a part of a line that these triangles cross.
+  [[nodiscard]] Vec3d middle_of(std::size_t axis, const Vec3d& low, double high, bool begins_inside,
+                                std::span<const std::uint32_t> crossings, std::uint32_t interval) const {
+    const auto height = [&](std::size_t k) {
+      return std::clamp(crossing_height(mesh_.corners(crossings[k]), axis, low), low[axis], high);
+    };
+    const std::size_t begin = 2 * std::size_t{interval} + (begins_inside ? 0 : 1);  // crossing k is number k + 1
+    const double from = begin == 0 ? low[axis] : height(begin - 1);
+    const double to = begin < crossings.size() ? height(begin) : high;
+    Vec3d middle = low;
+    middle[axis] = 0.5 * (from + to);
+    return middle;
+  }
+  [[nodiscard]] Vec3d node_position(std::size_t node) const {
+    const auto at = lattice_.place(node);
+    return grid_.planes().node(
+        {static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]), static_cast<std::int32_t>(at[2])});
+  }
+  /// Where the first arc of a component of a square meets a plane: on an edge of the mesh.
+  [[nodiscard]] Vec3d point_on(const ArcEnd& end, std::size_t across, double plane) const {
+    const auto [a, b] = mesh_.ends(end.id);
+    const double t = (plane - a[across]) / (b[across] - a[across]);
+    return a + (b - a) * std::clamp(t, 0.0, 1.0);
+  }
+  void add_face(std::uint32_t id) { out_.faces.push_back(id); }
+
+  void add_faces_at(std::size_t node) {
+    for (CellAxes axes = 0; axes < 8; ++axes) {
+      const Cell cell = cell_at(node, axes);
+      if (!first_.contains(cell)) continue;
+      const std::uint32_t components = grid_.components(cell);
+      for (std::uint32_t k = 0; k < components; ++k) {
+        begin_cell();
+        if (dimension_of(cell) == 3) witness_cube(cell, k);
+        if (dimension_of(cell) == 2) add_ends(cell, k);
+        if (dimension_of(cell) == 1) add_border(cell, k);
+        if (dimension_of(cell) == 0) add_sides(cell);
+      }
+    }
+  }
+
+  void witness_cube(Cell cube, std::uint32_t component) {
+    if (!grid_.is_cut(cube)) {
+      set_witness(0.5 * (node_position(node_of(cube)) + node_position(node_of(cube) + lattice_.node(1, 1, 1))));
+    } else if (component + 1 == grid_.components(cube)) {
+      if (const auto shell = grid_.shell_in(cube)) set_witness(mesh_.vertices()[*shell]);
+    }
+  }
+
+  /// Of an edge of the model.
+  void add_ends(Cell square, std::uint32_t component) {
+    const std::size_t across = axis_of(7U ^ axes_of(square));
+    if (const auto end = grid_.loose_end(square, component)) {
+      set_witness(point_on(*end, across, node_position(node_of(square))[across]));
+    }
+    const Cell above = square | 7U;
+    const auto below = static_cast<Cell>(above - 8 * lattice_.stride(across));
+    add_face(first_.of(below) + grid_.component_of_part(below, 2 * across + 1, component));
+    add_face(first_.of(above) + grid_.component_of_part(above, 2 * across, component));
+  }
+
+  /// Of a polygon.
+  void add_border(Cell edge, std::uint32_t interval) {
+    const std::size_t axis = axis_of(axes_of(edge));
+    set_witness(middle_of(axis, node_position(node_of(edge)),
+                          node_position(node_of(edge) + lattice_.stride(axis))[axis], grid_.is_inside(node_of(edge)),
+                          grid_.crossings(edge), interval));
+    for (std::size_t a = 0; a < 3; ++a) {
+      const CellAxes bit = 1U << a;
+      if ((axes_of(edge) & bit) != 0) continue;
+      const Cell above = edge | bit;
+      for (const Cell square : {static_cast<Cell>(above - 8 * lattice_.stride(a)), above}) {
+        add_face(first_.of(square) + grid_.component_of_interval(square, edge, interval));
+      }
+    }
+  }
+
+  /// Of a polyhedron.
+  void add_sides(Cell node) {
+    set_witness(node_position(node_of(node)));
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Cell above = node | 1U << a;
+      const auto below = static_cast<Cell>(above - 8 * lattice_.stride(a));
+      add_face(first_.of(below) + grid_.components(below) - 1);
+      add_face(first_.of(above));
+    }
+  }
+
+  void add_region_faces(std::uint32_t r) {
+    const RefinedRegion& region = regions_[r];
+    const RegionIds& ids = of_region_[r];
+    const BoxCells& cells = region.cells();
+    for (std::uint32_t b = 0; b < region.boxes().size(); ++b) {
+      for (std::uint32_t k = 0; k < region.components_of_box(b); ++k) begin_cell();
+      if (const auto shell = region.shell_in(b)) set_witness(mesh_.vertices()[*shell]);
+    }
+    for (std::uint32_t k = 0; k < cells.rectangles().size(); ++k) {
+      for (std::uint32_t c = 0; c < region.components_of_rectangle(k); ++c) {
+        begin_cell();
+        add_ends(region, ids, k, c);
+      }
+    }
+    for (std::uint32_t s = 0; s < cells.segments().size(); ++s) {
+      for (std::uint32_t c = 0; c < region.components_of_segment(s); ++c) {
+        begin_cell();
+        add_border(region, ids, s, c);
+      }
+    }
+    add_region_sides(region, ids);
+  }
+
+  void add_ends(const RefinedRegion& region, const RegionIds& ids, std::uint32_t rectangle, std::uint32_t component) {
+    const BoxRectangle& own = region.cells().rectangles()[rectangle];
+    if (const auto end = region.loose_end(rectangle, component)) {
+      const BoxSegment& side = region.cells().segments()[own.sides[0].front()];
+      set_witness(point_on(*end, own.axis, region.cells().corners()[side.ends[0]][own.axis]));
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+      const BoxRef& box = own.boxes[side];
+      if (box.is_box) {
+        add_face(ids.boxes[box.id] + region.component_of_part(box.id, rectangle, component));
+      } else {
+        add_face(first_.of(box.id) + grid_.component_of_part(box.id, 2 * own.axis + 1 - side, component));
+      }
+    }
+  }
+
+  void add_border(const RefinedRegion& region, const RegionIds& ids, std::uint32_t segment, std::uint32_t interval) {
+    const BoxSegment& own = region.cells().segments()[segment];
+    const auto corners = region.cells().corners();
+    set_witness(middle_of(own.axis, corners[own.ends[0]], corners[own.ends[1]][own.axis], region.is_inside(own.ends[0]),
+                          region.crossings(segment), interval));
+    constexpr std::array<std::array<std::size_t, 2>, 4> beside{{{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const BoxRef& below = own.around[beside[k][0]];
+      const BoxRef& above = own.around[beside[k][1]];
+      if (below == above) continue;
+      if (below.is_box || above.is_box) {
+        const std::uint32_t rectangle = region.cells().rectangle(below, above);
+        add_face(ids.rectangles[rectangle] + region.component_of_interval(rectangle, segment, interval));
+      } else {
+        const std::size_t across = k < 2 ? next(own.axis) : next(next(own.axis));
+        const Cell square = above.id ^ (1U << across);
+        add_face(first_.of(square) + grid_.component_of_interval(square, edge_of(region, own), interval));
+      }
+    }
+  }
+
+  /// The edge of the grid that a segment is all of.
+  [[nodiscard]] Cell edge_of(const RefinedRegion& region, const BoxSegment& segment) const {
+    const Place at = grid_.planes().cube(region.cells().corners()[segment.ends[0]]);
+    return cell_at(lattice_.node(at[0], at[1], at[2]), 1U << segment.axis);
+  }
+
+  void add_region_sides(const RefinedRegion& region, const RegionIds& ids) {
+    const BoxCells& cells = region.cells();
+    std::vector<std::vector<std::uint32_t>> sides(cells.corners().size());
+    for (std::uint32_t s = 0; s < cells.segments().size(); ++s) {
+      const auto [low, high] = cells.segments()[s].ends;
+      const std::uint32_t count = region.components_of_segment(s);
+      if (count == 0) continue;
+      if (region.is_inside(low)) sides[low].push_back(ids.segments[s]);
+      if (region.is_inside(high)) sides[high].push_back(ids.segments[s] + count - 1);
+    }
+    for (std::uint32_t c = 0; c < sides.size(); ++c) {
+      if (!region.is_inside(c)) continue;
+      begin_cell();
+      set_witness(cells.corners()[c]);
+      for (const std::uint32_t side : sides[c]) add_face(side);
+      const Place at = grid_.planes().cube(cells.corners()[c]);
+      if (grid_.planes().node(at) != cells.corners()[c]) continue;
+      // Edges of the grid that no cube of the region has.
+      const Cell node = cell_at(lattice_.node(at[0], at[1], at[2]), 0);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const Cell above = node | 1U << a;
+        const auto below = static_cast<Cell>(above - 8 * lattice_.stride(a));
+        if (first_.contains(below)) add_face(first_.of(below) + grid_.components(below) - 1);
+        if (first_.contains(above)) add_face(first_.of(above));
+      }
+    }
+  }
+
+  const SurfaceMesh& mesh_;
+  const CutGrid& grid_;
+  const CellLattice& lattice_;
+  std::span<const RefinedRegion> regions_;
+  const Context& context_;
+  std::vector<Cell> refined_;  ///< cells of the grid that belong to a region
+  FirstIds first_;
+  std::vector<RegionIds> of_region_;
+  ModelCells out_;
+  std::vector<bool> has_witness_;
+};
+
+}  // namespace
+
+ModelCells model_cells(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const RefinedRegion> regions,
+                       const Context& context) {
+  return Assembly(mesh, grid, regions, context).assemble();
+}
+
+std::array<std::int64_t, 4> count_model_cells(const CutGrid& grid, std::span<const RefinedRegion> regions) {
+  std::array<std::int64_t, 4> count{};
+  std::int64_t inside = 0;
+  for (std::size_t node = 0; node < grid.lattice().node_count(); ++node) inside += grid.is_inside(node) ? 1 : 0;
+  const auto add = [&](Cell cell, std::int64_t components) {
+    count[static_cast<std::size_t>(3 - dimension_of(cell))] += components;
+  };
+  for (CellAxes axes = 0; axes < 8; ++axes) add(axes, inside);
+  // Where the surface cuts a cell, it has other components than its first corner says.
+  for (const Cell cell : grid.cut_cells()) {
+    add(cell, std::int64_t{grid.components(cell)} - (grid.is_inside(node_of(cell)) ? 1 : 0));
+  }
+  for (const Cell cell : cells_of(grid, regions)) add(cell, -std::int64_t{grid.components(cell)});
+  for (const RefinedRegion& region : regions) {
+    for (std::uint32_t k = 0; k < region.boxes().size(); ++k) count[0] += region.components_of_box(k);
+    for (std::uint32_t k = 0; k < region.cells().rectangles().size(); ++k) {
+      count[1] += region.components_of_rectangle(k);
+    }
+    for (std::uint32_t k = 0; k < region.cells().segments().size(); ++k) count[2] += region.components_of_segment(k);
+    for (std::uint32_t k = 0; k < region.cells().corners().size(); ++k) count[3] += region.is_inside(k) ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace blum::detail

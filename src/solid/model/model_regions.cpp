@@ -1,0 +1,123 @@
+#include "solid/model/model_regions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "blum/core/parallel.hpp"
+#include "blum/core/union_find.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// The cubes around cubes, and these, rising.
+std::vector<Cell> spread(const CellLattice& lattice, std::span<const Cell> cubes) {
+  std::vector<Cell> out;
+  for (const Cell cube : cubes) {
+    const auto at = lattice.place(node_of(cube));
+    for (std::int64_t n = 0; n < 27; ++n) {
+      const std::array<std::int64_t, 3> other{at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
+      bool is_cube = true;
+      for (std::size_t a = 0; a < 3; ++a) is_cube = is_cube && other[a] >= 0 && other[a] + 1 < lattice.size()[a];
+      if (is_cube) out.push_back(cell_at(lattice.node(other[0], other[1], other[2]), 7));
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+std::optional<std::uint32_t> index_of(std::span<const Cell> sorted, Cell cell) {
+  const auto at = std::lower_bound(sorted.begin(), sorted.end(), cell);
+  if (at == sorted.end() || *at != cell) return std::nullopt;
+  return static_cast<std::uint32_t>(at - sorted.begin());
+}
+
+/// For each of some cubes, the triangles whose box meets it.
+std::vector<std::vector<std::uint32_t>> triangles_near(const SurfaceMesh& mesh, const CutGrid& grid,
+                                                       std::span<const Cell> cubes, const Context& context) {
+  std::vector<std::vector<std::uint32_t>> out(cubes.size());
+  const CellLattice& lattice = grid.lattice();
+  std::vector<std::array<std::int64_t, 3>> places;
+  for (const Cell cube : cubes) places.push_back(lattice.place(node_of(cube)));
+  for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
+    if (t % 65536 == 0) throw_if_cancelled(context);
+    std::array<std::int64_t, 3> low{};
+    std::array<std::int64_t, 3> high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Place at = grid.planes().cube(mesh.vertices()[mesh.triangles()[t][k]]);
+      for (std::size_t a = 0; a < 3; ++a) {
+        low[a] = k == 0 ? at[a] : std::min<std::int64_t>(low[a], at[a]);
+        high[a] = k == 0 ? at[a] : std::max<std::int64_t>(high[a], at[a]);
+      }
+    }
+    // A coordinate in a plane belongs to the closed cube below, too.
+    for (std::size_t a = 0; a < 3; ++a) low[a] = std::max<std::int64_t>(low[a] - 1, 0);
+    const std::int64_t count = (high[0] - low[0] + 1) * (high[1] - low[1] + 1) * (high[2] - low[2] + 1);
+    if (count <= static_cast<std::int64_t>(cubes.size())) {
+      for (std::int64_t k = low[2]; k <= high[2]; ++k) {
+        for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+          for (std::int64_t i = low[0]; i <= high[0]; ++i) {
+            if (const auto c = index_of(cubes, cell_at(lattice.node(i, j, k), 7))) out[*c].push_back(t);
+          }
+        }
+      }
+    } else {
+      for (std::size_t c = 0; c < cubes.size(); ++c) {
+        bool meets = true;
+        for (std::size_t a = 0; a < 3; ++a) meets = meets && places[c][a] >= low[a] && places[c][a] <= high[a];
+        if (meets) out[c].push_back(t);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid& grid, int most_splits,
+                                          const Context& context) {
+  if (grid.failing_cubes().empty()) return {};
+  const CellLattice& lattice = grid.lattice();
+  const std::vector<Cell> cubes = spread(lattice, grid.failing_cubes());
+  std::vector<std::vector<std::uint32_t>> triangles = triangles_near(mesh, grid, cubes, context);
+  UnionFind joined(cubes.size());
+  for (std::uint32_t c = 0; c < cubes.size(); ++c) {
+    for (const Cell other : spread(lattice, std::span(cubes).subspan(c, 1))) {
+      if (const auto at = index_of(cubes, other)) joined.join(c, *at);
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> groups;
+  std::vector<std::size_t> group_of(cubes.size(), 0);
+  for (std::uint32_t c = 0; c < cubes.size(); ++c) {
+    const std::uint32_t first = joined.find(c);
+    if (first == c) {
+      group_of[c] = groups.size();
+      groups.emplace_back();
+    }
+    groups[group_of[first]].push_back(c);
+  }
+  std::vector<std::optional<RefinedRegion>> found(groups.size());
+  parallel_for(context, groups.size(), 1, "splits", [&](const WorkRange& range) {
+    for (std::size_t g = range.begin; g < range.end; ++g) {
+      std::vector<Cell> own;
+      std::vector<std::vector<std::uint32_t>> near;
+      for (const std::uint32_t c : groups[g]) {
+        own.push_back(cubes[c]);
+        near.push_back(std::move(triangles[c]));
+      }
+      found[g].emplace(mesh, grid, own, std::move(near), most_splits, context);
+    }
+  });
+  throw_if_cancelled(context);
+  std::vector<RefinedRegion> regions;
+  for (auto& region : found) {
+    if (region) regions.push_back(std::move(*region));
+  }
+  return regions;
+}
+
+}  // namespace blum::detail

@@ -1,0 +1,18 @@
+// Blum: the regions of a grid that are split. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "solid/model/cut_grid.hpp"
+#include "solid/model/refined_region.hpp"
+#include "solid/model/surface_mesh.hpp"
+
+namespace blum::detail {
+
+/// Splits the cubes of a grid that fail, in regions of neighbouring ones that do not touch each other.
+/// @param most_splits  of a cube. @throws Cancelled.
+[[nodiscard]] std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid& grid, int most_splits,
+                                                        const Context& context);
+
+}  // namespace blum::detail

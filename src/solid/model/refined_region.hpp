@@ -1,0 +1,142 @@
+// Blum: cubes of a grid that are split until all components in them are balls. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "solid/model/box_cells.hpp"
+#include "solid/model/cut_grid.hpp"
+#include "solid/model/surface_mesh.hpp"
+
+namespace blum::detail {
+
+/// What keeps a box, or a rectangle between boxes, from passing.
+enum class CellObstacle : std::uint8_t { hole_in_square, handle, void_in_cube };
+
+/// A box that could not be split until it passes.
+struct StuckBox {
+  BoxCell box;
+  CellObstacle obstacle;
+};
+
+/// Some cubes of a grid, split into boxes, and what the solid's components in their cells are. Conventions are those of
+/// CutGrid, with boxes for cubes, rectangles for squares and segments for edges; the components of rectangles and
+/// segments that are whole cells of the grid have the same numbers as there.
+class RefinedRegion {
+ public:
+  /// @param cubes  those that fail, and all around them, rising.
+  /// @param triangles  for each of the cubes, all that may meet it.
+  /// @param most_splits  of a cube.  @param context  when it asks to stop, the region is left as it is.
+  RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const Cell> cubes,
+                std::vector<std::vector<std::uint32_t>> triangles, int most_splits, const Context& context);
+
+  [[nodiscard]] std::span<const Cell> cubes() const { return cubes_; }
+  [[nodiscard]] std::span<const BoxCell> boxes() const { return boxes_; }
+  [[nodiscard]] const BoxCells& cells() const { return *cells_; }
+  [[nodiscard]] bool is_inside(std::uint32_t corner) const { return inside_[corner] != 0; }
+  [[nodiscard]] std::uint32_t components_of_segment(std::uint32_t segment) const {
+    return segments_[segment].components;
+  }
+  [[nodiscard]] std::uint32_t components_of_rectangle(std::uint32_t rectangle) const {
+    return rectangles_[rectangle].components;
+  }
+  [[nodiscard]] std::uint32_t components_of_box(std::uint32_t box) const { return box_components_[box]; }
+  /// The component of a rectangle that an interval of a segment at its border belongs to.
+  [[nodiscard]] std::uint32_t component_of_interval(std::uint32_t rectangle, std::uint32_t segment,
+                                                    std::uint32_t interval) const;
+  /// The component of a box that a component of a rectangle at its border belongs to.
+  [[nodiscard]] std::uint32_t component_of_part(std::uint32_t box, std::uint32_t rectangle, std::uint32_t part) const;
+  /// The triangles that cross a segment, from below.
+  [[nodiscard]] std::span<const std::uint32_t> crossings(std::uint32_t segment) const {
+    return segments_[segment].crossings;
+  }
+
+  /// An edge of the mesh around a component of a rectangle.
+  [[nodiscard]] std::optional<ArcEnd> loose_end(std::uint32_t rectangle, std::uint32_t component) const;
+  /// A vertex of the body's surface, where all of it lies in a box and bounds its last component.
+  [[nodiscard]] std::optional<std::uint32_t> shell_in(std::uint32_t box) const;
+
+  /// Empty where all cells pass.
+  [[nodiscard]] std::span<const StuckBox> stuck() const { return stuck_; }
+  /// The number of boxes that come from splits.
+  [[nodiscard]] std::size_t split_boxes() const {
+    return static_cast<std::size_t>(
+        std::count_if(data_.begin(), data_.end(), [](const BoxData& data) { return data.splits > 0; }));
+  }
+  /// The largest number of splits that a box comes from.
+  [[nodiscard]] int depth() const { return depth_; }
+
+ private:
+  struct SegmentSurface {
+    std::vector<std::uint32_t> crossings;  ///< triangles
+    bool begins_inside = false;
+    std::uint32_t components = 0;
+  };
+  struct BoxArc {
+    std::uint32_t triangle = 0;
+    std::array<ArcEnd, 2> ends;  ///< on the border: the segment
+    std::uint32_t component = 0;
+  };
+  struct RectangleSurface {
+    std::vector<BoxArc> arcs;
+    std::vector<std::uint32_t> interval_component;  ///< of the intervals of all sides, one after the other
+    std::uint32_t components = 0;
+    std::vector<std::uint32_t> hole;  ///< edges of the mesh around the first hole; empty where it passes
+  };
+  /// Where a box is to be cut.
+  struct Cut {
+    std::uint32_t box = 0;
+    std::size_t axis = 0;
+    double at = 0;
+    CellObstacle obstacle = CellObstacle::handle;
+  };
+  struct BoxData {
+    std::vector<std::uint32_t> triangles;
+    int splits = 0;
+  };
+  struct Scratch;
+
+  [[nodiscard]] std::vector<Cut> evaluate();
+  void find_crossings(std::uint32_t segment);
+  void find_inside();
+  void find_arcs(std::uint32_t rectangle);
+  void connect_rectangle(std::uint32_t rectangle, Scratch& scratch);
+  void connect_box(std::uint32_t box, Scratch& scratch, std::vector<Cut>& cuts);
+  [[nodiscard]] bool add_pieces(std::uint32_t box, Scratch& scratch) const;
+  [[nodiscard]] bool passes_through(std::uint32_t edge, const BoxRectangle& rectangle) const;
+  [[nodiscard]] bool is_in_box(std::uint32_t vertex, const BoxCell& box) const;
+  [[nodiscard]] Cut cut_through_hole(std::uint32_t rectangle) const;
+  [[nodiscard]] Cut cut_through_middle(std::uint32_t box, CellObstacle obstacle) const;
+  [[nodiscard]] bool can_cut(const Cut& cut, int most_splits) const;
+  void split(const Cut& cut);
+  [[nodiscard]] const std::vector<std::uint32_t>& candidates(std::span<const BoxRef> boxes) const;
+  [[nodiscard]] std::size_t part_offset(std::uint32_t box, std::uint32_t rectangle) const;
+
+  const SurfaceMesh& mesh_;
+  const CutGrid& grid_;
+  std::vector<Cell> cubes_;
+  std::uint32_t outermost_ = 0;  ///< the vertex of largest x: of the outer shell
+  std::vector<BoxCell> boxes_;
+  std::vector<BoxData> data_;
+  std::unique_ptr<BoxCells> cells_;
+  std::vector<std::uint8_t> inside_;  ///< by corner
+  std::vector<SegmentSurface> segments_;
+  std::vector<RectangleSurface> rectangles_;
+  std::vector<std::vector<std::uint32_t>> rectangles_of_box_;  ///< rising
+  std::vector<std::vector<std::uint32_t>> segments_of_box_;    ///< rising
+  std::vector<std::vector<std::uint32_t>> part_component_;     ///< by box
+  std::vector<std::uint32_t> box_components_;
+  std::vector<bool> holds_all_;  ///< by box: whether the whole surface lies in it
+  std::vector<StuckBox> stuck_;
+  int depth_ = 0;
+};
+
+}  // namespace blum::detail
