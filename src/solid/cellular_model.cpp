@@ -157,9 +157,7 @@ CellularModel CellularModel::of(const Solid& solid, const CellularModelOptions& 
   }
   for (const SolidBody& body : solid.bodies()) {
     auto model = std::make_unique<BodyModel>(body.mesh, data->exponent, origin, spacing, context);
-    timer.lap("cells");
     model->regions = detail::refine_regions(model->surface, model->grid, options.most_splits, context);
-    timer.lap("splits");
     for (const Cell cell : model->grid.cut_cells()) report.cut_cubes += dimension_of(cell) == 3 ? 1U : 0U;
     report.failing_cubes += model->grid.failing_cubes().size();
     for (const detail::RefinedRegion& region : model->regions) {
@@ -174,6 +172,7 @@ CellularModel CellularModel::of(const Solid& solid, const CellularModelOptions& 
     for (std::size_t d = 0; d < 4; ++d) report.cells[d] += counts[d];
     data->bodies.push_back(std::move(model));
   }
+  timer.lap("model");
   report.euler = report.cells[0] - report.cells[1] + report.cells[2] - report.cells[3];
   report.passes = report.failures.empty();
   return CellularModel(std::move(data));
