@@ -14,8 +14,10 @@
 #include "blum/geometry/topology.hpp"
 #include "blum/grid/image_values.hpp"
 #include "blum/io/field_io.hpp"
+#include "blum/solid/solid.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
+#include "described.hpp"
 #include "field_statistics.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
@@ -33,6 +35,7 @@ constexpr const char* examples = R"(Examples:
   blum info bunny.obj
   blum info part.stl --weld 1e-6 --json part.json
   blum info scan.nii.gz --json - | jq .labels
+  blum info part.stl --model --resolution 32       its topology, proven cell by cell
   blum info bunny.nrrd                             a field that Blum wrote
   blum info bunny.vtp                              a medial axis)";
 
@@ -43,6 +46,8 @@ constexpr std::size_t label_limit = 20;        // shown, with what takes a pass 
 struct Arguments {
   std::string input;
   bool devices = false;
+  bool model = false;
+  OptionTexts<CellularModelOptions> model_options;
   std::optional<std::string> weld;
   ReportOptions report;
 };
@@ -118,8 +123,8 @@ std::string contacts_text(const SelfIntersections& contacts) {
   return crossing + touching + (contacts.complete ? "" : ", and more: the search ended there");
 }
 
-std::string topology_text(const fs::path& path, const MeshFile& file, const Topology& t,
-                          const SelfIntersections& contacts) {
+TextTable topology_table(const fs::path& path, const MeshFile& file, const Topology& t,
+                         const SelfIntersections& contacts) {
   TextTable table;
   table.add("file", path.string() + ": " + file_text(file));
   table.add("vertices", count_text(t.vertices) +
@@ -153,7 +158,35 @@ std::string topology_text(const fs::path& path, const MeshFile& file, const Topo
     if (!t.shells.empty()) table.add("genus", genus_text(t));
   }
   table.add("solid", solid_text(t, contacts));
-  return table.text();
+  return table;
+}
+
+/// The cellular model of what a mesh bounds, as JSON and as lines.
+Json add_model(const Arguments& a, const MeshView& mesh, const Context& context, TextTable& table) {
+  const Solid solid = Solid::of(mesh, context);
+  const CellularModel model = solid.model(a.model_options.read(), context);
+  const CellularModelReport& facts = model.report();
+  const BettiNumbers betti = model.betti(context);
+  const bool is_proven = facts.passes && betti == solid.betti();
+  Json json = to_json(facts);
+  json["betti"] = to_json(betti);
+  json["proven"] = is_proven;
+  const auto& [vertices, edges, polygons, polyhedra] = facts.cells;
+  table.add("model", std::to_string(facts.grid.size[0] - 1) + " x " + std::to_string(facts.grid.size[1] - 1) + " x " +
+                         std::to_string(facts.grid.size[2] - 1) + " cubes, " + count_text(facts.cut_cubes) +
+                         " cut by the surface, " + count_text(facts.failing_cubes) + " of them split into " +
+                         plural(facts.boxes, "box", "boxes"));
+  table.add("", count_text(static_cast<std::uint64_t>(vertices)) + " vertices, " +
+                    count_text(static_cast<std::uint64_t>(edges)) + " edges, " +
+                    count_text(static_cast<std::uint64_t>(polygons)) + " polygons, " +
+                    count_text(static_cast<std::uint64_t>(polyhedra)) + " polyhedra: " + betti_text(betti));
+  table.add("homotopy type", is_proven ? "that of the solid: proven, every component in a cell is contractible"
+                                       : "not proven");
+  for (const ModelFailure& failure : facts.failures) {
+    table.add("", std::string(to_string(failure.obstacle)) + " between " + vector_text(failure.low) + " and " +
+                      vector_text(failure.high) + ": another --shift may pass");
+  }
+  return json;
 }
 
 void run_mesh(const Arguments& a, const std::optional<double>& weld) {
@@ -167,12 +200,14 @@ void run_mesh(const Arguments& a, const std::optional<double>& weld) {
   }
   const Topology facts = topology(file.mesh, context);
   const SelfIntersections contacts = find_self_intersections(file.mesh, contact_limit, context);
-  progress.clear();
   Json json = file_json(a.input, file);
   json.update(topology_json(facts, contacts));
   json["self_intersections"] = contacts_json(contacts);
+  TextTable table = topology_table(a.input, file, facts, contacts);
+  if (a.model) json["model"] = add_model(a, file.mesh, context, table);
+  progress.clear();
   if (is_welded_away(file) && !a.report.quiet) warn({welded_away_text(file)});
-  report(a.report, answer_json("info", json), topology_text(a.input, file, facts, contacts));
+  report(a.report, answer_json("info", json), table.text());
 }
 
 // ---- Images ----
@@ -272,14 +307,22 @@ void run(const Arguments& a) {
   exclude(a.devices, "--devices", !a.input.empty(), "INPUT", "one asks for what can compute, the other for a file");
   if (a.devices) return run_devices(a);
   if (a.input.empty()) throw UsageError("INPUT needs a file name");
+  if (!a.model && !a.model_options.given().empty()) {
+    throw UsageError(a.model_options.given().front() + " goes with --model");
+  }
   const std::optional<double> weld = parse_weld(a.weld);
   check_outputs(a.report.files(), {a.input});
   if (holds_complex(a.input)) {
+    if (a.model) throw UsageError("--model is for meshes, and '" + a.input + "' is a medial axis");
     if (weld) throw UsageError("--weld is for meshes, and '" + a.input + "' is a medial axis");
     return report_axis(a.input, a.report);
   }
   const InputKind kind = input_kind(a.input);
-  if (weld && kind != InputKind::mesh) throw UsageError("--weld is for meshes, and '" + a.input + "' is none");
+  for (const auto& [is_given, name] : {std::pair{weld.has_value(), "--weld"}, {a.model, "--model"}}) {
+    if (is_given && kind != InputKind::mesh) {
+      throw UsageError(std::string(name) + " is for meshes, and '" + a.input + "' is none");
+    }
+  }
   switch (kind) {
     case InputKind::mesh:
       return run_mesh(a, weld);
@@ -297,6 +340,9 @@ void add_info_command(const CommandLine& line) {
   CLI::App* command = line.app.add_subcommand("info", "What a mesh, an image, a field or a medial axis holds");
   command->add_option("INPUT", a->input, "Mesh, image, field or medial axis");
   command->add_flag("--devices", a->devices, "Instead of a file: the CUDA devices there are, or why there are none");
+  command->add_flag("--model", a->model,
+                    "Of a solid: a cellular model with its homotopy type, and whether that is proven");
+  a->model_options.add_to(*command, "With --model: ");
   add_weld_option(*command, a->weld);
   add_report_options(*command, a->report, "Write the facts as JSON; - is standard output");
   command->footer(examples);

@@ -52,6 +52,22 @@ std::vector<std::uint8_t> inside(const Solid& solid, std::span<const Vec3d> poin
 
 void bind_solid(nb::module_& m) {
   bind_struct<SolidShell>(m);
+  bind_options<CellularModelOptions>(m);
+  bind_struct<CellularModelReport>(m);
+  nb::class_<CellularModel>(m, "CellularModel")
+      .def_prop_ro("report", [](const CellularModel& model) { return result_of(model.report()); })
+      .def(
+          "complex",
+          [](const CellularModel& model, int threads, nb::object progress) {
+            return run({threads, std::move(progress)}, [&](const Context& context) { return model.complex(context); });
+          },
+          nb::arg("threads"), nb::arg("progress").none())
+      .def(
+          "betti",
+          [](const CellularModel& model, int threads, nb::object progress) {
+            return run({threads, std::move(progress)}, [&](const Context& context) { return model.betti(context); });
+          },
+          nb::arg("threads"), nb::arg("progress").none());
   nb::class_<Solid>(m, "Solid")
       .def_prop_ro("rule", [](const Solid& solid) { return std::string(to_string(solid.rule())); })
       .def_prop_ro("reason", &Solid::reason)
@@ -70,7 +86,15 @@ void bind_solid(nb::module_& m) {
               return inside(solid, vectors(points), context);
             }));
           },
-          nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none());
+          nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none())
+      .def(
+          "model",
+          [](const Solid& solid, const nb::dict& given, int threads, nb::object progress) {
+            const auto options = options_from<CellularModelOptions>(given);
+            return run({threads, std::move(progress)},
+                       [&](const Context& context) { return solid.model(options, context); });
+          },
+          nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   m.def(
       "solid_of_mesh",
       [](const MeshArrays& mesh, int threads, nb::object progress) {

@@ -58,7 +58,7 @@ from ._mesh import (
     weld_clusters,
 )
 from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
-from ._solid import Solid, SolidBody
+from ._solid import CellularModel, Solid, SolidBody
 from ._structs import *  # noqa: F403
 from ._transform import distance_transform, distance_transforms
 from ._view import view
@@ -66,6 +66,7 @@ from ._view import view
 __all__ = [
     "ROLES",
     "Cancelled",
+    "CellularModel",
     "ClosestPointQuery",
     "ClosestPoints",
     "Complex",

@@ -69,6 +69,12 @@ class Complex:
             raise InvalidOption(problem)
         self._core = core
 
+    @staticmethod
+    def _from_core(core: _CoreComplex) -> Complex:
+        made = Complex.__new__(Complex)
+        made._core = core
+        return made
+
     @property
     def vertices(self) -> FloatArray:
         """(n, 3): positions, mesh units."""

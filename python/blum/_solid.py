@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._arguments import Integer, Real, integer, label_of, optional_number, points_and_shape
+from ._complex import Complex
 from ._image import as_image, is_image, refuse_selection
 from ._mesh import Betti, Mesh, as_mesh, betti_of, mesh_of_arrays
+from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import Bounds, SolidShell
+from ._structs import Bounds, CellularModelOptions, CellularModelReport, SolidShell
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,37 @@ class SolidBody:
     triangle_of: npt.NDArray[np.uint32]  #: of each triangle of `mesh`, in the input
     betti: Betti  #: components, tunnels, voids; of polyhedra
     shells: tuple[int, ...]  #: of polyhedra: the outer one, then its voids
+
+
+class CellularModel:
+    """A cell complex with the homotopy type of a polyhedron: see :meth:`Solid.model`."""
+
+    def __init__(self, core: Any) -> None:
+        self._core = core
+
+    @property
+    def report(self) -> CellularModelReport:
+        """What it consists of, and the places that do not pass."""
+        return self._core.report
+
+    @property
+    def passes(self) -> bool:
+        """Whether every component in a cell is contractible, so that the model has the solid's homotopy type."""
+        return self.report.passes
+
+    def complex(self, *, threads: int = 0, progress: Progress = False) -> Complex:
+        """The model, collapsed as far as removing free cells from outside goes."""
+        with reporting(progress) as report:
+            return Complex._from_core(self._core.complex(integer(threads, "threads"), report))
+
+    def betti(self, *, threads: int = 0, progress: Progress = False) -> Betti:
+        """Components, tunnels and voids, by the homology of :meth:`complex`."""
+        with reporting(progress) as report:
+            numbers: Any = self._core.betti(integer(threads, "threads"), report)
+        return betti_of(numbers)
+
+    def __repr__(self) -> str:
+        return f"CellularModel(passes={self.passes}, cells={self.report.cells})"
 
 
 class Solid:
@@ -135,6 +168,31 @@ class Solid:
         with reporting(progress) as report:
             found: npt.NDArray[np.uint8] = self._core.inside(rows, integer(threads, "threads"), report)
         return found.view(np.bool_).reshape(shape)
+
+    @takes("CellularModelOptions")
+    def model(
+        self, *, threads: int = 0, progress: Progress = False, **options: Unpack[CellularModelOptions]
+    ) -> CellularModel:
+        """A cell complex with the homotopy type of a polyhedron, at any resolution.
+
+        Parameters
+        ----------
+        **options
+        threads, progress
+            As for :func:`distance_field`.
+
+        Raises
+        ------
+        InvalidOption, also for an image; InvalidMesh unless the solid is a polyhedron.
+
+        >>> import blum
+        >>> model = blum.Solid(blum.generate("torus")).model(resolution=4)
+        >>> model.passes, model.betti()
+        (True, (1, 1, 0))
+        """
+        count = integer(threads, "threads")
+        with reporting(progress) as report:
+            return CellularModel(self._core.model(dict(options), count, report))
 
     def __repr__(self) -> str:
         return f"Solid(rule={self.rule!r}, betti={self.betti}, bodies={len(self._core.bodies)})"

@@ -52,6 +52,7 @@ def test_types_are_what_the_library_describes(name):
         (blum.distance_transforms, "DistanceTransformOptions", ("label", "threshold")),
         (blum.medial_axis, "MedialAxisOptions", ("spacing",)),
         (blum.certify, "CertificateOptions", ()),
+        (blum.Solid.model, "CellularModelOptions", ()),
     ],
 )
 def test_signatures_name_options_with_their_defaults(taker, options, left_out):

@@ -1,0 +1,61 @@
+"""Cellular models in Python: their report, their homology, and what is refused."""
+
+import blum
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize("resolution", [1, 2, 7, 20])
+@pytest.mark.parametrize("name", ["torus", "plate", "nested_shells", "linked_tori", "menger"])
+def test_models_have_the_numbers_of_the_solid_at_every_resolution(name, resolution):
+    solid = blum.Solid(blum.generate(name))
+    model = solid.model(resolution=resolution)
+    assert model.passes and model.report.failures == ()
+    assert model.betti() == solid.betti
+    components, tunnels, voids = solid.betti
+    vertices, edges, polygons, polyhedra = model.report.cells
+    assert vertices - edges + polygons - polyhedra == model.report.euler == components - tunnels + voids
+
+
+def test_the_complex_lies_in_the_solid():
+    solid = blum.Solid(blum.generate("bracket"))
+    complex_ = solid.model(resolution=16).complex()
+    assert type(complex_) is blum.Complex and complex_.homology() == solid.betti
+    lower, upper = np.array(solid.bounds)
+    assert (complex_.vertices >= lower).all() and (complex_.vertices <= upper).all()
+    assert solid.inside(complex_.vertices).mean() > 0.9  # others lie on the surface, up to rounding
+
+
+def test_places_that_do_not_pass_are_named():
+    solid = blum.Solid(blum.generate("menger"))
+    model = solid.model(resolution=2, most_splits=0)
+    assert not model.passes
+    assert {failure.obstacle for failure in model.report.failures} <= {"hole in square", "handle", "void in cube"}
+    for failure in model.report.failures:
+        assert (np.array(failure.low) < failure.high).all() and failure.body == 0
+    assert solid.model(resolution=2).passes
+
+
+def test_moving_and_scaling_grids_leaves_the_numbers():
+    mesh = blum.generate("gear")
+    for scale in (1e-20, 1.0, 1e20):
+        solid = blum.Solid(mesh.vertices * scale, mesh.triangles)
+        for shift in (0.0, 0.5, 1.0):
+            assert solid.model(resolution=3, shift=shift).betti() == solid.betti
+    assert blum.Solid(mesh).model(spacing=0.25).report.grid.spacing == (0.25, 0.25, 0.25)
+
+
+def test_what_is_no_polyhedron_has_no_model():
+    with pytest.raises(blum.InvalidMesh, match="no cellular model: .*open"):
+        blum.Solid(blum.generate("organic", holes=2)).model()
+    with pytest.raises(blum.InvalidOption, match="union of voxels"):
+        blum.Solid(np.ones((3, 3, 3), np.uint8)).model()
+    solid = blum.Solid(blum.generate("box"))
+    for options in ({"resolution": 0}, {"resolution": 801}, {"spacing": 0.0}, {"spacing": 1e-9}, {"shift": 1.5}):
+        with pytest.raises(blum.InvalidOption):
+            solid.model(**options)
+    tiny = blum.generate("box")
+    vertices = tiny.vertices.copy()
+    vertices[vertices == vertices.max()] = 1e-60
+    with pytest.raises(blum.InvalidMesh, match="too small for exact answers"):
+        blum.Solid(vertices, tiny.triangles).model()
