@@ -295,7 +295,9 @@ bool CutGrid::connect_square(const SurfaceMesh& mesh, Cell square, Scratch& scra
   const double plane = planes_.at(across, static_cast<std::int32_t>(lattice_.place(node)[across]));
   const bool passes = components_here.finish([&](std::span<const std::uint32_t> loop) {
     scratch.loop_edges.clear();
-    for (const std::uint32_t arc : loop) scratch.loop_edges.push_back(arcs[arc].ends[0].id);
+    for (const std::uint32_t arc : loop) {
+      for (const ArcEnd& end : arcs[arc].ends) scratch.loop_edges.push_back(end.id);
+    }
     return is_around_hole(mesh, scratch.loop_edges, across, plane);
   });
   own.components = components_here.count();

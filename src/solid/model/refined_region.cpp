@@ -289,7 +289,9 @@ void RefinedRegion::connect_rectangle(std::uint32_t rectangle, Scratch& scratch)
   std::vector<std::uint32_t> edges;
   const bool passes = components.finish([&](std::span<const std::uint32_t> loop) {
     edges.clear();
-    for (const std::uint32_t arc : loop) edges.push_back(own.arcs[arc].ends[0].id);
+    for (const std::uint32_t arc : loop) {
+      for (const ArcEnd& end : own.arcs[arc].ends) edges.push_back(end.id);
+    }
     return is_around_hole(mesh_, edges, cell.axis, plane);
   });
   if (!passes) {
