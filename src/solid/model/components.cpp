@@ -34,7 +34,6 @@ bool SquareComponents::finish(FunctionRef<bool(std::span<const std::uint32_t>)> 
   component_.assign(intervals_ + arcs_.size(), none);
   count_ = 0;
   loops_.clear();
-  hole_.clear();
   for (std::uint32_t k = 0; k < component_.size(); ++k) {
     const std::uint32_t first = joined_.find(k);
     if (first == k) component_[k] = count_++;
@@ -49,10 +48,7 @@ bool SquareComponents::finish(FunctionRef<bool(std::span<const std::uint32_t>)> 
     loop_.clear();
     std::size_t j = i;
     for (; j < loops_.size() && loops_[j][0] == loops_[i][0]; ++j) loop_.push_back(loops_[j][1]);
-    if (is_hole(loop_)) {
-      hole_ = loop_;
-      return false;
-    }
+    if (is_hole(loop_)) return false;
     i = j;
   }
   return true;

@@ -43,8 +43,6 @@ class SquareComponents {
   [[nodiscard]] std::uint32_t of_interval(std::size_t interval) const { return component_[interval]; }
   /// Of the arc that was added as that one.
   [[nodiscard]] std::uint32_t of_arc(std::size_t arc) const { return component_[intervals_ + arc]; }
-  /// After finish() returned false: the arcs around the first hole.
-  [[nodiscard]] std::span<const std::uint32_t> hole() const { return hole_; }
 
  private:
   using Pair = std::array<std::uint32_t, 2>;
@@ -59,7 +57,6 @@ class SquareComponents {
   std::vector<std::uint32_t> component_;
   std::vector<Pair> loops_;  ///< first and next arcs of closed curves
   std::vector<std::uint32_t> loop_;
-  std::vector<std::uint32_t> hole_;
   std::uint32_t count_ = 0;
 };
 

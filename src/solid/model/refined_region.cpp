@@ -1,52 +1,20 @@
 #include "solid/model/refined_region.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
-#include "blum/core/union_find.hpp"
 #include "blum/geometry/grid_predicates.hpp"
+#include "solid/model/box_splitter.hpp"
+#include "solid/model/box_surface.hpp"
 #include "solid/model/components.hpp"
-#include "solid/model/section_loop.hpp"
 
 namespace blum::detail {
 namespace {
 
-/// Boxes are not cut to less than this part of the spacing.
-constexpr double least_part = 1e-12;
-
 constexpr std::size_t next(std::size_t axis) {
   return (axis + 1) % 3;
-}
-
-std::size_t place_in(std::span<const std::uint32_t> sorted, std::uint32_t value) {
-  return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
-}
-
-void sort_unique(std::vector<std::uint32_t>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
-/// Whether the box around a triangle meets a box, both closed.
-bool may_meet(const TriangleCorners& t, const BoxCell& box) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (std::min({t[0][a], t[1][a], t[2][a]}) > box.high[a]) return false;
-    if (std::max({t[0][a], t[1][a], t[2][a]}) < box.low[a]) return false;
-  }
-  return true;
-}
-
-/// Whether a triangle crosses a part of a line along an axis.
-bool crosses(const TriangleCorners& t, std::size_t axis, const Vec3d& low, const Vec3d& high) {
-  const double u = low[next(axis)];
-  const double v = low[next(next(axis))];
-  const int first = side_of_line({t[0], t[1]}, axis, u, v);
-  if (first == 0 || side_of_line({t[1], t[2]}, axis, u, v) != first) return false;
-  if (side_of_line({t[2], t[0]}, axis, u, v) != first) return false;
-  return side_of_node(t, low) == -first && side_of_node(t, high) == first;
 }
 
 }  // namespace
@@ -54,71 +22,46 @@ bool crosses(const TriangleCorners& t, std::size_t axis, const Vec3d& low, const
 struct RefinedRegion::Scratch {
   SquareComponents square;
   CubeComponents cube;
-  UnionFind pieces;
+  BoxPieces pieces;
 };
 
 RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const Cell> cubes,
                              std::vector<std::vector<std::uint32_t>> triangles, int most_splits, const Context& context)
-    : mesh_(mesh), grid_(grid), cubes_(cubes.begin(), cubes.end()) {
-  const auto vertices = mesh.vertices();
-  outermost_ = static_cast<std::uint32_t>(
-      std::max_element(vertices.begin(), vertices.end(), [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; }) -
-      vertices.begin());
+    : mesh_(mesh), grid_(grid), cubes_(cubes.begin(), cubes.end()), outermost_(outermost_vertex(mesh)) {
+  const Vec3d& spacing = grid.planes().spacing();
+  BoxSplitter splitter(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits);
+  std::vector<SplitBox> parts;
   for (std::size_t c = 0; c < cubes.size(); ++c) {
     const auto at = grid.lattice().place(node_of(cubes[c]));
     const Place low{static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]),
                     static_cast<std::int32_t>(at[2])};
-    boxes_.push_back({grid.planes().node(low), grid.planes().node({low[0] + 1, low[1] + 1, low[2] + 1}), cubes[c]});
-    data_.push_back({std::move(triangles[c]), 0});
-  }
-  while (!context.cancel.stop_requested()) {
-    const std::vector<Cut> cuts = evaluate();
-    stuck_.clear();
-    bool is_cut = false;
-    for (const Cut& cut : cuts) {
-      if (can_cut(cut, most_splits)) {
-        split(cut);
-        is_cut = true;
-      } else {
-        stuck_.push_back({boxes_[cut.box], cut.obstacle});
-      }
+    SplitBox whole;
+    whole.box = {grid.planes().node(low), grid.planes().node({low[0] + 1, low[1] + 1, low[2] + 1}), cubes[c]};
+    whole.triangles = std::move(triangles[c]);
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      const std::size_t node = node_of(cubes[c]) + (corner & 1U) + (corner >> 1U & 1U) * grid.lattice().stride(1) +
+                               (corner >> 2U) * grid.lattice().stride(2);
+      if (grid.is_inside(node)) whole.inside |= static_cast<std::uint8_t>(1U << corner);
     }
-    if (!is_cut) break;
+    splitter.split(std::move(whole), context, parts);
   }
-  for (const BoxData& data : data_) depth_ = std::max(depth_, data.splits);
-}
-
-bool RefinedRegion::can_cut(const Cut& cut, int most_splits) const {
-  const BoxCell& box = boxes_[cut.box];
-  const double least = least_part * grid_.planes().spacing()[cut.axis];
-  return data_[cut.box].splits < most_splits && cut.at > box.low[cut.axis] + least &&
-         cut.at < box.high[cut.axis] - least;
-}
-
-void RefinedRegion::split(const Cut& cut) {
-  BoxCell upper = boxes_[cut.box];
-  BoxCell& lower = boxes_[cut.box];
-  lower.high[cut.axis] = upper.low[cut.axis] = cut.at;
-  const std::vector<std::uint32_t> all = std::move(data_[cut.box].triangles);
-  data_[cut.box].triangles = {};
-  const int splits = ++data_[cut.box].splits;
-  BoxData above{{}, splits};
-  for (const std::uint32_t t : all) {
-    const TriangleCorners corners = mesh_.corners(t);
-    if (may_meet(corners, lower)) data_[cut.box].triangles.push_back(t);
-    if (may_meet(corners, upper)) above.triangles.push_back(t);
+  for (SplitBox& part : parts) {
+    boxes_.push_back(part.box);
+    depth_ = std::max(depth_, part.splits);
+    split_boxes_ += part.splits > 0 ? 1U : 0U;
+    if (part.obstacle) stuck_.push_back({part.box, *part.obstacle});
+    triangles_.push_back(std::move(part.triangles));
   }
-  boxes_.push_back(upper);
-  data_.push_back(std::move(above));
+  if (!context.cancel.stop_requested()) connect();
 }
 
-std::vector<RefinedRegion::Cut> RefinedRegion::evaluate() {
+void RefinedRegion::connect() {
   cells_ = std::make_unique<BoxCells>(boxes_, grid_.planes(), grid_.lattice());
-  segments_.assign(cells_->segments().size(), {});
-  rectangles_.assign(cells_->rectangles().size(), {});
-  rectangles_of_box_.assign(boxes_.size(), {});
-  segments_of_box_.assign(boxes_.size(), {});
-  part_component_.assign(boxes_.size(), {});
+  segments_.resize(cells_->segments().size());
+  rectangles_.resize(cells_->rectangles().size());
+  rectangles_of_box_.resize(boxes_.size());
+  segments_of_box_.resize(boxes_.size());
+  part_component_.resize(boxes_.size());
   box_components_.assign(boxes_.size(), 0);
   holds_all_.assign(boxes_.size(), false);
   for (std::uint32_t s = 0; s < segments_.size(); ++s) {
@@ -130,30 +73,21 @@ std::vector<RefinedRegion::Cut> RefinedRegion::evaluate() {
   for (auto& own : segments_of_box_) own.erase(std::unique(own.begin(), own.end()), own.end());
   find_inside();
   Scratch scratch;
-  std::map<std::uint32_t, Cut> cuts;
   for (std::uint32_t r = 0; r < rectangles_.size(); ++r) {
     find_arcs(r);
     connect_rectangle(r, scratch);
     for (const BoxRef& box : cells_->rectangles()[r].boxes) {
       if (box.is_box) rectangles_of_box_[box.id].push_back(r);
     }
-    if (rectangles_[r].hole.empty()) continue;
-    const Cut cut = cut_through_hole(r);
-    cuts.try_emplace(cut.box, cut);
   }
-  std::vector<Cut> out;
-  for (std::uint32_t b = 0; b < boxes_.size(); ++b) connect_box(b, scratch, out);
-  for (const Cut& cut : out) cuts.try_emplace(cut.box, cut);
-  out.clear();
-  for (const auto& [box, cut] : cuts) out.push_back(cut);
-  return out;
+  for (std::uint32_t b = 0; b < boxes_.size(); ++b) connect_box(b, scratch);
 }
 
 const std::vector<std::uint32_t>& RefinedRegion::candidates(std::span<const BoxRef> boxes) const {
   const std::vector<std::uint32_t>* fewest = nullptr;
   for (const BoxRef& box : boxes) {
     if (!box.is_box) continue;
-    const auto& own = data_[box.id].triangles;
+    const auto& own = triangles_[box.id];
     if (fewest == nullptr || own.size() < fewest->size()) fewest = &own;
   }
   return *fewest;
@@ -164,15 +98,10 @@ void RefinedRegion::find_crossings(std::uint32_t segment) {
   const Vec3d& low = cells_->corners()[s.ends[0]];
   const Vec3d& high = cells_->corners()[s.ends[1]];
   std::vector<std::uint32_t>& found = segments_[segment].crossings;
-  const BoxCell own{low, high, 0};
   for (const std::uint32_t t : candidates(s.around)) {
-    const TriangleCorners corners = mesh_.corners(t);
-    if (may_meet(corners, own) && crosses(corners, s.axis, low, high)) found.push_back(t);
+    if (crosses(mesh_.corners(t), s.axis, low, high)) found.push_back(t);
   }
-  if (found.size() < 2) return;
-  std::sort(found.begin(), found.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return is_crossed_before(mesh_.corners(a), mesh_.corners(b), s.axis, low[next(s.axis)], low[next(next(s.axis))]);
-  });
+  sort_along(mesh_, s.axis, low, found);
 }
 
 /// Corners of the grid are known; from there along segments.
@@ -204,34 +133,11 @@ void RefinedRegion::find_inside() {
   }
 }
 
-/// Whether an edge of the mesh passes through a rectangle.
-bool RefinedRegion::passes_through(std::uint32_t edge, const BoxRectangle& rectangle) const {
-  const std::size_t w = rectangle.axis;
-  const EdgeEnds ends = mesh_.ends(edge);
-  const auto corners = cells_->corners();
-  const Vec3d& low = corners[cells_->segments()[rectangle.sides[0].front()].ends[0]];
-  const Vec3d& high = corners[cells_->segments()[rectangle.sides[1].back()].ends[1]];
-  if (is_above(ends[0][w], low[w]) == is_above(ends[1][w], low[w])) return false;
-  const int rises = is_above(ends[1][w], low[w]) ? 1 : -1;
-  // Where it passes, a line across that lies to the left of the rising edge, seen in the plane of w and a, is above.
-  for (const std::size_t a : {next(w), next(next(w))}) {
-    const std::size_t along = 3 - w - a;
-    const bool is_w_first = next(along) == w;
-    const auto is_line_above = [&](double coordinate) {
-      const int side =
-          is_w_first ? side_of_line(ends, along, low[w], coordinate) : -side_of_line(ends, along, coordinate, low[w]);
-      return side * rises > 0;
-    };
-    if (is_line_above(low[a]) || !is_line_above(high[a])) return false;
-  }
-  return true;
-}
-
 void RefinedRegion::find_arcs(std::uint32_t rectangle) {
   const BoxRectangle& own = cells_->rectangles()[rectangle];
   const auto corners = cells_->corners();
-  const BoxCell flat{corners[cells_->segments()[own.sides[0].front()].ends[0]],
-                     corners[cells_->segments()[own.sides[1].back()].ends[1]], 0};
+  const Vec3d& low = corners[cells_->segments()[own.sides[0].front()].ends[0]];
+  const Vec3d& high = corners[cells_->segments()[own.sides[1].back()].ends[1]];
   std::vector<std::pair<std::uint32_t, std::uint32_t>> on_border;  // triangles and segments
   for (const auto& side : own.sides) {
     for (const std::uint32_t s : side) {
@@ -241,12 +147,12 @@ void RefinedRegion::find_arcs(std::uint32_t rectangle) {
   std::sort(on_border.begin(), on_border.end());
   std::map<std::uint32_t, bool> passes;  // of edges of the mesh
   for (const std::uint32_t t : candidates(own.boxes)) {
-    if (!may_meet(mesh_.corners(t), flat)) continue;
+    if (!may_meet(mesh_.corners(t), low, high)) continue;
     std::array<ArcEnd, 4> ends{};
     std::size_t count = 0;
     for (const EdgeId edge : mesh_.edges_of(t)) {
       const auto [at, is_new] = passes.try_emplace(edge.value, false);
-      if (is_new) at->second = passes_through(edge.value, own);
+      if (is_new) at->second = passes_through(mesh_.ends(edge.value), own.axis, low, high);
       if (at->second && count < 4) ends[count++] = {edge.value, false};
     }
     auto at = std::lower_bound(on_border.begin(), on_border.end(), std::pair{t, std::uint32_t{0}});
@@ -285,31 +191,11 @@ void RefinedRegion::connect_rectangle(std::uint32_t rectangle, Scratch& scratch)
   for (const BoxArc& arc : own.arcs) {
     components.add_arc(end_of(arc.ends[0], arc.triangle), end_of(arc.ends[1], arc.triangle));
   }
-  const double plane = cells_->corners()[cells_->segments()[cell.sides[0].front()].ends[0]][cell.axis];
-  std::vector<std::uint32_t> edges;
-  const bool passes = components.finish([&](std::span<const std::uint32_t> loop) {
-    edges.clear();
-    for (const std::uint32_t arc : loop) {
-      for (const ArcEnd& end : own.arcs[arc].ends) edges.push_back(end.id);
-    }
-    return is_around_hole(mesh_, edges, cell.axis, plane);
-  });
-  if (!passes) {
-    for (const std::uint32_t arc : components.hole()) {
-      for (const ArcEnd& end : own.arcs[arc].ends) own.hole.push_back(end.id);
-    }
-  }
+  // Boxes beside it have passed, or their obstacle is known: whether it has a hole is of no interest any more.
+  static_cast<void>(components.finish([](std::span<const std::uint32_t>) { return false; }));
   own.components = components.count();
   for (std::uint32_t k = 0; k < count; ++k) own.interval_component.push_back(components.of_interval(k));
   for (std::size_t a = 0; a < own.arcs.size(); ++a) own.arcs[a].component = components.of_arc(a);
-}
-
-bool RefinedRegion::is_in_box(std::uint32_t vertex, const BoxCell& box) const {
-  const Vec3d& p = mesh_.vertices()[vertex];
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (!is_above(p[a], box.low[a]) || is_above(p[a], box.high[a])) return false;
-  }
-  return true;
 }
 
 std::size_t RefinedRegion::part_offset(std::uint32_t box, std::uint32_t rectangle) const {
@@ -352,168 +238,48 @@ std::optional<std::uint32_t> RefinedRegion::shell_in(std::uint32_t box) const {
   return outermost_;
 }
 
-void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch, std::vector<Cut>& cuts) {
+void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch) {
   const auto& rectangles = rectangles_of_box_[box];
-  for (const std::uint32_t r : rectangles) {
-    if (!rectangles_[r].hole.empty()) return;  // its components are not known yet
-  }
   std::size_t parts = 0;
   for (const std::uint32_t r : rectangles) parts += rectangles_[r].components;
   CubeComponents& components = scratch.cube;
   components.start(parts);
-  std::map<std::uint32_t, std::size_t> part_at_corner;
-  for (const std::uint32_t s : segments_of_box_[box]) {
-    if (segments_[s].components == 0) continue;
-    const BoxSegment& segment = cells_->segments()[s];
-    const auto [one, other] = cells_->rectangles_at(segment, {box, true});
-    for (std::uint32_t k = 0; k < segments_[s].components; ++k) {
-      const std::size_t part = part_offset(box, one) + component_of_interval(one, s, k);
-      components.join_at_interval(part, part_offset(box, other) + component_of_interval(other, s, k));
-      if (k == 0 && is_inside(segment.ends[0])) part_at_corner.try_emplace(segment.ends[0], part);
-      if (k + 1 == segments_[s].components && is_inside(segment.ends[1])) {
-        part_at_corner.try_emplace(segment.ends[1], part);
-      }
-    }
-  }
-  for (const auto& [corner, part] : part_at_corner) components.add_corner(part);
-  std::vector<std::int64_t> euler;
-  std::vector<std::uint32_t> triangles = data_[box].triangles;
-  // Of each triangle: its arcs' parts.
-  std::map<std::uint32_t, std::vector<std::size_t>> parts_of;
-  std::vector<std::uint32_t> passing;  // edges that pass its sides
+  join_at_segments(box, components);
+  std::vector<BoxPieces::ArcPart> arcs;
+  std::vector<std::uint32_t> passing;  // edges of the mesh that pass its sides
+  std::size_t offset = 0;
   for (const std::uint32_t r : rectangles) {
-    const std::size_t offset = part_offset(box, r);
     for (const BoxArc& arc : rectangles_[r].arcs) {
-      parts_of[arc.triangle].push_back(offset + arc.component);
+      arcs.push_back({arc.triangle, static_cast<std::uint32_t>(offset + arc.component)});
       for (const ArcEnd& end : arc.ends) {
         if (!end.on_border) passing.push_back(end.id);
       }
     }
+    offset += rectangles_[r].components;
   }
-  sort_unique(passing);
-  // Pieces are joined from triangles, edges and vertices that meet the open box.
-  std::vector<std::uint32_t> met_triangles;
-  std::vector<std::uint32_t> met_edges = passing;
-  std::vector<std::uint32_t> met_vertices;
-  for (const std::uint32_t t : triangles) {
-    int inside = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = mesh_.triangles()[t][k];
-      if (!is_in_box(v, boxes_[box])) continue;
-      ++inside;
-      met_vertices.push_back(v);
-      met_edges.push_back(mesh_.edges_of(t)[k].value);
-      met_edges.push_back(mesh_.edges_of(t)[(k + 2) % 3].value);
-    }
-    if (inside == 3 || parts_of.contains(t)) met_triangles.push_back(t);
-  }
-  sort_unique(met_triangles);
-  sort_unique(met_edges);
-  sort_unique(met_vertices);
-  const std::size_t first_edge = met_triangles.size();
-  const std::size_t first_vertex = first_edge + met_edges.size();
-  scratch.pieces.reset(first_vertex + met_vertices.size());
-  const auto join = [&](std::size_t a, std::size_t b) {
-    scratch.pieces.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
-  };
-  for (std::size_t k = 0; k < met_triangles.size(); ++k) {
-    for (const EdgeId edge : mesh_.edges_of(met_triangles[k])) {
-      const std::size_t at = place_in(met_edges, edge.value);
-      if (at < met_edges.size() && met_edges[at] == edge.value) join(k, first_edge + at);
-    }
-  }
-  for (std::size_t k = 0; k < met_edges.size(); ++k) {
-    for (const std::uint32_t v : mesh_.edges()[met_edges[k]]) {
-      const std::size_t at = place_in(met_vertices, v);
-      if (at < met_vertices.size() && met_vertices[at] == v) join(first_edge + k, first_vertex + at);
-    }
-  }
-  euler.assign(first_vertex + met_vertices.size(), 0);
-  for (std::uint32_t k = 0; k < euler.size(); ++k) {
-    euler[scratch.pieces.find(k)] += k >= first_edge && k < first_vertex ? -1 : 1;
-  }
-  std::vector<bool> is_open(euler.size(), false);
-  for (std::size_t k = 0; k < met_triangles.size(); ++k) {
-    const auto at = parts_of.find(met_triangles[k]);
-    if (at == parts_of.end()) continue;
-    const std::uint32_t piece = scratch.pieces.find(static_cast<std::uint32_t>(k));
-    is_open[piece] = true;
-    for (const std::size_t part : at->second) components.add_arc(piece, part);
-  }
-  bool has_void = false;
-  std::uint32_t whole = 0;
-  for (std::size_t k = 0; k < met_vertices.size(); ++k) {
-    const std::uint32_t piece = scratch.pieces.find(static_cast<std::uint32_t>(first_vertex + k));
-    if (is_open[piece]) continue;
-    is_open[piece] = true;  // looked at
-    const std::size_t outer = place_in(met_vertices, outermost_);
-    const bool is_outer = outer < met_vertices.size() && met_vertices[outer] == outermost_ &&
-                          scratch.pieces.find(static_cast<std::uint32_t>(first_vertex + outer)) == piece;
-    if (is_outer && euler[piece] == 2) ++whole;
-    if (!is_outer || euler[piece] != 2) has_void = true;
-  }
-  const bool passes = components.finish([&](std::uint32_t piece) { return euler[piece]; });
+  scratch.pieces.find(mesh_, boxes_[box], triangles_[box], arcs, passing, outermost_, components);
+  // Boxes pass, or their obstacle is known: sides that are cut into rectangles change nothing of that.
+  static_cast<void>(components.finish([&](std::uint32_t piece) { return scratch.pieces.euler(piece); }));
   for (std::size_t k = 0; k < parts; ++k) part_component_[box].push_back(components.of_part(k));
-  box_components_[box] = components.count() + whole;
-  holds_all_[box] = whole > 0;
-  if (has_void || !passes) {
-    cuts.push_back(cut_through_middle(box, has_void ? CellObstacle::void_in_cube : CellObstacle::handle));
-  }
+  holds_all_[box] = scratch.pieces.holds_body();
+  box_components_[box] = components.count() + (holds_all_[box] ? 1U : 0U);
 }
 
-RefinedRegion::Cut RefinedRegion::cut_through_hole(std::uint32_t rectangle) const {
-  const BoxRectangle& own = cells_->rectangles()[rectangle];
-  const auto corners = cells_->corners();
-  const Vec3d& low = corners[cells_->segments()[own.sides[0].front()].ends[0]];
-  const Vec3d& high = corners[cells_->segments()[own.sides[1].back()].ends[1]];
-  Vec3d sum{};
-  for (const std::uint32_t edge : rectangles_[rectangle].hole) {
-    const auto [a, b] = mesh_.ends(edge);
-    const double t = (low[own.axis] - a[own.axis]) / (b[own.axis] - a[own.axis]);
-    sum += a + (b - a) * std::clamp(t, 0.0, 1.0);
-  }
-  const Vec3d middle = sum / static_cast<double>(rectangles_[rectangle].hole.size());
-  // Across the longer side, so that boxes stay compact; and the larger of the two boxes.
-  const std::size_t a = next(own.axis);
-  const std::size_t b = next(a);
-  const std::size_t axis = high[a] - low[a] >= high[b] - low[b] ? a : b;
-  const auto volume = [&](const BoxRef& box) {
-    if (!box.is_box) return -1.0;
-    const Vec3d size = boxes_[box.id].high - boxes_[box.id].low;
-    return size.x * size.y * size.z;
-  };
-  const BoxRef& box = volume(own.boxes[0]) >= volume(own.boxes[1]) ? own.boxes[0] : own.boxes[1];
-  return {box.id, axis, middle[axis], CellObstacle::hole_in_square};
-}
-
-RefinedRegion::Cut RefinedRegion::cut_through_middle(std::uint32_t box, CellObstacle obstacle) const {
-  const BoxCell& own = boxes_[box];
-  Vec3d low = own.high;
-  Vec3d high = own.low;
-  for (const std::uint32_t t : data_[box].triangles) {
-    for (const std::uint32_t v : mesh_.triangles()[t]) {
-      if (!is_in_box(v, own)) continue;
-      for (std::size_t a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], mesh_.vertices()[v][a]);
-        high[a] = std::max(high[a], mesh_.vertices()[v][a]);
-      }
+void RefinedRegion::join_at_segments(std::uint32_t box, CubeComponents& components) const {
+  std::map<std::uint32_t, std::size_t> part_at_corner;
+  for (const std::uint32_t s : segments_of_box_[box]) {
+    const std::uint32_t count = segments_[s].components;
+    if (count == 0) continue;
+    const BoxSegment& segment = cells_->segments()[s];
+    const auto [one, other] = cells_->rectangles_at(segment, {box, true});
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::size_t part = part_offset(box, one) + component_of_interval(one, s, k);
+      components.join_at_interval(part, part_offset(box, other) + component_of_interval(other, s, k));
+      if (k == 0 && is_inside(segment.ends[0])) part_at_corner.try_emplace(segment.ends[0], part);
+      if (k + 1 == count && is_inside(segment.ends[1])) part_at_corner.try_emplace(segment.ends[1], part);
     }
   }
-  // Small things are cut themselves, so that they need not be come near to in halves.
-  const auto longest = [](const Vec3d& size) {
-    return size.x >= size.y && size.x >= size.z ? std::size_t{0} : size.y >= size.z ? std::size_t{1} : std::size_t{2};
-  };
-  const Vec3d size = own.high - own.low;
-  const Vec3d inner = high - low;
-  const std::size_t inner_axis = longest(inner);
-  const double middle = 0.5 * (low[inner_axis] + high[inner_axis]);
-  const bool is_small = inner.x >= 0 && inner[inner_axis] < 0.5 * size[inner_axis];
-  const double room = 0.05 * size[inner_axis];
-  if (is_small && middle > own.low[inner_axis] + room && middle < own.high[inner_axis] - room) {
-    return {box, inner_axis, middle, obstacle};
-  }
-  const std::size_t axis = longest(size);
-  return {box, axis, 0.5 * (own.low[axis] + own.high[axis]), obstacle};
+  for (const auto& [corner, part] : part_at_corner) components.add_corner(part);
 }
 
 }  // namespace blum::detail

@@ -1,7 +1,6 @@
 // Blum: cubes of a grid that are split until all components in them are balls. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,13 +12,11 @@
 #include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
 #include "solid/model/box_cells.hpp"
+#include "solid/model/box_splitter.hpp"
 #include "solid/model/cut_grid.hpp"
 #include "solid/model/surface_mesh.hpp"
 
 namespace blum::detail {
-
-/// What keeps a box, or a rectangle between boxes, from passing.
-enum class CellObstacle : std::uint8_t { hole_in_square, handle, void_in_cube };
 
 /// A box that could not be split until it passes.
 struct StuckBox {
@@ -67,10 +64,7 @@ class RefinedRegion {
   /// Empty where all cells pass.
   [[nodiscard]] std::span<const StuckBox> stuck() const { return stuck_; }
   /// The number of boxes that come from splits.
-  [[nodiscard]] std::size_t split_boxes() const {
-    return static_cast<std::size_t>(
-        std::count_if(data_.begin(), data_.end(), [](const BoxData& data) { return data.splits > 0; }));
-  }
+  [[nodiscard]] std::size_t split_boxes() const { return split_boxes_; }
   /// The largest number of splits that a box comes from.
   [[nodiscard]] int depth() const { return depth_; }
 
@@ -89,34 +83,16 @@ class RefinedRegion {
     std::vector<BoxArc> arcs;
     std::vector<std::uint32_t> interval_component;  ///< of the intervals of all sides, one after the other
     std::uint32_t components = 0;
-    std::vector<std::uint32_t> hole;  ///< edges of the mesh around the first hole; empty where it passes
-  };
-  /// Where a box is to be cut.
-  struct Cut {
-    std::uint32_t box = 0;
-    std::size_t axis = 0;
-    double at = 0;
-    CellObstacle obstacle = CellObstacle::handle;
-  };
-  struct BoxData {
-    std::vector<std::uint32_t> triangles;
-    int splits = 0;
   };
   struct Scratch;
 
-  [[nodiscard]] std::vector<Cut> evaluate();
+  void connect();
   void find_crossings(std::uint32_t segment);
   void find_inside();
   void find_arcs(std::uint32_t rectangle);
   void connect_rectangle(std::uint32_t rectangle, Scratch& scratch);
-  void connect_box(std::uint32_t box, Scratch& scratch, std::vector<Cut>& cuts);
-  [[nodiscard]] bool add_pieces(std::uint32_t box, Scratch& scratch) const;
-  [[nodiscard]] bool passes_through(std::uint32_t edge, const BoxRectangle& rectangle) const;
-  [[nodiscard]] bool is_in_box(std::uint32_t vertex, const BoxCell& box) const;
-  [[nodiscard]] Cut cut_through_hole(std::uint32_t rectangle) const;
-  [[nodiscard]] Cut cut_through_middle(std::uint32_t box, CellObstacle obstacle) const;
-  [[nodiscard]] bool can_cut(const Cut& cut, int most_splits) const;
-  void split(const Cut& cut);
+  void connect_box(std::uint32_t box, Scratch& scratch);
+  void join_at_segments(std::uint32_t box, CubeComponents& components) const;
   [[nodiscard]] const std::vector<std::uint32_t>& candidates(std::span<const BoxRef> boxes) const;
   [[nodiscard]] std::size_t part_offset(std::uint32_t box, std::uint32_t rectangle) const;
 
@@ -125,7 +101,7 @@ class RefinedRegion {
   std::vector<Cell> cubes_;
   std::uint32_t outermost_ = 0;  ///< the vertex of largest x: of the outer shell
   std::vector<BoxCell> boxes_;
-  std::vector<BoxData> data_;
+  std::vector<std::vector<std::uint32_t>> triangles_;  ///< by box: all that meet it
   std::unique_ptr<BoxCells> cells_;
   std::vector<std::uint8_t> inside_;  ///< by corner
   std::vector<SegmentSurface> segments_;
@@ -136,6 +112,7 @@ class RefinedRegion {
   std::vector<std::uint32_t> box_components_;
   std::vector<bool> holds_all_;  ///< by box: whether the whole surface lies in it
   std::vector<StuckBox> stuck_;
+  std::size_t split_boxes_ = 0;
   int depth_ = 0;
 };
 

@@ -1,0 +1,303 @@
+#include "solid/model/box_splitter.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "blum/geometry/grid_predicates.hpp"
+#include "solid/model/cut_grid.hpp"
+#include "solid/model/section_loop.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// Boxes are not cut to less than this part of the spacing.
+constexpr double least_part = 1e-12;
+
+constexpr std::size_t next(std::size_t axis) {
+  return (axis + 1) % 3;
+}
+
+Vec3d corner_of(const BoxCell& box, std::size_t k) {
+  return {(k & 1U) != 0 ? box.high.x : box.low.x, (k & 2U) != 0 ? box.high.y : box.low.y,
+          (k & 4U) != 0 ? box.high.z : box.low.z};
+}
+
+/// The side of a box along an axis from a corner that is low along it: 4 axis + 2 bits for the other axes.
+constexpr std::size_t side_index(std::size_t axis, std::size_t corner) {
+  return 4 * axis + (corner >> next(axis) & 1U) + 2 * (corner >> next(next(axis)) & 1U);
+}
+
+/// The sides around a face (2 axis, + 1 above): along one axis, low and high, then along the other.
+std::array<std::size_t, 4> sides_of(std::size_t face) {
+  const std::size_t u = next(face / 2);
+  const std::size_t v = next(u);
+  const std::size_t corner = (face & 1U) << (face / 2);
+  return {side_index(u, corner), side_index(u, corner | 1U << v), side_index(v, corner),
+          side_index(v, corner | 1U << u)};
+}
+
+bool is_inside(const SplitBox& box, std::size_t corner) {
+  return (box.inside >> corner & 1U) != 0;
+}
+
+std::size_t longest(const Vec3d& size) {
+  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+}  // namespace
+
+void BoxSplitter::split(SplitBox box, const Context& context, std::vector<SplitBox>& out) {
+  std::vector<SplitBox> waiting;
+  waiting.push_back(std::move(box));
+  while (!waiting.empty() && !context.cancel.stop_requested()) {
+    SplitBox next_box = std::move(waiting.back());
+    waiting.pop_back();
+    const std::optional<Cut> cut = test(next_box);
+    if (cut && can_cut(next_box, *cut)) {
+      auto [lower, upper] = halves(std::move(next_box), *cut);
+      waiting.push_back(std::move(upper));
+      waiting.push_back(std::move(lower));
+    } else {
+      if (cut) next_box.obstacle = cut->obstacle;
+      out.push_back(std::move(next_box));
+    }
+  }
+}
+
+std::optional<BoxSplitter::Cut> BoxSplitter::test(SplitBox& box) {
+  find_crossings(box);
+  find_passes(box);
+  arcs_.clear();
+  passing_.clear();
+  first_part_[0] = 0;
+  std::optional<Cut> cut;
+  for (std::size_t face = 0; face < 6; ++face) {
+    if (const auto hole = connect_face(box, face); hole && !cut) cut = cut_beside(box, face, *hole);
+    first_part_[face + 1] = first_part_[face] + square_.count();
+  }
+  cube_.start(first_part_[6]);
+  pieces_.find(mesh_, box.box, box.triangles, arcs_, passing_, outermost_, cube_);
+  box.triangles.assign(pieces_.triangles().begin(), pieces_.triangles().end());
+  if (cut) return cut;
+  connect_edges(box);
+  const bool passes = cube_.finish([&](std::uint32_t piece) { return pieces_.euler(piece); });
+  if (pieces_.holds_void()) return cut_through_middle(box, CellObstacle::void_in_cube);
+  if (!passes) return cut_through_middle(box, CellObstacle::handle);
+  return std::nullopt;
+}
+
+void BoxSplitter::find_crossings(const SplitBox& box) {
+  crossed_.assign(box.triangles.size(), 0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      if ((corner >> axis & 1U) != 0) continue;
+      const std::size_t index = side_index(axis, corner);
+      Side& side = sides_[index];
+      side = {axis, corner, {}, 0};
+      const Vec3d low = corner_of(box.box, corner);
+      const Vec3d high = corner_of(box.box, corner | 1U << axis);
+      for (std::size_t t = 0; t < box.triangles.size(); ++t) {
+        if (!crosses(mesh_.corners(box.triangles[t]), axis, low, high)) continue;
+        side.crossings.push_back(box.triangles[t]);
+        crossed_[t] |= static_cast<std::uint16_t>(1U << index);
+      }
+      sort_along(mesh_, axis, low, side.crossings);
+      side.intervals = intervals_of(static_cast<std::uint32_t>(side.crossings.size()), is_inside(box, corner));
+    }
+  }
+}
+
+void BoxSplitter::find_passes(const SplitBox& box) {
+  edges_.clear();
+  for (const std::uint32_t t : box.triangles) {
+    for (const EdgeId edge : mesh_.edges_of(t)) edges_.push_back(edge.value);
+  }
+  std::sort(edges_.begin(), edges_.end());
+  edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+  passes_.assign(edges_.size(), 0);
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const EdgeEnds ends = mesh_.ends(edges_[e]);
+    for (std::size_t face = 0; face < 6; ++face) {
+      Vec3d low = box.box.low;
+      Vec3d high = box.box.high;
+      low[face / 2] = high[face / 2] = face % 2 == 0 ? box.box.low[face / 2] : box.box.high[face / 2];
+      if (passes_through(ends, face / 2, low, high)) passes_[e] |= static_cast<std::uint8_t>(1U << face);
+    }
+  }
+}
+
+std::optional<Vec3d> BoxSplitter::connect_face(const SplitBox& box, std::size_t face) {
+  const std::array<std::size_t, 4> around = sides_of(face);
+  std::array<std::uint32_t, 5> first{};
+  unsigned border = 0;
+  for (std::size_t s = 0; s < 4; ++s) {
+    first[s + 1] = first[s] + sides_[around[s]].intervals;
+    border |= 1U << around[s];
+  }
+  square_.start(first[4]);
+  const std::size_t axis = face / 2;
+  const std::size_t corner = (face & 1U) << axis;
+  const std::size_t along_u = corner | 1U << next(axis);
+  const std::size_t along_v = corner | 1U << next(next(axis));
+  if (is_inside(box, corner)) square_.join(first[0], first[2]);
+  if (is_inside(box, along_u)) square_.join(first[1] - 1, first[3]);
+  if (is_inside(box, along_v)) square_.join(first[1], first[3] - 1);
+  if (is_inside(box, along_u | along_v)) square_.join(first[2] - 1, first[4] - 1);
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::array<std::uint32_t, 2>> ends_of_loops;  // edges of the mesh, of arcs with both ends on some
+  for (std::size_t t = 0; t < box.triangles.size(); ++t) {
+    std::array<SquareComponents::End, 2> ends{};
+    std::size_t count = 0;
+    std::array<std::uint32_t, 2> edges_here{};
+    for (const EdgeId edge : mesh_.edges_of(box.triangles[t])) {
+      const auto e =
+          static_cast<std::size_t>(std::lower_bound(edges_.begin(), edges_.end(), edge.value) - edges_.begin());
+      if ((passes_[e] >> face & 1U) == 0) continue;
+      if (count < 2) {
+        ends[count] = {false, edge.value};
+        edges_here[count] = edge.value;
+      }
+      ++count;
+      passing_.push_back(edge.value);
+    }
+    for (unsigned rest = crossed_[t] & border; rest != 0; rest &= rest - 1) {
+      const auto index = static_cast<std::size_t>(std::countr_zero(rest));
+      const Side& side = sides_[index];
+      const auto s = static_cast<std::size_t>(std::find(around.begin(), around.end(), index) - around.begin());
+      const auto at =
+          std::find(side.crossings.begin(), side.crossings.end(), box.triangles[t]) - side.crossings.begin();
+      if (count < 2) {
+        ends[count] = {true, first[s] + interval_at(static_cast<std::uint32_t>(at), is_inside(box, side.corner))};
+      }
+      ++count;
+    }
+    if (count != 2) continue;
+    square_.add_arc(ends[0], ends[1]);
+    triangles.push_back(box.triangles[t]);
+    ends_of_loops.push_back(edges_here);
+  }
+  const double plane = face % 2 == 0 ? box.box.low[axis] : box.box.high[axis];
+  std::vector<std::uint32_t> loop_edges;
+  const bool passes = square_.finish([&](std::span<const std::uint32_t> loop) {
+    loop_edges.clear();
+    for (const std::uint32_t arc : loop) {
+      loop_edges.insert(loop_edges.end(), ends_of_loops[arc].begin(), ends_of_loops[arc].end());
+    }
+    return is_around_hole(mesh_, loop_edges, axis, plane);
+  });
+  for (std::size_t a = 0; a < triangles.size(); ++a) {
+    arcs_.push_back({triangles[a], first_part_[face] + square_.of_arc(a)});
+  }
+  interval_part_[face].clear();
+  for (std::uint32_t k = 0; k < first[4]; ++k)
+    interval_part_[face].push_back(first_part_[face] + square_.of_interval(k));
+  if (passes) return std::nullopt;
+  Vec3d sum{};
+  for (const std::uint32_t edge : loop_edges) {
+    const auto [a, b] = mesh_.ends(edge);
+    sum += a + (b - a) * std::clamp((plane - a[axis]) / (b[axis] - a[axis]), 0.0, 1.0);
+  }
+  return sum / static_cast<double>(loop_edges.size());
+}
+
+void BoxSplitter::connect_edges(const SplitBox& box) {
+  for (std::size_t index = 0; index < 12; ++index) {
+    const Side& side = sides_[index];
+    const std::size_t u = next(side.axis);
+    const std::size_t v = next(u);
+    // The two faces at a side, and where its intervals begin in each.
+    std::array<std::size_t, 2> faces{2 * u + (side.corner >> u & 1U), 2 * v + (side.corner >> v & 1U)};
+    std::array<std::uint32_t, 2> first{};
+    for (std::size_t f = 0; f < 2; ++f) {
+      for (const std::size_t before : sides_of(faces[f])) {
+        if (before == index) break;
+        first[f] += sides_[before].intervals;
+      }
+    }
+    for (std::uint32_t k = 0; k < side.intervals; ++k) {
+      const std::uint32_t part = interval_part_[faces[0]][first[0] + k];
+      cube_.join_at_interval(part, interval_part_[faces[1]][first[1] + k]);
+      if (side.axis != 0) continue;  // each corner is the end of one side along x
+      if (k == 0 && is_inside(box, side.corner)) cube_.add_corner(part);
+      if (k + 1 == side.intervals && is_inside(box, side.corner | 1U)) cube_.add_corner(part);
+    }
+  }
+}
+
+/// A cut through a hole of a face opens it; across the longer side, so that boxes stay compact.
+BoxSplitter::Cut BoxSplitter::cut_beside(const SplitBox& box, std::size_t face, const Vec3d& hole) const {
+  const Vec3d size = box.box.high - box.box.low;
+  const std::size_t u = next(face / 2);
+  const std::size_t v = next(u);
+  const std::size_t axis = size[u] >= size[v] ? u : v;
+  return {axis, hole[axis], CellObstacle::hole_in_square};
+}
+
+BoxSplitter::Cut BoxSplitter::cut_through_middle(const SplitBox& box, CellObstacle obstacle) const {
+  Vec3d low = box.box.high;
+  Vec3d high = box.box.low;
+  for (const std::uint32_t t : box.triangles) {
+    for (const std::uint32_t v : mesh_.triangles()[t]) {
+      const Vec3d& p = mesh_.vertices()[v];
+      if (!is_in_box(p, box.box)) continue;
+      for (std::size_t a = 0; a < 3; ++a) {
+        low[a] = std::min(low[a], p[a]);
+        high[a] = std::max(high[a], p[a]);
+      }
+    }
+  }
+  // Small things are cut themselves, so that they need not be come near to in halves; but never through a vertex alone,
+  // around which all scales look the same.
+  const Vec3d size = box.box.high - box.box.low;
+  const Vec3d inner = high - low;
+  const std::size_t inner_axis = longest(inner);
+  const double middle = 0.5 * (low[inner_axis] + high[inner_axis]);
+  const bool is_small = inner[inner_axis] > 0 && inner[inner_axis] < 0.5 * size[inner_axis];
+  const double room = 0.05 * size[inner_axis];
+  if (is_small && middle > box.box.low[inner_axis] + room && middle < box.box.high[inner_axis] - room) {
+    return {inner_axis, middle, obstacle};
+  }
+  const std::size_t axis = longest(size);
+  return {axis, 0.5 * (box.box.low[axis] + box.box.high[axis]), obstacle};
+}
+
+bool BoxSplitter::can_cut(const SplitBox& box, const Cut& cut) const {
+  const double least = least_part * spacing_;
+  return box.splits < most_splits_ && cut.at > box.box.low[cut.axis] + least && cut.at < box.box.high[cut.axis] - least;
+}
+
+std::array<SplitBox, 2> BoxSplitter::halves(SplitBox&& box, const Cut& cut) const {
+  std::array<SplitBox, 2> out;
+  for (std::size_t upper = 0; upper < 2; ++upper) {
+    out[upper].box = box.box;
+    (upper == 1 ? out[upper].box.low : out[upper].box.high)[cut.axis] = cut.at;
+    out[upper].splits = box.splits + 1;
+    for (const std::uint32_t t : box.triangles) {
+      if (may_meet(mesh_.corners(t), out[upper].box.low, out[upper].box.high)) out[upper].triangles.push_back(t);
+    }
+  }
+  // New corners lie on the sides that are cut: each crossing on the way there changes sides.
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const auto bit = static_cast<std::uint8_t>(1U << corner);
+    const std::size_t other = corner ^ 1U << cut.axis;
+    const bool is_high = (corner >> cut.axis & 1U) != 0;
+    SplitBox& keeps = out[is_high ? 1 : 0];
+    if (is_inside(box, corner)) keeps.inside |= bit;
+    if (is_high) continue;
+    Vec3d low = corner_of(box.box, corner);
+    Vec3d at = low;
+    at[cut.axis] = cut.at;
+    bool inside = is_inside(box, corner);
+    for (const std::uint32_t t : sides_[side_index(cut.axis, corner)].crossings) {
+      if (crosses(mesh_.corners(t), cut.axis, low, at)) inside = !inside;
+    }
+    if (inside) {
+      out[0].inside |= static_cast<std::uint8_t>(1U << other);
+      out[1].inside |= bit;
+    }
+  }
+  return out;
+}
+
+}  // namespace blum::detail

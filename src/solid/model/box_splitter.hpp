@@ -1,0 +1,85 @@
+// Blum: splitting a cube until all components in its parts are balls. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "solid/model/box_cells.hpp"
+#include "solid/model/box_surface.hpp"
+#include "solid/model/components.hpp"
+#include "solid/model/surface_mesh.hpp"
+
+namespace blum::detail {
+
+/// What keeps a box from passing.
+enum class CellObstacle : std::uint8_t { hole_in_square, handle, void_in_cube };
+
+/// A box, and what is known of the surface in it.
+struct SplitBox {
+  BoxCell box;
+  std::vector<std::uint32_t> triangles;       ///< all that meet it, and perhaps others
+  std::uint8_t inside = 0;                    ///< bit k: whether corner k (bits x, y, z: high) is inside the solid
+  int splits = 0;                             ///< that it comes from
+  std::optional<CellObstacle> obstacle = {};  ///< why it does not pass, where it cannot be split further
+};
+
+/// Splits boxes that fail. A box passes by itself: none of its six sides has a hole, and each component in it is
+/// bounded by a sphere. So does every rectangle that it has in common with a box beside it, and the box with sides that
+/// are cut into these.
+class BoxSplitter {
+ public:
+  BoxSplitter(const SurfaceMesh& mesh, double spacing, int most_splits)
+      : mesh_(mesh), outermost_(outermost_vertex(mesh)), spacing_(spacing), most_splits_(most_splits) {}
+
+  /// Adds the parts of a box, which pass or name their obstacle. Stops where the caller asks to.
+  void split(SplitBox box, const Context& context, std::vector<SplitBox>& out);
+
+ private:
+  /// Where a box is to be cut.
+  struct Cut {
+    std::size_t axis = 0;
+    double at = 0;
+    CellObstacle obstacle = CellObstacle::handle;
+  };
+  /// An edge of the box.
+  struct Side {
+    std::size_t axis = 0;
+    std::size_t corner = 0;  ///< its lower end
+    std::vector<std::uint32_t> crossings;
+    std::uint32_t intervals = 0;
+  };
+
+  [[nodiscard]] std::optional<Cut> test(SplitBox& box);
+  void find_crossings(const SplitBox& box);
+  void find_passes(const SplitBox& box);
+  /// A point of the first hole in a face.
+  [[nodiscard]] std::optional<Vec3d> connect_face(const SplitBox& box, std::size_t face);
+  void connect_edges(const SplitBox& box);
+  [[nodiscard]] Cut cut_beside(const SplitBox& box, std::size_t face, const Vec3d& hole) const;
+  [[nodiscard]] Cut cut_through_middle(const SplitBox& box, CellObstacle obstacle) const;
+  [[nodiscard]] bool can_cut(const SplitBox& box, const Cut& cut) const;
+  [[nodiscard]] std::array<SplitBox, 2> halves(SplitBox&& box, const Cut& cut) const;
+
+  const SurfaceMesh& mesh_;
+  std::uint32_t outermost_;
+  double spacing_;
+  int most_splits_;
+  std::array<Side, 12> sides_;
+  std::vector<std::uint32_t> edges_;    ///< of the mesh, rising
+  std::vector<std::uint8_t> passes_;    ///< bit f: whether an edge passes face f
+  std::vector<std::uint16_t> crossed_;  ///< bit s: whether a triangle crosses side s
+  std::array<std::uint32_t, 7> first_part_{};
+  std::array<std::vector<std::uint32_t>, 6> interval_part_;
+  std::vector<BoxPieces::ArcPart> arcs_;
+  std::vector<std::uint32_t> passing_;
+  SquareComponents square_;
+  CubeComponents cube_;
+  BoxPieces pieces_;
+};
+
+}  // namespace blum::detail

@@ -1,0 +1,78 @@
+// Blum: what a surface meets of a box. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "blum/core/union_find.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/grid_predicates.hpp"
+#include "solid/model/box_cells.hpp"
+#include "solid/model/components.hpp"
+#include "solid/model/surface_mesh.hpp"
+
+namespace blum::detail {
+
+/// Whether the box around a triangle meets a box, both closed.
+[[nodiscard]] bool may_meet(const TriangleCorners& triangle, const Vec3d& low, const Vec3d& high);
+
+/// Whether a triangle crosses the part of a line along an axis between two points. Exact.
+[[nodiscard]] bool crosses(const TriangleCorners& triangle, std::size_t axis, const Vec3d& low, const Vec3d& high);
+
+/// Sorts triangles that cross a line along an axis through a point from below. Exact.
+void sort_along(const SurfaceMesh& mesh, std::size_t axis, const Vec3d& on_line, std::vector<std::uint32_t>& triangles);
+
+/// Whether an edge of a mesh passes through the rectangle across an axis between two corners. Exact.
+[[nodiscard]] bool passes_through(const EdgeEnds& edge, std::size_t across, const Vec3d& low, const Vec3d& high);
+
+/// Whether a point lies between the planes of a box, those below belonging to it. Exact.
+[[nodiscard]] bool is_in_box(const Vec3d& p, const BoxCell& box);
+
+/// The vertex of largest x of a surface, which is one of its outer shell.
+[[nodiscard]] std::uint32_t outermost_vertex(const SurfaceMesh& mesh);
+
+/// The pieces of a surface in an open box. To be used again and again.
+class BoxPieces {
+ public:
+  /// A triangle has an arc on a component of the solid in a side of the box.
+  struct ArcPart {
+    std::uint32_t triangle;
+    std::uint32_t part;
+    [[nodiscard]] friend auto operator<=>(const ArcPart&, const ArcPart&) = default;
+  };
+
+  /// Finds the pieces and tells CubeComponents which parts have arcs on them.
+  /// @param triangles  all that meet the box, and perhaps others.
+  /// @param arcs  all in the sides of the box.  @param passing  the edges of the mesh that pass these, each once or
+  /// more often.
+  void find(const SurfaceMesh& mesh, const BoxCell& box, std::span<const std::uint32_t> triangles,
+            std::vector<ArcPart>& arcs, std::vector<std::uint32_t>& passing, std::uint32_t outermost,
+            CubeComponents& components);
+
+  /// The triangles that meet the open box, rising.
+  [[nodiscard]] std::span<const std::uint32_t> triangles() const { return triangles_; }
+  /// Vertices less edges plus triangles of a piece that was told of.
+  [[nodiscard]] std::int64_t euler(std::uint32_t piece) const { return euler_[piece]; }
+  /// Whether a void, or a body with a tunnel, lies wholly inside.
+  [[nodiscard]] bool holds_void() const { return holds_void_; }
+  /// Whether all of a body without tunnels lies inside.
+  [[nodiscard]] bool holds_body() const { return holds_body_; }
+
+ private:
+  void find_met(const SurfaceMesh& mesh, const BoxCell& box, std::span<const std::uint32_t> triangles,
+                std::span<const ArcPart> arcs, std::span<const std::uint32_t> passing);
+  void join(const SurfaceMesh& mesh);
+
+  std::vector<std::uint32_t> triangles_, edges_, vertices_;  ///< that meet the open box, rising
+  UnionFind joined_;                                         ///< of all these, in this order
+  std::vector<std::int64_t> euler_;
+  std::vector<bool> is_open_;
+  bool holds_void_ = false;
+  bool holds_body_ = false;
+};
+
+}  // namespace blum::detail
