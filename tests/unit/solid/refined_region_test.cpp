@@ -113,7 +113,7 @@ void check(const test::NamedMesh& named, const std::vector<int>& resolutions, Fo
     const Vec3d origin = solid.box().lower - Vec3d{0.31, 0.45, 0.57} * spacing;
     for (const SolidBody& body : solid.bodies()) {
       const SurfaceMesh surface(body.mesh, {});
-      const CutGrid grid(surface, test::planes_around(body.mesh, origin, spacing), {});
+      const CutGrid grid(surface, test::planes_around(body.mesh, origin, spacing, 2), {});
       for (const RefinedRegion& region : refine_regions(surface, grid, 60, {})) {
         RegionCheck(body.mesh, region, named.name + " at " + std::to_string(resolution), found);
       }
