@@ -35,7 +35,9 @@ Vec3d corner_of(const BoxCell& box, std::size_t k) {
 
 BoxCells::BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, const CellLattice& lattice)
     : boxes_(boxes), planes_(planes), lattice_(lattice) {
-  for (std::uint32_t b = 0; b < boxes.size(); ++b) boxes_of_cube_[boxes[b].cube].push_back(b);
+  std::map<Cell, std::vector<std::uint32_t>> own;
+  for (std::uint32_t b = 0; b < boxes.size(); ++b) own[boxes[b].cube].push_back(b);
+  for (auto& [cube, list] : own) boxes_of_cube_.try_emplace(cube, boxes, std::move(list));
   find_corners();
   find_segments();
   find_rectangles();
@@ -138,15 +140,7 @@ BoxRef BoxCells::locate(const Vec3d& p, const std::array<bool, 3>& up) const {
   const Cell cell = cell_at(lattice_.node(cube[0], cube[1], cube[2]), 7);
   const auto found = boxes_of_cube_.find(cell);
   if (found == boxes_of_cube_.end()) return {cell, false};
-  for (const std::uint32_t b : found->second) {
-    const BoxCell& box = boxes_[b];
-    bool holds = true;
-    for (std::size_t a = 0; a < 3; ++a) {
-      holds = holds && (up[a] ? box.low[a] <= p[a] && p[a] < box.high[a] : box.low[a] < p[a] && p[a] <= box.high[a]);
-    }
-    if (holds) return {b, true};
-  }
-  return {};
+  return {found->second.find(p, up), true};
 }
 
 void BoxCells::find_rectangles() {

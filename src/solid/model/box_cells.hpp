@@ -11,6 +11,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/grid/cell_lattice.hpp"
 #include "solid/model/grid_planes.hpp"
+#include "solid/model/split_tree.hpp"
 
 namespace blum::detail {
 
@@ -76,7 +77,7 @@ class BoxCells {
   std::span<const BoxCell> boxes_;
   const GridPlanes& planes_;
   const CellLattice& lattice_;
-  std::map<Cell, std::vector<std::uint32_t>> boxes_of_cube_;
+  std::map<Cell, SplitTree> boxes_of_cube_;
   std::vector<Vec3d> corners_;  ///< by x, y, z
   std::vector<BoxSegment> segments_;
   std::vector<BoxRectangle> rectangles_;

@@ -115,15 +115,21 @@ void RefinedRegion::find_inside() {
       inside_[c] = grid_.is_inside(grid_.lattice().node(at[0], at[1], at[2])) ? 1 : 0;
     }
   }
-  bool is_new = true;
-  while (is_new) {
-    is_new = false;
-    for (std::uint32_t s = 0; s < segments_.size(); ++s) {
+  std::vector<std::vector<std::uint32_t>> around(corners.size());  // segments
+  for (std::uint32_t s = 0; s < segments_.size(); ++s) {
+    for (const std::uint32_t end : cells_->segments()[s].ends) around[end].push_back(s);
+  }
+  std::vector<std::uint32_t> known;
+  for (std::uint32_t c = 0; c < corners.size(); ++c) {
+    if (inside_[c] != unknown) known.push_back(c);
+  }
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    for (const std::uint32_t s : around[known[k]]) {
       const auto [a, b] = cells_->segments()[s].ends;
-      if ((inside_[a] == unknown) == (inside_[b] == unknown)) continue;
-      const std::uint32_t known = inside_[a] == unknown ? b : a;
-      inside_[known == a ? b : a] = inside_[known] ^ (segments_[s].crossings.size() & 1U);
-      is_new = true;
+      const std::uint32_t other = known[k] == a ? b : a;
+      if (inside_[other] != unknown) continue;
+      inside_[other] = inside_[known[k]] ^ static_cast<std::uint8_t>(segments_[s].crossings.size() & 1U);
+      known.push_back(other);
     }
   }
   for (std::uint32_t s = 0; s < segments_.size(); ++s) {
