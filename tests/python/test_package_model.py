@@ -1,8 +1,13 @@
-"""Cellular models in Python: their report, their homology, and what is refused."""
+"""Cellular models in Python: their report, their homology, also of made solids, and what is refused.
+
+Of made solids the first 40, one of each family; all 300 where the environment variable BLUM_MADE_SOLIDS is 300."""
+
+import os
 
 import blum
 import numpy as np
 import pytest
+from made import made_solid, names
 
 
 @pytest.mark.parametrize("resolution", [1, 2, 7, 20])
@@ -59,3 +64,18 @@ def test_what_is_no_polyhedron_has_no_model():
     vertices[vertices == vertices.max()] = 1e-60
     with pytest.raises(blum.InvalidMesh, match="too small for exact answers"):
         blum.Solid(vertices, tiny.triangles).model()
+
+
+#: Slanted pinholes, thousands of boxes each, take seconds.
+SLOW = {"pinholes-5", "pinholes-7", "drillings-6", "hairs-5", "pinholes-3"}
+COUNT = int(os.environ.get("BLUM_MADE_SOLIDS", "40"))
+CHOSEN = [(family, k) for family, k in names()[:COUNT] if COUNT == 300 or f"{family}-{k}" not in SLOW]
+
+
+@pytest.mark.parametrize("family, variant", CHOSEN, ids=[f"{family}-{variant}" for family, variant in CHOSEN])
+def test_models_of_made_solids_have_their_numbers(family, variant):
+    made = made_solid(family, variant)
+    solid = blum.Solid(made.vertices, made.triangles)
+    for resolution, shift in ((2, 0.381966), (5, 0.0), (24, 0.7)):
+        model = solid.model(resolution=resolution, shift=shift)
+        assert model.passes and model.betti() == made.betti, f"at {resolution}"
