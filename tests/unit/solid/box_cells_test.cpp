@@ -259,7 +259,7 @@ TEST(BoxCells, OfWholeCubesAreThoseOfTheGrid) {
 TEST(BoxCells, TileWhatRandomBoxesHaveInCommon) {
   Random random(2);
   std::size_t in_parts = 0;
-  for (int k = 0; k < 24; ++k) {
+  for (std::size_t k = 0; k < 24; ++k) {
     const Boxes all = random_boxes(random, 1 + random.below(3), std::array{2U, 3U, 16U, 1000U}[k % 4]);
     BoxCellsCheck check(all);
     ASSERT_NO_FATAL_FAILURE(check.run());
