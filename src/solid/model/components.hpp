@@ -78,7 +78,7 @@ class CubeComponents {
   /// A corner of the cube is inside, and belongs to this part and others.
   void add_corner(std::size_t part) { ++euler_[part]; }
   /// A part has an arc on a piece of the surface.
-  void add_arc(std::uint32_t piece, std::size_t part) { pieces_.push_back({piece, static_cast<std::uint32_t>(part)}); }
+  void add_arc(std::uint32_t piece, std::size_t part) { pieces_.emplace_back(piece, static_cast<std::uint32_t>(part)); }
 
   /// Numbers the boundaries of the components by their first part.
   /// @param euler_of  tells the Euler number of an open piece.

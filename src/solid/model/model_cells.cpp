@@ -10,7 +10,6 @@
 namespace blum::detail {
 namespace {
 
-constexpr std::uint32_t none = 0xffffffffU;
 constexpr std::size_t most_cells = 0xfffffff0U;
 
 constexpr std::size_t axis_of(CellAxes bit) {

@@ -36,6 +36,36 @@ std::optional<std::uint32_t> index_of(std::span<const Cell> sorted, Cell cell) {
   return static_cast<std::uint32_t>(at - sorted.begin());
 }
 
+/// Some cubes in a row along each axis.
+struct CubeRange {
+  std::array<std::int64_t, 3> low{};
+  std::array<std::int64_t, 3> high{};
+
+  [[nodiscard]] std::int64_t count() const {
+    return (high[0] - low[0] + 1) * (high[1] - low[1] + 1) * (high[2] - low[2] + 1);
+  }
+  [[nodiscard]] bool contains(const std::array<std::int64_t, 3>& cube) const {
+    bool holds = true;
+    for (std::size_t a = 0; a < 3; ++a) holds = holds && cube[a] >= low[a] && cube[a] <= high[a];
+    return holds;
+  }
+};
+
+/// The cubes that the box around a triangle meets.
+CubeRange cubes_around(const SurfaceMesh& mesh, const GridPlanes& planes, std::uint32_t triangle) {
+  CubeRange range;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Place at = planes.cube(mesh.vertices()[mesh.triangles()[triangle][k]]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      range.low[a] = k == 0 ? at[a] : std::min<std::int64_t>(range.low[a], at[a]);
+      range.high[a] = k == 0 ? at[a] : std::max<std::int64_t>(range.high[a], at[a]);
+    }
+  }
+  // A coordinate in a plane belongs to the closed cube below, too.
+  for (std::int64_t& low : range.low) low = std::max<std::int64_t>(low - 1, 0);
+  return range;
+}
+
 /// For each of some cubes, the triangles whose box meets it.
 std::vector<std::vector<std::uint32_t>> triangles_near(const SurfaceMesh& mesh, const CutGrid& grid,
                                                        std::span<const Cell> cubes, const Context& context) {
@@ -45,31 +75,18 @@ std::vector<std::vector<std::uint32_t>> triangles_near(const SurfaceMesh& mesh, 
   for (const Cell cube : cubes) places.push_back(lattice.place(node_of(cube)));
   for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
     if (t % 65536 == 0) throw_if_cancelled(context);
-    std::array<std::int64_t, 3> low{};
-    std::array<std::int64_t, 3> high{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Place at = grid.planes().cube(mesh.vertices()[mesh.triangles()[t][k]]);
-      for (std::size_t a = 0; a < 3; ++a) {
-        low[a] = k == 0 ? at[a] : std::min<std::int64_t>(low[a], at[a]);
-        high[a] = k == 0 ? at[a] : std::max<std::int64_t>(high[a], at[a]);
-      }
-    }
-    // A coordinate in a plane belongs to the closed cube below, too.
-    for (std::size_t a = 0; a < 3; ++a) low[a] = std::max<std::int64_t>(low[a] - 1, 0);
-    const std::int64_t count = (high[0] - low[0] + 1) * (high[1] - low[1] + 1) * (high[2] - low[2] + 1);
-    if (count <= static_cast<std::int64_t>(cubes.size())) {
-      for (std::int64_t k = low[2]; k <= high[2]; ++k) {
-        for (std::int64_t j = low[1]; j <= high[1]; ++j) {
-          for (std::int64_t i = low[0]; i <= high[0]; ++i) {
-            if (const auto c = index_of(cubes, cell_at(lattice.node(i, j, k), 7))) out[*c].push_back(t);
-          }
-        }
-      }
-    } else {
+    const CubeRange range = cubes_around(mesh, grid.planes(), t);
+    if (range.count() > static_cast<std::int64_t>(cubes.size())) {
       for (std::size_t c = 0; c < cubes.size(); ++c) {
-        bool meets = true;
-        for (std::size_t a = 0; a < 3; ++a) meets = meets && places[c][a] >= low[a] && places[c][a] <= high[a];
-        if (meets) out[c].push_back(t);
+        if (range.contains(places[c])) out[c].push_back(t);
+      }
+      continue;
+    }
+    for (std::int64_t k = range.low[2]; k <= range.high[2]; ++k) {
+      for (std::int64_t j = range.low[1]; j <= range.high[1]; ++j) {
+        for (std::int64_t i = range.low[0]; i <= range.high[0]; ++i) {
+          if (const auto c = index_of(cubes, cell_at(lattice.node(i, j, k), 7))) out[*c].push_back(t);
+        }
       }
     }
   }

@@ -11,14 +11,6 @@
 #include "solid/model/components.hpp"
 
 namespace blum::detail {
-namespace {
-
-constexpr std::size_t next(std::size_t axis) {
-  return (axis + 1) % 3;
-}
-
-}  // namespace
-
 struct RefinedRegion::Scratch {
   SquareComponents square;
   CubeComponents cube;

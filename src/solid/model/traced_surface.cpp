@@ -67,9 +67,9 @@ class TracedEdges {
     Place at = cubes_[a];
     for (std::uint32_t k = first_[edge]; k < first_[edge + 1]; ++k) {
       std::size_t axis = 3;
-      for (std::size_t other = 0; other < 3; ++other) {
-        if (at[other] == end[other]) continue;
-        if (axis == 3 || is_first(ends, other, axis, at, end)) axis = other;
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (at[a] == end[a]) continue;
+        if (axis == 3 || is_first(ends, a, axis, at, end)) axis = a;
       }
       const std::int32_t step = end[axis] > at[axis] ? 1 : -1;
       Place square = at;
@@ -238,8 +238,8 @@ class TriangleTracer {
     for (std::size_t arc = first_arc_; arc < out_.arcs.size(); ++arc) {
       const Cell square = out_.arcs[arc].square;
       const Cell above = square | 7U;
-      beside_.push_back({static_cast<Cell>(above - 8 * lattice_.stride(normal_axis(square))), 2 * arc});
-      beside_.push_back({above, 2 * arc + 1});
+      beside_.emplace_back(static_cast<Cell>(above - 8 * lattice_.stride(normal_axis(square))), 2 * arc);
+      beside_.emplace_back(above, 2 * arc + 1);
     }
     std::sort(beside_.begin(), beside_.end());
     for (std::size_t i = 0; i < beside_.size();) {
