@@ -4,13 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "blum/complex/homology.hpp"
 #include "blum/core/exact_text.hpp"
-#include "blum/core/union_find.hpp"
 #include "blum/solid/solid.hpp"
 #include "solid/model/collapse_cells.hpp"
 #include "solid/model/cut_grid.hpp"
@@ -63,19 +62,17 @@ Vec3d scaled(const Vec3d& p, int exponent) {
   return {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
 }
 
-TriangleMesh scaled(const TriangleMesh& mesh, int exponent) {
-  TriangleMesh out;
-  out.triangles = mesh.triangles;
-  out.vertices.reserve(mesh.vertices.size());
-  for (const Vec3d& v : mesh.vertices) {
-    out.vertices.push_back(scaled(v, exponent));
+TriangleMesh scaled(TriangleMesh mesh, int exponent) {
+  for (Vec3d& v : mesh.vertices) {
+    const Vec3d given = v;
+    v = scaled(v, exponent);
     for (std::size_t a = 0; a < 3; ++a) {
-      if (v[a] == 0 || std::abs(out.vertices.back()[a]) >= least_coordinate) continue;
-      throw InvalidMesh("a vertex has the coordinate " + exact_text(v[a]) +
+      if (given[a] == 0 || std::abs(v[a]) >= least_coordinate) continue;
+      throw InvalidMesh("a vertex has the coordinate " + exact_text(given[a]) +
                         ", too small for exact answers beside others: round it to 0");
     }
   }
-  return out;
+  return mesh;
 }
 
 /// The planes of a grid that lie around a box, with a cube or more to spare.
@@ -89,11 +86,30 @@ GridPlanes planes_around(const Box3& box, const Vec3d& origin, double spacing) {
   return {origin, {spacing, spacing, spacing}, first, last};
 }
 
-/// The model of one body.
-struct BodyModel {
-  BodyModel(const TriangleMesh& body, int exponent, const Vec3d& origin, double spacing, const Context& context)
-      : mesh(scaled(body, exponent)),
-        surface(mesh, context),
+/// Bodies that do not touch each other, as one mesh.
+struct BodyGroup {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> outermost;  ///< a vertex of each outer shell
+
+  void add(const TriangleMesh& body) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    outermost.push_back(first + detail::SurfaceMesh::outermost_vertex(body.vertices));
+    mesh.vertices.insert(mesh.vertices.end(), body.vertices.begin(), body.vertices.end());
+    for (const auto& [a, b, c] : body.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  }
+};
+
+std::vector<BodyGroup> grouped(std::span<const SolidBody> bodies, const std::vector<std::uint32_t>& groups) {
+  std::vector<BodyGroup> out(*std::max_element(groups.begin(), groups.end()) + std::size_t{1});
+  for (std::size_t b = 0; b < bodies.size(); ++b) out[groups[b]].add(bodies[b].mesh);
+  return out;
+}
+
+/// The model of a group of bodies.
+struct GroupModel {
+  GroupModel(BodyGroup&& group, int exponent, const Vec3d& origin, double spacing, const Context& context)
+      : mesh(scaled(std::move(group.mesh), exponent)),
+        surface(mesh, std::move(group.outermost), context),
         grid(surface, planes_around(bounds(mesh), origin, spacing), context) {}
 
   TriangleMesh mesh;
@@ -119,7 +135,7 @@ ModelObstacle obstacle_of(detail::CellObstacle obstacle) {
 struct CellularModel::Data {
   CellularModelReport report;
   int exponent = 0;  ///< of the power of two that coordinates were scaled by
-  std::vector<std::unique_ptr<const BodyModel>> bodies;
+  std::vector<std::unique_ptr<const GroupModel>> groups;
 };
 
 CellularModel::CellularModel(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
@@ -128,7 +144,8 @@ const CellularModelReport& CellularModel::report() const {
   return data_->report;
 }
 
-CellularModel CellularModel::of(const Solid& solid, const CellularModelOptions& options, const Context& context) {
+CellularModel CellularModel::of(const Solid& solid, const std::vector<std::uint32_t>& groups,
+                                const CellularModelOptions& options, const Context& context) {
   check(options);
   if (solid.rule() == SolidRule::voxels) {
     throw InvalidOption("a union of voxels is its own cellular model: models are of meshes");
@@ -155,8 +172,8 @@ CellularModel CellularModel::of(const Solid& solid, const CellularModelOptions& 
   for (std::size_t a = 0; a < 3; ++a) {
     report.grid.size[a] = static_cast<std::int64_t>(std::floor((box.upper[a] - origin[a]) / spacing)) + 3;
   }
-  for (const SolidBody& body : solid.bodies()) {
-    auto model = std::make_unique<BodyModel>(body.mesh, data->exponent, origin, spacing, context);
+  for (BodyGroup& group : grouped(solid.bodies(), groups)) {
+    auto model = std::make_unique<GroupModel>(std::move(group), data->exponent, origin, spacing, context);
     model->regions = detail::refine_regions(model->surface, model->grid, options.most_splits, context);
     for (const Cell cell : model->grid.cut_cells()) report.cut_cubes += dimension_of(cell) == 3 ? 1U : 0U;
     report.failing_cubes += model->grid.failing_cubes().size();
@@ -165,12 +182,12 @@ CellularModel CellularModel::of(const Solid& solid, const CellularModelOptions& 
       report.boxes += region.split_boxes();
       for (const detail::StuckBox& stuck : region.stuck()) {
         report.failures.push_back({scaled(stuck.box.low, -data->exponent), scaled(stuck.box.high, -data->exponent),
-                                   obstacle_of(stuck.obstacle), static_cast<std::uint32_t>(data->bodies.size())});
+                                   obstacle_of(stuck.obstacle)});
       }
     }
     const auto counts = detail::count_model_cells(model->grid, model->regions);
     for (std::size_t d = 0; d < 4; ++d) report.cells[d] += counts[d];
-    data->bodies.push_back(std::move(model));
+    data->groups.push_back(std::move(model));
   }
   timer.lap("model");
   report.euler = report.cells[0] - report.cells[1] + report.cells[2] - report.cells[3];
@@ -180,8 +197,8 @@ CellularModel CellularModel::of(const Solid& solid, const CellularModelOptions& 
 
 Complex CellularModel::complex(const Context& context) const {
   Complex out;
-  for (const auto& body : data_->bodies) {
-    const detail::ModelCells cells = detail::model_cells(body->surface, body->grid, body->regions, context);
+  for (const auto& group : data_->groups) {
+    const detail::ModelCells cells = detail::model_cells(group->surface, group->grid, group->regions, context);
     const Complex own = detail::collapse_cells(cells, context);
     const auto first = static_cast<std::uint32_t>(out.positions.size());
     for (const Vec3d& p : own.positions) out.positions.push_back(scaled(p, -data_->exponent));
@@ -196,10 +213,6 @@ Complex CellularModel::complex(const Context& context) const {
 
 BettiNumbers CellularModel::betti(const Context& context) const {
   return homology(complex(context).view(), context);
-}
-
-CellularModel Solid::model(const CellularModelOptions& options, const Context& context) const {
-  return CellularModel::of(*this, options, context);
 }
 
 }  // namespace blum

@@ -171,14 +171,20 @@ std::string obstacle(const Topology& t) {
   return t.closed ? "" : "its triangles enclose nothing";
 }
 
-/// Whether triangles cross, or those of one body touch.
-std::string crossing(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_triangle, const Context& context) {
+/// Whether triangles cross, or those of one body touch. @param touching  gets the pairs of bodies that do.
+std::string crossing(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_triangle,
+                     std::vector<std::array<std::uint32_t, 2>>& touching, const Context& context) {
   const SelfIntersections found = find_self_intersections(mesh, 100000, context);
   if (found.crossing > 0) return "it crosses itself";
   if (!found.complete) return "it touches itself";
   for (const TrianglePair& pair : found.pairs) {
-    if (body_of_triangle[pair.first.value] == body_of_triangle[pair.second.value]) return "it touches itself";
+    const std::uint32_t one = body_of_triangle[pair.first.value];
+    const std::uint32_t other = body_of_triangle[pair.second.value];
+    if (one == other) return "it touches itself";
+    touching.push_back({std::min(one, other), std::max(one, other)});
   }
+  std::sort(touching.begin(), touching.end());
+  touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
   return "";
 }
 
@@ -236,15 +242,28 @@ MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const 
     triangles[b].push_back(t);
     is_reversed[t] = !topology.shells[shell[t]].faces_outwards;
   }
-  if (const std::string why = crossing(mesh, body_of_triangle, context); !why.empty()) {
+  MeshSolid out;
+  if (const std::string why = crossing(mesh, body_of_triangle, out.touching, context); !why.empty()) {
     return whole(mesh, topology, why);
   }
-  MeshSolid out;
   out.is_closed = true;
   for (const auto& own : triangles) out.bodies.push_back(copy_of(mesh, own, is_reversed));
   add_shells(topology.shells, *body, out);
   out.reason = "the mesh is closed, manifold and does not cross itself";
   return out;
+}
+
+std::vector<std::uint32_t> groups_apart(std::size_t bodies, std::span<const std::array<std::uint32_t, 2>> touching) {
+  std::vector<std::vector<std::uint32_t>> before(bodies);  // lesser bodies that each touches
+  for (const auto& [one, other] : touching) before[other].push_back(one);
+  std::vector<std::uint32_t> group(bodies, 0);
+  for (std::size_t body = 0; body < bodies; ++body) {
+    std::vector<std::uint32_t> taken;
+    for (const std::uint32_t other : before[body]) taken.push_back(group[other]);
+    std::sort(taken.begin(), taken.end());
+    for (const std::uint32_t used : taken) group[body] += used == group[body] ? 1U : 0U;
+  }
+  return group;
 }
 
 }  // namespace detail

@@ -1,7 +1,10 @@
 // Blum: the bodies that a mesh bounds. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +23,12 @@ struct MeshSolid {
   bool is_closed = false;  ///< every edge has two triangles, which traverse it in opposite directions
   std::vector<SolidShell> shells;
   std::vector<SolidBody> bodies;
+  std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of bodies that touch, the lesser first; rising
 };
+
+/// A group for each body, such that bodies of one group do not touch each other: 0 where none touch.
+[[nodiscard]] std::vector<std::uint32_t> groups_apart(std::size_t bodies,
+                                                      std::span<const std::array<std::uint32_t, 2>> touching);
 
 /// @throws InvalidMesh where there are no triangles; Cancelled.
 [[nodiscard]] MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const Context& context);

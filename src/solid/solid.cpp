@@ -133,6 +133,11 @@ const GridSpec& Solid::grid() const {
   return data_->grid;
 }
 
+CellularModel Solid::model(const CellularModelOptions& options, const Context& context) const {
+  return CellularModel::of(*this, detail::groups_apart(data_->mesh.bodies.size(), data_->mesh.touching), options,
+                           context);
+}
+
 bool Solid::inside(const Vec3d& p) const {
   if (data_->mesh.rule == SolidRule::voxels) return is_in_voxels(data_->voxels, data_->grid, p);
   std::call_once(data_->locates, [&] { data_->location.emplace(data_->mesh); });

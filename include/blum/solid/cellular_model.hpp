@@ -71,7 +71,6 @@ struct ModelFailure {
   Vec3d low{};   ///< corner, mesh units
   Vec3d high{};  ///< the corner opposite
   ModelObstacle obstacle = ModelObstacle::handle;
-  std::uint32_t body = 0;  ///< of Solid::bodies()
 };
 
 template <>
@@ -82,7 +81,6 @@ struct Description<ModelFailure> {
       Member{"low", &ModelFailure::low, "mesh units", "corner of the box"},
       Member{"high", &ModelFailure::high, "mesh units", "the corner opposite"},
       Member{"obstacle", &ModelFailure::obstacle, "", "what keeps it from passing"},
-      Member{"body", &ModelFailure::body, "", "which of the solid's bodies it belongs to"},
   };
 };
 
@@ -142,7 +140,9 @@ class CellularModel {
   struct Data;
   explicit CellularModel(std::shared_ptr<const Data> data);
   /// Of Solid::model().
-  static CellularModel of(const Solid& solid, const CellularModelOptions& options, const Context& context);
+  /// @param groups  of the bodies: those of one do not touch each other.
+  static CellularModel of(const Solid& solid, const std::vector<std::uint32_t>& groups,
+                          const CellularModelOptions& options, const Context& context);
   std::shared_ptr<const Data> data_;
 };
 

@@ -80,7 +80,7 @@ std::optional<BoxSplitter::Cut> BoxSplitter::test(SplitBox& box) {
     first_part_[face + 1] = first_part_[face] + square_.count();
   }
   cube_.start(first_part_[6]);
-  pieces_.find(mesh_, box.box, box.triangles, arcs_, passing_, outermost_, cube_);
+  pieces_.find(mesh_, box.box, box.triangles, arcs_, passing_, cube_);
   box.triangles.assign(pieces_.triangles().begin(), pieces_.triangles().end());
   if (cut) return cut;
   connect_edges(box);

@@ -34,7 +34,7 @@ struct SplitBox {
 class BoxSplitter {
  public:
   BoxSplitter(const SurfaceMesh& mesh, double spacing, int most_splits)
-      : mesh_(mesh), outermost_(outermost_vertex(mesh)), spacing_(spacing), most_splits_(most_splits) {}
+      : mesh_(mesh), spacing_(spacing), most_splits_(most_splits) {}
 
   /// Adds the parts of a box, which pass or name their obstacle. Stops where the caller asks to.
   void split(SplitBox box, const Context& context, std::vector<SplitBox>& out);
@@ -66,7 +66,6 @@ class BoxSplitter {
   [[nodiscard]] std::array<SplitBox, 2> halves(SplitBox&& box, const Cut& cut) const;
 
   const SurfaceMesh& mesh_;
-  std::uint32_t outermost_;
   double spacing_;
   int most_splits_;
   std::array<Side, 12> sides_;

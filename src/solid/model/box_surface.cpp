@@ -72,13 +72,6 @@ bool is_in_box(const Vec3d& p, const BoxCell& box) {
   return true;
 }
 
-std::uint32_t outermost_vertex(const SurfaceMesh& mesh) {
-  const auto vertices = mesh.vertices();
-  return static_cast<std::uint32_t>(
-      std::max_element(vertices.begin(), vertices.end(), [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; }) -
-      vertices.begin());
-}
-
 void BoxPieces::find_met(const SurfaceMesh& mesh, const BoxCell& box, std::span<const std::uint32_t> triangles,
                          std::span<const ArcPart> arcs, std::span<const std::uint32_t> passing) {
   triangles_.clear();
@@ -124,7 +117,7 @@ void BoxPieces::join(const SurfaceMesh& mesh) {
 }
 
 void BoxPieces::find(const SurfaceMesh& mesh, const BoxCell& box, std::span<const std::uint32_t> triangles,
-                     std::vector<ArcPart>& arcs, std::vector<std::uint32_t>& passing, std::uint32_t outermost,
+                     std::span<const ArcPart> arcs, std::span<const std::uint32_t> passing,
                      CubeComponents& components) {
   find_met(mesh, box, triangles, arcs, passing);
   join(mesh);
@@ -134,20 +127,27 @@ void BoxPieces::find(const SurfaceMesh& mesh, const BoxCell& box, std::span<cons
     is_open_[piece] = true;
     components.add_arc(piece, arc.part);
   }
-  // A piece without an arc is a shell. That of the outermost vertex bounds the body, others are voids.
-  holds_void_ = holds_body_ = false;
+  // A piece without an arc is a shell. That of an outermost vertex bounds a body, others are voids.
   const std::size_t first_vertex = triangles_.size() + edges_.size();
-  const std::size_t outer = place_in(vertices_, outermost);
   const auto piece_of = [&](std::size_t vertex) {
     return joined_.find(static_cast<std::uint32_t>(first_vertex + vertex));
   };
+  is_outer_.assign(euler_.size(), false);
+  const auto outermost = mesh.outermost();
+  for (std::size_t k = 0; k < vertices_.size(); ++k) {
+    if (place_in(outermost, vertices_[k]) < outermost.size()) is_outer_[piece_of(k)] = true;
+  }
+  holds_void_ = false;
+  bodies_.clear();
   for (std::size_t k = 0; k < vertices_.size(); ++k) {
     const std::uint32_t piece = piece_of(k);
     if (is_open_[piece]) continue;
     is_open_[piece] = true;  // looked at
-    const bool is_body = outer < vertices_.size() && piece_of(outer) == piece && euler_[piece] == 2;
-    holds_body_ = holds_body_ || is_body;
-    holds_void_ = holds_void_ || !is_body;
+    if (is_outer_[piece] && euler_[piece] == 2) {
+      bodies_.push_back(vertices_[k]);
+    } else {
+      holds_void_ = true;
+    }
   }
 }
 

@@ -32,9 +32,6 @@ void sort_along(const SurfaceMesh& mesh, std::size_t axis, const Vec3d& on_line,
 /// Whether a point lies between the planes of a box, those below belonging to it. Exact.
 [[nodiscard]] bool is_in_box(const Vec3d& p, const BoxCell& box);
 
-/// The vertex of largest x of a surface, which is one of its outer shell.
-[[nodiscard]] std::uint32_t outermost_vertex(const SurfaceMesh& mesh);
-
 /// The pieces of a surface in an open box. To be used again and again.
 class BoxPieces {
  public:
@@ -50,8 +47,7 @@ class BoxPieces {
   /// @param arcs  all in the sides of the box.  @param passing  the edges of the mesh that pass these, each once or
   /// more often.
   void find(const SurfaceMesh& mesh, const BoxCell& box, std::span<const std::uint32_t> triangles,
-            std::vector<ArcPart>& arcs, std::vector<std::uint32_t>& passing, std::uint32_t outermost,
-            CubeComponents& components);
+            std::span<const ArcPart> arcs, std::span<const std::uint32_t> passing, CubeComponents& components);
 
   /// The triangles that meet the open box, rising.
   [[nodiscard]] std::span<const std::uint32_t> triangles() const { return triangles_; }
@@ -59,8 +55,8 @@ class BoxPieces {
   [[nodiscard]] std::int64_t euler(std::uint32_t piece) const { return euler_[piece]; }
   /// Whether a void, or a body with a tunnel, lies wholly inside.
   [[nodiscard]] bool holds_void() const { return holds_void_; }
-  /// Whether all of a body without tunnels lies inside.
-  [[nodiscard]] bool holds_body() const { return holds_body_; }
+  /// For each body without tunnels that lies wholly inside, a vertex of it, rising.
+  [[nodiscard]] std::span<const std::uint32_t> bodies() const { return bodies_; }
 
  private:
   void find_met(const SurfaceMesh& mesh, const BoxCell& box, std::span<const std::uint32_t> triangles,
@@ -71,8 +67,9 @@ class BoxPieces {
   UnionFind joined_;                                         ///< of all these, in this order
   std::vector<std::int64_t> euler_;
   std::vector<bool> is_open_;
+  std::vector<bool> is_outer_;
   bool holds_void_ = false;
-  bool holds_body_ = false;
+  std::vector<std::uint32_t> bodies_;
 };
 
 }  // namespace blum::detail

@@ -106,10 +106,11 @@ std::optional<ArcEnd> CutGrid::loose_end(Cell square, std::uint32_t component) c
   return std::nullopt;
 }
 
-std::optional<std::uint32_t> CutGrid::shell_in(Cell cube) const {
-  const auto at = std::lower_bound(whole_shells_.begin(), whole_shells_.end(), std::pair{cube, std::uint32_t{0}});
-  if (at == whole_shells_.end() || at->first != cube) return std::nullopt;
-  return at->second;
+std::span<const std::pair<Cell, std::uint32_t>> CutGrid::shells_in(Cell cube) const {
+  const auto first = std::lower_bound(whole_shells_.begin(), whole_shells_.end(), std::pair{cube, std::uint32_t{0}});
+  auto last = first;
+  while (last != whole_shells_.end() && last->first == cube) ++last;
+  return {first, last};
 }
 
 CutGrid::CutGrid(const SurfaceMesh& mesh, GridPlanes planes, const Context& context)
@@ -129,7 +130,7 @@ CutGrid::CutGrid(const SurfaceMesh& mesh, GridPlanes planes, const Context& cont
   failing_.erase(std::unique(failing_.begin(), failing_.end()), failing_.end());
 }
 
-/// Notes shells that no plane cuts. A void is one that fails its cube; the outer shell is the whole body.
+/// Notes shells that no plane cuts. A void fails its cube; an outer shell is a whole body.
 void CutGrid::take_closed_shells(const SurfaceMesh& mesh, TracedSurface& surface) {
   std::vector<bool> is_cut(surface.euler.size(), false);
   for (const Arc& arc : surface.arcs) {
@@ -142,15 +143,16 @@ void CutGrid::take_closed_shells(const SurfaceMesh& mesh, TracedSurface& surface
     if (surface.pieces.find(v) == v && !is_cut[v]) closed.push_back(v);
   }
   if (closed.empty()) return;
-  const auto outermost =
-      std::max_element(vertices.begin(), vertices.end(), [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; });
-  const std::uint32_t outer = surface.pieces.find(static_cast<std::uint32_t>(outermost - vertices.begin()));
+  std::vector<std::uint32_t> outer;
+  for (const std::uint32_t v : mesh.outermost()) outer.push_back(surface.pieces.find(v));
+  std::sort(outer.begin(), outer.end());
   for (const std::uint32_t shell : closed) {
     const Place& at = surface.cube_of_vertex[shell];
     const Cell cube = cell_at(lattice_.node(at[0], at[1], at[2]), 7);
     cut_.insert(cube);
     whole_shells_.emplace_back(cube, shell);
-    if (shell != outer || surface.euler_of(shell) != 2 || closed.size() > 1) failing_.push_back(cube);
+    const bool is_outer = std::binary_search(outer.begin(), outer.end(), shell);
+    if (!is_outer || surface.euler_of(shell) != 2) failing_.push_back(cube);
   }
   std::sort(whole_shells_.begin(), whole_shells_.end());
 }
@@ -366,7 +368,7 @@ bool CutGrid::connect_cube(const TracedSurface& surface, Cell cube, Scratch& scr
   const bool passes = components_here.finish([&](std::uint32_t piece) { return surface.euler_of(piece); });
   for (std::uint32_t k = 0; k < first[6]; ++k) part_component_[own.table + k] = components_here.of_part(k);
   own.components = components_here.count();
-  if (shell_in(cube)) ++own.components;
+  own.components += static_cast<std::uint32_t>(shells_in(cube).size());
   return passes;
 }
 

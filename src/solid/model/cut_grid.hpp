@@ -62,8 +62,8 @@ class CutGrid {
 
   /// An edge of the mesh around a component of a square that no interval belongs to.
   [[nodiscard]] std::optional<ArcEnd> loose_end(Cell square, std::uint32_t component) const;
-  /// A vertex of the shell that lies wholly in a cube, and bounds its last component.
-  [[nodiscard]] std::optional<std::uint32_t> shell_in(Cell cube) const;
+  /// For each shell that lies wholly in a cube the cube and a vertex of it: these are the cube's last components.
+  [[nodiscard]] std::span<const std::pair<Cell, std::uint32_t>> shells_in(Cell cube) const;
 
   /// Cells that the surface cuts, rising.
   [[nodiscard]] std::span<const Cell> cut_cells() const { return cut_cells_; }

@@ -199,9 +199,11 @@ class Assembly {
   void witness_cube(Cell cube, std::uint32_t component) {
     if (!grid_.is_cut(cube)) {
       set_witness(0.5 * (node_position(node_of(cube)) + node_position(node_of(cube) + lattice_.node(1, 1, 1))));
-    } else if (component + 1 == grid_.components(cube)) {
-      if (const auto shell = grid_.shell_in(cube)) set_witness(mesh_.vertices()[*shell]);
+      return;
     }
+    const auto shells = grid_.shells_in(cube);
+    const std::size_t others = grid_.components(cube) - shells.size();
+    if (component >= others) set_witness(mesh_.vertices()[shells[component - others].second]);
   }
 
   /// Of an edge of the model.
@@ -248,8 +250,12 @@ class Assembly {
     const RegionIds& ids = of_region_[r];
     const BoxCells& cells = region.cells();
     for (std::uint32_t b = 0; b < region.boxes().size(); ++b) {
-      for (std::uint32_t k = 0; k < region.components_of_box(b); ++k) begin_cell();
-      if (const auto shell = region.shell_in(b)) set_witness(mesh_.vertices()[*shell]);
+      const auto bodies = region.bodies_in(b);
+      const std::size_t others = region.components_of_box(b) - bodies.size();
+      for (std::uint32_t k = 0; k < region.components_of_box(b); ++k) {
+        begin_cell();
+        if (k >= others) set_witness(mesh_.vertices()[bodies[k - others]]);
+      }
     }
     for (std::uint32_t k = 0; k < cells.rectangles().size(); ++k) {
       for (std::uint32_t c = 0; c < region.components_of_rectangle(k); ++c) {

@@ -19,7 +19,7 @@ struct RefinedRegion::Scratch {
 
 RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const Cell> cubes,
                              std::vector<std::vector<std::uint32_t>> triangles, int most_splits, const Context& context)
-    : mesh_(mesh), grid_(grid), cubes_(cubes.begin(), cubes.end()), outermost_(outermost_vertex(mesh)) {
+    : mesh_(mesh), grid_(grid), cubes_(cubes.begin(), cubes.end()) {
   const Vec3d& spacing = grid.planes().spacing();
   BoxSplitter splitter(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits);
   std::vector<SplitBox> parts;
@@ -55,7 +55,7 @@ void RefinedRegion::connect() {
   segments_of_box_.resize(boxes_.size());
   part_component_.resize(boxes_.size());
   box_components_.assign(boxes_.size(), 0);
-  holds_all_.assign(boxes_.size(), false);
+  bodies_of_box_.resize(boxes_.size());
   for (std::uint32_t s = 0; s < segments_.size(); ++s) {
     find_crossings(s);
     for (const BoxRef& box : cells_->segments()[s].around) {
@@ -231,11 +231,6 @@ std::optional<ArcEnd> RefinedRegion::loose_end(std::uint32_t rectangle, std::uin
   return std::nullopt;
 }
 
-std::optional<std::uint32_t> RefinedRegion::shell_in(std::uint32_t box) const {
-  if (!holds_all_[box]) return std::nullopt;
-  return outermost_;
-}
-
 void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch) {
   const auto& rectangles = rectangles_of_box_[box];
   std::size_t parts = 0;
@@ -255,12 +250,13 @@ void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch) {
     }
     offset += rectangles_[r].components;
   }
-  scratch.pieces.find(mesh_, boxes_[box], triangles_[box], arcs, passing, outermost_, components);
+  scratch.pieces.find(mesh_, boxes_[box], triangles_[box], arcs, passing, components);
   // Boxes pass, or their obstacle is known: sides that are cut into rectangles change nothing of that.
   static_cast<void>(components.finish([&](std::uint32_t piece) { return scratch.pieces.euler(piece); }));
   for (std::size_t k = 0; k < parts; ++k) part_component_[box].push_back(components.of_part(k));
-  holds_all_[box] = scratch.pieces.holds_body();
-  box_components_[box] = components.count() + (holds_all_[box] ? 1U : 0U);
+  const auto bodies = scratch.pieces.bodies();
+  bodies_of_box_[box].assign(bodies.begin(), bodies.end());
+  box_components_[box] = components.count() + static_cast<std::uint32_t>(bodies.size());
 }
 
 void RefinedRegion::join_at_segments(std::uint32_t box, CubeComponents& components) const {

@@ -58,8 +58,8 @@ class RefinedRegion {
 
   /// An edge of the mesh around a component of a rectangle.
   [[nodiscard]] std::optional<ArcEnd> loose_end(std::uint32_t rectangle, std::uint32_t component) const;
-  /// A vertex of the body's surface, where all of it lies in a box and bounds its last component.
-  [[nodiscard]] std::optional<std::uint32_t> shell_in(std::uint32_t box) const;
+  /// For each body that lies wholly in a box a vertex of it: these are the last components of the box.
+  [[nodiscard]] std::span<const std::uint32_t> bodies_in(std::uint32_t box) const { return bodies_of_box_[box]; }
 
   /// Empty where all cells pass.
   [[nodiscard]] std::span<const StuckBox> stuck() const { return stuck_; }
@@ -99,7 +99,6 @@ class RefinedRegion {
   const SurfaceMesh& mesh_;
   const CutGrid& grid_;
   std::vector<Cell> cubes_;
-  std::uint32_t outermost_ = 0;  ///< the vertex of largest x: of the outer shell
   std::vector<BoxCell> boxes_;
   std::vector<std::vector<std::uint32_t>> triangles_;  ///< by box: all that meet it
   std::unique_ptr<BoxCells> cells_;
@@ -110,7 +109,7 @@ class RefinedRegion {
   std::vector<std::vector<std::uint32_t>> segments_of_box_;    ///< rising
   std::vector<std::vector<std::uint32_t>> part_component_;     ///< by box
   std::vector<std::uint32_t> box_components_;
-  std::vector<bool> holds_all_;  ///< by box: whether the whole surface lies in it
+  std::vector<std::vector<std::uint32_t>> bodies_of_box_;  ///< a vertex of each that lies wholly in it
   std::vector<StuckBox> stuck_;
   std::size_t split_boxes_ = 0;
   int depth_ = 0;

@@ -1,9 +1,11 @@
 // Blum: the closed surface of a body, with neighbours. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -13,10 +15,16 @@
 
 namespace blum::detail {
 
-/// A closed, manifold mesh that faces outwards and does not touch itself. The mesh must outlive it.
+/// A closed, manifold mesh that faces outwards and does not touch itself: of one body or several. The mesh must outlive
+/// it.
 class SurfaceMesh {
  public:
-  SurfaceMesh(const MeshView& mesh, const Context& context) : mesh_(mesh), sites_(mesh, context) {
+  /// Of one body.
+  SurfaceMesh(const MeshView& mesh, const Context& context)
+      : SurfaceMesh(mesh, {outermost_vertex(mesh.vertices)}, context) {}
+  /// @param outermost  for each body a vertex of its outer shell, rising.
+  SurfaceMesh(const MeshView& mesh, std::vector<std::uint32_t> outermost, const Context& context)
+      : mesh_(mesh), sites_(mesh, context), outermost_(std::move(outermost)) {
     constexpr std::uint32_t nobody = 0xffffffffU;
     triangles_of_edge_.assign(sites_.edge_count(), {nobody, nobody});
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -26,6 +34,15 @@ class SurfaceMesh {
       }
     }
   }
+
+  /// The vertex of largest x, which is one of the outer shell of a body.
+  [[nodiscard]] static std::uint32_t outermost_vertex(std::span<const Vec3d> vertices) {
+    const auto at =
+        std::max_element(vertices.begin(), vertices.end(), [](const Vec3d& a, const Vec3d& b) { return a.x < b.x; });
+    return static_cast<std::uint32_t>(at - vertices.begin());
+  }
+  /// For each body a vertex of its outer shell, rising.
+  [[nodiscard]] std::span<const std::uint32_t> outermost() const { return outermost_; }
 
   [[nodiscard]] std::span<const Vec3d> vertices() const { return mesh_.vertices; }
   [[nodiscard]] std::span<const Triangle> triangles() const { return mesh_.triangles; }
@@ -51,6 +68,7 @@ class SurfaceMesh {
  private:
   MeshView mesh_;
   SiteTable sites_;
+  std::vector<std::uint32_t> outermost_;
   std::vector<std::array<std::uint32_t, 2>> triangles_of_edge_;
 };
 

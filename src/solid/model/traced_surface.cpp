@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 
 namespace blum::detail {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t grain = 4096;
 constexpr std::uint32_t own_number = 0x80000000U;  ///< of pieces that a chunk of triangles makes, until it is appended
+constexpr std::uint64_t most_passes = std::uint64_t{1} << 29U;
 constexpr std::uint32_t no_piece = 0xffffffffU;
 
 constexpr std::size_t next(std::size_t axis) {
@@ -33,14 +35,16 @@ class TracedEdges {
       : mesh_(mesh), planes_(planes), lattice_(lattice), cubes_(cubes) {
     const auto edges = mesh.edges();
     first_.resize(edges.size() + 1);
-    std::uint32_t sum = 0;
+    std::uint64_t sum = 0;
     for (std::size_t e = 0; e < edges.size(); ++e) {
-      first_[e] = sum;
+      first_[e] = static_cast<std::uint32_t>(sum);
       for (std::size_t a = 0; a < 3; ++a) {
-        sum += static_cast<std::uint32_t>(std::abs(cubes[edges[e][1]][a] - cubes[edges[e][0]][a]));
+        sum += static_cast<std::uint64_t>(std::abs(cubes[edges[e][1]][a] - cubes[edges[e][0]][a]));
       }
+      // All pieces together must be counted below own_number.
+      if (sum > most_passes) throw InvalidGrid("the surface crosses the grid too often: use a coarser grid");
     }
-    first_.back() = sum;
+    first_.back() = static_cast<std::uint32_t>(sum);
     squares_.resize(sum);
     parallel_for(context, edges.size(), grain, "edges", [&](const WorkRange& range) {
       for (std::size_t e = range.begin; e < range.end; ++e) trace(static_cast<std::uint32_t>(e));
@@ -67,9 +71,9 @@ class TracedEdges {
     Place at = cubes_[a];
     for (std::uint32_t k = first_[edge]; k < first_[edge + 1]; ++k) {
       std::size_t axis = 3;
-      for (std::size_t a = 0; a < 3; ++a) {
-        if (at[a] == end[a]) continue;
-        if (axis == 3 || is_first(ends, a, axis, at, end)) axis = a;
+      for (std::size_t next_axis = 0; next_axis < 3; ++next_axis) {
+        if (at[next_axis] == end[next_axis]) continue;
+        if (axis == 3 || is_first(ends, next_axis, axis, at, end)) axis = next_axis;
       }
       const std::int32_t step = end[axis] > at[axis] ? 1 : -1;
       Place square = at;

@@ -15,9 +15,12 @@
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
 #include "blum/solid/solid.hpp"
+#include "support/mesh_places.hpp"
 
 namespace blum {
 namespace {
+
+using test::box_between;
 
 std::int64_t euler_of(const BettiNumbers& betti) {
   return betti[0] - betti[1] + betti[2];
@@ -98,6 +101,31 @@ TEST(CellularModel, CatalogueShapesHaveTheirNumbersAtEveryResolution) {
     ++shapes;
   }
   EXPECT_GT(shapes, 12);
+}
+
+TEST(CellularModel, BodiesThatTouchAreModelledApart) {
+  // Three boxes in a row, of which neighbours share a face, and one on top that touches two of them.
+  TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
+  append(mesh, box_between({1, 0, 0}, {2, 1, 1}));
+  append(mesh, box_between({2, 0, 0}, {3, 1, 1}));
+  append(mesh, box_between({0.5, 0, 1}, {1.5, 1, 2}));
+  append(mesh, box_between({5, 5, 5}, {6, 6, 6}));
+  const Solid solid = Solid::of(mesh);
+  ASSERT_EQ(*solid.betti(), (BettiNumbers{5, 0, 0}));
+  for (const int resolution : {1, 3, 12}) expect_model_of(solid, {.resolution = resolution, .shift = 1}, "boxes");
+}
+
+TEST(CellularModel, BodiesInCubesOfTheirOwnAreComponents) {
+  // At one cube, all of them lie in it, some in the void of another.
+  TriangleMesh mesh = make_bodies({.count = 64});
+  const Vec3d far = bounds(mesh).upper;
+  append(mesh, box_between(far + Vec3d{1, 1, 1}, far + Vec3d{9, 9, 9}));
+  append(mesh, box_between(far + Vec3d{2, 2, 2}, far + Vec3d{8, 8, 8}));
+  append(mesh, box_between(far + Vec3d{4, 4, 4}, far + Vec3d{5, 5, 5}));
+  append(mesh, box_between(far + Vec3d{6, 6, 6}, far + Vec3d{7, 7, 7}));
+  const Solid solid = Solid::of(mesh);
+  ASSERT_EQ(*solid.betti(), (BettiNumbers{67, 0, 1}));
+  for (const int resolution : {1, 2, 3, 12}) expect_model_of(solid, {.resolution = resolution}, "bodies");
 }
 
 TEST(CellularModel, PlanesThroughVerticesAreLikeOthers) {
