@@ -180,8 +180,8 @@ Json add_model(const Arguments& a, const MeshView& mesh, const Context& context,
                     count_text(static_cast<std::uint64_t>(edges)) + " edges, " +
                     count_text(static_cast<std::uint64_t>(polygons)) + " polygons, " +
                     count_text(static_cast<std::uint64_t>(polyhedra)) + " polyhedra: " + betti_text(betti));
-  table.add("homotopy type", is_proven ? "that of the solid: proven, every component in a cell is contractible"
-                                       : "not proven");
+  table.add("homotopy type",
+            is_proven ? "that of the solid: proven, every component in a cell is contractible" : "not proven");
   for (const ModelFailure& failure : facts.failures) {
     table.add("", std::string(to_string(failure.obstacle)) + " between " + vector_text(failure.low) + " and " +
                       vector_text(failure.high) + ": another --shift may pass");

@@ -38,7 +38,8 @@ class CellularModel:
     @property
     def report(self) -> CellularModelReport:
         """What it consists of, and the places that do not pass."""
-        return self._core.report
+        found: CellularModelReport = self._core.report
+        return found
 
     @property
     def passes(self) -> bool:

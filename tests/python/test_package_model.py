@@ -51,7 +51,7 @@ def test_moving_and_scaling_grids_leaves_the_numbers():
 
 
 def test_what_is_no_polyhedron_has_no_model():
-    with pytest.raises(blum.InvalidMesh, match="no cellular model: .*open"):
+    with pytest.raises(blum.InvalidMesh, match=r"no cellular model: .*open"):
         blum.Solid(blum.generate("organic", holes=2)).model()
     with pytest.raises(blum.InvalidOption, match="union of voxels"):
         blum.Solid(np.ones((3, 3, 3), np.uint8)).model()
