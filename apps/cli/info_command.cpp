@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +42,7 @@ constexpr const char* examples = R"(Examples:
 
 constexpr std::size_t contact_limit = 100000;  // looked for
 constexpr std::size_t pair_limit = 20;         // shown in JSON
+constexpr std::size_t failure_limit = 10;      // of models, shown as text
 constexpr std::size_t label_limit = 20;        // shown, with what takes a pass over the image each
 
 struct Arguments {
@@ -182,9 +184,12 @@ Json add_model(const Arguments& a, const MeshView& mesh, const Context& context,
                     count_text(static_cast<std::uint64_t>(polyhedra)) + " polyhedra: " + betti_text(betti));
   table.add("homotopy type",
             is_proven ? "that of the solid: proven, every component in a cell is contractible" : "not proven");
-  for (const ModelFailure& failure : facts.failures) {
+  for (const ModelFailure& failure : std::span(facts.failures).first(std::min(failure_limit, facts.failures.size()))) {
     table.add("", std::string(to_string(failure.obstacle)) + " between " + vector_text(failure.low) + " and " +
                       vector_text(failure.high) + ": another --shift may pass");
+  }
+  if (facts.failures.size() > failure_limit) {
+    table.add("", "and at " + count_text(facts.failures.size() - failure_limit) + " more places");
   }
   return json;
 }

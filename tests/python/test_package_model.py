@@ -67,9 +67,11 @@ def test_what_is_no_polyhedron_has_no_model():
 
 
 #: Slanted pinholes, thousands of boxes each, take seconds.
-SLOW = {"pinholes-5", "pinholes-7", "drillings-6", "hairs-5", "pinholes-3"}
+SLOW = {"pinholes-3", "pinholes-5", "drillings-6", "hairs-5"}
+TOO_SLOW = {"pinholes-7"}  # 2e-6 cubes wide: minutes
 COUNT = int(os.environ.get("BLUM_MADE_SOLIDS", "40"))
-CHOSEN = [(family, k) for family, k in names()[:COUNT] if COUNT == 300 or f"{family}-{k}" not in SLOW]
+LEFT_OUT = TOO_SLOW if COUNT == 300 else SLOW | TOO_SLOW
+CHOSEN = [(family, k) for family, k in names()[:COUNT] if f"{family}-{k}" not in LEFT_OUT]
 
 
 @pytest.mark.parametrize("family, variant", CHOSEN, ids=[f"{family}-{variant}" for family, variant in CHOSEN])

@@ -11,8 +11,9 @@
 namespace blum::detail {
 namespace {
 
-/// A cube is not split into more boxes: a tunnel at a slant takes about as many as it is longer than wide.
-constexpr std::size_t most_boxes = std::size_t{1} << 19U;
+/// Cubes beside each other are not split into more boxes: a tunnel at a slant takes about as many as it is longer than
+/// wide.
+constexpr std::size_t most_boxes = std::size_t{1} << 17U;
 /// Boxes are not cut to less than this part of the spacing.
 constexpr double least_part = 1e-12;
 
@@ -50,14 +51,13 @@ std::size_t longest(const Vec3d& size) {
 }  // namespace
 
 void BoxSplitter::split(SplitBox box, const Context& context, std::vector<SplitBox>& out) {
-  const std::size_t before = out.size();
   std::vector<SplitBox> waiting;
   waiting.push_back(std::move(box));
   while (!waiting.empty() && !context.cancel.stop_requested()) {
     SplitBox next_box = std::move(waiting.back());
     waiting.pop_back();
     const std::optional<Cut> cut = test(next_box);
-    if (cut && out.size() - before + waiting.size() < most_boxes && can_cut(next_box, *cut)) {
+    if (cut && out.size() + waiting.size() < most_boxes && can_cut(next_box, *cut)) {
       auto [lower, upper] = halves(std::move(next_box), *cut);
       waiting.push_back(std::move(upper));
       waiting.push_back(std::move(lower));
