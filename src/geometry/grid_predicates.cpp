@@ -12,10 +12,6 @@ namespace {
 using Exact = Expansion<unbounded>;
 using Point2 = std::array<double, 2>;
 
-constexpr std::size_t next(std::size_t axis) {
-  return (axis + 1) % 3;
-}
-
 template <class T>
 int sign(T value) {
   return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
@@ -23,7 +19,7 @@ int sign(T value) {
 
 /// A point seen against an axis.
 Point2 seen(const Vec3d& p, std::size_t axis) {
-  return {p[next(axis)], p[next(next(axis))]};
+  return {p[next_axis(axis)], p[next_axis(next_axis(axis))]};
 }
 
 Exact times(const Exact& x, const Exact& y) {
@@ -76,8 +72,8 @@ class Crossing {
     Rounded out;
     double magnitude = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t j = next(i);
-      const std::size_t k = next(j);
+      const std::size_t j = next_axis(i);
+      const std::size_t k = next_axis(j);
       const double left = v[j] * w[k];
       const double right = v[k] * w[j];
       out.value += u[i] * (left - right);
@@ -108,7 +104,7 @@ class Crossing {
     Exact sum;
     for (std::size_t k = 0; k < 3; ++k) {
       const Point2 p = seen(corners_[k], axis);
-      const Point2 q = seen(corners_[next(k)], axis);
+      const Point2 q = seen(corners_[next_axis(k)], axis);
       sum.add_product(p[0], q[1]);
       sum.add_product(-p[1], q[0]);
     }
@@ -131,7 +127,7 @@ int side_of_line(const EdgeEnds& edge, std::size_t axis, double u, double v) {
   // The line moves down along u and v, and the side with it by these terms; that of the earlier axis decides.
   const int along_u = sign(b[1] - a[1]);
   const int along_v = sign(a[0] - b[0]);
-  const bool is_u_first = next(axis) < next(next(axis));
+  const bool is_u_first = next_axis(axis) < next_axis(next_axis(axis));
   const int decides = is_u_first ? along_u : along_v;
   return decides != 0 ? decides : is_u_first ? along_v : along_u;
 }
@@ -154,8 +150,8 @@ bool is_crossed_before(const TriangleCorners& first, const TriangleCorners& seco
   const Crossing y(second, axis);
   Vec3d base;
   base[axis] = first[0][axis];  // near both, so that the volumes are small
-  base[next(axis)] = u;
-  base[next(next(axis))] = v;
+  base[next_axis(axis)] = u;
+  base[next_axis(next_axis(axis))] = v;
   // Heights -Vx / Ax < -Vy / Ay: Vy Ax < Vx Ay, turned around where one area is negative.
   const int turned = x.facing() * y.facing();
   int order = certain_order(y.volume(base) * x.area(), x.volume(base) * y.area());

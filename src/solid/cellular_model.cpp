@@ -118,18 +118,6 @@ struct GroupModel {
   std::vector<detail::RefinedRegion> regions;
 };
 
-ModelObstacle obstacle_of(detail::CellObstacle obstacle) {
-  switch (obstacle) {
-    case detail::CellObstacle::hole_in_square:
-      return ModelObstacle::hole_in_square;
-    case detail::CellObstacle::void_in_cube:
-      return ModelObstacle::void_in_cube;
-    case detail::CellObstacle::handle:
-      break;
-  }
-  return ModelObstacle::handle;
-}
-
 }  // namespace
 
 struct CellularModel::Data {
@@ -181,8 +169,8 @@ CellularModel CellularModel::of(const Solid& solid, const std::vector<std::uint3
       report.splits = std::max(report.splits, region.depth());
       report.boxes += region.split_boxes();
       for (const detail::StuckBox& stuck : region.stuck()) {
-        report.failures.push_back({scaled(stuck.box.low, -data->exponent), scaled(stuck.box.high, -data->exponent),
-                                   obstacle_of(stuck.obstacle)});
+        report.failures.push_back(
+            {scaled(stuck.box.low, -data->exponent), scaled(stuck.box.high, -data->exponent), stuck.obstacle});
       }
     }
     const auto counts = detail::count_model_cells(model->grid, model->regions);

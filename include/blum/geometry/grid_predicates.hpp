@@ -15,6 +15,11 @@ namespace blum::detail {
 //
 // A line along an axis has the coordinates `u` and `v` along the next axis and the one after: (x, y, z, x, ...).
 
+/// The axis after an axis: x, y, z, x, ...
+constexpr std::size_t next_axis(std::size_t axis) {
+  return (axis + 1) % 3;
+}
+
 using TriangleCorners = std::array<Vec3d, 3>;
 
 /// Two ends.

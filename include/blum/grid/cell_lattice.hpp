@@ -28,6 +28,15 @@ constexpr int dimension_of(Cell cell) {
   return std::popcount(axes_of(cell));
 }
 
+/// The axis of a bit.
+constexpr std::size_t axis_of(CellAxes bit) {
+  return static_cast<std::size_t>(std::countr_zero(bit));
+}
+/// The axis across which a square lies.
+constexpr std::size_t normal_axis(Cell square) {
+  return axis_of(7U ^ axes_of(square));
+}
+
 /// The lattice of the cubes of a box: node (i, j, k) is the corner that cube (i, j, k) has in common with
 /// (i - 1, j - 1, k - 1), and cell (node, all axes) is cube (i, j, k). Of an image, its cubes are the voxels.
 class CellLattice {
@@ -48,6 +57,12 @@ class CellLattice {
   /// From a node to the next along an axis.
   [[nodiscard]] std::size_t stride(std::size_t axis) const { return stride_[axis]; }
   [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
+
+  /// The cubes below and above a square, neither of which may lie beyond the lattice.
+  [[nodiscard]] std::array<Cell, 2> cubes_beside(Cell square) const {
+    const Cell above = square | 7U;
+    return {static_cast<Cell>(above - 8 * stride_[normal_axis(square)]), above};
+  }
 
   /// Calls visit(face) for the cells of one dimension less in a cell's border.
   template <class Visit>

@@ -6,14 +6,12 @@
 #include <tuple>
 #include <utility>
 
+#include "blum/geometry/grid_predicates.hpp"
+
 namespace blum::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-constexpr std::size_t next(std::size_t axis) {
-  return (axis + 1) % 3;
-}
 
 bool is_before(const Vec3d& a, const Vec3d& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
@@ -23,12 +21,7 @@ bool is_before(const Vec3d& a, const Vec3d& b) {
 using OnLine = std::tuple<std::size_t, double, double, double>;
 
 OnLine on_line(std::size_t axis, const Vec3d& p) {
-  return {axis, p[next(axis)], p[next(next(axis))], p[axis]};
-}
-
-Vec3d corner_of(const BoxCell& box, std::size_t k) {
-  return {(k & 1U) != 0 ? box.high.x : box.low.x, (k & 2U) != 0 ? box.high.y : box.low.y,
-          (k & 4U) != 0 ? box.high.z : box.low.z};
+  return {axis, p[next_axis(axis)], p[next_axis(next_axis(axis))], p[axis]};
 }
 
 }  // namespace
@@ -55,8 +48,8 @@ void BoxCells::find_corners() {
 
 /// Edges of boxes below and above a plane may cross within it.
 void BoxCells::find_crossings(std::size_t across) {
-  const std::size_t u = next(across);
-  const std::size_t v = next(u);
+  const std::size_t u = next_axis(across);
+  const std::size_t v = next_axis(u);
   // Edges along u: plane, v, and where they begin and end. Edges along v: plane, u, begin, end.
   using Edge = std::array<double, 4>;
   std::vector<Edge> along_u;
@@ -111,8 +104,8 @@ void BoxCells::find_segments() {
   for (const auto& [begin, end] : pieces) {
     const auto& [axis, u, v, low] = begin;
     Vec3d p;
-    p[next(axis)] = u;
-    p[next(next(axis))] = v;
+    p[next_axis(axis)] = u;
+    p[next_axis(next_axis(axis))] = v;
     BoxSegment segment;
     segment.axis = axis;
     p[axis] = low;
@@ -123,8 +116,8 @@ void BoxCells::find_segments() {
     for (std::size_t q = 0; q < 4; ++q) {
       std::array<bool, 3> up{};
       up[axis] = true;
-      up[next(axis)] = (q & 1U) != 0;
-      up[next(next(axis))] = (q & 2U) != 0;
+      up[next_axis(axis)] = (q & 1U) != 0;
+      up[next_axis(next_axis(axis))] = (q & 2U) != 0;
       segment.around[q] = locate(p, up);
     }
     segments_.push_back(segment);

@@ -22,6 +22,12 @@ struct BoxCell {
   Cell cube = 0;
 };
 
+/// A corner of a box. @param k  bits x, y, z: high.
+inline Vec3d corner_of(const BoxCell& box, std::size_t k) {
+  return {(k & 1U) != 0 ? box.high.x : box.low.x, (k & 2U) != 0 ? box.high.y : box.low.y,
+          (k & 4U) != 0 ? box.high.z : box.low.z};
+}
+
 /// A box by its index, or a cube of the grid around all boxes.
 struct BoxRef {
   static constexpr std::uint32_t nothing = 0xffffffffU;

@@ -17,24 +17,15 @@ constexpr std::size_t most_boxes = std::size_t{1} << 17U;
 /// Boxes are not cut to less than this part of the spacing.
 constexpr double least_part = 1e-12;
 
-constexpr std::size_t next(std::size_t axis) {
-  return (axis + 1) % 3;
-}
-
-Vec3d corner_of(const BoxCell& box, std::size_t k) {
-  return {(k & 1U) != 0 ? box.high.x : box.low.x, (k & 2U) != 0 ? box.high.y : box.low.y,
-          (k & 4U) != 0 ? box.high.z : box.low.z};
-}
-
 /// The side of a box along an axis from a corner that is low along it: 4 axis + 2 bits for the other axes.
 constexpr std::size_t side_index(std::size_t axis, std::size_t corner) {
-  return 4 * axis + (corner >> next(axis) & 1U) + 2 * (corner >> next(next(axis)) & 1U);
+  return 4 * axis + (corner >> next_axis(axis) & 1U) + 2 * (corner >> next_axis(next_axis(axis)) & 1U);
 }
 
 /// The sides around a face (2 axis, + 1 above): along one axis, low and high, then along the other.
 std::array<std::size_t, 4> sides_of(std::size_t face) {
-  const std::size_t u = next(face / 2);
-  const std::size_t v = next(u);
+  const std::size_t u = next_axis(face / 2);
+  const std::size_t v = next_axis(u);
   const std::size_t corner = (face & 1U) << (face / 2);
   return {side_index(u, corner), side_index(u, corner | 1U << v), side_index(v, corner),
           side_index(v, corner | 1U << u)};
@@ -85,8 +76,8 @@ std::optional<BoxSplitter::Cut> BoxSplitter::test(SplitBox& box) {
   if (cut) return cut;
   connect_edges(box);
   const bool passes = cube_.finish([&](std::uint32_t piece) { return pieces_.euler(piece); });
-  if (pieces_.holds_void()) return cut_through_middle(box, CellObstacle::void_in_cube);
-  if (!passes) return cut_through_middle(box, CellObstacle::handle);
+  if (pieces_.holds_void()) return cut_through_middle(box, ModelObstacle::void_in_cube);
+  if (!passes) return cut_through_middle(box, ModelObstacle::handle);
   return std::nullopt;
 }
 
@@ -141,8 +132,8 @@ std::optional<Vec3d> BoxSplitter::connect_face(const SplitBox& box, std::size_t 
   square_.start(first[4]);
   const std::size_t axis = face / 2;
   const std::size_t corner = (face & 1U) << axis;
-  const std::size_t along_u = corner | 1U << next(axis);
-  const std::size_t along_v = corner | 1U << next(next(axis));
+  const std::size_t along_u = corner | 1U << next_axis(axis);
+  const std::size_t along_v = corner | 1U << next_axis(next_axis(axis));
   if (is_inside(box, corner)) square_.join(first[0], first[2]);
   if (is_inside(box, along_u)) square_.join(first[1] - 1, first[3]);
   if (is_inside(box, along_v)) square_.join(first[1], first[3] - 1);
@@ -207,8 +198,8 @@ std::optional<Vec3d> BoxSplitter::connect_face(const SplitBox& box, std::size_t 
 void BoxSplitter::connect_edges(const SplitBox& box) {
   for (std::size_t index = 0; index < 12; ++index) {
     const Side& side = sides_[index];
-    const std::size_t u = next(side.axis);
-    const std::size_t v = next(u);
+    const std::size_t u = next_axis(side.axis);
+    const std::size_t v = next_axis(u);
     // The two faces at a side, and where its intervals begin in each.
     std::array<std::size_t, 2> faces{2 * u + (side.corner >> u & 1U), 2 * v + (side.corner >> v & 1U)};
     std::array<std::uint32_t, 2> first{};
@@ -231,13 +222,13 @@ void BoxSplitter::connect_edges(const SplitBox& box) {
 /// A cut through a hole of a face opens it; across the longer side, so that boxes stay compact.
 BoxSplitter::Cut BoxSplitter::cut_beside(const SplitBox& box, std::size_t face, const Vec3d& hole) const {
   const Vec3d size = box.box.high - box.box.low;
-  const std::size_t u = next(face / 2);
-  const std::size_t v = next(u);
+  const std::size_t u = next_axis(face / 2);
+  const std::size_t v = next_axis(u);
   const std::size_t axis = size[u] >= size[v] ? u : v;
-  return {axis, hole[axis], CellObstacle::hole_in_square};
+  return {axis, hole[axis], ModelObstacle::hole_in_square};
 }
 
-BoxSplitter::Cut BoxSplitter::cut_through_middle(const SplitBox& box, CellObstacle obstacle) const {
+BoxSplitter::Cut BoxSplitter::cut_through_middle(const SplitBox& box, ModelObstacle obstacle) const {
   Vec3d low = box.box.high;
   Vec3d high = box.box.low;
   for (const std::uint32_t t : box.triangles) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/solid/cellular_model.hpp"
 #include "solid/model/box_cells.hpp"
 #include "solid/model/box_surface.hpp"
 #include "solid/model/components.hpp"
@@ -16,16 +17,13 @@
 
 namespace blum::detail {
 
-/// What keeps a box from passing.
-enum class CellObstacle : std::uint8_t { hole_in_square, handle, void_in_cube };
-
 /// A box, and what is known of the surface in it.
 struct SplitBox {
   BoxCell box;
-  std::vector<std::uint32_t> triangles;       ///< all that meet it, and perhaps others
-  std::uint8_t inside = 0;                    ///< bit k: whether corner k (bits x, y, z: high) is inside the solid
-  int splits = 0;                             ///< that it comes from
-  std::optional<CellObstacle> obstacle = {};  ///< why it does not pass, where it cannot be split further
+  std::vector<std::uint32_t> triangles;        ///< all that meet it, and perhaps others
+  std::uint8_t inside = 0;                     ///< bit k: whether corner k (bits x, y, z: high) is inside the solid
+  int splits = 0;                              ///< that it comes from
+  std::optional<ModelObstacle> obstacle = {};  ///< why it does not pass, where it cannot be split further
 };
 
 /// Splits boxes that fail. A box passes by itself: none of its six sides has a hole, and each component in it is
@@ -44,7 +42,7 @@ class BoxSplitter {
   struct Cut {
     std::size_t axis = 0;
     double at = 0;
-    CellObstacle obstacle = CellObstacle::handle;
+    ModelObstacle obstacle = ModelObstacle::handle;
   };
   /// An edge of the box.
   struct Side {
@@ -61,7 +59,7 @@ class BoxSplitter {
   [[nodiscard]] std::optional<Vec3d> connect_face(const SplitBox& box, std::size_t face);
   void connect_edges(const SplitBox& box);
   [[nodiscard]] Cut cut_beside(const SplitBox& box, std::size_t face, const Vec3d& hole) const;
-  [[nodiscard]] Cut cut_through_middle(const SplitBox& box, CellObstacle obstacle) const;
+  [[nodiscard]] Cut cut_through_middle(const SplitBox& box, ModelObstacle obstacle) const;
   [[nodiscard]] bool can_cut(const SplitBox& box, const Cut& cut) const;
   [[nodiscard]] std::array<SplitBox, 2> halves(SplitBox&& box, const Cut& cut) const;
 

@@ -5,10 +5,6 @@
 namespace blum::detail {
 namespace {
 
-constexpr std::size_t next(std::size_t axis) {
-  return (axis + 1) % 3;
-}
-
 void sort_unique(std::vector<std::uint32_t>& values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -32,8 +28,8 @@ bool may_meet(const TriangleCorners& t, const Vec3d& low, const Vec3d& high) {
 
 bool crosses(const TriangleCorners& t, std::size_t axis, const Vec3d& low, const Vec3d& high) {
   if (!may_meet(t, low, high)) return false;
-  const double u = low[next(axis)];
-  const double v = low[next(next(axis))];
+  const double u = low[next_axis(axis)];
+  const double v = low[next_axis(next_axis(axis))];
   const int side = side_of_line({t[0], t[1]}, axis, u, v);
   if (side == 0 || side_of_line({t[1], t[2]}, axis, u, v) != side) return false;
   if (side_of_line({t[2], t[0]}, axis, u, v) != side) return false;
@@ -44,7 +40,8 @@ void sort_along(const SurfaceMesh& mesh, std::size_t axis, const Vec3d& on_line,
                 std::vector<std::uint32_t>& triangles) {
   if (triangles.size() < 2) return;
   std::sort(triangles.begin(), triangles.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return is_crossed_before(mesh.corners(a), mesh.corners(b), axis, on_line[next(axis)], on_line[next(next(axis))]);
+    return is_crossed_before(mesh.corners(a), mesh.corners(b), axis, on_line[next_axis(axis)],
+                             on_line[next_axis(next_axis(axis))]);
   });
 }
 
@@ -53,11 +50,11 @@ bool passes_through(const EdgeEnds& edge, std::size_t across, const Vec3d& low, 
   if (is_above(edge[0][across], plane) == is_above(edge[1][across], plane)) return false;
   const int rises = is_above(edge[1][across], plane) ? 1 : -1;
   // Where it passes, a line across that lies to the left of the rising edge, seen in the plane of both axes, is above.
-  for (const std::size_t a : {next(across), next(next(across))}) {
+  for (const std::size_t a : {next_axis(across), next_axis(next_axis(across))}) {
     const std::size_t along = 3 - across - a;
     const auto is_line_above = [&](double coordinate) {
-      const int side = next(along) == across ? side_of_line(edge, along, plane, coordinate)
-                                             : -side_of_line(edge, along, coordinate, plane);
+      const int side = next_axis(along) == across ? side_of_line(edge, along, plane, coordinate)
+                                                  : -side_of_line(edge, along, coordinate, plane);
       return side * rises > 0;
     };
     if (is_line_above(low[a]) || !is_line_above(high[a])) return false;

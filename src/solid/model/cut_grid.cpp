@@ -23,14 +23,8 @@ constexpr std::array<CellAxes, 2> span_of(Cell square) {
   return {lower, axes ^ lower};
 }
 
-constexpr std::size_t axis_of(CellAxes bit) {
-  return bit == 1 ? 0 : bit == 2 ? 1 : 2;
-}
-
 [[noreturn]] void throw_crossing(const GridPlanes& planes, const CellLattice& lattice, Cell cell) {
-  const auto place = lattice.place(node_of(cell));
-  const Vec3d p = planes.node(
-      {static_cast<std::int32_t>(place[0]), static_cast<std::int32_t>(place[1]), static_cast<std::int32_t>(place[2])});
+  const Vec3d p = planes.node(lattice.place(node_of(cell)));
   throw InvalidMesh("the mesh bounds no solid near (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
                     std::to_string(p.z) + "): its surface is open, or crosses itself");
 }
@@ -161,9 +155,7 @@ void CutGrid::number_cells(TracedSurface& surface) {
   for (const GridCrossing& crossing : surface.crossings) cut_.insert(crossing.edge);
   for (const Arc& arc : surface.arcs) {
     cut_.insert(arc.square);
-    const Cell above = arc.square | 7U;
-    cut_.insert(above);
-    cut_.insert(static_cast<Cell>(above - 8 * lattice_.stride(axis_of(7U ^ axes_of(arc.square)))));
+    for (const Cell cube : lattice_.cubes_beside(arc.square)) cut_.insert(cube);
   }
   cut_.finish();
   cells_.resize(cut_.size());
@@ -183,10 +175,10 @@ void CutGrid::sort_crossings(const SurfaceMesh& mesh, const TracedSurface& surfa
     const std::size_t axis = axis_of(axes_of(edge));
     if (row.size() > 1) {
       const auto place = lattice_.place(node_of(edge));
-      const std::size_t u = (axis + 1) % 3;
-      const std::size_t v = (axis + 2) % 3;
-      const double at_u = planes_.at(u, static_cast<std::int32_t>(place[u]));
-      const double at_v = planes_.at(v, static_cast<std::int32_t>(place[v]));
+      const std::size_t u = next_axis(axis);
+      const std::size_t v = next_axis(u);
+      const double at_u = planes_.at(u, place[u]);
+      const double at_v = planes_.at(v, place[v]);
       std::sort(row.begin(), row.end(), [&](const GridCrossing& a, const GridCrossing& b) {
         return is_crossed_before(mesh.corners(a.triangle), mesh.corners(b.triangle), axis, at_u, at_v);
       });
@@ -256,9 +248,7 @@ void CutGrid::connect_squares(const SurfaceMesh& mesh, const Context& context) {
     for (std::size_t c = range.begin; c < range.end; ++c) {
       const Cell cell = cut_cells_[c];
       if (dimension_of(cell) != 2 || connect_square(mesh, cell, scratch)) continue;
-      const Cell above = cell | 7U;
-      scratch.failing.push_back(above);
-      scratch.failing.push_back(static_cast<Cell>(above - 8 * lattice_.stride(axis_of(7U ^ axes_of(cell)))));
+      for (const Cell cube : lattice_.cubes_beside(cell)) scratch.failing.push_back(cube);
     }
   });
   for (const Scratch& scratch : chunks) {
@@ -293,8 +283,8 @@ bool CutGrid::connect_square(const SurfaceMesh& mesh, Cell square, Scratch& scra
   for (const Arc& arc : arcs) {
     components_here.add_arc(end_of(arc.ends[0], arc.triangle), end_of(arc.ends[1], arc.triangle));
   }
-  const std::size_t across = axis_of(7U ^ axes_of(square));
-  const double plane = planes_.at(across, static_cast<std::int32_t>(lattice_.place(node)[across]));
+  const std::size_t across = normal_axis(square);
+  const double plane = planes_.at(across, lattice_.place(node)[across]);
   const bool passes = components_here.finish([&](std::span<const std::uint32_t> loop) {
     scratch.loop_edges.clear();
     for (const std::uint32_t arc : loop) {
@@ -339,8 +329,8 @@ bool CutGrid::connect_cube(const TracedSurface& surface, Cell cube, Scratch& scr
   const std::size_t node = node_of(cube);
   // An edge along an axis lies in two faces: across the next axis and the one after, each below or above.
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t u = (axis + 1) % 3;
-    const std::size_t v = (axis + 2) % 3;
+    const std::size_t u = next_axis(axis);
+    const std::size_t v = next_axis(u);
     for (std::size_t corner = 0; corner < 4; ++corner) {
       const std::size_t at_u = corner & 1U;
       const std::size_t at_v = corner >> 1U;

@@ -25,12 +25,16 @@ class GridPlanes {
     }
   }
 
-  [[nodiscard]] double at(std::size_t axis, std::int32_t plane) const {
+  [[nodiscard]] double at(std::size_t axis, std::int64_t plane) const {
     return at_[axis][static_cast<std::size_t>(plane)];
   }
   [[nodiscard]] std::int32_t count(std::size_t axis) const { return static_cast<std::int32_t>(at_[axis].size()); }
   [[nodiscard]] const Vec3d& spacing() const { return spacing_; }
-  [[nodiscard]] Vec3d node(const Place& place) const { return {at(0, place[0]), at(1, place[1]), at(2, place[2])}; }
+  /// @param place  as Place, or as CellLattice has it.
+  template <class Integer = std::int32_t>
+  [[nodiscard]] Vec3d node(const std::array<Integer, 3>& place) const {
+    return {at(0, place[0]), at(1, place[1]), at(2, place[2])};
+  }
   /// The cube that a point between the outermost planes lies in; beyond the last cube where it lies in the last plane.
   [[nodiscard]] Place cube(const Vec3d& p) const { return {between(0, p.x), between(1, p.y), between(2, p.z)}; }
 

@@ -12,13 +12,6 @@ namespace {
 
 constexpr std::size_t most_cells = 0xfffffff0U;
 
-constexpr std::size_t axis_of(CellAxes bit) {
-  return bit == 1 ? 0 : bit == 2 ? 1 : 2;
-}
-constexpr std::size_t next(std::size_t axis) {
-  return (axis + 1) % 3;
-}
-
 /// The cells of a grid that belong to a cube that is part of a region, rising.
 std::vector<Cell> cells_of(const CutGrid& grid, std::span<const RefinedRegion> regions) {
   std::vector<Cell> cells;
@@ -168,11 +161,7 @@ class Assembly {
     middle[axis] = 0.5 * (from + to);
     return middle;
   }
-  [[nodiscard]] Vec3d node_position(std::size_t node) const {
-    const auto at = lattice_.place(node);
-    return grid_.planes().node(
-        {static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]), static_cast<std::int32_t>(at[2])});
-  }
+  [[nodiscard]] Vec3d node_position(std::size_t node) const { return grid_.planes().node(lattice_.place(node)); }
   /// Where the first arc of a component of a square meets a plane: on an edge of the mesh.
   [[nodiscard]] Vec3d point_on(const ArcEnd& end, std::size_t across, double plane) const {
     const auto [a, b] = mesh_.ends(end.id);
@@ -208,12 +197,11 @@ class Assembly {
 
   /// Of an edge of the model.
   void add_ends(Cell square, std::uint32_t component) {
-    const std::size_t across = axis_of(7U ^ axes_of(square));
+    const std::size_t across = normal_axis(square);
     if (const auto end = grid_.loose_end(square, component)) {
       set_witness(point_on(*end, across, node_position(node_of(square))[across]));
     }
-    const Cell above = square | 7U;
-    const auto below = static_cast<Cell>(above - 8 * lattice_.stride(across));
+    const auto [below, above] = lattice_.cubes_beside(square);
     add_face(first_.of(below) + grid_.component_of_part(below, 2 * across + 1, component));
     add_face(first_.of(above) + grid_.component_of_part(above, 2 * across, component));
   }
@@ -302,7 +290,7 @@ class Assembly {
         const std::uint32_t rectangle = region.cells().rectangle(below, above);
         add_face(ids.rectangles[rectangle] + region.component_of_interval(rectangle, segment, interval));
       } else {
-        const std::size_t across = k < 2 ? next(own.axis) : next(next(own.axis));
+        const std::size_t across = k < 2 ? next_axis(own.axis) : next_axis(next_axis(own.axis));
         const Cell square = above.id ^ (1U << across);
         add_face(first_.of(square) + grid_.component_of_interval(square, edge_of(region, own), interval));
       }

@@ -5,12 +5,12 @@
 #include <optional>
 #include <utility>
 
-#include "blum/geometry/grid_predicates.hpp"
 #include "solid/model/box_splitter.hpp"
 #include "solid/model/box_surface.hpp"
 #include "solid/model/components.hpp"
 
 namespace blum::detail {
+
 struct RefinedRegion::Scratch {
   SquareComponents square;
   CubeComponents cube;
@@ -24,16 +24,15 @@ RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::
   BoxSplitter splitter(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits);
   std::vector<SplitBox> parts;
   for (std::size_t c = 0; c < cubes.size(); ++c) {
-    const auto at = grid.lattice().place(node_of(cubes[c]));
-    const Place low{static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]),
-                    static_cast<std::int32_t>(at[2])};
+    const std::size_t first = node_of(cubes[c]);
     SplitBox whole;
-    whole.box = {grid.planes().node(low), grid.planes().node({low[0] + 1, low[1] + 1, low[2] + 1}), cubes[c]};
+    const CellLattice& lattice = grid.lattice();
+    whole.box = {grid.planes().node(lattice.place(first)),
+                 grid.planes().node(lattice.place(first + lattice.node(1, 1, 1))), cubes[c]};
     whole.triangles = std::move(triangles[c]);
     for (std::size_t corner = 0; corner < 8; ++corner) {
-      const std::size_t node = node_of(cubes[c]) + (corner & 1U) + (corner >> 1U & 1U) * grid.lattice().stride(1) +
-                               (corner >> 2U) * grid.lattice().stride(2);
-      if (grid.is_inside(node)) whole.inside |= static_cast<std::uint8_t>(1U << corner);
+      const std::size_t step = lattice.node(corner & 1U, corner >> 1U & 1U, corner >> 2U);
+      if (grid.is_inside(first + step)) whole.inside |= static_cast<std::uint8_t>(1U << corner);
     }
     splitter.split(std::move(whole), context, parts);
   }

@@ -21,7 +21,7 @@ namespace blum::detail {
 /// A box that could not be split until it passes.
 struct StuckBox {
   BoxCell box;
-  CellObstacle obstacle;
+  ModelObstacle obstacle;
 };
 
 /// Some cubes of a grid, split into boxes, and what the solid's components in their cells are. Conventions are those of

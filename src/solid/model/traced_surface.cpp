@@ -17,16 +17,6 @@ constexpr std::uint32_t own_number = 0x80000000U;  ///< of pieces that a chunk o
 constexpr std::uint64_t most_passes = std::uint64_t{1} << 29U;
 constexpr std::uint32_t no_piece = 0xffffffffU;
 
-constexpr std::size_t next(std::size_t axis) {
-  return (axis + 1) % 3;
-}
-
-/// The plane across which a square lies.
-constexpr std::size_t normal_axis(Cell square) {
-  constexpr std::array<std::size_t, 8> axes{0, 0, 0, 2, 0, 1, 0, 0};
-  return axes[axes_of(square)];
-}
-
 /// Where the edges of a surface pass from cube to cube.
 class TracedEdges {
  public:
@@ -71,9 +61,9 @@ class TracedEdges {
     Place at = cubes_[a];
     for (std::uint32_t k = first_[edge]; k < first_[edge + 1]; ++k) {
       std::size_t axis = 3;
-      for (std::size_t next_axis = 0; next_axis < 3; ++next_axis) {
-        if (at[next_axis] == end[next_axis]) continue;
-        if (axis == 3 || is_first(ends, next_axis, axis, at, end)) axis = next_axis;
+      for (std::size_t candidate = 0; candidate < 3; ++candidate) {
+        if (at[candidate] == end[candidate]) continue;
+        if (axis == 3 || is_first(ends, candidate, axis, at, end)) axis = candidate;
       }
       const std::int32_t step = end[axis] > at[axis] ? 1 : -1;
       Place square = at;
@@ -87,12 +77,12 @@ class TracedEdges {
   [[nodiscard]] bool is_first(const EdgeEnds& ends, std::size_t one, std::size_t other, const Place& at,
                               const Place& end) const {
     // The line in which both planes meet lies on one side of the edge.
-    const bool is_cyclic = next(one) == other;
+    const bool is_cyclic = next_axis(one) == other;
     const std::size_t u = is_cyclic ? one : other;
     const std::size_t v = is_cyclic ? other : one;
     const std::int32_t u_step = end[u] > at[u] ? 1 : -1;
     const std::int32_t v_step = end[v] > at[v] ? 1 : -1;
-    const int side = side_of_line(ends, next(v), planes_.at(u, u_step > 0 ? at[u] + 1 : at[u]),
+    const int side = side_of_line(ends, next_axis(v), planes_.at(u, u_step > 0 ? at[u] + 1 : at[u]),
                                   planes_.at(v, v_step > 0 ? at[v] + 1 : at[v]));
     const bool is_u_first = side * u_step * v_step > 0;
     return is_u_first == is_cyclic;
@@ -164,8 +154,8 @@ class TriangleTracer {
   void walk(const Pass& one, const Pass& two) {
     const Triangle& t = mesh_.triangles()[triangle_];
     const std::size_t w = one.axis;
-    const std::size_t u = next(w);
-    const std::size_t v = next(u);
+    const std::size_t u = next_axis(w);
+    const std::size_t v = next_axis(u);
     // The corner that both sides have in common lies alone on its side of the plane. Seen against the axis, the
     // triangle's normal points to the right of the walk, which starts on the side after that corner, or to the left.
     const std::size_t alone = two.side == one.side + 1 ? two.side : one.side;
@@ -187,9 +177,7 @@ class TriangleTracer {
       corner[v] += v_step > 0 ? 1 : 0;
       bool is_along_u = at[v] == to[v];
       if (!is_along_u && at[u] != to[u]) {
-        const Place place{static_cast<std::int32_t>(corner[0]), static_cast<std::int32_t>(corner[1]),
-                          static_cast<std::int32_t>(corner[2])};
-        const int side = side_of_node(corners_, planes_.node(place));
+        const int side = side_of_node(corners_, planes_.node(corner));
         is_along_u = side * (normal_is_left ? 1 : -1) * u_step * v_step > 0;
       }
       auto crossed = at;
@@ -241,8 +229,8 @@ class TriangleTracer {
     beside_.clear();
     for (std::size_t arc = first_arc_; arc < out_.arcs.size(); ++arc) {
       const Cell square = out_.arcs[arc].square;
-      const Cell above = square | 7U;
-      beside_.emplace_back(static_cast<Cell>(above - 8 * lattice_.stride(normal_axis(square))), 2 * arc);
+      const auto [below, above] = lattice_.cubes_beside(square);
+      beside_.emplace_back(below, 2 * arc);
       beside_.emplace_back(above, 2 * arc + 1);
     }
     std::sort(beside_.begin(), beside_.end());
