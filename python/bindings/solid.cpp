@@ -52,6 +52,7 @@ std::vector<std::uint8_t> inside(const Solid& solid, std::span<const Vec3d> poin
 
 void bind_solid(nb::module_& m) {
   bind_struct<SolidShell>(m);
+  bind_struct<CrossingCounts>(m);
   bind_options<CellularModelOptions>(m);
   bind_struct<CellularModelReport>(m);
   nb::class_<CellularModel>(m, "CellularModel")
@@ -76,6 +77,10 @@ void bind_solid(nb::module_& m) {
       .def_prop_ro("shells", &shells_of)
       .def_prop_ro("reversed_shells", &Solid::reversed_shells)
       .def_prop_ro("reversed_triangles", &Solid::reversed_triangles)
+      .def_prop_ro("resolved",
+                   [](const Solid& solid) {
+                     return solid.resolved() ? result_of(*solid.resolved()) : nb::steal<nb::any>(nb::none().release());
+                   })
       .def_prop_ro("faces_inwards", &Solid::faces_inwards)
       .def_prop_ro("box",
                    [](const Solid& solid) { return std::pair(triple(solid.box().lower), triple(solid.box().upper)); })

@@ -15,7 +15,7 @@ from ._image import as_image, is_image, refuse_selection
 from ._mesh import Betti, Mesh, as_mesh, betti_of, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import Bounds, CellularModelOptions, CellularModelReport, SolidShell
+from ._structs import Bounds, CellularModelOptions, CellularModelReport, CrossingCounts, SolidShell
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,10 @@ class SolidBody:
     """A connected part of a solid, or the whole of it, and the triangles of the input around it."""
 
     mesh: Mesh  #: of a polyhedron, it faces outwards
-    vertex_of: npt.NDArray[np.uint32]  #: of each vertex of `mesh`, in the input
-    triangle_of: npt.NDArray[np.uint32]  #: of each triangle of `mesh`, in the input
+    vertex_of: npt.NDArray[
+        np.uint32
+    ]  #: of each vertex of `mesh`, in the input; 0xffffffff: new, where triangles crossed
+    triangle_of: npt.NDArray[np.uint32]  #: of each triangle of `mesh`, that of the input which it is a part of
     betti: Betti  #: components, tunnels, voids; of polyhedra
     shells: tuple[int, ...]  #: of polyhedra: the outer one, then its voids
 
@@ -65,8 +67,9 @@ class Solid:
     """The solid that a mesh or an image stands for: by which rule, its bodies, and their topology.
 
     Closed meshes that do not cross themselves are polyhedra, shell by shell; shells and triangles that face the wrong
-    way are reversed. Of other meshes the solid is where the winding number is above 1/2. Of images it is the union of
-    the selected voxels, which touch in corners.
+    way are reversed. Those that do cross become polyhedra, too, where few triangles cross: the solid is where the
+    winding number is 1 or more. Of other meshes it is where that is above 1/2. Of images it is the union of the
+    selected voxels, which touch in corners.
 
     Parameters
     ----------
@@ -149,6 +152,12 @@ class Solid:
     def reversed_triangles(self) -> int:
         """How many triangles faced another way than most of their shell and were reversed."""
         return self._core.reversed_triangles
+
+    @property
+    def resolved(self) -> CrossingCounts | None:
+        """What stood in the way of the mesh being a polyhedron, where that was resolved; None where nothing did."""
+        found: CrossingCounts | None = self._core.resolved
+        return found
 
     @property
     def faces_inwards(self) -> bool:

@@ -1,12 +1,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "blum/certificate/certificate.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/geometry/self_intersections.hpp"
+#include "certificate/bounding_mesh.hpp"
 #include "certificate/checks.hpp"
 #include "certificate/scaling.hpp"
 #include "certificate/shells.hpp"
@@ -93,6 +96,28 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
   return certificate;
 }
 
+/// The solid of a mesh, and the meshes that it refers to.
+struct BoundedSolid {
+  ScaledMesh given;
+  std::optional<verifier::BoundingMesh> bounding;
+  std::optional<ScaledMesh> own;
+  verifier::KnownSolid solid;
+
+  BoundedSolid(const MeshView& mesh, double factor, const Context& context) : given(mesh, factor) {
+    // Nearly always the mesh will do as it is, and is read once.
+    if (find_self_intersections(mesh, 0, context).complete) {
+      try {
+        solid = verifier::solid_of_mesh(given.view, given.view, context);
+        return;
+      } catch (const verifier::NoPolyhedron&) {  // NOLINT(bugprone-empty-catch): the next lines resolve it or say why
+      }
+    }
+    bounding.emplace(mesh, context);
+    own.emplace(bounding->view(), factor);
+    solid = verifier::solid_of_mesh(own->view, given.view, context);
+  }
+};
+
 /// With what nothing can be said of left out.
 CertificateOptions consistent(CertificateOptions options) {
   options.radii = options.radii && options.positions;
@@ -132,9 +157,8 @@ Certificate certify(const Complex& axis, const MeshView& mesh, const Certificate
                     const Context& context) {
   validate(mesh);
   const double factor = factor_for(bounds(mesh).diagonal());
-  if (options.positions) verifier::check_crossings(mesh, context);
-  const ScaledMesh own(mesh, factor);
-  const verifier::KnownSolid solid = verifier::solid_of_mesh(own.view, context);
+  const BoundedSolid known(mesh, factor, context);
+  const verifier::KnownSolid& solid = known.solid;
   return certify_against(factor == 1 ? axis : scaled(axis, factor), solid, factor, consistent(options), context);
 }
 

@@ -38,9 +38,6 @@ class NoPolyhedron : public InvalidMesh {
   std::string reason_;
 };
 
-/// @throws NoPolyhedron where triangles cross, or touch in too many places to look at them all; Cancelled.
-void check_crossings(const MeshView& mesh, const Context& context);
-
 /// Cuts a mesh into its shells. Which of them lies in which is not yet known.
 /// @throws NoPolyhedron unless every edge has two triangles that traverse it in opposite directions, and every vertex
 /// one fan of triangles; Cancelled.

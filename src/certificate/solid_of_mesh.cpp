@@ -14,9 +14,14 @@ namespace {
 
 class ShellOracle : public SolidOracle {
  public:
-  ShellOracle(const MeshView& mesh, const ClosedShells& shells, const TriangleSearch& shell_search,
-              const Context& context)
-      : mesh_(mesh), shells_(shells), body_of_(shells.of_triangle), boxes_(shells.bodies), sites_(mesh, context) {
+  ShellOracle(const MeshView& mesh, const MeshView& named, const ClosedShells& shells,
+              const TriangleSearch& shell_search, const Context& context)
+      : mesh_(mesh),
+        named_(named),
+        shells_(shells),
+        body_of_(shells.of_triangle),
+        boxes_(shells.bodies),
+        sites_(named, context) {
     for (std::size_t t = 0; t < body_of_.size(); ++t) {
       if (body_of_[t] == no_group) continue;
       body_of_[t] = shells_.shells[body_of_[t]].body;
@@ -80,7 +85,7 @@ class ShellOracle : public SolidOracle {
   }
 
   [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
-    return verifier::distance_from_site(mesh_, sites_, p, site);
+    return verifier::distance_from_site(named_, sites_, p, site);
   }
 
  private:
@@ -127,21 +132,22 @@ class ShellOracle : public SolidOracle {
   }
 
   MeshView mesh_;
+  MeshView named_;  ///< whose sites are asked of
   ClosedShells shells_;
   std::vector<std::uint32_t> body_of_;  ///< of each triangle
   std::vector<Box3> boxes_;             ///< of each body
-  SiteTable sites_;
-  TriangleSearch search_;  ///< bodies are its groups
+  SiteTable sites_;                     ///< of `named_`
+  TriangleSearch search_;               ///< bodies are its groups
 };
 
 }  // namespace
 
-KnownSolid solid_of_mesh(const MeshView& mesh, const Context& context) {
+KnownSolid solid_of_mesh(const MeshView& mesh, const MeshView& named, const Context& context) {
   ClosedShells shells = cut_into_shells(mesh, context);
   const TriangleSearch search(mesh, shells.of_triangle, context);
   nest(shells, mesh, search, context);
   std::vector<BettiNumbers> bodies = betti_numbers(shells);
-  return {std::make_unique<ShellOracle>(mesh, shells, search, context), std::move(bodies)};
+  return {std::make_unique<ShellOracle>(mesh, named, shells, search, context), std::move(bodies)};
 }
 
 }  // namespace blum::verifier

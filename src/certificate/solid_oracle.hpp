@@ -79,8 +79,9 @@ struct KnownSolid {
   std::vector<BettiNumbers> bodies;
 };
 
-/// What closed shells bound. @throws InvalidMesh, Cancelled. The mesh must outlive the solid.
-[[nodiscard]] KnownSolid solid_of_mesh(const MeshView& mesh, const Context& context);
+/// What closed shells bound. @param named  the mesh whose sites distances are asked of: the input.
+/// @throws InvalidMesh, Cancelled. The meshes must outlive the solid.
+[[nodiscard]] KnownSolid solid_of_mesh(const MeshView& mesh, const MeshView& named, const Context& context);
 
 /// Closed voxels. @param surface  distances are to its triangles; nullptr: to the voxels' faces.
 /// @throws InvalidMesh where the surface has no triangles, InvalidGrid where the grid does not cover it, Cancelled. The

@@ -213,6 +213,72 @@ void add_shells(const std::vector<Shell>& shells, const std::vector<std::uint32_
   }
 }
 
+/// The polyhedron that a mesh bounds as it is. @param why  gets the reason where it bounds none.
+std::optional<MeshSolid> polyhedron(const MeshView& mesh, const SiteTable& sites, const Topology& topology,
+                                    std::string& why, const Context& context) {
+  why = obstacle(topology);
+  if (!why.empty()) return std::nullopt;
+  const std::vector<std::uint32_t> shell = shell_of_triangles(mesh, sites);
+  const std::optional<std::vector<std::uint32_t>> body = body_of_shells(topology.shells);
+  if (!body) {
+    why = "its shells do not lie in each other, they cross or coincide";
+    return std::nullopt;
+  }
+  std::vector<std::vector<std::uint32_t>> triangles;
+  std::vector<std::uint32_t> body_of_triangle(mesh.triangles.size(), nobody);
+  std::vector<bool> is_reversed(mesh.triangles.size(), false);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (shell[t] == nobody) continue;
+    const std::uint32_t b = body_of_triangle[t] = (*body)[shell[t]];
+    if (b >= triangles.size()) triangles.resize(b + 1);
+    triangles[b].push_back(t);
+    is_reversed[t] = !topology.shells[shell[t]].faces_outwards;
+  }
+  MeshSolid out;
+  why = crossing(mesh, body_of_triangle, out.touching, context);
+  if (!why.empty()) return std::nullopt;
+  out.is_closed = true;
+  for (const auto& own : triangles) out.bodies.push_back(copy_of(mesh, own, is_reversed));
+  add_shells(topology.shells, *body, out);
+  out.reason = "the mesh is closed, manifold and does not cross itself";
+  return out;
+}
+
+std::string resolved_text(const CrossingCounts& counts) {
+  std::string text;
+  const auto tell = [&](std::size_t n, const char* one, const char* many) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + (n == 1 ? one : many);
+  };
+  tell(counts.crossing, "pair of triangles crossed", "pairs of triangles crossed");
+  tell(counts.touching, "pair of triangles touched", "pairs of triangles touched");
+  tell(counts.flat, "triangle had no area", "triangles had no area");
+  tell(counts.crowded_edges, "edge had more than two triangles", "edges had more than two triangles");
+  return text + ": resolved exactly, the solid is where the winding number is 1 or more";
+}
+
+/// The polyhedron where a closed mesh that crosses itself winds once or more. @param why  gets the reason where its
+/// crossings are not resolved, after the one that is there.
+std::optional<MeshSolid> resolved_polyhedron(const MeshView& mesh, std::string& why, const Context& context) {
+  const ResolvedMesh resolved = resolve_crossings(mesh, {}, context);
+  std::string obstacle = resolved.obstacle;
+  if (resolved.is_resolved()) {
+    const SiteTable sites(resolved.mesh, context);
+    std::optional<MeshSolid> out =
+        polyhedron(resolved.mesh, sites, topology(resolved.mesh, sites, context), obstacle, context);
+    if (out) {
+      for (SolidBody& body : out->bodies) {
+        for (std::uint32_t& v : body.vertex_of) v = resolved.vertex_of[v];
+        for (std::uint32_t& t : body.triangle_of) t = resolved.triangle_of[t];
+      }
+      out->resolved = resolved.counts;
+      out->reason = resolved_text(resolved.counts);
+      return out;
+    }
+  }
+  why += ", which is not resolved: " + obstacle;
+  return std::nullopt;
+}
+
 }  // namespace
 
 MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const Context& context) {
@@ -228,29 +294,12 @@ MeshSolid split_into_bodies(const MeshView& mesh, const SiteTable& sites, const 
       return out;
     }
   }
-  if (const std::string why = obstacle(topology); !why.empty()) return whole(mesh, topology, why);
-  const std::vector<std::uint32_t> shell = shell_of_triangles(mesh, sites);
-  const std::optional<std::vector<std::uint32_t>> body = body_of_shells(topology.shells);
-  if (!body) return whole(mesh, topology, "its shells do not lie in each other, they cross or coincide");
-  std::vector<std::vector<std::uint32_t>> triangles;
-  std::vector<std::uint32_t> body_of_triangle(mesh.triangles.size(), nobody);
-  std::vector<bool> is_reversed(mesh.triangles.size(), false);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (shell[t] == nobody) continue;
-    const std::uint32_t b = body_of_triangle[t] = (*body)[shell[t]];
-    if (b >= triangles.size()) triangles.resize(b + 1);
-    triangles[b].push_back(t);
-    is_reversed[t] = !topology.shells[shell[t]].faces_outwards;
+  std::string why;
+  if (auto out = polyhedron(mesh, sites, topology, why, context)) return std::move(*out);
+  if (topology.boundary_edges == 0 && topology.inconsistent_edges == 0) {
+    if (auto out = resolved_polyhedron(mesh, why, context)) return std::move(*out);
   }
-  MeshSolid out;
-  if (const std::string why = crossing(mesh, body_of_triangle, out.touching, context); !why.empty()) {
-    return whole(mesh, topology, why);
-  }
-  out.is_closed = true;
-  for (const auto& own : triangles) out.bodies.push_back(copy_of(mesh, own, is_reversed));
-  add_shells(topology.shells, *body, out);
-  out.reason = "the mesh is closed, manifold and does not cross itself";
-  return out;
+  return whole(mesh, topology, why);
 }
 
 std::vector<std::uint32_t> groups_apart(std::size_t bodies, std::span<const std::array<std::uint32_t, 2>> touching) {
@@ -270,14 +319,19 @@ std::vector<std::uint32_t> groups_apart(std::size_t bodies, std::span<const std:
 
 SiteId SolidBody::input_site(SiteId own, const SiteTable& own_sites, const SiteTable& input_sites) const {
   const Site site = own_sites.site(own);
-  if (site.kind == SiteKind::vertex) return input_sites.id({SiteKind::vertex, vertex_of[site.index]});
-  if (site.kind == SiteKind::face) return input_sites.id({SiteKind::face, triangle_of[site.index]});
-  // Vertices keep their order, so that edges do.
-  const Segment& edge = own_sites.edges()[site.index];
-  const Segment input{vertex_of[edge[0]], vertex_of[edge[1]]};
-  const auto edges = input_sites.edges();
-  const auto at = std::lower_bound(edges.begin(), edges.end(), input);
-  return input_sites.id({SiteKind::edge, static_cast<std::uint32_t>(at - edges.begin())});
+  if (site.kind == SiteKind::vertex && vertex_of[site.index] != no_vertex) {
+    return input_sites.id({SiteKind::vertex, vertex_of[site.index]});
+  }
+  if (site.kind == SiteKind::edge) {
+    const Segment& edge = own_sites.edges()[site.index];
+    const auto [low, high] = std::minmax(vertex_of[edge[0]], vertex_of[edge[1]]);
+    const auto edges = input_sites.edges();
+    const auto at = std::lower_bound(edges.begin(), edges.end(), Segment{low, high});
+    if (at != edges.end() && *at == Segment{low, high}) {
+      return input_sites.id({SiteKind::edge, static_cast<std::uint32_t>(at - edges.begin())});
+    }
+  }
+  return input_sites.id({SiteKind::face, triangle_of[own_sites.triangle(own).value]});
 }
 
 }  // namespace blum

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/geometry/resolve_crossings.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/solid/solid.hpp"
@@ -20,7 +22,8 @@ struct MeshSolid {
   SolidRule rule = SolidRule::polyhedron;
   std::string reason;
   std::size_t reversed_triangles = 0;
-  bool is_closed = false;  ///< every edge has two triangles, which traverse it in opposite directions
+  bool is_closed = false;                  ///< every edge has two triangles, which traverse it in opposite directions
+  std::optional<CrossingCounts> resolved;  ///< what the shells are without
   std::vector<SolidShell> shells;
   std::vector<SolidBody> bodies;
   std::vector<std::array<std::uint32_t, 2>> touching;  ///< pairs of bodies that touch, the lesser first; rising

@@ -117,6 +117,9 @@ std::size_t Solid::reversed_shells() const {
 std::size_t Solid::reversed_triangles() const {
   return data_->mesh.reversed_triangles;
 }
+const std::optional<CrossingCounts>& Solid::resolved() const {
+  return data_->mesh.resolved;
+}
 bool Solid::faces_inwards() const {
   return data_->faces_inwards;
 }

@@ -315,12 +315,36 @@ def test_an_open_mesh_that_faces_inwards_is_told_of(solids, tmp_path):
     assert "no interior" in err and "its triangles face inwards: flip them" in err
 
 
-def test_a_mesh_that_crosses_itself_is_no_polyhedron_whatever_the_axis_says(solids, tmp_path):
+def several_boxes(solids, path, places):
+    """The box of `solids` at several places, each a factor and an offset in sides of the box."""
     lines = (solids / "box.obj").read_text().splitlines()
-    corners = [[float(x) + 0.3 for x in line.split()[1:]] for line in lines if line.startswith("v ")]
-    more = ["f " + " ".join(str(int(v) + len(corners)) for v in line.split()[1:]) for line in lines if line[:2] == "f "]
+    corners = np.array([[float(x) for x in line.split()[1:]] for line in lines if line.startswith("v ")])
+    faces = np.array([[int(v) for v in line.split()[1:]] for line in lines if line.startswith("f ")])
+    side = np.ptp(corners, axis=0)
+    text = [f"v {x} {y} {z}" for factor, offset in places for x, y, z in (corners * factor + side * offset).tolist()]
+    text += [f"f {a} {b} {c}" for n in range(len(places)) for a, b, c in (faces + n * len(corners)).tolist()]
+    path.write_text("\n".join(text) + "\n")
+
+
+def test_a_mesh_that_crosses_itself_is_resolved(solids, tmp_path):
     two = tmp_path / "two.obj"
-    two.write_text("\n".join(lines + ["v {} {} {}".format(*corner) for corner in corners] + more) + "\n")
+    several_boxes(solids, two, [(1, (0, 0, 0)), (1, (0.3, 0.3, 0.3))])
+    repaired = run_json("info", two)["repaired"]
+    assert (repaired["rule"], repaired["betti"]) == ("polyhedron", [1, 0, 0])
+    assert repaired["resolved"]["crossing"] > 0 and repaired["resolved"]["new_vertices"] > 0
+    assert "repaired        1 part, 0 tunnels" in run("info", two)[0]
+    run("medial", two, "-o", tmp_path / "t.npz", "--resolution", 16)
+    certificate = run_json("verify", two, tmp_path / "t.npz")["certificate"]
+    assert certificate["against"] == "polyhedron" and certificate["solid_betti"] == [1, 0, 0]
+    false = falsified(tmp_path, tmp_path, "t.npz", claim_winding)
+    assert "it is 'polyhedron'" in run("verify", two, false, status=3)[1]
+
+
+def test_a_mesh_that_crosses_itself_unresolved_is_no_polyhedron_whatever_the_axis_says(solids, tmp_path):
+    two = tmp_path / "two.obj"
+    # Two that meet along an edge, and a third one across both.
+    several_boxes(solids, two, [(1, (0, 0, 0)), (1, (1, 1, 0)), (0.9, (0.5, 0.5, 0.5))])
+    assert "touches itself" in run_json("info", two)["repaired"]["reason"]
     (tmp_path / "axis.obj").write_text("v 0 0 0\nv 0.3 0.3 0.3\np 1\np 2\n")
     (tmp_path / "axis.ma").write_text("2 0 0\nv 0 0 0 0.5\nv 0.3 0.3 0.3 0.5\n")
     for end in ("obj", "ma"):

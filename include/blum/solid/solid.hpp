@@ -17,6 +17,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/resolve_crossings.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
@@ -53,13 +54,17 @@ struct Description<SolidShell> {
 
 /// A connected part of a solid, or the whole of it, and the triangles of the input around it.
 struct SolidBody {
+  /// Of a vertex that the input does not have: where triangles crossed.
+  static constexpr std::uint32_t no_vertex = ResolvedMesh::no_vertex;
+
   TriangleMesh mesh;
-  std::vector<std::uint32_t> vertex_of;    ///< of each vertex of `mesh`, in the input
-  std::vector<std::uint32_t> triangle_of;  ///< of each triangle of `mesh`, in the input
+  std::vector<std::uint32_t> vertex_of;    ///< of each vertex of `mesh`, in the input; or no_vertex
+  std::vector<std::uint32_t> triangle_of;  ///< of each triangle of `mesh`, that of the input which it is a part of
   BettiNumbers betti{};                    ///< SolidRule::polyhedron: of the body
   std::vector<std::uint32_t> shells;       ///< SolidRule::polyhedron: the outer one, then its voids, rising
 
-  /// The site of the input that a site of `mesh` stands for.
+  /// The site of the input that a site of `mesh` stands for. Where crossings were resolved, new vertices and edges
+  /// stand for a face that they lie on, up to the rounding of their coordinates.
   [[nodiscard]] SiteId input_site(SiteId own, const SiteTable& own_sites, const SiteTable& input_sites) const;
 };
 
@@ -72,10 +77,12 @@ class Solid {
  public:
   /// Closed, manifold meshes that do not cross themselves are polyhedra (SolidRule::polyhedron), shell by shell: each
   /// outer shell and the voids in it are one body, and bodies may touch. Triangles that face another way than most of
-  /// their shell are reversed, and so are shells that face the solid. For other meshes the solid is where the winding
-  /// number is above 1/2 (SolidRule::winding). The mesh may go away.
+  /// their shell are reversed, and so are shells that face the solid. Closed meshes that cross, overlap or touch
+  /// themselves become such ones where resolve_crossings() can: the solid is where their winding number is 1 or more.
+  /// For other meshes it is where that is above 1/2 (SolidRule::winding). The mesh may go away.
   /// @throws InvalidMesh unless it passes validate(mesh), and where there are no triangles; Cancelled.
-  /// Cost: that of topology() and find_self_intersections(), and a copy of the mesh.
+  /// Cost: that of topology() and find_self_intersections(), and a copy of the mesh; where it crosses itself, that of
+  /// resolve_crossings() and of both again.
   [[nodiscard]] static Solid of(const MeshView& mesh, const Context& context = {});
 
   /// The union of the selected, closed voxels of an image; those that touch in a corner are one body.
@@ -99,6 +106,9 @@ class Solid {
   [[nodiscard]] std::size_t reversed_shells() const;
   /// How many triangles faced another way than most of their shell and were reversed.
   [[nodiscard]] std::size_t reversed_triangles() const;
+  /// What stood in the way of the mesh being a polyhedron, where that was resolved; nullopt where nothing did, and
+  /// where reason() says why it was not.
+  [[nodiscard]] const std::optional<CrossingCounts>& resolved() const;
   /// SolidRule::winding: whether the triangles face inwards as a whole, so that hardly anything is inside: reversing
   /// them all is what helps. Judged by the volume between them and the middle of their box.
   [[nodiscard]] bool faces_inwards() const;

@@ -103,10 +103,10 @@ TEST(Certificate, HoldsForTheCentreLineOfATorus) {
 }
 
 TEST(Certificate, SeveralBodiesAndVoids) {
-  // Two boxes that touch in a face, and in the second one a void that touches its wall, with a body in it.
+  // Two boxes that touch in a face, and in the second one a void, with a body in it.
   TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
   append(mesh, box_between({1, 0, 0}, {4, 3, 3}));
-  append(mesh, box_between({1, 1, 1}, {2, 2, 2}, true));
+  append(mesh, box_between({1.05, 1, 1}, {2, 2, 2}, true));
   append(mesh, box_between({1.25, 1.25, 1.25}, {1.75, 1.75, 1.75}));
   const Bvh bvh(mesh, SiteTable(mesh));
   AxisRows axis;
@@ -124,7 +124,7 @@ TEST(Certificate, SeveralBodiesAndVoids) {
           .starts_with("body 1 of 3 (around 0.5 0.5 0.5) has 1 component, the axis in it 2\nbody 2 of 3 (around 2.5"))
       << complaints(certify(axis, mesh));
   // In the void is outside.
-  axis.vertices[2] = vertex_at(bvh, {1.1, 1.5, 1.5});
+  axis.vertices[2] = vertex_at(bvh, {1.15, 1.5, 1.5});
   c = certify(axis, mesh);
   EXPECT_EQ(c.geometry.outside, 1U);
   EXPECT_NEAR(c.geometry.outside_by, 0.1, 1e-12);
@@ -177,13 +177,21 @@ TEST(Certificate, ToleratesWhatIsSmallForTheBody) {
   EXPECT_EQ(certify(axis, mesh).geometry.outside, 1U);
 }
 
-TEST(Certificate, MeshesThatCrossThemselvesAreRefused) {
+TEST(Certificate, MeshesThatCrossThemselvesAreResolved) {
   TriangleMesh mesh = make_sphere({});
   append(mesh, make_sphere({}), {1, 0.1, 0.05});
-  EXPECT_EQ(solid_rule(mesh).rule, SolidRule::winding);
-  EXPECT_EQ(solid_rule(mesh).reason, "the mesh crosses itself");
-  EXPECT_THROW((void)certify(ball_axis(mesh, {}), mesh), InvalidMesh);
+  EXPECT_EQ(solid_rule(mesh).rule, SolidRule::polyhedron);
+  EXPECT_EQ(solid_rule(mesh).reason, "the mesh is closed, and manifold once its crossings are resolved");
+  const Certificate united = certify(ball_axis(mesh, {}), mesh, {.radii = false});
+  EXPECT_EQ(united.solid, (BettiNumbers{1, 0, 0}));
+  EXPECT_TRUE(united.holds()) << complaints(united);
+  EXPECT_FALSE(certify(ball_axis(mesh, {3, 0, 0}), mesh, {.radii = false}).holds());
   EXPECT_EQ(solid_rule(make_void_cube({})).rule, SolidRule::polyhedron);
+  // Not where it winds in no direction alone.
+  TriangleMesh inwards = mesh;
+  inwards.triangles = reversed_triangles(mesh.triangles);
+  EXPECT_EQ(solid_rule(inwards).rule, SolidRule::winding);
+  EXPECT_THROW((void)certify(ball_axis(inwards, {}), inwards), InvalidMesh);
   TriangleMesh open = make_box({});
   open.triangles.pop_back();
   EXPECT_EQ(solid_rule(open).rule, SolidRule::winding);
@@ -191,9 +199,12 @@ TEST(Certificate, MeshesThatCrossThemselvesAreRefused) {
   mesh = box_between({0, 0, 0}, {1, 1, 1});
   append(mesh, box_between({1, 0, 0}, {2, 1, 1}));
   EXPECT_EQ(solid_rule(mesh).rule, SolidRule::polyhedron);
-  mesh = box_between({0, 0, 0}, {3, 3, 3});
-  append(mesh, box_between({0, 1, 1}, {1, 2, 2}, true));
+  mesh = box_between({0, 0, 0}, {1, 1, 1});
+  append(mesh, box_between({1, 1, 0}, {2, 2, 1}));
+  append(mesh, box_between({0.2, 0.2, 0.5}, {1.8, 1.8, 2}));
   EXPECT_EQ(solid_rule(mesh).rule, SolidRule::winding);
+  EXPECT_EQ(solid_rule(mesh).reason,
+            "the mesh crosses itself, which is not resolved: the solid touches itself in 1 vertex");
 }
 
 TEST(Certificate, PositionsAreCheckedWithoutRadii) {

@@ -1,0 +1,76 @@
+// Blum: triangles between points of a plane, along given segments. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "geometry/crossings/exact_space.hpp"
+
+namespace blum::detail {
+
+/// Triangles that cover a large triangle, with all points that were inserted as corners, and given segments as edges.
+/// Seen against an axis they turn counter-clockwise. Which turns points make is exact; that angles are large is tried.
+/// Method: points one by one, segments by flips of what crosses them (Sloan 1993).
+class PlanarMesh {
+ public:
+  /// @param outer  three points around all others.
+  PlanarMesh(const ExactSpace& space, std::size_t axis, const std::array<PointId, 3>& outer);
+
+  /// @return  false where the point coincides with another one.
+  [[nodiscard]] bool insert(PointId p);
+  /// Makes a segment an edge that stays. No point may lie on it, and no such edge may cross it.
+  /// @return  false where this is not so.
+  [[nodiscard]] bool insert_segment(PointId from, PointId to);
+  /// Flips edges until angles are large, as far as rounding tells.
+  void improve();
+
+  /// The triangles without those at the outer points.
+  [[nodiscard]] std::vector<std::array<PointId, 3>> triangles() const;
+
+ private:
+  using Index = std::uint32_t;
+  static constexpr Index none = 0xffffffffU;
+
+  struct Corners {
+    std::array<Index, 3> at{};
+    std::array<Index, 3> beyond{none, none, none};  ///< triangle over the edge from corner k to the next one
+    std::array<bool, 3> stays{};
+  };
+  struct Edge {
+    Index triangle = none;
+    std::size_t k = 0;
+  };
+
+  [[nodiscard]] int turn(Index a, Index b, Index c) const {
+    return space_.turn(axis_, points_[a], points_[b], points_[c]);
+  }
+  void set(Index triangle, const Corners& corners);
+  void replace(Index triangle, Index old_neighbour, Index new_neighbour);
+  [[nodiscard]] std::size_t edge_towards(Index triangle, Index neighbour) const;
+  [[nodiscard]] std::optional<Index> locate(Index p, std::array<int, 3>& turns) const;
+  void split_triangle(Index triangle, Index p);
+  void split_edge(Index triangle, std::size_t k, Index p);
+  [[nodiscard]] std::optional<Edge> edge_between(Index from, Index to) const;
+  [[nodiscard]] bool is_convex(const Edge& edge) const;
+  void flip(const Edge& edge);
+  [[nodiscard]] bool wants_flip(const Edge& edge) const;
+  [[nodiscard]] std::optional<std::deque<std::array<Index, 2>>> crossed_by(Index from, Index to) const;
+  /// Calls visit(triangle, k of the corner) around a corner until it returns true; whether it did.
+  template <class Visit>
+  bool around(Index corner, const Visit& visit) const;
+
+  const ExactSpace& space_;
+  std::size_t axis_;
+  std::vector<PointId> points_;
+  std::vector<Index> triangle_at_;  ///< of each point
+  std::vector<Corners> triangles_;
+  std::unordered_map<PointId, Index> index_;
+  Index last_ = 0;
+};
+
+}  // namespace blum::detail

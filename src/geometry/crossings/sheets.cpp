@@ -1,0 +1,365 @@
+#include "geometry/crossings/sheets.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "blum/core/union_find.hpp"
+#include "geometry/crossings/planar_mesh.hpp"
+
+namespace blum::detail {
+namespace {
+
+constexpr std::uint32_t nobody = 0xffffffffU;
+
+/// Looks at pairs of segments in one sheet, of all sheets together.
+constexpr std::size_t most_looks = 400'000'000;
+
+/// A segment in the plane of a sheet: an edge of one of its triangles, or where a triangle of another plane meets one.
+struct SheetSegment {
+  std::array<PointId, 2> ends{};
+  Cut cut;
+  bool is_edge = false;
+  std::vector<PointId> points;  ///< on it, between its ends
+};
+
+/// Triangles that overlap in one plane; mostly a single one.
+struct Sheet {
+  std::vector<std::uint32_t> members;
+  FlatTriangle first;  ///< the first member
+  std::vector<SheetSegment> segments;
+  std::vector<PointId> points;
+  bool is_crossed = false;  ///< its segments with each other
+};
+
+class Cutter {
+ public:
+  Cutter(const CrossedMesh& mesh, CutMesh& out, const Context& context)
+      : mesh_(mesh), space_(out.space), context_(context), facets_(out.facets), sheet_of_(out.sheet_of) {
+    sheet_of_.assign(mesh.triangles.size(), nobody);
+  }
+
+  /// @returns how many triangles were cut.
+  std::size_t cut() {
+    std::vector<std::uint32_t> involved;
+    for (const TrianglePair& pair : mesh_.pairs) {
+      involved.push_back(pair.first.value);
+      involved.push_back(pair.second.value);
+    }
+    std::sort(involved.begin(), involved.end());
+    involved.erase(std::unique(involved.begin(), involved.end()), involved.end());
+    make_sheets(involved);
+    add_flat_triangles();
+    do {
+      for (Sheet& sheet : sheets_) cross_segments(sheet);
+      while (pass_over_flat_triangles()) {
+      }
+    } while (add_triangles_at_cut_edges());
+    std::size_t count = 0;
+    for (std::uint32_t s = 0; s < sheets_.size(); ++s) {
+      throw_if_cancelled(context_);
+      count += sheets_[s].members.size();
+      add_facets(s);
+    }
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (mesh_.is_flat[t] != 0 || sheet_of_[t] != nobody) continue;
+      sheet_of_[t] = static_cast<std::uint32_t>(sheets_.size() + t);
+      facets_.push_back({mesh_.triangles[t], 1, t, sheet_of_[t], true});
+    }
+    return count;
+  }
+
+ private:
+  void make_sheets(const std::vector<std::uint32_t>& involved) {
+    std::unordered_map<std::uint32_t, std::uint32_t> place;
+    std::vector<FlatTriangle> flat;
+    for (std::uint32_t k = 0; k < involved.size(); ++k) {
+      place[involved[k]] = k;
+      flat.push_back(flattened(space_, mesh_.triangles[involved[k]]));
+    }
+    UnionFind joined(involved.size());
+    std::vector<std::pair<std::uint32_t, SheetSegment>> segments;
+    std::vector<std::pair<std::uint32_t, PointId>> points;
+    std::size_t done = 0;
+    for (const TrianglePair& pair : mesh_.pairs) {
+      constexpr std::size_t often = 1024;
+      if (done++ % often == 0) throw_if_cancelled(context_);
+      const std::array<std::uint32_t, 2> two{place.at(pair.first.value), place.at(pair.second.value)};
+      const Contact3 contact = contact_of(space_, flat[two[0]], flat[two[1]], edge_points_);
+      if (contact.is_coplanar) joined.join(two[0], two[1]);
+      for (std::size_t k = 0; k < 2 && contact.count > 0; ++k) {
+        for (std::size_t p = 0; p < contact.count; ++p) points.emplace_back(two[k], contact.points[p]);
+        if (contact.count < 2) continue;
+        segments.push_back({two[k], {contact.points, flat[two[1 - k]].plane(), false, {}}});
+      }
+    }
+    std::vector<std::uint32_t> sheet(involved.size(), nobody);
+    for (std::uint32_t k = 0; k < involved.size(); ++k) {
+      const std::uint32_t r = joined.find(k);
+      sheet[k] = r == k ? new_sheet() : sheet[r];
+      add_member(sheet[k], involved[k]);
+    }
+    for (auto& [k, segment] : segments) sheets_[sheet[k]].segments.push_back(std::move(segment));
+    for (const auto& [k, p] : points) sheets_[sheet[k]].points.push_back(p);
+  }
+
+  std::uint32_t new_sheet() {
+    sheets_.emplace_back();
+    return static_cast<std::uint32_t>(sheets_.size() - 1);
+  }
+
+  void add_member(std::uint32_t s, std::uint32_t triangle) {
+    Sheet& sheet = sheets_[s];
+    sheet_of_[triangle] = s;
+    const Triangle& corners = mesh_.triangles[triangle];
+    if (sheet.members.empty()) sheet.first = flattened(space_, corners);
+    sheet.members.push_back(triangle);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<PointId, 2> ends{corners[k], corners[(k + 1) % 3]};
+      sheet.points.push_back(corners[k]);
+      sheet.segments.push_back({ends, {{ends[0], ends[1], 0}, static_cast<std::int8_t>(sheet.first.axis)}, true, {}});
+    }
+  }
+
+  /// Between two points of a line, in order, at the ends included.
+  [[nodiscard]] bool is_between(const std::array<PointId, 2>& ends, PointId p) const {
+    return space_.compare(ends[0], p) * space_.compare(p, ends[1]) >= 0;
+  }
+
+  [[nodiscard]] Box3 box_of(const SheetSegment& segment) const {
+    Box3 box;
+    for (const PointId p : segment.ends) box.extend(space_.rounded(p));
+    return box;
+  }
+
+  static bool overlap(const Box3& a, const Box3& b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (a.upper[k] < b.lower[k] || b.upper[k] < a.lower[k]) return false;
+    }
+    return true;
+  }
+
+  /// Finds the points in which segments of a sheet cross, and the points that lie on its triangles' edges.
+  void cross_segments(Sheet& sheet) {
+    if (std::exchange(sheet.is_crossed, true)) return;
+    std::vector<Box3> boxes;
+    std::vector<std::uint32_t> order(sheet.segments.size());
+    for (std::uint32_t k = 0; k < order.size(); ++k) {
+      order[k] = k;
+      boxes.push_back(box_of(sheet.segments[k]));
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return boxes[a].lower.x < boxes[b].lower.x; });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      throw_if_cancelled(context_);
+      for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].lower.x <= boxes[order[i]].upper.x; ++j) {
+        if (++looks_ > most_looks) throw Unresolved("too many triangles cross one");
+        if (overlap(boxes[order[i]], boxes[order[j]])) cross(sheet, order[i], order[j]);
+      }
+    }
+    std::sort(sheet.points.begin(), sheet.points.end());
+    sheet.points.erase(std::unique(sheet.points.begin(), sheet.points.end()), sheet.points.end());
+    for (std::size_t k = 0; k < sheet.segments.size(); ++k) {
+      const SheetSegment& segment = sheet.segments[k];
+      if (!segment.is_edge) continue;
+      for (const PointId p : sheet.points) {
+        if (lies_on(segment, boxes[k], p)) edge_points_.add(segment.ends[0], segment.ends[1], p);
+      }
+    }
+  }
+
+  /// Whether a point of the sheet lies inside of a segment.
+  [[nodiscard]] bool lies_on(const SheetSegment& segment, const Box3& box, PointId p) const {
+    if (p == segment.ends[0] || p == segment.ends[1]) return false;
+    const Vec3d& at = space_.rounded(p);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (at[k] < box.lower[k] || at[k] > box.upper[k]) return false;
+    }
+    return space_.side(segment.cut, p) == 0 && is_between(segment.ends, p);
+  }
+
+  void cross(Sheet& sheet, std::uint32_t i, std::uint32_t j) {
+    const SheetSegment& a = sheet.segments[i];
+    const SheetSegment& b = sheet.segments[j];
+    for (const PointId p : a.ends) {
+      if (p == b.ends[0] || p == b.ends[1]) return;  // they meet in an end, or lie on one line
+    }
+    if (space_.side(a.cut, b.ends[0]) * space_.side(a.cut, b.ends[1]) >= 0) return;
+    if (space_.side(b.cut, a.ends[0]) * space_.side(b.cut, a.ends[1]) >= 0) return;
+    const PointId p = space_.meet(sheet.first.plane(), a.cut, b.cut);
+    sheet.points.push_back(p);
+  }
+
+  /// A flat triangle's middle corner cuts the edge between the others.
+  void add_flat_triangles() {
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (mesh_.is_flat[t] != 1) continue;
+      std::array<PointId, 3> c = mesh_.triangles[t];
+      std::sort(c.begin(), c.end(), [&](PointId a, PointId b) { return space_.compare(a, b) < 0; });
+      edge_points_.add(c[0], c[2], c[1]);
+      flat_.push_back(c);
+    }
+  }
+
+  /// What cuts one of the edges of a flat triangle cuts another one; whether that was new.
+  bool pass_over_flat_triangles() {
+    bool is_new = false;
+    for (const auto& [a, b, c] : flat_) {
+      for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}}) {
+        const std::span<const PointId> points = edge_points_.of(from, to);
+        for (const PointId p : std::vector<PointId>(points.begin(), points.end())) {
+          is_new = edge_points_.add(a, c, p) || is_new;
+        }
+      }
+      const std::span<const PointId> points = edge_points_.of(a, c);
+      for (const PointId p : std::vector<PointId>(points.begin(), points.end())) {
+        if (p == b) continue;
+        const bool is_below = space_.compare(p, b) < 0;
+        is_new = edge_points_.add(is_below ? a : b, is_below ? b : c, p) || is_new;
+      }
+    }
+    return is_new;
+  }
+
+  /// Triangles with a cut edge are cut, too; whether there were any that are not.
+  bool add_triangles_at_cut_edges() {
+    if (edge_points_.empty()) return false;
+    bool is_new = false;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (mesh_.is_flat[t] != 0 || sheet_of_[t] != nobody) continue;
+      const Triangle& corners = mesh_.triangles[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (edge_points_.of(corners[k], corners[(k + 1) % 3]).empty()) continue;
+        add_member(new_sheet(), t);
+        is_new = true;
+        break;
+      }
+    }
+    return is_new;
+  }
+
+  void add_facets(std::uint32_t s) {
+    Sheet& sheet = sheets_[s];
+    for (const SheetSegment& segment : sheet.segments) {
+      if (!segment.is_edge) continue;
+      for (const PointId p : edge_points_.of(segment.ends[0], segment.ends[1])) sheet.points.push_back(p);
+    }
+    std::sort(sheet.points.begin(), sheet.points.end());
+    sheet.points.erase(std::unique(sheet.points.begin(), sheet.points.end()), sheet.points.end());
+    const std::vector<std::array<PointId, 3>> triangles = triangulated(sheet);
+    std::vector<FlatTriangle> members;
+    for (const std::uint32_t t : sheet.members) members.push_back(flattened(space_, mesh_.triangles[t]));
+    const bool is_single = members.size() == 1;
+    // For each member, which points lie in it.
+    std::vector<std::vector<bool>> holds(members.size(), std::vector<bool>(sheet.points.size(), is_single));
+    for (std::size_t m = 0; m < members.size() && !is_single; ++m) {
+      for (std::size_t k = 0; k < sheet.points.size(); ++k) {
+        holds[m][k] = contains(space_, members[m], sheet.points[k]);
+      }
+    }
+    for (const std::array<PointId, 3>& corners : triangles) {
+      Facet facet{corners, 0, nobody, s, true};
+      bool source_is_up = true;
+      for (std::size_t m = 0; m < members.size(); ++m) {
+        const bool is_in = std::all_of(corners.begin(), corners.end(), [&](PointId p) {
+          const auto at = std::lower_bound(sheet.points.begin(), sheet.points.end(), p);
+          return holds[m][static_cast<std::size_t>(at - sheet.points.begin())];
+        });
+        if (!is_in) continue;
+        facet.times += members[m].turn;
+        if (facet.source != nobody) continue;
+        facet.source = sheet.members[m];
+        source_is_up = members[m].turn > 0;
+      }
+      if (facet.times == 0) continue;
+      const bool is_up = facet.times > 0;
+      if (!is_up) std::swap(facet.corners[1], facet.corners[2]);
+      facet.times = std::abs(facet.times);
+      facet.faces_as_source = is_up == source_is_up;
+      facets_.push_back(facet);
+    }
+  }
+
+  /// Triangles between the points of a sheet, counter-clockwise seen against its axis. Those of a single member fill
+  /// it: as no point lies outside, neither does a triangle. Those of several may also fill gaps between them.
+  std::vector<std::array<PointId, 3>> triangulated(const Sheet& sheet) {
+    if (sheet.points.size() == 3 && sheet.members.size() == 1) {
+      std::array<PointId, 3> corners = sheet.first.corners;
+      if (sheet.first.turn < 0) std::swap(corners[1], corners[2]);
+      return {corners};
+    }
+    const std::size_t axis = sheet.first.axis;
+    PlanarMesh plane(space_, axis, space_.corners_around(axis));
+    std::vector<PointId> points = sheet.points;
+    std::sort(points.begin(), points.end(), [&](PointId a, PointId b) { return space_.compare(a, b) < 0; });
+    for (const PointId p : points) {
+      if (!plane.insert(p)) throw Unresolved("two points of a triangle are one");
+    }
+    std::set<std::array<PointId, 2>> pieces;
+    for (const SheetSegment& segment : sheet.segments) add_pieces(sheet, segment, pieces);
+    for (const auto& [from, to] : pieces) {
+      throw_if_cancelled(context_);
+      if (!plane.insert_segment(from, to)) throw Unresolved("a triangle could not be cut along its crossings");
+    }
+    plane.improve();
+    return plane.triangles();
+  }
+
+  void add_pieces(const Sheet& sheet, const SheetSegment& segment, std::set<std::array<PointId, 2>>& pieces) {
+    const Box3 box = box_of(segment);
+    std::vector<PointId> on{segment.ends[0], segment.ends[1]};
+    for (const PointId p : sheet.points) {
+      if (lies_on(segment, box, p)) on.push_back(p);
+    }
+    std::sort(on.begin(), on.end(), [&](PointId a, PointId b) { return space_.compare(a, b) < 0; });
+    for (std::size_t k = 0; k + 1 < on.size(); ++k)
+      pieces.insert({std::min(on[k], on[k + 1]), std::max(on[k], on[k + 1])});
+  }
+
+  const CrossedMesh& mesh_;
+  ExactSpace& space_;
+  const Context& context_;
+  std::vector<Facet>& facets_;
+  std::vector<std::uint32_t>& sheet_of_;
+  std::vector<Sheet> sheets_;
+  EdgePoints edge_points_;
+  std::vector<std::array<PointId, 3>> flat_;
+  std::size_t looks_ = 0;
+};
+
+/// Those of triangles that cross, touch or are flat, and of triangles that have an edge between them.
+std::vector<PointId> corners_near_crossings(const CrossedMesh& mesh) {
+  std::vector<bool> is_near(mesh.vertices.size(), false);
+  const auto mark = [&](std::uint32_t t) {
+    for (const PointId v : mesh.triangles[t]) is_near[v] = true;
+  };
+  for (const TrianglePair& pair : mesh.pairs) {
+    mark(pair.first.value);
+    mark(pair.second.value);
+  }
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.is_flat[t] != 0) mark(t);
+  }
+  std::vector<PointId> used;
+  for (const Triangle& t : mesh.triangles) {
+    if (std::count_if(t.begin(), t.end(), [&](PointId v) { return is_near[v]; }) < 2) continue;
+    used.insert(used.end(), t.begin(), t.end());
+  }
+  return used;
+}
+
+}  // namespace
+
+CutMesh cut_triangles(const CrossedMesh& mesh, const Context& context) {
+  const std::vector<PointId> used = corners_near_crossings(mesh);
+  try {
+    CutMesh out{ExactSpace(mesh.vertices, used)};
+    out.cut = Cutter(mesh, out, context).cut();
+    return out;
+  } catch (const std::range_error& error) {
+    throw Unresolved(error.what());
+  }
+}
+
+}  // namespace blum::detail

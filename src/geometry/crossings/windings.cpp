@@ -1,0 +1,300 @@
+#include "geometry/crossings/windings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "blum/core/random.hpp"
+#include "blum/core/union_find.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/orient3d.hpp"
+#include "blum/geometry/sites.hpp"
+
+namespace blum::detail {
+namespace {
+
+constexpr std::uint32_t nobody = 0xffffffffU;
+
+/// A facet at an edge.
+struct Side {
+  PointId low = 0, high = 0;
+  std::uint32_t corner = 0;  ///< 3 * facet + where the side begins
+  bool rises = false;        ///< from `low` to `high`
+
+  [[nodiscard]] std::uint32_t facet() const { return corner / 3; }
+};
+
+std::vector<Side> sorted_sides(const std::vector<Facet>& facets) {
+  std::vector<Side> sides;
+  sides.reserve(3 * facets.size());
+  for (std::uint32_t f = 0; f < facets.size(); ++f) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const PointId a = facets[f].corners[k];
+      const PointId b = facets[f].corners[(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), 3 * f + k, a < b});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.corner < b.corner;
+  });
+  return sides;
+}
+
+/// Calls use(first, count) for each edge.
+template <class Use>
+void for_each_edge(std::span<const Side> sides, const Use& use) {
+  for (std::size_t begin = 0; begin < sides.size();) {
+    std::size_t end = begin + 1;
+    while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
+    use(begin, end - begin);
+    begin = end;
+  }
+}
+
+class Windings {
+ public:
+  Windings(const CrossedMesh& mesh, const CutMesh& cut, const Context& context)
+      : mesh_(mesh),
+        space_(cut.space),
+        facets_(cut.facets),
+        sheet_of_(cut.sheet_of),
+        context_(context),
+        sides_(sorted_sides(cut.facets)),
+        patches_(cut.facets.size()) {}
+
+  Boundary boundary() {
+    join_patches();
+    spread();
+    return kept();
+  }
+
+ private:
+  void join_patches() {
+    for_each_edge(sides_, [&](std::size_t first, std::size_t count) {
+      std::int64_t sum = 0;
+      for (std::size_t k = first; k < first + count; ++k) {
+        sum += (sides_[k].rises ? 1 : -1) * facets_[sides_[k].facet()].times;
+      }
+      if (sum != 0) throw Unresolved("its parts do not fit together after they were cut");
+      if (count == 2) {
+        patches_.join(sides_[first].facet(), sides_[first + 1].facet());
+      } else {
+        sort_around(std::span(sides_).subspan(first, count));
+        crowded_.push_back({first, count});
+      }
+    });
+  }
+
+  /// Where the corner across an edge lies to another facet at it: 1 on the side where facets come next, counter-
+  /// clockwise seen from the edge's higher end.
+  [[nodiscard]] int turns_to(const Side& of, const Side& other) const {
+    const Facet& facet = facets_[of.facet()];
+    const PointId tip = facets_[other.facet()].corners[(other.corner % 3 + 2) % 3];
+    const Cut plane{mesh_.triangles[facet.source], -1};
+    const int side = space_.side(plane, tip);
+    return (facet.faces_as_source ? side : -side) * (of.rises ? 1 : -1);
+  }
+
+  /// Sorts facets counter-clockwise around their edge.
+  void sort_around(std::span<Side> sides) const {
+    const Side start = sides.front();
+    const auto half = [&](const Side& side) {
+      if (side.corner == start.corner) return 0;
+      const int turn = turns_to(start, side);
+      return turn > 0 ? 1 : turn == 0 ? 2 : 3;
+    };
+    std::vector<std::pair<int, Side>> order;
+    for (const Side& side : sides) order.emplace_back(half(side), side);
+    std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+      if (a.first != b.first) return a.first < b.first;
+      return a.second.corner != b.second.corner && turns_to(a.second, b.second) > 0;
+    });
+    for (std::size_t k = 0; k < sides.size(); ++k) sides[k] = order[k].second;
+  }
+
+  [[nodiscard]] std::uint32_t patch(const Side& side) { return patches_.find(side.facet()); }
+
+  /// Finds the winding number in front of every patch: of one in each connected part by a ray, of the others around
+  /// edges.
+  void spread() {
+    std::vector<std::vector<std::uint32_t>> edges_of(facets_.size());  // of each patch
+    UnionFind parts(facets_.size());
+    for (std::uint32_t f = 0; f < facets_.size(); ++f) parts.join(patches_.find(f), f);
+    for (std::uint32_t e = 0; e < crowded_.size(); ++e) {
+      for (std::size_t k = 0; k < crowded_[e].second; ++k) {
+        edges_of[patch(sides_[crowded_[e].first + k])].push_back(e);
+        parts.join(sides_[crowded_[e].first].facet(), sides_[crowded_[e].first + k].facet());
+      }
+    }
+    std::vector<std::vector<std::uint32_t>> largest(facets_.size());
+    for (std::uint32_t f = 0; f < facets_.size(); ++f) keep_largest(largest[parts.find(f)], f);
+    front_.assign(facets_.size(), std::nullopt);
+    for (std::uint32_t p = 0; p < facets_.size(); ++p) {
+      if (largest[p].empty()) continue;
+      throw_if_cancelled(context_);
+      const auto [facet, winding] = winding_by_ray(largest[p]);
+      std::vector<std::uint32_t> next{patches_.find(facet)};
+      front_[next.front()] = winding;
+      while (!next.empty()) {
+        const std::uint32_t own = next.back();
+        next.pop_back();
+        for (const std::uint32_t e : edges_of[own]) spread_around(e, own, next);
+      }
+    }
+  }
+
+  void spread_around(std::uint32_t edge, std::uint32_t from, std::vector<std::uint32_t>& next) {
+    const auto [first, count] = crowded_[edge];
+    std::size_t start = 0;
+    while (patch(sides_[first + start]) != from) ++start;
+    // Front and back are where facets come next and came before, or the other way round.
+    const Side& known = sides_[first + start];
+    std::int64_t winding = *front_[from] + (known.rises ? 0 : facets_[known.facet()].times);
+    for (std::size_t k = 1; k <= count; ++k) {
+      const Side& side = sides_[first + (start + k) % count];
+      const std::int32_t times = facets_[side.facet()].times;
+      const std::int64_t after = winding + (side.rises ? -times : times);
+      const std::int64_t front = side.rises ? after : winding;
+      std::optional<std::int64_t>& found = front_[patch(side)];
+      if (found && *found != front) throw Unresolved("its winding numbers contradict each other");
+      if (!found) next.push_back(patch(side));
+      found = front;
+      winding = after;
+    }
+  }
+
+  [[nodiscard]] double area(std::uint32_t f) const {
+    const auto& [a, b, c] = facets_[f].corners;
+    return length(cross(space_.rounded(b) - space_.rounded(a), space_.rounded(c) - space_.rounded(a)));
+  }
+
+  /// Keeps a few facets of a part, the largest first.
+  void keep_largest(std::vector<std::uint32_t>& list, std::uint32_t f) const {
+    constexpr std::size_t most = 8;
+    const double own = area(f);
+    const auto at = std::find_if(list.begin(), list.end(), [&](std::uint32_t g) { return area(g) < own; });
+    if (at == list.end() && list.size() >= most) return;
+    list.insert(at, f);
+    if (list.size() > most) list.pop_back();
+  }
+
+  std::pair<std::uint32_t, std::int64_t> winding_by_ray(const std::vector<std::uint32_t>& candidates) {
+    constexpr int attempts = 32;
+    for (const std::uint32_t f : candidates) {
+      Random random(f);
+      for (int k = 0; k < attempts; ++k) {
+        if (const auto winding = front_along_ray(f, random)) return {f, *winding};
+      }
+    }
+    throw Unresolved("a part of it is too small to tell whether it lies inside of others");
+  }
+
+  /// The winding number in front of a facet from what a ray crosses that passes through it; nullopt where rounding
+  /// could change it.
+  std::optional<std::int64_t> front_along_ray(std::uint32_t f, Random& random) {
+    if (!bvh_) bvh_.emplace(MeshView{mesh_.vertices, mesh_.triangles}, SiteTable({mesh_.vertices, mesh_.triangles}));
+    // Thousands of times what a crossing's place is off by, in a mesh of size 1.
+    constexpr double margin = 1e-12;
+    const auto& [i, j, k] = facets_[f].corners;
+    const Vec3d a = space_.rounded(i);
+    const Vec3d u = space_.rounded(j) - a;
+    const Vec3d v = space_.rounded(k) - a;
+    const Vec3d normal = cross(u, v);
+    const double twice_area = length(normal);
+    const double longest = std::max({length(u), length(v), length(u - v)});
+    if (!(twice_area > 100 * margin * longest)) return std::nullopt;
+    const Vec3d up = normal / twice_area;
+    const Vec3d direction = up + random.in_ball() * 0.3;
+    const double s = 0.1 + 0.4 * random.uniform();
+    const double t = 0.1 + 0.4 * random.uniform();
+    const double back = 0.1 * std::sqrt(twice_area);
+    const Vec3d origin = a + u * s + v * t - direction * back;
+    std::optional<double> own;
+    bool is_certain = true;
+    std::vector<std::pair<double, std::int64_t>> others;
+    constexpr double no_limit = std::numeric_limits<double>::infinity();
+    bvh_->for_each_crossing({origin, direction}, no_limit, [&](const RayCrossing& crossing) {
+      is_certain = is_certain && !crossing.on_border;
+      if (sheet_of_[crossing.triangle.value] == facets_[f].sheet) {
+        own = crossing.t;
+      } else {
+        others.emplace_back(crossing.t, crossing.side);
+      }
+      return is_certain ? no_limit : -1;
+    });
+    if (!own || !is_certain || std::abs(*own - back) > margin) return std::nullopt;
+    std::int64_t winding = 0;
+    for (const auto& [at, side] : others) {
+      if (std::abs(at - *own) < margin) return std::nullopt;
+      if (at > *own) winding += side;
+    }
+    return winding;
+  }
+
+  [[nodiscard]] bool is_kept(std::uint32_t f) {
+    const std::int64_t front = *front_[patches_.find(f)];
+    return front <= 0 && front + facets_[f].times >= 1;
+  }
+
+  Boundary kept() {
+    // Corners of kept facets, those at one point joined where facets are neighbours around the solid.
+    UnionFind corners(3 * facets_.size());
+    Boundary out;
+    for_each_edge(sides_, [&](std::size_t first, std::size_t count) {
+      std::vector<Side> own;
+      for (std::size_t k = first; k < first + count; ++k) {
+        if (is_kept(sides_[k].facet())) own.push_back(sides_[k]);
+      }
+      if (own.size() % 2 != 0) throw Unresolved("its boundary is not closed after it was cut");
+      if (own.size() > 2) ++out.touching_edges;
+      // Counter-clockwise around the edge, the solid begins at a facet that falls and ends at one that rises.
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        if (own[k].rises) continue;
+        const Side& next = own[(k + 1) % own.size()];
+        if (!next.rises) throw Unresolved("its boundary does not face one way after it was cut");
+        corners.join(own[k].corner, after(next.corner));
+        corners.join(after(own[k].corner), next.corner);
+      }
+    });
+    std::vector<std::uint32_t> number(3 * facets_.size(), nobody);
+    for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+      if (!is_kept(f)) continue;
+      Triangle triangle{};
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        std::uint32_t& name = number[corners.find(3 * f + k)];
+        if (name == nobody) {
+          name = static_cast<std::uint32_t>(out.points.size());
+          out.points.push_back(facets_[f].corners[k]);
+        }
+        triangle[k] = name;
+      }
+      out.triangles.push_back(triangle);
+      out.source_of.push_back(facets_[f].source);
+    }
+    return out;
+  }
+
+  static std::uint32_t after(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+
+  const CrossedMesh& mesh_;
+  const ExactSpace& space_;
+  const std::vector<Facet>& facets_;
+  const std::vector<std::uint32_t>& sheet_of_;
+  const Context& context_;
+  std::vector<Side> sides_;
+  UnionFind patches_;                                         ///< facets that are joined over edges of two
+  std::vector<std::pair<std::size_t, std::size_t>> crowded_;  ///< edges of more facets: where in sides_, and how many
+  std::vector<std::optional<std::int64_t>> front_;            ///< of patches
+  std::optional<Bvh> bvh_;
+};
+
+}  // namespace
+
+Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, const Context& context) {
+  return Windings(mesh, cut, context).boundary();
+}
+
+}  // namespace blum::detail

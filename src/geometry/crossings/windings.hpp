@@ -1,0 +1,22 @@
+// Blum: what of facets bounds the points with a winding number of 1 or more. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "geometry/crossings/sheets.hpp"
+
+namespace blum::detail {
+
+/// The facets with a winding number of 1 or more behind them and of 0 or less in front, as a mesh.
+struct Boundary {
+  std::vector<Triangle> triangles;       ///< names entries of `points`
+  std::vector<PointId> points;           ///< several may be one point: where parts only touch, each has its own
+  std::vector<std::uint32_t> source_of;  ///< of each triangle, in the input
+  std::size_t touching_edges = 0;        ///< edges along which parts only touch
+};
+
+/// @throws Unresolved where facets do not fit together, Cancelled.
+[[nodiscard]] Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, const Context& context);
+
+}  // namespace blum::detail
