@@ -113,7 +113,8 @@ std::vector<std::uint32_t> body_of_triangles(const TriangleMesh& mesh, const Top
 }
 
 /// How often a body meets itself in a vertex: the same place under two numbers.
-std::size_t pinches(const TriangleMesh& mesh, const std::vector<std::uint32_t>& body_of) {
+std::size_t pinches(const TriangleMesh& mesh, const Topology& topology) {
+  const std::vector<std::uint32_t> body_of = body_of_triangles(mesh, topology);
   const std::vector<std::uint32_t> cluster = weld_clusters(mesh.vertices);
   std::vector<std::array<std::uint32_t, 3>> corners;  // place, body, vertex
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -139,9 +140,6 @@ std::string obstacle_of(const TriangleMesh& mesh, const Topology& topology, cons
   }
   if (!topology.faces_outwards) return "shells of the result do not face away from the solid";
   const std::vector<std::uint32_t> body_of = body_of_triangles(mesh, topology);
-  if (const std::size_t count = pinches(mesh, body_of); count > 0) {
-    return "the solid touches itself in " + std::to_string(count) + (count == 1 ? " vertex" : " vertices");
-  }
   const SelfIntersections found = find_self_intersections(mesh, 100000, context);
   std::size_t touching = 0;
   for (const TrianglePair& pair : found.pairs) {
@@ -174,9 +172,10 @@ ResolvedMesh resolved_once(const MeshView& mesh, const ResolveOptions& options, 
   out.counts.touching_edges = boundary.touching_edges;
   out.mesh.triangles = boundary.triangles;
   out.triangle_of = boundary.source_of;
-  for (const detail::PointId p : boundary.points) {
-    const bool is_old = cut.space.is_vertex(p);
-    out.mesh.vertices.push_back(is_old ? mesh.vertices[p] : cut.space.rounded(p) / welded.scale);
+  for (const auto& [p, other] : boundary.points) {
+    const bool is_old = p == other && cut.space.is_vertex(p);
+    const Vec3d middle = (cut.space.rounded(p) + cut.space.rounded(other)) * 0.5;
+    out.mesh.vertices.push_back(is_old ? mesh.vertices[p] : middle / welded.scale);
     out.vertex_of.push_back(is_old ? p : ResolvedMesh::no_vertex);
     out.counts.new_vertices += is_old ? 0 : 1;
   }
@@ -210,6 +209,7 @@ ResolvedMesh resolve_crossings(const MeshView& mesh, const ResolveOptions& optio
     for (out.counts.rounds = 1;; ++out.counts.rounds) {
       out.obstacle = obstacle_of(out.mesh, facts, own);
       if (out.obstacle.empty() && genera(facts) != exact) out.obstacle = "rounding changed how its parts hang together";
+      if (out.obstacle.empty()) out.counts.pinches = pinches(out.mesh, facts);
       if (out.obstacle.empty() || out.counts.rounds >= static_cast<std::size_t>(options.most_rounds)) return out;
       out = chained(out, resolved_once(out.mesh, options, own));
       if (!out.is_resolved()) return out;

@@ -342,9 +342,11 @@ def test_a_mesh_that_crosses_itself_is_resolved(solids, tmp_path):
 
 def test_a_mesh_that_crosses_itself_unresolved_is_no_polyhedron_whatever_the_axis_says(solids, tmp_path):
     two = tmp_path / "two.obj"
-    # Two that meet along an edge, and a third one across both.
-    several_boxes(solids, two, [(1, (0, 0, 0)), (1, (1, 1, 0)), (0.9, (0.5, 0.5, 0.5))])
-    assert "touches itself" in run_json("info", two)["repaired"]["reason"]
+    several_boxes(solids, two, [(1, (0, 0, 0)), (1, (0.3, 0.3, 0.3))])
+    lines = two.read_text().splitlines()
+    lines[0] = " ".join(["v", "1e-200", *lines[0].split()[2:]])
+    two.write_text("\n".join(lines) + "\n")
+    assert "orders of magnitude" in run_json("info", two)["repaired"]["reason"]
     (tmp_path / "axis.obj").write_text("v 0 0 0\nv 0.3 0.3 0.3\np 1\np 2\n")
     (tmp_path / "axis.ma").write_text("2 0 0\nv 0 0 0 0.5\nv 0.3 0.3 0.3 0.5\n")
     for end in ("obj", "ma"):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/orient3d.hpp"
@@ -88,17 +89,20 @@ class Collector {
 
 }  // namespace
 
+FlatTriangle seen_along(const ExactSpace& space, const Triangle& triangle, std::size_t axis) {
+  return {triangle, axis, space.turn(axis, triangle[0], triangle[1], triangle[2])};
+}
+
 FlatTriangle flattened(const ExactSpace& space, const Triangle& triangle) {
-  FlatTriangle out;
-  out.corners = triangle;
   const Vec3d& a = space.rounded(triangle[0]);
   const Vec3d normal = cross(space.rounded(triangle[1]) - a, space.rounded(triangle[2]) - a);
   std::array<std::size_t, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(),
-                   [&](std::size_t i, std::size_t j) { return std::abs(normal[i]) > std::abs(normal[j]); });
+  std::sort(axes.begin(), axes.end(), [&](std::size_t i, std::size_t j) {
+    return std::pair(-std::abs(normal[i]), i) < std::pair(-std::abs(normal[j]), j);
+  });
+  FlatTriangle out;
   for (const std::size_t axis : axes) {
-    out.axis = axis;
-    out.turn = space.turn(axis, triangle[0], triangle[1], triangle[2]);
+    out = seen_along(space, triangle, axis);
     if (out.turn != 0) break;
   }
   return out;

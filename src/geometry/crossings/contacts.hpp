@@ -13,7 +13,7 @@
 
 namespace blum::detail {
 
-/// What a triangle looks like against the axis that it is not parallel to most.
+/// What a triangle looks like against an axis.
 struct FlatTriangle {
   std::array<PointId, 3> corners{};
   std::size_t axis = 0;
@@ -22,6 +22,8 @@ struct FlatTriangle {
   [[nodiscard]] Cut plane() const { return {corners, -1}; }
 };
 
+[[nodiscard]] FlatTriangle seen_along(const ExactSpace& space, const Triangle& triangle, std::size_t axis);
+/// Along the axis that it is not parallel to most.
 [[nodiscard]] FlatTriangle flattened(const ExactSpace& space, const Triangle& triangle);
 
 /// Whether a point of a triangle's plane lies in it, its border included.

@@ -149,8 +149,9 @@ class Cutter {
       order[k] = k;
       boxes.push_back(box_of(sheet.segments[k]));
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return boxes[a].lower.x < boxes[b].lower.x; });
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(boxes[a].lower.x, a) < std::pair(boxes[b].lower.x, b);
+    });
     for (std::size_t i = 0; i < order.size(); ++i) {
       throw_if_cancelled(context_);
       for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].lower.x <= boxes[order[i]].upper.x; ++j) {
@@ -249,7 +250,8 @@ class Cutter {
     sheet.points.erase(std::unique(sheet.points.begin(), sheet.points.end()), sheet.points.end());
     const std::vector<std::array<PointId, 3>> triangles = triangulated(sheet);
     std::vector<FlatTriangle> members;
-    for (const std::uint32_t t : sheet.members) members.push_back(flattened(space_, mesh_.triangles[t]));
+    for (const std::uint32_t t : sheet.members)
+      members.push_back(seen_along(space_, mesh_.triangles[t], sheet.first.axis));
     const bool is_single = members.size() == 1;
     // For each member, which points lie in it.
     std::vector<std::vector<bool>> holds(members.size(), std::vector<bool>(sheet.points.size(), is_single));

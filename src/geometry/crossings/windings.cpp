@@ -5,7 +5,9 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "blum/core/random.hpp"
 #include "blum/core/union_find.hpp"
@@ -108,9 +110,10 @@ class Windings {
     };
     std::vector<std::pair<int, Side>> order;
     for (const Side& side : sides) order.emplace_back(half(side), side);
-    std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+    std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
       if (a.first != b.first) return a.first < b.first;
-      return a.second.corner != b.second.corner && turns_to(a.second, b.second) > 0;
+      const int turn = a.second.corner == b.second.corner ? 0 : turns_to(a.second, b.second);
+      return turn != 0 ? turn > 0 : a.second.corner < b.second.corner;
     });
     for (std::size_t k = 0; k < sides.size(); ++k) sides[k] = order[k].second;
   }
@@ -239,42 +242,97 @@ class Windings {
     return front <= 0 && front + facets_[f].times >= 1;
   }
 
+  /// Two facets that are neighbours around the solid: one that falls to the lower end of their edge, one that rises.
+  using Neighbours = std::array<Side, 2>;
+
+  /// The kept facets at an edge, those beside each other that are neighbours.
+  std::vector<Neighbours> neighbours_at(std::span<const Side> sides) {
+    std::vector<Side> own;
+    for (const Side& side : sides) {
+      if (is_kept(side.facet())) own.push_back(side);
+    }
+    if (own.size() % 2 != 0) throw Unresolved("its boundary is not closed after it was cut");
+    std::vector<Neighbours> out;
+    // Counter-clockwise around the edge, the solid begins at a facet that falls and ends at one that rises.
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (own[k].rises) continue;
+      const Side& next = own[(k + 1) % own.size()];
+      if (!next.rises) throw Unresolved("its boundary does not face one way after it was cut");
+      out.push_back({own[k], next});
+    }
+    return out;
+  }
+
   Boundary kept() {
     // Corners of kept facets, those at one point joined where facets are neighbours around the solid.
     UnionFind corners(3 * facets_.size());
-    Boundary out;
+    std::vector<std::vector<Neighbours>> touching;
     for_each_edge(sides_, [&](std::size_t first, std::size_t count) {
-      std::vector<Side> own;
-      for (std::size_t k = first; k < first + count; ++k) {
-        if (is_kept(sides_[k].facet())) own.push_back(sides_[k]);
+      std::vector<Neighbours> found = neighbours_at(std::span(sides_).subspan(first, count));
+      for (const auto& [falling, rising] : found) {
+        corners.join(falling.corner, after(rising.corner));
+        corners.join(after(falling.corner), rising.corner);
       }
-      if (own.size() % 2 != 0) throw Unresolved("its boundary is not closed after it was cut");
-      if (own.size() > 2) ++out.touching_edges;
-      // Counter-clockwise around the edge, the solid begins at a facet that falls and ends at one that rises.
-      for (std::size_t k = 0; k < own.size(); ++k) {
-        if (own[k].rises) continue;
-        const Side& next = own[(k + 1) % own.size()];
-        if (!next.rises) throw Unresolved("its boundary does not face one way after it was cut");
-        corners.join(own[k].corner, after(next.corner));
-        corners.join(after(own[k].corner), next.corner);
-      }
+      if (found.size() > 1) touching.push_back(std::move(found));
     });
-    std::vector<std::uint32_t> number(3 * facets_.size(), nobody);
+    for (const std::vector<Neighbours>& edge : touching) {
+      for (const auto& [falling, rising] : edge) parts_of_[falling.facet()] = parts_of_[rising.facet()] = {};
+    }
+    Boundary out;
+    out.touching_edges = touching.size();
+    std::vector<std::uint32_t> name(3 * facets_.size(), nobody);
     for (std::uint32_t f = 0; f < facets_.size(); ++f) {
       if (!is_kept(f)) continue;
       Triangle triangle{};
       for (std::uint32_t k = 0; k < 3; ++k) {
-        std::uint32_t& name = number[corners.find(3 * f + k)];
-        if (name == nobody) {
-          name = static_cast<std::uint32_t>(out.points.size());
-          out.points.push_back(facets_[f].corners[k]);
+        std::uint32_t& of_set = name[corners.find(3 * f + k)];
+        if (of_set == nobody) {
+          of_set = static_cast<std::uint32_t>(out.points.size());
+          out.points.push_back({facets_[f].corners[k], facets_[f].corners[k]});
         }
-        triangle[k] = name;
+        name[3 * f + k] = triangle[k] = of_set;
       }
+      const auto parts = parts_of_.find(f);
+      if (parts != parts_of_.end()) parts->second.push_back(static_cast<std::uint32_t>(out.triangles.size()));
       out.triangles.push_back(triangle);
       out.source_of.push_back(facets_[f].source);
     }
+    for (const std::vector<Neighbours>& edge : touching) cut_where_ends_are_shared(edge, name, out);
     return out;
+  }
+
+  /// Where parts touch along an edge and are joined at both its ends, gives each a middle of its own.
+  void cut_where_ends_are_shared(const std::vector<Neighbours>& edge, const std::vector<std::uint32_t>& name,
+                                 Boundary& out) {
+    const auto ends = [&](const Neighbours& pair) {
+      return std::array{name[pair[1].corner], name[after(pair[1].corner)]};
+    };
+    for (const Neighbours& pair : edge) {
+      const auto is_same = [&](const Neighbours& other) { return ends(other) == ends(pair); };
+      if (std::count_if(edge.begin(), edge.end(), is_same) < 2) continue;
+      const auto [low, high] = ends(pair);
+      const auto middle = static_cast<std::uint32_t>(out.points.size());
+      out.points.push_back({pair[0].low, pair[0].high});
+      cut_edge(pair[0].facet(), {high, low}, middle, out);
+      cut_edge(pair[1].facet(), {low, high}, middle, out);
+    }
+  }
+
+  /// Cuts the part of a facet that has an edge.
+  void cut_edge(std::uint32_t f, const std::array<std::uint32_t, 2>& edge, std::uint32_t middle, Boundary& out) {
+    for (const std::uint32_t part : std::vector<std::uint32_t>(parts_of_[f])) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        Triangle& t = out.triangles[part];
+        if (t[k] != edge[0] || t[(k + 1) % 3] != edge[1]) continue;
+        Triangle rest = t;
+        t[(k + 1) % 3] = middle;
+        rest[k] = middle;
+        parts_of_[f].push_back(static_cast<std::uint32_t>(out.triangles.size()));
+        out.triangles.push_back(rest);
+        out.source_of.push_back(facets_[f].source);
+        return;
+      }
+    }
   }
 
   static std::uint32_t after(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
@@ -288,6 +346,8 @@ class Windings {
   UnionFind patches_;                                         ///< facets that are joined over edges of two
   std::vector<std::pair<std::size_t, std::size_t>> crowded_;  ///< edges of more facets: where in sides_, and how many
   std::vector<std::optional<std::int64_t>> front_;            ///< of patches
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>
+      parts_of_;  ///< triangles of facets at edges where parts touch
   std::optional<Bvh> bvh_;
 };
 

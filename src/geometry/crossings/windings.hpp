@@ -1,6 +1,9 @@
 // Blum: what of facets bounds the points with a winding number of 1 or more. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -10,8 +13,10 @@ namespace blum::detail {
 
 /// The facets with a winding number of 1 or more behind them and of 0 or less in front, as a mesh.
 struct Boundary {
-  std::vector<Triangle> triangles;       ///< names entries of `points`
-  std::vector<PointId> points;           ///< several may be one point: where parts only touch, each has its own
+  std::vector<Triangle> triangles;  ///< names entries of `points`
+  /// Several may be one point: where parts only touch, each has its own. Both are one but in the middle of edges
+  /// between them that had to be cut for this.
+  std::vector<std::array<PointId, 2>> points;
   std::vector<std::uint32_t> source_of;  ///< of each triangle, in the input
   std::size_t touching_edges = 0;        ///< edges along which parts only touch
 };

@@ -142,6 +142,33 @@ TEST(ResolvedSolid, EdgesOfFourTrianglesAndVerticesOfTwoFans) {
   EXPECT_EQ(*apart.betti(), (BettiNumbers{2, 0, 0}));
 }
 
+/// Two boxes that meet along an edge, joined by boxes across both, above and below.
+TEST(ResolvedSolid, PartsThatMeetAlongAnEdgeAreApartThere) {
+  TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
+  append(mesh, box_between({1, 1, 0}, {2, 2, 1}));
+  append(mesh, box_between({0.2, 0.2, 0.7}, {1.8, 1.8, 2}));
+  expect_resolved(mesh, {1, 0, 0});
+  EXPECT_EQ(Solid::of(mesh).resolved()->touching_edges, 1U);
+  EXPECT_EQ(Solid::of(mesh).resolved()->pinches, 1U) << "at its lower end";
+  append(mesh, box_between({0.2, 0.2, -1}, {1.8, 1.8, 0.3}));
+  expect_resolved(mesh, {1, 1, 0});
+  EXPECT_EQ(Solid::of(mesh).resolved()->pinches, 1U) << "in its middle";
+}
+
+/// A double fan: the solid meets itself in the middle of its top.
+TEST(ResolvedSolid, PartsThatMeetInAVertexAreApartThere) {
+  TriangleMesh mesh = box_between({-1, -1, -3}, {1, 1, -1});
+  append(mesh, box_between({-1, -1, 1}, {1, 1, 3}));
+  append(mesh, box_between({0.5, -0.5, -2}, {2, 0.5, 2}));
+  TriangleMesh spindle;
+  spindle.vertices = {{-0.9, -0.9, -1.5}, {-0.3, -0.9, -1.5}, {-0.6, -0.3, -1.5}, {-0.6, -0.6, 0},
+                      {-0.9, -0.9, 1.5},  {-0.3, -0.9, 1.5},  {-0.6, -0.3, 1.5}};
+  spindle.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {4, 5, 6}, {5, 4, 3}, {6, 5, 3}, {4, 6, 3}};
+  append(mesh, spindle);
+  expect_resolved(mesh, {1, 0, 0});
+  EXPECT_EQ(Solid::of(mesh).resolved()->pinches, 1U);
+}
+
 TEST(ResolvedSolid, VerticesTrianglesAndSitesLieOnTheInput) {
   TriangleMesh mesh = make_torus({.ring_segments = 20, .tube_segments = 10});
   append(mesh, box_between({0.2, -0.3, -0.4}, {1.6, 0.4, 0.2}));

@@ -199,15 +199,15 @@ TEST(Solid, ASurfaceOfOneSideIsNoPolyhedron) {
   EXPECT_TRUE(obstacle_of(mesh).starts_with("its triangles do not face one way ("));
 }
 
-/// Boxes that cross, and meet along an edge besides.
-TEST(Solid, AMeshThatTouchesItselfIsNoPolyhedron) {
-  TriangleMesh mesh = box_between({0, 0, 0}, {1, 1, 1});
-  append(mesh, box_between({1, 1, 0}, {2, 2, 1}));
-  append(mesh, box_between({0.2, 0.2, 0.5}, {1.8, 1.8, 2}));
-  EXPECT_EQ(obstacle_of(mesh), "it crosses itself, which is not resolved: the solid touches itself in 1 vertex");
-  mesh.triangles = reversed_triangles(mesh.triangles);
-  EXPECT_EQ(obstacle_of(mesh),
+TEST(Solid, AMeshWhoseCrossingsAreNotResolvedIsNoPolyhedron) {
+  TriangleMesh mesh = box_between({0, 0, 0}, {2, 2, 2});
+  append(mesh, box_between({1, 1, 1}, {3, 3, 3}));
+  const TriangleMesh inwards{mesh.vertices, reversed_triangles(mesh.triangles), {}, {}};
+  EXPECT_EQ(obstacle_of(inwards),
             "it crosses itself, which is not resolved: no point has a winding number above 0: it faces inwards");
+  mesh.vertices[0].x = 1e-200;
+  EXPECT_EQ(obstacle_of(mesh),
+            "it crosses itself, which is not resolved: coordinates are too many orders of magnitude apart");
 }
 
 TEST(Solid, NoTrianglesAreRefused) {
