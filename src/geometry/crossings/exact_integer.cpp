@@ -72,6 +72,14 @@ ExactInteger ExactInteger::operator>>(std::size_t count) const {
   return out;
 }
 
+void ExactInteger::halve() {
+  for (std::size_t k = 0; k < limbs_.size(); ++k) {
+    const std::uint64_t above = k + 1 < limbs_.size() ? limbs_[k + 1] : 0;
+    limbs_[k] = static_cast<Limb>(((above << limb_bits) | limbs_[k]) >> 1U);
+  }
+  trim();
+}
+
 int ExactInteger::compare_magnitudes(const ExactInteger& a, const ExactInteger& b) {
   if (a.limbs_.size() != b.limbs_.size()) return a.limbs_.size() < b.limbs_.size() ? -1 : 1;
   for (std::size_t k = a.limbs_.size(); k-- > 0;) {
@@ -146,7 +154,7 @@ double ExactInteger::rounded_ratio(const ExactInteger& numerator, const ExactInt
   ExactInteger part = denominator << static_cast<std::size_t>(quotient_bits - (shift < 0 ? shift : 0));
   std::uint64_t quotient = 0;
   for (int k = 0; k < quotient_bits; ++k) {
-    part = part >> 1;
+    part.halve();
     quotient <<= 1;
     if (compare_magnitudes(rest, part) < 0) continue;
     take_magnitude(rest.limbs_, part.limbs_);

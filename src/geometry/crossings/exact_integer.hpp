@@ -47,6 +47,7 @@ class ExactInteger {
   /// @param to  at least as large as what is taken off.
   static void take_magnitude(std::vector<Limb>& to, const std::vector<Limb>& what);
   void trim();
+  void halve();
 
   std::vector<Limb> limbs_;  ///< the lowest first; the last one is not 0
   bool negative_ = false;    ///< false for 0

@@ -20,7 +20,7 @@ using PointId = std::uint32_t;
 /// A plane through three vertices, or through an edge (the first two) and along an axis.
 struct Cut {
   std::array<PointId, 3> corners{};
-  std::int8_t axis = -1;  ///< of a plane along an axis
+  int axis = -1;  ///< of a plane along an axis
 };
 
 /// The vertices of a mesh and the points that are made from them, with exact predicates. Coordinates of points are

@@ -27,8 +27,8 @@ void PlanarMesh::replace(Index triangle, Index old_neighbour, Index new_neighbou
   }
 }
 
-std::size_t PlanarMesh::edge_towards(Index triangle, Index neighbour) const {
-  const Corners& t = triangles_[triangle];
+std::size_t PlanarMesh::edge_towards(Index own, Index neighbour) const {
+  const Corners& t = triangles_[own];
   return t.beyond[0] == neighbour ? 0 : t.beyond[1] == neighbour ? 1 : 2;
 }
 
@@ -54,11 +54,11 @@ std::optional<PlanarMesh::Index> PlanarMesh::locate(Index p, std::array<int, 3>&
   return std::nullopt;
 }
 
-bool PlanarMesh::insert(PointId id) {
+bool PlanarMesh::insert(PointId point) {
   const auto p = static_cast<Index>(points_.size());
-  points_.push_back(id);
+  points_.push_back(point);
   triangle_at_.push_back(none);
-  index_[id] = p;
+  index_[point] = p;
   std::array<int, 3> turns{};
   const std::optional<Index> found = locate(p, turns);
   if (!found) return false;

@@ -22,10 +22,10 @@ class PlanarMesh {
   PlanarMesh(const ExactSpace& space, std::size_t axis, const std::array<PointId, 3>& outer);
 
   /// @return  false where the point coincides with another one.
-  [[nodiscard]] bool insert(PointId p);
+  [[nodiscard]] bool insert(PointId point);
   /// Makes a segment an edge that stays. No point may lie on it, and no such edge may cross it.
   /// @return  false where this is not so.
-  [[nodiscard]] bool insert_segment(PointId from, PointId to);
+  [[nodiscard]] bool insert_segment(PointId from_point, PointId to_point);
   /// Flips edges until angles are large, as far as rounding tells.
   void improve();
 
@@ -51,7 +51,7 @@ class PlanarMesh {
   }
   void set(Index triangle, const Corners& corners);
   void replace(Index triangle, Index old_neighbour, Index new_neighbour);
-  [[nodiscard]] std::size_t edge_towards(Index triangle, Index neighbour) const;
+  [[nodiscard]] std::size_t edge_towards(Index own, Index neighbour) const;
   [[nodiscard]] std::optional<Index> locate(Index p, std::array<int, 3>& turns) const;
   void split_triangle(Index triangle, Index p);
   void split_edge(Index triangle, std::size_t k, Index p);

@@ -118,7 +118,7 @@ class Cutter {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::array<PointId, 2> ends{corners[k], corners[(k + 1) % 3]};
       sheet.points.push_back(corners[k]);
-      sheet.segments.push_back({ends, {{ends[0], ends[1], 0}, static_cast<std::int8_t>(sheet.first.axis)}, true, {}});
+      sheet.segments.push_back({ends, {{ends[0], ends[1], 0}, static_cast<int>(sheet.first.axis)}, true, {}});
     }
   }
 
@@ -296,6 +296,7 @@ class Cutter {
     std::vector<PointId> points = sheet.points;
     std::sort(points.begin(), points.end(), [&](PointId a, PointId b) { return space_.compare(a, b) < 0; });
     for (const PointId p : points) {
+      throw_if_cancelled(context_);
       if (!plane.insert(p)) throw Unresolved("two points of a triangle are one");
     }
     std::set<std::array<PointId, 2>> pieces;
@@ -309,6 +310,7 @@ class Cutter {
   }
 
   void add_pieces(const Sheet& sheet, const SheetSegment& segment, std::set<std::array<PointId, 2>>& pieces) {
+    throw_if_cancelled(context_);
     const Box3 box = box_of(segment);
     std::vector<PointId> on{segment.ends[0], segment.ends[1]};
     for (const PointId p : sheet.points) {

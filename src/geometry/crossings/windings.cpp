@@ -85,7 +85,7 @@ class Windings {
         patches_.join(sides_[first].facet(), sides_[first + 1].facet());
       } else {
         sort_around(std::span(sides_).subspan(first, count));
-        crowded_.push_back({first, count});
+        crowded_.emplace_back(first, count);
       }
     });
   }
