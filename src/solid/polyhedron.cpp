@@ -157,32 +157,39 @@ SolidBody copy_of(const MeshView& mesh, const std::vector<std::uint32_t>& triang
   return body;
 }
 
-/// Why a mesh bounds no polyhedron as far as its edges tell; empty where it does.
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+/// Why a mesh bounds no polyhedron as far as its edges tell, with all that is in the way; empty where it does.
 std::string obstacle(const Topology& t) {
-  const auto number = [](std::size_t n, const char* what) {
-    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+  std::string text;
+  const auto tell = [&](std::size_t n, const std::string& what, const char* one, const char* many) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + what + " (" + counted(n, one, many) + ")";
   };
-  if (t.boundary_edges > 0) return "it is open (" + number(t.boundary_edges, "boundary edge") + ")";
-  if (t.nonmanifold_edges > 0) return "it is not manifold (" + number(t.nonmanifold_edges, "edge") + ")";
-  if (t.inconsistent_edges > 0) {
-    return "its triangles do not face one way (" + number(t.inconsistent_edges, "edge") + ")";
-  }
-  if (t.nonmanifold_vertices > 0) return "it is not manifold (" + number(t.nonmanifold_vertices, "vertex") + ")";
-  return t.closed ? "" : "its triangles enclose nothing";
+  tell(t.boundary_edges, "it is open", "boundary edge", "boundary edges");
+  tell(t.nonmanifold_edges, "it is not manifold", "edge", "edges");
+  tell(t.inconsistent_edges, "its triangles do not face one way", "edge", "edges");
+  tell(t.nonmanifold_vertices, "it is not manifold", "vertex", "vertices");
+  return text.empty() && !t.closed ? "its triangles enclose nothing" : text;
 }
 
 /// Whether triangles cross, or those of one body touch. @param touching  gets the pairs of bodies that do.
 std::string crossing(const MeshView& mesh, const std::vector<std::uint32_t>& body_of_triangle,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const Context& context) {
   const SelfIntersections found = find_self_intersections(mesh, 100000, context);
-  if (found.crossing > 0) return "it crosses itself";
-  if (!found.complete) return "it touches itself";
+  const char* more = found.complete ? "" : "more than ";
+  const auto pairs = [&](std::size_t n) { return " (" + (more + counted(n, "pair", "pairs")) + " of triangles)"; };
+  if (found.crossing > 0) return "it crosses itself" + pairs(found.crossing);
+  if (!found.complete) return "it touches itself" + pairs(found.touching);
+  std::size_t own = 0;
   for (const TrianglePair& pair : found.pairs) {
     const std::uint32_t one = body_of_triangle[pair.first.value];
     const std::uint32_t other = body_of_triangle[pair.second.value];
-    if (one == other) return "it touches itself";
+    own += one == other ? 1 : 0;
     touching.push_back({std::min(one, other), std::max(one, other)});
   }
+  if (own > 0) return "it touches itself" + pairs(own);
   std::sort(touching.begin(), touching.end());
   touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
   return "";
@@ -247,7 +254,7 @@ std::optional<MeshSolid> polyhedron(const MeshView& mesh, const SiteTable& sites
 std::string resolved_text(const CrossingCounts& counts) {
   std::string text;
   const auto tell = [&](std::size_t n, const char* one, const char* many) {
-    if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + (n == 1 ? one : many);
+    if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, one, many);
   };
   tell(counts.crossing, "pair of triangles crossed", "pairs of triangles crossed");
   tell(counts.touching, "pair of triangles touched", "pairs of triangles touched");

@@ -191,6 +191,13 @@ TEST(Solid, AMeshThatIsOpenIsNoPolyhedron) {
   EXPECT_EQ(obstacle_of(mesh), "it is open (3 boundary edges)");
 }
 
+TEST(Solid, AllThatIsInTheWayIsTold) {
+  TriangleMesh mesh = make_box({});
+  mesh.triangles.push_back({mesh.triangles[0][1], mesh.triangles[0][0], 7});
+  const std::string why = obstacle_of(mesh);
+  EXPECT_TRUE(why.starts_with("it is open (") && why.find("), it is not manifold (") != std::string::npos) << why;
+}
+
 TEST(Solid, ASurfaceOfOneSideIsNoPolyhedron) {
   TriangleMesh mesh;  // the projective plane of six vertices
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 2}};
@@ -204,10 +211,12 @@ TEST(Solid, AMeshWhoseCrossingsAreNotResolvedIsNoPolyhedron) {
   append(mesh, box_between({1, 1, 1}, {3, 3, 3}));
   const TriangleMesh inwards{mesh.vertices, reversed_triangles(mesh.triangles), {}, {}};
   EXPECT_EQ(obstacle_of(inwards),
-            "it crosses itself, which is not resolved: no point has a winding number above 0: it faces inwards");
+            "it crosses itself (6 pairs of triangles), which is not resolved: no point has a winding number above 0: "
+            "it faces inwards");
   mesh.vertices[0].x = 1e-200;
   EXPECT_EQ(obstacle_of(mesh),
-            "it crosses itself, which is not resolved: coordinates are too many orders of magnitude apart");
+            "it crosses itself (6 pairs of triangles), which is not resolved: coordinates are too many orders of "
+            "magnitude apart");
 }
 
 TEST(Solid, NoTrianglesAreRefused) {
