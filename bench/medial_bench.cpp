@@ -40,7 +40,7 @@ void mesh_case(benchmark::State& state, const std::string& name, int resolution)
     phases = axis.report().phases;
     const Times check = time_once([&] { is_certified = certify(complex, solid.mesh).holds(); });
     certificate_seconds = check.wall;
-    voxels = static_cast<double>(axis.report().bodies.front().voxel_count);
+    voxels = static_cast<double>(axis.report().bodies.front().voxels);
   });
   report(state, times, voxels);
   report_phases(state, phases);
@@ -81,7 +81,7 @@ void image_case(benchmark::State& state, std::int64_t side) {
   const Times times = time_runs([&] {
     const MedialAxis axis = medial_axis(image, options);
     phases = axis.report().phases;
-    voxels = static_cast<double>(axis.report().bodies.front().voxel_count);
+    voxels = static_cast<double>(axis.report().bodies.front().voxels);
   });
   report(state, times, voxels);
   report_phases(state, phases);

@@ -133,20 +133,24 @@ struct Run {
   Json solids = Json::array();
   std::vector<PhaseTime> phases;
   std::vector<Draft> drafts;
+  std::vector<bool> is_kept;  ///< of each draft: whether it becomes a file
   std::vector<std::string> warnings;
   std::vector<std::string> mismatches;
   TextTable table;
 };
 
-/// What the voxels of a solid miss, and what there is to do about it.
+/// Where the model of a solid does not pass, and what there is to do about it.
 std::vector<std::string> shortfalls(const MedialAxisReport& report) {
   std::vector<std::string> out;
   for (std::size_t b = 0; b < report.bodies.size(); ++b) {
     const BodyReport& body = report.bodies[b];
     if (body.topology_matches) continue;
-    out.push_back((report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : std::string("the solid")) + " has " +
-                  betti_text(body.solid) + ", its voxels of side " + rounded_text(body.spacing) + " have " +
-                  betti_text(body.voxels) + ": something is thinner than a voxel; raise --max-resolution");
+    const Vec3d at = 0.5 * (body.failures.front().low + body.failures.front().high);
+    out.push_back("the model of " + (report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : "the solid") +
+                  " at voxels of side " + rounded_text(body.spacing) + " does not pass in " +
+                  plural(body.failures.size(), "place", "places") + ", the first one at " + vector_text(at) + " (" +
+                  std::string(to_string(body.failures.front().obstacle)) +
+                  "): raise --max-resolution, or mend the mesh there");
   }
   return out;
 }
@@ -170,9 +174,8 @@ std::string refined_text(const MedialAxisReport& report, double asked) {
       report.bodies.size() == 1 ? ""
                                 : " for " + count_text(finer) + " of " + count_text(report.bodies.size()) + " bodies";
   return "voxels from side " + rounded_text(asked) + " to " + rounded_text(finest) + of_bodies +
-         (report.rule == SolidRule::polyhedron
-              ? ": with larger ones they do not have the topology of the solid, or none lies inside"
-              : ": of larger ones none lies inside");
+         (report.rule == SolidRule::polyhedron ? ": with larger ones its model does not pass"
+                                               : ": of larger ones none lies inside");
 }
 
 /// "0.5", "0.25 to 0.5" for bodies that differ, "(0.5, 1, 2.5)" for an image.
@@ -188,21 +191,17 @@ std::string sides_text(const MedialAxisReport& report) {
 
 void add_report(Run& run, const MedialAxisReport& report, std::optional<double> asked, Json& json) {
   std::size_t voxels = 0;
-  std::size_t moved = 0;
-  double deviation = 0;
+  std::size_t extra = 0;
   for (const BodyReport& body : report.bodies) {
-    voxels += body.voxel_count;
-    moved += body.left_out + body.taken_in;
-    deviation = std::max(deviation, body.deviation);
+    voxels += body.voxels;
+    extra += body.extra_cells;
   }
   json["asked_spacing"] = asked ? Json(*asked) : Json(nullptr);
   json.update(to_json(report));
   json.erase("seconds");  // those of all solids are told together
-  run.table.add("solid", betti_text(report.solid) + " (" + report.reason + ")");
+  run.table.add("solid", betti_text(report.betti) + " (" + report.reason + ")");
   run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
-                              (moved > 0 ? "; " + count_text(moved) + " chosen otherwise than by their centre, up to " +
-                                               rounded_text(deviation) + " from the surface, for the topology"
-                                         : ""));
+                              (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts beside them" : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
   if (report.reversed_shells > 0) {
     run.warnings.push_back(plural(report.reversed_shells, "shell faces", "shells face") + " the solid and " +
@@ -241,6 +240,8 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   }
   const Certificate certificate = certificate_of(written, input, selection, context);
   run.phases.push_back({"certificate", watch.lap()});
+  const bool is_certified = certificate.mismatches.empty() && report.topology_matches;
+  run.is_kept.push_back(is_certified || r.allow_uncertified);
   const MedialCounts counts = count(complex);
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
@@ -313,10 +314,10 @@ void check_all_outputs(const Request& r, const std::vector<fs::path>& bases) {
 void finish(const Request& r, Run& run, const SolidInput& input, bool is_certified, const Context& context) {
   const PhaseSummary spent = summarize(run.phases);
   Json outputs = Json::array();
-  for (const Draft& draft : run.drafts) {
-    if (!is_certified && !r.allow_uncertified) continue;
-    outputs.push_back(draft.name().string());
-    run.table.add("wrote", draft.name().string());
+  for (std::size_t d = 0; d < run.drafts.size(); ++d) {
+    if (!run.is_kept[d]) continue;
+    outputs.push_back(run.drafts[d].name().string());
+    run.table.add("wrote", run.drafts[d].name().string());
   }
   const Json json = answer_json("medial", {{"input", input.json},
                                            {"certified", is_certified},
@@ -334,6 +335,15 @@ void finish(const Request& r, Run& run, const SolidInput& input, bool is_certifi
   run.table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(r.report, json, input.text + run.table.text());
   if (!r.report.quiet) warn(run.warnings);
+}
+
+/// What became of the files of a run in which something is not certified.
+std::string written_text(const Request& r, const Run& run) {
+  if (r.allow_uncertified) return {};
+  const auto kept = std::count(run.is_kept.begin(), run.is_kept.end(), true);
+  if (kept == 0) return "; nothing was written";
+  return "; of " + count_text(run.drafts.size()) + " axes the " + count_text(static_cast<std::size_t>(kept)) +
+         " that are certified were written";
 }
 
 void run(const Arguments& arguments) {
@@ -356,11 +366,11 @@ void run(const Arguments& arguments) {
   }
   progress.clear();
   const bool is_certified = run.mismatches.empty();
-  if (is_certified || r.allow_uncertified) {
-    for (Draft& draft : run.drafts) draft.keep();
+  for (std::size_t d = 0; d < run.drafts.size(); ++d) {
+    if (run.is_kept[d]) run.drafts[d].keep();
   }
   finish(r, run, input, is_certified, context);
-  if (!is_certified) throw NotCertified(run.mismatches, r.allow_uncertified ? "" : "; nothing was written");
+  if (!is_certified) throw NotCertified(run.mismatches, written_text(r, run));
 }
 
 }  // namespace

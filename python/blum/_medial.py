@@ -73,7 +73,7 @@ class MedialAxis:
         write_complex(path, self.simplify(self.least_theta), self.nested())
 
     def __repr__(self) -> str:
-        components, tunnels, voids = self.report.voxel_betti
+        components, tunnels, voids = self.report.solid_betti
         return f"MedialAxis(components={components}, tunnels={tunnels}, voids={voids}, rule={self.report.rule!r})"
 
 

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/union_find.hpp"
+#include "medial_axis/attached_voxels.hpp"
+#include "medial_axis/axis_corners.hpp"
+#include "medial_axis/collapse.hpp"
 #include "medial_axis/keep_edges_inside.hpp"
 #include "medial_axis/place_vertices.hpp"
+#include "medial_axis/shape_cells.hpp"
 #include "medial_axis/thin_voxels.hpp"
 
 namespace blum {
@@ -17,28 +22,38 @@ constexpr double same_place = 1e-6;  ///< voxels
 /// The cells of a complex, rising.
 std::vector<AxisCell> cells_of(const CellComplex& complex, const Importance& importance) {
   std::vector<AxisCell> cells;
-  const auto bytes = complex.bytes();
-  for (std::size_t node = 0; node < bytes.size(); ++node) {
-    for (unsigned rest = bytes[node]; rest != 0; rest &= rest - 1) {
-      const Cell cell = cell_at(node, static_cast<CellAxes>(std::countr_zero(rest)));
-      cells.push_back({cell, std::numeric_limits<float>::infinity(), importance.of(cell)});
-    }
-  }
+  complex.for_each_cell([&](Cell cell) {
+    cells.push_back(
+        {cell, complex.structure().dimension(cell), std::numeric_limits<float>::infinity(), importance.of(cell)});
+  });
   return cells;
 }
 
-std::size_t index_of(const std::vector<AxisCell>& cells, Cell cell) {
-  const auto at =
-      std::lower_bound(cells.begin(), cells.end(), cell, [](const AxisCell& a, Cell value) { return a.cell < value; });
-  return static_cast<std::size_t>(at - cells.begin());
+/// Half the length of the intervals that extra polygons stand for, and for their faces the largest of these: how deep
+/// in the solid extra cells lie.
+std::vector<float> depths_of_extra(const CellStructure& structure) {
+  std::vector<float> depths(structure.extra_count(), 0);
+  const Cell first = structure.first_extra();
+  for (int dimension = 2; dimension > 0; --dimension) {
+    for (std::size_t k = 0; k < depths.size(); ++k) {
+      const ExtraCell& cell = structure.extra()->cell(first + static_cast<Cell>(k));
+      if (cell.dimension != dimension) continue;
+      if (dimension == 2) depths[k] = static_cast<float>(0.5 * length(cell.ends[1].point - cell.ends[0].point));
+      for (const Cell face : structure.extra()->faces_of(first + static_cast<Cell>(k))) {
+        if (structure.is_extra(face)) depths[face - first] = std::max(depths[face - first], depths[k]);
+      }
+    }
+  }
+  return depths;
 }
 
 /// Makes ends of edges that are as good as at the same place the same: those of a ribbon around a curve, say.
-void make_equal(AxisPiece& piece, double tolerance) {
-  detail::UnionFind joined(piece.nodes.size());
-  for (const AxisCell& cell : piece.cells) {
-    if (dimension_of(cell.cell) != 1) continue;
-    const auto [a, b] = ends_of(piece, cell.cell);
+void make_equal(AxisPiece& piece, const IndexRows& corners, double tolerance) {
+  detail::UnionFind joined(piece.vertices.size());
+  for (std::size_t c = 0; c < piece.cells.size(); ++c) {
+    if (piece.cells[c].dimension != 1) continue;
+    const std::uint32_t a = corners[c][0];
+    const std::uint32_t b = corners[c][1];
     if (squared_length(piece.vertices[a].position - piece.vertices[b].position) > tolerance * tolerance) continue;
     joined.join(a, b);
   }
@@ -49,7 +64,7 @@ void make_equal(AxisPiece& piece, double tolerance) {
 class Remainder {
  public:
   Remainder(const AxisPiece& piece, double theta, AxisLists& lists)
-      : piece_(piece), lists_(lists), vertex_(piece.nodes.size(), 0), in_square_(piece.cells.size(), false) {
+      : piece_(piece), lists_(lists), vertex_(piece.vertices.size(), nobody), in_polygon_(piece.cells.size(), false) {
     for (std::size_t c = 0; c < piece.cells.size(); ++c) {
       if (piece.cells[c].level > theta) left_.push_back(c);
     }
@@ -57,102 +72,83 @@ class Remainder {
 
   void append(const Context& context) {
     for (const std::size_t c : left_) {
-      if (dimension_of(piece_.cells[c].cell) == 0) append_vertex(node_of(piece_.cells[c].cell));
+      if (piece_.cells[c].dimension == 0) static_cast<void>(number(piece_.shapes[c][0]));
     }
     throw_if_cancelled(context);
     for (const std::size_t c : left_) {
-      if (dimension_of(piece_.cells[c].cell) == 2) append_square(piece_.cells[c]);
+      if (piece_.cells[c].dimension == 2) append_polygon(c);
     }
     throw_if_cancelled(context);
     for (const std::size_t c : left_) {
-      if (dimension_of(piece_.cells[c].cell) == 1 && !in_square_[c]) append_curve(piece_.cells[c]);
+      if (piece_.cells[c].dimension == 1 && !in_polygon_[c]) append_curve(c);
     }
   }
 
  private:
-  void append_vertex(std::size_t node) {
-    const std::size_t place = piece_.place_of(node);
-    vertex_[place] = static_cast<std::uint32_t>(lists_.vertices.size());
-    lists_.vertices.push_back(piece_.vertices[place]);
-  }
+  static constexpr std::uint32_t nobody = 0xffffffffU;
 
-  void append_square(const AxisCell& square) {
-    for (std::array<std::uint32_t, 3> places : triangles_of(piece_, square.cell)) {
-      for (std::uint32_t& v : places) v = vertex_[v];
-      lists_.add_triangle(places, square.angle);
+  /// Of a vertex of the piece, in the lists.
+  [[nodiscard]] std::uint32_t number(std::uint32_t place) {
+    if (vertex_[place] == nobody) {
+      vertex_[place] = static_cast<std::uint32_t>(lists_.vertices.size());
+      lists_.vertices.push_back(piece_.vertices[place]);
     }
-    piece_.lattice.for_each_face(square.cell, [&](Cell edge) { in_square_[index_of(piece_.cells, edge)] = true; });
+    return vertex_[place];
   }
 
-  void append_curve(const AxisCell& edge) {
-    std::array<std::uint32_t, 2> ends = ends_of(piece_, edge.cell);
-    for (std::uint32_t& v : ends) v = vertex_[v];
-    lists_.add_edge(ends, edge.angle);
+  void append_polygon(std::size_t c) {
+    const auto shape = piece_.shapes[c];
+    for (std::size_t k = 0; k < shape.size(); k += 3) {
+      lists_.add_triangle({number(shape[k]), number(shape[k + 1]), number(shape[k + 2])}, piece_.cells[c].angle);
+    }
+    for (const std::uint32_t edge : piece_.sides[c]) in_polygon_[edge] = true;
+  }
+
+  void append_curve(std::size_t c) {
+    const auto shape = piece_.shapes[c];
+    for (std::size_t k = 0; k + 1 < shape.size(); ++k) {
+      lists_.add_edge({number(shape[k]), number(shape[k + 1])}, piece_.cells[c].angle);
+    }
   }
 
   const AxisPiece& piece_;
   AxisLists& lists_;
   std::vector<std::size_t> left_;
   std::vector<std::uint32_t> vertex_;
-  std::vector<bool> in_square_;
+  std::vector<bool> in_polygon_;
 };
 
 }  // namespace
-
-std::size_t AxisPiece::place_of(std::size_t node) const {
-  return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), static_cast<std::uint32_t>(node)) -
-                                  nodes.begin());
-}
-
-std::array<std::uint32_t, 2> ends_of(const AxisPiece& piece, Cell edge) {
-  const std::size_t node = node_of(edge);
-  const std::size_t step = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes_of(edge))));
-  return {static_cast<std::uint32_t>(piece.place_of(node)), static_cast<std::uint32_t>(piece.place_of(node + step))};
-}
-
-std::array<std::array<std::uint32_t, 3>, 2> triangles_of(const AxisPiece& piece, Cell square) {
-  const CellAxes axes = axes_of(square);
-  const std::size_t node = node_of(square);
-  const std::size_t u = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes)));
-  const std::size_t v = piece.lattice.stride(static_cast<std::size_t>(std::countr_zero(axes & (axes - 1))));
-  const std::array<std::size_t, 4> corners{piece.place_of(node), piece.place_of(node + u), piece.place_of(node + u + v),
-                                           piece.place_of(node + v)};
-  const auto squared = [&](std::size_t a, std::size_t b) {
-    return squared_length(piece.vertices[corners[a]].position - piece.vertices[corners[b]].position);
-  };
-  // The shorter diagonal, so that no triangle is needlessly thin.
-  const std::size_t first = squared(0, 2) <= squared(1, 3) ? 0 : 1;
-  const auto corner = [&](std::size_t k) { return static_cast<std::uint32_t>(corners[(first + k) % 4]); };
-  return {{{corner(0), corner(1), corner(2)}, {corner(0), corner(2), corner(3)}}};
-}
 
 AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor, std::vector<PhaseTime>& phases,
                           const Context& context) {
   PhaseTimer timer(phases);
   const VoxelSolid& solid = governors.solid();
-  CellComplex complex(solid.voxels, context);
+  CellComplex complex(solid.voxels, solid.extra, context);
   timer.lap("cells");
   const Importance importance = separation_angles(governors, complex, floor, context);
   timer.lap("separation angles");
   AxisPiece piece;
-  piece.lattice = complex.lattice();
-  complex = CellComplex(thin_voxels(solid, piece.lattice, importance, context), context);
+  piece.structure = complex.structure();
+  collapse_extra(complex, importance);
+  {
+    const AttachedVoxels attached(complex, solid.voxels, importance);
+    complex = attached.rest(thin_voxels(solid, attached, complex.lattice(), importance, context), context);
+  }
   timer.lap("thinning");
+  const std::vector<float> depths = depths_of_extra(piece.structure);
   const CollapseOrder order =
-      collapse(std::move(complex), solid.depth.span(), 0.25 * governors.voxel(), importance, context);
+      collapse(std::move(complex), {solid.depth.span(), depths}, 0.25 * governors.voxel(), importance, context);
   piece.cells = cells_of(order.base, importance);
+  const AxisCorners corners(piece, context);
   for (const Removal& removal : order.removals) {
-    for (const Cell cell : {removal.cell, removal.face}) {
-      piece.cells[index_of(piece.cells, cell)].level = removal.level;
-    }
+    for (const Cell cell : {removal.cell, removal.face}) piece.cells[corners.index_of(cell)].level = removal.level;
   }
   timer.lap("collapse");
-  for (const AxisCell& cell : piece.cells) {
-    if (dimension_of(cell.cell) == 0) piece.nodes.push_back(static_cast<std::uint32_t>(node_of(cell.cell)));
-  }
-  piece.vertices = place_vertices(governors, piece.lattice, piece.nodes, context);
-  if (solid.is_exact) keep_edges_inside(piece, governors, context);
-  make_equal(piece, same_place * governors.voxel());
+  piece.vertices = place_vertices(governors, piece.structure, corners.vertex_cells(), context);
+  if (solid.is_exact) keep_edges_inside(piece, corners, governors, context);
+  make_equal(piece, corners.of_cells(), same_place * governors.voxel());
+  shape_cells(piece, corners, governors, context);
   timer.lap("vertices");
   return piece;
 }

@@ -26,10 +26,18 @@ std::array<std::uint8_t, 256> make_cell_table() {
 
 }  // namespace
 
-CellComplex::CellComplex(const VoxelSet& voxels, const Context& context)
-    : lattice_(voxels.size()), cells_(lattice_.node_count()) {
+CellComplex::CellComplex(const VoxelSet& voxels, const Context& context) : CellComplex(voxels, nullptr, context) {}
+
+CellComplex::CellComplex(const VoxelSet& voxels, std::shared_ptr<const ExtraIncidence> extra, const Context& context)
+    : CellComplex(voxels, CellStructure(CellLattice(voxels.size()), std::move(extra)), context) {
+  std::fill(extra_.begin(), extra_.end(), std::uint8_t{1});
+}
+
+CellComplex::CellComplex(const VoxelSet& voxels, CellStructure structure, const Context& context)
+    : structure_(std::move(structure)), cells_(structure_.lattice().node_count()), extra_(structure_.extra_count(), 0) {
   static const std::array<std::uint8_t, 256> table = make_cell_table();
-  const auto& size = lattice_.size();
+  const CellLattice& lattice = structure_.lattice();
+  const auto& size = lattice.size();
   parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
     for (auto k = static_cast<std::int64_t>(range.begin); k < static_cast<std::int64_t>(range.end); ++k) {
       for (std::int64_t j = 0; j < size[1]; ++j) {
@@ -41,11 +49,30 @@ CellComplex::CellComplex(const VoxelSet& voxels, const Context& context)
             const auto z = static_cast<std::int64_t>(v >> 1U);
             if (voxels.contains(i, j - 1 + y, k - 1 + z)) around |= 2U << (2 * v);
           }
-          cells_[lattice_.node(i, j, k)] = table[around];
+          cells_[lattice.node(i, j, k)] = table[around];
         }
       }
     }
   });
+  if (structure_.extra() == nullptr) return;
+  for (const Cell cell : structure_.extra()->replaced()) {
+    cells_[node_of(cell)] &= static_cast<std::uint8_t>(~(1U << axes_of(cell)));
+  }
+}
+
+void CellComplex::insert_closure(Cell cell) {
+  if (structure_.is_extra(cell)) {
+    extra_[cell - structure_.first_extra()] = 1;
+    for (const Cell face : structure_.extra()->faces_of(cell)) insert_closure(face);
+    return;
+  }
+  cells_[node_of(cell)] |= static_cast<std::uint8_t>(1U << axes_of(cell));
+  structure_.lattice().for_each_face(cell, [&](Cell face) {
+    const auto replaced = structure_.extra() == nullptr ? std::span<const Cell>() : structure_.extra()->replaced();
+    if (!std::binary_search(replaced.begin(), replaced.end(), face)) insert_closure(face);
+  });
+  if (structure_.extra() == nullptr || !structure_.extra()->is_mixed(cell)) return;
+  for (const Cell face : structure_.extra()->extra_faces_of(cell)) insert_closure(face);
 }
 
 }  // namespace blum

@@ -53,18 +53,19 @@ struct ImportantFace {
 
 class Collapser {
  public:
-  Collapser(CellComplex& complex, std::span<const float> depth, double depth_step, const Importance& importance,
+  Collapser(CellComplex& complex, const CellDepths& depths, double depth_step, const Importance& importance,
             const Context& context)
       : complex_(complex),
-        lattice_(complex.lattice()),
-        depth_(depth),
+        structure_(complex.structure()),
+        depth_(depths.of_voxels),
+        depth_of_extra_(depths.of_extra),
         per_step_(1 / depth_step),
         importance_(importance),
         context_(context) {}
 
   void remove_cubes() {
-    for_each_cell([&](Cell cell) {
-      if (dimension_of(cell) == 2) offer(cell);
+    complex_.for_each_cell([&](Cell cell) {
+      if (structure_.dimension(cell) == 2) offer(cell);
     });
     run([](Cell, Cell, float) {}, [&](Cell cube, Cell) { offer_faces(cube); });
   }
@@ -72,8 +73,8 @@ class Collapser {
   /// Removes squares, edges and vertices of importance zero; what is left after that, in order.
   void remove_unimportant() {
     level_ = 0;
-    for_each_cell([&](Cell cell) {
-      if (dimension_of(cell) <= 1) offer(cell);
+    complex_.for_each_cell([&](Cell cell) {
+      if (structure_.dimension(cell) <= 1) offer(cell);
     });
     run_unimportant([](Cell, Cell, float) {}, next_);
   }
@@ -84,20 +85,12 @@ class Collapser {
   }
 
  private:
-  template <class Visit>
-  void for_each_cell(const Visit& visit) const {
-    const auto bytes = complex_.bytes();
-    for (std::size_t node = 0; node < bytes.size(); ++node) {
-      for (unsigned rest = bytes[node]; rest != 0; rest &= rest - 1) {
-        visit(cell_at(node, static_cast<CellAxes>(std::countr_zero(rest))));
-      }
-    }
-  }
-
   /// The mean depth of the voxels around a cell, those beyond the solid negative.
   [[nodiscard]] double depth_of(Cell cell) const {
-    const auto& nodes = lattice_.size();
-    const auto [i, j, k] = lattice_.place(node_of(cell));
+    if (structure_.is_extra(cell)) return depth_of_extra_[cell - structure_.first_extra()];
+    const CellLattice& lattice = structure_.lattice();
+    const auto& nodes = lattice.size();
+    const auto [i, j, k] = lattice.place(node_of(cell));
     const CellAxes axes = axes_of(cell);
     double sum = 0;
     int count = 0;
@@ -124,7 +117,7 @@ class Collapser {
     }
   }
   void offer_faces(Cell cell) {
-    lattice_.for_each_face(cell, [&](Cell face) { offer(face); });
+    structure_.for_each_face(cell, [&](Cell face) { offer(face); });
   }
 
   template <class Record, class Next>
@@ -156,8 +149,9 @@ class Collapser {
   }
 
   CellComplex& complex_;
-  const CellLattice& lattice_;
+  const CellStructure& structure_;
   std::span<const float> depth_;
+  std::span<const float> depth_of_extra_;
   double per_step_;
   const Importance& importance_;
   const Context& context_;
@@ -178,9 +172,30 @@ class Collapser {
 
 }  // namespace
 
-CollapseOrder collapse(CellComplex complex, std::span<const float> depth, double depth_step,
-                       const Importance& importance, const Context& context) {
-  Collapser collapser(complex, depth, depth_step, importance, context);
+void collapse_extra(CellComplex& complex, const Importance& importance) {
+  const CellStructure& structure = complex.structure();
+  if (structure.extra() == nullptr) return;
+  std::vector<Cell> line;
+  const auto offer = [&](Cell face) {
+    if (structure.is_extra(face) && importance.of(face) == 0) line.push_back(face);
+  };
+  for (std::size_t k = 0; k < structure.extra_count(); ++k) offer(structure.first_extra() + static_cast<Cell>(k));
+  std::size_t next = 0;
+  while (next < line.size()) {
+    const Cell face = line[next++];
+    if (!complex.contains(face)) continue;
+    const Cell cell = complex.only_coface(face);
+    if (cell == face || !structure.is_extra(cell)) continue;
+    complex.erase(cell);
+    complex.erase(face);
+    structure.for_each_face(cell, offer);
+    structure.for_each_face(face, offer);
+  }
+}
+
+CollapseOrder collapse(CellComplex complex, const CellDepths& depths, double depth_step, const Importance& importance,
+                       const Context& context) {
+  Collapser collapser(complex, depths, depth_step, importance, context);
   collapser.remove_cubes();
   collapser.remove_unimportant();
   CollapseOrder order;

@@ -26,13 +26,23 @@ struct CollapseOrder {
   std::vector<Removal> removals;
 };
 
+/// How deep in the solid the cells of a complex lie, mesh units.
+struct CellDepths {
+  std::span<const float> of_voxels;      ///< of the lattice, x fastest; negative beyond the solid
+  std::span<const float> of_extra = {};  ///< of each extra cell
+};
+
+/// Removes extra cells of importance zero together with faces that are extra, too, while there are such that are free.
+/// The result has the homotopy type of the complex, and all its voxels.
+void collapse_extra(CellComplex& complex, const Importance& importance);
+
 /// Collapses a complex: cubes first, then squares, edges and vertices, least important first and outermost first among
 /// equals, until nothing can be removed. Each step is an elementary collapse, so that every complex on the way has the
 /// homotopy type of the first (Liu, Chambers, Letscher, Ju 2010; Chaussard, Couprie 2009), whatever the numbers are.
-/// @param depth  per voxel of the complex's lattice, x fastest, mesh units: what is shallow goes first.
+/// What is shallow goes first.
 /// @param importance  of cells, in degrees; at least that of their cofaces.
 /// @throws Cancelled. Cost: about linear in the cells, n log n in the important ones.
-[[nodiscard]] CollapseOrder collapse(CellComplex complex, std::span<const float> depth, double depth_step,
+[[nodiscard]] CollapseOrder collapse(CellComplex complex, const CellDepths& depths, double depth_step,
                                      const Importance& importance, const Context& context);
 
 }  // namespace blum

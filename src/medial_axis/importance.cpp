@@ -7,21 +7,25 @@ namespace {
 
 /// Calls visit(cell) for a cell and all its faces, some of them more than once.
 template <class Visit>
-void for_each_in_closure(const CellLattice& lattice, Cell cell, const Visit& visit) {
+void for_each_in_closure(const CellStructure& structure, Cell cell, const Visit& visit) {
   visit(cell);
-  lattice.for_each_face(cell, [&](Cell face) {
+  structure.for_each_face(cell, [&](Cell face) {
     visit(face);
-    lattice.for_each_face(face, visit);
+    structure.for_each_face(face, visit);
   });
 }
 
 }  // namespace
 
-Importance::Importance(const CellLattice& lattice, std::span<const Entry> entries)
-    : words_((lattice.node_count() * 8 + 63) / 64, 0), first_(words_.size(), 0) {
+Importance::Importance(const CellStructure& structure, std::span<const Entry> entries)
+    : words_((structure.lattice().node_count() * 8 + 63) / 64, 0),
+      first_(words_.size(), 0),
+      first_extra_(structure.first_extra()),
+      extra_(structure.extra_count(), 0) {
   for (const Entry& entry : entries) {
-    for_each_in_closure(lattice, entry.cell,
-                        [&](Cell cell) { words_[cell >> 6U] |= std::uint64_t{1} << (cell & 63U); });
+    for_each_in_closure(structure, entry.cell, [&](Cell cell) {
+      if (cell < first_extra_) words_[cell >> 6U] |= std::uint64_t{1} << (cell & 63U);
+    });
   }
   std::uint32_t before = 0;
   for (std::size_t w = 0; w < words_.size(); ++w) {
@@ -30,8 +34,8 @@ Importance::Importance(const CellLattice& lattice, std::span<const Entry> entrie
   }
   values_.assign(before, 0);
   for (const Entry& entry : entries) {
-    for_each_in_closure(lattice, entry.cell, [&](Cell cell) {
-      float& value = values_[rank(cell)];
+    for_each_in_closure(structure, entry.cell, [&](Cell cell) {
+      float& value = cell < first_extra_ ? values_[rank(cell)] : extra_[cell - first_extra_];
       value = std::max(value, entry.degrees);
     });
   }

@@ -9,7 +9,7 @@
 
 namespace blum {
 
-/// Degrees for some cells of a lattice, and 0 for the others. One byte per node, and 4 more per cell that has a value.
+/// Degrees for some cells, and 0 for the others. One byte per node, and 4 more per cell that has a value or is extra.
 class Importance {
  public:
   struct Entry {
@@ -19,10 +19,13 @@ class Importance {
 
   Importance() = default;
   /// Gives each cell the largest value of its entries and of the entries of cells that it is a face of.
-  Importance(const CellLattice& lattice, std::span<const Entry> entries);
+  Importance(const CellStructure& structure, std::span<const Entry> entries);
+  Importance(const CellLattice& lattice, std::span<const Entry> entries)
+      : Importance(CellStructure(lattice, nullptr), entries) {}
 
   [[nodiscard]] float of(Cell cell) const {
     if (words_.empty()) return 0;
+    if (cell >= first_extra_) return extra_.empty() ? 0 : extra_[cell - first_extra_];
     return (words_[cell >> 6U] >> (cell & 63U) & 1U) == 0 ? 0 : values_[rank(cell)];
   }
   /// Bit a: whether the cell that spans `a` from a node has a value.
@@ -41,6 +44,8 @@ class Importance {
   std::vector<std::uint64_t> words_;
   std::vector<std::uint32_t> first_;  ///< values before each word
   std::vector<float> values_;
+  Cell first_extra_ = 0;
+  std::vector<float> extra_;
 };
 
 }  // namespace blum

@@ -118,7 +118,8 @@ class GapFinder {
 
 }  // namespace
 
-void keep_edges_inside(AxisPiece& piece, const GovernorField& governors, const Context& context) {
+void keep_edges_inside(AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors,
+                       const Context& context) {
   const GapFinder gaps(governors.solid());
   // Each round puts at least one vertex back for good; mostly there is nothing to do.
   for (bool is_done = false; !is_done;) {
@@ -131,12 +132,11 @@ void keep_edges_inside(AxisPiece& piece, const GovernorField& governors, const C
     };
     parallel_for(context, piece.cells.size(), cells_per_range, "vertices", [&](const WorkRange& range) {
       for (std::size_t c = range.begin; c < range.end; ++c) {
-        const Cell cell = piece.cells[c].cell;
-        if (dimension_of(cell) == 1) {
-          const auto [a, b] = ends_of(piece, cell);
-          look(a, b);
-        } else if (dimension_of(cell) == 2) {
-          const auto triangles = triangles_of(piece, cell);
+        const auto own = corners.of_cells()[c];
+        if (piece.cells[c].dimension == 1) {
+          look(own[0], own[1]);
+        } else if (piece.cells[c].dimension == 2) {
+          const auto triangles = triangles_of(own, piece.vertices);
           look(triangles[0][0], triangles[0][2]);  // the diagonal; the sides are edges of their own
         }
       }
@@ -145,7 +145,8 @@ void keep_edges_inside(AxisPiece& piece, const GovernorField& governors, const C
     if (!is_found) return;
     for (std::size_t v = 0; v < goes_back.size(); ++v) {
       if (goes_back[v] == 0) continue;
-      const AxisVertex corner = vertex_at_corner(governors, piece.lattice.place(piece.nodes[v]));
+      const AxisVertex corner =
+          vertex_at_corner(governors, piece.structure.lattice().place(node_of(corners.vertex_cells()[v])));
       if (corner.position == piece.vertices[v].position) continue;
       piece.vertices[v] = corner;
       is_done = false;

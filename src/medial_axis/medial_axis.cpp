@@ -108,7 +108,7 @@ class MedialAxisBuilder {
     while (true) {
       Voxelized out =
           is_polyhedron ? voxelize_body(body, spacing, context_) : voxelize_by_winding(body.mesh, spacing, context_);
-      const bool is_done = out.report.topology_matches && out.report.voxel_count > 0;
+      const bool is_done = out.report.topology_matches && out.report.voxels + out.report.extra_cells > 0;
       if (is_done || !(spacing > finest * (1 + 1e-9))) return out;
       spacing = std::max(0.5 * spacing, finest);
     }
@@ -138,7 +138,8 @@ class MedialAxisBuilder {
     PhaseTimer timer(report().phases);
     Voxelized voxelized = voxelize(body, spacing);
     timer.lap("field and voxels");
-    if (voxelized.report.voxel_count == 0) throw without_interior(solid, voxelized.report.spacing);
+    if (voxelized.report.voxels + voxelized.report.extra_cells == 0)
+      throw without_interior(solid, voxelized.report.spacing);
     const SiteTable sites(body.mesh, context_);
     const MeshSurface surface(body.mesh, sites, report().rule == SolidRule::polyhedron, context_);
     timer.lap("surface");
@@ -159,10 +160,7 @@ class MedialAxisBuilder {
   }
 
   MedialAxis finish() {
-    for (const BodyReport& body : report().bodies) {
-      add(report().solid, body.solid);
-      add(report().voxels, body.voxels);
-    }
+    for (const BodyReport& body : report().bodies) add(report().betti, body.betti);
     report().topology_matches = std::all_of(report().bodies.begin(), report().bodies.end(),
                                             [](const BodyReport& body) { return body.topology_matches; });
     return MedialAxis(std::move(data_));

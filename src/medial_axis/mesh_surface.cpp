@@ -40,6 +40,7 @@ MeshSurface::MeshSurface(const MeshView& mesh, const SiteTable& sites, bool boun
     : mesh_(mesh),
       sites_(sites),
       bounds_solid_(bounds_solid),
+      diagonal_(length(bounds(mesh).size())),
       bvh_(mesh, sites, context),
       normals_(mesh, sites),
       first_(mesh.vertices.size() + 1, 0),
@@ -72,6 +73,19 @@ NearestPoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) con
   const std::optional<NearestSite> found = bvh_.nearest(query);
   if (found) return {found->point, found->distance, found->site, sites_.triangle(found->site).value};
   return {near.point, length(query - near.point), site_of(near), near.element};  // a query that is not finite
+}
+
+std::optional<double> MeshSurface::first_crossing(const Vec3d& from, const Vec3d& to) const {
+  const std::optional<RayCrossing> found = bvh_.first_crossing({from, to - from}, 1);
+  if (!found) return std::nullopt;
+  return found->t;
+}
+
+Vec3d MeshSurface::outwards(std::uint32_t element) const {
+  const Triangle& t = mesh_.triangles[element];
+  const Vec3d normal = cross(mesh_.vertices[t[1]] - mesh_.vertices[t[0]], mesh_.vertices[t[2]] - mesh_.vertices[t[0]]);
+  const double size = length(normal);
+  return size > 0 ? normal / size : Vec3d{};
 }
 
 Footprint MeshSurface::closest_on(std::uint32_t triangle, const Vec3d& query) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -26,6 +27,9 @@ class MeshSurface final : public Surface {
   [[nodiscard]] bool is_inside(const Vec3d& query, const NearestPoint& nearest) const override {
     return bounds_solid_ && nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
   }
+  [[nodiscard]] std::optional<double> first_crossing(const Vec3d& from, const Vec3d& to) const override;
+  [[nodiscard]] double diagonal() const override { return diagonal_; }
+  [[nodiscard]] Vec3d outwards(std::uint32_t element) const override;
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
 
  private:
@@ -34,6 +38,7 @@ class MeshSurface final : public Surface {
   MeshView mesh_;
   const SiteTable& sites_;
   bool bounds_solid_;
+  double diagonal_;
   Bvh bvh_;
   Pseudonormals normals_;
   std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_

@@ -47,22 +47,23 @@ class Nest {
 
   void add(const AxisPiece& piece) {
     std::vector<std::uint32_t> vertex(piece.vertices.size(), 0);
+    std::vector<bool> is_known(piece.vertices.size(), false);
     // Vertices come before what joins them: a face stays as long as what it is a face of.
-    for (const AxisCell& cell : piece.cells) {
-      if (!is_there(cell) || dimension_of(cell.cell) != 0) continue;
-      const std::size_t place = piece.place_of(node_of(cell.cell));
-      vertex[place] = vertex_at(piece.vertices[place], cell.level);
-    }
-    std::size_t seen = 0;
-    for (const AxisCell& cell : piece.cells) {
-      if (seen++ % cells_between_looks == 0) throw_if_cancelled(context_);
-      if (!is_there(cell)) continue;
-      if (dimension_of(cell.cell) == 1) {
-        const auto [a, b] = ends_of(piece, cell.cell);
-        add_thread(vertex[a], vertex[b], cell);
-      } else if (dimension_of(cell.cell) == 2) {
-        for (const auto& [a, b, c] : triangles_of(piece, cell.cell)) {
-          add_triangle({vertex[a], vertex[b], vertex[c]}, cell);
+    for (int dimension = 0; dimension <= 2; ++dimension) {
+      for (std::size_t c = 0; c < piece.cells.size(); ++c) {
+        if (c % cells_between_looks == 0) throw_if_cancelled(context_);
+        const AxisCell& cell = piece.cells[c];
+        if (!is_there(cell) || cell.dimension != dimension) continue;
+        const auto shape = piece.shapes[c];
+        for (const std::uint32_t v : shape) {
+          if (!is_known[v]) vertex[v] = vertex_at(piece.vertices[v], cell.level);
+          is_known[v] = true;
+        }
+        for (std::size_t k = 0; dimension == 1 && k + 1 < shape.size(); ++k) {
+          add_thread(vertex[shape[k]], vertex[shape[k + 1]], cell);
+        }
+        for (std::size_t k = 0; dimension == 2 && k < shape.size(); k += 3) {
+          add_triangle({vertex[shape[k]], vertex[shape[k + 1]], vertex[shape[k + 2]]}, cell);
         }
       }
     }

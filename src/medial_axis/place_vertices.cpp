@@ -274,12 +274,138 @@ AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std
                                                            : vertex_on_surface(nearest);
 }
 
-std::vector<AxisVertex> place_vertices(const GovernorField& governors, const CellLattice& lattice,
-                                       const std::vector<std::uint32_t>& nodes, const Context& context) {
+namespace {
+
+/// Calls use(stop) for voxels that are inside around a cell of the lattice.
+template <class Use>
+void for_each_voxel_inside(const GovernorField& governors, const CellLattice& lattice, Cell cell, const Use& use) {
+  const auto node = lattice.place(node_of(cell));
+  for (CellAxes behind = 0; behind < 8; ++behind) {
+    if ((behind & axes_of(cell)) != 0) continue;
+    const std::array<std::int64_t, 3> at{node[0] - (behind & 1U), node[1] - (behind >> 1U & 1U),
+                                         node[2] - (behind >> 2U)};
+    if (governors.solid().voxels.contains(at[0], at[1], at[2])) use(at);
+  }
+}
+
+/// The deepest voxel around a cell of the lattice.
+std::optional<Stop> deepest_of(const GovernorField& governors, const CellLattice& lattice, Cell cell) {
+  const VoxelSolid& solid = governors.solid();
+  std::optional<std::array<std::int64_t, 3>> deepest;
+  const auto depth = [&](const std::array<std::int64_t, 3>& v) {
+    return solid.depth[solid.grid.index(v[0], v[1], v[2])];
+  };
+  for_each_voxel_inside(governors, lattice, cell, [&](const std::array<std::int64_t, 3>& at) {
+    if (!deepest || depth(at) > depth(*deepest)) deepest = at;
+  });
+  if (!deepest) return std::nullopt;
+  const Governor g = governors.at((*deepest)[0], (*deepest)[1], (*deepest)[2]);
+  return SolidPaths(governors.surface()).stop_at(g.centre, g.foot);
+}
+
+/// Calls use(stop) for points of the component of a cell: its own, and those of cells that it is a face of.
+template <class Use>
+void for_each_witness(const GovernorField& governors, const CellStructure& structure, Cell cell, const Use& use) {
+  const SolidPaths paths(governors.surface());
+  const auto offer_cell = [&](Cell other) {
+    if (structure.is_extra(other)) {
+      if (const auto stop = paths.stop_at(structure.extra()->cell(other).witness, {})) use(*stop);
+    } else if (const auto stop = deepest_of(governors, structure.lattice(), other)) {
+      use(*stop);
+    }
+  };
+  if (structure.is_extra(cell)) offer_cell(cell);
+  const auto offer_cofaces = [&](Cell below) {
+    structure.for_each_coface(below, [&](Cell coface) {
+      // Cells of the lattice are found by their voxels, unless none of these is there.
+      if (structure.is_extra(below) || structure.is_extra(coface)) offer_cell(coface);
+    });
+  };
+  offer_cofaces(cell);
+  structure.for_each_coface(cell, [&](Cell coface) {
+    if (structure.is_extra(cell) || structure.is_extra(coface)) offer_cofaces(coface);
+  });
+}
+
+std::optional<Stop> home_of_extra(const GovernorField& governors, const CellStructure& structure, Cell cell) {
+  std::optional<Stop> best;
+  for_each_witness(governors, structure, cell, [&](const Stop& stop) {
+    if (!best || stop.nearest.distance > best->nearest.distance) best = stop;
+  });
+  return best;
+}
+
+/// Whether a vertex lies in the component that its cell stands for, as far as lines tell: others may have been closer.
+bool is_in_component(const GovernorField& governors, const CellStructure& structure, Cell cell,
+                     const AxisVertex& vertex) {
+  const std::optional<Stop> home = deepest_of(governors, structure.lattice(), cell);
+  if (!home) return true;
+  const Stop own{vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};
+  return vertex.radius > 0 && SolidPaths(governors.surface()).are_joined(*home, own);
+}
+
+/// In the middle of a thin part where there is one: the ball there holds the point that it was found from.
+AxisVertex place_extra(const GovernorField& governors, const CellStructure& structure, Cell cell) {
+  const Surface& surface = governors.surface();
+  const std::optional<Stop> home = home_of_cell(governors, structure, cell);
+  if (!home) return vertex_on_surface(surface.nearest(structure.extra()->cell(cell).witness, {}));
+  const auto ball = ball_around(surface, home->nearest, home->at, 2 * governors.longest_voxel());
+  if (!ball) return vertex_of_one_wall(home->at, home->nearest);
+  const double reach = most_moved * governors.longest_voxel();
+  const double distance = length(ball->centre - home->at);
+  if (distance > reach) {
+    const Vec3d nearer = home->at + (ball->centre - home->at) * (reach / distance);
+    return vertex_of_one_wall(nearer, surface.nearest(nearer, {home->nearest.point, home->nearest.element, 7}));
+  }
+  AxisVertex vertex = vertex_of_one_wall(ball->centre, ball->nearest);
+  vertex.footprints[1] = ball->other.point;
+  vertex.sites[1] = ball->other.site;
+  vertex.separation_angle = ball->angle;
+  return vertex;
+}
+
+}  // namespace
+
+std::vector<Stop> landmarks_of(const GovernorField& governors, const CellStructure& structure, Cell vertex) {
+  std::vector<Stop> stops;
+  if (!structure.is_extra(vertex)) {
+    const SolidPaths paths(governors.surface());
+    for_each_voxel_inside(governors, structure.lattice(), vertex, [&](const std::array<std::int64_t, 3>& at) {
+      const Governor g = governors.at(at[0], at[1], at[2]);
+      if (const auto stop = paths.stop_at(g.centre, g.foot)) stops.push_back(*stop);
+    });
+  }
+  for_each_witness(governors, structure, vertex, [&](const Stop& stop) {
+    const auto is_known = [&](const Stop& other) { return other.at == stop.at; };
+    if (std::none_of(stops.begin(), stops.end(), is_known)) stops.push_back(stop);
+  });
+  std::sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) {
+    if (a.nearest.distance != b.nearest.distance) return a.nearest.distance > b.nearest.distance;
+    return a.at[0] != b.at[0] ? a.at[0] < b.at[0] : a.at[1] != b.at[1] ? a.at[1] < b.at[1] : a.at[2] < b.at[2];
+  });
+  return stops;
+}
+
+std::optional<Stop> home_of_cell(const GovernorField& governors, const CellStructure& structure, Cell cell) {
+  return structure.is_extra(cell) ? home_of_extra(governors, structure, cell)
+                                  : deepest_of(governors, structure.lattice(), cell);
+}
+
+std::vector<AxisVertex> place_vertices(const GovernorField& governors, const CellStructure& structure,
+                                       std::span<const Cell> cells, const Context& context) {
   const Placer placer(governors);
-  std::vector<AxisVertex> vertices(nodes.size());
-  parallel_for(context, nodes.size(), nodes_per_range, "vertices", [&](const WorkRange& range) {
-    for (std::size_t n = range.begin; n < range.end; ++n) vertices[n] = placer.place(lattice.place(nodes[n]));
+  std::vector<AxisVertex> vertices(cells.size());
+  parallel_for(context, cells.size(), nodes_per_range, "vertices", [&](const WorkRange& range) {
+    for (std::size_t n = range.begin; n < range.end; ++n) {
+      if (structure.is_extra(cells[n])) {
+        vertices[n] = place_extra(governors, structure, cells[n]);
+        continue;
+      }
+      vertices[n] = placer.place(structure.lattice().place(node_of(cells[n])));
+      if (structure.extra() != nullptr && !is_in_component(governors, structure, cells[n], vertices[n])) {
+        vertices[n] = place_extra(governors, structure, cells[n]);
+      }
+    }
   });
   return vertices;
 }

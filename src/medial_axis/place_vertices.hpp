@@ -3,20 +3,34 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
 #include "medial_axis/axis_vertex.hpp"
 #include "medial_axis/cell_complex.hpp"
 #include "medial_axis/governors.hpp"
+#include "medial_axis/solid_paths.hpp"
 
 namespace blum {
 
-/// The vertices of a complex, by node: each moved from its lattice corner to a point within its voxel's reach that is
-/// as far from one wall as from another, and as far as the voxels around say from all of them; it stays where it is
-/// where only one wall is near. Radius and first footprint are those of an exact query.
-[[nodiscard]] std::vector<AxisVertex> place_vertices(const GovernorField& governors, const CellLattice& lattice,
-                                                     const std::vector<std::uint32_t>& nodes, const Context& context);
+/// The vertices of a complex: each of those of the lattice is moved from its lattice corner to a point within its
+/// voxel's reach that is as far from one wall as from another, and as far as the voxels around say from all of them; it
+/// stays where it is where only one wall is near. Extra ones lie in the middle of the component of the solid that they
+/// stand for. Radius and first footprint are those of an exact query.
+/// @param cells  vertices of the structure.
+[[nodiscard]] std::vector<AxisVertex> place_vertices(const GovernorField& governors, const CellStructure& structure,
+                                                     std::span<const Cell> cells, const Context& context);
+
+/// A point of the component of the solid that a cell of a model stands for, as deep as one known; nullopt where none is
+/// known that is not on the surface.
+[[nodiscard]] std::optional<Stop> home_of_cell(const GovernorField& governors, const CellStructure& structure,
+                                               Cell cell);
+
+/// All points known of the component that a vertex of a model stands for, the deepest first.
+[[nodiscard]] std::vector<Stop> landmarks_of(const GovernorField& governors, const CellStructure& structure,
+                                             Cell vertex);
 
 /// A vertex at the corner of the lattice itself, which must lie in the solid.
 [[nodiscard]] AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std::int64_t, 3>& node);

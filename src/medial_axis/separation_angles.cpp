@@ -11,8 +11,8 @@
 #include "blum/core/parallel.hpp"
 #include "medial_axis/equidistant_point.hpp"
 #include "medial_axis/spread_voxels.hpp"
+#include "medial_axis/take_deeper.hpp"
 #include "medial_axis/thin_ball.hpp"
-#include "medial_axis/topology_repair.hpp"
 
 namespace blum {
 namespace {
@@ -213,6 +213,23 @@ class Measure {
     return above_floor(x, p.point, q.point);
   }
 
+  /// The angle that an extra polygon stands for: on the bisector between the ends of its interval.
+  [[nodiscard]] double between(const ExtraCell& polygon) const {
+    std::array<Governor, 2> ends;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const ExtraCell::End& end = polygon.ends[k];
+      ends[k] = end.triangle ? governor_at(end) : governor_inside(end.point);
+    }
+    return between(ends[0], ends[1]);
+  }
+  /// The angle in the middle of a part that is so thin that no line between nodes meets it.
+  [[nodiscard]] double in_wire(const ExtraCell& cell) const {
+    const NearestPoint nearest = surface_.nearest(cell.witness, {});
+    if (!surface_.is_inside(cell.witness, nearest)) return 0;
+    const std::optional<ThinBall> ball = ball_around(surface_, nearest, cell.witness, step_);
+    return ball ? above_floor(ball->centre, ball->nearest.point, ball->other.point) : 0;
+  }
+
   /// The largest angle between any two voxels of a cell, as the voxels' own directions tell it.
   [[nodiscard]] static double coarse(const Around& around, CellAxes axes) {
     double least = 1;
@@ -290,6 +307,25 @@ class Measure {
   /// Whether a point near a voxel is on the inner side of the wall that the voxel is closest to.
   [[nodiscard]] static bool is_inside(const Governor& g, const Vec3d& x) {
     return dot(x - g.foot.point, g.direction) < 0;
+  }
+
+  /// Of a point of the surface.
+  [[nodiscard]] Governor governor_at(const ExtraCell::End& end) const {
+    Governor g;
+    g.centre = end.point;
+    g.foot = {end.point, *end.triangle, 7};
+    g.is_inside = true;
+    g.direction = surface_.outwards(*end.triangle);
+    return g;
+  }
+  [[nodiscard]] Governor governor_inside(const Vec3d& x) const {
+    Governor g;
+    const NearestPoint nearest = surface_.nearest(x, {});
+    g.centre = x;
+    g.foot = {nearest.point, nearest.element, 7};
+    g.is_inside = true;
+    if (nearest.distance > 0) g.direction = (nearest.point - x) / nearest.distance;
+    return g;
   }
 
   [[nodiscard]] double above_floor(const Vec3d& x, const Vec3d& p, const Vec3d& q) const {
@@ -376,6 +412,27 @@ class Measure {
 
 using Entries = std::vector<Importance::Entry>;
 
+/// Of extra polygons, and of extra edges that are no side of any.
+Entries angles_of_extra(const Measure& measure, const CellStructure& structure, const Context& context) {
+  std::vector<float> angles(structure.extra_count(), 0);
+  const Cell first = structure.first_extra();
+  parallel_for(context, angles.size(), 256, "separation angles", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const Cell name = first + static_cast<Cell>(k);
+      const ExtraCell& cell = structure.extra()->cell(name);
+      if (cell.dimension == 2) angles[k] = static_cast<float>(measure.between(cell));
+      if (cell.dimension == 1 && structure.extra()->cofaces_of(name).empty()) {
+        angles[k] = static_cast<float>(measure.in_wire(cell));
+      }
+    }
+  });
+  Entries entries;
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    if (angles[k] > 0) entries.push_back({first + static_cast<Cell>(k), angles[k]});
+  }
+  return entries;
+}
+
 /// One list of all layers' entries.
 Entries joined(const std::vector<Entries>& layers) {
   Entries all;
@@ -426,7 +483,8 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
       }
     });
   });
-  const Importance squares(lattice, joined(found));
+  found.push_back(angles_of_extra(measure, complex.structure(), context));
+  const Importance squares(complex.structure(), joined(found));
   constexpr double nearly_opposite = 170;  // degrees, on axes of round things
   constexpr double wide = 100;             // degrees between two of few voxels, where others may be opposite
   for_each_layer("separation angles of edges", [&](std::size_t k) {
@@ -442,7 +500,7 @@ Importance separation_angles(const GovernorField& governors, const CellComplex& 
       }
     }
   });
-  return {lattice, joined(found)};
+  return {complex.structure(), joined(found)};
 }
 
 }  // namespace blum

@@ -50,6 +50,18 @@ class Surface {
   /// Whether a point is in the solid. @param nearest  its closest point of the surface.
   [[nodiscard]] virtual bool is_inside(const Vec3d& query, const NearestPoint& nearest) const = 0;
 
+  /// Where a segment first meets the surface, as a part of its length; nullopt where it does not, and where that is not
+  /// known.
+  [[nodiscard]] virtual std::optional<double> first_crossing(const Vec3d& /*from*/, const Vec3d& /*to*/) const {
+    return std::nullopt;
+  }
+
+  /// The diagonal of the box around the surface, mesh units.
+  [[nodiscard]] virtual double diagonal() const { return 0; }
+
+  /// The direction that an element faces away from the solid, of unit length; zero where that is not known.
+  [[nodiscard]] virtual Vec3d outwards(std::uint32_t /*element*/) const { return {}; }
+
   /// The site that a footprint lies on.
   [[nodiscard]] virtual SiteId site_of(const Footprint& foot) const = 0;
 };

@@ -79,6 +79,11 @@ std::optional<ThinBall> climb(const Surface& surface, const ThinBall& ball, doub
 
 }  // namespace
 
+std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest, const Vec3d& inside,
+                                    double radius) {
+  return touching_ball(surface, nearest, inside, radius);
+}
+
 std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched, const Vec3d& beyond,
                                          double radius) {
   if (!(touched.distance > 0)) return std::nullopt;

@@ -23,4 +23,9 @@ struct ThinBall {
 [[nodiscard]] std::optional<ThinBall> thin_ball_behind(const Surface& surface, const NearestPoint& touched,
                                                        const Vec3d& beyond, double radius);
 
+/// The largest ball that touches the surface where the one around a point in the solid does, so that it holds this
+/// point. @param nearest  to the point.  @param radius  mesh units; nullopt where the ball would be larger.
+[[nodiscard]] std::optional<ThinBall> ball_around(const Surface& surface, const NearestPoint& nearest,
+                                                  const Vec3d& inside, double radius);
+
 }  // namespace blum

@@ -116,13 +116,15 @@ class Line {
 
 class Thinner {
  public:
-  Thinner(const VoxelSolid& solid, const CellLattice& lattice, const Importance& importance, const Context& context)
-      : voxels_(solid.voxels),
-        size_(solid.voxels.size()),
+  Thinner(const VoxelSolid& solid, const AttachedVoxels& attached, const CellLattice& lattice,
+          const Importance& importance, const Context& context)
+      : attached_(attached),
+        voxels_(attached.voxels()),
+        size_(voxels_.size()),
         lattice_(lattice),
         importance_(importance),
         context_(context),
-        own_depth_(is_depth_enough(solid, context) ? Buffer<float>() : depth_of(solid)),
+        own_depth_(is_depth_enough(solid, voxels_, context) ? Buffer<float>() : depth_of(solid, voxels_)),
         depth_(own_depth_.empty() ? solid.depth.span() : own_depth_.span()),
         step_(std::min({solid.grid.spacing.x, solid.grid.spacing.y, solid.grid.spacing.z}) / 16) {
     for (std::size_t n = 0; n < 27; ++n) {
@@ -147,7 +149,7 @@ class Thinner {
       if (++steps % steps_between_looks == 0) throw_if_cancelled(context_);
       const Place at = voxels_.place(next.voxel);
       const Neighbourhood around = present_around(next.voxel, at);
-      if (simple.is_simple(around) && !is_needed(at, around)) continue;
+      if (may_go(next.voxel, at, around, simple)) continue;
       kept_.insert(at[0], at[1], at[2]);
       for (std::size_t n = 0; n < 27; ++n) {
         const auto other = static_cast<std::uint32_t>(next.voxel + offset_[n]);
@@ -162,16 +164,15 @@ class Thinner {
   }
 
  private:
-  /// Whether the depths are above zero for the voxels of the solid, and only for these: unless the topology asked for
-  /// other voxels than those whose centre is inside.
-  static bool is_depth_enough(const VoxelSolid& solid, const Context& context) {
+  /// Whether the depths are above zero for the voxels, and only for these: not where some are extra cells of the model.
+  static bool is_depth_enough(const VoxelSolid& solid, const VoxelSet& voxels, const Context& context) {
     const auto layers = static_cast<std::size_t>(solid.grid.size[2]);
     std::vector<std::uint8_t> is_enough(layers, 1);
     parallel_for(context, layers, 1, "", [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
         std::size_t at = solid.grid.index(0, 0, static_cast<std::int64_t>(k));
         for (std::int64_t j = 0; j < solid.grid.size[1]; ++j) {
-          const auto row = solid.voxels.row(j, static_cast<std::int64_t>(k));
+          const auto row = voxels.row(j, static_cast<std::int64_t>(k));
           for (std::int64_t i = 0; i < solid.grid.size[0]; ++i, ++at) {
             const bool is_in = (row[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1U) != 0;
             if (is_in != (solid.depth[at] > 0)) is_enough[k] = 0;
@@ -182,13 +183,13 @@ class Thinner {
     return std::all_of(is_enough.begin(), is_enough.end(), [](std::uint8_t is) { return is != 0; });
   }
 
-  /// Depths that are above zero for the voxels of the solid, and only for these.
-  static Buffer<float> depth_of(const VoxelSolid& solid) {
+  /// Depths that are above zero for the voxels, and only for these.
+  static Buffer<float> depth_of(const VoxelSolid& solid, const VoxelSet& voxels) {
     Buffer<float> depth = solid.depth.clone();
     std::size_t at = 0;
     for (std::int64_t k = 0; k < solid.grid.size[2]; ++k) {
       for (std::int64_t j = 0; j < solid.grid.size[1]; ++j) {
-        const auto row = solid.voxels.row(j, k);
+        const auto row = voxels.row(j, k);
         for (std::int64_t i = 0; i < solid.grid.size[0]; ++i, ++at) {
           const bool is_in = (row[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1U) != 0;
           depth[at] = is_in ? std::max(depth[at], std::numeric_limits<float>::min()) : 0;
@@ -211,6 +212,12 @@ class Thinner {
       around |= static_cast<Neighbourhood>(is_deeper(other, voxel)) << n;
     }
     return around & ~middle;
+  }
+
+  /// Whether a voxel is simple among those around, and none of its cells is needed.
+  [[nodiscard]] bool may_go(std::uint32_t voxel, const Place& at, Neighbourhood around, SimpleCache& simple) const {
+    if (attached_.contain(at[0], at[1], at[2])) return attached_.may_go(voxel, around);
+    return simple.is_simple(around) && !is_needed(at, around);
   }
 
   /// Whether some cell of a voxel has importance, and is no other voxel's of those around.
@@ -255,8 +262,8 @@ class Thinner {
       for (std::uint64_t rest = row[w]; rest != 0; rest &= rest - 1) {
         const std::size_t i = 64 * w + static_cast<std::size_t>(std::countr_zero(rest));
         const Neighbourhood around = deeper[i];
-        if (simple.is_simple(around) && !is_needed({static_cast<std::int64_t>(i), j, k}, around)) continue;
-        found.push_back(static_cast<std::uint32_t>(first + i));
+        const auto voxel = static_cast<std::uint32_t>(first + i);
+        if (!may_go(voxel, {static_cast<std::int64_t>(i), j, k}, around, simple)) found.push_back(voxel);
       }
     }
   }
@@ -284,6 +291,7 @@ class Thinner {
                                                         cells_towards(3), cells_towards(4), cells_towards(5),
                                                         cells_towards(6), cells_towards(7)};
 
+  const AttachedVoxels& attached_;
   const VoxelSet& voxels_;
   Place size_;
   const CellLattice& lattice_;
@@ -299,9 +307,9 @@ class Thinner {
 
 }  // namespace
 
-VoxelSet thin_voxels(const VoxelSolid& solid, const CellLattice& lattice, const Importance& importance,
-                     const Context& context) {
-  return Thinner(solid, lattice, importance, context).thin();
+VoxelSet thin_voxels(const VoxelSolid& solid, const AttachedVoxels& attached, const CellLattice& lattice,
+                     const Importance& importance, const Context& context) {
+  return Thinner(solid, attached, lattice, importance, context).thin();
 }
 
 }  // namespace blum

@@ -3,6 +3,7 @@
 
 #include "blum/core/context.hpp"
 #include "blum/grid/voxel_set.hpp"
+#include "medial_axis/attached_voxels.hpp"
 #include "medial_axis/importance.hpp"
 #include "medial_axis/voxel_solid.hpp"
 
@@ -14,9 +15,10 @@ namespace blum {
 ///
 /// Where all shallower neighbours of a voxel go, only deeper ones are left at its turn: such voxels are judged in any
 /// order, in parallel. The others, near what stays, follow one by one.
+/// @param attached  of the model: its voxels, and which of them extra cells are attached to.
 /// @return  the same for any number of threads.
 /// @throws Cancelled, OutOfMemory. Cost: about 30 ns per voxel, and 150 ns per voxel near what stays.
-[[nodiscard]] VoxelSet thin_voxels(const VoxelSolid& solid, const CellLattice& lattice, const Importance& importance,
-                                   const Context& context);
+[[nodiscard]] VoxelSet thin_voxels(const VoxelSolid& solid, const AttachedVoxels& attached, const CellLattice& lattice,
+                                   const Importance& importance, const Context& context);
 
 }  // namespace blum

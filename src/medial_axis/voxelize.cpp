@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
@@ -12,7 +13,8 @@
 #include "blum/field/field.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
-#include "medial_axis/topology_repair.hpp"
+#include "blum/solid/body_cells.hpp"
+#include "medial_axis/take_deeper.hpp"
 
 namespace blum {
 namespace {
@@ -36,6 +38,24 @@ GridSpec voxels_around(const Box3& box, double spacing) {
     grid.origin[a] = box.center()[a] - spacing * (0.5 * static_cast<double>(grid.size[a] - 1) - off_middle[a]);
   }
   return grid;
+}
+
+/// Depths that are above zero for voxels of a set, and only for these: where a surface passes within rounding of a
+/// centre, the field may see it on the other side than the model.
+void agree_with(const VoxelSet& inside, Buffer<float>& depth, const Context& context) {
+  const Place& size = inside.size();
+  parallel_for(context, static_cast<std::size_t>(size[2]), 1, "", [&](const WorkRange& range) {
+    for (auto k = static_cast<std::int64_t>(range.begin); k < static_cast<std::int64_t>(range.end); ++k) {
+      for (std::int64_t j = 0; j < size[1]; ++j) {
+        const auto row = inside.row(j, k);
+        float* own = depth.data() + (k * size[1] + j) * size[0];
+        for (std::int64_t i = 0; i < size[0]; ++i) {
+          const bool is_in = (row[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1U) != 0;
+          own[i] = is_in ? std::max(own[i], std::numeric_limits<float>::min()) : std::min(own[i], 0.0F);
+        }
+      }
+    }
+  });
 }
 
 /// Distances become depths: positive inside.
@@ -103,11 +123,10 @@ VoxelImage cut_out(const VoxelSet& voxels, const Extent& extent, const GridSpec&
 
 BodyReport report_of(const VoxelSolid& solid, const Context& context) {
   BodyReport report;
-  report.voxels = betti_numbers(solid.voxels, context);
-  report.solid = report.voxels;
+  report.betti = betti_numbers(solid.voxels, context);
   report.topology_matches = true;
   report.spacing = std::min({solid.grid.spacing.x, solid.grid.spacing.y, solid.grid.spacing.z});
-  report.voxel_count = solid.voxels.count();
+  report.voxels = solid.voxels.count();
   return report;
 }
 
@@ -118,17 +137,17 @@ Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& co
   FieldOptions options;
   options.sign = SignMode::normals;
   out.solid = solid_of(distance_field(body.mesh, voxels_around(bounds(body.mesh), spacing), options, context));
-  const RepairReport repair =
-      choose_voxels(out.solid.depth.span(), body.betti, std::numbers::sqrt3 * spacing, out.solid.voxels, context);
+  BodyCells cells = body_cells(body.mesh, out.solid.grid, context);
+  out.solid.voxels = std::move(cells.inside);
+  agree_with(out.solid.voxels, out.solid.depth, context);
+  out.solid.extra = std::make_shared<const ExtraIncidence>(cells);
   BodyReport& report = out.report;
-  report.solid = body.betti;
-  report.voxels = repair.betti;
-  report.topology_matches = repair.is_right;
+  report.betti = body.betti;
+  report.topology_matches = cells.failures.empty();
   report.spacing = spacing;
-  report.voxel_count = out.solid.voxels.count();
-  report.left_out = repair.removed;
-  report.taken_in = repair.added;
-  report.deviation = repair.deviation;
+  report.voxels = out.solid.voxels.count();
+  report.extra_cells = cells.extra.size();
+  report.failures = std::move(cells.failures);
   return out;
 }
 

@@ -16,6 +16,7 @@
 #include "solid/model/model_cells.hpp"
 #include "solid/model/model_regions.hpp"
 #include "solid/model/refined_region.hpp"
+#include "solid/model/scaling.hpp"
 #include "solid/model/surface_mesh.hpp"
 
 namespace blum {
@@ -23,11 +24,10 @@ namespace {
 
 using detail::GridPlanes;
 using detail::Place;
+using detail::scaled;
 
 constexpr int most_resolution = 800;
 constexpr int most_splits_of_all = 200;
-/// Coordinates of a mesh that was scaled to about 1 for which predicates are exact, unless they are 0.
-constexpr double least_coordinate = 1e-45;
 
 void check(const CellularModelOptions& options) {
   const auto refuse = [](const char* name, const std::string& value, const std::string& range) {
@@ -47,32 +47,6 @@ void check(const CellularModelOptions& options) {
 
 double longest_side(const Box3& box) {
   return std::max({box.size().x, box.size().y, box.size().z});
-}
-
-/// The power of two that brings the largest coordinate of a box to between 1/2 and 1.
-int scale_of(const Box3& box) {
-  double largest = 0;
-  for (std::size_t a = 0; a < 3; ++a) largest = std::max({largest, std::abs(box.lower[a]), std::abs(box.upper[a])});
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  return -exponent;
-}
-
-Vec3d scaled(const Vec3d& p, int exponent) {
-  return {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
-}
-
-TriangleMesh scaled(TriangleMesh mesh, int exponent) {
-  for (Vec3d& v : mesh.vertices) {
-    const Vec3d given = v;
-    v = scaled(v, exponent);
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (given[a] == 0 || std::abs(v[a]) >= least_coordinate) continue;
-      throw InvalidMesh("a vertex has the coordinate " + exact_text(given[a]) +
-                        ", too small for exact answers beside others: round it to 0");
-    }
-  }
-  return mesh;
 }
 
 /// The planes of a grid that lie around a box, with a cube or more to spare.
@@ -142,7 +116,7 @@ CellularModel CellularModel::of(const Solid& solid, const std::vector<std::uint3
   auto data = std::make_shared<Data>();
   CellularModelReport& report = data->report;
   PhaseTimer timer(report.phases);
-  data->exponent = scale_of(solid.box());
+  data->exponent = detail::scale_of(solid.box());
   const double spacing =
       std::ldexp(options.spacing.value_or(longest_side(solid.box()) / options.resolution), data->exponent);
   const Box3 box{scaled(solid.box().lower, data->exponent), scaled(solid.box().upper, data->exponent)};

@@ -21,6 +21,7 @@
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
+#include "blum/solid/cellular_model.hpp"
 #include "blum/solid/solid.hpp"
 
 namespace blum {
@@ -30,8 +31,9 @@ struct MedialAxisOptions {
   int resolution = 256;
   /// Meshes: side of a voxel, > 0, mesh units; instead of `resolution`.
   std::optional<double> spacing = {};
-  /// Meshes: a body whose topology its voxels cannot take is done again with voxels of half the side, as long as at
-  /// most this many lie along its own longest side. Less than `resolution` says: never.
+  /// Meshes: a body whose model does not pass (see CellularModel), or of which no voxel shows, is done again with
+  /// voxels of half the side, as long as at most this many lie along its own longest side. Less than `resolution` says:
+  /// never.
   int max_resolution = 512;
   /// Pieces of the axis whose two footprints are closer than this count for nothing (the lambda-medial axis of Chazal
   /// and Lieutier 2005), >= 0, mesh units.
@@ -53,7 +55,7 @@ struct Description<MedialAxisOptions> {
       Member{"spacing", &MedialAxisOptions::spacing, "mesh units", "meshes: side of a voxel, instead of the resolution",
              Range::positive()},
       Member{"max_resolution", &MedialAxisOptions::max_resolution, "",
-             "meshes: a body whose topology its voxels cannot take is done again with finer ones, up to this many "
+             "meshes: a body whose model does not pass is done again with finer voxels, up to this many "
              "along its longest side",
              Range::between(8, 800)},
       Member{"lambda", &MedialAxisOptions::lambda, "mesh units",
@@ -64,32 +66,29 @@ struct Description<MedialAxisOptions> {
   };
 };
 
-/// How one body (a connected part of the solid) was voxelised.
+/// The cells that one body (a connected part of the solid) was made of.
 struct BodyReport {
-  BettiNumbers solid{};           ///< of the body
-  BettiNumbers voxels{};          ///< of the voxels that stand for it
-  bool topology_matches = false;  ///< whether they are equal
-  double spacing = 0;             ///< smallest side of a voxel, mesh units
-  std::size_t voxel_count = 0;
-  std::size_t left_out = 0;  ///< voxels whose centre is inside, but that are left out
-  std::size_t taken_in = 0;  ///< voxels whose centre is outside, but that are taken in
-  double deviation = 0;      ///< how far from the surface the centre of such a voxel lies at most, mesh units
+  BettiNumbers betti{};  ///< of the body
+  /// Whether the cells have the homotopy type of the body, and so the axis has at every theta.
+  bool topology_matches = false;
+  double spacing = 0;                  ///< smallest side of a voxel, mesh units
+  std::size_t voxels = 0;              ///< whose centres are inside
+  std::size_t extra_cells = 0;         ///< polyhedra: cells of the model that are none of a voxel's
+  std::vector<ModelFailure> failures;  ///< polyhedra: places where the model has not the homotopy type
 };
 
 template <>
 struct Description<BodyReport> {
   static constexpr std::string_view name = "BodyReport";
-  static constexpr std::string_view doc = "How one connected part of a solid was voxelised";
+  static constexpr std::string_view doc = "The cells that one connected part of a solid was made of";
   static constexpr std::tuple members{
-      Member{"solid_betti", &BodyReport::solid, "", "components, tunnels, voids of the body"},
-      Member{"voxel_betti", &BodyReport::voxels, "", "of the voxels that stand for it"},
-      Member{"topology_matches", &BodyReport::topology_matches, "", "whether they are equal"},
+      Member{"solid_betti", &BodyReport::betti, "", "components, tunnels, voids of the body"},
+      Member{"topology_matches", &BodyReport::topology_matches, "",
+             "whether the cells have its homotopy type, and so the axis has at every theta"},
       Member{"spacing", &BodyReport::spacing, "mesh units", "smallest side of a voxel"},
-      Member{"voxels", &BodyReport::voxel_count, "", "how many stand for it"},
-      Member{"voxels_left_out", &BodyReport::left_out, "", "voxels whose centre is inside, but that are left out"},
-      Member{"voxels_taken_in", &BodyReport::taken_in, "", "voxels whose centre is outside, but that are taken in"},
-      Member{"deviation", &BodyReport::deviation, "mesh units",
-             "how far from the surface the centre of such a voxel lies at most"},
+      Member{"voxels", &BodyReport::voxels, "", "whose centres are inside"},
+      Member{"extra_cells", &BodyReport::extra_cells, "", "cells of its model that are none of a voxel's"},
+      Member{"failures", &BodyReport::failures, "", "places where the model has not its homotopy type"},
   };
 };
 
@@ -97,9 +96,8 @@ struct MedialAxisReport {
   SolidRule rule = SolidRule::polyhedron;
   std::string reason;               ///< one sentence: why this rule
   std::size_t reversed_shells = 0;  ///< shells that faced the solid and were reversed
-  BettiNumbers solid{};             ///< of the whole solid: the sum of the bodies'
-  BettiNumbers voxels{};            ///< the axis has these, at every theta
-  bool topology_matches = false;    ///< whether they are equal
+  BettiNumbers betti{};             ///< of the whole solid: the sum of the bodies'
+  bool topology_matches = false;    ///< whether the axis has its homotopy type, at every theta: all bodies' do
   GridSpec grid;                    ///< voxel centres: of the first body, or of the image
   std::vector<BodyReport> bodies;
   std::vector<PhaseTime> phases;  ///< seconds
@@ -114,17 +112,17 @@ struct Description<MedialAxisReport> {
       Member{"reason", &MedialAxisReport::reason, "", "why this rule, in one sentence"},
       Member{"reversed_shells", &MedialAxisReport::reversed_shells, "",
              "shells that faced the solid and were reversed"},
-      Member{"solid_betti", &MedialAxisReport::solid, "", "components, tunnels, voids of the whole solid"},
-      Member{"voxel_betti", &MedialAxisReport::voxels, "", "of its voxels; the axis has these, at every theta"},
-      Member{"topology_matches", &MedialAxisReport::topology_matches, "", "whether they are equal"},
+      Member{"solid_betti", &MedialAxisReport::betti, "", "components, tunnels, voids of the whole solid"},
+      Member{"topology_matches", &MedialAxisReport::topology_matches, "",
+             "whether the axis has its homotopy type, at every theta"},
       Member{"grid", &MedialAxisReport::grid, "", "voxel centres: of the first body, or of the image"},
       Member{"bodies", &MedialAxisReport::bodies, "", "one for each connected part of the solid"},
       Member{"seconds", &MedialAxisReport::phases, "s", "wall-clock, of each phase"},
   };
 };
 
-/// The medial axis of a solid for all angles theta at once: a complex of squares, edges and vertices that the solid's
-/// voxels collapse to, and the order in which it collapses further.
+/// The medial axis of a solid for all angles theta at once: a complex of polygons, edges and vertices that the
+/// solid's cells collapse to, and the order in which it collapses further.
 class MedialAxis {
  public:
   MedialAxis(MedialAxis&&) noexcept;
@@ -132,7 +130,7 @@ class MedialAxis {
   ~MedialAxis();
 
   /// The part where two footprints are seen at more than theta apart, and what homotopy needs to join it: a complex
-  /// with the columns of MedialView and the Betti numbers report().voxels. What a larger theta gives is part of what a
+  /// with the columns of MedialView and the Betti numbers report().betti. What a larger theta gives is part of what a
   /// smaller one gives.
   /// @param theta  degrees, MedialAxisOptions::least_theta to 180.
   /// @throws InvalidOption, Cancelled. Cost: linear in the result; about 0.5 s for a million triangles.

@@ -88,16 +88,18 @@ std::uint32_t CutGrid::component_of_part(Cell cube, std::size_t face, std::uint3
   return part_component_[at];
 }
 
-std::optional<ArcEnd> CutGrid::loose_end(Cell square, std::uint32_t component) const {
-  if (!cut_.contains(square)) return std::nullopt;
+std::vector<ArcEnd> CutGrid::loose_ends(Cell square, std::uint32_t component) const {
+  std::vector<ArcEnd> ends;
+  if (!cut_.contains(square)) return ends;
   const CutCell& own = cut(square);
   for (std::uint32_t a = own.first; a < own.first + own.count; ++a) {
     if (arc_component_[a] != component) continue;
     for (const ArcEnd& end : arcs_[a].ends) {
-      if (!end.on_border) return end;
+      if (end.on_border) return {};
+      ends.push_back(end);
     }
   }
-  return std::nullopt;
+  return ends;
 }
 
 std::span<const std::pair<Cell, std::uint32_t>> CutGrid::shells_in(Cell cube) const {

@@ -12,8 +12,8 @@
 #include "blum/core/buffer.hpp"
 #include "blum/core/context.hpp"
 #include "blum/grid/cell_lattice.hpp"
+#include "blum/grid/ranked_cells.hpp"
 #include "solid/model/grid_planes.hpp"
-#include "solid/model/ranked_cells.hpp"
 #include "solid/model/surface_mesh.hpp"
 #include "solid/model/traced_surface.hpp"
 
@@ -60,8 +60,8 @@ class CutGrid {
   /// The triangles that cross an edge, from below.
   [[nodiscard]] std::span<const std::uint32_t> crossings(Cell edge) const;
 
-  /// An edge of the mesh around a component of a square that no interval belongs to.
-  [[nodiscard]] std::optional<ArcEnd> loose_end(Cell square, std::uint32_t component) const;
+  /// The edges of the mesh around a component of a square that no interval belongs to, each twice; else none.
+  [[nodiscard]] std::vector<ArcEnd> loose_ends(Cell square, std::uint32_t component) const;
   /// For each shell that lies wholly in a cube the cube and a vertex of it: these are the cube's last components.
   [[nodiscard]] std::span<const std::pair<Cell, std::uint32_t>> shells_in(Cell cube) const;
 

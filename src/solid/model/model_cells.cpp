@@ -42,12 +42,58 @@ class Assembly {
   Assembly(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const RefinedRegion> regions, const Context& context)
       : mesh_(mesh), grid_(grid), lattice_(grid.lattice()), regions_(regions), context_(context) {}
 
+  /// Of all cells.
   ModelCells assemble() {
-    name_cells();
-    out_.first_face.reserve(out_.size() + 1);
+    refined_ = cells_of(grid_, regions_);
+    std::vector<Cell> all;
     for (std::size_t node = 0; node < lattice_.node_count(); ++node) {
-      if (node % 65536 == 0) throw_if_cancelled(context_);
-      if (first_.contains_node(node)) add_faces_at(node);
+      for (CellAxes axes = 0; axes < 8; ++axes) {
+        const Cell cell = cell_at(node, axes);
+        if (grid_.components(cell) > 0 && (refined_.empty() || !is_refined(cell))) all.push_back(cell);
+      }
+    }
+    return assemble(all);
+  }
+
+  /// Of those that differ from the voxels on a lattice.
+  ExtraModelCells assemble_extra(const CellLattice& voxels) {
+    refined_ = cells_of(grid_, regions_);
+    voxels_ = &voxels;
+    base_ = static_cast<std::uint32_t>(8 * voxels.node_count());
+    ExtraModelCells out;
+    out.first = base_;
+    std::vector<Cell> extra;
+    for (const Cell cell : grid_.cut_cells()) {
+      if (is_refined(cell)) continue;
+      const std::uint32_t components = grid_.components(cell);
+      const bool has_voxel = has_corner_inside(cell);
+      if (components == (has_voxel ? 1U : 0U)) continue;
+      extra.push_back(cell);
+      if (has_voxel) out.replaced.push_back(dual(cell));
+    }
+    for (const Cell cell : refined_) {
+      if (has_corner_inside(cell)) out.replaced.push_back(dual(cell));
+    }
+    std::sort(out.replaced.begin(), out.replaced.end());
+    out.cells = assemble(extra);
+    for (const Cell cell : extra) {
+      add_cofaces(cell, out.cofaces);
+      out.places.insert(out.places.end(), grid_.components(cell), dual(cell));
+    }
+    std::sort(out.cofaces.begin(), out.cofaces.end());
+    witness_by_cofaces(out);
+    return out;
+  }
+
+ private:
+  /// @param named  cells of the grid, rising, that no region has.
+  ModelCells assemble(const std::vector<Cell>& named) {
+    name_cells(named);
+    out_.first_face.reserve(out_.size() + 1);
+    std::size_t seen = 0;
+    for (const Cell cell : named) {
+      if (seen++ % 65536 == 0) throw_if_cancelled(context_);
+      add_faces(cell);
     }
     for (std::uint32_t r = 0; r < regions_.size(); ++r) add_region_faces(r);
     out_.first_face.push_back(static_cast<std::uint32_t>(out_.faces.size()));
@@ -55,7 +101,75 @@ class Assembly {
     return std::move(out_);
   }
 
- private:
+  [[nodiscard]] bool has_corner_inside(Cell cell) const {
+    for (CellAxes corner = 0; corner < 8; ++corner) {
+      if ((corner & axes_of(cell)) == corner && grid_.is_inside(moved(node_of(cell), corner))) return true;
+    }
+    return false;
+  }
+  /// A step along each axis of some.
+  [[nodiscard]] std::size_t moved(std::size_t node, CellAxes axes) const {
+    for (std::size_t a = 0; a < 3; ++a) node += (axes >> a & 1U) * lattice_.stride(a);
+    return node;
+  }
+  /// The cell of the lattice of voxels that stands for a cell of the grid.
+  [[nodiscard]] Cell dual(Cell cell) const {
+    std::array<std::int64_t, 3> at = lattice_.place(node_of(cell));
+    for (std::size_t a = 0; a < 3; ++a) at[a] += axes_of(cell) >> a & 1U;
+    return cell_at(voxels_->node(at[0], at[1], at[2]), 7U ^ axes_of(cell));
+  }
+  /// The id of a component of a cell of the grid that no region has.
+  [[nodiscard]] std::uint32_t id_of(Cell cell, std::uint32_t component) const {
+    return first_.contains(cell) ? base_ + first_.of(cell) + component : dual(cell);
+  }
+  /// Whether a cell of the grid is one of the model as it is one of the voxels.
+  [[nodiscard]] bool is_plain(Cell cell) const {
+    return !first_.contains(cell) && grid_.components(cell) > 0 && !is_refined(cell);
+  }
+
+  /// Pairs each component of a cell with the plain cells that it is a face of.
+  void add_cofaces(Cell cell, std::vector<std::array<std::uint32_t, 2>>& pairs) const {
+    const auto add = [&](Cell side, std::uint32_t component) {
+      pairs.push_back({first_.of(cell) + component, dual(side)});
+    };
+    if (dimension_of(cell) == 1) {
+      const std::size_t high = node_of(cell) + lattice_.stride(axis_of(axes_of(cell)));
+      if (is_plain(cell_at(node_of(cell), 0))) add(cell_at(node_of(cell), 0), 0);
+      if (is_plain(cell_at(high, 0))) add(cell_at(high, 0), grid_.components(cell) - 1);
+    } else if (dimension_of(cell) == 2) {
+      for (const Cell side : grid_.sides_of(cell)) {
+        if (is_plain(side)) add(side, grid_.component_of_interval(cell, side, 0));
+      }
+    } else if (dimension_of(cell) == 3) {
+      const std::array<Cell, 6> faces = grid_.faces_of(cell);
+      for (std::size_t f = 0; f < 6; ++f) {
+        if (is_plain(faces[f])) add(faces[f], grid_.component_of_part(cell, f, 0));
+      }
+    }
+  }
+
+  /// Extra cells without a witness lie around a corner inside of a plain cell that they are a face of.
+  void witness_by_cofaces(ExtraModelCells& out) const {
+    for (const auto& [extra, plain] : out.cofaces) {
+      if (has_witness_[extra]) continue;
+      const std::array<std::int64_t, 3> voxel = voxel_at(plain);
+      out.cells.witness[extra] = grid_.planes().node(voxel);
+    }
+  }
+  /// A node inside that is a corner of the cell of the grid that a cell of the voxels stands for.
+  [[nodiscard]] std::array<std::int64_t, 3> voxel_at(Cell plain) const {
+    const std::array<std::int64_t, 3> node = voxels_->place(node_of(plain));
+    for (CellAxes corner = 0; corner < 8; ++corner) {
+      if ((corner & axes_of(plain)) != 0) continue;
+      std::array<std::int64_t, 3> at = node;
+      for (std::size_t a = 0; a < 3; ++a) {
+        if ((axes_of(plain) >> a & 1U) == 0) at[a] -= corner >> a & 1U;
+      }
+      if (grid_.is_inside(lattice_.node(at[0], at[1], at[2]))) return at;
+    }
+    return node;
+  }
+
   /// The first id of each cell of the grid that has any.
   class FirstIds {
    public:
@@ -68,12 +182,6 @@ class Assembly {
     void push(std::uint32_t id) { ids_.push_back(id); }
     [[nodiscard]] bool contains(Cell cell) const { return ranked_.contains(cell); }
     [[nodiscard]] std::uint32_t of(Cell cell) const { return ids_[ranked_.number(cell)]; }
-    [[nodiscard]] bool contains_node(std::size_t node) const {
-      for (CellAxes axes = 0; axes < 8; ++axes) {
-        if (ranked_.contains(cell_at(node, axes))) return true;
-      }
-      return false;
-    }
 
    private:
     RankedCells ranked_;
@@ -87,25 +195,17 @@ class Assembly {
   [[nodiscard]] bool is_refined(Cell cell) const { return std::binary_search(refined_.begin(), refined_.end(), cell); }
 
   void push_cells(std::size_t dimension, std::uint32_t count) {
-    if (out_.dimension.size() + count > most_cells) {
+    if (base_ + out_.dimension.size() + count > most_cells) {
       throw InvalidGrid("the model has more cells than can be counted: use a coarser grid");
     }
     for (std::uint32_t k = 0; k < count; ++k) out_.dimension.push_back(static_cast<std::uint8_t>(dimension));
   }
 
-  void name_cells() {
-    refined_ = cells_of(grid_, regions_);
+  void name_cells(const std::vector<Cell>& named) {
     first_.reset(lattice_);
-    std::vector<Cell> all;
-    for (std::size_t node = 0; node < lattice_.node_count(); ++node) {
-      for (CellAxes axes = 0; axes < 8; ++axes) {
-        const Cell cell = cell_at(node, axes);
-        if (grid_.components(cell) > 0 && (refined_.empty() || !is_refined(cell))) all.push_back(cell);
-      }
-    }
-    for (const Cell cell : all) first_.insert(cell);
+    for (const Cell cell : named) first_.insert(cell);
     first_.finish();
-    for (const Cell cell : all) {
+    for (const Cell cell : named) {
       first_.push(static_cast<std::uint32_t>(out_.size()));
       push_cells(static_cast<std::size_t>(3 - dimension_of(cell)), grid_.components(cell));
     }
@@ -126,6 +226,7 @@ class Assembly {
       name(ids.corners, 3, cells.corners().size(), [&](std::uint32_t k) { return region.is_inside(k) ? 1U : 0U; });
     }
     out_.witness.assign(out_.size(), Vec3d{});
+    out_.ends.assign(out_.size(), {});
     has_witness_.assign(out_.size(), false);
   }
 
@@ -140,7 +241,9 @@ class Assembly {
     for (int dimension = 3; dimension > 0; --dimension) {
       for (std::uint32_t cell = 0; cell < out_.size(); ++cell) {
         if (out_.dimension[cell] != dimension || !has_witness_[cell]) continue;
-        for (const std::uint32_t face : out_.faces_of(cell)) {
+        for (const std::uint32_t id : out_.faces_of(cell)) {
+          if (id < base_) continue;
+          const std::uint32_t face = id - base_;
           if (!has_witness_[face]) out_.witness[face] = out_.witness[cell];
           has_witness_[face] = true;
         }
@@ -148,21 +251,30 @@ class Assembly {
     }
   }
 
-  /// The middle of an interval of a part of a line that these triangles cross.
-  [[nodiscard]] Vec3d middle_of(std::size_t axis, const Vec3d& low, double high, bool begins_inside,
-                                std::span<const std::uint32_t> crossings, std::uint32_t interval) const {
-    const auto height = [&](std::size_t k) {
-      return std::clamp(crossing_height(mesh_.corners(crossings[k]), axis, low), low[axis], high);
+  /// Sets the ends of an interval of a part of a line that these triangles cross, and its middle as the witness.
+  void set_interval(std::size_t axis, const Vec3d& low, double high, bool begins_inside,
+                    std::span<const std::uint32_t> crossings, std::uint32_t interval) {
+    const auto end_at = [&](std::size_t k) {
+      IntervalEnd end{low, crossings[k]};
+      end.point[axis] = std::clamp(crossing_height(mesh_.corners(crossings[k]), axis, low), low[axis], high);
+      return end;
     };
     const std::size_t begin = 2 * std::size_t{interval} + (begins_inside ? 0 : 1);  // crossing k is number k + 1
-    const double from = begin == 0 ? low[axis] : height(begin - 1);
-    const double to = begin < crossings.size() ? height(begin) : high;
-    Vec3d middle = low;
-    middle[axis] = 0.5 * (from + to);
-    return middle;
+    IntervalEnd top{low};
+    top.point[axis] = high;
+    auto& ends = out_.ends[out_.first_face.size() - 1];
+    ends = {begin == 0 ? IntervalEnd{low} : end_at(begin - 1), begin < crossings.size() ? end_at(begin) : top};
+    set_witness(0.5 * (ends[0].point + ends[1].point));
   }
   [[nodiscard]] Vec3d node_position(std::size_t node) const { return grid_.planes().node(lattice_.place(node)); }
-  /// Where the first arc of a component of a square meets a plane: on an edge of the mesh.
+  /// Makes the middle of what is around a component of a square its witness, if there is anything.
+  void set_middle(const std::vector<ArcEnd>& ends, std::size_t across, double plane) {
+    if (ends.empty()) return;
+    Vec3d sum;
+    for (const ArcEnd& end : ends) sum += point_on(end, across, plane);
+    set_witness(sum / static_cast<double>(ends.size()));
+  }
+  /// Where an edge of the mesh meets a plane.
   [[nodiscard]] Vec3d point_on(const ArcEnd& end, std::size_t across, double plane) const {
     const auto [a, b] = mesh_.ends(end.id);
     const double t = (plane - a[across]) / (b[across] - a[across]);
@@ -170,18 +282,14 @@ class Assembly {
   }
   void add_face(std::uint32_t id) { out_.faces.push_back(id); }
 
-  void add_faces_at(std::size_t node) {
-    for (CellAxes axes = 0; axes < 8; ++axes) {
-      const Cell cell = cell_at(node, axes);
-      if (!first_.contains(cell)) continue;
-      const std::uint32_t components = grid_.components(cell);
-      for (std::uint32_t k = 0; k < components; ++k) {
-        begin_cell();
-        if (dimension_of(cell) == 3) witness_cube(cell, k);
-        if (dimension_of(cell) == 2) add_ends(cell, k);
-        if (dimension_of(cell) == 1) add_border(cell, k);
-        if (dimension_of(cell) == 0) add_sides(cell);
-      }
+  void add_faces(Cell cell) {
+    const std::uint32_t components = grid_.components(cell);
+    for (std::uint32_t k = 0; k < components; ++k) {
+      begin_cell();
+      if (dimension_of(cell) == 3) witness_cube(cell, k);
+      if (dimension_of(cell) == 2) add_ends(cell, k);
+      if (dimension_of(cell) == 1) add_border(cell, k);
+      if (dimension_of(cell) == 0) add_sides(cell);
     }
   }
 
@@ -198,26 +306,23 @@ class Assembly {
   /// Of an edge of the model.
   void add_ends(Cell square, std::uint32_t component) {
     const std::size_t across = normal_axis(square);
-    if (const auto end = grid_.loose_end(square, component)) {
-      set_witness(point_on(*end, across, node_position(node_of(square))[across]));
-    }
+    set_middle(grid_.loose_ends(square, component), across, node_position(node_of(square))[across]);
     const auto [below, above] = lattice_.cubes_beside(square);
-    add_face(first_.of(below) + grid_.component_of_part(below, 2 * across + 1, component));
-    add_face(first_.of(above) + grid_.component_of_part(above, 2 * across, component));
+    add_face(id_of(below, grid_.component_of_part(below, 2 * across + 1, component)));
+    add_face(id_of(above, grid_.component_of_part(above, 2 * across, component)));
   }
 
   /// Of a polygon.
   void add_border(Cell edge, std::uint32_t interval) {
     const std::size_t axis = axis_of(axes_of(edge));
-    set_witness(middle_of(axis, node_position(node_of(edge)),
-                          node_position(node_of(edge) + lattice_.stride(axis))[axis], grid_.is_inside(node_of(edge)),
-                          grid_.crossings(edge), interval));
+    set_interval(axis, node_position(node_of(edge)), node_position(node_of(edge) + lattice_.stride(axis))[axis],
+                 grid_.is_inside(node_of(edge)), grid_.crossings(edge), interval);
     for (std::size_t a = 0; a < 3; ++a) {
       const CellAxes bit = 1U << a;
       if ((axes_of(edge) & bit) != 0) continue;
       const Cell above = edge | bit;
       for (const Cell square : {static_cast<Cell>(above - 8 * lattice_.stride(a)), above}) {
-        add_face(first_.of(square) + grid_.component_of_interval(square, edge, interval));
+        add_face(id_of(square, grid_.component_of_interval(square, edge, interval)));
       }
     }
   }
@@ -228,8 +333,8 @@ class Assembly {
     for (std::size_t a = 0; a < 3; ++a) {
       const Cell above = node | 1U << a;
       const auto below = static_cast<Cell>(above - 8 * lattice_.stride(a));
-      add_face(first_.of(below) + grid_.components(below) - 1);
-      add_face(first_.of(above));
+      add_face(id_of(below, grid_.components(below) - 1));
+      add_face(id_of(above, 0));
     }
   }
 
@@ -262,16 +367,14 @@ class Assembly {
 
   void add_ends(const RefinedRegion& region, const RegionIds& ids, std::uint32_t rectangle, std::uint32_t component) {
     const BoxRectangle& own = region.cells().rectangles()[rectangle];
-    if (const auto end = region.loose_end(rectangle, component)) {
-      const BoxSegment& side = region.cells().segments()[own.sides[0].front()];
-      set_witness(point_on(*end, own.axis, region.cells().corners()[side.ends[0]][own.axis]));
-    }
+    const BoxSegment& side = region.cells().segments()[own.sides[0].front()];
+    set_middle(region.loose_ends(rectangle, component), own.axis, region.cells().corners()[side.ends[0]][own.axis]);
     for (std::size_t side = 0; side < 2; ++side) {
       const BoxRef& box = own.boxes[side];
       if (box.is_box) {
-        add_face(ids.boxes[box.id] + region.component_of_part(box.id, rectangle, component));
+        add_face(base_ + ids.boxes[box.id] + region.component_of_part(box.id, rectangle, component));
       } else {
-        add_face(first_.of(box.id) + grid_.component_of_part(box.id, 2 * own.axis + 1 - side, component));
+        add_face(id_of(box.id, grid_.component_of_part(box.id, 2 * own.axis + 1 - side, component)));
       }
     }
   }
@@ -279,8 +382,8 @@ class Assembly {
   void add_border(const RefinedRegion& region, const RegionIds& ids, std::uint32_t segment, std::uint32_t interval) {
     const BoxSegment& own = region.cells().segments()[segment];
     const auto corners = region.cells().corners();
-    set_witness(middle_of(own.axis, corners[own.ends[0]], corners[own.ends[1]][own.axis], region.is_inside(own.ends[0]),
-                          region.crossings(segment), interval));
+    set_interval(own.axis, corners[own.ends[0]], corners[own.ends[1]][own.axis], region.is_inside(own.ends[0]),
+                 region.crossings(segment), interval);
     constexpr std::array<std::array<std::size_t, 2>, 4> beside{{{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
     for (std::size_t k = 0; k < 4; ++k) {
       const BoxRef& below = own.around[beside[k][0]];
@@ -288,11 +391,11 @@ class Assembly {
       if (below == above) continue;
       if (below.is_box || above.is_box) {
         const std::uint32_t rectangle = region.cells().rectangle(below, above);
-        add_face(ids.rectangles[rectangle] + region.component_of_interval(rectangle, segment, interval));
+        add_face(base_ + ids.rectangles[rectangle] + region.component_of_interval(rectangle, segment, interval));
       } else {
         const std::size_t across = k < 2 ? next_axis(own.axis) : next_axis(next_axis(own.axis));
         const Cell square = above.id ^ (1U << across);
-        add_face(first_.of(square) + grid_.component_of_interval(square, edge_of(region, own), interval));
+        add_face(id_of(square, grid_.component_of_interval(square, edge_of(region, own), interval)));
       }
     }
   }
@@ -310,8 +413,8 @@ class Assembly {
       const auto [low, high] = cells.segments()[s].ends;
       const std::uint32_t count = region.components_of_segment(s);
       if (count == 0) continue;
-      if (region.is_inside(low)) sides[low].push_back(ids.segments[s]);
-      if (region.is_inside(high)) sides[high].push_back(ids.segments[s] + count - 1);
+      if (region.is_inside(low)) sides[low].push_back(base_ + ids.segments[s]);
+      if (region.is_inside(high)) sides[high].push_back(base_ + ids.segments[s] + count - 1);
     }
     for (std::uint32_t c = 0; c < sides.size(); ++c) {
       if (!region.is_inside(c)) continue;
@@ -325,8 +428,8 @@ class Assembly {
       for (std::size_t a = 0; a < 3; ++a) {
         const Cell above = node | 1U << a;
         const auto below = static_cast<Cell>(above - 8 * lattice_.stride(a));
-        if (first_.contains(below)) add_face(first_.of(below) + grid_.components(below) - 1);
-        if (first_.contains(above)) add_face(first_.of(above));
+        if (!is_refined(below)) add_face(id_of(below, grid_.components(below) - 1));
+        if (!is_refined(above)) add_face(id_of(above, 0));
       }
     }
   }
@@ -336,7 +439,9 @@ class Assembly {
   const CellLattice& lattice_;
   std::span<const RefinedRegion> regions_;
   const Context& context_;
-  std::vector<Cell> refined_;  ///< cells of the grid that belong to a region
+  const CellLattice* voxels_ = nullptr;  ///< where only extra cells are named
+  std::uint32_t base_ = 0;               ///< added to numbers of cells
+  std::vector<Cell> refined_;            ///< cells of the grid that belong to a region
   FirstIds first_;
   std::vector<RegionIds> of_region_;
   ModelCells out_;
@@ -348,6 +453,11 @@ class Assembly {
 ModelCells model_cells(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const RefinedRegion> regions,
                        const Context& context) {
   return Assembly(mesh, grid, regions, context).assemble();
+}
+
+ExtraModelCells extra_model_cells(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const RefinedRegion> regions,
+                                  const CellLattice& voxels, const Context& context) {
+  return Assembly(mesh, grid, regions, context).assemble_extra(voxels);
 }
 
 std::array<std::int64_t, 4> count_model_cells(const CutGrid& grid, std::span<const RefinedRegion> regions) {

@@ -220,14 +220,16 @@ std::uint32_t RefinedRegion::component_of_part(std::uint32_t box, std::uint32_t 
   return part_component_[box][part_offset(box, rectangle) + part];
 }
 
-std::optional<ArcEnd> RefinedRegion::loose_end(std::uint32_t rectangle, std::uint32_t component) const {
+std::vector<ArcEnd> RefinedRegion::loose_ends(std::uint32_t rectangle, std::uint32_t component) const {
+  std::vector<ArcEnd> ends;
   for (const BoxArc& arc : rectangles_[rectangle].arcs) {
     if (arc.component != component) continue;
     for (const ArcEnd& end : arc.ends) {
-      if (!end.on_border) return end;
+      if (end.on_border) return {};
+      ends.push_back(end);
     }
   }
-  return std::nullopt;
+  return ends;
 }
 
 void RefinedRegion::connect_box(std::uint32_t box, Scratch& scratch) {

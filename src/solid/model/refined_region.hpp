@@ -56,8 +56,8 @@ class RefinedRegion {
     return segments_[segment].crossings;
   }
 
-  /// An edge of the mesh around a component of a rectangle.
-  [[nodiscard]] std::optional<ArcEnd> loose_end(std::uint32_t rectangle, std::uint32_t component) const;
+  /// The edges of the mesh around a component of a rectangle that no interval belongs to, each twice; else none.
+  [[nodiscard]] std::vector<ArcEnd> loose_ends(std::uint32_t rectangle, std::uint32_t component) const;
   /// For each body that lies wholly in a box a vertex of it: these are the last components of the box.
   [[nodiscard]] std::span<const std::uint32_t> bodies_in(std::uint32_t box) const { return bodies_of_box_[box]; }
 

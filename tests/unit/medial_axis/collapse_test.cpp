@@ -84,7 +84,7 @@ Sample random_sample(Random& random, double density, std::size_t important) {
 }
 
 CollapseOrder collapse_of(const Sample& s) {
-  return collapse(s.complex.clone(), s.depth, 0.25, s.importance, {});
+  return collapse(s.complex.clone(), {s.depth}, 0.25, s.importance, {});
 }
 
 std::vector<Sample> random_samples() {
@@ -188,7 +188,7 @@ TEST(Collapse, CancelStopsIt) {
   source.request_stop();
   const VoxelSet voxels = test::voxels_where({60, 60, 60}, [](auto...) { return true; });
   const std::vector<float> depth(60 * 60 * 60, 1);
-  EXPECT_THROW((void)collapse(CellComplex(voxels, {}), depth, 1, {}, {.cancel = source.get_token()}), Cancelled);
+  EXPECT_THROW((void)collapse(CellComplex(voxels, {}), {depth}, 1, {}, {.cancel = source.get_token()}), Cancelled);
 }
 
 }  // namespace

@@ -159,7 +159,7 @@ TEST(NestedComplex, OfPartsThatLieApartHasAsManyComponents) {
   const AxisRows nested = axis.nested();
   for (const double theta : {0.0, 60.0, 180.0}) {
     expect_same(nested, axis.simplify(theta), theta);
-    EXPECT_EQ(components_at(nested, theta), static_cast<std::size_t>(axis.report().solid[0])) << theta;
+    EXPECT_EQ(components_at(nested, theta), static_cast<std::size_t>(axis.report().betti[0])) << theta;
   }
 }
 

@@ -139,7 +139,7 @@ TEST(PruneSheets, KeepsTheTopologyOfSolidsAndLeavesSheetsWhole) {
     AxisRows before = whole;
     for (const double theta : {20.0, 60.0, 100.0, 170.0}) {
       const AxisRows left = prune_sheets(before, theta);
-      EXPECT_EQ(betti_of(left), axis.report().solid) << theta;
+      EXPECT_EQ(betti_of(left), axis.report().betti) << theta;
       const auto inner = places(left);
       const auto outer = places(before);
       EXPECT_TRUE(std::includes(outer.begin(), outer.end(), inner.begin(), inner.end())) << theta;

@@ -53,7 +53,7 @@ void add_importance(Sample& s, double density, Random& random) {
   s.importance = Importance(s.lattice, entries);
 }
 
-/// Random voxels with random depths, many of them equal; those outside of the solid may be deep, as repair leaves them.
+/// Random voxels with random depths, many of them equal; those outside of the solid may be deep.
 Sample random_sample(const Place& size, double density, double important, Random& random) {
   Sample s;
   s.solid.grid.size = size;
@@ -93,7 +93,8 @@ std::vector<Sample> samples() {
 }
 
 VoxelSet thinned(const Sample& s, int threads = 0) {
-  return thin_voxels(s.solid, s.lattice, s.importance, {.threads = threads});
+  const CellComplex model(s.solid.voxels, {});
+  return thin_voxels(s.solid, {model, s.solid.voxels, s.importance}, s.lattice, s.importance, {.threads = threads});
 }
 
 /// Whether some important cell of a voxel is no other voxel's.
@@ -178,7 +179,10 @@ TEST(ThinVoxels, CancelStopsIt) {
   const Sample s = sample_of(make_ball_image({.size = 20}), 0, random);
   std::stop_source source;
   source.request_stop();
-  EXPECT_THROW((void)thin_voxels(s.solid, s.lattice, s.importance, {.cancel = source.get_token()}), Cancelled);
+  const CellComplex model(s.solid.voxels, {});
+  const AttachedVoxels attached(model, s.solid.voxels, s.importance);
+  EXPECT_THROW((void)thin_voxels(s.solid, attached, s.lattice, s.importance, {.cancel = source.get_token()}),
+               Cancelled);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "blum/grid/cell_lattice.hpp"
 
-namespace blum::detail {
+namespace blum {
 
 /// A set of cells of a lattice; its members are numbered by rising cell. Two bytes for each node.
 class RankedCells {
@@ -58,4 +58,4 @@ class RankedCells {
   std::size_t count_ = 0;
 };
 
-}  // namespace blum::detail
+}  // namespace blum

@@ -1,0 +1,356 @@
+#include "medial_axis/shape_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "medial_axis/place_vertices.hpp"
+#include "medial_axis/solid_paths.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t cells_per_range = 512;
+
+/// The shape of a cell that is more than its corners tell: places from `own` on are those of its own vertices.
+struct Shape {
+  std::vector<std::uint32_t> items;
+  std::vector<AxisVertex> own;
+};
+
+AxisVertex vertex_at(const Stop& stop) {
+  AxisVertex vertex;
+  vertex.position = stop.at;
+  vertex.radius = stop.nearest.distance;
+  vertex.footprints = {stop.nearest.point, stop.nearest.point};
+  vertex.sites = {stop.nearest.site, stop.nearest.site};
+  return vertex;
+}
+
+class Shaper {
+ public:
+  static constexpr std::uint32_t first_own = 0xf0000000U;
+
+  Shaper(const AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors)
+      : piece_(piece), corners_(corners), governors_(governors), paths_(governors.surface()) {
+    find_twins();
+  }
+
+  /// The chain of an edge that would leave the solid, or that has a twin; nullopt where it is a segment.
+  [[nodiscard]] std::optional<Shape> bent(std::uint32_t c) const {
+    const auto ends = corners_.of_cells()[c];
+    const Stop a = stop_at(ends[0]);
+    const Stop b = stop_at(ends[1]);
+    const bool has_twin = std::binary_search(twins_.begin(), twins_.end(), c);
+    if (!has_twin && paths_.are_joined(a, b)) return std::nullopt;
+    std::optional<std::vector<Stop>> between;
+    if (!has_twin) between = paths_.pushed(a, b);
+    if (!between) between = through_middle(c, a, b);
+    if (has_twin && (!between || between->empty())) between = {middle_of(a, b)};
+    if (!between) return std::nullopt;
+    Shape shape;
+    shape.items.push_back(ends[0]);
+    add_own(shape, *between);
+    shape.items.push_back(ends[1]);
+    return shape;
+  }
+
+  /// The triangles of a polygon. @param outline  its border, in a circle.
+  [[nodiscard]] Shape filled(std::uint32_t c, const std::vector<std::uint32_t>& outline,
+                             std::span<const AxisVertex> vertices) const {
+    Shape shape;
+    if (outline.size() == 4 && !touches_extra(c)) {
+      std::array<std::array<std::uint32_t, 3>, 2> halves = triangles_of(outline, vertices);
+      for (int turn = 0; turn < 2; ++turn) {
+        if (paths_.are_joined(stop_of(vertices[halves[0][0]]), stop_of(vertices[halves[0][2]]))) {
+          for (const auto& t : halves) shape.items.insert(shape.items.end(), t.begin(), t.end());
+          return shape;
+        }
+        const auto [p, q, r] = halves[0];
+        const std::uint32_t s = halves[1][2];
+        halves = {{{q, r, s}, {q, s, p}}};
+      }
+    }
+    return fan(c, outline, vertices);
+  }
+
+ private:
+  /// Edges with the same ends as another one: all but the first of them. Files name edges by their ends.
+  void find_twins() {
+    const CellStructure& structure = piece_.structure;
+    if (structure.extra() == nullptr) return;
+    const auto is_special = [&](Cell cell) { return structure.is_extra(cell) || structure.extra()->is_mixed(cell); };
+    std::vector<std::array<std::uint32_t, 3>> edges;
+    for (std::uint32_t c = 0; c < piece_.cells.size(); ++c) {
+      if (piece_.cells[c].dimension != 1) continue;
+      const auto ends = corners_.of_cells()[c];
+      const auto cells = corners_.vertex_cells();
+      if (!is_special(cells[ends[0]]) || !is_special(cells[ends[1]])) continue;
+      edges.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1]), c});
+    }
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t e = 1; e < edges.size(); ++e) {
+      if (edges[e][0] == edges[e - 1][0] && edges[e][1] == edges[e - 1][1]) twins_.push_back(edges[e][2]);
+    }
+    std::sort(twins_.begin(), twins_.end());
+  }
+
+  /// Whether a polygon is extra, or has such a corner: then others may have the same corners.
+  [[nodiscard]] bool touches_extra(std::uint32_t c) const {
+    if (piece_.structure.is_extra(piece_.cells[c].cell)) return true;
+    const auto corners = corners_.of_cells()[c];
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](std::uint32_t v) { return piece_.structure.is_extra(corners_.vertex_cells()[v]); });
+  }
+
+  [[nodiscard]] Stop middle_of(const Stop& a, const Stop& b) const {
+    return paths_.inside_near(0.5 * (a.at + b.at), a);
+  }
+
+  [[nodiscard]] static Stop stop_of(const AxisVertex& vertex) {
+    return {vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};
+  }
+  [[nodiscard]] Stop stop_at(std::uint32_t place) const { return stop_of(piece_.vertices[place]); }
+
+  static void add_own(Shape& shape, std::span<const Stop> stops) {
+    for (const Stop& stop : stops) {
+      shape.items.push_back(first_own + static_cast<std::uint32_t>(shape.own.size()));
+      shape.own.push_back(vertex_at(stop));
+    }
+  }
+
+  /// A path from end to end of an edge over a point of the component that it stands for.
+  [[nodiscard]] std::optional<std::vector<Stop>> through_middle(std::uint32_t c, const Stop& a, const Stop& b) const {
+    const std::optional<Stop> middle = home_of(piece_.cells[c].cell);
+    if (!middle) return std::nullopt;
+    const auto ends = corners_.of_cells()[c];
+    std::optional<std::vector<Stop>> path = paths_.path(a, *middle, landmarks(ends[0]));
+    const std::optional<std::vector<Stop>> rest = paths_.path(*middle, b, landmarks(ends[1]));
+    if (!path || !rest) return std::nullopt;
+    path->push_back(*middle);
+    path->insert(path->end(), rest->begin(), rest->end());
+    return path;
+  }
+  [[nodiscard]] std::vector<Stop> landmarks(std::uint32_t vertex) const {
+    return landmarks_of(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
+  }
+
+  /// A point of the component that a cell stands for.
+  [[nodiscard]] std::optional<Stop> home_of(Cell cell) const {
+    return home_of_cell(governors_, piece_.structure, cell);
+  }
+
+  /// Triangles around a vertex in the middle, the best of some.
+  [[nodiscard]] Shape fan(std::uint32_t c, const std::vector<std::uint32_t>& outline,
+                          std::span<const AxisVertex> vertices) const {
+    std::vector<Stop> corners;
+    Vec3d sum;
+    for (const std::uint32_t v : outline) {
+      corners.push_back(stop_of(vertices[v]));
+      sum += corners.back().at;
+    }
+    std::vector<Stop> middles;
+    if (const auto home = home_of(piece_.cells[c].cell)) middles.push_back(*home);
+    const Vec3d mean = sum / static_cast<double>(outline.size());
+    if (const auto at = paths_.stop_at(mean, {corners[0].nearest.point, corners[0].nearest.element, 7})) {
+      middles.push_back(*at);
+    }
+    std::size_t best = 0;
+    std::size_t most = 0;
+    const auto is_good = [&] { return most == corners.size(); };
+    const auto look_from = [&](std::size_t m) {
+      const auto straight = static_cast<std::size_t>(std::count_if(
+          corners.begin(), corners.end(), [&](const Stop& corner) { return paths_.are_joined(middles[m], corner); }));
+      if (straight > most) {
+        most = straight;
+        best = m;
+      }
+    };
+    for (std::size_t m = 0; m < middles.size() && !is_good(); ++m) look_from(m);
+    if (!is_good()) {
+      const std::size_t first = middles.size();
+      const std::vector<Stop> others = around(c);
+      middles.insert(middles.end(), others.begin(), others.end());
+      constexpr std::size_t most_tries = 8;
+      for (std::size_t m = first; m < std::min(middles.size(), first + most_tries) && !is_good(); ++m) look_from(m);
+    }
+    if (middles.empty()) middles.push_back(paths_.inside_near(mean, corners[0]));
+    return spokes(c, outline, corners, middles[best]);
+  }
+
+  /// Triangles between chains from a middle to each corner.
+  [[nodiscard]] Shape spokes(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
+                             const Stop& middle) const {
+    Shape shape;
+    shape.own.push_back(vertex_at(middle));
+    std::vector<std::vector<std::uint32_t>> chains(outline.size());
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      chains[k].push_back(first_own);
+      std::optional<std::vector<Stop>> between = paths_.pushed(middle, corners[k]);
+      if (!between) between = paths_.path(middle, corners[k], around(c));
+      for (const Stop& stop : between.value_or(std::vector<Stop>{})) {
+        chains[k].push_back(first_own + static_cast<std::uint32_t>(shape.own.size()));
+        shape.own.push_back(vertex_at(stop));
+      }
+      chains[k].push_back(outline[k]);
+    }
+    for (std::size_t k = 0; k < outline.size(); ++k)
+      zip(chains[k], chains[(k + 1) % outline.size()], corners, outline, shape);
+    return shape;
+  }
+
+  /// The landmarks of all corners of a polygon.
+  [[nodiscard]] std::vector<Stop> around(std::uint32_t c) const {
+    std::vector<Stop> all;
+    for (const std::uint32_t corner : corners_.of_cells()[c]) {
+      const std::vector<Stop> own = landmarks(corner);
+      all.insert(all.end(), own.begin(), own.end());
+    }
+    return all;
+  }
+
+  /// Triangles between two chains that begin in the same vertex.
+  void zip(const std::vector<std::uint32_t>& one, const std::vector<std::uint32_t>& other,
+           std::span<const Stop> corners, const std::vector<std::uint32_t>& outline, Shape& shape) const {
+    const auto stop = [&](std::uint32_t v) {
+      if (v >= first_own) return stop_of(shape.own[v - first_own]);
+      const auto at = std::find(outline.begin(), outline.end(), v) - outline.begin();
+      return corners[static_cast<std::size_t>(at)];
+    };
+    std::size_t i = 1;
+    std::size_t j = 1;
+    shape.items.insert(shape.items.end(), {one[0], one[1], other[1]});
+    while (i + 1 < one.size() || j + 1 < other.size()) {
+      const bool may_first = i + 1 < one.size();
+      const bool may_second = j + 1 < other.size();
+      const bool takes_first = may_first && (!may_second || paths_.are_joined(stop(one[i + 1]), stop(other[j])));
+      if (takes_first) {
+        shape.items.insert(shape.items.end(), {one[i], one[i + 1], other[j]});
+        ++i;
+      } else {
+        shape.items.insert(shape.items.end(), {one[i], other[j + 1], other[j]});
+        ++j;
+      }
+    }
+  }
+
+  const AxisPiece& piece_;
+  const AxisCorners& corners_;
+  const GovernorField& governors_;
+  SolidPaths paths_;
+  std::vector<std::uint32_t> twins_;
+};
+
+/// Shapes of cells, where they are more than their corners.
+using Shapes = std::vector<std::pair<std::uint32_t, Shape>>;
+
+/// Those of the cells of a dimension that `make` gives any, by rising cell.
+template <class Make>
+Shapes shapes_of(const AxisPiece& piece, int dimension, const Context& context, const Make& make) {
+  std::vector<Shapes> found(piece.cells.size() / cells_per_range + 1);
+  parallel_for(context, piece.cells.size(), cells_per_range, dimension == 1 ? "edges" : "triangles",
+               [&](const WorkRange& range) {
+                 for (std::size_t c = range.begin; c < range.end; ++c) {
+                   if (piece.cells[c].dimension != dimension) continue;
+                   if (auto shape = make(static_cast<std::uint32_t>(c))) {
+                     found[range.begin / cells_per_range].emplace_back(static_cast<std::uint32_t>(c),
+                                                                       std::move(*shape));
+                   }
+                 }
+               });
+  Shapes all;
+  for (Shapes& part : found) {
+    for (auto& entry : part) all.push_back(std::move(entry));
+  }
+  return all;
+}
+
+/// Makes the vertices of shapes those of the piece.
+void take_vertices(AxisPiece& piece, Shapes& shapes) {
+  for (auto& [cell, shape] : shapes) {
+    const auto first = static_cast<std::uint32_t>(piece.vertices.size());
+    for (std::uint32_t& item : shape.items) {
+      if (item >= Shaper::first_own) item = first + (item - Shaper::first_own);
+    }
+    piece.vertices.insert(piece.vertices.end(), shape.own.begin(), shape.own.end());
+  }
+}
+
+/// The shape of each cell, or its corners.
+class Outlines {
+ public:
+  Outlines(const AxisCorners& corners, const Shapes& bent) : corners_(corners), bent_(bent) {}
+
+  [[nodiscard]] const Shape* bent(std::uint32_t edge) const {
+    const auto at = std::lower_bound(bent_.begin(), bent_.end(), edge,
+                                     [](const auto& entry, std::uint32_t value) { return entry.first < value; });
+    return at != bent_.end() && at->first == edge ? &at->second : nullptr;
+  }
+  /// The border of a polygon, in a circle.
+  [[nodiscard]] std::vector<std::uint32_t> of(std::uint32_t polygon) const {
+    const auto corners = corners_.of_cells()[polygon];
+    std::vector<std::uint32_t> outline;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Shape* shape = bent(corners_.sides()[polygon][k]);
+      if (shape == nullptr) {
+        outline.push_back(corners[k]);
+      } else if (shape->items.front() == corners[k]) {
+        outline.insert(outline.end(), shape->items.begin(), shape->items.end() - 1);
+      } else {
+        outline.insert(outline.end(), shape->items.rbegin(), shape->items.rend() - 1);
+      }
+    }
+    return outline;
+  }
+
+ private:
+  const AxisCorners& corners_;
+  const Shapes& bent_;
+};
+
+}  // namespace
+
+void shape_cells(AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors, const Context& context) {
+  const bool may_bend = governors.solid().extra != nullptr;
+  const Shaper shaper(piece, corners, governors);
+  Shapes bent;
+  if (may_bend) bent = shapes_of(piece, 1, context, [&](std::uint32_t c) { return shaper.bent(c); });
+  take_vertices(piece, bent);
+  const Outlines outlines(corners, bent);
+  Shapes filled = shapes_of(piece, 2, context, [&](std::uint32_t c) {
+    std::optional<Shape> shape;
+    if (may_bend) {
+      shape = shaper.filled(c, outlines.of(c), piece.vertices);
+    } else {
+      shape.emplace();
+      for (const auto& t : triangles_of(corners.of_cells()[c], piece.vertices)) {
+        shape->items.insert(shape->items.end(), t.begin(), t.end());
+      }
+    }
+    return shape;
+  });
+  take_vertices(piece, filled);
+  std::vector<std::size_t> first{0};
+  std::vector<std::uint32_t> items;
+  auto next = filled.begin();
+  for (std::uint32_t c = 0; c < piece.cells.size(); ++c) {
+    const Shape* shape = piece.cells[c].dimension == 1 ? outlines.bent(c) : nullptr;
+    if (piece.cells[c].dimension == 2) shape = &(next++)->second;
+    if (shape != nullptr) {
+      items.insert(items.end(), shape->items.begin(), shape->items.end());
+    } else {
+      const auto own = corners.of_cells()[c];
+      items.insert(items.end(), own.begin(), own.end());
+    }
+    first.push_back(items.size());
+  }
+  piece.shapes = IndexRows(std::move(first), std::move(items));
+  piece.sides = corners.sides();
+}
+
+}  // namespace blum

@@ -1,0 +1,210 @@
+#include "medial_axis/solid_paths.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace blum {
+namespace {
+
+/// How often the parts of one segment are pushed in: at once, and where nothing else helps.
+constexpr int few_moves = 2;
+constexpr int most_moves = 24;
+constexpr int most_depth = 8;
+constexpr std::size_t most_landmarks = 32;
+/// How many segments are looked at on the way from landmark to landmark.
+constexpr int most_looks = 200;
+/// Balls around the ends that overlap by this part of the length leave no room for rounding.
+constexpr double overlap = 1e-9;
+
+Footprint foot_of(const NearestPoint& nearest) {
+  return {nearest.point, nearest.element, 7};
+}
+
+}  // namespace
+
+std::optional<Stop> SolidPaths::stop_at(const Vec3d& at, const Footprint& near) const {
+  const NearestPoint nearest = surface_.nearest(at, near);
+  if (!(nearest.distance > 0) || !surface_.is_inside(at, nearest)) return std::nullopt;
+  return Stop{at, nearest};
+}
+
+Stop SolidPaths::inside_near(const Vec3d& at, const Stop& near) const {
+  if (const auto stop = stop_at(at, foot_of(near.nearest))) return *stop;
+  if (const auto stop = pushed_in(at, near, std::numeric_limits<double>::infinity())) return *stop;
+  const NearestPoint foot = surface_.nearest(at, foot_of(near.nearest));
+  return {foot.point, surface_.nearest(foot.point, foot_of(foot))};
+}
+
+bool SolidPaths::is_straight(const Stop& a, const Stop& b) const {
+  const double size = length(b.at - a.at);
+  // A ball as large as a point is deep lies in the solid.
+  if (a.nearest.distance + b.nearest.distance >= size * (1 + overlap)) return true;
+  return !surface_.first_crossing(a.at, b.at);
+}
+
+/// As far inside as a point is outside, or in the middle where the solid is thin.
+std::optional<Stop> SolidPaths::pushed_in(const Vec3d& outside, const Stop& near, double most_out) const {
+  constexpr int most_tries = 24;
+  const NearestPoint foot = surface_.nearest(outside, foot_of(near.nearest));
+  if (foot.distance > most_out) return std::nullopt;
+  Vec3d move = foot.point - outside;
+  for (int n = 0; n < most_tries; ++n, move *= 0.25) {
+    if (const auto stop = stop_at(foot.point + move, foot_of(foot))) return centred(*stop);
+  }
+  return std::nullopt;
+}
+
+/// Where the walls next to two points would meet: closest to the middle between these. That is where thin walls turn.
+std::optional<Stop> SolidPaths::at_crease(const Stop& a, const Stop& b) const {
+  constexpr double least_turn = 1e-3;  // square of the sine
+  const Vec3d u = (a.nearest.point - a.at) / a.nearest.distance;
+  const Vec3d v = (b.nearest.point - b.at) / b.nearest.distance;
+  const double cosine = dot(u, v);
+  const double turn = 1 - cosine * cosine;
+  if (!(turn > least_turn)) return std::nullopt;
+  const Vec3d middle = 0.5 * (a.at + b.at);
+  const double p = dot(u, a.at - middle);
+  const double q = dot(v, b.at - middle);
+  const Vec3d x = middle + u * ((p - cosine * q) / turn) + v * ((q - cosine * p) / turn);
+  if (squared_length(x - middle) > squared_length(b.at - a.at)) return std::nullopt;
+  const std::optional<Stop> stop = stop_at(x, foot_of(a.nearest));
+  return stop ? centred(*stop) : pushed_in(x, a, std::numeric_limits<double>::infinity());
+}
+
+/// A point to lead a segment over that leaves the solid.
+std::optional<Stop> SolidPaths::detour(const Stop& a, const Stop& b) const {
+  if (a.nearest.distance + b.nearest.distance < 0.5 * length(b.at - a.at)) {
+    const std::optional<Stop> crease = at_crease(a, b);
+    if (crease && (is_straight(a, *crease) || is_straight(*crease, b))) return crease;
+  }
+  return outermost_pushed_in(a, b, std::numeric_limits<double>::infinity());
+}
+
+/// The middle of what is outside of a segment, pushed in.
+std::optional<Stop> SolidPaths::outermost_pushed_in(const Stop& a, const Stop& b, double most_out) const {
+  const std::optional<double> leaves = surface_.first_crossing(a.at, b.at);
+  const std::optional<double> returns = surface_.first_crossing(b.at, a.at);
+  if (!leaves || !returns) return std::nullopt;
+  const Vec3d middle = a.at + (b.at - a.at) * (0.5 * (*leaves + 1 - *returns));
+  std::optional<Stop> stop = stop_at(middle, foot_of(a.nearest));
+  return stop ? stop : pushed_in(middle, a, most_out);
+}
+
+/// @param moves  how many points may be moved yet.
+bool SolidPaths::can_be_pushed_in(const Stop& a, const Stop& b, int& moves) const {
+  if (is_straight(a, b)) return true;
+  if (moves-- <= 0) return false;
+  const std::optional<Stop> stop = outermost_pushed_in(a, b, most_cut_);
+  return stop && can_be_pushed_in(a, *stop, moves) && can_be_pushed_in(*stop, b, moves);
+}
+
+/// Adds the stops between two. @param moves  how many there may be yet.
+bool SolidPaths::push_in(const Stop& a, const Stop& b, int depth, int& moves, std::vector<Stop>& between) const {
+  if (is_straight(a, b)) return true;
+  if (depth == 0 || moves-- <= 0) return false;
+  const std::optional<Stop> stop = detour(a, b);
+  if (!stop || !push_in(a, *stop, depth - 1, moves, between)) return false;
+  between.push_back(*stop);
+  return push_in(*stop, b, depth - 1, moves, between);
+}
+
+bool SolidPaths::are_joined(const Stop& a, const Stop& b) const {
+  int moves = few_moves;
+  return can_be_pushed_in(a, b, moves);
+}
+
+std::optional<std::vector<Stop>> SolidPaths::pushed(const Stop& a, const Stop& b) const {
+  if (are_joined(a, b)) return std::vector<Stop>{};
+  std::vector<Stop> between;
+  int moves = most_moves;
+  if (push_in(a, b, most_depth, moves, between)) return between;
+  return std::nullopt;
+}
+
+std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, std::span<const Stop> landmarks) const {
+  if (auto found = pushed(a, b)) return found;
+  if (auto found = shortest(a, b, landmarks, false)) return found;
+  if (auto found = shortest(a, b, landmarks, true)) return found;
+  std::vector<Stop> more(landmarks.begin(), landmarks.end());
+  walk(a, b, more);
+  walk(b, a, more);
+  for (const Stop& landmark : landmarks) {
+    if (more.size() > most_landmarks) break;
+    walk(landmark, a, more);
+    walk(landmark, b, more);
+  }
+  return shortest(a, b, more, false);
+}
+
+/// The middle between the two walls of a thin part.
+Stop SolidPaths::centred(const Stop& stop) const {
+  const Vec3d away = stop.at - stop.nearest.point;
+  constexpr double thick = 64;
+  const std::optional<double> opposite = surface_.first_crossing(stop.at, stop.at + away * thick);
+  if (!opposite || !(*opposite * thick > 1)) return stop;
+  const auto middle = stop_at(stop.at + away * (0.5 * (*opposite * thick - 1)), foot_of(stop.nearest));
+  return middle && middle->nearest.distance > stop.nearest.distance ? *middle : stop;
+}
+
+/// Adds the points of a walk towards another one, along the wall next to each.
+void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const {
+  constexpr int most_steps = 12;
+  constexpr double before_wall = 0.9;
+  Stop at = centred(from);
+  for (int step = 0; step < most_steps; ++step) {
+    const Vec3d away = (at.at - at.nearest.point) / at.nearest.distance;
+    const Vec3d wish = towards.at - at.at;
+    const Vec3d move = wish - away * dot(wish, away);
+    if (!(squared_length(move) > 1e-6 * squared_length(wish))) return;
+    const std::optional<double> wall = surface_.first_crossing(at.at, at.at + move);
+    const auto next = stop_at(at.at + move * (wall ? before_wall * *wall : 1), foot_of(at.nearest));
+    if (!next) return;
+    landmarks.push_back(*next);
+    at = centred(*next);
+    if (at.at != next->at) landmarks.push_back(at);
+    if (is_straight(at, towards)) return;
+  }
+}
+
+/// Dijkstra's search; whether two stops are joined is only asked where it matters.
+std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop& b, std::span<const Stop> landmarks,
+                                                      bool pushes) const {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  std::vector<Stop> stops(landmarks.begin(), landmarks.end());
+  stops.push_back(a);
+  stops.push_back(b);
+  const std::size_t start = stops.size() - 2;
+  const std::size_t goal = stops.size() - 1;
+  std::vector<double> way(stops.size(), far);
+  std::vector<std::size_t> before(stops.size(), start);
+  std::vector<bool> is_done(stops.size(), false);
+  way[start] = 0;
+  int looks = 0;
+  for (std::size_t round = 0; round < stops.size() && looks < most_looks; ++round) {
+    std::size_t next = stops.size();
+    for (std::size_t s = 0; s < stops.size(); ++s) {
+      if (!is_done[s] && way[s] < far && (next == stops.size() || way[s] < way[next])) next = s;
+    }
+    if (next == stops.size()) return std::nullopt;
+    is_done[next] = true;
+    if (next == goal) break;
+    for (std::size_t s = 0; s < stops.size(); ++s) {
+      const double longer = way[next] + length(stops[s].at - stops[next].at);
+      if (is_done[s] || longer >= way[s]) continue;
+      looks += pushes ? 2 : 1;
+      if (!(pushes ? are_joined(stops[next], stops[s]) : is_straight(stops[next], stops[s]))) continue;
+      way[s] = longer;
+      before[s] = next;
+    }
+  }
+  if (!is_done[goal]) return std::nullopt;
+  std::vector<Stop> path;
+  for (std::size_t s = goal; s != start; s = before[s]) {
+    if (s != goal) path.push_back(stops[s]);
+  }
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+}  // namespace blum
