@@ -1,0 +1,113 @@
+// Proves that medial axes of solids with walls, gaps and tunnels far thinner than a voxel have the topology of the
+// solid at every angle, as complexes and as they are written: where the cellular model passes, nothing on the way to
+// the axis changes it.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "blum/medial_axis/medial_axis.hpp"
+#include "blum/solid/solid.hpp"
+#include "medial_axis/attached_voxels.hpp"
+#include "medial_axis/collapse.hpp"
+#include "medial_axis/mesh_surface.hpp"
+#include "medial_axis/separation_angles.hpp"
+#include "medial_axis/thin_voxels.hpp"
+#include "medial_axis/voxelize.hpp"
+#include "support/medial_check.hpp"
+#include "support/model_solids.hpp"
+
+namespace blum {
+namespace {
+
+std::int64_t euler_of(const CellComplex& complex) {
+  std::int64_t sum = 0;
+  complex.for_each_cell([&](Cell cell) { sum += complex.structure().dimension(cell) % 2 == 0 ? 1 : -1; });
+  return sum;
+}
+
+/// Whether each cell of a complex has its whole border in it: two ends, three or four sides, four to six faces.
+void expect_closed(const CellComplex& complex) {
+  complex.for_each_cell([&](Cell cell) {
+    int faces = 0;
+    complex.structure().for_each_face(cell, [&](Cell face) { faces += complex.contains(face) ? 1 : 0; });
+    const int dimension = complex.structure().dimension(cell);
+    const int least = dimension == 0 ? 0 : dimension + 1;
+    ASSERT_GE(faces, least) << "a cell of dimension " << dimension;
+    ASSERT_LE(faces, 2 * dimension) << "a cell of dimension " << dimension;
+  });
+}
+
+/// The model of a body, and what is left of it step by step.
+void expect_same_euler_numbers(const SolidBody& body, double spacing) {
+  const Voxelized made = voxelize_body(body, spacing, {});
+  if (!made.report.topology_matches) return;
+  const std::int64_t wanted = body.betti[0] - body.betti[1] + body.betti[2];
+  CellComplex complex(made.solid.voxels, made.solid.extra, {});
+  expect_closed(complex);
+  EXPECT_EQ(euler_of(complex), wanted) << "of the model";
+  const SiteTable sites(body.mesh);
+  const MeshSurface surface(body.mesh, sites, true, {});
+  const Importance importance = separation_angles(GovernorField(made.solid, surface), complex, {}, {});
+  collapse_extra(complex, importance);
+  expect_closed(complex);
+  EXPECT_EQ(euler_of(complex), wanted) << "after extra cells";
+  const AttachedVoxels attached(complex, made.solid.voxels, importance);
+  CellComplex thin = attached.rest(thin_voxels(made.solid, attached, complex.lattice(), importance, {}), {});
+  expect_closed(thin);
+  EXPECT_EQ(euler_of(thin), wanted) << "after thinning";
+  const std::vector<float> depths(complex.structure().extra_count(), 0);
+  const CollapseOrder order = collapse(std::move(thin), {made.solid.depth.span(), depths}, spacing / 4, importance, {});
+  expect_closed(order.base);
+  EXPECT_EQ(euler_of(order.base), wanted) << "after collapse";
+}
+
+TEST(MedialModel, EachStepKeepsTheEulerNumber) {
+  for (const test::NamedMesh& named : test::thin_solids()) {
+    const Solid solid = Solid::of(named.mesh);
+    if (solid.rule() != SolidRule::polyhedron) continue;
+    const Vec3d size = solid.box().size();
+    const double longest = std::max({size.x, size.y, size.z});
+    for (const int resolution : {3, 9, 20}) {
+      SCOPED_TRACE(named.name + " at " + std::to_string(resolution));
+      for (const SolidBody& body : solid.bodies()) expect_same_euler_numbers(body, longest / resolution);
+    }
+  }
+}
+
+TEST(MedialModel, AxesOfThinSolidsHaveTheirBettiNumbersAtEveryAngle) {
+  std::size_t seen = 0;
+  for (const test::NamedMesh& named : test::thin_solids()) {
+    for (const int resolution : {8, 15}) {
+      SCOPED_TRACE(named.name + " at " + std::to_string(resolution));
+      const Solid solid = Solid::of(named.mesh);
+      if (solid.rule() != SolidRule::polyhedron) continue;
+      const MedialAxis axis = medial_axis(solid, {.resolution = resolution, .max_resolution = 8});
+      if (!axis.report().topology_matches) continue;
+      ++seen;
+      EXPECT_EQ(axis.report().betti, *solid.betti());
+      test::expect_betti(axis, *solid.betti());
+    }
+  }
+  EXPECT_GT(seen, 20U);
+}
+
+TEST(MedialModel, TheSameForAnyNumberOfThreads) {
+  for (const test::NamedMesh& named : test::thin_solids()) {
+    SCOPED_TRACE(named.name);
+    const Solid solid = Solid::of(named.mesh);
+    if (solid.rule() != SolidRule::polyhedron) continue;
+    const Complex one = medial_axis(solid, {.resolution = 10, .max_resolution = 8}, {.threads = 1}).simplify(20);
+    for (const int threads : {2, 7}) {
+      const Complex many =
+          medial_axis(solid, {.resolution = 10, .max_resolution = 8}, {.threads = threads}).simplify(20);
+      EXPECT_EQ(many.positions, one.positions);
+      EXPECT_EQ(many.edges, one.edges);
+      EXPECT_EQ(many.triangles, one.triangles);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace blum

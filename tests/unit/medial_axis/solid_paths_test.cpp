@@ -1,0 +1,110 @@
+// Proves that paths stay in the solid: lines past a corner may be pushed in, lines across a gap are found out however
+// narrow it is, and ways over landmarks lead around it.
+#include "medial_axis/solid_paths.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "blum/shapes/generators.hpp"
+#include "medial_axis/mesh_surface.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+/// A box from (-1, -1, -1) to (1, 1, 1) with a slit from above down to z = 0, across x = 0.
+TriangleMesh slit_block(double width) {
+  const double w = 0.5 * width;
+  // The outline in x and z, counterclockwise seen from -y.
+  const std::vector<std::array<double, 2>> outline{{-1, -1}, {1, -1}, {1, 1},  {w, 1},
+                                                   {w, 0},   {-w, 0}, {-w, 1}, {-1, 1}};
+  TriangleMesh mesh;
+  for (const double y : {-1.0, 1.0}) {
+    for (const auto& [x, z] : outline) mesh.vertices.push_back({x, y, z});
+  }
+  const auto count = static_cast<std::uint32_t>(outline.size());
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t next = (k + 1) % count;
+    mesh.triangles.push_back({k, next + count, next});
+    mesh.triangles.push_back({k, k + count, next + count});
+  }
+  // The two prongs and the foot, as fans.
+  for (const auto& [a, b, c] :
+       std::vector<Triangle>{{0, 1, 4}, {0, 4, 5}, {1, 2, 4}, {2, 3, 4}, {0, 5, 7}, {5, 6, 7}}) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a + count, c + count, b + count});
+  }
+  return mesh;
+}
+
+struct Sample {
+  explicit Sample(TriangleMesh given)
+      : mesh(std::move(given)), sites(mesh), surface(mesh, sites, true, {}), paths(surface) {}
+  [[nodiscard]] Stop at(const Vec3d& p) const { return *paths.stop_at(p, {}); }
+
+  TriangleMesh mesh;
+  SiteTable sites;
+  MeshSurface surface;
+  SolidPaths paths;
+};
+
+TEST(SolidPaths, StopsLieInTheSolidAndNotOnItsSurface) {
+  const Sample s(make_box({}));
+  EXPECT_TRUE(s.paths.stop_at({0.1, 0.2, 0.3}, {}).has_value());
+  EXPECT_FALSE(s.paths.stop_at({0.5, 0.2, 0.3}, {}).has_value());
+  EXPECT_FALSE(s.paths.stop_at({0.6, 0.2, 0.3}, {}).has_value());
+  EXPECT_NEAR(s.at({0.1, 0.2, 0.3}).nearest.distance, 0.2, 1e-15);
+}
+
+TEST(SolidPaths, LinesAcrossAGapAreFoundOutHoweverNarrowItIs) {
+  for (const double width : {0.1, 1e-3, 1e-6, 1e-9}) {
+    SCOPED_TRACE(width);
+    const Sample s(slit_block(width));
+    const Stop left = s.at({-0.4, 0, 0.7});
+    const Stop right = s.at({0.4, 0.1, 0.7});
+    EXPECT_FALSE(s.paths.is_straight(left, right));
+    EXPECT_FALSE(s.paths.are_joined(left, right));
+    EXPECT_TRUE(s.paths.is_straight(left, s.at({-0.3, 0.2, 0.1})));
+    EXPECT_TRUE(s.paths.is_straight(s.at({-0.4, 0, -0.3}), s.at({0.4, 0, -0.3})));
+  }
+}
+
+TEST(SolidPaths, LandmarksLeadAroundAGap) {
+  for (const double width : {0.1, 1e-3, 1e-9}) {
+    SCOPED_TRACE(width);
+    const Sample s(slit_block(width));
+    const Stop left = s.at({-0.4, 0, 0.7});
+    const Stop right = s.at({0.4, 0.1, 0.7});
+    const std::vector<Stop> landmarks{s.at({0, 0, -0.5}), s.at({-0.6, 0.9, 0.9})};
+    const auto path = s.paths.path(left, right, landmarks);
+    ASSERT_TRUE(path.has_value());
+    ASSERT_EQ(path->size(), 1U);
+    EXPECT_EQ(path->front().at, landmarks[0].at);
+  }
+}
+
+TEST(SolidPaths, ALineThatCutsACornerIsBentAroundIt) {
+  const Sample s(slit_block(0.5));
+  // Past the lower corner of the slit, at (-0.25, 0): 0.007 outside.
+  const Stop above = s.at({-0.26, 0, 0.02});
+  const Stop below = s.at({-0.22, 0, -0.01});
+  EXPECT_FALSE(s.paths.is_straight(above, below));
+  auto stops = s.paths.path(above, below, {});
+  ASSERT_TRUE(stops.has_value());
+  stops->insert(stops->begin(), above);
+  stops->push_back(below);
+  for (std::size_t k = 0; k + 1 < stops->size(); ++k) EXPECT_TRUE(s.paths.are_joined((*stops)[k], (*stops)[k + 1]));
+}
+
+TEST(SolidPaths, APointOutsideIsMovedInsideNextToIt) {
+  const Sample s(make_box({}));
+  const Stop near = s.at({0.4, 0, 0});
+  const Stop moved = s.paths.inside_near({0.6, 0.1, 0}, near);
+  EXPECT_GT(moved.nearest.distance, 0);
+  EXPECT_LT(length(moved.at - Vec3d{0.6, 0.1, 0}), 0.7);
+  EXPECT_EQ(s.paths.inside_near({0.1, 0.1, 0}, near).at, (Vec3d{0.1, 0.1, 0}));
+}
+
+}  // namespace
+}  // namespace blum
