@@ -76,6 +76,9 @@ class Shaper {
         halves = {{{q, r, s}, {q, s, p}}};
       }
     }
+    if (outline.size() > 4 && !touches_extra(c)) {
+      if (clip(outline, [&](std::uint32_t v) { return stop_of(vertices[v]); }, shape.items)) return shape;
+    }
     return fan(c, outline, vertices);
   }
 
@@ -180,27 +183,48 @@ class Shaper {
       for (std::size_t m = first; m < std::min(middles.size(), first + most_tries) && !is_good(); ++m) look_from(m);
     }
     if (middles.empty()) middles.push_back(paths_.inside_near(mean, corners[0]));
-    return spokes(c, outline, corners, middles[best]);
+    return wheel(c, outline, corners, middles[best]);
   }
 
-  /// Triangles between chains from a middle to each corner.
-  [[nodiscard]] Shape spokes(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
-                             const Stop& middle) const {
+  /// Triangles around a middle, between chains to the corners that it is joined to.
+  [[nodiscard]] Shape wheel(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
+                            const Stop& middle) const {
     Shape shape;
     shape.own.push_back(vertex_at(middle));
-    std::vector<std::vector<std::uint32_t>> chains(outline.size());
+    std::vector<std::pair<std::size_t, std::vector<Stop>>> chains;  // by corner
     for (std::size_t k = 0; k < outline.size(); ++k) {
-      chains[k].push_back(first_own);
-      std::optional<std::vector<Stop>> between = paths_.pushed(middle, corners[k]);
-      if (!between) between = paths_.path(middle, corners[k], around(c));
-      for (const Stop& stop : between.value_or(std::vector<Stop>{})) {
-        chains[k].push_back(first_own + static_cast<std::uint32_t>(shape.own.size()));
+      if (auto between = paths_.pushed(middle, corners[k])) chains.emplace_back(k, std::move(*between));
+    }
+    if (chains.size() < 2) {
+      const std::vector<Stop> landmarks = around(c);
+      chains.clear();
+      for (std::size_t k = 0; k < outline.size(); ++k) {
+        chains.emplace_back(k, paths_.path(middle, corners[k], landmarks).value_or(std::vector<Stop>{}));
+      }
+    }
+    std::vector<std::vector<std::uint32_t>> spokes;
+    for (const auto& [corner, between] : chains) {
+      std::vector<std::uint32_t>& spoke = spokes.emplace_back(1, first_own);
+      for (const Stop& stop : between) {
+        spoke.push_back(first_own + static_cast<std::uint32_t>(shape.own.size()));
         shape.own.push_back(vertex_at(stop));
       }
-      chains[k].push_back(outline[k]);
     }
-    for (std::size_t k = 0; k < outline.size(); ++k)
-      zip(chains[k], chains[(k + 1) % outline.size()], corners, outline, shape);
+    const auto stop = [&](std::uint32_t v) {
+      if (v >= first_own) return stop_of(shape.own[v - first_own]);
+      return corners[static_cast<std::size_t>(std::find(outline.begin(), outline.end(), v) - outline.begin())];
+    };
+    // A sector from one spoke along the border to the next.
+    for (std::size_t n = 0; n < spokes.size(); ++n) {
+      const std::size_t next = (n + 1) % spokes.size();
+      std::vector<std::uint32_t> sector = spokes[n];
+      for (std::size_t k = chains[n].first;; k = (k + 1) % outline.size()) {
+        sector.push_back(outline[k]);
+        if (k == chains[next].first) break;
+      }
+      sector.insert(sector.end(), spokes[next].rbegin(), spokes[next].rend() - 1);
+      clip(std::move(sector), stop, shape.items);
+    }
     return shape;
   }
 
@@ -214,29 +238,35 @@ class Shaper {
     return all;
   }
 
-  /// Triangles between two chains that begin in the same vertex.
-  void zip(const std::vector<std::uint32_t>& one, const std::vector<std::uint32_t>& other,
-           std::span<const Stop> corners, const std::vector<std::uint32_t>& outline, Shape& shape) const {
-    const auto stop = [&](std::uint32_t v) {
-      if (v >= first_own) return stop_of(shape.own[v - first_own]);
-      const auto at = std::find(outline.begin(), outline.end(), v) - outline.begin();
-      return corners[static_cast<std::size_t>(at)];
-    };
-    std::size_t i = 1;
-    std::size_t j = 1;
-    shape.items.insert(shape.items.end(), {one[0], one[1], other[1]});
-    while (i + 1 < one.size() || j + 1 < other.size()) {
-      const bool may_first = i + 1 < one.size();
-      const bool may_second = j + 1 < other.size();
-      const bool takes_first = may_first && (!may_second || paths_.are_joined(stop(one[i + 1]), stop(other[j])));
-      if (takes_first) {
-        shape.items.insert(shape.items.end(), {one[i], one[i + 1], other[j]});
-        ++i;
-      } else {
-        shape.items.insert(shape.items.end(), {one[i], other[j + 1], other[j]});
-        ++j;
+  /// Fills a polygon of a few corners: cuts off the shortest ears, of these first such that stay in the solid.
+  /// @return  whether all do.
+  template <class StopOf>
+  bool clip(std::vector<std::uint32_t> polygon, const StopOf& stop_of_place, std::vector<std::uint32_t>& items) const {
+    bool stays = true;
+    while (polygon.size() > 3) {
+      const std::size_t size = polygon.size();
+      std::vector<std::pair<double, std::size_t>> ears;
+      for (std::size_t k = 0; k < size; ++k) {
+        const Vec3d across =
+            stop_of_place(polygon[(k + 1) % size]).at - stop_of_place(polygon[(k + size - 1) % size]).at;
+        ears.emplace_back(squared_length(across), k);
       }
+      std::sort(ears.begin(), ears.end());
+      const auto is_joined = [&](const std::pair<double, std::size_t>& ear) {
+        const std::size_t k = ear.second;
+        return paths_.are_joined(stop_of_place(polygon[(k + size - 1) % size]), stop_of_place(polygon[(k + 1) % size]));
+      };
+      auto ear = std::find_if(ears.begin(), ears.end(), is_joined);
+      if (ear == ears.end()) {
+        stays = false;
+        ear = ears.begin();
+      }
+      const std::size_t k = ear->second;
+      items.insert(items.end(), {polygon[(k + size - 1) % size], polygon[k], polygon[(k + 1) % size]});
+      polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
     }
+    items.insert(items.end(), polygon.begin(), polygon.end());
+    return stays;
   }
 
   const AxisPiece& piece_;

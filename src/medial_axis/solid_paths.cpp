@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 namespace blum {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 constexpr int few_moves = 2;
 constexpr int most_moves = 24;
 constexpr int most_depth = 8;
-constexpr std::size_t most_landmarks = 32;
+constexpr std::size_t most_landmarks = 48;
 /// How many segments are looked at on the way from landmark to landmark.
 constexpr int most_looks = 200;
 /// Balls around the ends that overlap by this part of the length leave no room for rounding.
@@ -58,6 +59,7 @@ std::optional<Stop> SolidPaths::pushed_in(const Vec3d& outside, const Stop& near
 /// Where the walls next to two points would meet: closest to the middle between these. That is where thin walls turn.
 std::optional<Stop> SolidPaths::at_crease(const Stop& a, const Stop& b) const {
   constexpr double least_turn = 1e-3;  // square of the sine
+  if (!(a.nearest.distance > 0 && b.nearest.distance > 0)) return std::nullopt;
   const Vec3d u = (a.nearest.point - a.at) / a.nearest.distance;
   const Vec3d v = (b.nearest.point - b.at) / b.nearest.distance;
   const double cosine = dot(u, v);
@@ -72,11 +74,23 @@ std::optional<Stop> SolidPaths::at_crease(const Stop& a, const Stop& b) const {
   return stop ? centred(*stop) : pushed_in(x, a, std::numeric_limits<double>::infinity());
 }
 
+/// The point beside another one in the middle plane of a thin part: there a line leads into it.
+std::optional<Stop> SolidPaths::at_mouth(const Stop& thin, const Stop& other) const {
+  if (!(thin.nearest.distance > 0)) return std::nullopt;
+  const Vec3d u = (thin.nearest.point - thin.at) / thin.nearest.distance;
+  return stop_at(other.at - u * dot(u, other.at - thin.at), foot_of(other.nearest));
+}
+
 /// A point to lead a segment over that leaves the solid.
 std::optional<Stop> SolidPaths::detour(const Stop& a, const Stop& b) const {
-  if (a.nearest.distance + b.nearest.distance < 0.5 * length(b.at - a.at)) {
-    const std::optional<Stop> crease = at_crease(a, b);
-    if (crease && (is_straight(a, *crease) || is_straight(*crease, b))) return crease;
+  for (const auto& [thin, other] : {std::pair{&b, &a}, std::pair{&a, &b}}) {
+    const std::optional<Stop> mouth = at_mouth(*thin, *other);
+    if (mouth && is_straight(a, *mouth) && is_straight(*mouth, b)) return mouth;
+  }
+  if (const std::optional<Stop> crease = at_crease(a, b)) {
+    const bool is_thin = a.nearest.distance + b.nearest.distance < 0.5 * length(b.at - a.at);
+    const int straight = (is_straight(a, *crease) ? 1 : 0) + (is_straight(*crease, b) ? 1 : 0);
+    if (straight >= (is_thin ? 1 : 2)) return crease;
   }
   return outermost_pushed_in(a, b, std::numeric_limits<double>::infinity());
 }
@@ -127,6 +141,12 @@ std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, 
   if (auto found = shortest(a, b, landmarks, false)) return found;
   if (auto found = shortest(a, b, landmarks, true)) return found;
   std::vector<Stop> more(landmarks.begin(), landmarks.end());
+  for (const Stop& landmark : landmarks) {
+    for (const Stop* end : {&a, &b}) {
+      if (const std::optional<Stop> crease = at_crease(*end, landmark)) more.push_back(*crease);
+    }
+  }
+  if (const std::optional<Stop> crease = at_crease(a, b)) more.push_back(*crease);
   walk(a, b, more);
   walk(b, a, more);
   for (const Stop& landmark : landmarks) {

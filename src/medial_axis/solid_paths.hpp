@@ -47,6 +47,7 @@ class SolidPaths {
   [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, int& moves) const;
   [[nodiscard]] std::optional<Stop> outermost_pushed_in(const Stop& a, const Stop& b, double most_out) const;
   [[nodiscard]] std::optional<Stop> detour(const Stop& a, const Stop& b) const;
+  [[nodiscard]] std::optional<Stop> at_mouth(const Stop& thin, const Stop& other) const;
   [[nodiscard]] std::optional<Stop> at_crease(const Stop& a, const Stop& b) const;
   [[nodiscard]] std::optional<Stop> pushed_in(const Vec3d& outside, const Stop& near, double most_out) const;
   [[nodiscard]] Stop centred(const Stop& stop) const;
