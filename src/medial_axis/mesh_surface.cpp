@@ -40,7 +40,6 @@ MeshSurface::MeshSurface(const MeshView& mesh, const SiteTable& sites, bool boun
     : mesh_(mesh),
       sites_(sites),
       bounds_solid_(bounds_solid),
-      diagonal_(length(bounds(mesh).size())),
       bvh_(mesh, sites, context),
       normals_(mesh, sites),
       first_(mesh.vertices.size() + 1, 0),

@@ -28,7 +28,6 @@ class MeshSurface final : public Surface {
     return bounds_solid_ && nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
   }
   [[nodiscard]] std::optional<double> first_crossing(const Vec3d& from, const Vec3d& to) const override;
-  [[nodiscard]] double diagonal() const override { return diagonal_; }
   [[nodiscard]] Vec3d outwards(std::uint32_t element) const override;
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
 
@@ -38,7 +37,6 @@ class MeshSurface final : public Surface {
   MeshView mesh_;
   const SiteTable& sites_;
   bool bounds_solid_;
-  double diagonal_;
   Bvh bvh_;
   Pseudonormals normals_;
   std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_

@@ -338,10 +338,13 @@ std::optional<Stop> home_of_extra(const GovernorField& governors, const CellStru
 /// Whether a vertex lies in the component that its cell stands for, as far as lines tell: others may have been closer.
 bool is_in_component(const GovernorField& governors, const CellStructure& structure, Cell cell,
                      const AxisVertex& vertex) {
+  constexpr double furthest = 1.3;  // voxels, from the corner: 0.7 along each axis is 1.21
+  const Vec3d corner = corner_at(governors.solid().grid, structure.lattice().place(node_of(cell)));
+  if (length(vertex.position - corner) > furthest * governors.longest_voxel()) return false;
   const std::optional<Stop> home = deepest_of(governors, structure.lattice(), cell);
   if (!home) return true;
   const Stop own{vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};
-  return vertex.radius > 0 && SolidPaths(governors.surface()).are_joined(*home, own);
+  return vertex.radius > 0 && SolidPaths(governors.surface()).is_straight(*home, own);
 }
 
 /// In the middle of a thin part where there is one: the ball there holds the point that it was found from.

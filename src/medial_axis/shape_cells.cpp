@@ -47,7 +47,7 @@ class Shaper {
     const Stop a = stop_at(ends[0]);
     const Stop b = stop_at(ends[1]);
     const bool has_twin = std::binary_search(twins_.begin(), twins_.end(), c);
-    if (!has_twin && paths_.are_joined(a, b)) return std::nullopt;
+    if (!has_twin && paths_.is_straight(a, b)) return std::nullopt;
     std::optional<std::vector<Stop>> between;
     if (!has_twin) between = paths_.pushed(a, b);
     if (!between) between = through_middle(c, a, b);
@@ -67,7 +67,7 @@ class Shaper {
     if (outline.size() == 4 && !touches_extra(c)) {
       std::array<std::array<std::uint32_t, 3>, 2> halves = triangles_of(outline, vertices);
       for (int turn = 0; turn < 2; ++turn) {
-        if (paths_.are_joined(stop_of(vertices[halves[0][0]]), stop_of(vertices[halves[0][2]]))) {
+        if (paths_.is_straight(stop_of(vertices[halves[0][0]]), stop_of(vertices[halves[0][2]]))) {
           for (const auto& t : halves) shape.items.insert(shape.items.end(), t.begin(), t.end());
           return shape;
         }
@@ -168,7 +168,7 @@ class Shaper {
     const auto is_good = [&] { return most == corners.size(); };
     const auto look_from = [&](std::size_t m) {
       const auto straight = static_cast<std::size_t>(std::count_if(
-          corners.begin(), corners.end(), [&](const Stop& corner) { return paths_.are_joined(middles[m], corner); }));
+          corners.begin(), corners.end(), [&](const Stop& corner) { return paths_.is_straight(middles[m], corner); }));
       if (straight > most) {
         most = straight;
         best = m;
@@ -254,7 +254,8 @@ class Shaper {
       std::sort(ears.begin(), ears.end());
       const auto is_joined = [&](const std::pair<double, std::size_t>& ear) {
         const std::size_t k = ear.second;
-        return paths_.are_joined(stop_of_place(polygon[(k + size - 1) % size]), stop_of_place(polygon[(k + 1) % size]));
+        return paths_.is_straight(stop_of_place(polygon[(k + size - 1) % size]),
+                                  stop_of_place(polygon[(k + 1) % size]));
       };
       auto ear = std::find_if(ears.begin(), ears.end(), is_joined);
       if (ear == ears.end()) {

@@ -8,8 +8,7 @@
 namespace blum {
 namespace {
 
-/// How often the parts of one segment are pushed in: at once, and where nothing else helps.
-constexpr int few_moves = 2;
+/// How many stops pushing may put between two, and how often parts are halved.
 constexpr int most_moves = 24;
 constexpr int most_depth = 8;
 constexpr std::size_t most_landmarks = 48;
@@ -32,7 +31,7 @@ std::optional<Stop> SolidPaths::stop_at(const Vec3d& at, const Footprint& near) 
 
 Stop SolidPaths::inside_near(const Vec3d& at, const Stop& near) const {
   if (const auto stop = stop_at(at, foot_of(near.nearest))) return *stop;
-  if (const auto stop = pushed_in(at, near, std::numeric_limits<double>::infinity())) return *stop;
+  if (const auto stop = pushed_in(at, near)) return *stop;
   const NearestPoint foot = surface_.nearest(at, foot_of(near.nearest));
   return {foot.point, surface_.nearest(foot.point, foot_of(foot))};
 }
@@ -45,10 +44,9 @@ bool SolidPaths::is_straight(const Stop& a, const Stop& b) const {
 }
 
 /// As far inside as a point is outside, or in the middle where the solid is thin.
-std::optional<Stop> SolidPaths::pushed_in(const Vec3d& outside, const Stop& near, double most_out) const {
+std::optional<Stop> SolidPaths::pushed_in(const Vec3d& outside, const Stop& near) const {
   constexpr int most_tries = 24;
   const NearestPoint foot = surface_.nearest(outside, foot_of(near.nearest));
-  if (foot.distance > most_out) return std::nullopt;
   Vec3d move = foot.point - outside;
   for (int n = 0; n < most_tries; ++n, move *= 0.25) {
     if (const auto stop = stop_at(foot.point + move, foot_of(foot))) return centred(*stop);
@@ -71,7 +69,7 @@ std::optional<Stop> SolidPaths::at_crease(const Stop& a, const Stop& b) const {
   const Vec3d x = middle + u * ((p - cosine * q) / turn) + v * ((q - cosine * p) / turn);
   if (squared_length(x - middle) > squared_length(b.at - a.at)) return std::nullopt;
   const std::optional<Stop> stop = stop_at(x, foot_of(a.nearest));
-  return stop ? centred(*stop) : pushed_in(x, a, std::numeric_limits<double>::infinity());
+  return stop ? centred(*stop) : pushed_in(x, a);
 }
 
 /// The point beside another one in the middle plane of a thin part: there a line leads into it.
@@ -92,25 +90,17 @@ std::optional<Stop> SolidPaths::detour(const Stop& a, const Stop& b) const {
     const int straight = (is_straight(a, *crease) ? 1 : 0) + (is_straight(*crease, b) ? 1 : 0);
     if (straight >= (is_thin ? 1 : 2)) return crease;
   }
-  return outermost_pushed_in(a, b, std::numeric_limits<double>::infinity());
+  return outermost_pushed_in(a, b);
 }
 
 /// The middle of what is outside of a segment, pushed in.
-std::optional<Stop> SolidPaths::outermost_pushed_in(const Stop& a, const Stop& b, double most_out) const {
+std::optional<Stop> SolidPaths::outermost_pushed_in(const Stop& a, const Stop& b) const {
   const std::optional<double> leaves = surface_.first_crossing(a.at, b.at);
   const std::optional<double> returns = surface_.first_crossing(b.at, a.at);
   if (!leaves || !returns) return std::nullopt;
   const Vec3d middle = a.at + (b.at - a.at) * (0.5 * (*leaves + 1 - *returns));
   std::optional<Stop> stop = stop_at(middle, foot_of(a.nearest));
-  return stop ? stop : pushed_in(middle, a, most_out);
-}
-
-/// @param moves  how many points may be moved yet.
-bool SolidPaths::can_be_pushed_in(const Stop& a, const Stop& b, int& moves) const {
-  if (is_straight(a, b)) return true;
-  if (moves-- <= 0) return false;
-  const std::optional<Stop> stop = outermost_pushed_in(a, b, most_cut_);
-  return stop && can_be_pushed_in(a, *stop, moves) && can_be_pushed_in(*stop, b, moves);
+  return stop ? stop : pushed_in(middle, a);
 }
 
 /// Adds the stops between two. @param moves  how many there may be yet.
@@ -123,13 +113,7 @@ bool SolidPaths::push_in(const Stop& a, const Stop& b, int depth, int& moves, st
   return push_in(*stop, b, depth - 1, moves, between);
 }
 
-bool SolidPaths::are_joined(const Stop& a, const Stop& b) const {
-  int moves = few_moves;
-  return can_be_pushed_in(a, b, moves);
-}
-
 std::optional<std::vector<Stop>> SolidPaths::pushed(const Stop& a, const Stop& b) const {
-  if (are_joined(a, b)) return std::vector<Stop>{};
   std::vector<Stop> between;
   int moves = most_moves;
   if (push_in(a, b, most_depth, moves, between)) return between;
@@ -138,8 +122,7 @@ std::optional<std::vector<Stop>> SolidPaths::pushed(const Stop& a, const Stop& b
 
 std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, std::span<const Stop> landmarks) const {
   if (auto found = pushed(a, b)) return found;
-  if (auto found = shortest(a, b, landmarks, false)) return found;
-  if (auto found = shortest(a, b, landmarks, true)) return found;
+  if (auto found = shortest(a, b, landmarks)) return found;
   std::vector<Stop> more(landmarks.begin(), landmarks.end());
   for (const Stop& landmark : landmarks) {
     for (const Stop* end : {&a, &b}) {
@@ -154,7 +137,7 @@ std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, 
     walk(landmark, a, more);
     walk(landmark, b, more);
   }
-  return shortest(a, b, more, false);
+  return shortest(a, b, more);
 }
 
 /// The middle between the two walls of a thin part.
@@ -188,8 +171,8 @@ void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& 
 }
 
 /// Dijkstra's search; whether two stops are joined is only asked where it matters.
-std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop& b, std::span<const Stop> landmarks,
-                                                      bool pushes) const {
+std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop& b,
+                                                      std::span<const Stop> landmarks) const {
   constexpr double far = std::numeric_limits<double>::infinity();
   std::vector<Stop> stops(landmarks.begin(), landmarks.end());
   stops.push_back(a);
@@ -212,8 +195,8 @@ std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop&
     for (std::size_t s = 0; s < stops.size(); ++s) {
       const double longer = way[next] + length(stops[s].at - stops[next].at);
       if (is_done[s] || longer >= way[s]) continue;
-      looks += pushes ? 2 : 1;
-      if (!(pushes ? are_joined(stops[next], stops[s]) : is_straight(stops[next], stops[s]))) continue;
+      ++looks;
+      if (!is_straight(stops[next], stops[s])) continue;
       way[s] = longer;
       before[s] = next;
     }

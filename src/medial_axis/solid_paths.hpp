@@ -19,7 +19,7 @@ struct Stop {
 class SolidPaths {
  public:
   /// @param surface  that bounds the solid. It must stay.
-  explicit SolidPaths(const Surface& surface) : surface_(surface), most_cut_(cut_of_diagonal * surface.diagonal()) {}
+  explicit SolidPaths(const Surface& surface) : surface_(surface) {}
 
   /// A point, if it lies in the solid and not on its surface.
   [[nodiscard]] std::optional<Stop> stop_at(const Vec3d& at, const Footprint& near) const;
@@ -30,36 +30,28 @@ class SolidPaths {
   /// Whether a segment stays in the solid, its ends being in it.
   [[nodiscard]] bool is_straight(const Stop& a, const Stop& b) const;
 
-  /// Whether a segment stays in the solid, or can be pushed into it: where its points outside go through the surface
-  /// next to them, the parts are asked again. Past an edge of the solid that soon succeeds, across a gap it never does.
-  [[nodiscard]] bool are_joined(const Stop& a, const Stop& b) const;
-  /// The stops between two on the way that pushing finds, if it finds any; none where they are joined.
+  /// The stops between two on the way that pushing finds, if it finds any; none where the segment stays in the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> pushed(const Stop& a, const Stop& b) const;
 
-  /// The stops between two such that those that follow each other are joined; nullopt where none were found. Tried in
-  /// turn: none; those of pushing; some of the landmarks; these and what is met when walking along thin parts.
+  /// The stops between two such that segments from one to the next stay in the solid; nullopt where none were found.
+  /// Tried in turn: none; those of pushing; some of the landmarks; these and what is met when walking along thin parts.
   /// @param landmarks  points in the same part of the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> path(const Stop& a, const Stop& b,
                                                       std::span<const Stop> landmarks) const;
 
  private:
   [[nodiscard]] bool push_in(const Stop& a, const Stop& b, int depth, int& moves, std::vector<Stop>& between) const;
-  [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, int& moves) const;
-  [[nodiscard]] std::optional<Stop> outermost_pushed_in(const Stop& a, const Stop& b, double most_out) const;
+  [[nodiscard]] std::optional<Stop> outermost_pushed_in(const Stop& a, const Stop& b) const;
   [[nodiscard]] std::optional<Stop> detour(const Stop& a, const Stop& b) const;
   [[nodiscard]] std::optional<Stop> at_mouth(const Stop& thin, const Stop& other) const;
   [[nodiscard]] std::optional<Stop> at_crease(const Stop& a, const Stop& b) const;
-  [[nodiscard]] std::optional<Stop> pushed_in(const Vec3d& outside, const Stop& near, double most_out) const;
+  [[nodiscard]] std::optional<Stop> pushed_in(const Vec3d& outside, const Stop& near) const;
   [[nodiscard]] Stop centred(const Stop& stop) const;
   void walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const;
-  [[nodiscard]] std::optional<std::vector<Stop>> shortest(const Stop& a, const Stop& b, std::span<const Stop> landmarks,
-                                                          bool pushes) const;
-
-  /// A corner that a segment may cut, as a part of the solid's diagonal: half of what the certificate lets pass.
-  static constexpr double cut_of_diagonal = 1.0 / 128;
+  [[nodiscard]] std::optional<std::vector<Stop>> shortest(const Stop& a, const Stop& b,
+                                                          std::span<const Stop> landmarks) const;
 
   const Surface& surface_;
-  double most_cut_;  ///< mesh units
 };
 
 }  // namespace blum

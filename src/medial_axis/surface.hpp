@@ -56,9 +56,6 @@ class Surface {
     return std::nullopt;
   }
 
-  /// The diagonal of the box around the surface, mesh units.
-  [[nodiscard]] virtual double diagonal() const { return 0; }
-
   /// The direction that an element faces away from the solid, of unit length; zero where that is not known.
   [[nodiscard]] virtual Vec3d outwards(std::uint32_t /*element*/) const { return {}; }
 

@@ -1,4 +1,4 @@
-// Proves that paths stay in the solid: lines past a corner may be pushed in, lines across a gap are found out however
+// Proves that paths stay in the solid: lines past a corner are bent around it, lines across a gap are found out however
 // narrow it is, and ways over landmarks lead around it.
 #include "medial_axis/solid_paths.hpp"
 
@@ -64,7 +64,7 @@ TEST(SolidPaths, LinesAcrossAGapAreFoundOutHoweverNarrowItIs) {
     const Stop left = s.at({-0.4, 0, 0.7});
     const Stop right = s.at({0.4, 0.1, 0.7});
     EXPECT_FALSE(s.paths.is_straight(left, right));
-    EXPECT_FALSE(s.paths.are_joined(left, right));
+    EXPECT_FALSE(s.paths.pushed(left, right).has_value());
     EXPECT_TRUE(s.paths.is_straight(left, s.at({-0.3, 0.2, 0.1})));
     EXPECT_TRUE(s.paths.is_straight(s.at({-0.4, 0, -0.3}), s.at({0.4, 0, -0.3})));
   }
@@ -94,7 +94,7 @@ TEST(SolidPaths, ALineThatCutsACornerIsBentAroundIt) {
   ASSERT_TRUE(stops.has_value());
   stops->insert(stops->begin(), above);
   stops->push_back(below);
-  for (std::size_t k = 0; k + 1 < stops->size(); ++k) EXPECT_TRUE(s.paths.are_joined((*stops)[k], (*stops)[k + 1]));
+  for (std::size_t k = 0; k + 1 < stops->size(); ++k) EXPECT_TRUE(s.paths.is_straight((*stops)[k], (*stops)[k + 1]));
 }
 
 TEST(SolidPaths, APointOutsideIsMovedInsideNextToIt) {
