@@ -211,8 +211,8 @@ struct Description<Certificate> {
 };
 
 /// What the solid of a mesh is: SolidRule::polyhedron where it is closed, manifold and has a single side, and where its
-/// triangles neither cross nor, within one body, touch; also where resolve_crossings() makes such a mesh of it, with the
-/// same inside; else SolidRule::winding.
+/// triangles neither cross nor, within one body, touch; also where resolve_crossings() makes such a mesh of it, with
+/// the same inside; else SolidRule::winding.
 struct MeshSolidRule {
   SolidRule rule = SolidRule::polyhedron;
   std::string reason;  ///< one sentence
@@ -228,8 +228,8 @@ struct Description<MeshSolidRule> {
 };
 
 /// Found by the verifier's own reading of the mesh and find_self_intersections(); a mesh without its crossings is
-/// taken from resolve_crossings(), and read in the same way. @throws InvalidMesh for what
-/// validate() refuses, Cancelled.
+/// taken from resolve_crossings(), and read in the same way. @throws InvalidMesh for what validate() refuses,
+/// Cancelled.
 [[nodiscard]] MeshSolidRule solid_rule(const MeshView& mesh, const Context& context = {});
 
 /// Checks an axis against the closed, manifold mesh whose solid it is said to have. Nothing of the
@@ -240,9 +240,8 @@ struct Description<MeshSolidRule> {
 /// Betti numbers are compared body by body: a connected part of the axis belongs to the body that its deepest vertex
 /// lies in. Homotopy classes are not compared: a loop that runs round nothing counts as much as one around a handle.
 /// @throws InvalidMesh where the mesh is not closed and manifold, or crosses itself, which is not resolved, or a shell
-/// encloses nothing, or just what another one does; InvalidOption for a complex that is none (see homology()), or lacks a column of
-/// MedialView; Cancelled. Cost: on one
-/// core about 2 s for 100,000 vertices and as many triangles.
+/// encloses nothing, or just what another one does; InvalidOption for a complex that is none (see homology()), or lacks
+/// a column of MedialView; Cancelled. Cost: on one core about 2 s for 100,000 vertices and as many triangles.
 [[nodiscard]] Certificate certify(const Complex& axis, const MeshView& mesh, const CertificateOptions& options = {},
                                   const Context& context = {});
 
