@@ -3,22 +3,19 @@
 #include <algorithm>
 #include <bit>
 
+#include "medial_axis/voxel_border.hpp"
+
 namespace blum {
 namespace {
 
-constexpr unsigned middle = 13;
+constexpr unsigned middle = place_of_voxel;
 
 using Place = std::array<std::int64_t, 3>;
 
-/// Along each axis, where a place of a border (or a neighbour) lies: 0, 1, 2.
-constexpr std::array<unsigned, 3> along(unsigned place) {
-  return {place % 3, place / 3 % 3, place / 9};
-}
-
 /// Whether one cell of a voxel is a face of another, by their places.
 constexpr bool is_face(unsigned face, unsigned cell) {
-  const auto f = along(face);
-  const auto c = along(cell);
+  const auto f = along_axes(face);
+  const auto c = along_axes(cell);
   for (std::size_t a = 0; a < 3; ++a) {
     if (c[a] != 1 && c[a] != f[a]) return false;
   }
@@ -26,13 +23,12 @@ constexpr bool is_face(unsigned face, unsigned cell) {
 }
 constexpr int dimension_at(unsigned place) {
   int dimension = 0;
-  for (const unsigned x : along(place)) dimension += x == 1 ? 1 : 0;
+  for (const unsigned x : along_axes(place)) dimension += x == 1 ? 1 : 0;
   return dimension;
 }
 
 struct BorderTables {
   std::array<std::uint32_t, 27> touching{};  ///< faces and cofaces of each cell of the border
-  std::array<Neighbourhood, 27> sharers{};   ///< neighbours around each
   std::uint32_t even = 0;                    ///< cells of even dimension
 };
 constexpr BorderTables make_tables() {
@@ -42,9 +38,6 @@ constexpr BorderTables make_tables() {
     for (unsigned q = 0; q < 27; ++q) {
       if (q == middle) continue;
       if (p != middle && (is_face(p, q) || is_face(q, p))) tables.touching[p] |= 1U << q;
-      bool shares = true;
-      for (std::size_t a = 0; a < 3; ++a) shares = shares && (along(q)[a] == 1 || along(q)[a] == along(p)[a]);
-      if (shares) tables.sharers[p] |= 1U << q;
     }
   }
   return tables;
@@ -65,10 +58,6 @@ bool is_contractible(std::uint32_t cells) {
     reached |= next;
   }
   return reached == cells;
-}
-
-std::uint32_t index_of(const VoxelSet& voxels, const Place& at) {
-  return static_cast<std::uint32_t>((at[2] * voxels.size()[1] + at[1]) * voxels.size()[0] + at[0]);
 }
 
 }  // namespace
@@ -112,12 +101,9 @@ void AttachedVoxels::find_attached() {
 
 template <class Visit>
 void AttachedVoxels::for_each_voxel_around(Cell cell, const Visit& visit) const {
-  const Place node = structure_.lattice().place(node_of(cell));
-  for (CellAxes behind = 0; behind < 8; ++behind) {
-    if ((behind & axes_of(cell)) != 0) continue;
-    const Place at{node[0] - (behind & 1U), node[1] - (behind >> 1U & 1U), node[2] - (behind >> 2U)};
+  structure_.lattice().for_each_cube_around(cell, [&](const Place& at) {
     if (plain_.contains(at[0], at[1], at[2])) visit(at);
-  }
+  });
 }
 
 void AttachedVoxels::attach_around(Cell cell) {
@@ -173,7 +159,7 @@ void AttachedVoxels::find_staying() {
   for_each_attached([&](const Place& voxel) {
     find_closure(voxel, line);
     for (const Cell cell : line) {
-      if (structure_.is_extra(cell)) voxels_of_[cell - first].push_back(index_of(plain_, voxel));
+      if (structure_.is_extra(cell)) voxels_of_[cell - first].push_back(plain_.index(voxel));
     }
   });
   stays_.assign(count, 0);
@@ -205,7 +191,7 @@ void AttachedVoxels::find_staying() {
     });
   }
   for (const Cell cell : plain_staying_) attach_around(cell);
-  for_each_attached([&](const Place& voxel) { list_.push_back({index_of(plain_, voxel), {}}); });
+  for_each_attached([&](const Place& voxel) { list_.push_back({plain_.index(voxel), {}}); });
 }
 
 bool AttachedVoxels::stays(Cell cell) const {
@@ -233,7 +219,7 @@ void AttachedVoxels::find_borders(const Importance& importance) {
       const bool is_extra = structure_.is_extra(cell);
       const unsigned place = place_in(voxel, is_extra ? structure_.extra()->cell(cell).place.value_or(0) : cell);
       BorderCell& border = own.border[place];
-      border = {cell, is_extra ? 0 : tables.sharers[place], stays(cell), importance.of(cell) > 0};
+      border = {cell, is_extra ? 0 : sharers_of_place[place], stays(cell), importance.of(cell) > 0};
       if (!is_extra) continue;
       for (const std::uint32_t other : voxels_of_[cell - structure_.first_extra()]) {
         if (other == own.voxel) continue;

@@ -5,6 +5,8 @@
 
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
+#include "medial_axis/surface.hpp"
+#include "medial_axis/thin_ball.hpp"
 
 namespace blum {
 
@@ -16,5 +18,19 @@ struct AxisVertex {
   std::array<SiteId, 2> sites;
   double separation_angle = 0;
 };
+
+/// A vertex that knows of one wall only.
+inline AxisVertex vertex_of_one_wall(const Vec3d& x, const NearestPoint& nearest) {
+  return {x, nearest.distance, {nearest.point, nearest.point}, {nearest.site, nearest.site}, 0};
+}
+
+/// The centre of a ball in a thin part.
+inline AxisVertex vertex_of_ball(const ThinBall& ball) {
+  return {ball.centre,
+          ball.nearest.distance,
+          {ball.nearest.point, ball.other.point},
+          {ball.nearest.site, ball.other.site},
+          ball.angle};
+}
 
 }  // namespace blum

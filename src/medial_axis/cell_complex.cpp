@@ -63,16 +63,12 @@ CellComplex::CellComplex(const VoxelSet& voxels, CellStructure structure, const 
 void CellComplex::insert_closure(Cell cell) {
   if (structure_.is_extra(cell)) {
     extra_[cell - structure_.first_extra()] = 1;
-    for (const Cell face : structure_.extra()->faces_of(cell)) insert_closure(face);
-    return;
+  } else {
+    cells_[node_of(cell)] |= static_cast<std::uint8_t>(1U << axes_of(cell));
   }
-  cells_[node_of(cell)] |= static_cast<std::uint8_t>(1U << axes_of(cell));
-  structure_.lattice().for_each_face(cell, [&](Cell face) {
-    const auto replaced = structure_.extra() == nullptr ? std::span<const Cell>() : structure_.extra()->replaced();
-    if (!std::binary_search(replaced.begin(), replaced.end(), face)) insert_closure(face);
+  structure_.for_each_face(cell, [&](Cell face) {
+    if (structure_.extra() == nullptr || !structure_.extra()->is_replaced(face)) insert_closure(face);
   });
-  if (structure_.extra() == nullptr || !structure_.extra()->is_mixed(cell)) return;
-  for (const Cell face : structure_.extra()->extra_faces_of(cell)) insert_closure(face);
 }
 
 }  // namespace blum

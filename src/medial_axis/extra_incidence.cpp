@@ -1,6 +1,7 @@
 #include "medial_axis/extra_incidence.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace blum {
 namespace {
@@ -23,8 +24,12 @@ IndexRows rows_of(std::vector<Pair> pairs, std::size_t rows) {
 
 }  // namespace
 
-ExtraIncidence::ExtraIncidence(const BodyCells& cells)
-    : first_(cells.first), cells_(cells.extra), faces_(cells.faces), mixed_(cells.lattice), replaced_(cells.replaced) {
+ExtraIncidence::ExtraIncidence(BodyCells cells)
+    : first_(cells.first),
+      cells_(std::move(cells.extra)),
+      faces_(std::move(cells.faces)),
+      mixed_(cells.lattice),
+      replaced_(std::move(cells.replaced)) {
   std::vector<Pair> cofaces;        // of extra cells
   std::vector<Pair> extra_cofaces;  // of cells of the voxels
   std::vector<Pair> extra_faces;

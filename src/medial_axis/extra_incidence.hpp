@@ -1,6 +1,7 @@
 // Blum: which cells touch those that are no cells of the voxels. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +20,7 @@ namespace blum {
 /// the extra ones. An extra cell is named by `first()` and its number.
 class ExtraIncidence {
  public:
-  explicit ExtraIncidence(const BodyCells& cells);
+  explicit ExtraIncidence(BodyCells cells);
 
   [[nodiscard]] Cell first() const { return first_; }
   [[nodiscard]] std::size_t size() const { return cells_.size(); }
@@ -38,6 +39,9 @@ class ExtraIncidence {
   }
   /// Cells of the voxels that are none of the model, rising.
   [[nodiscard]] std::span<const Cell> replaced() const { return replaced_; }
+  [[nodiscard]] bool is_replaced(Cell cell) const {
+    return std::binary_search(replaced_.begin(), replaced_.end(), cell);
+  }
 
  private:
   Cell first_ = 0;

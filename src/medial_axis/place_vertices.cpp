@@ -52,15 +52,6 @@ Vec3d corner_at(const GridSpec& grid, const std::array<std::int64_t, 3>& node) {
   return grid.position(node[0], node[1], node[2]) - grid.direction * (grid.spacing * 0.5);
 }
 
-AxisVertex vertex_of_one_wall(const Vec3d& x, const NearestPoint& nearest) {
-  AxisVertex vertex;
-  vertex.position = x;
-  vertex.radius = nearest.distance;
-  vertex.footprints = {nearest.point, nearest.point};
-  vertex.sites = {nearest.site, nearest.site};
-  return vertex;
-}
-
 AxisVertex vertex_on_surface(const NearestPoint& nearest) {
   AxisVertex vertex = vertex_of_one_wall(nearest.point, nearest);
   vertex.radius = 0;
@@ -237,12 +228,7 @@ class Placer {
   /// The middle of a thin part next to a corner beyond the surface.
   [[nodiscard]] std::optional<AxisVertex> in_thin_part(const NearestPoint& touched, const Vec3d& corner) const {
     const std::optional<ThinBall> ball = thin_ball_behind(surface_, touched, corner, 2 * governors_.longest_voxel());
-    if (!ball) return std::nullopt;
-    AxisVertex vertex = vertex_of_one_wall(ball->centre, ball->nearest);
-    vertex.footprints[1] = ball->other.point;
-    vertex.sites[1] = ball->other.site;
-    vertex.separation_angle = ball->angle;
-    return vertex;
+    return ball ? std::optional(vertex_of_ball(*ball)) : std::nullopt;
   }
 
   /// Where no bisector is within reach: at the corner; where that is outside, in the middle of a thin part next to it;
@@ -276,16 +262,12 @@ AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std
 
 namespace {
 
-/// Calls use(stop) for voxels that are inside around a cell of the lattice.
+/// Calls use(place) for voxels that are inside around a cell of the lattice.
 template <class Use>
 void for_each_voxel_inside(const GovernorField& governors, const CellLattice& lattice, Cell cell, const Use& use) {
-  const auto node = lattice.place(node_of(cell));
-  for (CellAxes behind = 0; behind < 8; ++behind) {
-    if ((behind & axes_of(cell)) != 0) continue;
-    const std::array<std::int64_t, 3> at{node[0] - (behind & 1U), node[1] - (behind >> 1U & 1U),
-                                         node[2] - (behind >> 2U)};
+  lattice.for_each_cube_around(cell, [&](const std::array<std::int64_t, 3>& at) {
     if (governors.solid().voxels.contains(at[0], at[1], at[2])) use(at);
-  }
+  });
 }
 
 /// The deepest voxel around a cell of the lattice.
@@ -341,10 +323,17 @@ bool is_in_component(const GovernorField& governors, const CellStructure& struct
   constexpr double furthest = 1.3;  // voxels, from the corner: 0.7 along each axis is 1.21
   const Vec3d corner = corner_at(governors.solid().grid, structure.lattice().place(node_of(cell)));
   if (length(vertex.position - corner) > furthest * governors.longest_voxel()) return false;
+  if (!(vertex.radius > 0)) return false;
+  // Most lie in the ball around the centre of a voxel, by more than rounding.
+  bool is_in_ball = false;
+  for_each_voxel_inside(governors, structure.lattice(), cell, [&](const std::array<std::int64_t, 3>& at) {
+    const Governor g = governors.at(at[0], at[1], at[2]);
+    is_in_ball = is_in_ball || length(vertex.position - g.centre) < 0.99 * length(g.centre - g.foot.point);
+  });
+  if (is_in_ball) return true;
   const std::optional<Stop> home = deepest_of(governors, structure.lattice(), cell);
-  if (!home) return true;
   const Stop own{vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};
-  return vertex.radius > 0 && SolidPaths(governors.surface()).is_straight(*home, own);
+  return !home || SolidPaths(governors.surface()).is_straight(*home, own);
 }
 
 /// In the middle of a thin part where there is one: the ball there holds the point that it was found from.
@@ -360,11 +349,7 @@ AxisVertex place_extra(const GovernorField& governors, const CellStructure& stru
     const Vec3d nearer = home->at + (ball->centre - home->at) * (reach / distance);
     return vertex_of_one_wall(nearer, surface.nearest(nearer, {home->nearest.point, home->nearest.element, 7}));
   }
-  AxisVertex vertex = vertex_of_one_wall(ball->centre, ball->nearest);
-  vertex.footprints[1] = ball->other.point;
-  vertex.sites[1] = ball->other.site;
-  vertex.separation_angle = ball->angle;
-  return vertex;
+  return vertex_of_ball(*ball);
 }
 
 }  // namespace

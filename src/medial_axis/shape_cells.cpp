@@ -24,12 +24,7 @@ struct Shape {
 };
 
 AxisVertex vertex_at(const Stop& stop) {
-  AxisVertex vertex;
-  vertex.position = stop.at;
-  vertex.radius = stop.nearest.distance;
-  vertex.footprints = {stop.nearest.point, stop.nearest.point};
-  vertex.sites = {stop.nearest.site, stop.nearest.site};
-  return vertex;
+  return vertex_of_one_wall(stop.at, stop.nearest);
 }
 
 class Shaper {
@@ -60,25 +55,18 @@ class Shaper {
     return shape;
   }
 
-  /// The triangles of a polygon. @param outline  its border, in a circle.
-  [[nodiscard]] Shape filled(std::uint32_t c, const std::vector<std::uint32_t>& outline,
-                             std::span<const AxisVertex> vertices) const {
+  /// The triangles of a polygon; nullopt where those of its corners alone, as triangles_of() has them, will do.
+  /// @param outline  its border, in a circle.
+  [[nodiscard]] std::optional<Shape> filled(std::uint32_t c, const std::vector<std::uint32_t>& outline,
+                                            std::span<const AxisVertex> vertices) const {
+    if (touches_extra(c)) return fan(c, outline, vertices);
+    const auto stop = [&](std::uint32_t v) { return stop_of(vertices[v]); };
+    if (outline.size() == 4) {
+      const auto [p, q, r] = triangles_of(outline, vertices)[0];
+      if (paths_.is_straight(stop(p), stop(r))) return std::nullopt;
+    }
     Shape shape;
-    if (outline.size() == 4 && !touches_extra(c)) {
-      std::array<std::array<std::uint32_t, 3>, 2> halves = triangles_of(outline, vertices);
-      for (int turn = 0; turn < 2; ++turn) {
-        if (paths_.is_straight(stop_of(vertices[halves[0][0]]), stop_of(vertices[halves[0][2]]))) {
-          for (const auto& t : halves) shape.items.insert(shape.items.end(), t.begin(), t.end());
-          return shape;
-        }
-        const auto [p, q, r] = halves[0];
-        const std::uint32_t s = halves[1][2];
-        halves = {{{q, r, s}, {q, s, p}}};
-      }
-    }
-    if (outline.size() > 4 && !touches_extra(c)) {
-      if (clip(outline, [&](std::uint32_t v) { return stop_of(vertices[v]); }, shape.items)) return shape;
-    }
+    if (clip(outline, stop, shape.items)) return shape;
     return fan(c, outline, vertices);
   }
 
@@ -246,16 +234,14 @@ class Shaper {
     while (polygon.size() > 3) {
       const std::size_t size = polygon.size();
       std::vector<std::pair<double, std::size_t>> ears;
+      const auto before = [&](std::size_t k) { return polygon[k == 0 ? size - 1 : k - 1]; };
+      const auto after = [&](std::size_t k) { return polygon[k + 1 == size ? 0 : k + 1]; };
       for (std::size_t k = 0; k < size; ++k) {
-        const Vec3d across =
-            stop_of_place(polygon[(k + 1) % size]).at - stop_of_place(polygon[(k + size - 1) % size]).at;
-        ears.emplace_back(squared_length(across), k);
+        ears.emplace_back(squared_length(stop_of_place(after(k)).at - stop_of_place(before(k)).at), k);
       }
       std::sort(ears.begin(), ears.end());
       const auto is_joined = [&](const std::pair<double, std::size_t>& ear) {
-        const std::size_t k = ear.second;
-        return paths_.is_straight(stop_of_place(polygon[(k + size - 1) % size]),
-                                  stop_of_place(polygon[(k + 1) % size]));
+        return paths_.is_straight(stop_of_place(before(ear.second)), stop_of_place(after(ear.second)));
       };
       auto ear = std::find_if(ears.begin(), ears.end(), is_joined);
       if (ear == ears.end()) {
@@ -263,7 +249,7 @@ class Shaper {
         ear = ears.begin();
       }
       const std::size_t k = ear->second;
-      items.insert(items.end(), {polygon[(k + size - 1) % size], polygon[k], polygon[(k + 1) % size]});
+      items.insert(items.end(), {before(k), polygon[k], after(k)});
       polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
     }
     items.insert(items.end(), polygon.begin(), polygon.end());
@@ -347,35 +333,29 @@ class Outlines {
 }  // namespace
 
 void shape_cells(AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors, const Context& context) {
-  const bool may_bend = governors.solid().extra != nullptr;
-  const Shaper shaper(piece, corners, governors);
   Shapes bent;
-  if (may_bend) bent = shapes_of(piece, 1, context, [&](std::uint32_t c) { return shaper.bent(c); });
-  take_vertices(piece, bent);
+  Shapes filled;
   const Outlines outlines(corners, bent);
-  Shapes filled = shapes_of(piece, 2, context, [&](std::uint32_t c) {
-    std::optional<Shape> shape;
-    if (may_bend) {
-      shape = shaper.filled(c, outlines.of(c), piece.vertices);
-    } else {
-      shape.emplace();
-      for (const auto& t : triangles_of(corners.of_cells()[c], piece.vertices)) {
-        shape->items.insert(shape->items.end(), t.begin(), t.end());
-      }
-    }
-    return shape;
-  });
-  take_vertices(piece, filled);
+  if (governors.solid().extra != nullptr) {
+    const Shaper shaper(piece, corners, governors);
+    bent = shapes_of(piece, 1, context, [&](std::uint32_t c) { return shaper.bent(c); });
+    take_vertices(piece, bent);
+    filled =
+        shapes_of(piece, 2, context, [&](std::uint32_t c) { return shaper.filled(c, outlines.of(c), piece.vertices); });
+    take_vertices(piece, filled);
+  }
   std::vector<std::size_t> first{0};
   std::vector<std::uint32_t> items;
   auto next = filled.begin();
   for (std::uint32_t c = 0; c < piece.cells.size(); ++c) {
     const Shape* shape = piece.cells[c].dimension == 1 ? outlines.bent(c) : nullptr;
-    if (piece.cells[c].dimension == 2) shape = &(next++)->second;
+    if (next != filled.end() && next->first == c) shape = &(next++)->second;
+    const auto own = corners.of_cells()[c];
     if (shape != nullptr) {
       items.insert(items.end(), shape->items.begin(), shape->items.end());
+    } else if (piece.cells[c].dimension == 2) {
+      for (const auto& t : triangles_of(own, piece.vertices)) items.insert(items.end(), t.begin(), t.end());
     } else {
-      const auto own = corners.of_cells()[c];
       items.insert(items.end(), own.begin(), own.end());
     }
     first.push_back(items.size());

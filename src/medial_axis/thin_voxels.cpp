@@ -10,6 +10,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "blum/grid/voxel_topology.hpp"
+#include "medial_axis/voxel_border.hpp"
 
 namespace blum {
 namespace {
@@ -29,26 +30,11 @@ constexpr std::uint8_t cells_towards(unsigned behind) {
 }
 
 /// The neighbours that have the cell of a voxel that spans `axes` from its corner `corner` (bits x, y, z: far side).
-constexpr std::uint32_t sharers(unsigned corner, unsigned axes) {
-  std::uint32_t bits = 0;
-  for (int n = 0; n < 27; ++n) {
-    bool shares = n != 13;
-    for (unsigned a = 0; a < 3; ++a) {
-      const int step = (a == 0 ? n % 3 : a == 1 ? n / 3 % 3 : n / 9) - 1;
-      const bool is_spanned = (axes >> a & 1U) != 0;
-      const int outward = (corner >> a & 1U) != 0 ? 1 : -1;
-      shares = shares && (step == 0 || (!is_spanned && step == outward));
-    }
-    if (shares) bits |= 1U << static_cast<unsigned>(n);
-  }
-  return bits;
-}
-
 constexpr auto make_sharers() {
-  std::array<std::array<std::uint32_t, 8>, 8> table{};
+  std::array<std::array<Neighbourhood, 8>, 8> table{};
   for (unsigned corner = 0; corner < 8; ++corner) {
     for (unsigned axes = 0; axes < 8; ++axes) {
-      if ((axes & corner) == 0) table[corner][axes] = sharers(corner, axes);
+      if ((axes & corner) == 0) table[corner][axes] = sharers_of_place[place_on_border(corner, axes)];
     }
   }
   return table;

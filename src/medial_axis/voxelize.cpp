@@ -140,7 +140,6 @@ Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& co
   BodyCells cells = body_cells(body.mesh, out.solid.grid, context);
   out.solid.voxels = std::move(cells.inside);
   agree_with(out.solid.voxels, out.solid.depth, context);
-  out.solid.extra = std::make_shared<const ExtraIncidence>(cells);
   BodyReport& report = out.report;
   report.betti = body.betti;
   report.topology_matches = cells.failures.empty();
@@ -148,6 +147,7 @@ Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& co
   report.voxels = out.solid.voxels.count();
   report.extra_cells = cells.extra.size();
   report.failures = std::move(cells.failures);
+  out.solid.extra = std::make_shared<const ExtraIncidence>(std::move(cells));
   return out;
 }
 

@@ -48,22 +48,16 @@ ExtraCell extra_cell(const detail::ModelCells& cells, std::size_t k, int exponen
 }  // namespace
 
 BodyCells body_cells(const TriangleMesh& body, const GridSpec& grid, const Context& context) {
-  constexpr int most_splits = 60;
   const int exponent = detail::scale_of(bounds(body));
   const TriangleMesh mesh = scaled(body, exponent);
   const detail::SurfaceMesh surface(mesh, context);
   const detail::CutGrid cut(surface, planes_of(grid, exponent), context);
-  const std::vector<detail::RefinedRegion> regions = detail::refine_regions(surface, cut, most_splits, context);
+  const std::vector<detail::RefinedRegion> regions =
+      detail::refine_regions(surface, cut, CellularModelOptions{}.most_splits, context);
   BodyCells out;
   out.lattice = CellLattice(grid.size);
   out.inside = nodes_inside(cut, grid, context);
-  for (const Cell cell : cut.cut_cells()) out.cut_cubes += dimension_of(cell) == 3 ? 1U : 0U;
-  for (const detail::RefinedRegion& region : regions) {
-    out.boxes += region.split_boxes();
-    for (const detail::StuckBox& stuck : region.stuck()) {
-      out.failures.push_back({scaled(stuck.box.low, -exponent), scaled(stuck.box.high, -exponent), stuck.obstacle});
-    }
-  }
+  out.failures = detail::failures_of(regions, exponent);
   detail::ExtraModelCells extra = detail::extra_model_cells(surface, cut, regions, out.lattice, context);
   out.replaced = std::move(extra.replaced);
   out.cofaces = std::move(extra.cofaces);

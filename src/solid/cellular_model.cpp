@@ -142,11 +142,9 @@ CellularModel CellularModel::of(const Solid& solid, const std::vector<std::uint3
     for (const detail::RefinedRegion& region : model->regions) {
       report.splits = std::max(report.splits, region.depth());
       report.boxes += region.split_boxes();
-      for (const detail::StuckBox& stuck : region.stuck()) {
-        report.failures.push_back(
-            {scaled(stuck.box.low, -data->exponent), scaled(stuck.box.high, -data->exponent), stuck.obstacle});
-      }
     }
+    const std::vector<ModelFailure> failures = detail::failures_of(model->regions, data->exponent);
+    report.failures.insert(report.failures.end(), failures.begin(), failures.end());
     const auto counts = detail::count_model_cells(model->grid, model->regions);
     for (std::size_t d = 0; d < 4; ++d) report.cells[d] += counts[d];
     data->groups.push_back(std::move(model));

@@ -84,6 +84,15 @@ class CellLattice {
       visit(static_cast<Cell>((cell | bit) - 8 * stride_[axis]));
     }
   }
+  /// Calls visit(place) for the cubes that have a cell, the cube itself where it is one; also beyond the lattice.
+  template <class Visit>
+  void for_each_cube_around(Cell cell, const Visit& visit) const {
+    const std::array<std::int64_t, 3> at = place(node_of(cell));
+    for (CellAxes behind = 0; behind < 8; ++behind) {
+      if ((behind & axes_of(cell)) != 0) continue;
+      visit(std::array<std::int64_t, 3>{at[0] - (behind & 1U), at[1] - (behind >> 1U & 1U), at[2] - (behind >> 2U)});
+    }
+  }
 
  private:
   std::array<std::int64_t, 3> size_{0, 0, 0};  ///< nodes

@@ -32,6 +32,11 @@ class VoxelSet {
     return {voxel - row * x, row % y, row / y};
   }
 
+  /// The linear index of a voxel of the box, x fastest.
+  [[nodiscard]] std::uint32_t index(const std::array<std::int64_t, 3>& at) const {
+    return static_cast<std::uint32_t>((at[2] * size_[1] + at[1]) * size_[0] + at[0]);
+  }
+
   /// Whether a voxel is in the set; any indices.
   [[nodiscard]] bool contains(std::int64_t i, std::int64_t j, std::int64_t k) const {
     if (i < 0 || j < 0 || k < 0 || i >= size_[0] || j >= size_[1] || k >= size_[2]) return false;

@@ -50,8 +50,6 @@ struct BodyCells {
 
   /// Places where a component is not contractible: where there are any, the model has not the body's homotopy type.
   std::vector<ModelFailure> failures;
-  std::size_t cut_cubes = 0;  ///< cubes of the grid that the surface meets
-  std::size_t boxes = 0;      ///< that some of these were split into
 };
 
 /// @param body  closed, manifold, without self-intersections, facing outwards.

@@ -158,16 +158,11 @@ class Assembly {
   }
   /// A node inside that is a corner of the cell of the grid that a cell of the voxels stands for.
   [[nodiscard]] std::array<std::int64_t, 3> voxel_at(Cell plain) const {
-    const std::array<std::int64_t, 3> node = voxels_->place(node_of(plain));
-    for (CellAxes corner = 0; corner < 8; ++corner) {
-      if ((corner & axes_of(plain)) != 0) continue;
-      std::array<std::int64_t, 3> at = node;
-      for (std::size_t a = 0; a < 3; ++a) {
-        if ((axes_of(plain) >> a & 1U) == 0) at[a] -= corner >> a & 1U;
-      }
-      if (grid_.is_inside(lattice_.node(at[0], at[1], at[2]))) return at;
-    }
-    return node;
+    std::array<std::int64_t, 3> found = voxels_->place(node_of(plain));
+    voxels_->for_each_cube_around(plain, [&](const std::array<std::int64_t, 3>& at) {
+      if (grid_.is_inside(lattice_.node(at[0], at[1], at[2]))) found = at;
+    });
+    return found;
   }
 
   /// The first id of each cell of the grid that has any.
@@ -226,7 +221,7 @@ class Assembly {
       name(ids.corners, 3, cells.corners().size(), [&](std::uint32_t k) { return region.is_inside(k) ? 1U : 0U; });
     }
     out_.witness.assign(out_.size(), Vec3d{});
-    out_.ends.assign(out_.size(), {});
+    if (voxels_ != nullptr) out_.ends.assign(out_.size(), {});
     has_witness_.assign(out_.size(), false);
   }
 
@@ -262,9 +257,10 @@ class Assembly {
     const std::size_t begin = 2 * std::size_t{interval} + (begins_inside ? 0 : 1);  // crossing k is number k + 1
     IntervalEnd top{low};
     top.point[axis] = high;
-    auto& ends = out_.ends[out_.first_face.size() - 1];
-    ends = {begin == 0 ? IntervalEnd{low} : end_at(begin - 1), begin < crossings.size() ? end_at(begin) : top};
+    const std::array<IntervalEnd, 2> ends{begin == 0 ? IntervalEnd{low} : end_at(begin - 1),
+                                          begin < crossings.size() ? end_at(begin) : top};
     set_witness(0.5 * (ends[0].point + ends[1].point));
+    if (voxels_ != nullptr) out_.ends[out_.first_face.size() - 1] = ends;
   }
   [[nodiscard]] Vec3d node_position(std::size_t node) const { return grid_.planes().node(lattice_.place(node)); }
   /// Makes the middle of what is around a component of a square its witness, if there is anything.

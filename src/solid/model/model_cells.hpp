@@ -29,7 +29,7 @@ struct ModelCells {
   std::vector<std::uint32_t> first_face;         ///< of each cell, and the end
   std::vector<std::uint32_t> faces;              ///< of one dimension less
   std::vector<Vec3d> witness;                    ///< of each cell: a point of its component
-  std::vector<std::array<IntervalEnd, 2>> ends;  ///< of each cell: of a polygon's interval, the lower one first
+  std::vector<std::array<IntervalEnd, 2>> ends;  ///< of each extra cell: of a polygon's interval, the lower one first
 
   [[nodiscard]] std::size_t size() const { return dimension.size(); }
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::uint32_t cell) const {

@@ -9,6 +9,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "blum/core/union_find.hpp"
+#include "solid/model/scaling.hpp"
 
 namespace blum::detail {
 namespace {
@@ -135,6 +136,16 @@ std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid
     if (region) regions.push_back(std::move(*region));
   }
   return regions;
+}
+
+std::vector<ModelFailure> failures_of(std::span<const RefinedRegion> regions, int exponent) {
+  std::vector<ModelFailure> failures;
+  for (const RefinedRegion& region : regions) {
+    for (const StuckBox& stuck : region.stuck()) {
+      failures.push_back({scaled(stuck.box.low, -exponent), scaled(stuck.box.high, -exponent), stuck.obstacle});
+    }
+  }
+  return failures;
 }
 
 }  // namespace blum::detail
