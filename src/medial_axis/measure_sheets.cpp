@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "medial_axis/axis_parts.hpp"
+
+namespace blum {
+namespace {
+
+/// Of a sheet, while it is measured.
+struct Measured {
+  std::vector<std::pair<double, double>> thickness, angle;  ///< of triangles: the mean of the corners, and the area
+  Vec3d corners;                                            ///< the sum of all
+  std::int64_t border_sides = 0, cut_vertices = 0;
+};
+
+class SheetMeasurer {
+ public:
+  SheetMeasurer(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, AxisGraph& graph)
+      : parts_(parts), seam_of_edge_(seam_of_edge), graph_(graph), measured_(parts.sheet_numbers().size()) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t sheet : parts.sheet_numbers()) {
+      graph_.sheets.emplace_back().sheet = sheet;
+      graph_.sheets.back().thickness = graph_.sheets.back().separation_angle = {infinite, 0, -infinite};
+    }
+  }
+
+  void measure() {
+    const std::size_t corners = 3 * parts_.view().triangles.size();
+    detail::UnionFind borders(corners);
+    std::vector<bool> is_border(corners, false);
+    for (std::uint32_t t = 0; t < parts_.view().triangles.size(); ++t) {
+      add_triangle(t);
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t from = parts_.cut_vertex(t, k);
+        const std::uint32_t to = parts_.cut_vertex(t, (k + 1) % 3);
+        if (from == 3 * t + k) ++measured_[parts_.sheet_place(t)].cut_vertices;
+        if (!add_side(t, parts_.incidence().sides()[t][k])) continue;
+        borders.join(from, to);
+        is_border[from] = is_border[to] = true;
+      }
+    }
+    for (std::uint32_t c = 0; c < corners; ++c) {
+      if (is_border[c] && borders.find(c) == c) ++sheet_of(c / 3).boundary_loops;
+    }
+    for (std::size_t s = 0; s < measured_.size(); ++s) finish(graph_.sheets[s], measured_[s]);
+    for (const AxisSheet& sheet : graph_.sheets) {
+      graph_.area += sheet.area;
+      graph_.rim_length += sheet.rim_length;
+    }
+  }
+
+ private:
+  AxisSheet& sheet_of(std::uint32_t triangle) { return graph_.sheets[parts_.sheet_place(triangle)]; }
+
+  void add_triangle(std::uint32_t t) {
+    const MedialView& axis = parts_.view();
+    const auto& [a, b, c] = axis.triangles[t];
+    const Vec3d& at = axis.positions[a];
+    const double area = 0.5 * length(cross(axis.positions[b] - at, axis.positions[c] - at));
+    const Vec3d corners = at + axis.positions[b] + axis.positions[c];
+    AxisSheet& sheet = sheet_of(t);
+    Measured& measured = measured_[parts_.sheet_place(t)];
+    const auto spread = [&](AxisSpread& all, std::vector<std::pair<double, double>>& means, double scale,
+                            std::span<const double> values) {
+      const auto [least, most] = std::minmax({values[a], values[b], values[c]});
+      all.minimum = std::min(all.minimum, scale * least);
+      all.maximum = std::max(all.maximum, scale * most);
+      means.emplace_back(scale * (values[a] + values[b] + values[c]) / 3, area);
+    };
+    spread(sheet.thickness, measured.thickness, 2, axis.radius);
+    spread(sheet.separation_angle, measured.angle, 1, axis.separation_angle);
+    ++sheet.triangles;
+    sheet.area += area;
+    sheet.centroid += area / 3 * corners;
+    measured.corners += corners;
+  }
+
+  /// Whether it is a part of the border.
+  bool add_side(std::uint32_t t, std::uint32_t edge) {
+    const EdgePart part = parts_.part(edge);
+    if (part == EdgePart::inner) return false;
+    AxisSheet& sheet = sheet_of(t);
+    double& along = part == EdgePart::rim    ? sheet.rim_length
+                    : part == EdgePart::seam ? sheet.seam_length
+                                             : sheet.crease_length;
+    along += parts_.edge_length(edge);
+    if (part == EdgePart::seam) sheet.seams.push_back(seam_of_edge_[edge]);
+    ++measured_[parts_.sheet_place(t)].border_sides;
+    return true;
+  }
+
+  static void finish(AxisSheet& sheet, Measured& measured) {
+    const auto triangles = static_cast<std::int64_t>(sheet.triangles);
+    sheet.thickness.median = weighted_median(measured.thickness);
+    sheet.separation_angle.median = weighted_median(measured.angle);
+    sheet.centroid =
+        sheet.area > 0 ? sheet.centroid / sheet.area : measured.corners / static_cast<double>(3 * sheet.triangles);
+    const std::int64_t edges = (3 * triangles + measured.border_sides) / 2;
+    sheet.euler_characteristic = measured.cut_vertices - edges + triangles;
+    std::sort(sheet.seams.begin(), sheet.seams.end());
+    sheet.seams.erase(std::unique(sheet.seams.begin(), sheet.seams.end()), sheet.seams.end());
+  }
+
+  const AxisParts& parts_;
+  const std::vector<std::uint32_t>& seam_of_edge_;
+  AxisGraph& graph_;
+  std::vector<Measured> measured_;
+};
+
+}  // namespace
+
+void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, AxisGraph& graph) {
+  SheetMeasurer(parts, seam_of_edge, graph).measure();
+}
+
+}  // namespace blum
