@@ -3,7 +3,9 @@
 #include <optional>
 #include <string>
 
+#include "axis_graph_file.hpp"
 #include "blum/certificate/certificate.hpp"
+#include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
 #include "files.hpp"
 #include "medial_report.hpp"
@@ -38,15 +40,36 @@ std::string source_text(const MedialMetadata& m) {
   return source + (m.solid_rule.empty() ? "" : ", as " + m.solid_rule);
 }
 
+/// @throws InvalidOption where the file holds no radii, or tells no sheets.
+AxisGraph graph_of(const MedialFile& file, const Context& context) {
+  const Complex& axis = file.complex;
+  if (!file.has_radii && !axis.positions.empty()) {
+    throw InvalidOption(missing_medial_column("vertices", medial_columns::radius));
+  }
+  if (!file.has_labels && !axis.triangles.empty()) {
+    throw InvalidOption(missing_medial_column("triangles", medial_columns::sheet));
+  }
+  return axis_graph(axis, context);
+}
+
 }  // namespace
 
-void report_axis(const std::filesystem::path& path, const ReportOptions& options) {
+void report_axis(const std::filesystem::path& path, const std::optional<std::filesystem::path>& graph,
+                 const ReportOptions& options) {
   Progress progress(!options.quiet);
   const Interrupt interrupt;
   const Context context = make_context(0, progress, interrupt);
   const MedialFile file = read_axis(path);
   const MedialCounts counts = count(file.complex);
   const BettiNumbers betti = homology(file.complex.view(), context);
+  Json graph_facts;
+  std::string graph_line;
+  if (graph) {
+    const AxisGraph found = graph_of(file, context);
+    write_graph(*graph, found, file.metadata);
+    graph_facts = graph_json(found, *graph);
+    graph_line = graph_text(found);
+  }
   progress.clear();
   Box3 box;
   double least = 0;
@@ -63,6 +86,7 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
                      {"kind", "medial axis"},
                      {"counts", counts_json(counts, file.has_labels)},
                      {"betti", to_json(betti)},
+                     {"graph", graph_facts},
                      {"radius", has_radii ? Json::array({least, most}) : Json(nullptr)},
                      {"footprints", file.has_footprints},
                      {"source", or_null(m.source)},
@@ -80,12 +104,14 @@ void report_axis(const std::filesystem::path& path, const ReportOptions& options
   table.add("file", path.string() + ": medial axis");
   table.add("axis", counts_text(counts, file.has_labels));
   table.add("topology", betti_text(betti));
+  if (graph) table.add("graph", graph_line);
   table.add("radii", has_radii ? rounded_text(least) + " to " + rounded_text(most) : "none in the file");
   table.add("footprints", file.has_footprints ? "two at each vertex" : "none in the file");
   if (!box.is_empty()) table.add("bounds", vector_text(box.lower) + " to " + vector_text(box.upper));
   if (file.nested) table.add("angles", angles_text(file.least_theta));
   table.add("of", source_text(m));
   table.add("made with", made_text(m));
+  if (graph) table.add("wrote", graph->string());
   report(options, answer_json("info", json), table.text());
 }
 

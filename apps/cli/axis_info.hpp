@@ -2,13 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "summary.hpp"
 
 namespace blum::cli {
 
-/// Reads an axis, and reports its counts, its topology and what its file tells of where it came from.
-/// @throws FileError, FormatError.
-void report_axis(const std::filesystem::path& path, const ReportOptions& options);
+/// Reads an axis, and reports its counts, its topology and what its file tells of where it came from; writes its graph
+/// where one is asked for.
+/// @throws FileError, FormatError; InvalidOption where the file lacks what the graph needs.
+void report_axis(const std::filesystem::path& path, const std::optional<std::filesystem::path>& graph,
+                 const ReportOptions& options);
 
 }  // namespace blum::cli

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "axis_graph_file.hpp"
 #include "axis_info.hpp"
 #include "blum/core/error.hpp"
 #include "blum/field/cuda_devices.hpp"
@@ -38,7 +39,8 @@ constexpr const char* examples = R"(Examples:
   blum info scan.nii.gz --json - | jq .labels
   blum info part.stl --model --resolution 32       its topology, proven cell by cell
   blum info bunny.nrrd                             a field that Blum wrote
-  blum info bunny.vtp                              a medial axis)";
+  blum info bunny.vtp                              a medial axis
+  blum info bunny.vtp --graph bunny.graphml        and its sheets, seams, curves and junctions)";
 
 constexpr std::size_t contact_limit = 100000;  // looked for
 constexpr std::size_t pair_limit = 20;         // shown in JSON
@@ -50,7 +52,7 @@ struct Arguments {
   bool devices = false;
   bool model = false;
   OptionTexts<CellularModelOptions> model_options;
-  std::optional<std::string> weld;
+  std::optional<std::string> weld, graph;
   ReportOptions report;
 };
 
@@ -337,18 +339,23 @@ void run_devices(const Arguments& a) {
 
 void run(const Arguments& a) {
   exclude(a.devices, "--devices", !a.input.empty(), "INPUT", "one asks for what can compute, the other for a file");
+  exclude(a.devices, "--devices", a.graph.has_value(), "--graph", "graphs are of medial axes");
   if (a.devices) return run_devices(a);
   if (a.input.empty()) throw UsageError("INPUT needs a file name");
   if (!a.model && !a.model_options.given().empty()) {
     throw UsageError(a.model_options.given().front() + " goes with --model");
   }
   const std::optional<double> weld = parse_weld(a.weld);
-  check_outputs(a.report.files(), {a.input});
+  const std::optional<fs::path> graph = parse_graph(a.graph);
+  std::vector<fs::path> outputs = a.report.files();
+  if (graph) outputs.push_back(*graph);
+  check_outputs(outputs, {a.input});
   if (holds_complex(a.input)) {
     if (a.model) throw UsageError("--model is for meshes, and '" + a.input + "' is a medial axis");
     if (weld) throw UsageError("--weld is for meshes, and '" + a.input + "' is a medial axis");
-    return report_axis(a.input, a.report);
+    return report_axis(a.input, graph, a.report);
   }
+  if (graph) throw UsageError("--graph is for medial axes, and '" + a.input + "' is none");
   const InputKind kind = input_kind(a.input);
   for (const auto& [is_given, name] : {std::pair{weld.has_value(), "--weld"}, {a.model, "--model"}}) {
     if (is_given && kind != InputKind::mesh) {
@@ -376,6 +383,7 @@ void add_info_command(const CommandLine& line) {
                     "Of a solid: a cellular model with its homotopy type, and whether that is proven");
   a->model_options.add_to(*command, "With --model: ");
   add_weld_option(*command, a->weld);
+  add_graph_option(*command, a->graph, "Of a medial axis: sheets, seams, curves and junctions as a graph");
   add_report_options(*command, a->report, "Write the facts as JSON; - is standard output");
   command->footer(examples);
   command->callback([a] { run(*a); });

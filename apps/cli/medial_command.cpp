@@ -7,10 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "axis_graph_file.hpp"
 #include "axis_solid.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/io/draft.hpp"
+#include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
@@ -33,6 +35,7 @@ constexpr const char* examples = R"(Examples:
   blum medial part.stl -o part.vtp                        for ParaView, with all attributes
   blum medial part.stl -o part.vtp --theta 20,60,120      part-theta20.vtp and so on, nested
   blum medial knot.ply -o knot.obj --theta 170            curves, for Blender
+  blum medial part.stl -o part.vtp --graph part.json      its sheets with their thickness, seams, curves, junctions
   blum medial scan.nii.gz -o vessels.npz --label 1,3      vessels-label1.npz and vessels-label3.npz
 
 Exit status 3: the axis could not be certified, and no file was written.)";
@@ -40,7 +43,7 @@ Exit status 3: the axis could not be certified, and no file was written.)";
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> theta, prune, threshold, weld, threads;
+  std::optional<std::string> theta, prune, threshold, weld, threads, graph;
   OptionTexts<MedialAxisOptions> options;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
@@ -51,6 +54,7 @@ struct Arguments {
 struct Request {
   fs::path input;
   fs::path output;
+  std::optional<fs::path> graph;
   MedialAxisOptions options;
   std::vector<double> thetas{60};  ///< rising where sheets are pruned
   bool prunes_sheets = false;
@@ -83,6 +87,7 @@ Request parse(const Arguments& a) {
   r.output = a.output;
   check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::write));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
+  r.graph = parse_graph(a.graph);
   exclude(a.options.has("resolution"), "--resolution", a.options.has("spacing"), "--spacing",
           "each sets the voxel size");
   r.options = a.options.read();
@@ -133,6 +138,7 @@ struct Run {
   Json solids = Json::array();
   std::vector<PhaseTime> phases;
   std::vector<Draft> drafts;
+  std::vector<Draft> graphs;  ///< of each draft, where graphs are asked for
   std::vector<bool> is_kept;  ///< of each draft: whether it becomes a file
   std::vector<std::string> warnings;
   std::vector<std::string> mismatches;
@@ -210,6 +216,20 @@ void add_report(Run& run, const MedialAxisReport& report, std::optional<double> 
   if (report.rule == SolidRule::winding) run.warnings.push_back(report.reason + ", as voxels");
 }
 
+/// Writes the graph of an axis, where it is asked for; null where not.
+Json add_graph(Run& run, const Request& r, const SolidInput& input, const Complex& complex,
+               const MedialMetadata& metadata, const fs::path& name, const Context& context) {
+  if (!r.graph) return nullptr;
+  Stopwatch watch;
+  const AxisGraph graph =
+      input.kind == InputKind::mesh ? axis_graph(complex, input.mesh.mesh, {}, context) : axis_graph(complex, context);
+  run.graphs.emplace_back(graph_name(*r.graph, r.output, name));
+  write_graph(run.graphs.back().path(), graph, metadata);
+  run.phases.push_back({"graph", watch.lap()});
+  run.table.add("graph", graph_text(graph));
+  return graph_json(graph, run.graphs.back().name());
+}
+
 /// Writes, reads again and certifies an axis at one angle.
 void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
               const MedialAxis& axis, const Complex& complex, double theta, const fs::path& name, Json& axes,
@@ -243,11 +263,12 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   const bool is_certified = certificate.mismatches.empty() && report.topology_matches;
   run.is_kept.push_back(is_certified || r.allow_uncertified);
   const MedialCounts counts = count(complex);
+  run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
+                  {"graph", add_graph(run, r, input, complex, metadata, name, context)},
                   {"certificate", certificate_json(certificate)}});
-  run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   add_certificate(run.table, certificate);
   for (const std::string& mismatch : certificate.mismatches) {
     run.mismatches.push_back("at theta " + rounded_text(theta) + ": " + mismatch);
@@ -308,6 +329,10 @@ void check_all_outputs(const Request& r, const std::vector<fs::path>& bases) {
       for (const double theta : r.thetas) files.push_back(with_theta(base, theta));
     }
   }
+  const std::size_t axes = files.size();
+  for (std::size_t f = r.report.files().size(); r.graph && f < axes; ++f) {
+    files.push_back(graph_name(*r.graph, r.output, files[f]));
+  }
   check_outputs(files, {r.input});
 }
 
@@ -316,8 +341,11 @@ void finish(const Request& r, Run& run, const SolidInput& input, bool is_certifi
   Json outputs = Json::array();
   for (std::size_t d = 0; d < run.drafts.size(); ++d) {
     if (!run.is_kept[d]) continue;
-    outputs.push_back(run.drafts[d].name().string());
-    run.table.add("wrote", run.drafts[d].name().string());
+    for (const std::vector<Draft>* const kind : {&run.drafts, &run.graphs}) {
+      if (kind->empty()) continue;
+      outputs.push_back((*kind)[d].name().string());
+      run.table.add("wrote", (*kind)[d].name().string());
+    }
   }
   const Json json = answer_json("medial", {{"input", input.json},
                                            {"certified", is_certified},
@@ -367,7 +395,9 @@ void run(const Arguments& arguments) {
   progress.clear();
   const bool is_certified = run.mismatches.empty();
   for (std::size_t d = 0; d < run.drafts.size(); ++d) {
-    if (run.is_kept[d]) run.drafts[d].keep();
+    if (!run.is_kept[d]) continue;
+    run.drafts[d].keep();
+    if (r.graph) run.graphs[d].keep();
   }
   finish(r, run, input, is_certified, context);
   if (!is_certified) throw NotCertified(run.mismatches, written_text(r, run));
@@ -394,6 +424,7 @@ void add_medial_command(const CommandLine& line) {
   a->options.add_to(*command, "", {"least_theta"});
   add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  add_graph_option(*command, a->graph, "Its sheets, seams, curves and junctions as a graph");
   command->add_flag("--nested", a->nested,
                     "Keep the axes of all angles from --theta on as well (.npz), for `blum view`");
   command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the axis even where it is not certified");

@@ -1,0 +1,69 @@
+#include "axis_graph_file.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "common_options.hpp"
+#include "files.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double wall_angle = 150;    // degrees
+constexpr double least_share = 0.01;  // of the area
+
+const AxisSheet* thinnest_wall(const AxisGraph& graph) {
+  const AxisSheet* thinnest = nullptr;
+  for (const AxisSheet& sheet : graph.sheets) {
+    if (sheet.separation_angle.median < wall_angle || sheet.area < least_share * graph.area) continue;
+    if (thinnest == nullptr || sheet.thickness.median < thinnest->thickness.median) thinnest = &sheet;
+  }
+  return thinnest;
+}
+
+}  // namespace
+
+void add_graph_option(CLI::App& command, std::optional<std::string>& graph, const std::string& help) {
+  add_text_option(command, "--graph", graph, "FILE", (help + " (.json .graphml)").c_str());
+}
+
+std::optional<fs::path> parse_graph(const std::optional<std::string>& text) {
+  if (!text) return std::nullopt;
+  check_extension("--graph", *text, {".json", ".graphml"});
+  return fs::path(*text);
+}
+
+fs::path graph_name(const fs::path& graph, const fs::path& output, const fs::path& name) {
+  fs::path out = graph.parent_path() / graph.stem();
+  out += name.stem().string().substr(output.stem().string().size());
+  out += graph.extension();
+  return out;
+}
+
+std::string graph_text(const AxisGraph& graph) {
+  std::string text =
+      plural(graph.sheets.size(), "sheet", "sheets") + ", " + plural(graph.seams.size(), "seam", "seams") + ", " +
+      plural(graph.curves.size(), "curve", "curves") + ", " + plural(graph.junctions.size(), "junction", "junctions");
+  if (const AxisSheet* const wall = thinnest_wall(graph)) {
+    text += "; thinnest wall: sheet " + std::to_string(wall->sheet) + ", " + rounded_text(wall->thickness.median) +
+            " thick";
+  }
+  return text;
+}
+
+Json graph_json(const AxisGraph& graph, const fs::path& file) {
+  const AxisSheet* const wall = thinnest_wall(graph);
+  return {
+      {"file", file.string()},
+      {"sheets", graph.sheets.size()},
+      {"seams", graph.seams.size()},
+      {"curves", graph.curves.size()},
+      {"junctions", graph.junctions.size()},
+      {"area", graph.area},
+      {"thinnest_wall",
+       wall == nullptr ? Json(nullptr)
+                       : Json{{"sheet", wall->sheet}, {"thickness", to_json(wall->thickness)}, {"area", wall->area}}}};
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "blum/core/describe.hpp"
+#include "io/graph_files.hpp"
+
+namespace blum::graph_files {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+struct ListOf : std::false_type {};
+template <class T>
+struct ListOf<std::vector<T>> : std::true_type {};
+template <class T, std::size_t count>
+struct ListOf<std::array<T, count>> : std::true_type {};
+
+template <class T>
+Json json_of(const T& value) {
+  if constexpr (DescribedStruct<T>) {
+    Json json = Json::object();
+    for_each_member<T>([&](const auto& member) { json[std::string(member.name)] = json_of(member.of(value)); });
+    return json;
+  } else if constexpr (DescribedEnum<T>) {
+    return to_string(value);
+  } else if constexpr (std::same_as<T, Vec3d>) {
+    return Json::array({value.x, value.y, value.z});
+  } else if constexpr (ListOf<T>::value) {
+    Json json = Json::array();
+    for (const auto& part : value) json.push_back(json_of(part));
+    return json;
+  } else if constexpr (requires { value.has_value(); }) {
+    return value ? json_of(*value) : Json(nullptr);
+  } else {
+    static_assert(std::is_arithmetic_v<T>);
+    return value;
+  }
+}
+
+/// Whether a value takes one line: numbers, lists of them and of such lists, objects of numbers and lists of these.
+bool is_flat(const Json& json, int depth = 0) {
+  if (json.is_primitive()) return true;
+  if (depth > (json.is_object() ? 0 : 1)) return false;
+  return std::all_of(json.begin(), json.end(), [&](const Json& part) { return is_flat(part, depth + 1); });
+}
+
+std::string flat_text(const Json& json) {
+  // Names of files need not be valid UTF-8.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Polylines have thousands of numbers, which should not take a line each.
+void append(const Json& json, std::string& text, std::size_t indent) {
+  if (json.empty() || is_flat(json)) {
+    text += flat_text(json);
+    return;
+  }
+  text += json.is_object() ? "{" : "[";
+  const char* between = "\n";
+  for (const auto& [key, part] : json.items()) {
+    text += between + std::string(indent + 2, ' ');
+    if (json.is_object()) text += flat_text(key) + ": ";
+    append(part, text, indent + 2);
+    between = ",\n";
+  }
+  text += "\n" + std::string(indent, ' ') + (json.is_object() ? "}" : "]");
+}
+
+}  // namespace
+
+std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata) {
+  Json json = {{"content", "graph of a medial axis"}};
+  for (const auto& [name, value] : told(metadata)) {
+    std::visit([&, &key = name](const auto& known) { json[key] = known; }, value);
+  }
+  json.update(json_of(graph));
+  std::string text;
+  append(json, text, 0);
+  return text + "\n";
+}
+
+}  // namespace blum::graph_files

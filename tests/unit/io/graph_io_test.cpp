@@ -1,0 +1,152 @@
+// Proves that files of graphs hold the graph, as JSON and as GraphML whose ends are nodes, whatever a name holds.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/io/graph_io.hpp"
+#include "io/vtk_xml.hpp"
+
+namespace blum {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class GraphFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / "blum_graph_files";
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string written(const char* name, const AxisGraph& graph, const MedialMetadata& metadata = {}) {
+    write_graph(folder_ / name, graph, metadata);
+    std::ifstream file(folder_ / name, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  fs::path folder_;
+};
+
+/// Two sheets at a closed seam, a curve between two junctions, a closed curve, two patches.
+AxisGraph example() {
+  AxisGraph graph;
+  AxisSheet sheet;
+  sheet.sheet = 4;
+  sheet.area = 0.1;
+  sheet.thickness = {1, 2, 3};
+  sheet.euler_characteristic = -1;
+  sheet.seams = {0};
+  sheet.patch_pairs = {{{0}, {1}, 0.75}, {{0, 1}, {1}, 0.25}};
+  graph.sheets = {sheet, sheet};
+  graph.sheets[0].sheet = 1;
+  graph.sheets[0].patch_pairs.clear();
+  AxisLine loop;
+  loop.closed = true;
+  loop.sheets = {1, 4};
+  loop.vertices = {5, 6, 7, 5};
+  loop.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}};
+  graph.seams = {loop};
+  AxisLine curve;
+  curve.length = 1.5;
+  curve.junctions = {0, 1};
+  curve.radii = {0.5, 0.25};
+  graph.curves = {curve, loop};
+  graph.junctions.resize(2);
+  graph.junctions[0].kind = JunctionKind::curve_foot;
+  graph.junctions[0].sheets = {4};
+  graph.junctions[1].kind = JunctionKind::curve_end;
+  graph.junctions[1].position = {1, 2, 3};
+  for (AxisJunction& junction : graph.junctions) junction.curves = {0};
+  graph.patches.resize(2);
+  return graph;
+}
+
+MedialMetadata metadata() {
+  MedialMetadata m;
+  m.source = "a<b>&\"c'\x01\xff.stl";
+  m.version = "1.2.3";
+  m.theta = 62.5;
+  m.label = 3;
+  return m;
+}
+
+TEST_F(GraphFiles, JsonHoldsAllOfIt) {
+  const json graph = json::parse(written("g.json", example(), metadata()));
+  EXPECT_EQ(graph["content"], "graph of a medial axis");
+  EXPECT_EQ(graph["blum_version"], "1.2.3");
+  EXPECT_EQ(graph["theta"], 62.5);
+  EXPECT_EQ(graph["label"], 3);
+  EXPECT_FALSE(graph.contains("lambda"));
+  EXPECT_EQ(graph["sheets"][1]["thickness"]["median"], 2);
+  EXPECT_EQ(graph["sheets"][1]["patch_pairs"][1]["first"], json({0, 1}));
+  EXPECT_EQ(graph["seams"][0]["junctions"], nullptr);
+  EXPECT_EQ(graph["seams"][0]["points"][2], json({1.0, 1.0, 0.0}));
+  EXPECT_EQ(graph["curves"][0]["radii"], json({0.5, 0.25}));
+  EXPECT_EQ(graph["junctions"][0]["kind"], "curve_foot");
+  EXPECT_EQ(graph["junctions"][1]["position"], json({1.0, 2.0, 3.0}));
+}
+
+TEST_F(GraphFiles, JsonOfNothingHasEmptyLists) {
+  const json graph = json::parse(written("g.JSON", {}));
+  for (const char* const list : {"sheets", "seams", "curves", "junctions", "patches"}) {
+    EXPECT_EQ(graph[list], json::array());
+  }
+}
+
+TEST_F(GraphFiles, GraphmlDeclaresWhatItUses) {
+  const std::string text = written("g.graphml", example(), metadata());
+  EXPECT_NE(text.find(">a&lt;b&gt;&amp;&quot;c'\xEF\xBF\xBD\xEF\xBF\xBD.stl<"), std::string::npos);
+  const std::string name = "g.graphml";
+  volume_io::XmlTags tags(text, name);
+  std::set<std::string_view> keys;
+  std::set<std::string_view> nodes;
+  std::multiset<std::pair<std::string_view, std::string_view>> edges;
+  std::map<std::string_view, std::string_view> of_curve;
+  std::string_view last;
+  while (const auto tag = tags.next()) {
+    EXPECT_TRUE(tag->name != "key" || keys.insert(*tag->find("id")).second);
+    EXPECT_TRUE(tag->name != "node" || nodes.insert(*tag->find("id")).second);
+    if (tag->name == "edge") {
+      last = *tag->find("source");
+      EXPECT_TRUE(nodes.contains(*tag->find("source")) && nodes.contains(*tag->find("target")));
+      edges.emplace(*tag->find("source"), *tag->find("target"));
+    }
+    if (tag->name == "data") {
+      EXPECT_TRUE(keys.contains(*tag->find("key"))) << *tag->find("key");
+      if (last == "junction0") of_curve[*tag->find("key")] = tag->text;
+    }
+  }
+  EXPECT_EQ(nodes, (std::set<std::string_view>{"sheet1", "sheet4", "seam0", "curve1", "junction0", "junction1",
+                                               "patch0", "patch1"}));
+  EXPECT_EQ(edges, (std::multiset<std::pair<std::string_view, std::string_view>>{{"junction0", "junction1"},
+                                                                                 {"sheet1", "seam0"},
+                                                                                 {"sheet4", "seam0"},
+                                                                                 {"sheet4", "junction0"},
+                                                                                 {"sheet4", "patch0"},
+                                                                                 {"sheet4", "patch1"}}));
+  EXPECT_EQ(of_curve["edge_length"], "1.5");
+  EXPECT_EQ(of_curve["edge_closed"], "false");
+}
+
+TEST_F(GraphFiles, OtherExtensionsAreRefused) {
+  for (const char* const name : {"g.gml", "g", "g.json.gz"}) {
+    EXPECT_THROW(write_graph(folder_ / name, {}), InvalidOption) << name;
+  }
+  EXPECT_THROW(write_graph(folder_ / "none" / "g.json", {}), FileError);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+}  // namespace
+}  // namespace blum
