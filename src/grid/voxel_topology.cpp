@@ -56,6 +56,19 @@ class RunComponents {
 
   [[nodiscard]] std::int64_t count() const { return count_; }
 
+  /// Adds the runs that are not joined with what lies beyond the box to a set.
+  void add_inner(VoxelSet& voxels) {
+    const std::uint32_t outside = joined_.find(static_cast<std::uint32_t>(runs_.size()));
+    for (std::int64_t k = 0; k < size_[2]; ++k) {
+      for (std::int64_t j = 0; j < size_[1]; ++j) {
+        for (std::size_t r = first_[row(j, k)]; r < first_[row(j, k) + 1]; ++r) {
+          if (joined_.find(static_cast<std::uint32_t>(r)) == outside) continue;
+          for (std::int64_t i = runs_[r].begin; i < runs_[r].end; ++i) voxels.insert(i, j, k);
+        }
+      }
+    }
+  }
+
  private:
   [[nodiscard]] std::size_t row(std::int64_t j, std::int64_t k) const {
     return static_cast<std::size_t>(k * size_[1] + j);
@@ -199,6 +212,13 @@ std::array<std::int64_t, 3> betti_numbers(const VoxelSet& voxels, const Context&
   const std::int64_t components = solid.count();
   const std::int64_t voids = rest.count() - 1;
   return {components, components + voids - euler_characteristic(voxels, context), voids};
+}
+
+std::int64_t fill_voids(VoxelSet& voxels, const Context& context) {
+  RunComponents rest(voxels, true, 0, context);
+  rest.join_border();
+  if (rest.count() > 1) rest.add_inner(voxels);
+  return rest.count() - 1;
 }
 
 std::int64_t euler_characteristic(const VoxelSet& voxels, const Context& context) {

@@ -1,0 +1,157 @@
+// Blum: centrelines of voxel images. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "blum/complex/complex.hpp"
+#include "blum/core/betti_numbers.hpp"
+#include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
+#include "blum/core/phase_timer.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/grid/label_selection.hpp"
+#include "blum/grid/voxel_image.hpp"
+
+namespace blum {
+
+struct CentrelineOptions {
+  /// Which voxels. Not zero: each value that there is by itself, and then all must be whole numbers.
+  LabelSelection selection = {};
+  /// A branch with a free end goes where it is at most this many radii of the ball at its root long (and a voxel more):
+  /// at 1 it lies in that ball. 0: all stay that are longer than a voxel.
+  double spur = 1;
+};
+
+template <>
+struct Description<CentrelineOptions> {
+  static constexpr std::string_view name = "CentrelineOptions";
+  static constexpr std::string_view doc = "What centrelines are asked for";
+  static constexpr std::tuple members{
+      Member{"selection", &CentrelineOptions::selection, "", "which voxels are selected"},
+      Member{"spur", &CentrelineOptions::spur, "radii of the ball at its root",
+             "how long a branch with a free end must be to stay; a voxel is added", Range::between(0, 100)},
+  };
+};
+
+enum class CentrelineNodeKind : std::uint8_t {
+  point,    ///< of a part that is a blob, without branches
+  end,      ///< of one branch
+  junction  ///< of several branches, or of one that comes back to it
+};
+template <>
+struct Description<CentrelineNodeKind> {
+  static constexpr std::string_view name = "CentrelineNodeKind";
+  static constexpr std::array values{NamedValue{CentrelineNodeKind::point, "point"},
+                                     NamedValue{CentrelineNodeKind::end, "end"},
+                                     NamedValue{CentrelineNodeKind::junction, "junction"}};
+};
+
+struct CentrelineNode {
+  CentrelineNodeKind kind = CentrelineNodeKind::point;
+  Vec3d position{};   ///< in the world
+  double radius = 0;  ///< of an end, that of its branch there; else the distance to the closest voxel outside
+};
+template <>
+struct Description<CentrelineNode> {
+  static constexpr std::string_view name = "CentrelineNode";
+  static constexpr std::string_view doc = "Where branches end or meet";
+  static constexpr std::tuple members{
+      Member{"kind", &CentrelineNode::kind, "", "point: of a blob without branches; end; junction"},
+      Member{"position", &CentrelineNode::position, "world units", "where it lies"},
+      Member{"radius", &CentrelineNode::radius, "world units",
+             "of an end, that of its branch there; else the distance to the closest voxel outside"},
+  };
+};
+
+/// A curve between two nodes, or a closed one without any.
+struct CentrelineBranch {
+  std::array<std::int32_t, 2> nodes{-1, -1};  ///< indices of its first and last node; -1 for closed curves
+  double length = 0;                          ///< of the polyline, nodes included
+  double mean_radius = 0;                     ///< along its length, outside of the balls of its junctions
+  double min_radius = 0;                      ///< likewise
+  std::vector<Vec3d> points = {};             ///< from node to node; of closed curves the first point is also the last
+  std::vector<double> radii = {};             ///< of each point: of the circle with the area of the section there
+};
+template <>
+struct Description<CentrelineBranch> {
+  static constexpr std::string_view name = "CentrelineBranch";
+  static constexpr std::string_view doc = "A curve between two nodes, or a closed one without any";
+  static constexpr std::tuple members{
+      Member{"nodes", &CentrelineBranch::nodes, "", "its first and last node; -1 for closed curves"},
+      Member{"length", &CentrelineBranch::length, "world units", "of its polyline"},
+      Member{"mean_radius", &CentrelineBranch::mean_radius, "world units",
+             "along its length, outside of the balls of its junctions"},
+      Member{"min_radius", &CentrelineBranch::min_radius, "world units", "the smallest, likewise"},
+      Member{"points", &CentrelineBranch::points, "world units",
+             "its polyline, from node to node; of closed curves the first point is also the last"},
+      Member{"radii", &CentrelineBranch::radii, "world units",
+             "at each point, of the circle with the area of the section there"},
+  };
+};
+
+/// The centreline of the voxels of one label.
+struct Centreline {
+  std::optional<std::int64_t> label = {};  ///< unset where a threshold selects
+  std::uint64_t voxels = 0;                ///< how many there are
+  std::vector<CentrelineNode> nodes = {};
+  std::vector<CentrelineBranch> branches = {};
+  BettiNumbers label_betti{};  ///< of the union of the closed voxels: components, tunnels, voids
+  BettiNumbers graph_betti{};  ///< of nodes and branches
+  bool homotopy_kept = true;   ///< whether these are equal
+  std::string homotopy;        ///< a sentence: kept, or what differs and why
+};
+template <>
+struct Description<Centreline> {
+  static constexpr std::string_view name = "Centreline";
+  static constexpr std::string_view doc = "The centreline of the voxels of one label";
+  static constexpr std::tuple members{
+      Member{"label", &Centreline::label, "", "their value; null where a threshold selects"},
+      Member{"voxels", &Centreline::voxels, "", "how many there are"},
+      Member{"nodes", &Centreline::nodes, "", "where branches end or meet"},
+      Member{"branches", &Centreline::branches, "", "curves between nodes"},
+      Member{"label_betti", &Centreline::label_betti, "", "components, tunnels, voids of the voxels"},
+      Member{"graph_betti", &Centreline::graph_betti, "", "components, tunnels, voids of nodes and branches"},
+      Member{"homotopy_kept", &Centreline::homotopy_kept, "", "whether these are equal"},
+      Member{"homotopy", &Centreline::homotopy, "", "kept, or what differs and why, as a sentence"},
+  };
+};
+
+struct Centrelines {
+  std::vector<Centreline> labels;  ///< by rising label
+  std::vector<PhaseTime> phases;
+};
+
+/// The centreline of each label of an image, as a graph of curves.
+///
+/// Voxels touch in corners (26), the background by faces (6), as for betti_numbers(). Beyond the image is background.
+/// Voids are filled first. The voxels are thinned in the order of their distance to the background; each step keeps
+/// the homotopy type, and so do pruning and the merging of junctions whose balls hold each other. Then the curves are
+/// moved to the centroids of the sections across them, no point by more than a voxel; the radius at a point is that of
+/// the circle with the section's area. A free end lies where its ball touches the tip.
+/// docs/theory/centrelines.md has the method.
+///
+/// @param image  must pass validate(image).
+/// @return  the same bytes for any number of threads. Labels without voxels have neither nodes nor branches.
+/// @throws InvalidImage (also where labels are asked for and a value is no whole number), InvalidOption, OutOfMemory,
+/// Cancelled. Cost: about that of distance_transform() twice; 10 bytes for each voxel of the largest box around a
+/// label.
+[[nodiscard]] Centrelines centreline(const VoxelImageView& image, const CentrelineOptions& options = {},
+                                     const Context& context = {});
+
+/// Those of some labels, in this order. options.selection is not looked at.
+[[nodiscard]] Centrelines centreline(const VoxelImageView& image, std::span<const std::int64_t> labels,
+                                     const CentrelineOptions& options = {}, const Context& context = {});
+
+/// All branches as edges from point to point, for files. Columns of vertices: `radius`; of edges: `label` (int64; 0
+/// where there is none) and `branch` (int32, counted over all labels), `length`, `mean_radius` and `min_radius` of it.
+/// Branches share the vertices of their nodes.
+[[nodiscard]] Complex complex_of(const Centrelines& lines);
+
+}  // namespace blum

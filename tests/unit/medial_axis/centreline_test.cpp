@@ -1,0 +1,219 @@
+// Proves that centrelines have the branches, lengths and radii of the tubes that an image was made of, and the topology
+// of its labels, for any number of threads.
+#include "blum/medial_axis/centreline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stop_token>
+#include <vector>
+
+#include "blum/core/error.hpp"
+
+namespace blum {
+namespace {
+
+struct Tube {
+  Vec3d from, to;
+  double radius;
+};
+
+double distance_to(const Tube& tube, const Vec3d& point) {
+  const Vec3d along = tube.to - tube.from;
+  const double share = std::clamp(dot(point - tube.from, along) / squared_length(along), 0.0, 1.0);
+  return length(point - tube.from - share * along);
+}
+
+/// Voxels whose centres are in a solid get a label.
+VoxelImage image_of(const std::array<std::int64_t, 3>& size, const std::function<int(const Vec3d&)>& label_at,
+                    const Vec3d& spacing = {1, 1, 1}) {
+  VoxelImage image;
+  image.grid.size = size;
+  image.grid.spacing = spacing;
+  std::vector<std::uint8_t> values;
+  values.reserve(image.grid.node_count());
+  for (std::int64_t k = 0; k < size[2]; ++k) {
+    for (std::int64_t j = 0; j < size[1]; ++j) {
+      for (std::int64_t i = 0; i < size[0]; ++i) {
+        values.push_back(static_cast<std::uint8_t>(label_at(image.grid.position(i, j, k))));
+      }
+    }
+  }
+  image.values = std::move(values);
+  return image;
+}
+
+VoxelImage image_of(const std::array<std::int64_t, 3>& size, const std::vector<Tube>& tubes,
+                    const Vec3d& spacing = {1, 1, 1}) {
+  return image_of(
+      size,
+      [&](const Vec3d& point) {
+        return std::any_of(tubes.begin(), tubes.end(),
+                           [&](const Tube& t) { return distance_to(t, point) <= t.radius; });
+      },
+      spacing);
+}
+
+Centreline only_of(const VoxelImage& image, const CentrelineOptions& options = {}) {
+  const Centrelines lines = centreline(image, options);
+  EXPECT_EQ(lines.labels.size(), 1U);
+  return lines.labels.empty() ? Centreline{} : lines.labels[0];
+}
+
+std::size_t count(const Centreline& line, CentrelineNodeKind kind) {
+  return static_cast<std::size_t>(
+      std::count_if(line.nodes.begin(), line.nodes.end(), [&](const CentrelineNode& n) { return n.kind == kind; }));
+}
+
+/// The branch whose middle is closest to that of a tube.
+const CentrelineBranch& branch_near(const Centreline& line, const Tube& tube) {
+  const Vec3d middle = 0.5 * (tube.from + tube.to);
+  const auto off = [&](const CentrelineBranch& branch) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3d& point : branch.points) least = std::min(least, length(point - middle));
+    return least;
+  };
+  return *std::min_element(line.branches.begin(), line.branches.end(),
+                           [&](const auto& a, const auto& b) { return off(a) < off(b); });
+}
+
+/// The tree of five tubes of the issue that asked for centrelines: radii 4, 3, 2.5, 1.5, 1.5 voxels.
+const std::vector<Tube>& tree() {
+  static const std::vector<Tube> tubes{{{30, 30, 6}, {30, 30, 30}, 4},
+                                       {{30, 30, 30}, {18, 26, 50}, 3},
+                                       {{30, 30, 30}, {44, 34, 48}, 2.5},
+                                       {{18, 26, 50}, {10, 18, 66}, 1.5},
+                                       {{18, 26, 50}, {24, 36, 68}, 1.5}};
+  return tubes;
+}
+
+TEST(Centreline, OfATreeOfFiveTubesHasFiveBranchesWithTheirRadii) {
+  const Centreline line = only_of(image_of({60, 60, 76}, tree()));
+  EXPECT_EQ(line.branches.size(), 5U);
+  EXPECT_EQ(count(line, CentrelineNodeKind::end), 4U);
+  EXPECT_EQ(count(line, CentrelineNodeKind::junction), 2U);
+  EXPECT_TRUE(line.homotopy_kept) << line.homotopy;
+  for (const Tube& tube : tree()) {
+    const CentrelineBranch& branch = branch_near(line, tube);
+    EXPECT_NEAR(branch.mean_radius, tube.radius, 0.1);
+    EXPECT_LE(branch.min_radius, branch.mean_radius);
+    EXPECT_NEAR(branch.length, length(tube.to - tube.from), 1);
+    for (const Vec3d& point : branch.points) EXPECT_LT(distance_to(tube, point), 1.2);
+  }
+}
+
+TEST(Centreline, RadiiOfStraightTubesAreWithinATenthOfAVoxelInAllDirections) {
+  std::mt19937 random(16);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> shift(-0.5, 0.5);
+  for (const double radius : {1.5, 2.0, 3.0, 5.0}) {
+    double sum = 0;
+    constexpr int tubes = 12;
+    for (int t = 0; t < tubes; ++t) {
+      const Vec3d direction{normal(random), normal(random), normal(random)};
+      const double half = 2 * radius + 10;
+      const Vec3d along = half / length(direction) * direction;
+      const double middle = half + radius + 3;
+      const Vec3d centre{middle + shift(random), middle + shift(random), middle + shift(random)};
+      const auto side = static_cast<std::int64_t>(2 * middle + 1);
+      const Tube tube{centre - along, centre + along, radius};
+      const Centreline line = only_of(image_of({side, side, side}, std::vector<Tube>{tube}));
+      ASSERT_EQ(line.branches.size(), 1U);
+      EXPECT_NEAR(line.branches[0].mean_radius, radius, 0.1);
+      EXPECT_NEAR(line.branches[0].length, 2 * half, 1.5);
+      sum += line.branches[0].mean_radius - radius;
+    }
+    EXPECT_NEAR(sum / tubes, 0, 0.02) << radius;
+  }
+}
+
+TEST(Centreline, OfARingIsAClosedCurve) {
+  const Centreline line = only_of(image_of({41, 41, 15}, [](const Vec3d& p) {
+    const double off = std::hypot(p.x - 20.3, p.y - 20.1) - 14;
+    return std::hypot(off, p.z - 7.2) <= 3 ? 1 : 0;
+  }));
+  ASSERT_EQ(line.branches.size(), 1U);
+  EXPECT_TRUE(line.nodes.empty());
+  EXPECT_EQ(line.branches[0].nodes, (std::array<std::int32_t, 2>{-1, -1}));
+  EXPECT_EQ(line.branches[0].points.front(), line.branches[0].points.back());
+  EXPECT_NEAR(line.branches[0].length, 2 * std::numbers::pi * 14, 0.7);
+  EXPECT_NEAR(line.branches[0].mean_radius, 3, 0.1);
+  EXPECT_EQ(line.graph_betti, (BettiNumbers{1, 1, 0}));
+  EXPECT_TRUE(line.homotopy_kept);
+}
+
+TEST(Centreline, OfABallAndOfAVoxelIsAPoint) {
+  const auto ball = [](double radius) {
+    return image_of({21, 21, 21}, [=](const Vec3d& p) { return length(p - Vec3d{10, 10, 10}) <= radius ? 1 : 0; });
+  };
+  for (const double radius : {0.5, 3.0, 7.5}) {
+    const Centreline line = only_of(ball(radius));
+    EXPECT_TRUE(line.branches.empty()) << radius;
+    ASSERT_EQ(line.nodes.size(), 1U);
+    EXPECT_EQ(line.nodes[0].kind, CentrelineNodeKind::point);
+    EXPECT_LT(length(line.nodes[0].position - Vec3d{10, 10, 10}), 1);
+    EXPECT_TRUE(line.homotopy_kept);
+  }
+}
+
+TEST(Centreline, OfAnImageWithoutVoxelsIsEmpty) {
+  const VoxelImage image = image_of({5, 4, 3}, [](const Vec3d&) { return 0; });
+  EXPECT_TRUE(centreline(image).labels.empty());
+  const std::array<std::int64_t, 2> labels{3, 7};
+  const Centrelines lines = centreline(image, labels);
+  ASSERT_EQ(lines.labels.size(), 2U);
+  EXPECT_EQ(lines.labels[1].label, 7);
+  EXPECT_TRUE(lines.labels[1].nodes.empty());
+}
+
+TEST(Centreline, IsTheSameForAnyNumberOfThreads) {
+  const VoxelImage image = image_of({60, 60, 76}, [](const Vec3d& p) {
+    for (std::size_t t = 0; t < tree().size(); ++t) {
+      if (distance_to(tree()[t], p) <= tree()[t].radius) return static_cast<int>(t / 2 + 1);
+    }
+    return 0;
+  });
+  Context context;
+  context.threads = 1;
+  const Centrelines one = centreline(image, {}, context);
+  EXPECT_EQ(one.labels.size(), 3U);
+  for (const int threads : {2, 7}) {
+    context.threads = threads;
+    const Centrelines more = centreline(image, {}, context);
+    ASSERT_EQ(more.labels.size(), one.labels.size());
+    for (std::size_t l = 0; l < one.labels.size(); ++l) {
+      ASSERT_EQ(more.labels[l].branches.size(), one.labels[l].branches.size());
+      for (std::size_t b = 0; b < one.labels[l].branches.size(); ++b) {
+        EXPECT_EQ(more.labels[l].branches[b].points, one.labels[l].branches[b].points);
+        EXPECT_EQ(more.labels[l].branches[b].radii, one.labels[l].branches[b].radii);
+      }
+    }
+  }
+}
+
+TEST(Centreline, RefusesWhatMakesNoSense) {
+  VoxelImage image = image_of({4, 4, 4}, [](const Vec3d&) { return 1; });
+  CentrelineOptions options;
+  options.spur = -1;
+  EXPECT_THROW(static_cast<void>(centreline(image, options)), InvalidOption);
+  image.values = std::vector<float>(64, 0.5F);
+  EXPECT_THROW(static_cast<void>(centreline(image)), InvalidImage);
+  options = {};
+  options.selection = LabelSelection::at_least(0.25);
+  EXPECT_EQ(centreline(image, options).labels.size(), 1U);
+  std::stop_source stop;
+  stop.request_stop();
+  Context context;
+  context.cancel = stop.get_token();
+  EXPECT_THROW(static_cast<void>(centreline(image, options, context)), Cancelled);
+}
+
+}  // namespace
+}  // namespace blum
