@@ -10,6 +10,7 @@ inside is negative. The same verbs as in C++ and on the command line:
 """
 
 from . import _structs, reference
+from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
 from ._certificate import solid_rule
 from ._complex import Complex, homology
 from ._core import thread_count
@@ -67,6 +68,9 @@ __all__ = [
     "ROLES",
     "Cancelled",
     "CellularModel",
+    "Centreline",
+    "CentrelineBranch",
+    "Centrelines",
     "ClosestPointQuery",
     "ClosestPoints",
     "Complex",
@@ -102,6 +106,7 @@ __all__ = [
     "WindingNumber",
     "__version__",
     "ball_union_field",
+    "centreline",
     "certify",
     "closest_points",
     "cuda_devices",

@@ -24,8 +24,8 @@ namespace blum {
 struct CentrelineOptions {
   /// Which voxels. Not zero: each value that there is by itself, and then all must be whole numbers.
   LabelSelection selection = {};
-  /// A branch with a free end goes where it is at most this many radii of the ball at its root long (and a voxel more):
-  /// at 1 it lies in that ball. 0: all stay that are longer than a voxel.
+  /// A branch with a free end goes where it reaches at most this many radii of the ball at its root, and a voxel and a
+  /// half: at 1 it hardly leaves that ball. 0: all stay that are longer.
   double spur = 1;
 };
 
@@ -36,7 +36,8 @@ struct Description<CentrelineOptions> {
   static constexpr std::tuple members{
       Member{"selection", &CentrelineOptions::selection, "", "which voxels are selected"},
       Member{"spur", &CentrelineOptions::spur, "radii of the ball at its root",
-             "how long a branch with a free end must be to stay; a voxel is added", Range::between(0, 100)},
+             "how far a branch with a free end must reach to stay; one voxel and a half is added",
+             Range::between(0, 100)},
   };
 };
 

@@ -41,25 +41,64 @@ void judge_homotopy(Centreline& out) {
                  (out.label_betti[2] > 0 ? ": curves hold no voids, so that these were filled" : "");
 }
 
+/// Adds voxels of which at least five of the six beside them are there: pits one voxel wide, as noise makes them.
+VoxelSet without_pits(const VoxelSet& voxels, const Context& context) {
+  VoxelSet out = voxels;
+  const auto& size = voxels.size();
+  parallel_for(context, static_cast<std::size_t>(size[2]), 4, "", [&](const WorkRange& range) {
+    for (std::size_t layer = range.begin; layer < range.end; ++layer) {
+      const auto k = static_cast<std::int64_t>(layer);
+      if (k == 0 || k + 1 == size[2]) continue;
+      for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
+        const auto own = voxels.row(j, k);
+        const std::array<std::span<const std::uint64_t>, 4> beside{voxels.row(j - 1, k), voxels.row(j + 1, k),
+                                                                   voxels.row(j, k - 1), voxels.row(j, k + 1)};
+        const auto to = out.row(j, k);
+        for (std::size_t w = 0; w < own.size(); ++w) {
+          const std::uint64_t left = own[w] << 1U | (w > 0 ? own[w - 1] >> 63U : 0);
+          const std::uint64_t right = own[w] >> 1U | (w + 1 < own.size() ? own[w + 1] << 63U : 0);
+          const std::uint64_t a = beside[0][w];
+          const std::uint64_t b = beside[1][w];
+          const std::uint64_t c = beside[2][w];
+          const std::uint64_t d = beside[3][w];
+          // Of three and three bits: two or more on both sides, and on one of them three or one besides.
+          const std::uint64_t two_here = (left & right) | (left & a) | (right & a);
+          const std::uint64_t two_there = (b & c) | (b & d) | (c & d);
+          to[w] |= two_here & two_there & ((left ^ right ^ a) | (b ^ c ^ d));
+        }
+      }
+    }
+  });
+  return out;
+}
+
 constexpr float most_shift = 1.0F / 4096;  // of a voxel: below the steps of distances up to a thousand voxels
 
-/// Makes equal depths differ, by less than most_shift of a voxel. In the order of their indices equally deep voxels
-/// would go from one end of a tube to the other, and the tube with them: a bar of two by two voxels has no deeper ones.
-void separate(Buffer<float>& depth, const Vec3d& spacing, const Context& context) {
+/// Makes equal depths differ, by less than most_shift of a voxel, and those of other voxels zero. In the order of their
+/// indices equally deep voxels would go from one end of a tube to the other, and the tube with them: a bar of two by
+/// two voxels has no deeper ones.
+void separate(Buffer<float>& depth, const VoxelSet& voxels, const Vec3d& spacing, const Context& context) {
+  const auto& size = voxels.size();
   const float scale = most_shift * static_cast<float>(std::min({spacing.x, spacing.y, spacing.z})) / 65536.0F;
-  constexpr std::size_t grain = std::size_t{1} << 18U;
-  parallel_for(context, depth.size(), grain, "", [&](const WorkRange& range) {
-    for (std::size_t v = range.begin; v < range.end; ++v) {
-      // Murmur's finalizer: bits that tell nothing of the place.
-      std::uint32_t bits = static_cast<std::uint32_t>(v) * 0x85ebca6bU;
-      bits = (bits ^ bits >> 13U) * 0xc2b2ae35U;
-      bits ^= bits >> 16U;
-      depth[v] += depth[v] > 0 ? scale * static_cast<float>(bits & 65535U) : 0;
+  parallel_for(context, static_cast<std::size_t>(size[2]), 4, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      std::size_t at = k * static_cast<std::size_t>(size[0] * size[1]);
+      for (std::int64_t j = 0; j < size[1]; ++j) {
+        const auto row = voxels.row(j, static_cast<std::int64_t>(k));
+        for (std::int64_t i = 0; i < size[0]; ++i, ++at) {
+          const bool is_in = (row[static_cast<std::size_t>(i / 64)] >> (i % 64) & 1U) != 0;
+          // Murmur's finalizer: bits that tell nothing of the place.
+          std::uint32_t bits = static_cast<std::uint32_t>(at) * 0x85ebca6bU;
+          bits = (bits ^ bits >> 13U) * 0xc2b2ae35U;
+          bits ^= bits >> 16U;
+          depth[at] = is_in ? depth[at] + scale * static_cast<float>(bits & 65535U) : 0;
+        }
+      }
     }
   });
 }
 
-/// The distance of each voxel to the closest one outside.
+/// The distance of each voxel to the closest one that is not there.
 Buffer<float> depth_of(const VoxelSet& voxels, const Vec3d& spacing, const Context& context) {
   const auto& size = voxels.size();
   Buffer<std::uint8_t> is_in(static_cast<std::size_t>(size[0] * size[1] * size[2]));
@@ -81,9 +120,7 @@ Buffer<float> depth_of(const VoxelSet& voxels, const Vec3d& spacing, const Conte
   DistanceTransformOptions options;
   options.selection = LabelSelection::of_label(0);
   options.is_signed = false;
-  Buffer<float> depth = std::move(distance_transform(image, options, context).distance);
-  separate(depth, spacing, context);
-  return depth;
+  return std::move(distance_transform(image, options, context).distance);
 }
 
 /// The phases of all labels; a label's own where several run at once are not told.
@@ -98,7 +135,8 @@ Centreline centreline_of(VoxelSet voxels, const Vec3d& spacing, double spur, con
   out.label_betti = betti_numbers(voxels, context);
   if (out.label_betti[2] > 0) fill_voids(voxels, context);
   times.timer.lap("topology");
-  const Buffer<float> depth = depth_of(voxels, spacing, context);
+  Buffer<float> depth = depth_of(without_pits(voxels, context), spacing, context);
+  separate(depth, voxels, spacing, context);
   times.timer.lap("distance");
   const VoxelSet thin = thin_to_curves(voxels, depth.span(), spacing, context);
   times.timer.lap("thinning");

@@ -10,7 +10,8 @@ namespace {
 
 constexpr int rounds = 3;            // of moving to centroids
 constexpr int smoothings = 2;        // after each
-constexpr double end_reach = 1.0;    // radii from a chain's end to where its direction is taken
+constexpr double tail = 2;           // depths from a free end: how far its width is compared
+constexpr double full_depth = 0.9;   // of the largest depth there
 constexpr double least_step = 1e-9;  // of the voxel
 
 class CurveMaker {
@@ -133,12 +134,7 @@ class CurveMaker {
   /// Puts the first point, a free end, to where its ball touches the tip.
   void place_end() {
     if (points_.size() < 3) return;
-    double way = 0;
-    std::size_t root = 0;
-    while (root + 2 < points_.size() && way < end_reach * label_.depth(points_[root])) {
-      ++root;
-      way += length(points_[root] - points_[root - 1]);
-    }
+    const std::size_t root = end_of_tail();
     const std::size_t inner = walk(root, 1, std::max(3 * label_.step(), 1.5 * label_.depth(points_[root])));
     const Vec3d chord = points_[root] - points_[inner];
     const double size = length(chord);
@@ -157,6 +153,19 @@ class CurveMaker {
       kept.insert(kept.begin(), distance > reach_ ? end + (reach_ / distance) * off : end + off);
     }
     points_ = std::move(kept);
+  }
+
+  /// From the first point on: where the label is as wide as behind it. What is before may lead into a corner.
+  [[nodiscard]] std::size_t end_of_tail() const {
+    double deepest = 0;
+    double way = 0;
+    for (std::size_t i = 0; i + 2 < points_.size() && way <= tail * deepest + reach_; ++i) {
+      deepest = std::max(deepest, label_.depth(points_[i]));
+      way += length(points_[i + 1] - points_[i]);
+    }
+    std::size_t root = 0;
+    while (root + 3 < points_.size() && label_.depth(points_[root]) < full_depth * deepest) ++root;
+    return root;
   }
 
   [[nodiscard]] static double radius_of(double area) { return std::sqrt(area / std::numbers::pi); }

@@ -13,6 +13,7 @@
 namespace blum::centrelines {
 namespace {
 
+constexpr double section_blur = 1.5;    // voxels: sections closer to the ball of a junction see other branches
 constexpr double pull_to_voxel = 1e-3;  // of a node, beside the pull of each branch: where all of them are parallel
 
 /// A point and a direction.
@@ -54,19 +55,28 @@ std::optional<Ray> ray_at(const Curve& curve, bool at_end) {
   return Ray{from, (to - from) / length};
 }
 
-/// Along the part of a branch outside of the balls of its junctions; of one that has none, the radii of its points.
-void measure_radii(const Curve& curve, CentrelineBranch& branch) {
-  double length = 0;
+/// Mean and least radius along a branch, further than `margin` from the balls of its junctions; where there is no such
+/// part, along what lies outside of the balls.
+void measure_radii(const Curve& curve, const std::array<CurveEnd, 2>& ends, double margin, CentrelineBranch& branch) {
+  const auto is_free = [&](const Vec3d& point) {
+    return std::none_of(ends.begin(), ends.end(), [&](const CurveEnd& end) {
+      return end.kind == CurveEnd::Kind::junction && length(point - end.centre) < end.radius + margin;
+    });
+  };
+  double way = 0;
   double sum = 0;
   double least = HUGE_VAL;
-  for (std::size_t i = 0; i < curve.points.size(); ++i) least = std::min(least, curve.radii[i]);
-  for (std::size_t i = 1; i < curve.points.size(); ++i) {
-    const double piece = blum::length(curve.points[i] - curve.points[i - 1]);
-    length += piece;
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    if (!is_free(curve.points[i])) continue;
+    least = std::min(least, curve.radii[i]);
+    if (i == 0 || !is_free(curve.points[i - 1])) continue;
+    const double piece = length(curve.points[i] - curve.points[i - 1]);
+    way += piece;
     sum += piece * (curve.radii[i] + curve.radii[i - 1]) / 2;
   }
+  if (!(way > 0) && margin > 0) return measure_radii(curve, ends, -HUGE_VAL, branch);
   branch.min_radius = least;
-  branch.mean_radius = length > 0 ? sum / length : curve.radii.front();
+  branch.mean_radius = way > 0 ? sum / way : curve.radii.front();
 }
 
 class Placer {
@@ -135,7 +145,7 @@ class Placer {
     const Curve& curve = curves_[c];
     CentrelineBranch branch;
     branch.nodes = chain.nodes;
-    measure_radii(curve, branch);
+    measure_radii(curve, {end_of(chain.nodes[0]), end_of(chain.nodes[1])}, section_blur * measure_.voxel(), branch);
     const auto add_node = [&](std::int32_t node) {
       if (node == no_node || is_free(node)) return;
       branch.points.push_back(nodes[static_cast<std::size_t>(node)].position);

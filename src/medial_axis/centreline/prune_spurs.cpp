@@ -9,6 +9,7 @@
 namespace blum::centrelines {
 namespace {
 
+constexpr double noise = 1.5;        // voxels beyond the ball at its root: a voxel on the surface makes such a spur
 constexpr double fork_reach = 0.75;  // of the root's radius: the corner of a square strut's end is 0.73 beyond its ball
 
 class Pruner {
@@ -66,12 +67,21 @@ class Pruner {
     const std::size_t degree = graph_.nodes[node].chains.size();
     if (degree < 2) return drop_blob(node);
     if (degree < 3) return false;
-    const double limit = spur_ * radius(node) + measure_.voxel();
-    std::vector<std::uint32_t> spurs = free_branches(node, [&](std::uint32_t c) { return length_[c] <= limit; });
+    const double limit = spur_ * radius(node) + noise * measure_.voxel();
+    std::vector<std::uint32_t> spurs =
+        free_branches(node, [&](std::uint32_t c) { return lies_within(c, node, limit); });
     if (spurs.size() == degree) spurs.resize(degree - 2);
     for (const std::uint32_t c : spurs) remove_spur(c, node);
     if (!spurs.empty()) join_two(node);
     return !spurs.empty();
+  }
+
+  /// Whether no voxel of a branch is further from a node.
+  [[nodiscard]] bool lies_within(std::uint32_t c, std::uint32_t node, double distance) const {
+    const Vec3d centre = measure_.position(graph_.nodes[node].voxel);
+    const auto is_near = [&](std::uint32_t voxel) { return length(measure_.position(voxel) - centre) <= distance; };
+    if (!is_near(graph_.nodes[other_end(c, node)].voxel)) return false;
+    return std::all_of(graph_.chains[c].voxels.begin(), graph_.chains[c].voxels.end(), is_near);
   }
 
   bool drop_fork(std::uint32_t node) {

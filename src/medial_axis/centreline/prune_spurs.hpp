@@ -23,8 +23,9 @@ struct ChainMeasure {
 };
 
 /// Takes away, until there is nothing more to do,
-/// - spurs: branches with a free end that are at most `spur` radii of the ball at their root and a voxel long; where no
-///   other branch is at the root, the two longest stay;
+/// - spurs: branches with a free end that lie within `spur` radii of the ball at their root, and a voxel and a half
+/// more;
+///   where no other branch is at the root, the two longest stay;
 /// - forks at the tip of a part, as corners make them: all branches of a junction, or all but one, have free ends, and
 ///   no tip lies further beyond the ball at the root than 3/4 of its radius and a voxel;
 /// - branches between junctions of which each lies in the ball of the other: they become one;
