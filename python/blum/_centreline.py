@@ -161,10 +161,13 @@ def centreline(
 def _line(
     label: int | None, voxels: int, nodes: Any, branches: Any, label_betti: Any, graph_betti: Any, kept: bool, why: str
 ) -> Centreline:
+    kinds, positions, radii = nodes
     return Centreline(
         label,
         voxels,
-        *nodes,
+        kinds,
+        positions,
+        radii,
         tuple(CentrelineBranch(*branch) for branch in branches),
         betti_of(label_betti),
         betti_of(graph_betti),
