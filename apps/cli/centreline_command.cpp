@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,7 +31,8 @@ constexpr const char* examples = R"(Examples:
   blum centreline ct.nrrd -o airways.vtp --threshold 300   one graph, as polylines for ParaView
   blum centreline cells.nrrd -o cells.csv --label 2,7-9    a row for each branch of four labels)";
 
-constexpr std::int64_t most_labels = 1000000;
+constexpr std::uint64_t most_labels = 1000000;
+constexpr std::size_t most_warnings = 5;
 
 struct Arguments {
   std::string image;
@@ -39,38 +43,53 @@ struct Arguments {
   ReportOptions report;
 };
 
+/// The labels that are asked for.
+struct Labels {
+  std::vector<std::int64_t> all;
+  std::set<std::int64_t> of_ranges;  ///< `7-9`: those of these that the image has
+};
+
 /// `7-9` as three labels. @throws UsageError.
-void add_labels(std::string_view text, std::vector<std::int64_t>& labels) {
+void add_labels(std::string_view text, std::set<std::int64_t>& known, Labels& labels) {
   const std::size_t dash = text.find('-', 1);
   constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
   const std::int64_t first = parse_integer("--label", text.substr(0, dash), least, most);
-  const std::int64_t last =
-      dash == std::string_view::npos ? first : parse_integer("--label", text.substr(dash + 1), first, most);
+  const bool is_range = dash != std::string_view::npos;
+  const std::int64_t last = is_range ? parse_integer("--label", text.substr(dash + 1), first, most) : first;
   if (static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first) >= most_labels) {
     throw UsageError("--label " + std::string(text) + " names more than a million labels");
   }
-  for (std::int64_t label = first; label <= last; ++label) {
-    if (std::find(labels.begin(), labels.end(), label) != labels.end()) {
-      throw UsageError("--label names " + std::to_string(label) + " twice");
-    }
-    labels.push_back(label);
-    if (label == most) break;
+  for (std::int64_t label = first;; ++label) {
+    if (!known.insert(label).second) throw UsageError("--label names " + std::to_string(label) + " twice");
+    labels.all.push_back(label);
+    if (is_range) labels.of_ranges.insert(label);
+    if (label == last) break;
   }
 }
 
 /// Unset for `all`. @throws UsageError.
-std::optional<std::vector<std::int64_t>> labels_of(const std::vector<std::string>& texts) {
+std::optional<Labels> labels_of(const std::vector<std::string>& texts) {
   if (texts.empty() || (texts.size() == 1 && texts[0] == "all")) return std::nullopt;
-  std::vector<std::int64_t> labels;
+  Labels labels;
+  std::set<std::int64_t> known;
   for (const std::string& text : texts) {
     for (std::size_t begin = 0; begin <= text.size();) {
       const std::size_t end = std::min(text.find(',', begin), text.size());
-      add_labels(std::string_view(text).substr(begin, end - begin), labels);
+      add_labels(std::string_view(text).substr(begin, end - begin), known, labels);
       begin = end + 1;
     }
   }
   return labels;
+}
+
+Centrelines lines_of(const VoxelImage& image, const std::optional<Labels>& labels, const CentrelineOptions& options,
+                     const Context& context) {
+  if (!labels) return centreline(image, options, context);
+  Centrelines lines = centreline(image, labels->all, options, context);
+  std::erase_if(lines.labels,
+                [&](const Centreline& line) { return line.voxels == 0 && labels->of_ranges.contains(*line.label); });
+  return lines;
 }
 
 /// All of a label but its points.
@@ -90,17 +109,23 @@ Json brief_json(const Centreline& line) {
 
 std::vector<std::string> warnings_of(const Centrelines& lines) {
   std::vector<std::string> warnings;
-  std::size_t changed = 0;
+  std::size_t left_out = 0;
   for (const Centreline& line : lines.labels) {
-    if (line.voxels == 0) {
+    if (line.voxels > 0 && line.homotopy_kept) continue;
+    if (warnings.size() == most_warnings) {
+      ++left_out;
+    } else if (line.voxels == 0) {
       warnings.push_back(line.label ? "no voxel has the label " + std::to_string(*line.label)
                                     : "no voxel reaches the threshold");
+    } else {
+      warnings.push_back((line.label ? "label " + std::to_string(*line.label) + ": " : "") + line.homotopy);
     }
-    if (line.homotopy_kept || ++changed > 5) continue;
-    warnings.push_back((line.label ? "label " + std::to_string(*line.label) + ": " : "") + line.homotopy);
   }
-  if (changed > 5) warnings.push_back(count_text(changed - 5) + " more labels have another topology than their curves");
-  if (lines.labels.empty()) warnings.emplace_back("the image has no voxels that are not 0");
+  if (left_out > 0) {
+    warnings.push_back(plural(left_out, "more label has", "more labels have") +
+                       " no voxels, or another topology than their curves: the JSON tells");
+  }
+  if (lines.labels.empty()) warnings.emplace_back("the image has no voxels of these labels");
   return warnings;
 }
 
@@ -147,7 +172,7 @@ void run(const Arguments& a) {
     image = read_image_of_any_name(input);
   }
   phases.push_back({"read", watch.lap()});
-  const Centrelines lines = labels ? centreline(image, *labels, options, context) : centreline(image, options, context);
+  const Centrelines lines = lines_of(image, labels, options, context);
   phases.insert(phases.end(), lines.phases.begin(), lines.phases.end());
   static_cast<void>(watch.lap());
   const Json head = answer_json(

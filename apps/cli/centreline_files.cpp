@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "blum/core/exact_text.hpp"
@@ -83,15 +84,14 @@ class SwcWriter {
       for (const std::size_t b : branches[from]) {
         if (is_done[b]) continue;
         is_done[b] = true;
-        const std::size_t to = follow(line.branches[b], from);
-        if (to != root && !is_open_end(to)) open.push_back(to);
+        if (const auto to = follow(line.branches[b], from)) open.push_back(*to);
       }
     }
   }
-  [[nodiscard]] bool is_open_end(std::size_t node) const { return was_there_ && node_line_[node] != 0; }
 
-  /// Writes a branch from a node on. @return the node at its other end, written if it was not.
-  std::size_t follow(const CentrelineBranch& branch, std::size_t from) {
+  /// Writes a branch from a node on. @return the node at its other end; none where it was there before: the branch
+  /// closes a loop, which is cut.
+  std::optional<std::size_t> follow(const CentrelineBranch& branch, std::size_t from) {
     const bool is_forward = branch.nodes[0] == static_cast<std::int32_t>(from);
     const auto to = static_cast<std::size_t>(branch.nodes[is_forward ? 1 : 0]);
     const std::size_t count = branch.points.size();
@@ -100,9 +100,9 @@ class SwcWriter {
       const std::size_t point = is_forward ? p : count - 1 - p;
       at = add(branch.points[point], branch.radii[point], at);
     }
-    was_there_ = node_line_[to] != 0;  // then this branch closes a loop, which is cut
+    if (node_line_[to] != 0) return std::nullopt;
     const std::size_t last = is_forward ? count - 1 : 0;
-    if (!was_there_) node_line_[to] = add(branch.points[last], branch.radii[last], at);
+    node_line_[to] = add(branch.points[last], branch.radii[last], at);
     return to;
   }
 
@@ -117,7 +117,6 @@ class SwcWriter {
   AtomicFile& file_;
   std::vector<std::int64_t> node_line_;  ///< of each node; 0: not written yet
   std::int64_t lines_ = 0;
-  bool was_there_ = false;
 };
 
 void write_swc(AtomicFile& file, const Centrelines& lines) {

@@ -70,9 +70,10 @@ def test_every_format_is_written(image, tmp_path, end):
 
 def test_labels_and_thresholds_are_chosen(image, tmp_path):
     out = tmp_path / "g.json"
-    assert [
-        each["label"] for each in run_json("centreline", image, "-o", out, "--label", "1-5", warns=True)["labels"]
-    ] == [1, 2, 3, 4, 5]
+    found = run_json("centreline", image, "-o", out, "--label", "1-7")["labels"]
+    assert [each["label"] for each in found] == [1, 5]
+    found = run_json("centreline", image, "-o", out, "--label", "5,4,1", warns=True)["labels"]
+    assert [(each["label"], each["branches"]) for each in found] == [(5, 1), (4, 0), (1, 3)]
     (all_of_it,) = run_json("centreline", image, "-o", out, "--threshold", 1, warns=True)["labels"]
     assert all_of_it["label"] is None and all_of_it["graph_betti"] == [3, 0, 0]
     assert len(run_json("centreline", image, "-o", out, "--label", "all", warns=True)["labels"]) == 3
