@@ -43,13 +43,15 @@ Vec3d meeting_point(const std::vector<Ray>& rays, const Vec3d& start, double rea
   return length > reach ? start + (reach / length) * shift : start + shift;
 }
 
-/// Where branches leave the ball of a node, and whereto.
+/// The line of a branch where sections see it alone, a little outside of the ball of a node.
 std::optional<Ray> ray_at(const Curve& curve, bool at_end) {
+  constexpr std::size_t first = 3;
+  constexpr std::size_t last = 10;
   const std::size_t count = curve.points.size();
   if (count < 3) return std::nullopt;
-  const Vec3d& from = at_end ? curve.points.back() : curve.points.front();
-  const std::size_t reach = std::min<std::size_t>(count - 1, 4);
-  const Vec3d& to = at_end ? curve.points[count - 1 - reach] : curve.points[reach];
+  const auto point = [&](std::size_t i) { return curve.points[at_end ? count - 1 - i : i]; };
+  const Vec3d from = point(std::min(first, count / 2));
+  const Vec3d to = point(std::min(last, count - 1));
   const double length = blum::length(to - from);
   if (!(length > 0)) return std::nullopt;
   return Ray{from, (to - from) / length};

@@ -13,6 +13,8 @@
 #include <numbers>
 #include <random>
 #include <stop_token>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -161,6 +163,125 @@ TEST(Centreline, OfABallAndOfAVoxelIsAPoint) {
     EXPECT_LT(length(line.nodes[0].position - Vec3d{10, 10, 10}), 1);
     EXPECT_TRUE(line.homotopy_kept);
   }
+}
+
+TEST(Centreline, OfTubesThatCrossHasOneJunction) {
+  const Vec3d centre{25.3, 24.8, 25.1};
+  const auto cross_of = [&](const std::vector<Vec3d>& directions, double radius) {
+    std::vector<Tube> tubes;
+    for (const Vec3d& d : directions) {
+      tubes.push_back({centre - 18 / length(d) * d, centre + 18 / length(d) * d, radius});
+    }
+    return only_of(image_of({51, 51, 51}, tubes));
+  };
+  for (const auto& [line, branches] : {std::pair(cross_of({{1, 0.2, 0.1}, {-0.2, 1, 0.1}}, 3), 4U),
+                                       std::pair(cross_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 2.5), 6U)}) {
+    EXPECT_EQ(line.branches.size(), branches);
+    EXPECT_EQ(count(line, CentrelineNodeKind::junction), 1U);
+    EXPECT_EQ(count(line, CentrelineNodeKind::end), branches);
+    for (const CentrelineNode& node : line.nodes) {
+      if (node.kind == CentrelineNodeKind::junction) {
+        EXPECT_LT(length(node.position - centre), 0.9);  // along the grid, sections tell no more
+      }
+    }
+    for (const CentrelineBranch& branch : line.branches) EXPECT_NEAR(branch.length, 18, 1.2);
+  }
+}
+
+TEST(Centreline, OfThinBarsIsOneBranchAlongThem) {
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 2), std::pair(3, 2), std::pair(5, 5)}) {
+    const Centreline line = only_of(image_of({20, 20, 60}, [&](const Vec3d& p) {
+      return p.x >= 6 && p.x < 6 + width && p.y >= 6 && p.y < 6 + height && p.z >= 5 && p.z < 54 ? 1 : 0;
+    }));
+    ASSERT_EQ(line.branches.size(), 1U) << width << ' ' << height;
+    EXPECT_NEAR(line.branches[0].length, 49 - std::max(width, height), 2.5);
+    EXPECT_NEAR(line.branches[0].mean_radius, std::sqrt(width * height / std::numbers::pi), 0.1);
+  }
+  const Centreline diagonal = only_of(
+      image_of({40, 40, 40}, [](const Vec3d& p) { return p.x == p.y && p.y == p.z && p.x > 4 && p.x < 35 ? 1 : 0; }));
+  ASSERT_EQ(diagonal.branches.size(), 1U);
+  EXPECT_NEAR(diagonal.branches[0].length, 29 * std::sqrt(3.0), 2);
+}
+
+TEST(Centreline, OfNoisySurfacesHasNoSpurs) {
+  // Voxels of the outermost layer are taken away, and of the next one added, one in twenty.
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Centreline line = only_of(image_of({60, 60, 76}, [&](const Vec3d& p) {
+      double off = std::numeric_limits<double>::infinity();
+      for (const Tube& tube : tree()) off = std::min(off, distance_to(tube, p) - tube.radius);
+      const bool is_flipped = any(random) < 0.05 && std::abs(off) < 0.5;
+      return (off <= 0) != is_flipped ? 1 : 0;
+    }));
+    // What noise does to the topology stays: a loop is a branch more, or two.
+    EXPECT_EQ(line.label_betti[1], line.graph_betti[1]);
+    EXPECT_EQ(line.label_betti[0], line.graph_betti[0]);
+    std::size_t ends = 0;
+    for (const CentrelineNode& node : line.nodes) ends += node.kind == CentrelineNodeKind::end ? 1 : 0;
+    EXPECT_EQ(ends, 4U);
+    EXPECT_LE(line.branches.size(), 5U + 3 * static_cast<std::size_t>(line.graph_betti[1]));
+  }
+}
+
+TEST(Centreline, OfLabelsThatTouchIsEachItsOwn) {
+  const VoxelImage image = image_of({41, 41, 60}, [](const Vec3d& p) {
+    if (p.z < 6 || p.z > 53) return 0;
+    if (std::hypot(p.x - 16, p.y - 20) <= 4) return 1;
+    return std::hypot(p.x - 24, p.y - 20) <= 4 ? 2 : 0;
+  });
+  const Centrelines lines = centreline(image);
+  ASSERT_EQ(lines.labels.size(), 2U);
+  for (const Centreline& line : lines.labels) {
+    ASSERT_EQ(line.branches.size(), 1U);
+    EXPECT_NEAR(line.branches[0].mean_radius, 4, 0.15);
+    for (const Vec3d& point : line.branches[0].points) EXPECT_NEAR(point.x, *line.label == 1 ? 16 : 24, 0.4);
+  }
+}
+
+TEST(Centreline, SaysThatVoidsAreFilled) {
+  const Centreline line = only_of(image_of({25, 25, 25}, [](const Vec3d& p) {
+    const double off = length(p - Vec3d{12, 12, 12});
+    return off <= 9 && off > 4 ? 1 : 0;
+  }));
+  EXPECT_EQ(line.label_betti, (BettiNumbers{1, 0, 1}));
+  EXPECT_EQ(line.graph_betti, (BettiNumbers{1, 0, 0}));
+  EXPECT_FALSE(line.homotopy_kept);
+  EXPECT_NE(line.homotopy.find("1 void"), std::string::npos) << line.homotopy;
+  EXPECT_EQ(line.nodes.size(), 1U);
+}
+
+TEST(Centreline, OfATreeTurnedByARightAngleIsNearlyTheSame) {
+  const Centreline line = only_of(image_of({60, 60, 76}, tree()));
+  const Centreline turned = only_of(image_of({76, 60, 60}, [](const Vec3d& p) {
+    const Vec3d back{p.y, p.z, p.x};
+    return std::any_of(tree().begin(), tree().end(), [&](const Tube& t) { return distance_to(t, back) <= t.radius; });
+  }));
+  ASSERT_EQ(turned.branches.size(), line.branches.size());
+  for (const Tube& tube : tree()) {
+    const auto turn = [](const Vec3d& p) { return Vec3d{p.z, p.x, p.y}; };
+    const CentrelineBranch& a = branch_near(line, tube);
+    const CentrelineBranch& b = branch_near(turned, {turn(tube.from), turn(tube.to), tube.radius});
+    EXPECT_NEAR(a.mean_radius, b.mean_radius, 0.05);
+    EXPECT_NEAR(a.length, b.length, 1.5);
+  }
+}
+
+TEST(Centreline, OfVoxelsThatAreNoCubesHasTheSameRadii) {
+  const Tube tube{{8, 8, 8}, {20, 22, 20}, 3};
+  const Centreline line = only_of(image_of({60, 60, 30}, std::vector<Tube>{tube}, {0.5, 0.5, 1}));
+  ASSERT_EQ(line.branches.size(), 1U);
+  EXPECT_NEAR(line.branches[0].mean_radius, 3, 0.1);
+  EXPECT_NEAR(line.branches[0].length, length(tube.to - tube.from), 1);
+  for (const Vec3d& point : line.branches[0].points) EXPECT_LT(distance_to(tube, point), 0.5);
+}
+
+TEST(Centreline, AsAComplexHasTheGraphsTopology) {
+  const Centrelines lines = centreline(image_of({60, 60, 76}, tree()));
+  const Complex complex = complex_of(lines);
+  EXPECT_EQ(problem_of(complex), "");
+  EXPECT_EQ(static_cast<std::int64_t>(complex.positions.size()) - static_cast<std::int64_t>(complex.edges.size()), 1);
+  for (const double radius : complex.vertex_columns.get<double>("radius")) EXPECT_GT(radius, 1);
 }
 
 TEST(Centreline, OfAnImageWithoutVoxelsIsEmpty) {
