@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Literal, TypedDict
 from . import _methods
 
 if TYPE_CHECKING:
-    from ._arguments import Integer, Real
+    from ._arguments import FloatArray, IntArray, Integer, Real
     from ._grid import Grid
 
 Bounds = tuple[tuple[float, float, float], tuple[float, float, float]]
@@ -41,7 +41,9 @@ def class_of(name: str, entry: dict[str, Any]) -> str:
     bases = "TypedDict, total=False" if entry["is_options"] else f"_methods.{name}Methods" if name in METHODS else ""
     lines = [f"class {name}({bases}):" if bases else f"class {name}:"]
     if not entry["is_options"]:
-        lines.insert(0, "@dataclass(frozen=True)")
+        # Arrays compare element by element, which does not tell whether results are equal.
+        has_arrays = any(kind in ("FloatArray", "IntArray") for _, kind, *_ in entry["members"])
+        lines.insert(0, "@dataclass(frozen=True, eq=False)" if has_arrays else "@dataclass(frozen=True)")
     lines.append(f'    """{entry["doc"]}."""\n')
     members = [member for member in entry["members"] if member[0] not in NAMED.get(name, ())]
     lines += [f"    {member}: {kind}{comment(doc, unit)}" for member, kind, _, unit, doc in members]

@@ -70,6 +70,7 @@ NB_MODULE(_core, m) {
   bind_complex(m);
   bind_solid(m);
   bind_medial_axis(m);
+  bind_axis_graph(m);
   bind_centreline(m);
   bind_certificate(m);
   bind_files(m);

@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "arrays.hpp"
 #include "blum/core/describe.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
@@ -64,6 +65,21 @@ struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
 
+/// Lists of numbers or vectors, which may be long: arrays of NumPy.
+template <class T>
+inline constexpr bool is_numbers = false;
+template <class T>
+inline constexpr bool is_numbers<std::vector<T>> =
+    std::same_as<T, Vec3d> || std::same_as<T, double> || std::same_as<T, std::uint32_t>;
+
+/// A copy that Python owns, read-only; ids as int32.
+template <class T>
+[[nodiscard]] nb::object array_of(const std::vector<T>& numbers) {
+  if constexpr (std::same_as<T, Vec3d>) return nb::cast(handed_over<const double>(numbers, 3));
+  if constexpr (std::same_as<T, double>) return nb::cast(handed_over<const double>(numbers));
+  if constexpr (std::same_as<T, std::uint32_t>) return nb::cast(handed_over<const std::int32_t>(numbers));
+}
+
 template <class T>
 [[nodiscard]] nb::object to_python(const T& value);
 
@@ -101,6 +117,8 @@ nb::object to_python(const T& value) {
     return nb::make_tuple(to_python(value.lower), to_python(value.upper));
   } else if constexpr (std::same_as<T, std::vector<PhaseTime>>) {
     return seconds_of(value);
+  } else if constexpr (is_numbers<T>) {
+    return array_of(value);
   } else if constexpr (IsVector<T>::value || IsArray<T>::value) {
     nb::list all;
     for (const auto& part : value) all.append(to_python(part));
@@ -186,6 +204,8 @@ template <class T>
     return "Bounds | None";
   } else if constexpr (std::same_as<T, std::vector<PhaseTime>>) {
     return "dict[str, float]";
+  } else if constexpr (is_numbers<T>) {
+    return std::same_as<T, std::vector<std::uint32_t>> ? "IntArray" : "FloatArray";
   } else if constexpr (IsVector<T>::value) {
     return "tuple[" + type_name<typename T::value_type>(m, is_options) + ", ...]";
   } else if constexpr (IsArray<T>::value) {

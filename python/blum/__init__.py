@@ -10,6 +10,7 @@ inside is negative. The same verbs as in C++ and on the command line:
 """
 
 from . import _structs, reference
+from ._axis_graph import axis_graph
 from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
 from ._certificate import solid_rule
 from ._complex import Complex, homology
@@ -105,6 +106,7 @@ __all__ = [
     "SolidBody",
     "WindingNumber",
     "__version__",
+    "axis_graph",
     "ball_union_field",
     "centreline",
     "certify",

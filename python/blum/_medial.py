@@ -16,7 +16,7 @@ from ._medial_complex import EVERYTHING, MedialComplex, Origin, write_complex
 from ._mesh import as_mesh
 from ._options import default_of, takes
 from ._progress import Progress, reporting
-from ._structs import MedialAxisOptions, MedialAxisReport
+from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport
 
 
 class MedialAxis:
@@ -57,6 +57,18 @@ class MedialAxis:
             site_ids="voxels" if is_image else "features",
         )
         return MedialComplex._of(self._core.simplify(angle), EVERYTHING, origin)
+
+    @takes("AxisGraphOptions")
+    def graph(self, theta: Real = 60.0, **options: Unpack[AxisGraphOptions]) -> AxisGraph:
+        """The graph of the axis at theta degrees; see :func:`axis_graph`.
+
+        Parameters
+        ----------
+        theta : float
+            As for :meth:`simplify`.
+        **options
+        """
+        return self.simplify(theta).graph(**options)
 
     def nested(self) -> NestedComplex:
         """What simplify() gives for all angles from `least_theta` on, in one complex: the data of a slider.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import textwrap
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -33,7 +34,9 @@ def takes(options: str, *left_out: str) -> Callable[[_Taker], _Taker]:
         ]
         function.__signature__ = signature.replace(parameters=[*own, *named])
         if taker.__doc__ is not None:
-            taker.__doc__ = taker.__doc__.replace("    **options\n", "".join(_documented(*each) for each in members))
+            text = "".join(_documented(*each) for each in members)
+            indented = re.compile(r"^    ( *)\*\*options\n", re.MULTILINE)
+            taker.__doc__ = indented.sub(lambda line: textwrap.indent(text, line[1]), taker.__doc__)
         return taker
 
     return documented

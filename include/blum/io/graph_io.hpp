@@ -2,16 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <string_view>
 
 #include "blum/core/error.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/axis_graph.hpp"
 
 namespace blum {
-
-/// The extensions of graphs: ".json .graphml".
-inline constexpr std::string_view graph_extensions = ".json .graphml";
 
 /// Writes the graph of a medial axis; the format goes by the extension.
 ///

@@ -143,7 +143,7 @@ struct Description<AxisPatch> {
       "A smooth part of the input mesh: faces joined through edges that bend little";
   static constexpr std::tuple members{
       Member{"faces", &AxisPatch::faces, "", "triangles of the mesh"},
-      Member{"area", &AxisPatch::area, "mesh units squared", "of the faces"},
+      Member{"area", &AxisPatch::area, "square mesh units", "of the faces"},
       Member{"centroid", &AxisPatch::centroid, "mesh units", "of the area"},
       Member{"normal", &AxisPatch::normal, "", "of unit length, the mean over the area; 0 where there is none"},
   };
@@ -193,7 +193,7 @@ struct Description<AxisSheet> {
   static constexpr std::tuple members{
       Member{"sheet", &AxisSheet::sheet, "", "its number in the axis"},
       Member{"triangles", &AxisSheet::triangles, "", "that it has"},
-      Member{"area", &AxisSheet::area, "mesh units squared", "of the triangles"},
+      Member{"area", &AxisSheet::area, "square mesh units", "of the triangles"},
       Member{"thickness", &AxisSheet::thickness, "mesh units", "twice the radius"},
       Member{"separation_angle", &AxisSheet::separation_angle, "degrees",
              "at which its vertices see their footprints: near 180 between parallel walls"},
@@ -233,7 +233,7 @@ struct Description<AxisGraph> {
       Member{"curves", &AxisGraph::curves, "", "edges of no triangle"},
       Member{"junctions", &AxisGraph::junctions, "", "by rising vertex"},
       Member{"patches", &AxisGraph::patches, "", "smooth parts of the mesh; none without it"},
-      Member{"area", &AxisGraph::area, "mesh units squared", "of all triangles"},
+      Member{"area", &AxisGraph::area, "square mesh units", "of all triangles"},
       Member{"seam_length", &AxisGraph::seam_length, "mesh units", "of all seams"},
       Member{"curve_length", &AxisGraph::curve_length, "mesh units", "of all curves"},
       Member{"rim_length", &AxisGraph::rim_length, "mesh units", "of all rims"},

@@ -1,0 +1,56 @@
+#include "blum/medial_axis/axis_graph.hpp"
+
+#include <nanobind/stl/filesystem.h>
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "blum/io/graph_io.hpp"
+#include "call.hpp"
+#include "structs.hpp"
+
+namespace blum::python {
+namespace {
+
+using Path = std::filesystem::path;
+
+AxisGraph graph_of(const Complex& axis, const std::optional<MeshView>& mesh, const AxisGraphOptions& options,
+                   const Context& context) {
+  return mesh ? axis_graph(axis, *mesh, options, context) : axis_graph(axis, context);
+}
+
+std::optional<MeshView> view_of_mesh(const MeshArrays* mesh) {
+  return mesh == nullptr ? std::nullopt : std::optional(mesh->view());
+}
+
+}  // namespace
+
+void bind_axis_graph(nb::module_& m) {
+  bind_options<AxisGraphOptions>(m);
+  bind_struct<AxisGraph>(m);
+  m.def(
+      "axis_graph",
+      [](const Complex& axis, const MeshArrays* mesh, const nb::dict& given, int threads, nb::object progress) {
+        const std::optional<MeshView> view = view_of_mesh(mesh);
+        const auto options = options_from<AxisGraphOptions>(given);
+        return result_of(run({threads, std::move(progress)},
+                             [&](const Context& context) { return graph_of(axis, view, options, context); }));
+      },
+      nb::arg("axis"), nb::arg("mesh").none(), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "write_graph",
+      [](const Path& path, const Complex& axis, const MeshArrays* mesh, const nb::dict& given, const nb::dict& told) {
+        const std::optional<MeshView> view = view_of_mesh(mesh);
+        const auto options = options_from<AxisGraphOptions>(given);
+        auto metadata = options_from<MedialMetadata>(told);
+        metadata.version = BLUM_VERSION;
+        run_call({0, nb::none()},
+                 [&](const Context& context) { write_graph(path, graph_of(axis, view, options, context), metadata); });
+      },
+      nb::arg("path"), nb::arg("axis"), nb::arg("mesh").none(), nb::arg("options"), nb::arg("metadata"));
+}
+
+}  // namespace blum::python

@@ -1,0 +1,124 @@
+"""Medial axes as graphs of sheets, seams, curves and junctions."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from pathlib import Path
+from typing import Any, Unpack
+
+from . import _core
+from ._arguments import PathLike, integer
+from ._complex import Complex
+from ._mesh import Mesh, as_mesh
+from ._options import takes
+from ._progress import Progress, reporting
+from ._structs import AxisGraph, AxisGraphOptions
+
+
+@takes("AxisGraphOptions")
+def axis_graph(
+    axis: Complex,
+    mesh: Any = None,
+    triangles: Any = None,
+    *,
+    threads: int = 0,
+    progress: Progress = False,
+    **options: Unpack[AxisGraphOptions],
+) -> AxisGraph:
+    """The sheets, seams, curves and junctions of a medial axis, with their areas, lengths and thicknesses.
+
+    Parameters
+    ----------
+    axis : MedialComplex
+        With radii and sheets; or another complex with these columns.
+    mesh, triangles
+        That the axis was made of, as for :func:`distance_field`: `patches` are then its smooth parts, and every sheet
+        has the `patch_pairs` that it lies between. Default: the one that is known, where the axis was made here.
+    threads, progress
+        As for :func:`distance_field`.
+    **options
+
+    Returns
+    -------
+    AxisGraph
+        Numbers of seams, curves, junctions and patches are places in its lists; sheets have the numbers of
+        `triangle_sheet`. `.to_networkx()` makes it a graph of networkx.
+
+    >>> import blum
+    >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.5)
+    >>> graph = blum.medial_axis(plate, resolution=48).simplify(120).graph()
+    >>> [round(sheet.thickness.median, 6) for sheet in graph.sheets]
+    [0.5]
+    """
+    if not isinstance(axis, Complex):
+        raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
+    own = _mesh_of(axis, mesh, triangles)
+    with reporting(progress) as report:
+        found: AxisGraph = _core.axis_graph(
+            axis._core, None if own is None else own._arrays, dict(options), integer(threads, "threads"), report
+        )
+    return found
+
+
+def write_graph(
+    path: PathLike, axis: Complex, told: dict[str, Any], mesh: Any, triangles: Any, options: AxisGraphOptions
+) -> None:
+    """Writes the graph of an axis, and what is told of it."""
+    own = _mesh_of(axis, mesh, triangles)
+    _core.write_graph(Path(os.fspath(path)), axis._core, None if own is None else own._arrays, dict(options), told)
+
+
+def _mesh_of(axis: Complex, mesh: Any, triangles: Any) -> Mesh | None:
+    if mesh is not None:
+        return as_mesh(mesh, triangles)
+    known = getattr(getattr(axis, "_origin", None), "shape", None)
+    return known if isinstance(known, Mesh) else None
+
+
+def to_networkx(graph: AxisGraph) -> Any:
+    """See AxisGraph.to_networkx."""
+    try:
+        import networkx
+    except ImportError as error:
+        raise ImportError("AxisGraph.to_networkx() needs networkx: pip install networkx") from error
+    out = networkx.MultiGraph(**_attributes(graph))
+    for sheet in graph.sheets:
+        out.add_node(f"sheet{sheet.sheet}", element="sheet", **_attributes(sheet))
+    for element, parts in (("seam", graph.seams), ("junction", graph.junctions), ("patch", graph.patches)):
+        for number, part in enumerate(parts):
+            out.add_node(f"{element}{number}", element=element, **_attributes(part))
+    for number, curve in enumerate(graph.curves):
+        if curve.junctions is None:
+            out.add_node(f"curve{number}", element="curve", **_attributes(curve))
+        else:
+            first, last = curve.junctions
+            told = {"element": "curve", "curve": number, **_attributes(curve)}
+            out.add_edge(f"junction{first}", f"junction{last}", **told)
+    for sheet in graph.sheets:
+        out.add_edges_from(((f"sheet{sheet.sheet}", f"seam{seam}") for seam in sheet.seams), element="incidence")
+        shares: dict[int, float] = {}
+        for pair in sheet.patch_pairs:
+            for patch in {*pair.first.tolist(), *pair.second.tolist()}:
+                shares[patch] = shares.get(patch, 0.0) + pair.share
+        for patch, share in sorted(shares.items()):
+            out.add_edge(f"sheet{sheet.sheet}", f"patch{patch}", element="wall", share=share)
+    for number, junction in enumerate(graph.junctions):
+        ends = [f"seam{seam}" for seam in sorted(set(junction.seams.tolist()))]
+        ends += [f"sheet{sheet}" for sheet in junction.sheets]
+        out.add_edges_from(((end, f"junction{number}") for end in ends), element="incidence")
+    return out
+
+
+def _attributes(part: Any, prefix: str = "") -> dict[str, Any]:
+    """The members that are values, by their names; those of parts after theirs."""
+    out: dict[str, Any] = {}
+    for field in dataclasses.fields(part):
+        value, name = getattr(part, field.name), prefix + field.name
+        if dataclasses.is_dataclass(value):
+            out |= _attributes(value, f"{name}_")
+        elif isinstance(value, (bool, int, float, str)):
+            out[name] = value
+        elif field.type == "tuple[float, float, float]":
+            out |= {f"{name}_{axis}": number for axis, number in zip("xyz", value, strict=True)}
+    return out
