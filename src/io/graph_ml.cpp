@@ -67,7 +67,7 @@ std::string text_of(const Attribute& attribute) {
 template <DescribedStruct T>
 void add_members(const T& whole, Attributes& out, const std::string& prefix = {}) {
   for_each_member<T>([&](const auto& member) {
-    const auto value = member.of(whole);
+    const auto& value = member.of(whole);
     using Value = std::remove_cvref_t<decltype(value)>;
     const std::string name = prefix + std::string(member.name);
     if constexpr (DescribedStruct<Value>) {

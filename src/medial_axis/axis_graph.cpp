@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "blum/complex/medial_columns.hpp"
@@ -70,7 +71,7 @@ class LineWalker {
     const auto number = static_cast<std::uint32_t>(lines.size());
     AxisLine line;
     add_vertex(vertex, line);
-    while (true) {
+    for (; edge != none; edge = next_edge(vertex, part)) {
       line_of_edge_[edge] = number;
       line.length += parts_.edge_length(edge);
       const auto& ends = parts_.incidence().edges()[edge];
@@ -81,7 +82,6 @@ class LineWalker {
           line.sheets.push_back(static_cast<std::uint32_t>(parts_.view().sheet[t]));
         }
       }
-      if (junction_at_[vertex] != none || (edge = next_edge(vertex, part)) == none) break;
     }
     finish(line, part, number);
     lines.push_back(std::move(line));
@@ -94,8 +94,9 @@ class LineWalker {
     line.arc_length.push_back(line.length);
   }
 
-  /// The one that goes on from a vertex that is no junction; none at the end of a loop.
+  /// The one that goes on from a vertex; none at a junction, and where a loop ends.
   [[nodiscard]] std::uint32_t next_edge(std::uint32_t vertex, EdgePart part) const {
+    if (junction_at_[vertex] != none) return none;
     for (const std::uint32_t e : parts_.incidence().edges_of_vertex()[vertex]) {
       if (parts_.part(e) == part && line_of_edge_[e] == none) return e;
     }
@@ -165,8 +166,10 @@ class PatchPairs {
         graph_.sheets[s].patch_pairs.push_back(
             {sets_[sides.first], sets_[sides.second], graph_.sheets[s].area > 0 ? area / graph_.sheets[s].area : 0});
       }
-      std::stable_sort(graph_.sheets[s].patch_pairs.begin(), graph_.sheets[s].patch_pairs.end(),
-                       [](const AxisPatchPair& a, const AxisPatchPair& b) { return a.share > b.share; });
+      std::sort(graph_.sheets[s].patch_pairs.begin(), graph_.sheets[s].patch_pairs.end(),
+                [](const AxisPatchPair& a, const AxisPatchPair& b) {
+                  return std::tie(b.share, a.first, a.second) < std::tie(a.share, b.first, b.second);
+                });
     }
   }
 

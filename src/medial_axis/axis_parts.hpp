@@ -30,7 +30,7 @@ class AxisParts {
   [[nodiscard]] double edge_length(std::uint32_t edge) const;
   /// Of a triangle: its sheet's place among those that have triangles.
   [[nodiscard]] std::uint32_t sheet_place(std::uint32_t triangle) const {
-    return place_of_sheet_[view_.sheet[triangle]];
+    return place_of_sheet_[static_cast<std::size_t>(view_.sheet[triangle])];
   }
   /// The numbers of the sheets that have triangles, rising.
   [[nodiscard]] const std::vector<std::uint32_t>& sheet_numbers() const { return sheet_numbers_; }

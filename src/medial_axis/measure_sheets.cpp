@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -62,19 +64,23 @@ class SheetMeasurer {
     const Vec3d corners = at + axis.positions[b] + axis.positions[c];
     AxisSheet& sheet = sheet_of(t);
     Measured& measured = measured_[parts_.sheet_place(t)];
-    const auto spread = [&](AxisSpread& all, std::vector<std::pair<double, double>>& means, double scale,
-                            std::span<const double> values) {
-      const auto [least, most] = std::minmax({values[a], values[b], values[c]});
-      all.minimum = std::min(all.minimum, scale * least);
-      all.maximum = std::max(all.maximum, scale * most);
-      means.emplace_back(scale * (values[a] + values[b] + values[c]) / 3, area);
-    };
-    spread(sheet.thickness, measured.thickness, 2, axis.radius);
-    spread(sheet.separation_angle, measured.angle, 1, axis.separation_angle);
+    add_corners({2 * axis.radius[a], 2 * axis.radius[b], 2 * axis.radius[c]}, area, sheet.thickness,
+                measured.thickness);
+    add_corners({axis.separation_angle[a], axis.separation_angle[b], axis.separation_angle[c]}, area,
+                sheet.separation_angle, measured.angle);
     ++sheet.triangles;
     sheet.area += area;
     sheet.centroid += area / 3 * corners;
     measured.corners += corners;
+  }
+
+  static void add_corners(const std::array<double, 3>& values, double area, AxisSpread& spread,
+                          std::vector<std::pair<double, double>>& means) {
+    for (const double value : values) {
+      spread.minimum = std::min(spread.minimum, value);
+      spread.maximum = std::max(spread.maximum, value);
+    }
+    means.emplace_back((values[0] + values[1] + values[2]) / 3, area);
   }
 
   /// Whether it is a part of the border.

@@ -124,14 +124,14 @@ std::vector<std::uint32_t> SurfacePatches::at(SiteId site) const {
                         ": it is not the mesh that the axis was made of, or was welded "
                         "otherwise");
   }
-  const auto [kind, index] = sites_.site(site);
+  const Site on = sites_.site(site);
   std::vector<std::uint32_t> out;
-  if (kind == SiteKind::face) {
-    if (patch_of_[index] != none) out.push_back(patch_of_[index]);
+  if (on.kind == SiteKind::face) {
+    if (patch_of_[on.index] != none) out.push_back(patch_of_[on.index]);
     return out;
   }
-  const Rows& rows = kind == SiteKind::edge ? at_edges_ : at_vertices_;
-  for (std::size_t k = rows.first[index]; k < rows.first[index + 1]; ++k) {
+  const Rows& rows = on.kind == SiteKind::edge ? at_edges_ : at_vertices_;
+  for (std::size_t k = rows.first[on.index]; k < rows.first[std::size_t{on.index} + 1]; ++k) {
     if (patch_of_[rows.triangles[k]] != none) out.push_back(patch_of_[rows.triangles[k]]);
   }
   std::sort(out.begin(), out.end());
