@@ -61,11 +61,11 @@ def axis_graph(
     return found
 
 
-def write_graph(
-    path: PathLike, axis: Complex, told: dict[str, Any], mesh: Any, triangles: Any, options: AxisGraphOptions
-) -> None:
-    """Writes the graph of an axis, and what is told of it."""
+def write_graph(path: PathLike, axis: Complex, mesh: Any, triangles: Any, options: AxisGraphOptions) -> None:
+    """Writes the graph of an axis, with what is known of where the axis came from."""
     own = _mesh_of(axis, mesh, triangles)
+    origin = getattr(axis, "_origin", None)
+    told = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
     _core.write_graph(Path(os.fspath(path)), axis._core, None if own is None else own._arrays, dict(options), told)
 
 

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import FloatArray, IntArray, Real, number
+from ._arguments import FloatArray, IntArray, PathLike, Real, number
+from ._axis_graph import axis_graph, write_graph
 from ._complex import Complex, core_arguments
 from ._errors import InvalidOption
+from ._options import takes
+from ._progress import Progress
+from ._structs import AxisGraph, AxisGraphOptions
 
 #: What the numbers in `MedialComplex.role` and `edge_role` stand for.
 ROLES: tuple[str, ...] = _core.enums["MedialRole"]
@@ -32,6 +36,44 @@ class MedialColumns(Complex):
         if column is None:
             raise InvalidOption(_core.missing_medial_column(kind, name))
         return column
+
+    @takes("AxisGraphOptions")
+    def graph(
+        self,
+        mesh: Any = None,
+        triangles: Any = None,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+        **options: Unpack[AxisGraphOptions],
+    ) -> AxisGraph:
+        """Its sheets, seams, curves and junctions, with areas, lengths and thicknesses; see :func:`axis_graph`. Of axes
+        of all angles those at the least one.
+
+        Parameters
+        ----------
+        mesh, triangles
+            That the axis was made of. Default: the one that is known, where it was made here.
+        threads, progress
+            As for :func:`distance_field`.
+        **options
+        """
+        return axis_graph(self, mesh, triangles, threads=threads, progress=progress, **options)
+
+    @takes("AxisGraphOptions")
+    def write_graph(
+        self, path: PathLike, mesh: Any = None, triangles: Any = None, **options: Unpack[AxisGraphOptions]
+    ) -> None:
+        """Writes what :meth:`graph` tells as .json, or as .graphml; the file appears complete or not at all.
+
+        Parameters
+        ----------
+        path : path
+        mesh, triangles
+            As for :meth:`graph`.
+        **options
+        """
+        write_graph(path, self, mesh, triangles, options)
 
     @property
     def radius(self) -> FloatArray:

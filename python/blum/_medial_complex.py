@@ -27,7 +27,6 @@ from ._arguments import (
     number,
     site_ids,
 )
-from ._axis_graph import axis_graph, write_graph
 from ._certificate import Claim, certified
 from ._complex import core_arguments
 from ._errors import InvalidOption
@@ -38,7 +37,7 @@ from ._medial_columns import ROLES, MedialColumns, NestedComplex
 from ._mesh import Mesh
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import AxisGraph, AxisGraphOptions, Bounds, Certificate, CertificateOptions
+from ._structs import Bounds, Certificate, CertificateOptions
 
 EVERYTHING = {"radii": True, "footprints": True, "angles": True, "sites": True, "labels": True}
 
@@ -191,43 +190,6 @@ class MedialComplex(MedialColumns):
         with reporting(progress) as report:
             core = _core.prune_sheets(self._core, number(theta, "theta"), integer(threads, "threads"), report)
         return MedialComplex._of(core, self.has, self._origin)
-
-    @takes("AxisGraphOptions")
-    def graph(
-        self,
-        mesh: Any = None,
-        triangles: Any = None,
-        *,
-        threads: int = 0,
-        progress: Progress = False,
-        **options: Unpack[AxisGraphOptions],
-    ) -> AxisGraph:
-        """Its sheets, seams, curves and junctions, with areas, lengths and thicknesses; see :func:`axis_graph`.
-
-        Parameters
-        ----------
-        mesh, triangles
-            That the axis was made of. Default: the one that is known, where it was made here.
-        threads, progress
-            As for :func:`distance_field`.
-        **options
-        """
-        return axis_graph(self, mesh, triangles, threads=threads, progress=progress, **options)
-
-    @takes("AxisGraphOptions")
-    def write_graph(
-        self, path: PathLike, mesh: Any = None, triangles: Any = None, **options: Unpack[AxisGraphOptions]
-    ) -> None:
-        """Writes what :meth:`graph` tells as .json, or as .graphml; the file appears complete or not at all.
-
-        Parameters
-        ----------
-        path : path
-        mesh, triangles
-            As for :meth:`graph`.
-        **options
-        """
-        write_graph(path, self, _told(self._origin), mesh, triangles, options)
 
     def reconstruct(
         self,
@@ -467,13 +429,9 @@ def ball_union_field(centres: Any, radii: Any, grid: Grid, *, threads: int = 0, 
 
 
 def write_complex(path: PathLike, complex: MedialComplex, nested: NestedComplex | None) -> None:
+    told = {name: value for name, value in vars(complex._origin).items() if name not in ("shape", "version")}
     inner, least = (None, 0.0) if nested is None else (nested._core, nested.least_theta)
-    _core.write_medial(Path(os.fspath(path)), complex._core, inner, least, _told(complex._origin))
-
-
-def _told(origin: Origin) -> dict[str, Any]:
-    """What files tell of it."""
-    return {name: value for name, value in vars(origin).items() if name not in ("shape", "version")}
+    _core.write_medial(Path(os.fspath(path)), complex._core, inner, least, told)
 
 
 def read_medial(path: PathLike) -> MedialComplex:

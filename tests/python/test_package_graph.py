@@ -178,6 +178,12 @@ def test_results_are_read_only_and_pickle(bracket):
         graph.curves[0].radii[0] = 1
 
 
+def test_axes_of_all_angles_have_the_graph_at_the_least():
+    axis = blum.medial_axis(blum.generate("box"), resolution=32, least_theta=60)
+    nested, least = axis.nested().graph(), axis.graph(60)
+    assert np.isclose(nested.area, least.area) and len(nested.sheets) == len(least.sheets) == 13
+
+
 def test_without_networkx_it_is_said(bracket, monkeypatch):
     monkeypatch.setitem(sys.modules, "networkx", None)
     with pytest.raises(ImportError, match="needs networkx: pip install networkx"):
