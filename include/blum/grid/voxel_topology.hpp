@@ -18,8 +18,8 @@ namespace blum {
 /// @throws Cancelled.
 [[nodiscard]] std::array<std::int64_t, 3> betti_numbers(const VoxelSet& voxels, const Context& context = {});
 
-/// Adds the voids: the 6-connected components of the rest of space other than the outer one, which holds what lies beyond
-/// the box. @return how many there were. @throws Cancelled.
+/// Adds the voids: the 6-connected components of the rest of space other than the outer one, which holds what lies
+/// beyond the box. @return how many there were. @throws Cancelled.
 std::int64_t fill_voids(VoxelSet& voxels, const Context& context = {});
 
 /// Vertices - edges + squares - cubes of the union of the closed voxels, each cell once.

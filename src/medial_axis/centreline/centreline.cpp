@@ -178,7 +178,7 @@ Centreline run(const VoxelImageView& image, const Task& task, double spur, const
   if (task.box.voxels == 0) {
     judge_homotopy(out);
   } else {
-    out = centreline_of(crop(image, task.selection, task.box), image.grid.spacing, spur, context, times);
+    out = centreline_of(crop(image, task.selection, task.box, context), image.grid.spacing, spur, context, times);
     move_to_world(image.grid, task.box, out);
   }
   out.label = task.label;

@@ -18,8 +18,7 @@ class CurveMaker {
  public:
   CurveMaker(const std::vector<Vec3d>& voxels, const std::array<CurveEnd, 2>& ends, const LabelShare& label,
              double reach)
-      : start_(voxels), ends_(ends), label_(label), reach_(reach) {
-    is_closed_ = ends[0].kind == CurveEnd::Kind::closed;
+      : start_(voxels), ends_(ends), label_(label), reach_(reach), is_closed_(ends[0].kind == CurveEnd::Kind::closed) {
     if (is_closed_) start_.pop_back();
     leave_balls();
     points_ = start_;
@@ -192,7 +191,7 @@ class CurveMaker {
   std::array<CurveEnd, 2> ends_;
   const LabelShare& label_;
   double reach_;
-  bool is_closed_ = false;
+  bool is_closed_;
   bool is_in_balls_ = false;  ///< whether all of it lies in the balls of its junctions
   std::vector<Vec3d> points_;
   std::vector<Vec3d> tangents_;

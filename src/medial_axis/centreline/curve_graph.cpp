@@ -4,7 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <iterator>
 #include <limits>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -45,10 +48,12 @@ std::vector<std::uint32_t> listed(const VoxelSet& voxels) {
 }
 
 /// All pairs of neighbours, the shortest first.
-std::vector<Edge> edges_between(const VoxelSet& voxels, const std::vector<std::uint32_t>& list, const Vec3d& spacing) {
+std::vector<Edge> edges_between(const VoxelSet& voxels, const std::vector<std::uint32_t>& list, const Vec3d& spacing,
+                                const Context& context) {
   std::vector<Edge> edges;
   const auto& size = voxels.size();
   for (std::size_t v = 0; v < list.size(); ++v) {
+    if (v % 65536 == 0) throw_if_cancelled(context);
     const auto at = voxels.place(list[v]);
     for (std::int64_t n = 14; n < 27; ++n) {  // the neighbours that come later
       const std::int64_t x = n % 3 - 1;
@@ -62,7 +67,8 @@ std::vector<Edge> edges_between(const VoxelSet& voxels, const std::vector<std::u
       edges.push_back({length(step), static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(found - list.begin())});
     }
   }
-  std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.length < b.length; });
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& a, const Edge& b) { return std::tie(a.length, a.a, a.b) < std::tie(b.length, b.a, b.b); });
   return edges;
 }
 
@@ -179,7 +185,7 @@ class Tracer {
 
 CurveGraph curve_graph(const VoxelSet& voxels, const Vec3d& spacing, const Context& context) {
   const std::vector<std::uint32_t> list = listed(voxels);
-  const std::vector<Edge> edges = edges_between(voxels, list, spacing);
+  const std::vector<Edge> edges = edges_between(voxels, list, spacing, context);
   const Tunnels tunnels(list.size(), edges, context);
   return Tracer(list, edges, tunnels.kept()).trace();
 }

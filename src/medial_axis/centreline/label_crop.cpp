@@ -56,7 +56,8 @@ void for_each_run(std::span<const T> values, const Place& size, std::int64_t k, 
     for (std::int64_t i = 0; i < size[0];) {
       const std::int64_t begin = i;
       const T value = row[i];
-      while (++i < size[0] && row[i] == value) continue;
+      ++i;  // also past what equals nothing: NaN
+      while (i < size[0] && row[i] == value) ++i;
       visit(value, begin, i, j);
     }
   }
@@ -128,7 +129,8 @@ LabelBox selection_box(const VoxelImageView& image, const LabelSelection& select
   return box;
 }
 
-VoxelSet crop(const VoxelImageView& image, const LabelSelection& selection, const LabelBox& box) {
+VoxelSet crop(const VoxelImageView& image, const LabelSelection& selection, const LabelBox& box,
+              const Context& context) {
   Place size{};
   for (std::size_t a = 0; a < 3; ++a) size[a] = box.high[a] - box.low[a] + 1 + 2 * margin;
   VoxelSet out(size);
@@ -136,16 +138,20 @@ VoxelSet crop(const VoxelImageView& image, const LabelSelection& selection, cons
       [&]<class T>(const std::span<const T>& values) {
         std::visit(
             [&](const auto& test) {
-              for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k) {
-                for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j) {
-                  const T* row = values.data() + image.grid.index(0, j, k);
-                  const auto words = out.row(j - box.low[1] + margin, k - box.low[2] + margin);
-                  for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) {
-                    const std::int64_t at = i - box.low[0] + margin;
-                    words[static_cast<std::size_t>(at / 64)] |= static_cast<std::uint64_t>(test(row[i])) << (at % 64);
+              const auto layers = static_cast<std::size_t>(box.high[2] - box.low[2] + 1);
+              parallel_for(context, layers, 2, "", [&](const WorkRange& range) {
+                for (std::size_t layer = range.begin; layer < range.end; ++layer) {
+                  const std::int64_t k = box.low[2] + static_cast<std::int64_t>(layer);
+                  for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j) {
+                    const T* row = values.data() + image.grid.index(0, j, k);
+                    const auto words = out.row(j - box.low[1] + margin, k - box.low[2] + margin);
+                    for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) {
+                      const std::int64_t at = i - box.low[0] + margin;
+                      words[static_cast<std::size_t>(at / 64)] |= static_cast<std::uint64_t>(test(row[i])) << (at % 64);
+                    }
                   }
                 }
-              }
+              });
             },
             detail::make_voxel_test<T>(selection));
       },

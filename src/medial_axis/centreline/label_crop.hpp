@@ -29,7 +29,9 @@ struct LabelBox {
                                      const Context& context);
 
 /// The selected voxels within a box, and two layers of others around. The border's voxels are never selected.
-[[nodiscard]] VoxelSet crop(const VoxelImageView& image, const LabelSelection& selection, const LabelBox& box);
+/// @throws Cancelled.
+[[nodiscard]] VoxelSet crop(const VoxelImageView& image, const LabelSelection& selection, const LabelBox& box,
+                            const Context& context);
 
 /// How far voxel 0 of a crop is before that of its box.
 inline constexpr std::int64_t margin = 2;

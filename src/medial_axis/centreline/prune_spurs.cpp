@@ -23,8 +23,8 @@ class Pruner {
     std::vector<std::uint32_t> order(graph_.nodes.size());
     std::iota(order.begin(), order.end(), 0U);
     // Small balls first, so that what lies in a large one is judged when it is clean.
-    std::stable_sort(order.begin(), order.end(),
-                     [this](std::uint32_t a, std::uint32_t b) { return radius(a) < radius(b); });
+    std::sort(order.begin(), order.end(),
+              [this](std::uint32_t a, std::uint32_t b) { return std::pair(radius(a), a) < std::pair(radius(b), b); });
     for (bool has_changed = true; has_changed;) {
       has_changed = false;
       throw_if_cancelled(context_);
@@ -58,8 +58,8 @@ class Pruner {
     for (const std::uint32_t c : graph_.nodes[node].chains) {
       if (has_free_end(c, node) && is_short(c)) found.push_back(c);
     }
-    std::stable_sort(found.begin(), found.end(),
-                     [this](std::uint32_t a, std::uint32_t b) { return length_[a] < length_[b]; });
+    std::sort(found.begin(), found.end(),
+              [this](std::uint32_t a, std::uint32_t b) { return std::pair(length_[a], a) < std::pair(length_[b], b); });
     return found;
   }
 
