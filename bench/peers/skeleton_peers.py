@@ -1,12 +1,16 @@
-"""Times Blum's medial axis of an image against thinning by other programs on the same image; JSON on request.
+"""Times Blum's medial axis or centreline of an image against thinning by other programs on the same image; JSON on
+request.
 
-    python3 bench/peers/skeleton_peers.py [--side 512] [--shape bumpy] [--peers scikit-image,kimimaro,itk] [--json FILE]
+    python3 bench/peers/skeleton_peers.py [--side 512] [--shape bumpy] [--verb medial] [--json FILE]
+        [--peers scikit-image,scikit-image-radii,kimimaro,itk]
 
 Needs NumPy, SciPy, the blum tool (BLUM_CLI, or below build/) and the peers: `pip install scikit-image kimimaro
 itk-thickness3d`; one that is missing is left out and said to be. Shapes hold a fifth of the voxels: `bumpy`, one smooth
 body; `organs`, a few thick ones; `pores`, many thin ones. scikit-image and ITK thin to curves, one thread; kimimaro
 traces trees, all threads; Blum's axis (theta 60) has surfaces, curves, radii and footprints. Reading, writing and Blum's
 certificate are not timed; its own row tells the certificate. CPU seconds of Blum are those of the whole run.
+`--verb centreline` times Blum's graph of curves with radii instead; `scikit-image-radii` is thinning and SciPy's distance
+transform, from which its users take radii.
 """
 
 import argparse
@@ -68,6 +72,11 @@ def thin(peer, mask, threads):
         from skimage.morphology import skeletonize
 
         work = lambda: int(skeletonize(mask).sum())
+    elif peer == "scikit-image-radii":
+        from scipy import ndimage
+        from skimage.morphology import skeletonize
+
+        work = lambda: len(ndimage.distance_transform_edt(mask)[skeletonize(mask)])
     elif peer == "kimimaro":
         import kimimaro
 
@@ -108,22 +117,28 @@ def run_peer(peer, path, threads):
         process.join()
 
 
-def run_blum(path, folder, threads):
-    command = [blum_tool(), "medial", path, "-o", os.path.join(folder, "axis.npz"), "--theta", "60", "--json", "-"]
+def run_blum(path, folder, threads, verb):
+    command = [blum_tool(), verb, path, "-o", os.path.join(folder, "axis.npz"), "--json", "-"]
+    if verb == "medial":
+        command += ["--theta", "60"]
     process = subprocess.Popen([*command, "--threads", str(threads)], stdout=subprocess.PIPE, text=True)
     summary = json.loads(process.stdout.read())
     _, status, usage = os.wait4(process.pid, 0)
     if status != 0:
-        sys.exit("blum medial failed")
+        sys.exit(f"blum {verb} failed")
     seconds = summary["seconds"]
+    if verb == "medial":
+        left = summary["solids"][0]["axes"][0]["counts"]["vertices"]
+    else:
+        left = sum(label["branches"] for label in summary["labels"])
     return {
         "seconds": sum(value for phase, value in seconds.items() if phase not in NOT_TIMED),
         "cpu_seconds": usage.ru_utime + usage.ru_stime,
-        "certificate_seconds": seconds["certificate"],
+        "certificate_seconds": seconds.get("certificate", 0),
         "phases": seconds,
-        "left": summary["solids"][0]["axes"][0]["counts"]["vertices"],
+        "left": left,
         "peak_mib": usage.ru_maxrss / 1024,
-        "certified": summary["certified"],
+        "certified": summary.get("certified"),
     }
 
 
@@ -131,6 +146,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--side", type=int, default=512)
     parser.add_argument("--shape", choices=["bumpy", "organs", "pores"], default="bumpy")
+    parser.add_argument("--verb", choices=["medial", "centreline"], default="medial")
     parser.add_argument("--peers", default="scikit-image,kimimaro,itk")
     parser.add_argument("--threads", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--json")
@@ -140,6 +156,7 @@ def main():
     report = {
         "side": arguments.side,
         "shape": arguments.shape,
+        "verb": arguments.verb,
         "selected": int(mask.sum()),
         "threads": arguments.threads,
         "load_before": os.getloadavg()[0],
@@ -148,7 +165,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "image.npy")
         numpy.save(path, mask.astype(numpy.uint8))
-        report["programs"]["blum"] = ours = run_blum(path, folder, arguments.threads)
+        report["programs"]["blum"] = ours = run_blum(path, folder, arguments.threads, arguments.verb)
         for peer in filter(None, arguments.peers.split(",")):
             figures = run_peer(peer, path, arguments.threads)
             if figures is None:
