@@ -17,7 +17,6 @@ namespace {
 
 using Place = std::array<std::int64_t, 3>;
 
-constexpr std::uint32_t middle = 1U << 13U;
 constexpr std::size_t steps_between_looks = std::size_t{1} << 16U;
 
 /// The cells at a lattice node that a voxel ahead of it (0), or behind it (1), along each axis has: bits by axes.
