@@ -91,6 +91,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
                      {"footprints", file.has_footprints},
                      {"source", or_null(m.source)},
                      {"written_by", or_null(m.version)},
+                     {"deviation", or_null(m.deviation)},
                      {"solid_rule", or_null(m.solid_rule)},
                      {"theta", or_null(m.theta)},
                      {"nested_theta", file.nested ? Json(file.least_theta) : Json(nullptr)},

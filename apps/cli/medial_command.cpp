@@ -14,6 +14,7 @@
 #include "blum/io/draft.hpp"
 #include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
+#include "blum/medial_axis/decimate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "commands.hpp"
@@ -33,7 +34,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
   blum medial part.stl -o part.vtp                        for ParaView, with all attributes
-  blum medial part.stl -o part.vtp --theta 20,60,120      part-theta20.vtp and so on, nested
+  blum medial part.stl -o part.vtp --theta 20,60,120      part-theta20.vtp and so on
   blum medial knot.ply -o knot.obj --theta 170            curves, for Blender
   blum medial part.stl -o part.vtp --graph part.json      its sheets with their thickness, seams, curves, junctions
   blum medial scan.nii.gz -o vessels.npz --label 1,3      vessels-label1.npz and vessels-label3.npz
@@ -43,7 +44,7 @@ Exit status 3: the axis could not be certified, and no file was written.)";
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> theta, prune, threshold, weld, threads, graph;
+  std::optional<std::string> theta, prune, simplify, threshold, weld, threads, graph;
   OptionTexts<MedialAxisOptions> options;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
@@ -58,6 +59,7 @@ struct Request {
   MedialAxisOptions options;
   std::vector<double> thetas{60};  ///< rising where sheets are pruned
   bool prunes_sheets = false;
+  std::optional<double> simplify;  ///< mesh units; a quarter of a voxel where it is not set
   Selections selections;
   std::optional<double> weld;
   bool allow_uncertified = false;
@@ -101,6 +103,11 @@ Request parse(const Arguments& a) {
   if (r.nested && r.thetas.size() > 1) {
     throw UsageError("--nested keeps the axes of all angles from --theta on in one file: give one angle");
   }
+  if (a.simplify) r.simplify = parse_non_negative("--simplify", *a.simplify);
+  if (r.nested && r.simplify.value_or(0) > 0) {
+    throw UsageError("--nested keeps all vertices, as axes of several angles share them: leave --simplify out");
+  }
+  if (r.nested) r.simplify = 0;
   exclude(r.nested, "--nested", r.prunes_sheets, "--prune", "sheets that go whole have no order to keep");
   if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
   // Sheets are pruned whole, so they must be whole first.
@@ -230,12 +237,8 @@ Json add_graph(Run& run, const Request& r, const SolidInput& input, const Comple
   return graph_json(graph, run.graphs.back().name());
 }
 
-/// Writes, reads again and certifies an axis at one angle.
-void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
-              const MedialAxis& axis, const Complex& complex, double theta, const fs::path& name, Json& axes,
-              const Context& context) {
-  const MedialAxisReport& report = axis.report();
-  Stopwatch watch;
+MedialMetadata metadata_of(const Request& r, const SolidInput& input, const LabelSelection& selection,
+                           const MedialAxisReport& report, double theta) {
   MedialMetadata metadata;
   metadata.source = r.input.filename().string();
   metadata.version = BLUM_VERSION;
@@ -246,28 +249,74 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   metadata.solid_rule = to_string(report.rule);
   metadata.grid = report.grid;
   record(selection, r.weld, input.kind, metadata);
-  run.drafts.emplace_back(name);
+  return metadata;
+}
+
+/// The smallest side of a voxel of any body.
+double least_spacing(const MedialAxisReport& report) {
+  double least = report.bodies.front().spacing;
+  for (const BodyReport& body : report.bodies) least = std::min(least, body.spacing);
+  return least;
+}
+
+/// Writes an axis to the last draft, reads it again and certifies it.
+Certificate write_and_certify(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
+                              const MedialAxis& axis, const Complex& complex, const MedialMetadata& metadata,
+                              const Context& context) {
+  Stopwatch watch;
+  const fs::path& path = run.drafts.back().path();
   if (r.nested) {
-    write_medial(run.drafts.back().path(), complex, axis.nested(context), axis.least_theta(), metadata, context);
+    write_medial(path, complex, axis.nested(context), axis.least_theta(), metadata, context);
   } else {
-    write_medial(run.drafts.back().path(), complex, metadata, context);
+    write_medial(path, complex, metadata, context);
   }
   run.phases.push_back({"write", watch.lap()});
-  MedialFile written = read_axis(run.drafts.back().path());
+  MedialFile written = read_axis(path);
   if (written.metadata.solid_rule.empty()) {  // .obj and .ma say nothing of it
     written.metadata.solid_rule = metadata.solid_rule;
     written.metadata.grid = metadata.grid;
   }
-  const Certificate certificate = certificate_of(written, input, selection, context);
+  Certificate certificate = certificate_of(written, input, selection, context);
   run.phases.push_back({"certificate", watch.lap()});
-  const bool is_certified = certificate.mismatches.empty() && report.topology_matches;
-  run.is_kept.push_back(is_certified || r.allow_uncertified);
-  const MedialCounts counts = count(complex);
+  return certificate;
+}
+
+/// Takes vertices out of an axis at one angle, and writes and certifies it; with all of them where it is not certified
+/// without.
+void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
+              const MedialAxis& axis, const Complex& complex, double theta, const fs::path& name, Json& axes,
+              const Context& context) {
+  const MedialAxisReport& report = axis.report();
+  Stopwatch watch;
+  MedialMetadata metadata = metadata_of(r, input, selection, report, theta);
+  DecimatedAxis lean = decimate(complex, r.simplify.value_or(0.25 * least_spacing(report)), context);
+  const bool is_lean = lean.axis.positions.size() < complex.positions.size();
+  if (is_lean) metadata.deviation = lean.deviation;
+  run.phases.push_back({"simplify", watch.lap()});
+  run.drafts.emplace_back(name);
+  Certificate certificate = write_and_certify(run, r, input, selection, axis, lean.axis, metadata, context);
+  if (is_lean && !certificate.holds()) {
+    const std::string reason = certificate.mismatches.front();
+    lean = {complex, 0};
+    metadata.deviation.reset();
+    certificate = write_and_certify(run, r, input, selection, axis, lean.axis, metadata, context);
+    if (certificate.holds()) {
+      run.warnings.push_back("at theta " + rounded_text(theta) + " the axis keeps all vertices: with fewer, " + reason);
+    }
+  }
+  run.is_kept.push_back((certificate.holds() && report.topology_matches) || r.allow_uncertified);
+  const MedialCounts counts = count(lean.axis);
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
+  if (metadata.deviation) {
+    run.table.add("simplified", "from " + count_text(complex.positions.size()) + " vertices; moved by at most " +
+                                    rounded_text(lean.deviation));
+  }
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
-                  {"graph", add_graph(run, r, input, complex, metadata, name, context)},
+                  {"deviation", lean.deviation},
+                  {"vertices_before", complex.positions.size()},
+                  {"graph", add_graph(run, r, input, lean.axis, metadata, name, context)},
                   {"certificate", certificate_json(certificate)}});
   add_certificate(run.table, certificate);
   for (const std::string& mismatch : certificate.mismatches) {
@@ -418,8 +467,10 @@ void add_medial_command(const CommandLine& line) {
     add_text_option(*command, name, value, type, help);
   };
   text("--theta", a->theta, "DEG",
-       "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) are "
-       "nested");
+       "Keep where footprints are seen more than DEG apart (default 60), and what joins that; several (20,60) give a "
+       "file each, nested but for what --simplify moves");
+  text("--simplify", a->simplify, "TOL",
+       "Fewer triangles, at most TOL mesh units away (default: a quarter of a voxel); 0 keeps all");
   text("--prune", a->prune, "sheets", "Drop whole sheets of at most --theta instead of cutting them there");
   a->options.add_to(*command, "", {"least_theta"});
   add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "axis_solid.hpp"
+#include "blum/complex/sample_axis.hpp"
 #include "blum/field/ball_union.hpp"
 #include "blum/field/zero_surface.hpp"
 #include "blum/io/field_io.hpp"
@@ -86,13 +88,20 @@ Request parse(const Arguments& a) {
   return r;
 }
 
-std::vector<Ball> balls_of(const MedialFile& file, const fs::path& path) {
-  if (!file.has_radii) throw FileError("'" + path.string() + "' holds no radii: take a .vtp, .ply, .ma or .npz file");
+/// The balls around points at most a step apart, and around all vertices. @param step  infinite for vertices alone.
+std::vector<Ball> balls_of(const MedialFile& file, double step) {
   std::vector<Ball> balls;
-  const MedialView axis(file.complex);
-  for (std::size_t v = 0; v < axis.positions.size(); ++v) balls.push_back({axis.positions[v], axis.radius[v]});
-  if (balls.empty()) throw FileError("'" + path.string() + "' holds no vertices, and so no balls");
+  for (const AxisSample& sample : sample_axis(MedialView(file.complex), step)) {
+    balls.push_back({sample.position, sample.radius});
+  }
   return balls;
+}
+
+MedialFile read_balls(const fs::path& path) {
+  MedialFile file = read_axis(path);
+  if (!file.has_radii) throw FileError("'" + path.string() + "' holds no radii: take a .vtp, .ply, .ma or .npz file");
+  if (file.complex.positions.empty()) throw FileError("'" + path.string() + "' holds no vertices, and so no balls");
+  return file;
 }
 
 void run(const Arguments& a) {
@@ -109,13 +118,16 @@ void run(const Arguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(r.threads, progress, interrupt);
   Stopwatch watch;
-  const MedialFile file = read_axis(r.axis);
-  const std::vector<Ball> balls = balls_of(file, r.axis);
-  const Box3 box = bounds(balls);
+  const MedialFile file = read_balls(r.axis);
+  const Box3 box = bounds(balls_of(file, std::numeric_limits<double>::infinity()));
   if (r.spacing) check_spacing(*r.spacing, box);
   const GridSpec grid = r.spacing ? grid_around_with_spacing(box, *r.spacing) : grid_around(box, r.resolution);
   check_memory(4.0 * static_cast<double>(grid.node_count()), "a grid of " + size_text(grid) + " nodes",
                "use a coarser grid");
+  // Where vertices were taken out, balls between them are interpolated, as fine as the grid can show.
+  const double step = file.metadata.deviation ? std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z})
+                                              : std::numeric_limits<double>::infinity();
+  const std::vector<Ball> balls = balls_of(file, step);
   const Field field = ball_union_field(balls, grid, context);
   const double field_seconds = watch.lap();
 

@@ -13,7 +13,9 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/complex/medial_columns.hpp"
+#include "blum/complex/sample_axis.hpp"
 #include "blum/field/ball_union.hpp"
+#include "blum/medial_axis/decimate.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "call.hpp"
 #include "images.hpp"
@@ -91,6 +93,27 @@ void bind_medial_axis(nb::module_& m) {
                    [&](const Context& context) { return prune_sheets(complex, theta, context); });
       },
       nb::arg("complex"), nb::arg("theta"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "decimate",
+      [](const Complex& complex, double tolerance, int threads, nb::object progress) {
+        DecimatedAxis out = run({threads, std::move(progress)},
+                                [&](const Context& context) { return decimate(complex, tolerance, context); });
+        return nb::make_tuple(std::move(out.axis), out.deviation);
+      },
+      nb::arg("complex"), nb::arg("tolerance"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "sample_axis",
+      [](const Complex& axis, double step) {
+        const CompleteAxis all(axis);
+        std::vector<Vec3d> centres;
+        std::vector<double> radii;
+        for (const AxisSample& sample : sample_axis(MedialView(all.get()), step)) {
+          centres.push_back(sample.position);
+          radii.push_back(sample.radius);
+        }
+        return nb::make_tuple(handed_over<double>(std::move(centres), 3), handed_over<double>(std::move(radii)));
+      },
+      nb::arg("axis"), nb::arg("step"));
   m.def(
       "ball_union_field",
       [](const PointsIn& centres, const NumbersIn& radii, const GridSpec& grid, int threads, nb::object progress) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "blum/complex/sample_axis.hpp"
 #include "blum/core/parallel.hpp"
 #include "certificate/ball_union.hpp"
 #include "certificate/checks.hpp"
@@ -19,9 +20,17 @@ struct OwnedBall {
   std::uint32_t body = 0;
 };
 
-/// The length of the median edge; of an axis without edges, a part of the solid.
+constexpr double parts_of_diagonal = 256;
+
+/// How far samples of the axis may be from each other: finer axes have vertices enough.
+double step_of_balls(const MedialView& axis, double diagonal) {
+  constexpr double most_balls = 50'000;
+  constexpr double parts = 200;
+  return std::max(diagonal / parts, std::sqrt(area_of(axis) / most_balls));
+}
+
+/// The length of the median edge, or a part of the solid where that is less.
 double default_step(const MedialView& axis, double diagonal) {
-  constexpr double parts_of_diagonal = 256;
   std::vector<double> squares;
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
     const double squared = squared_length(axis.positions[a] - axis.positions[b]);
@@ -32,7 +41,7 @@ double default_step(const MedialView& axis, double diagonal) {
   if (squares.empty()) return diagonal / parts_of_diagonal;
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
-  return std::max(std::sqrt(*middle), rounding_of_diagonal * diagonal);
+  return std::clamp(std::sqrt(*middle), rounding_of_diagonal * diagonal, diagonal / parts_of_diagonal);
 }
 
 /// Fills what the samples of the surface tell.
@@ -109,10 +118,15 @@ BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid, con
   BallUnionCheck check;
   std::vector<OwnedBall> owned;
   std::vector<Ball> balls;
+  for (const AxisSample& sample : sample_axis(axis, step_of_balls(axis, solid.diagonal()))) {
+    const bool is_ball =
+        std::isfinite(squared_length(sample.position)) && std::isfinite(sample.radius) && sample.radius >= 0;
+    if (!is_ball) continue;
+    owned.push_back({{sample.position, sample.radius}, locations[sample.vertex].body});
+    balls.push_back(owned.back().ball);
+  }
   for (std::size_t v = 0; v < axis.positions.size(); ++v) {
     if (!all_finite(axis, v) || axis.radius[v] < 0) continue;
-    owned.push_back({{axis.positions[v], axis.radius[v]}, locations[v].body});
-    balls.push_back(owned.back().ball);
     const double room = locations[v].outside_by > 0 ? -locations[v].outside_by : locations[v].distance;
     check.balls_beyond_solid = std::max(check.balls_beyond_solid, axis.radius[v] - room);
   }

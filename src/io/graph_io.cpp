@@ -20,6 +20,7 @@ Attributes told(const MedialMetadata& metadata) {
   add("theta", metadata.theta);
   add("lambda", metadata.lambda);
   add("spacing", metadata.spacing);
+  add("deviation", metadata.deviation);
   add("label", metadata.label);
   add("threshold", metadata.threshold);
   return out;

@@ -21,13 +21,15 @@ namespace {
 void check_metadata(const MedialMetadata& metadata) {
   for (const auto& [name, value] : {std::pair{"theta", metadata.theta}, std::pair{"lambda", metadata.lambda},
                                     std::pair{"spacing", metadata.spacing}, std::pair{"threshold", metadata.threshold},
-                                    std::pair{"weld", metadata.weld}}) {
+                                    std::pair{"weld", metadata.weld}, std::pair{"deviation", metadata.deviation}}) {
     if (value && !std::isfinite(*value)) {
       throw InvalidOption(std::string(name) + " of the metadata is not finite: " + exact_text(*value));
     }
   }
-  if (metadata.weld && *metadata.weld < 0) {
-    throw InvalidOption("weld of the metadata is negative: " + exact_text(*metadata.weld));
+  for (const auto& [name, value] : {std::pair{"weld", metadata.weld}, std::pair{"deviation", metadata.deviation}}) {
+    if (value && *value < 0) {
+      throw InvalidOption(std::string(name) + " of the metadata is negative: " + exact_text(*value));
+    }
   }
   if (metadata.label && metadata.threshold) {
     throw InvalidOption("the metadata have a label and a threshold; a solid is selected by one of them");

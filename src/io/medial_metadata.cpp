@@ -127,6 +127,7 @@ FileMetadata to_pairs(const MedialMetadata& metadata) {
   if (metadata.theta) pairs.emplace_back("theta", exact_text(*metadata.theta));
   if (metadata.lambda) pairs.emplace_back("lambda", exact_text(*metadata.lambda));
   if (metadata.spacing) pairs.emplace_back("spacing", exact_text(*metadata.spacing));
+  if (metadata.deviation) pairs.emplace_back("deviation", exact_text(*metadata.deviation));
   if (!metadata.solid_rule.empty()) pairs.emplace_back("solid_rule", metadata.solid_rule);
   if (metadata.grid) add_grid(pairs, *metadata.grid);
   if (metadata.label) pairs.emplace_back("label", std::to_string(*metadata.label));
@@ -147,6 +148,7 @@ MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name) {
   metadata.theta = reader.number("theta");
   metadata.lambda = reader.number("lambda");
   metadata.spacing = reader.number("spacing");
+  metadata.deviation = reader.not_negative("deviation");
   metadata.solid_rule = reader.text("solid_rule");
   metadata.grid = reader.grid();
   metadata.label = reader.number<std::int64_t>("label");

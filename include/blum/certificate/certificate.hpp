@@ -112,7 +112,8 @@ struct Description<EdgeCheck> {
   };
 };
 
-/// How much of a solid the balls around the vertices of an axis fill. Told, and not judged: coarse axes fill less.
+/// How much of a solid the balls of an axis fill: those around its vertices, and where edges and triangles are longer
+/// than 1/200 of the diagonal, between these, with interpolated radii (see sample_axis()). Told, and not judged.
 struct BallUnionCheck {
   /// How far the surface of the solid is from the union of the balls at most, over samples of the surface, the corners
   /// of a mesh among them; the diagonal of the solid where there are no balls.
@@ -124,8 +125,8 @@ struct BallUnionCheck {
   /// How far points of the surface of the union are from the surface of the solid at most, over 32 points of each ball;
   /// of more than 15,600 balls, over those of 7,800 to 15,600 of them.
   double balls_to_surface = 0;
-  /// Each point of the surface is at most this far from a sample, mesh units: the median edge of the axis (1/256
-  /// of the diagonal, for an axis without edges), or more where that would take over 250,000 samples. Samples of
+  /// Each point of the surface is at most this far from a sample, mesh units: the median edge of the axis, or
+  /// 1/256 of the diagonal where that is less, or more where that would take over 250,000 samples. Samples of
   /// voxels are one or four points of each face; above 250,000 faces, one for each direction of faces in 4 x 4 x 4
   /// voxels.
   double step = 0;

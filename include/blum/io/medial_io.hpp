@@ -28,6 +28,8 @@ struct MedialMetadata {
   std::optional<double> theta = {};    ///< degrees
   std::optional<double> lambda = {};   ///< mesh units
   std::optional<double> spacing = {};  ///< smallest side of a voxel, mesh units
+  /// DecimatedAxis::deviation, >= 0, mesh units; unset where no vertices were taken out.
+  std::optional<double> deviation = {};
   /// What the topology is against: "polyhedron", "winding" or "voxels" (SolidRule).
   std::string solid_rule = {};
   std::optional<GridSpec> grid = {};  ///< voxel centres, where the solid is only known as voxels (SolidRule::winding)
@@ -49,6 +51,8 @@ struct Description<MedialMetadata> {
       Member{"theta", &MedialMetadata::theta, "degrees", "angle of the axis"},
       Member{"lambda", &MedialMetadata::lambda, "mesh units", "MedialAxisOptions::lambda"},
       Member{"spacing", &MedialMetadata::spacing, "mesh units", "smallest side of a voxel"},
+      Member{"deviation", &MedialMetadata::deviation, "mesh units",
+             "how far it is at most from the axis with all vertices"},
       Member{"solid_rule", &MedialMetadata::solid_rule, "", "what the topology is against"},
       Member{"grid", &MedialMetadata::grid, "", "voxel centres"},
       Member{"label", &MedialMetadata::label, "", "of the voxels of an image"},

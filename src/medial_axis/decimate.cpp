@@ -1,0 +1,321 @@
+#include "blum/medial_axis/decimate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/incidence.hpp"
+#include "blum/complex/medial_columns.hpp"
+#include "blum/core/exact_text.hpp"
+#include "medial_axis/fan.hpp"
+#include "medial_axis/shrinking_complex.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::uint32_t none = 0xffffffffU;
+constexpr std::size_t steps_between_looks = std::size_t{1} << 14U;
+/// What goes first: vertices that move sheets by these parts of the tolerance.
+constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 1.0};
+/// At each step sheets may move by this part of the least radius nearby; by the second one of the tolerance anyway:
+/// flat ones do by rounding, and reach out to where the radius is 0.
+constexpr double part_of_radius = 0.5;
+constexpr double nothing = 1e-6;
+
+/// The edges that bound sheets: those that are listed, and those where sheets of two numbers meet.
+std::vector<std::array<std::uint32_t, 2>> borders_of(const Complex& axis, const Context& context) {
+  std::vector<std::array<std::uint32_t, 2>> borders = axis.edges;
+  const Incidence incidence(axis.view(), context);
+  std::vector<bool> is_listed(incidence.edges().size(), false);
+  for (const std::uint32_t e : incidence.edge_of_listed()) is_listed[e] = true;
+  const auto sheets = axis.triangle_columns.get<std::int32_t>(medial_columns::sheet);
+  for (std::size_t e = 0; e < is_listed.size(); ++e) {
+    const auto triangles = incidence.triangles_of_edge()[e];
+    if (is_listed[e] || triangles.empty()) continue;
+    const bool is_inner = triangles.size() == 2 && sheets[triangles[0]] == sheets[triangles[1]];
+    if (!is_inner) borders.push_back(incidence.edges()[e]);
+  }
+  return borders;
+}
+
+class Decimator {
+ public:
+  Decimator(const Complex& axis, double tolerance, const Context& context)
+      : axis_(axis),
+        view_(axis),
+        tolerance_(tolerance),
+        context_(context),
+        borders_(borders_of(axis, context)),
+        cells_({axis.positions.size(), borders_, axis.triangles}),
+        of_triangle_(axis.triangles.size(), 0),
+        of_edge_(borders_.size(), 0),
+        angle_(view_.triangle_angle.begin(), view_.triangle_angle.end()),
+        is_waiting_(axis.positions.size(), true),
+        round_of_(axis.positions.size(), 0) {}
+
+  DecimatedAxis run() {
+    if (tolerance_ > 0) {
+      for (const double level : levels) {
+        std::fill(is_waiting_.begin(), is_waiting_.end(), true);
+        while (sweep(level * tolerance_) > 0) {
+        }
+      }
+    }
+    return {result(), moved_};
+  }
+
+ private:
+  struct Candidate {
+    std::uint32_t to = none;
+    double moved = 0;
+  };
+
+  [[nodiscard]] AxisPoint point(std::uint32_t v) const { return {axis_.positions[v], view_.radius[v]}; }
+
+  /// Takes out vertices that are not next to one taken out before, once over all. @return  how many went.
+  std::size_t sweep(double limit) {
+    std::size_t gone = 0;
+    ++round_;
+    for (std::uint32_t v = 0; v < is_waiting_.size(); ++v) {
+      if (++steps_ % steps_between_looks == 0) throw_if_cancelled(context_);
+      if (!is_waiting_[v] || !cells_.has_vertex(v) || round_of_[v] == round_) continue;
+      is_waiting_[v] = false;
+      if (!gather(v)) continue;
+      const std::optional<Candidate> candidate = best(v, limit);
+      if (!candidate) continue;
+      take(v, *candidate);
+      ++gone;
+    }
+    return gone;
+  }
+
+  /// Finds the fans of a vertex and its neighbours along a chain, if it has two of these or none.
+  /// @return  whether it may go at all.
+  bool gather(std::uint32_t v) {
+    chain_.clear();
+    cells_.for_each_edge(v, [&](std::uint32_t e, std::uint32_t other) { chain_.emplace_back(e, other); });
+    if (!chain_.empty() && (chain_.size() != 2 || chain_[0].second == chain_[1].second)) return false;
+    if (!chain_.empty() && kind_of(chain_[0].first) != kind_of(chain_[1].first)) return false;
+    sides_.clear();
+    cells_.for_each_triangle(v,
+                             [&](std::uint32_t t, std::uint32_t p, std::uint32_t q) { sides_.emplace_back(t, p, q); });
+    fan_count_ = 0;
+    if (sides_.empty()) return !chain_.empty();
+    if (chain_.empty()) return add_fan(sides_.front().ends[0], none) && sides_.empty();
+    while (!sides_.empty()) {
+      const std::uint32_t from = chain_[0].second;
+      if (!add_fan(from, chain_[1].second)) return false;
+    }
+    return true;
+  }
+  /// The role of a border; sheets that meet without a seam have one of their own.
+  [[nodiscard]] int kind_of(std::uint32_t edge) const {
+    return edge < axis_.edges.size() ? static_cast<int>(view_.edge_role(edge)) : -1;
+  }
+
+  /// Follows triangles from a ring vertex to another one, or round to the same. They leave sides_.
+  bool add_fan(std::uint32_t from, std::uint32_t to) {
+    if (fan_count_ == fans_.size()) fans_.emplace_back();
+    Fan& fan = fans_[fan_count_++];
+    fan.ring.assign(1, from);
+    fan.triangles.clear();
+    fan.is_closed = to == none;
+    const std::uint32_t last = fan.is_closed ? from : to;
+    for (std::uint32_t at = from;;) {
+      const auto next =
+          std::find_if(sides_.begin(), sides_.end(), [&](const Side& s) { return s.ends[0] == at || s.ends[1] == at; });
+      if (next == sides_.end()) return false;
+      at = next->ends[0] == at ? next->ends[1] : next->ends[0];
+      fan.triangles.push_back(next->triangle);
+      sides_.erase(next);
+      if (at == last) break;
+      if (std::find(fan.ring.begin(), fan.ring.end(), at) != fan.ring.end()) return false;
+      fan.ring.push_back(at);
+    }
+    if (!fan.is_closed) fan.ring.push_back(to);
+    return !fan.is_closed || fan.ring.size() > 2;
+  }
+
+  /// The neighbour that a vertex had best go to.
+  [[nodiscard]] std::optional<Candidate> best(std::uint32_t v, double limit) {
+    std::vector<std::pair<double, std::uint32_t>>& targets = targets_;
+    targets.clear();
+    if (chain_.empty()) {
+      for (const std::uint32_t to : fans_[0].ring) {
+        double sum = 0;
+        for (const std::uint32_t other : fans_[0].ring) {
+          sum += squared_length(axis_.positions[to] - axis_.positions[other]);
+        }
+        targets.emplace_back(sum, to);
+      }
+    } else {
+      for (const auto& [edge, to] : chain_) {
+        targets.emplace_back(squared_length(axis_.positions[to] - axis_.positions[v]), to);
+      }
+    }
+    std::sort(targets.begin(), targets.end());
+    for (const auto& [order, to] : targets) {
+      const std::optional<double> moved = moved_to(v, to, limit);
+      if (moved && cells_.may_contract(v, to)) return Candidate{to, *moved};
+    }
+    return std::nullopt;
+  }
+
+  /// How far all cells around a vertex would be from where they were at first; nullopt where that is too far.
+  [[nodiscard]] std::optional<double> moved_to(std::uint32_t v, std::uint32_t to, double limit) {
+    double before = 0;
+    double least_radius = std::min(view_.radius[v], view_.radius[to]);
+    for (const auto& [edge, other] : chain_) before = std::max(before, of_edge_[edge]);
+    for (std::size_t f = 0; f < fan_count_; ++f) {
+      for (const std::uint32_t t : fans_[f].triangles) before = std::max(before, of_triangle_[t]);
+      for (const std::uint32_t r : fans_[f].ring) least_radius = std::min(least_radius, view_.radius[r]);
+    }
+    if (before > limit) return std::nullopt;
+    const double most_beyond = std::max(part_of_radius * least_radius, nothing * tolerance_);
+    double by = 0;
+    if (!chain_.empty()) {
+      const std::uint32_t other = chain_[0].second == to ? chain_[1].second : chain_[0].second;
+      if (is_border(to, other)) return std::nullopt;
+      const Deviation own = deviation(point(v), point(to), point(other));
+      if (fan_count_ == 0 && own.beyond > most_beyond) return std::nullopt;
+      by = own.by;
+    }
+    for (std::size_t f = 0; f < fan_count_ && before + by <= limit; ++f) {
+      const std::optional<Deviation> own = deviation_of(v, fans_[f], to);
+      if (!own || own->beyond > most_beyond) return std::nullopt;
+      by = std::max(by, own->by);
+    }
+    return before + by <= limit ? std::optional(before + by) : std::nullopt;
+  }
+
+  [[nodiscard]] bool is_border(std::uint32_t a, std::uint32_t b) const {
+    bool found = false;
+    cells_.for_each_edge(a, [&](std::uint32_t, std::uint32_t other) { found = found || other == b; });
+    return found;
+  }
+
+  [[nodiscard]] std::optional<Deviation> deviation_of(std::uint32_t v, Fan& fan, std::uint32_t to) {
+    if (fan.is_closed) {
+      const auto at = std::find(fan.ring.begin(), fan.ring.end(), to) - fan.ring.begin();
+      std::rotate(fan.ring.begin(), fan.ring.begin() + at, fan.ring.end());
+      std::rotate(fan.triangles.begin(), fan.triangles.begin() + at, fan.triangles.end());
+    } else if (fan.ring.front() != to) {
+      std::reverse(fan.ring.begin(), fan.ring.end());
+      std::reverse(fan.triangles.begin(), fan.triangles.end());
+    }
+    ring_.clear();
+    for (const std::uint32_t r : fan.ring) ring_.push_back(point(r));
+    return deviation(point(v), ring_, fan.is_closed);
+  }
+
+  void take(std::uint32_t v, const Candidate& candidate) {
+    for (std::size_t f = 0; f < fan_count_; ++f) {
+      const Fan& fan = fans_[f];
+      pass_angle_on(fan);
+      for (const std::uint32_t t : fan.triangles) of_triangle_[t] = candidate.moved;
+      for (const std::uint32_t r : fan.ring) touch(r);
+    }
+    for (const auto& [edge, other] : chain_) {
+      of_edge_[edge] = candidate.moved;
+      touch(other);
+    }
+    moved_ = std::max(moved_, candidate.moved);
+    cells_.contract(v, candidate.to);
+  }
+  void touch(std::uint32_t v) {
+    round_of_[v] = round_;
+    is_waiting_[v] = true;
+  }
+
+  /// The angle of a sheet is the largest of its triangles': what goes leaves its own to the triangle beside it.
+  void pass_angle_on(const Fan& fan) {
+    const std::size_t count = fan.triangles.size();
+    const auto pass = [&](std::uint32_t from, std::uint32_t to) { angle_[to] = std::max(angle_[to], angle_[from]); };
+    if (count > 1) pass(fan.triangles[0], fan.triangles[1]);
+    if (fan.is_closed && count > 2) pass(fan.triangles[count - 1], fan.triangles[count - 2]);
+    if (count > 1) return;
+    cells_.for_each_triangle(fan.ring[0], [&](std::uint32_t t, std::uint32_t p, std::uint32_t q) {
+      if (p == fan.ring[1] || q == fan.ring[1]) pass(fan.triangles[0], t);
+    });
+  }
+
+  [[nodiscard]] Complex result() const {
+    Complex out;
+    std::vector<std::uint32_t> number(axis_.positions.size(), none);
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t v = 0; v < number.size(); ++v) {
+      if (!cells_.has_vertex(v)) continue;
+      number[v] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(v);
+      out.positions.push_back(axis_.positions[v]);
+    }
+    out.vertex_columns = axis_.vertex_columns.pick(kept);
+    kept.clear();
+    for (std::uint32_t e = 0; e < axis_.edges.size(); ++e) {
+      if (!cells_.has_edge(e)) continue;
+      const auto& [a, b] = cells_.edge(e);
+      out.edges.push_back({number[a], number[b]});
+      kept.push_back(e);
+    }
+    out.edge_columns = axis_.edge_columns.pick(kept);
+    kept.clear();
+    for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
+      if (!cells_.has_triangle(t)) continue;
+      const auto& [a, b, c] = cells_.triangle(t);
+      out.triangles.push_back({number[a], number[b], number[c]});
+      kept.push_back(t);
+    }
+    out.triangle_columns = axis_.triangle_columns.pick(kept);
+    const auto angles = out.triangle_columns.edit<float>(medial_columns::separation_angle);
+    for (std::size_t k = 0; k < kept.size(); ++k) angles[k] = angle_[kept[k]];
+    return out;
+  }
+
+  struct Side {
+    std::uint32_t triangle;
+    std::array<std::uint32_t, 2> ends;
+    Side(std::uint32_t t, std::uint32_t p, std::uint32_t q) : triangle(t), ends{p, q} {}
+  };
+
+  const Complex& axis_;
+  MedialView view_;
+  double tolerance_;
+  const Context& context_;
+  std::vector<std::array<std::uint32_t, 2>> borders_;
+  ShrinkingComplex cells_;
+  std::vector<double> of_triangle_, of_edge_;  ///< how far they may be from where they were at first
+  std::vector<float> angle_;
+  std::vector<bool> is_waiting_;  ///< something around it changed since it was looked at
+  std::vector<std::uint32_t> round_of_;
+  std::uint32_t round_ = 0;
+  std::size_t steps_ = 0;
+  double moved_ = 0;
+
+  // Of the vertex that is looked at.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> chain_;  ///< borders, and their other ends
+  std::vector<Side> sides_;                                     ///< triangles that no fan has yet
+  std::vector<Fan> fans_;
+  std::size_t fan_count_ = 0;
+  std::vector<AxisPoint> ring_;
+  std::vector<std::pair<double, std::uint32_t>> targets_;
+};
+
+}  // namespace
+
+DecimatedAxis decimate(const Complex& axis, double tolerance, const Context& context) {
+  if (!(tolerance >= 0 && std::isfinite(tolerance))) {
+    throw InvalidOption("tolerance is " + exact_text(tolerance) + ", but must be at least 0");
+  }
+  if (const std::string problem = problem_of_medial(axis); !problem.empty()) {
+    throw InvalidOption("triangles cannot be taken from what is no medial axis: " + problem);
+  }
+  return Decimator(axis, tolerance, context).run();
+}
+
+}  // namespace blum

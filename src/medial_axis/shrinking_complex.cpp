@@ -1,0 +1,109 @@
+#include "medial_axis/shrinking_complex.hpp"
+
+namespace blum {
+
+ShrinkingComplex::ShrinkingComplex(const ComplexView& complex)
+    : edges_(complex.edges.begin(), complex.edges.end()),
+      triangles_(complex.triangles.begin(), complex.triangles.end()),
+      is_edge_gone_(edges_.size(), false),
+      is_triangle_gone_(triangles_.size(), false),
+      is_vertex_gone_(complex.vertex_count, false),
+      first_corner_(complex.vertex_count, none),
+      next_corner_(3 * triangles_.size(), none),
+      first_end_(complex.vertex_count, none),
+      next_end_(2 * edges_.size(), none),
+      linked_(complex.vertex_count, 0),
+      linked_to_edge_(complex.vertex_count, 0),
+      seen_(complex.vertex_count, 0) {
+  for (std::uint32_t c = 0; c < next_corner_.size(); ++c) {
+    std::uint32_t& first = first_corner_[triangles_[c / 3][c % 3]];
+    next_corner_[c] = first;
+    first = c;
+  }
+  for (std::uint32_t c = 0; c < next_end_.size(); ++c) {
+    std::uint32_t& first = first_end_[edges_[c / 2][c % 2]];
+    next_end_[c] = first;
+    first = c;
+  }
+}
+
+bool ShrinkingComplex::has_triangle_of(std::uint32_t u, std::uint32_t x, std::uint32_t y) const {
+  bool found = false;
+  for_each_triangle(u, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+    found = found || (p == x && q == y) || (p == y && q == x);
+  });
+  return found;
+}
+
+bool ShrinkingComplex::may_contract(std::uint32_t from, std::uint32_t to) {
+  ++look_;
+  bool holds = true;
+  for_each_triangle(from, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+    linked_[p] = linked_[q] = look_;
+    if (p != to && q != to) return;
+    const std::uint32_t third = p == to ? q : p;
+    holds = holds && linked_to_edge_[third] != look_;  // twice the same triangle
+    linked_to_edge_[third] = look_;
+  });
+  for_each_edge(from, [&](std::uint32_t, std::uint32_t other) { linked_[other] = look_; });
+  const auto is_of_edge = [&](std::uint32_t v) { return linked_to_edge_[v] == look_; };
+  const auto look_at = [&](std::uint32_t v) {
+    if (v != from && linked_[v] == look_ && !is_of_edge(v)) holds = false;
+  };
+  for_each_triangle(to, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+    look_at(p);
+    look_at(q);
+    if (holds && p != from && q != from && is_of_edge(p) && is_of_edge(q) && has_triangle_of(from, p, q)) holds = false;
+  });
+  for_each_edge(to, [&](std::uint32_t, std::uint32_t other) { look_at(other); });
+  return holds;
+}
+
+void ShrinkingComplex::unlink_triangle(std::uint32_t t, std::uint32_t v) {
+  std::uint32_t* link = &first_corner_[v];
+  while (*link / 3 != t) link = &next_corner_[*link];
+  *link = next_corner_[*link];
+}
+
+void ShrinkingComplex::unlink_edge(std::uint32_t e, std::uint32_t v) {
+  std::uint32_t* link = &first_end_[v];
+  while (*link / 2 != e) link = &next_end_[*link];
+  *link = next_end_[*link];
+}
+
+void ShrinkingComplex::contract(std::uint32_t from, std::uint32_t to) {
+  for (std::uint32_t c = first_corner_[from]; c != none;) {
+    const std::uint32_t next = next_corner_[c];
+    const std::uint32_t t = c / 3;
+    const std::uint32_t p = triangles_[t][(c + 1) % 3];
+    const std::uint32_t q = triangles_[t][(c + 2) % 3];
+    if (p == to || q == to) {
+      is_triangle_gone_[t] = true;
+      unlink_triangle(t, p);
+      unlink_triangle(t, q);
+    } else {
+      triangles_[t][c % 3] = to;
+      next_corner_[c] = first_corner_[to];
+      first_corner_[to] = c;
+    }
+    c = next;
+  }
+  for (std::uint32_t c = first_end_[from]; c != none;) {
+    const std::uint32_t next = next_end_[c];
+    const std::uint32_t other = edges_[c / 2][(c + 1) % 2];
+    if (other == to) {
+      is_edge_gone_[c / 2] = true;
+      unlink_edge(c / 2, to);
+    } else {
+      edges_[c / 2][c % 2] = to;
+      next_end_[c] = first_end_[to];
+      first_end_[to] = c;
+    }
+    c = next;
+  }
+  first_corner_[from] = none;
+  first_end_[from] = none;
+  is_vertex_gone_[from] = true;
+}
+
+}  // namespace blum

@@ -1,0 +1,65 @@
+// Blum: complexes whose edges are contracted one after the other. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "blum/complex/complex.hpp"
+
+namespace blum {
+
+/// Edges and triangles of which some are gone, and which of those left are at each vertex. Sides of triangles need not
+/// be listed as edges.
+class ShrinkingComplex {
+ public:
+  explicit ShrinkingComplex(const ComplexView& complex);
+
+  [[nodiscard]] bool has_triangle(std::uint32_t t) const { return !is_triangle_gone_[t]; }
+  [[nodiscard]] bool has_edge(std::uint32_t e) const { return !is_edge_gone_[e]; }
+  [[nodiscard]] bool has_vertex(std::uint32_t v) const { return !is_vertex_gone_[v]; }
+  [[nodiscard]] const std::array<std::uint32_t, 3>& triangle(std::uint32_t t) const { return triangles_[t]; }
+  [[nodiscard]] const std::array<std::uint32_t, 2>& edge(std::uint32_t e) const { return edges_[e]; }
+
+  /// Calls visit(triangle, next, last): its other two corners, in its order.
+  template <class Visit>
+  void for_each_triangle(std::uint32_t v, const Visit& visit) const {
+    for (std::uint32_t c = first_corner_[v]; c != none; c = next_corner_[c]) {
+      const auto& corners = triangles_[c / 3];
+      visit(c / 3, corners[(c + 1) % 3], corners[(c + 2) % 3]);
+    }
+  }
+  /// Calls visit(edge, other end) for listed edges.
+  template <class Visit>
+  void for_each_edge(std::uint32_t v, const Visit& visit) const {
+    for (std::uint32_t c = first_end_[v]; c != none; c = next_end_[c]) visit(c / 2, edges_[c / 2][(c + 1) % 2]);
+  }
+
+  /// Whether contracting the edge between two vertices changes no homotopy type: what is linked to both ends is linked
+  /// to the edge (the link condition; Dey, Edelsbrunner, Guha, Nekhayev, "Topology preserving edge contraction", 1999;
+  /// Attali, Lieutier, Salinas, "Efficient data structure for representing and simplifying simplicial complexes in high
+  /// dimensions", 2012).
+  [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to);
+
+  /// Moves all of one vertex to another one that an edge joins it with; triangles and listed edges that have both go.
+  void contract(std::uint32_t from, std::uint32_t to);
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  void unlink_triangle(std::uint32_t t, std::uint32_t v);
+  void unlink_edge(std::uint32_t e, std::uint32_t v);
+  [[nodiscard]] bool has_triangle_of(std::uint32_t u, std::uint32_t x, std::uint32_t y) const;
+
+  std::vector<std::array<std::uint32_t, 2>> edges_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<bool> is_edge_gone_, is_triangle_gone_, is_vertex_gone_;
+  std::vector<std::uint32_t> first_corner_, next_corner_;  ///< corners are 3 * triangle + 0, 1, 2
+  std::vector<std::uint32_t> first_end_, next_end_;        ///< ends are 2 * edge + 0, 1
+  /// Which look found a vertex linked to an end, linked to the edge, and looked at.
+  std::vector<std::uint32_t> linked_, linked_to_edge_, seen_;
+  std::uint32_t look_ = 0;
+};
+
+}  // namespace blum
