@@ -51,7 +51,7 @@ class Centreline:
     homotopy_kept: bool  #: whether these are equal
     homotopy: str  #: kept, or what differs and why, as a sentence
 
-    def networkx(self) -> Any:
+    def to_networkx(self) -> Any:
         """A networkx.MultiGraph: nodes with `kind`, `position`, `radius`, edges with the branch's numbers, `points` and
         `radii`. Closed curves get a node of their own, of the kind "closed"."""
         import networkx as nx

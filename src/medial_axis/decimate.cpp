@@ -246,34 +246,12 @@ class Decimator {
   }
 
   [[nodiscard]] Complex result() const {
-    Complex out;
-    std::vector<std::uint32_t> number(axis_.positions.size(), none);
-    std::vector<std::uint32_t> kept;
-    for (std::uint32_t v = 0; v < number.size(); ++v) {
-      if (!cells_.has_vertex(v)) continue;
-      number[v] = static_cast<std::uint32_t>(kept.size());
-      kept.push_back(v);
-      out.positions.push_back(axis_.positions[v]);
-    }
-    out.vertex_columns = axis_.vertex_columns.pick(kept);
-    kept.clear();
-    for (std::uint32_t e = 0; e < axis_.edges.size(); ++e) {
-      if (!cells_.has_edge(e)) continue;
-      const auto& [a, b] = cells_.edge(e);
-      out.edges.push_back({number[a], number[b]});
-      kept.push_back(e);
-    }
-    out.edge_columns = axis_.edge_columns.pick(kept);
-    kept.clear();
-    for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
-      if (!cells_.has_triangle(t)) continue;
-      const auto& [a, b, c] = cells_.triangle(t);
-      out.triangles.push_back({number[a], number[b], number[c]});
-      kept.push_back(t);
-    }
-    out.triangle_columns = axis_.triangle_columns.pick(kept);
+    Complex out = cells_.rest_of(axis_);
     const auto angles = out.triangle_columns.edit<float>(medial_columns::separation_angle);
-    for (std::size_t k = 0; k < kept.size(); ++k) angles[k] = angle_[kept[k]];
+    std::size_t k = 0;
+    for (std::uint32_t t = 0; t < angle_.size(); ++t) {
+      if (cells_.has_triangle(t)) angles[k++] = angle_[t];
+    }
     return out;
   }
 

@@ -71,7 +71,8 @@ void ShrinkingComplex::unlink_edge(std::uint32_t e, std::uint32_t v) {
   *link = next_end_[*link];
 }
 
-void ShrinkingComplex::contract(std::uint32_t from, std::uint32_t to) {
+std::span<const ShrinkingComplex::Gone> ShrinkingComplex::contract(std::uint32_t from, std::uint32_t to) {
+  gone_.clear();
   for (std::uint32_t c = first_corner_[from]; c != none;) {
     const std::uint32_t next = next_corner_[c];
     const std::uint32_t t = c / 3;
@@ -79,6 +80,7 @@ void ShrinkingComplex::contract(std::uint32_t from, std::uint32_t to) {
     const std::uint32_t q = triangles_[t][(c + 2) % 3];
     if (p == to || q == to) {
       is_triangle_gone_[t] = true;
+      gone_.push_back({t, p == to ? q : p});
       unlink_triangle(t, p);
       unlink_triangle(t, q);
     } else {
@@ -104,6 +106,44 @@ void ShrinkingComplex::contract(std::uint32_t from, std::uint32_t to) {
   first_corner_[from] = none;
   first_end_[from] = none;
   is_vertex_gone_[from] = true;
+  return gone_;
+}
+
+void ShrinkingComplex::add_edge(const std::array<std::uint32_t, 2>& ends) {
+  edges_.push_back(ends);
+  is_edge_gone_.push_back(false);
+  for (const std::uint32_t v : ends) {
+    next_end_.push_back(first_end_[v]);
+    first_end_[v] = static_cast<std::uint32_t>(next_end_.size() - 1);
+  }
+}
+
+Complex ShrinkingComplex::rest_of(const Complex& whole) const {
+  Complex out;
+  std::vector<std::uint32_t> number(whole.positions.size(), none);
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t v = 0; v < number.size(); ++v) {
+    if (is_vertex_gone_[v]) continue;
+    number[v] = static_cast<std::uint32_t>(kept.size());
+    kept.push_back(v);
+    out.positions.push_back(whole.positions[v]);
+  }
+  out.vertex_columns = whole.vertex_columns.pick(kept);
+  const auto pick = [&](const auto& cells, std::size_t count, const std::vector<bool>& is_gone, auto& out_cells) {
+    kept.clear();
+    for (std::uint32_t c = 0; c < count; ++c) {
+      if (is_gone[c]) continue;
+      auto cell = cells[c];
+      for (std::uint32_t& v : cell) v = number[v];
+      out_cells.push_back(cell);
+      kept.push_back(c);
+    }
+  };
+  pick(edges_, whole.edges.size(), is_edge_gone_, out.edges);
+  out.edge_columns = whole.edge_columns.pick(kept);
+  pick(triangles_, whole.triangles.size(), is_triangle_gone_, out.triangles);
+  out.triangle_columns = whole.triangle_columns.pick(kept);
+  return out;
 }
 
 }  // namespace blum

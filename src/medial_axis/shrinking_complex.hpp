@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "blum/complex/complex.hpp"
@@ -42,8 +43,20 @@ class ShrinkingComplex {
   /// dimensions", 2012).
   [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to);
 
+  /// A triangle that went, and its corner that was no end of the edge.
+  struct Gone {
+    std::uint32_t triangle, third;
+  };
   /// Moves all of one vertex to another one that an edge joins it with; triangles and listed edges that have both go.
-  void contract(std::uint32_t from, std::uint32_t to);
+  /// @return  the triangles, until the next call.
+  std::span<const Gone> contract(std::uint32_t from, std::uint32_t to);
+
+  /// Lists another edge, after all others.
+  void add_edge(const std::array<std::uint32_t, 2>& ends);
+
+  /// What is left of a complex that this one was made of, with its columns. @param whole  may list fewer edges: the
+  /// first ones.
+  [[nodiscard]] Complex rest_of(const Complex& whole) const;
 
  private:
   static constexpr std::uint32_t none = 0xffffffffU;
@@ -60,6 +73,7 @@ class ShrinkingComplex {
   /// Which look found a vertex linked to an end, linked to the edge, and looked at.
   std::vector<std::uint32_t> linked_, linked_to_edge_, seen_;
   std::uint32_t look_ = 0;
+  std::vector<Gone> gone_;
 };
 
 }  // namespace blum

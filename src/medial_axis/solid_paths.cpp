@@ -1,6 +1,7 @@
 #include "medial_axis/solid_paths.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -14,6 +15,17 @@ constexpr int most_depth = 8;
 constexpr std::size_t most_landmarks = 48;
 /// How many segments are looked at on the way from landmark to landmark.
 constexpr int most_looks = 200;
+/// Into how many parts the box around two stops is cut along each axis, one try after the other, to strew points there;
+/// how many of these parts a step may be long; and how many segments are looked at.
+struct StrewnParts {
+  int parts;
+  bool has_creases;
+};
+constexpr std::array<StrewnParts, 3> strewn_parts{{{6, false}, {12, false}, {8, true}}};
+constexpr std::size_t most_strewn = 6000;
+constexpr double most_parts = 2.2;
+constexpr int most_looks_at_strewn = 20000;
+constexpr double any_length = std::numeric_limits<double>::infinity();
 /// Balls around the ends that overlap by this part of the length leave no room for rounding.
 constexpr double overlap = 1e-9;
 
@@ -122,7 +134,7 @@ std::optional<std::vector<Stop>> SolidPaths::pushed(const Stop& a, const Stop& b
 
 std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, std::span<const Stop> landmarks) const {
   if (auto found = pushed(a, b)) return found;
-  if (auto found = shortest(a, b, landmarks)) return found;
+  if (auto found = shortest(a, b, landmarks, {any_length, most_looks})) return found;
   std::vector<Stop> more(landmarks.begin(), landmarks.end());
   for (const Stop& landmark : landmarks) {
     for (const Stop* end : {&a, &b}) {
@@ -137,7 +149,70 @@ std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, 
     walk(landmark, a, more);
     walk(landmark, b, more);
   }
-  return shortest(a, b, more);
+  if (auto found = shortest(a, b, more, {any_length, most_looks})) return found;
+  return over_strewn(a, b, landmarks);
+}
+
+/// A path over landmarks and points strewn around two stops, finer and finer; at last also over the creases between
+/// these: thin plates that cross are joined there only.
+std::optional<std::vector<Stop>> SolidPaths::over_strewn(const Stop& a, const Stop& b,
+                                                         std::span<const Stop> landmarks) const {
+  for (const auto& [parts, has_creases] : strewn_parts) {
+    std::vector<Stop> all = strewn(a, b, parts);
+    all.insert(all.end(), landmarks.begin(), landmarks.end());
+    const double longest = most_parts * 2 * length(b.at - a.at) / parts;
+    if (has_creases) add_creases(longest, all);
+    if (const auto found = shortest(a, b, all, {longest, most_looks_at_strewn})) return pulled_tight(a, b, *found);
+  }
+  return std::nullopt;
+}
+
+void SolidPaths::add_creases(double longest, std::vector<Stop>& stops) const {
+  const std::size_t count = stops.size();
+  for (std::size_t m = 0; m < count; ++m) {
+    for (std::size_t n = m + 1; n < count && stops.size() < most_strewn; ++n) {
+      if (length(stops[n].at - stops[m].at) > 0.6 * longest) continue;
+      if (const std::optional<Stop> crease = at_crease(stops[m], stops[n])) stops.push_back(*crease);
+    }
+  }
+}
+
+/// Points of a lattice in a box twice as large as two stops are far from each other, each in the part of the solid next
+/// to it, in the middle where that is thin.
+std::vector<Stop> SolidPaths::strewn(const Stop& a, const Stop& b, int parts) const {
+  const Vec3d middle = 0.5 * (a.at + b.at);
+  const double step = 2 * length(b.at - a.at) / parts;
+  std::vector<Stop> stops;
+  const auto offset = [&](int k) { return (k + 0.5 - 0.5 * parts) * step; };
+  for (int k = 0; k < parts; ++k) {
+    for (int j = 0; j < parts; ++j) {
+      for (int i = 0; i < parts; ++i) {
+        const Vec3d at = middle + Vec3d{offset(i), offset(j), offset(k)};
+        if (const auto stop = stop_at(at, foot_of(a.nearest))) {
+          stops.push_back(*stop);
+          if (const Stop deeper = centred(*stop); deeper.at != stop->at) stops.push_back(deeper);
+        } else if (const auto pushed = pushed_in(at, a)) {
+          stops.push_back(*pushed);
+        }
+      }
+    }
+  }
+  return stops;
+}
+
+/// The stops of a path but for those that segments from others can pass by.
+std::vector<Stop> SolidPaths::pulled_tight(const Stop& a, const Stop& b, const std::vector<Stop>& between) const {
+  std::vector<Stop> all{a};
+  all.insert(all.end(), between.begin(), between.end());
+  all.push_back(b);
+  std::vector<Stop> kept;
+  for (std::size_t at = 0; at + 1 < all.size();) {
+    std::size_t next = all.size() - 1;
+    while (next > at + 1 && !is_straight(all[at], all[next])) --next;
+    if (next + 1 < all.size()) kept.push_back(all[next]);
+    at = next;
+  }
+  return kept;
 }
 
 /// The middle between the two walls of a thin part.
@@ -171,8 +246,8 @@ void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& 
 }
 
 /// Dijkstra's search; whether two stops are joined is only asked where it matters.
-std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop& b,
-                                                      std::span<const Stop> landmarks) const {
+std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop& b, std::span<const Stop> landmarks,
+                                                      const SearchLimits& limits) const {
   constexpr double far = std::numeric_limits<double>::infinity();
   std::vector<Stop> stops(landmarks.begin(), landmarks.end());
   stops.push_back(a);
@@ -184,7 +259,7 @@ std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop&
   std::vector<bool> is_done(stops.size(), false);
   way[start] = 0;
   int looks = 0;
-  for (std::size_t round = 0; round < stops.size() && looks < most_looks; ++round) {
+  for (std::size_t round = 0; round < stops.size() && looks < limits.looks; ++round) {
     std::size_t next = stops.size();
     for (std::size_t s = 0; s < stops.size(); ++s) {
       if (!is_done[s] && way[s] < far && (next == stops.size() || way[s] < way[next])) next = s;
@@ -193,8 +268,9 @@ std::optional<std::vector<Stop>> SolidPaths::shortest(const Stop& a, const Stop&
     is_done[next] = true;
     if (next == goal) break;
     for (std::size_t s = 0; s < stops.size(); ++s) {
-      const double longer = way[next] + length(stops[s].at - stops[next].at);
-      if (is_done[s] || longer >= way[s]) continue;
+      const double step = length(stops[s].at - stops[next].at);
+      const double longer = way[next] + step;
+      if (is_done[s] || longer >= way[s] || step > limits.longest) continue;
       ++looks;
       if (!is_straight(stops[next], stops[s])) continue;
       way[s] = longer;

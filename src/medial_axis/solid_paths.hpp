@@ -34,7 +34,8 @@ class SolidPaths {
   [[nodiscard]] std::optional<std::vector<Stop>> pushed(const Stop& a, const Stop& b) const;
 
   /// The stops between two such that segments from one to the next stay in the solid; nullopt where none were found.
-  /// Tried in turn: none; those of pushing; some of the landmarks; these and what is met when walking along thin parts.
+  /// Tried in turn: none; those of pushing; some of the landmarks; these and what is met when walking along thin parts;
+  /// points strewn around the two, finer and finer.
   /// @param landmarks  points in the same part of the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> path(const Stop& a, const Stop& b,
                                                       std::span<const Stop> landmarks) const;
@@ -48,8 +49,18 @@ class SolidPaths {
   [[nodiscard]] std::optional<Stop> pushed_in(const Vec3d& outside, const Stop& near) const;
   [[nodiscard]] Stop centred(const Stop& stop) const;
   void walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const;
-  [[nodiscard]] std::optional<std::vector<Stop>> shortest(const Stop& a, const Stop& b,
-                                                          std::span<const Stop> landmarks) const;
+  /// What a search may do: no step is longer than `longest`, and so many segments are looked at.
+  struct SearchLimits {
+    double longest = 0;
+    int looks = 0;
+  };
+  [[nodiscard]] std::optional<std::vector<Stop>> shortest(const Stop& a, const Stop& b, std::span<const Stop> landmarks,
+                                                          const SearchLimits& limits) const;
+  [[nodiscard]] std::optional<std::vector<Stop>> over_strewn(const Stop& a, const Stop& b,
+                                                             std::span<const Stop> landmarks) const;
+  void add_creases(double longest, std::vector<Stop>& stops) const;
+  [[nodiscard]] std::vector<Stop> strewn(const Stop& a, const Stop& b, int parts) const;
+  [[nodiscard]] std::vector<Stop> pulled_tight(const Stop& a, const Stop& b, const std::vector<Stop>& between) const;
 
   const Surface& surface_;
 };

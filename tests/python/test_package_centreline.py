@@ -86,7 +86,7 @@ def test_a_ring_is_a_closed_curve_and_edges_are_a_complex(labels):
 
 def test_networkx_graphs_have_the_branches(labels):
     networkx = pytest.importorskip("networkx")
-    graph = blum.centreline(labels)[0].networkx()
+    graph = blum.centreline(labels)[0].to_networkx()
     assert isinstance(graph, networkx.MultiGraph) and networkx.is_tree(graph)
     assert sorted(degree for _, degree in graph.degree) == [1, 1, 1, 3]
     assert min(data["mean_radius"] for *_, data in graph.edges(data=True)) > 2.4

@@ -106,5 +106,45 @@ TEST(SolidPaths, APointOutsideIsMovedInsideNextToIt) {
   EXPECT_EQ(s.paths.inside_near({0.1, 0.1, 0}, near).at, (Vec3d{0.1, 0.1, 0}));
 }
 
+/// A strip from y = -1 to 1 that goes up to z = 1 and down to 0 again `folds` times between x = 0 and 1.
+TriangleMesh folded_strip(std::uint32_t folds, double thickness) {
+  TriangleMesh mesh;
+  for (std::uint32_t k = 0; k <= folds; ++k) {
+    const double x = static_cast<double>(k) / folds;
+    const double z = k % 2;
+    mesh.vertices.insert(mesh.vertices.end(), {{x, -1, z}, {x, -1, z + thickness}, {x, 1, z + thickness}, {x, 1, z}});
+  }
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+  };
+  for (std::uint32_t k = 0; k < folds; ++k) {
+    const std::uint32_t v = 4 * k;
+    for (std::uint32_t side = 0; side < 4; ++side) {
+      const std::uint32_t next = (side + 1) % 4;
+      add(v + side, v + 4 + side, v + 4 + next, v + next);
+    }
+  }
+  add(0, 1, 2, 3);
+  const std::uint32_t end = 4 * folds;
+  add(end + 3, end + 2, end + 1, end);
+  return mesh;
+}
+
+TEST(SolidPaths, PointsStrewnAroundLeadThroughSeveralFolds) {
+  for (const double thickness : {0.2, 0.05}) {
+    SCOPED_TRACE(thickness);
+    const Sample s(folded_strip(4, thickness));
+    const Stop from = s.at({0.125, 0, 0.5 + 0.5 * thickness});
+    const Stop to = s.at({0.625, 0.2, 0.5 + 0.5 * thickness});
+    EXPECT_FALSE(s.paths.pushed(from, to).has_value());
+    auto stops = s.paths.path(from, to, {});
+    ASSERT_TRUE(stops.has_value());
+    stops->insert(stops->begin(), from);
+    stops->push_back(to);
+    EXPECT_LT(stops->size(), 12U);
+    for (std::size_t k = 0; k + 1 < stops->size(); ++k) EXPECT_TRUE(s.paths.is_straight((*stops)[k], (*stops)[k + 1]));
+  }
+}
+
 }  // namespace
 }  // namespace blum
