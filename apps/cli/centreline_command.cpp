@@ -92,15 +92,19 @@ Centrelines lines_of(const VoxelImage& image, const std::optional<Labels>& label
   return lines;
 }
 
-/// All of a label but its points.
-Json brief_json(const Centreline& line) {
+double length_of(const Centreline& line) {
   double length = 0;
   for (const CentrelineBranch& branch : line.branches) length += branch.length;
+  return length;
+}
+
+/// All of a label but its points.
+Json brief_json(const Centreline& line) {
   return {{"label", to_json(line.label)},
           {"voxels", line.voxels},
           {"nodes", line.nodes.size()},
           {"branches", line.branches.size()},
-          {"length", length},
+          {"length", length_of(line)},
           {"label_betti", to_json(line.label_betti)},
           {"graph_betti", to_json(line.graph_betti)},
           {"homotopy_kept", line.homotopy_kept},
@@ -135,11 +139,10 @@ void add_lines(TextTable& table, const Centrelines& lines) {
   for (const Centreline& line : lines.labels) branches += line.branches.size();
   for (std::size_t l = 0; l < std::min(lines.labels.size(), most_shown); ++l) {
     const Centreline& line = lines.labels[l];
-    double length = 0;
-    for (const CentrelineBranch& branch : line.branches) length += branch.length;
     table.add(line.label ? "label " + std::to_string(*line.label) : "selected",
               plural(line.branches.size(), "branch", "branches") + ", " + plural(line.nodes.size(), "node", "nodes") +
-                  ", length " + rounded_text(length) + "; topology " + (line.homotopy_kept ? "kept" : "changed"));
+                  ", length " + rounded_text(length_of(line)) + "; topology " +
+                  (line.homotopy_kept ? "kept" : "changed"));
   }
   if (lines.labels.size() > most_shown) {
     table.add("in all", count_text(lines.labels.size()) + " labels, " + plural(branches, "branch", "branches"));

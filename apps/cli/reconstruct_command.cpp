@@ -119,15 +119,14 @@ void run(const Arguments& a) {
   const Context context = make_context(r.threads, progress, interrupt);
   Stopwatch watch;
   const MedialFile file = read_balls(r.axis);
-  const Box3 box = bounds(balls_of(file, std::numeric_limits<double>::infinity()));
+  std::vector<Ball> balls = balls_of(file, std::numeric_limits<double>::infinity());
+  const Box3 box = bounds(balls);
   if (r.spacing) check_spacing(*r.spacing, box);
   const GridSpec grid = r.spacing ? grid_around_with_spacing(box, *r.spacing) : grid_around(box, r.resolution);
   check_memory(4.0 * static_cast<double>(grid.node_count()), "a grid of " + size_text(grid) + " nodes",
                "use a coarser grid");
   // Where vertices were taken out, balls between them are interpolated, as fine as the grid can show.
-  const double step = file.metadata.deviation ? std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z})
-                                              : std::numeric_limits<double>::infinity();
-  const std::vector<Ball> balls = balls_of(file, step);
+  if (file.metadata.deviation) balls = balls_of(file, std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
   const Field field = ball_union_field(balls, grid, context);
   const double field_seconds = watch.lap();
 

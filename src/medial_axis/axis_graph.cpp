@@ -9,6 +9,7 @@
 
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/sort_unique.hpp"
 #include "medial_axis/axis_parts.hpp"
 #include "medial_axis/surface_patches.hpp"
 
@@ -16,11 +17,6 @@ namespace blum {
 namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-void sort_unique(std::vector<std::uint32_t>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
 
 /// Follows seams and curves from junction to junction.
 class LineWalker {
@@ -60,7 +56,7 @@ class LineWalker {
       for (const std::uint32_t t : parts_.incidence().triangles_of_vertex()[v]) {
         junction.sheets.push_back(static_cast<std::uint32_t>(axis.sheet[t]));
       }
-      sort_unique(junction.sheets);
+      detail::sort_unique(junction.sheets);
     }
   }
 
@@ -123,7 +119,7 @@ class LineWalker {
         }
       }
     }
-    sort_unique(line.sheets);
+    detail::sort_unique(line.sheets);
     (part == EdgePart::seam ? graph_.seam_length : graph_.curve_length) += line.length;
   }
 

@@ -60,11 +60,9 @@ class Decimator {
         round_of_(axis.positions.size(), 0) {}
 
   DecimatedAxis run() {
-    if (tolerance_ > 0) {
-      for (const double level : levels) {
-        std::fill(is_waiting_.begin(), is_waiting_.end(), true);
-        while (sweep(level * tolerance_) > 0) {
-        }
+    for (const double level : levels) {
+      std::fill(is_waiting_.begin(), is_waiting_.end(), true);
+      while (sweep(level * tolerance_) > 0) {
       }
     }
     return {result(), moved_};
@@ -293,6 +291,7 @@ DecimatedAxis decimate(const Complex& axis, double tolerance, const Context& con
   if (const std::string problem = problem_of_medial(axis); !problem.empty()) {
     throw InvalidOption("triangles cannot be taken from what is no medial axis: " + problem);
   }
+  if (tolerance == 0) return {axis, 0};
   return Decimator(axis, tolerance, context).run();
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "blum/core/sort_unique.hpp"
 #include "medial_axis/axis_parts.hpp"
 
 namespace blum {
@@ -105,8 +106,7 @@ class SheetMeasurer {
         sheet.area > 0 ? sheet.centroid / sheet.area : measured.corners / static_cast<double>(3 * sheet.triangles);
     const std::int64_t edges = (3 * triangles + measured.border_sides) / 2;
     sheet.euler_characteristic = measured.cut_vertices - edges + triangles;
-    std::sort(sheet.seams.begin(), sheet.seams.end());
-    sheet.seams.erase(std::unique(sheet.seams.begin(), sheet.seams.end()), sheet.seams.end());
+    detail::sort_unique(sheet.seams);
   }
 
   const AxisParts& parts_;

@@ -332,8 +332,7 @@ bool is_in_component(const GovernorField& governors, const CellStructure& struct
   });
   if (is_in_ball) return true;
   const std::optional<Stop> home = deepest_of(governors, structure.lattice(), cell);
-  const Stop own{vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};
-  return !home || SolidPaths(governors.surface()).is_straight(*home, own);
+  return !home || SolidPaths(governors.surface()).is_straight(*home, stop_of(vertex));
 }
 
 /// In the middle of a thin part where there is one: the ball there holds the point that it was found from.

@@ -32,6 +32,11 @@ namespace blum {
 [[nodiscard]] std::vector<Stop> landmarks_of(const GovernorField& governors, const CellStructure& structure,
                                              Cell vertex);
 
+/// The place of a vertex, as paths begin and end there.
+[[nodiscard]] inline Stop stop_of(const AxisVertex& vertex) {
+  return {vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};
+}
+
 /// A vertex at the corner of the lattice itself, which must lie in the solid.
 [[nodiscard]] AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std::int64_t, 3>& node);
 

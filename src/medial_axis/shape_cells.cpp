@@ -103,9 +103,6 @@ class Shaper {
     return paths_.inside_near(0.5 * (a.at + b.at), a);
   }
 
-  [[nodiscard]] static Stop stop_of(const AxisVertex& vertex) {
-    return {vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};
-  }
   [[nodiscard]] Stop stop_at(std::uint32_t place) const { return stop_of(piece_.vertices[place]); }
 
   static void add_own(Shape& shape, std::span<const Stop> stops) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 
 namespace blum {
@@ -134,8 +135,7 @@ std::vector<std::uint32_t> SurfacePatches::at(SiteId site) const {
   for (std::size_t k = rows.first[on.index]; k < rows.first[std::size_t{on.index} + 1]; ++k) {
     if (patch_of_[rows.triangles[k]] != none) out.push_back(patch_of_[rows.triangles[k]]);
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  detail::sort_unique(out);
   return out;
 }
 

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
+#include "blum/core/sort_unique.hpp"
+
 namespace blum::detail {
 namespace {
-
-void sort_unique(std::vector<std::uint32_t>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 /// Where a value is in a rising list; its size where it is not.
 std::size_t place_in(std::span<const std::uint32_t> rising, std::uint32_t value) {

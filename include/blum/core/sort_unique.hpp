@@ -1,0 +1,16 @@
+// Blum: lists as sets. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+namespace blum::detail {
+
+/// Sorts values, and leaves one of each that are equal.
+template <class T>
+void sort_unique(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+}  // namespace blum::detail
