@@ -40,6 +40,12 @@ void bind_axis(nb::module_& m) {
             return run({0, nb::none()}, [&](const Context& context) { return axis.simplify(theta, context); });
           },
           nb::arg("theta"))
+      .def(
+          "fitted",
+          [](const MedialAxis& axis, double theta) {
+            return run({0, nb::none()}, [&](const Context& context) { return axis.fitted(theta, context); });
+          },
+          nb::arg("theta"))
       .def("nested",
            [](const MedialAxis& axis) {
              return run({0, nb::none()}, [&](const Context& context) { return axis.nested(context); });

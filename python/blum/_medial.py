@@ -40,12 +40,14 @@ class MedialAxis:
         found: MedialAxisReport = self._core.report
         return found
 
-    def simplify(self, theta: Real = 60.0) -> MedialComplex:
+    def simplify(self, theta: Real = 60.0, *, fit: bool = False) -> MedialComplex:
         """The part where two footprints are seen at more than theta degrees apart, and what homotopy needs to join it.
 
-        What a larger theta gives is part of what a smaller one gives. Cost: linear in the result.
+        What a larger theta gives is part of what a smaller one gives, unless `fit` moves its borders to their places:
+        seams to where three walls are equally far, rims to where the angle is theta. Cost: linear in the result.
         """
         angle = number(theta, "theta")
+        cut = self._core.fitted if fit else self._core.simplify
         report = self.report
         is_image = isinstance(self._origin.shape, Image)
         origin = replace(
@@ -56,7 +58,7 @@ class MedialAxis:
             grid=report.grid,
             site_ids="voxels" if is_image else "features",
         )
-        return MedialComplex._of(self._core.simplify(angle), EVERYTHING, origin)
+        return MedialComplex._of(cut(angle), EVERYTHING, origin)
 
     @takes("AxisGraphOptions")
     def graph(self, theta: Real = 60.0, **options: Unpack[AxisGraphOptions]) -> AxisGraph:

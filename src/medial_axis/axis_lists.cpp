@@ -46,6 +46,19 @@ Columns columns_of(std::vector<float> angles) {
 
 }  // namespace
 
+void append(AxisLists more, AxisLists& lists) {
+  const auto first = static_cast<std::uint32_t>(lists.vertices.size());
+  lists.vertices.insert(lists.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (std::size_t e = 0; e < more.edges.size(); ++e) {
+    const auto& [a, b] = more.edges[e];
+    lists.add_edge({first + a, first + b}, more.edge_angles[e]);
+  }
+  for (std::size_t t = 0; t < more.triangles.size(); ++t) {
+    const auto& [a, b, c] = more.triangles[t];
+    lists.add_triangle({first + a, first + b, first + c}, more.triangle_angles[t]);
+  }
+}
+
 Complex complex_of(AxisLists lists) {
   Complex complex;
   complex.positions.reserve(lists.vertices.size());

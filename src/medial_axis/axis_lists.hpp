@@ -28,6 +28,9 @@ struct AxisLists {
   }
 };
 
+/// Adds lists at the end of others.
+void append(AxisLists more, AxisLists& lists);
+
 /// A complex with the columns of a medial axis, one sheet, and edges that are curves: to be labelled by label_sheets().
 [[nodiscard]] Complex complex_of(AxisLists lists);
 

@@ -11,6 +11,7 @@
 #include "blum/geometry/sites.hpp"
 #include "medial_axis/axis_piece.hpp"
 #include "medial_axis/contract_points.hpp"
+#include "medial_axis/fit/fit_axis.hpp"
 #include "medial_axis/label_sheets.hpp"
 #include "medial_axis/mesh_surface.hpp"
 #include "medial_axis/nest_pieces.hpp"
@@ -48,6 +49,16 @@ double longest_side(const Box3& box) {
   return std::max({box.size().x, box.size().y, box.size().z});
 }
 
+/// The complex of lists, with sheets and roles.
+Complex labelled(AxisLists lists, const Context& context) {
+  Complex complex = complex_of(std::move(lists));
+  Incidence incidence(complex.view(), context);
+  if (contract_points(complex, incidence)) incidence = Incidence(complex.view(), context);
+  throw_if_cancelled(context);
+  label_sheets(complex, incidence);
+  return complex;
+}
+
 void add(BettiNumbers& sum, const BettiNumbers& part) {
   for (std::size_t k = 0; k < 3; ++k) sum[k] += part[k];
 }
@@ -60,9 +71,27 @@ InvalidMesh without_interior(const Solid& solid, double spacing) {
 
 }  // namespace
 
+namespace {
+
+/// The surface of a body of a polyhedron, which borders of its axis are fitted to.
+struct BodySurface {
+  Solid solid;  ///< shares what it holds
+  const SolidBody* body;
+  SiteTable sites;
+  MeshSurface surface;
+
+  BodySurface(Solid own, const SolidBody& of, bool bounds_solid, const Context& context)
+      : solid(std::move(own)), body(&of), sites(of.mesh, context), surface(of.mesh, sites, bounds_solid, context) {}
+
+  [[nodiscard]] SiteId input_site(SiteId site) const { return body->input_site(site, sites, solid.sites()); }
+};
+
+}  // namespace
+
 struct MedialAxis::Data {
   MedialAxisReport report;
   std::vector<AxisPiece> pieces;
+  std::vector<std::unique_ptr<BodySurface>> surfaces;  ///< of the pieces of a polyhedron
   double least_theta = 0;
 };
 
@@ -140,13 +169,14 @@ class MedialAxisBuilder {
     timer.lap("field and voxels");
     if (voxelized.report.voxels + voxelized.report.extra_cells == 0)
       throw without_interior(solid, voxelized.report.spacing);
-    const SiteTable sites(body.mesh, context_);
-    const MeshSurface surface(body.mesh, sites, report().rule == SolidRule::polyhedron, context_);
+    const bool is_polyhedron = report().rule == SolidRule::polyhedron;
+    auto known = std::make_unique<BodySurface>(solid, body, is_polyhedron, context_);
     timer.lap("surface");
-    AxisPiece& piece = add_piece(voxelized, surface, NoiseFloor{});
+    AxisPiece& piece = add_piece(voxelized, known->surface, NoiseFloor{});
     for (AxisVertex& vertex : piece.vertices) {
-      for (SiteId& site : vertex.sites) site = body.input_site(site, sites, solid.sites());
+      for (SiteId& site : vertex.sites) site = known->input_site(site);
     }
+    if (is_polyhedron) data_->surfaces.push_back(std::move(known));
   }
 
   AxisPiece& add_piece(const Voxelized& voxelized, const Surface& surface, NoiseFloor floor) {
@@ -180,19 +210,34 @@ const MedialAxisReport& MedialAxis::report() const {
   return data_->report;
 }
 
+void MedialAxis::check_theta(double theta) const {
+  if (theta >= data_->least_theta && theta <= 180) return;
+  throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be " + exact_text(data_->least_theta) +
+                      " to 180");
+}
+
 Complex MedialAxis::simplify(double theta, const Context& context) const {
-  if (!(theta >= data_->least_theta && theta <= 180)) {
-    throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be " + exact_text(data_->least_theta) +
-                        " to 180");
-  }
+  check_theta(theta);
   AxisLists lists;
   for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, lists, context);
-  Complex complex = complex_of(std::move(lists));
-  Incidence incidence(complex.view(), context);
-  if (contract_points(complex, incidence)) incidence = Incidence(complex.view(), context);
-  throw_if_cancelled(context);
-  label_sheets(complex, incidence);
-  return complex;
+  return labelled(std::move(lists), context);
+}
+
+Complex MedialAxis::fitted(double theta, const Context& context) const {
+  check_theta(theta);
+  if (data_->surfaces.empty()) return simplify(theta, context);
+  AxisLists lists;
+  for (std::size_t p = 0; p < data_->pieces.size(); ++p) {
+    const BodySurface& known = *data_->surfaces[p];
+    AxisLists own;
+    append_at(data_->pieces[p], theta, own, context);
+    fit_axis(own,
+             {known.surface, [&](SiteId site) { return known.input_site(site); }, data_->report.bodies[p].spacing,
+              std::max(theta, NoiseFloor{}.angle)},
+             context);
+    append(std::move(own), lists);
+  }
+  return labelled(std::move(lists), context);
 }
 
 double MedialAxis::least_theta() const {

@@ -1,0 +1,151 @@
+#include "medial_axis/fit/balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "medial_axis/governors.hpp"
+#include "medial_axis/walls.hpp"
+
+namespace blum {
+namespace {
+
+constexpr int most_steps = 24;
+constexpr double equal_distances = 1e-9;  ///< voxels
+/// Walls further than the closest one by more than this do not take part, in voxels.
+constexpr double nearly_as_close = 3;
+/// Squared sine between what two walls ask for, below which these say the same; the same for three, as a volume.
+constexpr double least_sine_squared = 0.02;
+constexpr double least_volume = 0.1;
+
+/// Where a wall asks for x to move: slope * move = difference makes it as close as the closest one.
+struct Equation {
+  Vec3d slope;
+  double difference = 0;
+  std::size_t wall = 0;
+};
+
+/// The shortest move that solves some equations, and how long it is.
+struct Move {
+  Vec3d by;
+  double squared = std::numeric_limits<double>::infinity();
+  std::array<std::size_t, 3> walls{};
+};
+
+Vec3d solve(const Equation& e) {
+  return e.slope * (e.difference / squared_length(e.slope));
+}
+
+std::optional<Vec3d> solve(const Equation& e, const Equation& f) {
+  const double a = squared_length(e.slope);
+  const double b = dot(e.slope, f.slope);
+  const double c = squared_length(f.slope);
+  const double determinant = a * c - b * b;
+  if (determinant < least_sine_squared * a * c) return std::nullopt;
+  return e.slope * ((c * e.difference - b * f.difference) / determinant) +
+         f.slope * ((a * f.difference - b * e.difference) / determinant);
+}
+
+std::optional<Vec3d> solve(const Equation& e, const Equation& f, const Equation& g) {
+  const Vec3d fg = cross(f.slope, g.slope);
+  const double volume = dot(e.slope, fg);
+  const double scale = std::sqrt(squared_length(e.slope) * squared_length(f.slope) * squared_length(g.slope));
+  if (std::abs(volume) < least_volume * scale) return std::nullopt;
+  return (fg * e.difference + cross(g.slope, e.slope) * f.difference + cross(e.slope, f.slope) * g.difference) / volume;
+}
+
+/// The shortest move over all choices of walls.
+Move shortest(std::span<const Equation> equations, std::size_t count) {
+  Move best;
+  const auto offer = [&](const std::optional<Vec3d>& move, std::array<std::size_t, 3> walls) {
+    if (!move || squared_length(*move) >= best.squared) return;
+    best = {*move, squared_length(*move), walls};
+  };
+  for (std::size_t i = 0; i < equations.size(); ++i) {
+    const Equation& e = equations[i];
+    if (count == 1) offer(solve(e), {e.wall});
+    for (std::size_t j = i + 1; count > 1 && j < equations.size(); ++j) {
+      const Equation& f = equations[j];
+      if (count == 2) offer(solve(e, f), {e.wall, f.wall});
+      for (std::size_t k = j + 1; count > 2 && k < equations.size(); ++k) {
+        offer(solve(e, f, equations[k]), {e.wall, f.wall, equations[k].wall});
+      }
+    }
+  }
+  return best;
+}
+
+/// The vertex at a point, with the two footprints that are seen furthest apart.
+AxisVertex vertex_at(const Surface& surface, const Vec3d& x, const NearestPoint& nearest,
+                     std::span<const Footprint> feet) {
+  AxisVertex vertex = vertex_of_one_wall(x, nearest);
+  const auto offer = [&](const Vec3d& p, SiteId p_site, const Vec3d& q, SiteId q_site) {
+    const double angle = angle_at(x, p, q);
+    if (angle <= vertex.separation_angle) return;
+    vertex.footprints = {p, q};
+    vertex.sites = {p_site, q_site};
+    vertex.separation_angle = angle;
+  };
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    offer(nearest.point, nearest.site, feet[i].point, surface.site_of(feet[i]));
+    for (std::size_t j = i + 1; j < feet.size(); ++j) {
+      offer(feet[i].point, surface.site_of(feet[i]), feet[j].point, surface.site_of(feet[j]));
+    }
+  }
+  return vertex;
+}
+
+/// What the walls other than the closest one ask for.
+std::vector<Equation> equations_of(const Walls& walls, const Vec3d& x, double voxel) {
+  std::vector<Equation> equations;
+  const Walls::Wall& closest = walls.closest();
+  const Vec3d towards = (x - closest.foot.point) / closest.distance;
+  for (std::size_t w = 0; w < walls.all().size(); ++w) {
+    const Walls::Wall& wall = walls.all()[w];
+    const double difference = wall.distance - closest.distance;
+    if (difference > nearly_as_close * voxel) continue;
+    const Vec3d slope = towards - (x - wall.foot.point) / wall.distance;
+    if (squared_length(slope) >= two_walls) equations.push_back({slope, difference, w});
+  }
+  return equations;
+}
+
+}  // namespace
+
+std::optional<AxisVertex> balance(const Surface& surface, const Vec3d& start, std::span<const Footprint> feet,
+                                  std::size_t walls, const BalanceLimits& limits) {
+  Walls around(surface, 4 * limits.voxel);
+  for (const Footprint& foot : feet) {
+    if (!around.is_full()) around.add(foot, {});
+  }
+  Vec3d x = start;
+  for (int step = 0; step < most_steps; ++step) {
+    around.follow_to(x);
+    if (around.touch()) return std::nullopt;
+    const Move move = shortest(equations_of(around, x, limits.voxel), walls - 1);
+    if (!(move.squared < std::numeric_limits<double>::infinity())) return std::nullopt;
+    const double closest = around.closest().distance;
+    if (move.squared > equal_distances * equal_distances * limits.voxel * limits.voxel) {
+      x += move.by;
+      if (squared_length(x - start) > limits.most_moved * limits.most_moved) return std::nullopt;
+      continue;
+    }
+    const NearestPoint nearest = surface.nearest(x, around.closest().foot);
+    if (nearest.distance < closest - 1e-7 * limits.voxel) {
+      if (!limits.may_add || around.is_full()) return std::nullopt;
+      around.add({nearest.point, nearest.element, 7}, {});
+      continue;
+    }
+    if (!surface.is_inside(x, nearest)) return std::nullopt;
+    std::vector<Footprint> meet;
+    const double limit = nearest.distance + 1e-6 * limits.voxel + 1e-9 * nearest.distance;
+    for (const Walls::Wall& wall : around.all()) {
+      if (wall.distance <= limit) meet.push_back(wall.foot);
+    }
+    return vertex_at(surface, x, nearest, meet);
+  }
+  return std::nullopt;
+}
+
+}  // namespace blum

@@ -1,0 +1,24 @@
+// Blum: edges that the borders of an axis left without length. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "blum/core/context.hpp"
+#include "medial_axis/axis_lists.hpp"
+#include "medial_axis/surface.hpp"
+
+namespace blum {
+
+/// Up to which length edges are contracted, in voxels.
+struct ShortLengths {
+  double others = 0.15;
+  double on_seams = 0.15;  ///< between two vertices of seams or curves
+  double on_rims = 0.15;   ///< between two vertices of rims
+};
+
+/// Contracts edges much shorter than a voxel where that keeps the homotopy type and edges in the solid: ribbons become
+/// curves, and two seams beside each other one.
+/// @param voxel  mesh units.
+/// @throws Cancelled. Cost: near-linear.
+void contract_short(AxisLists& lists, const Surface& surface, double voxel, const ShortLengths& lengths,
+                    const Context& context);
+
+}  // namespace blum

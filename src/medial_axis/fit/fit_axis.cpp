@@ -1,0 +1,410 @@
+#include "medial_axis/fit/fit_axis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/incidence.hpp"
+#include "blum/core/parallel.hpp"
+#include "medial_axis/fit/balance.hpp"
+#include "medial_axis/fit/contract_short.hpp"
+#include "medial_axis/fit/trim.hpp"
+#include "medial_axis/fit/unfold.hpp"
+#include "medial_axis/place_vertices.hpp"
+#include "medial_axis/solid_paths.hpp"
+#include "medial_axis/walls.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t vertices_per_range = 64;
+/// Voxels that a vertex of a seam may move.
+constexpr double most_moved = 1.5;
+/// Radius where sheets end that reach the surface, in voxels.
+constexpr double least_radius = 0.02;
+/// Where the angle is looked at on the way outwards and inwards, in voxels.
+constexpr std::array outwards{0.25, 0.5, 1.0, 1.5, 2.0, 2.5};
+constexpr std::array inwards{-0.25, -0.5, -1.0, -1.5, -2.0, -2.5};
+constexpr int halvings = 9;
+
+/// What the edges at a vertex are.
+struct Kind {
+  std::uint32_t rims = 0, seams = 0, curves = 0, inner = 0;
+
+  [[nodiscard]] bool is_rim() const { return rims == 2 && seams == 0 && curves == 0; }
+  [[nodiscard]] bool is_seam() const { return seams == 2 && rims == 0 && curves == 0; }
+  [[nodiscard]] bool is_seam_end() const { return seams == 1 && rims > 0 && curves == 0; }
+  [[nodiscard]] bool is_curve() const { return curves == 2 && rims + seams + inner == 0; }
+  [[nodiscard]] bool is_curve_end() const { return curves == 1 && rims + seams + inner == 0; }
+  [[nodiscard]] bool is_junction() const { return seams > 2 || (seams > 0 && curves > 0); }
+};
+
+class Fitter {
+ public:
+  Fitter(AxisLists& lists, const FitTarget& target, const Context& context)
+      : lists_(lists),
+        target_(target),
+        surface_(target.surface),
+        paths_(target.surface),
+        voxel_(target.voxel),
+        context_(context),
+        incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
+        kinds_(lists.vertices.size()) {
+    for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
+      const std::size_t count = incidence_.triangles_of_edge()[e].size();
+      for (const std::uint32_t v : incidence_.edges()[e]) {
+        ++(count == 0   ? kinds_[v].curves
+           : count == 1 ? kinds_[v].rims
+           : count == 2 ? kinds_[v].inner
+                        : kinds_[v].seams);
+      }
+    }
+  }
+
+  /// Puts vertices that know of one wall only between two.
+  void find_sheets() {
+    move([&](std::uint32_t v) { return lists_.vertices[v].separation_angle > 0 ? std::nullopt : between(v, 2); });
+  }
+  void place_seams() {
+    move([&](std::uint32_t v) { return balanced(v); });
+  }
+  /// Vertices inside of a sheet that were put on another one beyond the seam go to this.
+  void straighten() {
+    move([&](std::uint32_t v) { return straightened(v); });
+  }
+  void cut_rims() {
+    move([&](std::uint32_t v) { return cut(v); });
+  }
+
+ private:
+  using Moved = std::optional<AxisVertex>;
+
+  // ---- Where vertices go ----
+
+  /// Seams, junctions and curves: between as many walls as they should have.
+  [[nodiscard]] Moved balanced(std::uint32_t v) const {
+    const Kind& kind = kinds_[v];
+    if (kind.is_junction()) {
+      if (auto found = between(v, 4)) return found;
+      return between(v, 3);
+    }
+    return kind.seams + kind.curves > 0 ? between(v, 3) : std::nullopt;
+  }
+
+  [[nodiscard]] Moved between(std::uint32_t v, std::size_t walls) const {
+    return balanced_at(lists_.vertices[v].position, feet_around(v), walls, {voxel_, most_moved * voxel_, true});
+  }
+
+  /// balance(), with sites of the input.
+  [[nodiscard]] Moved balanced_at(const Vec3d& start, const std::vector<Footprint>& feet, std::size_t walls,
+                                  const BalanceLimits& limits) const {
+    Moved found = balance(surface_, start, feet, walls, limits);
+    if (!found) return found;
+    for (SiteId& site : found->sites) site = target_.input_site(site);
+    return found;
+  }
+
+  /// A vertex inside of a sheet where this bends: on the seam, if it bends less then.
+  [[nodiscard]] Moved straightened(std::uint32_t v) const {
+    constexpr double sharp = 0.9;   // cosine: 25 degrees
+    constexpr double better = 0.5;  // of what is missing to 1
+    const Kind& kind = kinds_[v];
+    if (kind.seams + kind.curves + kind.rims > 0) return std::nullopt;
+    const double bend = least_cosine(v, lists_.vertices[v].position);
+    if (bend > sharp) return std::nullopt;
+    const Moved found = between(v, 3);
+    if (!found || 1 - least_cosine(v, found->position) > better * (1 - bend)) return std::nullopt;
+    return found;
+  }
+
+  /// Of the angles by which the sheet bends at the edges of a vertex, were it elsewhere; 1 where it is flat.
+  [[nodiscard]] double least_cosine(std::uint32_t v, const Vec3d& position) const {
+    double least = 1;
+    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
+      const auto& [a, b] = incidence_.edges()[e];
+      const std::uint32_t other = a == v ? b : a;
+      const Vec3d along = lists_.vertices[other].position - position;
+      std::array<Vec3d, 2> leaves;
+      for (std::size_t k = 0; k < 2; ++k) {
+        const auto& t = lists_.triangles[incidence_.triangles_of_edge()[e][k]];
+        leaves[k] = cross(along, lists_.vertices[t[0] ^ t[1] ^ t[2] ^ a ^ b].position - position);
+      }
+      const double scale = length(leaves[0]) * length(leaves[1]);
+      // On both sides of the edge, so that these face opposite ways.
+      if (scale > 0) least = std::min(least, -dot(leaves[0], leaves[1]) / scale);
+    }
+    return least;
+  }
+
+  /// Rims and ends: where the angle is theta, or the radius next to nothing.
+  [[nodiscard]] Moved cut(std::uint32_t v) const {
+    const Kind& kind = kinds_[v];
+    if (kind.is_rim()) {
+      if (auto found = slide(v, direction_of_rim(v), 2)) return found;
+      return slide(v, towards_surface(v), 2);
+    }
+    if (kind.is_seam_end()) return slide(v, direction_of_end(v, 3), 3);
+    if (kind.is_curve_end()) return slide(v, direction_of_end(v, 0), 3);
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool is_shown(const AxisVertex& vertex) const {
+    return vertex.separation_angle > target_.theta && vertex.radius >= least_radius * voxel_;
+  }
+
+  /// The last vertex on the way from a vertex along its sheet or seam that shows.
+  [[nodiscard]] Moved slide(std::uint32_t v, const Vec3d& direction, std::size_t walls) const {
+    const AxisVertex& own = lists_.vertices[v];
+    const std::uint32_t inner = best_neighbour(v);
+    const std::vector<Footprint> feet = walls == 2 ? feet_of(is_shown(own) ? v : inner) : feet_around(v);
+    Vec3d origin = own.position;
+    bool is_past = false;  // whether the last point is past the border, and not past something else
+    const auto at = [&](double t) -> Moved {
+      const Moved found =
+          balanced_at(origin + direction * (t * voxel_), feet, walls, {voxel_, most_moved * voxel_, walls > 2});
+      is_past = found && !is_shown(*found);
+      return found && is_shown(*found) ? found : std::nullopt;
+    };
+    if (squared_length(direction) > 0) {
+      if (Moved start = at(0)) {
+        origin = start->position;
+        double good = 0;
+        for (const double t : outwards) {
+          if (Moved next = at(t)) {
+            start = next;
+            good = t;
+            continue;
+          }
+          // Where the ball does not reach, the surface may have been passed.
+          is_past = is_past || start->radius <= (t - good) * voxel_;
+          return is_past ? last_shown(at, good, t, start) : std::nullopt;
+        }
+        return std::nullopt;
+      }
+      double bad = 0;
+      for (const double t : inwards) {
+        if (const Moved found = at(t)) return last_shown(at, t, bad, found);
+        bad = t;
+      }
+    }
+    return is_shown(lists_.vertices[inner]) && !is_shown(own) ? towards(v, inner, walls) : std::nullopt;
+  }
+
+  /// Between a place that shows and one that does not.
+  template <class At>
+  [[nodiscard]] Moved last_shown(const At& at, double good, double bad, Moved best) const {
+    for (int n = 0; n < halvings; ++n) {
+      const double t = 0.5 * (good + bad);
+      if (const Moved found = at(t)) {
+        best = found;
+        good = t;
+      } else {
+        bad = t;
+      }
+    }
+    return best;
+  }
+
+  /// The last vertex that shows on the way from a neighbour that does.
+  [[nodiscard]] Moved towards(std::uint32_t v, std::uint32_t neighbour, std::size_t walls) const {
+    const AxisVertex& from = lists_.vertices[neighbour];
+    const Vec3d way = lists_.vertices[v].position - from.position;
+    const std::vector<Footprint> feet = feet_of(neighbour);
+    const auto at = [&](double t) -> Moved {
+      const Moved found =
+          balanced_at(from.position + way * t, feet, std::min<std::size_t>(walls, 2), {voxel_, voxel_, false});
+      return found && is_shown(*found) ? found : std::nullopt;
+    };
+    return last_shown(at, 0, 1, from);
+  }
+
+  [[nodiscard]] std::uint32_t best_neighbour(std::uint32_t v) const {
+    std::uint32_t best = v;
+    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
+      const auto& [a, b] = incidence_.edges()[e];
+      const std::uint32_t other = a == v ? b : a;
+      if (lists_.vertices[other].separation_angle > lists_.vertices[best].separation_angle || best == v) best = other;
+    }
+    return best;
+  }
+
+  // ---- Directions ----
+
+  /// Away from the sheet, from edges of the rim near by.
+  [[nodiscard]] Vec3d direction_of_rim(std::uint32_t v) const {
+    constexpr int reach = 4;
+    Vec3d sum;
+    std::uint32_t from = v;
+    for (const std::uint32_t first : incidence_.edges_of_vertex()[v]) {
+      if (incidence_.triangles_of_edge()[first].size() != 1) continue;
+      std::uint32_t e = first;
+      from = v;
+      for (int n = 0; n < reach; ++n) {
+        sum += outwards_of(e) / (1 + n);
+        const auto& [a, b] = incidence_.edges()[e];
+        const std::uint32_t next = a == from ? b : a;
+        if (!kinds_[next].is_rim()) break;
+        const std::uint32_t at = e;
+        for (const std::uint32_t other : incidence_.edges_of_vertex()[next]) {
+          if (other != at && incidence_.triangles_of_edge()[other].size() == 1) e = other;
+        }
+        from = next;
+      }
+    }
+    const double size = length(sum);
+    return size > 0 ? sum / size : Vec3d{};
+  }
+
+  /// Along the sheet to where it is less deep: over convex edges that it ends at.
+  [[nodiscard]] Vec3d towards_surface(std::uint32_t v) const {
+    const AxisVertex& vertex = lists_.vertices[v];
+    const Vec3d way = vertex.footprints[0] + vertex.footprints[1] - 2 * vertex.position;
+    const double size = length(way);
+    constexpr double least = 0.1;  // of the radius: 174 degrees
+    return size > least * vertex.radius ? way / size : Vec3d{};
+  }
+
+  /// From a triangle outwards through its side, as long as the side.
+  [[nodiscard]] Vec3d outwards_of(std::uint32_t e) const {
+    const std::uint32_t t = incidence_.triangles_of_edge()[e][0];
+    const auto& [a, b] = incidence_.edges()[e];
+    std::uint32_t third = a;
+    for (const std::uint32_t v : lists_.triangles[t]) {
+      if (v != a && v != b) third = v;
+    }
+    const Vec3d& at = lists_.vertices[a].position;
+    const Vec3d along = lists_.vertices[b].position - at;
+    const Vec3d in = lists_.vertices[third].position - at;
+    const double squared = squared_length(along);
+    if (!(squared > 0)) return {};
+    const Vec3d out = along * (dot(in, along) / squared) - in;
+    const double size = length(out);
+    return size > 0 ? out * (std::sqrt(squared) / size) : Vec3d{};
+  }
+
+  /// Away from the only neighbour along a seam (of at least so many triangles) or curve (of none).
+  [[nodiscard]] Vec3d direction_of_end(std::uint32_t v, std::size_t triangles) const {
+    const auto next_of = [&](std::uint32_t at, std::uint32_t before) {
+      for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
+        const std::size_t count = incidence_.triangles_of_edge()[e].size();
+        if (triangles == 0 ? count > 0 : count < triangles) continue;
+        const auto& [a, b] = incidence_.edges()[e];
+        const std::uint32_t other = a == at ? b : a;
+        if (other != before) return other;
+      }
+      return at;
+    };
+    const std::uint32_t first = next_of(v, v);
+    const std::uint32_t second = kinds_[first].is_seam() || kinds_[first].is_curve() ? next_of(first, v) : first;
+    const Vec3d way = lists_.vertices[v].position - lists_.vertices[second].position;
+    const double size = length(way);
+    return size > 0 ? way / size : Vec3d{};
+  }
+
+  // ---- Walls ----
+
+  void add_feet(std::uint32_t v, std::vector<Footprint>& feet) const {
+    const AxisVertex& vertex = lists_.vertices[v];
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (k == 1 && vertex.separation_angle == 0) break;
+      const NearestPoint at = surface_.nearest(vertex.footprints[k], {});
+      const Footprint foot{vertex.footprints[k], at.element, 7};
+      const auto is_known = [&](const Footprint& other) { return other.element == foot.element; };
+      if (std::none_of(feet.begin(), feet.end(), is_known)) feet.push_back(foot);
+    }
+  }
+  [[nodiscard]] std::vector<Footprint> feet_of(std::uint32_t v) const {
+    std::vector<Footprint> feet;
+    add_feet(v, feet);
+    return feet;
+  }
+  [[nodiscard]] std::vector<Footprint> feet_around(std::uint32_t v) const {
+    std::vector<Footprint> feet = feet_of(v);
+    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
+      const auto& [a, b] = incidence_.edges()[e];
+      add_feet(a == v ? b : a, feet);
+    }
+    if (feet.size() > most_walls) feet.resize(most_walls);
+    return feet;
+  }
+
+  // ---- Moving ----
+
+  /// Moves all vertices that `where` has a place for, but for those whose edges would leave the solid.
+  void move(const std::function<Moved(std::uint32_t)>& where) {
+    const std::vector<AxisVertex> before = lists_.vertices;
+    std::vector<AxisVertex> after = before;
+    std::vector<std::uint8_t> is_moved(before.size(), 0);
+    parallel_for(context_, before.size(), vertices_per_range, "borders", [&](const WorkRange& range) {
+      for (std::size_t v = range.begin; v < range.end; ++v) {
+        if (const Moved found = where(static_cast<std::uint32_t>(v))) {
+          after[v] = *found;
+          is_moved[v] = 1;
+        }
+      }
+    });
+    lists_.vertices = std::move(after);
+    for (bool is_changed = true; is_changed;) {
+      const std::vector<std::uint8_t> leaves = edges_that_leave(is_moved);
+      is_changed = false;
+      for (std::uint32_t e = 0; e < leaves.size(); ++e) {
+        if (leaves[e] == 0) continue;
+        for (const std::uint32_t v : incidence_.edges()[e]) {
+          if (is_moved[v] == 0) continue;
+          lists_.vertices[v] = before[v];
+          is_moved[v] = 0;
+          is_changed = true;
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<std::uint8_t> edges_that_leave(const std::vector<std::uint8_t>& is_moved) const {
+    std::vector<std::uint8_t> leaves(incidence_.edges().size(), 0);
+    parallel_for(context_, leaves.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
+      for (std::size_t e = range.begin; e < range.end; ++e) {
+        const auto& [a, b] = incidence_.edges()[e];
+        if (is_moved[a] == 0 && is_moved[b] == 0) continue;
+        leaves[e] = paths_.is_straight(stop_of(lists_.vertices[a]), stop_of(lists_.vertices[b])) ? 0 : 1;
+      }
+    });
+    return leaves;
+  }
+
+  AxisLists& lists_;
+  const FitTarget& target_;
+  const Surface& surface_;
+  SolidPaths paths_;
+  double voxel_;
+  const Context& context_;
+  Incidence incidence_;
+  std::vector<Kind> kinds_;
+};
+
+}  // namespace
+
+void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context) {
+  trim(lists, target.theta, context);
+  constexpr ShortLengths nothing{};
+  constexpr ShortLengths with_seams{.on_seams = 0.6};
+  constexpr ShortLengths with_rims{.on_seams = 0.6, .on_rims = 0.3};
+  const auto take = [&](void (Fitter::*step)(), const ShortLengths& lengths) {
+    (Fitter(lists, target, context).*step)();
+    contract_short(lists, target.surface, target.voxel, lengths, context);
+  };
+  take(&Fitter::find_sheets, nothing);
+  take(&Fitter::place_seams, with_seams);
+  take(&Fitter::place_seams, with_seams);
+  take(&Fitter::straighten, with_seams);
+  take(&Fitter::straighten, with_seams);
+  take(&Fitter::cut_rims, with_seams);
+  take(&Fitter::cut_rims, with_rims);
+  unfold(lists, target.surface, target.voxel, context);
+}
+
+}  // namespace blum

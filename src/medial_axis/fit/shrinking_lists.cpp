@@ -1,0 +1,88 @@
+#include "medial_axis/fit/shrinking_lists.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "blum/complex/incidence.hpp"
+#include "medial_axis/place_vertices.hpp"
+
+namespace blum {
+
+ShrinkingLists::ShrinkingLists(AxisLists& lists, const Surface& surface, const Context& context)
+    : lists_(lists),
+      paths_(surface),
+      cells_({lists.vertices.size(), lists.edges, lists.triangles}),
+      rank_(lists.vertices.size(), 0),
+      into_(lists.vertices.size()) {
+  std::iota(into_.begin(), into_.end(), 0U);
+  const Incidence incidence({lists.vertices.size(), lists.edges, lists.triangles}, context);
+  edges_.assign(incidence.edges().begin(), incidence.edges().end());
+  for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+    const std::size_t count = incidence.triangles_of_edge()[e].size();
+    const int weight = count == 2 ? 0 : count == 1 ? 1 : on_seam;
+    for (const std::uint32_t v : edges_[e]) rank_[v] += weight;
+  }
+  // Ends of seams and curves stay where they are, too, so that these do not become shorter.
+  for (int& rank : rank_) rank += rank / on_seam == 1 ? 8 * on_seam : 0;
+}
+
+std::uint32_t ShrinkingLists::now(std::uint32_t v) const {
+  while (into_[v] != v) v = into_[v];
+  return v;
+}
+
+bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to) {
+  if (!cells_.may_contract(from, to)) return false;
+  const Stop target = stop_of(lists_.vertices[to]);
+  bool stays = true;
+  const auto look = [&](std::uint32_t v) {
+    if (stays && v != to) stays = paths_.is_straight(target, stop_of(lists_.vertices[v]));
+  };
+  cells_.for_each_triangle(from, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+    look(p);
+    look(q);
+  });
+  cells_.for_each_edge(from, [&](std::uint32_t, std::uint32_t other) { look(other); });
+  return stays;
+}
+
+void ShrinkingLists::contract(std::uint32_t from, std::uint32_t to) {
+  rank_[to] = std::max(rank_[to], rank_[from]);
+  into_[from] = to;
+  for (const auto& [triangle, third] : cells_.contract(from, to)) {
+    if (is_joined(to, third)) continue;
+    cells_.add_edge({to, third});
+    lists_.add_edge({to, third}, lists_.triangle_angles[triangle]);
+  }
+}
+
+bool ShrinkingLists::is_joined(std::uint32_t a, std::uint32_t b) const {
+  bool found = false;
+  cells_.for_each_triangle(a,
+                           [&](std::uint32_t, std::uint32_t p, std::uint32_t q) { found = found || p == b || q == b; });
+  cells_.for_each_edge(a, [&](std::uint32_t, std::uint32_t other) { found = found || other == b; });
+  return found;
+}
+
+void ShrinkingLists::write() {
+  AxisLists out;
+  std::vector<std::uint32_t> number(lists_.vertices.size(), 0);
+  for (std::uint32_t v = 0; v < number.size(); ++v) {
+    number[v] = static_cast<std::uint32_t>(out.vertices.size());
+    if (cells_.has_vertex(v)) out.vertices.push_back(lists_.vertices[v]);
+  }
+  for (std::uint32_t e = 0; e < lists_.edges.size(); ++e) {
+    if (!cells_.has_edge(e)) continue;
+    const auto& [a, b] = cells_.edge(e);
+    out.add_edge({number[a], number[b]}, lists_.edge_angles[e]);
+  }
+  for (std::uint32_t t = 0; t < lists_.triangles.size(); ++t) {
+    if (!cells_.has_triangle(t)) continue;
+    const auto& [a, b, c] = cells_.triangle(t);
+    out.add_triangle({number[a], number[b], number[c]}, lists_.triangle_angles[t]);
+  }
+  lists_ = std::move(out);
+}
+
+}  // namespace blum

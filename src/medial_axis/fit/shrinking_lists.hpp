@@ -1,0 +1,49 @@
+// Blum: axes whose edges are contracted while they are put together. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "medial_axis/axis_lists.hpp"
+#include "medial_axis/shrinking_complex.hpp"
+#include "medial_axis/solid_paths.hpp"
+
+namespace blum {
+
+/// Contracts edges of lists where that keeps the homotopy type and edges in the solid.
+class ShrinkingLists {
+ public:
+  /// Vertices of seams and curves rank from here on, those of rims from 1 to there.
+  static constexpr int on_seam = 1024;
+
+  /// @param lists  is to be left as it is until write().
+  ShrinkingLists(AxisLists& lists, const Surface& surface, const Context& context);
+
+  [[nodiscard]] const ShrinkingComplex& cells() const { return cells_; }
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
+  [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
+  [[nodiscard]] int rank(std::uint32_t v) const { return rank_[v]; }
+  /// The vertex that another one was contracted to, or itself.
+  [[nodiscard]] std::uint32_t now(std::uint32_t v) const;
+
+  /// Whether the edge between two vertices may be contracted to the second one.
+  [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to);
+  void contract(std::uint32_t from, std::uint32_t to);
+
+  /// Puts what is left into the lists.
+  void write();
+
+ private:
+  [[nodiscard]] bool is_joined(std::uint32_t a, std::uint32_t b) const;
+
+  AxisLists& lists_;
+  SolidPaths paths_;
+  ShrinkingComplex cells_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;  ///< at first
+  std::vector<int> rank_;
+  std::vector<std::uint32_t> into_;
+};
+
+}  // namespace blum

@@ -1,0 +1,152 @@
+#include "medial_axis/fit/trim.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/incidence.hpp"
+
+namespace blum {
+namespace {
+
+class Trimmer {
+ public:
+  Trimmer(AxisLists& lists, double theta, const Context& context)
+      : lists_(lists),
+        theta_(theta),
+        incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
+        triangles_left_(incidence_.edges().size()),
+        edges_left_(lists.vertices.size()),
+        has_triangle_(lists.triangles.size(), true),
+        has_edge_(incidence_.edges().size(), true),
+        has_vertex_(lists.vertices.size(), true) {
+    for (std::uint32_t e = 0; e < has_edge_.size(); ++e) {
+      triangles_left_[e] = static_cast<std::uint32_t>(incidence_.triangles_of_edge()[e].size());
+    }
+    for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) {
+      edges_left_[v] = static_cast<std::uint32_t>(incidence_.edges_of_vertex()[v].size());
+    }
+  }
+
+  void run() {
+    for (std::uint32_t e = 0; e < has_edge_.size(); ++e) look_at_edge(e);
+    for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) look_at_vertex(v);
+    while (!queue_.empty()) {
+      const auto [angle, dimension, cell] = queue_.top();
+      queue_.pop();
+      if (dimension == 2) {
+        take_triangle_from(cell);
+      } else {
+        take_edge_from(cell);
+      }
+    }
+    write();
+  }
+
+ private:
+  [[nodiscard]] double angle(std::uint32_t v) const { return lists_.vertices[v].separation_angle; }
+
+  /// The largest angle of a triangle's vertices; infinite where it is there for what no vertex sees.
+  [[nodiscard]] double angle_of_triangle(std::uint32_t t) const {
+    double largest = 0;
+    for (const std::uint32_t v : lists_.triangles[t]) largest = std::max(largest, angle(v));
+    // Where no vertex knows two walls, the cell may know better.
+    return largest > 0 ? largest : lists_.triangle_angles[t];
+  }
+  [[nodiscard]] double angle_of_edge(std::uint32_t e) const {
+    return std::max(angle(incidence_.edges()[e][0]), angle(incidence_.edges()[e][1]));
+  }
+
+  [[nodiscard]] std::uint32_t triangle_left_at(std::uint32_t e) const {
+    const auto at = incidence_.triangles_of_edge()[e];
+    return *std::find_if(at.begin(), at.end(), [&](std::uint32_t t) { return has_triangle_[t]; });
+  }
+  [[nodiscard]] std::uint32_t edge_left_at(std::uint32_t v) const {
+    const auto at = incidence_.edges_of_vertex()[v];
+    return *std::find_if(at.begin(), at.end(), [&](std::uint32_t e) { return has_edge_[e]; });
+  }
+
+  /// Enters what is free and outside.
+  void look_at_edge(std::uint32_t e) {
+    if (!has_edge_[e] || triangles_left_[e] != 1) return;
+    const double largest = angle_of_triangle(triangle_left_at(e));
+    if (largest <= theta_) queue_.emplace(largest, 2, e);
+  }
+  void look_at_vertex(std::uint32_t v) {
+    if (!has_vertex_[v] || edges_left_[v] != 1) return;
+    const std::uint32_t e = edge_left_at(v);
+    if (triangles_left_[e] > 0) return;
+    if (const double largest = angle_of_edge(e); largest <= theta_) queue_.emplace(largest, 1, v);
+  }
+
+  void take_triangle_from(std::uint32_t e) {
+    if (!has_edge_[e] || triangles_left_[e] != 1) return;
+    const std::uint32_t t = triangle_left_at(e);
+    has_triangle_[t] = false;
+    for (const std::uint32_t side : incidence_.sides()[t]) --triangles_left_[side];
+    take_edge(e);
+    for (const std::uint32_t side : incidence_.sides()[t]) look_at_edge(side);
+    for (const std::uint32_t v : lists_.triangles[t]) look_at_vertex(v);
+  }
+  void take_edge_from(std::uint32_t v) {
+    if (!has_vertex_[v] || edges_left_[v] != 1) return;
+    const std::uint32_t e = edge_left_at(v);
+    if (triangles_left_[e] > 0) return;
+    has_vertex_[v] = false;
+    take_edge(e);
+    for (const std::uint32_t end : incidence_.edges()[e]) look_at_vertex(end);
+  }
+  void take_edge(std::uint32_t e) {
+    has_edge_[e] = false;
+    for (const std::uint32_t v : incidence_.edges()[e]) --edges_left_[v];
+  }
+
+  /// What is left, in the same order.
+  void write() {
+    AxisLists out;
+    std::vector<std::uint32_t> number(has_vertex_.size(), 0);
+    for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) {
+      number[v] = static_cast<std::uint32_t>(out.vertices.size());
+      if (has_vertex_[v]) out.vertices.push_back(lists_.vertices[v]);
+    }
+    std::vector<float> angle_of_edge(has_edge_.size(), 0);
+    for (std::size_t n = 0; n < lists_.edges.size(); ++n) {
+      angle_of_edge[incidence_.edge_of_listed()[n]] = lists_.edge_angles[n];
+    }
+    for (std::uint32_t t = 0; t < has_triangle_.size(); ++t) {
+      for (const std::uint32_t side : incidence_.sides()[t]) {
+        angle_of_edge[side] = std::max(angle_of_edge[side], lists_.triangle_angles[t]);
+      }
+      if (!has_triangle_[t]) continue;
+      auto corners = lists_.triangles[t];
+      for (std::uint32_t& v : corners) v = number[v];
+      out.add_triangle(corners, lists_.triangle_angles[t]);
+    }
+    for (std::uint32_t e = 0; e < has_edge_.size(); ++e) {
+      if (!has_edge_[e] || triangles_left_[e] > 0) continue;
+      const auto& [a, b] = incidence_.edges()[e];
+      out.add_edge({number[a], number[b]}, angle_of_edge[e]);
+    }
+    lists_ = std::move(out);
+  }
+
+  AxisLists& lists_;
+  double theta_;
+  Incidence incidence_;
+  std::vector<std::uint32_t> triangles_left_, edges_left_;
+  std::vector<bool> has_triangle_, has_edge_, has_vertex_;
+  using Entry = std::tuple<double, int, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+};
+
+}  // namespace
+
+void trim(AxisLists& lists, double theta, const Context& context) {
+  Trimmer(lists, theta, context).run();
+}
+
+}  // namespace blum

@@ -1,0 +1,166 @@
+#include "medial_axis/fit/unfold.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "blum/core/sort_unique.hpp"
+#include "medial_axis/fit/shrinking_lists.hpp"
+
+namespace blum {
+namespace {
+
+using Triangle3 = std::array<std::uint32_t, 3>;
+
+/// Cosine of the angle by which a sheet bends at an edge, from which on it is folded.
+constexpr double folded = 0.3;
+constexpr double most_moved = 2;  ///< voxels
+constexpr int most_rounds = 4;
+
+class Unfolder {
+ public:
+  Unfolder(AxisLists& lists, const Surface& surface, double voxel, const Context& context)
+      : lists_(lists, surface, context), most_moved_(most_moved * voxel), context_(context) {}
+
+  void run() {
+    for (int round = 0; round < most_rounds; ++round) {
+      throw_if_cancelled(context_);
+      bool is_changed = false;
+      for (const auto& [a, b] : lists_.edges()) {
+        const std::uint32_t p = lists_.now(a);
+        const std::uint32_t q = lists_.now(b);
+        if (p != q && is_folded_at(p, q)) is_changed = unfold_at(p, q) || is_changed;
+      }
+      if (!is_changed) break;
+    }
+    lists_.write();
+  }
+
+ private:
+  struct Side {
+    std::array<std::uint32_t, 2> ends;
+    std::uint32_t third;
+    bool operator<(const Side& other) const { return ends < other.ends; }
+  };
+
+  /// Whether two triangles at an edge lie one over the other; one without area bends nothing.
+  [[nodiscard]] bool is_folded(const std::array<std::uint32_t, 2>& edge, std::uint32_t p, std::uint32_t q) const {
+    const Vec3d& at = lists_.position(edge[0]);
+    const Vec3d along = lists_.position(edge[1]) - at;
+    const Vec3d u = cross(along, lists_.position(p) - at);
+    const Vec3d v = cross(along, lists_.position(q) - at);
+    return -dot(u, v) < folded * length(u) * length(v);
+  }
+  [[nodiscard]] bool is_folded_at(std::uint32_t a, std::uint32_t b) const {
+    std::array<std::uint32_t, 2> thirds{};
+    std::size_t count = 0;
+    lists_.cells().for_each_triangle(a, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+      if (p != b && q != b) return;
+      if (count < 2) thirds[count] = p == b ? q : p;
+      ++count;
+    });
+    return count == 2 && is_folded({a, b}, thirds[0], thirds[1]);
+  }
+
+  /// Folds between triangles, were a vertex at another one.
+  [[nodiscard]] std::size_t folds(const std::vector<Triangle3>& triangles, std::uint32_t from, std::uint32_t to) {
+    sides_.clear();
+    for (Triangle3 t : triangles) {
+      std::replace(t.begin(), t.end(), from, to);
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t p = t[k];
+        const std::uint32_t q = t[(k + 1) % 3];
+        sides_.push_back({{std::min(p, q), std::max(p, q)}, t[(k + 2) % 3]});
+      }
+    }
+    std::sort(sides_.begin(), sides_.end());
+    std::size_t count = 0;
+    for (std::size_t first = 0, last = 0; first < sides_.size(); first = last) {
+      while (last < sides_.size() && sides_[last].ends == sides_[first].ends) ++last;
+      if (last - first == 2 && is_folded(sides_[first].ends, sides_[first].third, sides_[first + 1].third)) ++count;
+    }
+    return count;
+  }
+
+  /// The triangles of a vertex and of all vertices around it.
+  [[nodiscard]] std::vector<Triangle3> triangles_around(std::uint32_t v) const {
+    std::vector<std::uint32_t> around{v};
+    lists_.cells().for_each_triangle(v, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+      around.push_back(p);
+      around.push_back(q);
+    });
+    detail::sort_unique(around);
+    std::vector<std::uint32_t> numbers;
+    for (const std::uint32_t u : around) {
+      lists_.cells().for_each_triangle(u, [&](std::uint32_t t, std::uint32_t, std::uint32_t) { numbers.push_back(t); });
+    }
+    detail::sort_unique(numbers);
+    std::vector<Triangle3> triangles;
+    for (const std::uint32_t t : numbers) triangles.push_back(lists_.cells().triangle(t));
+    return triangles;
+  }
+
+  [[nodiscard]] std::size_t triangles_at(std::uint32_t a, std::uint32_t b) const {
+    std::size_t count = 0;
+    lists_.cells().for_each_triangle(
+        a, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) { count += p == b || q == b ? 1 : 0; });
+    return count;
+  }
+  /// Whether a vertex leaves nothing behind that it bounds: inside of a sheet, or along its rim or seam.
+  [[nodiscard]] bool keeps_borders(std::uint32_t from, std::uint32_t to) const {
+    const int rank = lists_.rank(from);
+    if (rank == 0) return true;
+    const std::size_t count = triangles_at(from, to);
+    return rank == 2 ? count == 1 : rank == 2 * ShrinkingLists::on_seam && count > 2;
+  }
+
+  /// Contracts what takes most folds away around a folded edge. @return  whether anything does.
+  bool unfold_at(std::uint32_t a, std::uint32_t b) {
+    std::vector<std::uint32_t> corners{a, b};
+    lists_.cells().for_each_triangle(a, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+      if (p == b || q == b) corners.push_back(p == b ? q : p);
+    });
+    std::optional<std::tuple<std::ptrdiff_t, double, std::uint32_t, std::uint32_t>> best;
+    for (const std::uint32_t from : corners) {
+      const std::vector<Triangle3> triangles = triangles_around(from);
+      const auto before = static_cast<std::ptrdiff_t>(folds(triangles, from, from));
+      for (const std::uint32_t to : neighbours(from)) {
+        const double size = length(lists_.position(from) - lists_.position(to));
+        if (size > most_moved_ || !keeps_borders(from, to)) continue;
+        const auto after = static_cast<std::ptrdiff_t>(folds(triangles, from, to));
+        const std::tuple entry(after - before, size, from, to);
+        if (after < before && (!best || entry < *best) && lists_.may_contract(from, to)) best = entry;
+      }
+    }
+    if (!best) return false;
+    lists_.contract(std::get<2>(*best), std::get<3>(*best));
+    return true;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
+    std::vector<std::uint32_t> all;
+    lists_.cells().for_each_triangle(v, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+      all.push_back(p);
+      all.push_back(q);
+    });
+    detail::sort_unique(all);
+    return all;
+  }
+
+  ShrinkingLists lists_;
+  double most_moved_;
+  const Context& context_;
+  std::vector<Side> sides_;
+};
+
+}  // namespace
+
+void unfold(AxisLists& lists, const Surface& surface, double voxel, const Context& context) {
+  Unfolder(lists, surface, voxel, context).run();
+}
+
+}  // namespace blum
