@@ -1,24 +1,51 @@
 #include "medial_axis/fit/contract_short.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "blum/complex/incidence.hpp"
+#include "blum/core/sort_unique.hpp"
+#include "blum/core/union_find.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
 
 namespace blum {
 namespace {
+
+/// Sheets of up to so many triangles are crumbs.
+constexpr std::uint32_t most_of_crumb = 8;
+
+/// The edges of sheets of a few triangles.
+std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const AxisLists& lists, const Context& context) {
+  const Incidence incidence({lists.vertices.size(), lists.edges, lists.triangles}, context);
+  detail::UnionFind sheets(lists.triangles.size());
+  for (std::size_t e = 0; e < incidence.edges().size(); ++e) {
+    const auto at = incidence.triangles_of_edge()[e];
+    if (at.size() == 2) sheets.join(at[0], at[1]);
+  }
+  std::vector<std::uint32_t> size(lists.triangles.size(), 0);
+  for (std::uint32_t t = 0; t < size.size(); ++t) ++size[sheets.find(t)];
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (std::uint32_t t = 0; t < size.size(); ++t) {
+    if (size[sheets.find(t)] > most_of_crumb) continue;
+    for (const std::uint32_t e : incidence.sides()[t]) edges.push_back(incidence.edges()[e]);
+  }
+  detail::sort_unique(edges);
+  return edges;
+}
 
 class ShortEdges {
  public:
   ShortEdges(AxisLists& lists, const Surface& surface, double voxel, const ShortLengths& lengths,
              const Context& context)
       : lists_(lists, surface, context), voxel_(voxel), lengths_(lengths), context_(context) {
+    if (lengths.of_crumbs > 0) crumbs_ = edges_of_crumbs(lists, context);
     for (const auto& [a, b] : lists_.edges()) {
       const double size = length(lists_.position(a) - lists_.position(b));
-      if (size <= limit(a, b)) short_.emplace_back(size, a, b);
+      if (size <= limit(a, b, is_of_crumb(a, b))) short_.emplace_back(size, a, b);
     }
     std::sort(short_.begin(), short_.end());
   }
@@ -30,7 +57,8 @@ class ShortEdges {
       const std::size_t count = short_.size();
       std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> left;
       for (const auto& edge : short_) {
-        if (!take(std::get<1>(edge), std::get<2>(edge))) left.push_back(edge);
+        const auto [size, a, b] = edge;
+        if (!take(a, b)) left.push_back(edge);
       }
       short_ = std::move(left);
       is_changed = short_.size() < count;
@@ -39,12 +67,15 @@ class ShortEdges {
   }
 
  private:
-  [[nodiscard]] double limit(std::uint32_t a, std::uint32_t b) const {
+  [[nodiscard]] bool is_of_crumb(std::uint32_t a, std::uint32_t b) const {
+    return std::binary_search(crumbs_.begin(), crumbs_.end(), std::array{a, b});
+  }
+  [[nodiscard]] double limit(std::uint32_t a, std::uint32_t b, bool of_crumb) const {
     const int least = std::min(lists_.rank(a), lists_.rank(b));
     const double voxels = least >= ShrinkingLists::on_seam ? lengths_.on_seams
                           : least > 0                      ? lengths_.on_rims
                                                            : lengths_.others;
-    return voxels * voxel_;
+    return (of_crumb ? std::max(voxels, lengths_.of_crumbs) : voxels) * voxel_;
   }
 
   /// @return  whether the edge is gone.
@@ -52,7 +83,7 @@ class ShortEdges {
     std::uint32_t from = lists_.now(a);
     std::uint32_t to = lists_.now(b);
     if (from == to) return true;
-    if (length(lists_.position(from) - lists_.position(to)) > 2 * limit(from, to)) return false;
+    if (length(lists_.position(from) - lists_.position(to)) > 2 * limit(from, to, is_of_crumb(a, b))) return false;
     // Seams and curves stay before rims, these before the insides of sheets.
     if (std::pair(lists_.rank(from), to) > std::pair(lists_.rank(to), from)) std::swap(from, to);
     if (!lists_.may_contract(from, to)) {
@@ -66,6 +97,7 @@ class ShortEdges {
   ShrinkingLists lists_;
   double voxel_;
   ShortLengths lengths_;
+  std::vector<std::array<std::uint32_t, 2>> crumbs_;  ///< sorted
   const Context& context_;
   std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> short_;
 };

@@ -12,6 +12,7 @@ struct ShortLengths {
   double others = 0.15;
   double on_seams = 0.15;  ///< between two vertices of seams or curves
   double on_rims = 0.15;   ///< between two vertices of rims
+  double of_crumbs = 0;    ///< of sheets of a few triangles
 };
 
 /// Contracts edges much shorter than a voxel where that keeps the homotopy type and edges in the solid: ribbons become

@@ -392,7 +392,7 @@ void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context)
   trim(lists, target.theta, context);
   constexpr ShortLengths nothing{};
   constexpr ShortLengths with_seams{.on_seams = 0.6};
-  constexpr ShortLengths with_rims{.on_seams = 0.6, .on_rims = 0.3};
+  constexpr ShortLengths with_rims{.on_seams = 0.6, .on_rims = 0.3, .of_crumbs = 1.5};
   const auto take = [&](void (Fitter::*step)(), const ShortLengths& lengths) {
     (Fitter(lists, target, context).*step)();
     contract_short(lists, target.surface, target.voxel, lengths, context);
