@@ -281,41 +281,65 @@ Certificate write_and_certify(Run& run, const Request& r, const SolidInput& inpu
   return certificate;
 }
 
-/// Takes vertices out of an axis at one angle, and writes and certifies it; with all of them where it is not certified
-/// without.
+/// A way to write an axis.
+struct Candidate {
+  bool is_fitted = false;
+  std::optional<double> tolerance;  ///< vertices go within it, mesh units; all stay without
+  std::string without;              ///< what the next candidate lacks, as a warning tells it
+};
+
+/// The best one first: fitted and simplified; simplified; as the cells have it.
+std::vector<Candidate> candidates_of(const Request& r, const MedialAxisReport& report) {
+  const double tolerance = r.simplify.value_or(0.25 * least_spacing(report));
+  std::vector<Candidate> out;
+  if (tolerance > 0 && !r.prunes_sheets && report.rule == SolidRule::polyhedron) {
+    out.push_back({true, tolerance, "borders of sheets stay at the cells of the grid: elsewhere, "});
+  }
+  if (tolerance > 0) out.push_back({false, tolerance, "the axis keeps all vertices: with fewer, "});
+  out.push_back({});
+  return out;
+}
+
+/// Writes and certifies an axis at one angle: the first of its candidates that is certified, or else the last.
 void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
-              const MedialAxis& axis, const Complex& complex, double theta, const fs::path& name, Json& axes,
+              const MedialAxis& axis, const Complex* pruned, double theta, const fs::path& name, Json& axes,
               const Context& context) {
   const MedialAxisReport& report = axis.report();
-  Stopwatch watch;
   MedialMetadata metadata = metadata_of(r, input, selection, report, theta);
-  DecimatedAxis lean = decimate(complex, r.simplify.value_or(0.25 * least_spacing(report)), context);
-  const bool is_lean = lean.axis.positions.size() < complex.positions.size();
-  if (is_lean) metadata.deviation = lean.deviation;
-  run.phases.push_back({"simplify", watch.lap()});
   run.drafts.emplace_back(name);
-  Certificate certificate = write_and_certify(run, r, input, selection, axis, lean.axis, metadata, context);
-  if (is_lean && !certificate.holds()) {
-    const std::string reason = certificate.mismatches.front();
-    lean = {complex, 0};
-    metadata.deviation.reset();
+  Certificate certificate;
+  DecimatedAxis lean;
+  std::vector<std::string> warnings;
+  std::size_t vertices_before = 0;
+  for (const Candidate& candidate : candidates_of(r, report)) {
+    Stopwatch watch;
+    Complex complex = pruned != nullptr     ? *pruned
+                      : candidate.is_fitted ? axis.fitted(theta, context)
+                                            : axis.simplify(theta, context);
+    vertices_before = complex.positions.size();
+    lean =
+        candidate.tolerance ? decimate(complex, *candidate.tolerance, context) : DecimatedAxis{std::move(complex), 0};
+    const bool is_lean = lean.axis.positions.size() < vertices_before;
+    metadata.deviation = is_lean ? std::optional(lean.deviation) : std::nullopt;
+    run.phases.push_back({"simplify", watch.lap()});
     certificate = write_and_certify(run, r, input, selection, axis, lean.axis, metadata, context);
-    if (certificate.holds()) {
-      run.warnings.push_back("at theta " + rounded_text(theta) + " the axis keeps all vertices: with fewer, " + reason);
-    }
+    if (certificate.holds()) break;
+    warnings.push_back("at theta " + rounded_text(theta) + " " + candidate.without + certificate.mismatches.front());
   }
+  // Where none is certified, the mismatches of the last one are told, and not what was tried before.
+  if (certificate.holds()) run.warnings.insert(run.warnings.end(), warnings.begin(), warnings.end());
   run.is_kept.push_back((certificate.holds() && report.topology_matches) || r.allow_uncertified);
   const MedialCounts counts = count(lean.axis);
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   if (metadata.deviation) {
-    run.table.add("simplified", "from " + count_text(complex.positions.size()) + " vertices; moved by at most " +
+    run.table.add("simplified", "from " + count_text(vertices_before) + " vertices; moved by at most " +
                                     rounded_text(lean.deviation));
   }
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
                   {"deviation", lean.deviation},
-                  {"vertices_before", complex.positions.size()},
+                  {"vertices_before", vertices_before},
                   {"graph", add_graph(run, r, input, lean.axis, metadata, name, context)},
                   {"certificate", certificate_json(certificate)}});
   add_certificate(run.table, certificate);
@@ -353,9 +377,8 @@ void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelS
     Stopwatch watch;
     // From one angle to the next, so that what is left is nested.
     if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
-    const Complex cut = r.prunes_sheets ? Complex{} : axis.simplify(theta, context);
     run.phases.push_back({"simplify", watch.lap()});
-    add_axis(run, r, input, selection, axis, r.prunes_sheets ? whole : cut, theta, name, axes, context);
+    add_axis(run, r, input, selection, axis, r.prunes_sheets ? &whole : nullptr, theta, name, axes, context);
   }
   json["axes"] = axes;
   run.solids.push_back(json);
