@@ -18,7 +18,7 @@ namespace {
 /// Sheets of up to so many triangles are crumbs.
 constexpr std::uint32_t most_of_crumb = 8;
 
-/// The edges of sheets of a few triangles.
+/// The edges of sheets of a few triangles, and of curves that end next to a sheet.
 std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const AxisLists& lists, const Context& context) {
   const Incidence incidence({lists.vertices.size(), lists.edges, lists.triangles}, context);
   detail::UnionFind sheets(lists.triangles.size());
@@ -32,6 +32,12 @@ std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const AxisLists& lists
   for (std::uint32_t t = 0; t < size.size(); ++t) {
     if (size[sheets.find(t)] > most_of_crumb) continue;
     for (const std::uint32_t e : incidence.sides()[t]) edges.push_back(incidence.edges()[e]);
+  }
+  const auto is_end = [&](std::uint32_t v) { return incidence.edges_of_vertex()[v].size() == 1; };
+  const auto is_on_sheet = [&](std::uint32_t v) { return !incidence.triangles_of_vertex()[v].empty(); };
+  for (const std::uint32_t e : incidence.edge_of_listed()) {
+    const auto& [a, b] = incidence.edges()[e];
+    if ((is_end(a) && is_on_sheet(b)) || (is_end(b) && is_on_sheet(a))) edges.push_back(incidence.edges()[e]);
   }
   detail::sort_unique(edges);
   return edges;

@@ -66,6 +66,14 @@ class Fitter {
     }
   }
 
+  /// Puts vertices of ribbons in the middle of what is round, before what does not show is taken for excess.
+  void find_centres() {
+    move([&](std::uint32_t v) -> Moved {
+      if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v])) return std::nullopt;
+      Moved found = between(v, 3);
+      return found && is_shown(*found) ? found : std::nullopt;
+    });
+  }
   /// Puts vertices that know of one wall only between two.
   void find_sheets() {
     move([&](std::uint32_t v) { return lists_.vertices[v].separation_angle > 0 ? std::nullopt : between(v, 2); });
@@ -389,6 +397,7 @@ class Fitter {
 }  // namespace
 
 void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context) {
+  Fitter(lists, target, context).find_centres();
   trim(lists, target.theta, context);
   constexpr ShortLengths nothing{};
   constexpr ShortLengths with_seams{.on_seams = 0.6};
