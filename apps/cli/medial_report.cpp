@@ -1,6 +1,7 @@
 #include "medial_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,26 @@ const char* against_text(SolidRule rule) {
 constexpr const char* untold_rule =
     ": its axis is that of voxels, and the file of the axis does not tell which (.obj and .ma name neither rule nor "
     "grid): verify the .vtp, .ply or .npz of the same run, or give --weld here too if it was given then";
+
+std::string percent(double share) {
+  return rounded_text(std::round(share * 1000) / 10) + " %";
+}
+
+std::string medial_text(const MedialCheck& check) {
+  std::string text;
+  if (check.samples == 0) {
+    text = "nothing of it says that two walls see it at more than theta";
+  } else {
+    text = percent(check.medial_share) +
+           " of its samples are in the middle (allowed: " + rounded_text(check.allowance) + " off)";
+  }
+  if (check.homotopy_share > 0) text += "; " + percent(check.homotopy_share) + " of its area is for homotopy alone";
+  if (check.sought_angle == 0) return text + "; what it misses was not looked for: its theta is not known";
+  if (check.balls == 0)
+    return text + "; random points show nothing above " + rounded_text(check.sought_angle) + " degrees";
+  return text + "; it misses " + percent(check.missed_share) + " of what random points show above " +
+         rounded_text(check.sought_angle) + " degrees (" + count_text(check.balls) + " balls)";
+}
 
 }  // namespace
 
@@ -55,7 +76,7 @@ Json certificate_json(const Certificate& c) {
   json.update(to_json(c));
   json.erase("holds");
   Json checked = {"topology", "positions", "edges"};
-  for (const char* const what : {"radii", "footprints", "angles", "sites"}) {
+  for (const char* const what : {"radii", "footprints", "angles", "sites", "medial"}) {
     if (json["checked"][what]) checked.push_back(what);
   }
   json["checked"] = checked;
@@ -70,6 +91,7 @@ Json certificate_json(const Certificate& c) {
   if (!c.checked.sites) geometry.erase("site_error");
   if (!c.checked.angles) geometry.erase("angle_error");
   if (!c.checked.balls) json.erase("balls");
+  if (!c.checked.medial) json.erase("medial");
   return json;
 }
 
@@ -132,6 +154,7 @@ void add_certificate(TextTable& table, const Certificate& c) {
     if (!is_checked) unknown += (unknown.empty() ? "" : ", ") + std::string(what);
   }
   if (!unknown.empty()) table.add("not checked", "not in the file: " + unknown);
+  if (c.checked.medial) table.add("medial", medial_text(c.medial));
   if (!c.checked.balls) return;
   table.add("balls", "the solid reaches at most " + rounded_text(c.balls.solid_to_balls) +
                          " beyond the union of the balls (mean " + rounded_text(c.balls.mean_solid_to_balls) +

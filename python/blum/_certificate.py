@@ -32,6 +32,10 @@ class Claim:
     rule: str  #: of its solid; empty where it does not say
     site_ids: str
     version: str  #: of the Blum that wrote its file; empty otherwise
+    theta: float | None = None  #: degrees
+    lambda_: float | None = None  #: mesh units
+    spacing: float | None = None  #: smallest side of a voxel, mesh units
+    deviation: float | None = None  #: from the axis with all vertices, mesh units
 
 
 def certified(
@@ -91,6 +95,10 @@ def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
         "label": claim.label,
         "threshold": claim.threshold,
         "weld": claim.weld,
+        "theta": claim.theta,
+        "lambda_": claim.lambda_,
+        "spacing": claim.spacing,
+        "deviation": claim.deviation,
     }
 
 

@@ -11,6 +11,7 @@
 #include "blum/geometry/self_intersections.hpp"
 #include "certificate/bounding_mesh.hpp"
 #include "certificate/checks.hpp"
+#include "certificate/medial_check.hpp"
 #include "certificate/scaling.hpp"
 #include "certificate/shells.hpp"
 
@@ -90,6 +91,10 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
   certificate.geometry =
       verifier::check_vertices(axis, solid, locations, certificate.checked, factor, certificate.mismatches, context);
   certificate.edges = verifier::check_edges(axis, solid, locations, parts, factor, certificate.mismatches, context);
+  if (certificate.checked.medial) {
+    certificate.medial = verifier::check_medial(axis, solid, parts.body_of, certificate.checked, factor,
+                                                certificate.mismatches, context);
+  }
   if (!certificate.checked.balls) return certificate;
   certificate.balls = verifier::check_balls(axis, *solid.solid, locations, context);
   scale_back(certificate.balls, factor);
@@ -125,12 +130,18 @@ CertificateOptions consistent(CertificateOptions options) {
   options.angles = options.angles && options.footprints;
   options.sites = options.sites && options.footprints;
   options.balls = options.balls && options.radii;
+  options.medial = options.medial && options.radii;
   return options;
 }
 
 /// Nothing but places.
-constexpr CertificateOptions only_places{
-    .positions = true, .radii = false, .footprints = false, .angles = false, .sites = false, .balls = false};
+constexpr CertificateOptions only_places{.positions = true,
+                                         .radii = false,
+                                         .footprints = false,
+                                         .angles = false,
+                                         .sites = false,
+                                         .balls = false,
+                                         .medial = false};
 
 /// The cells of a complex, with columns of which nothing is looked at.
 Complex with_medial_columns(const Complex& complex) {

@@ -1,6 +1,7 @@
 #include "blum/io/verify_medial.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "blum/complex/medial_columns.hpp"
@@ -19,6 +20,15 @@ CertificateOptions checkable(const MedialClaims& claims, SiteIds sites, Certific
   options.footprints = options.footprints && claims.has_footprints;
   options.angles = options.angles && claims.has_angles;
   options.sites = options.sites && claims.has_sites && claims.metadata.site_ids == sites;
+  options.medial = options.medial && claims.has_radii;
+  const MedialMetadata& metadata = claims.metadata;
+  const auto take = [](std::optional<double>& own, const std::optional<double>& said) {
+    if (!own) own = said;
+  };
+  take(options.theta, metadata.theta);
+  take(options.lambda, metadata.lambda);
+  take(options.spacing, metadata.spacing);
+  take(options.deviation, metadata.deviation);
   return options;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -149,6 +150,72 @@ struct Description<BallUnionCheck> {
   };
 };
 
+/// Whether an axis is in the middle of its solid, and whether it is all that is there: asked at bounded numbers of
+/// points (8,192 of sheets, 2,048 of curves, 4,096 vertices, 16,384 of the solid), the same in every run.
+///
+/// At a point of the axis the ball that touches the closest wall there is grown until it touches another one; the point
+/// is off the middle by how far it is from the bisector of both. Walls that this ball sees at less than 10 degrees
+/// (images: 20) are one. Only what says of itself that two walls see it at more than theta is asked: the rest is there
+/// for homotopy alone, and may lie anywhere in the solid. 95 % must be within the allowance: 1.5 voxels, and the
+/// deviation; voxels are taken to be 1/8 of the diagonal at most, and 1/32 of it where nothing is known. Half must be
+/// within a third of a voxel, or within the deviation where that is more.
+///
+/// The other way, balls are grown from random points of the solid. Where two walls further apart than 4 voxels (and
+/// lambda) are seen at well more than theta (30 degrees, or half of the way to 180), the axis must have a point within
+/// 3 voxels and the deviation: for 95 % of the balls, if there are 20. Without a theta, this is not looked at.
+///
+/// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
+/// too; a tenth of those vertices, or 16, need not.
+struct MedialCheck {
+  double allowance = 0;              ///< how far from the middle a point may be, mesh units
+  std::size_t one_wall = 0;          ///< vertices with one footprint, or two seen at less than 5 degrees
+  std::size_t claimed_vertices = 0;  ///< vertices of what should be seen at more than theta
+  std::size_t one_wall_off = 0;      ///< of those that both are (some, where many), those that are not near the middle
+  double homotopy_share = 0;         ///< of the area of all triangles: what only homotopy keeps, at theta or less
+  std::size_t samples = 0;           ///< points of sheets and curves that were looked at
+  double medial_share = 1;           ///< of these, what is in the middle, by area; a curve counts as a voxel wide
+  double close_share = 1;            ///< the same within a third of a voxel, or the deviation
+  double close_allowance = 0;        ///< that length, mesh units
+  double off_by = 0;                 ///< how far the worst of these with two walls is from the middle, mesh units
+  Vec3d off_at;                      ///< and there, mesh units
+  double sought_angle = 0;           ///< degrees from which the axis must have all; 0 where that was not looked at
+  double missing_allowance = 0;      ///< how close the axis must come to the balls, mesh units
+  std::size_t balls = 0;             ///< from random points of the solid whose walls are seen at more than that
+  double missed_share = 0;           ///< of these, those that have no point of the axis near their centres
+  double missed_by = 0;              ///< how far the worst of all is from the axis, mesh units
+  Vec3d missed_at;                   ///< and there, mesh units
+  bool holds = false;                ///< enough is in the middle, and little is missed
+};
+
+template <>
+struct Description<MedialCheck> {
+  static constexpr std::string_view name = "MedialCheck";
+  static constexpr std::string_view doc = "Whether an axis is in the middle of its solid, and all that is there";
+  static constexpr std::tuple members{
+      Member{"allowance", &MedialCheck::allowance, "mesh units", "how far from the middle a point may be"},
+      Member{"one_wall", &MedialCheck::one_wall, "", "vertices that see one wall"},
+      Member{"claimed_vertices", &MedialCheck::claimed_vertices, "", "vertices of what two walls should see"},
+      Member{"one_wall_off", &MedialCheck::one_wall_off, "",
+             "of those that both are (some, where many), those that are not near the middle"},
+      Member{"homotopy_share", &MedialCheck::homotopy_share, "", "of the area: what only homotopy keeps"},
+      Member{"samples", &MedialCheck::samples, "", "points of sheets and curves that were looked at"},
+      Member{"medial_share", &MedialCheck::medial_share, "", "of these, what is in the middle, by area"},
+      Member{"close_share", &MedialCheck::close_share, "", "the same within a third of a voxel, or the deviation"},
+      Member{"close_allowance", &MedialCheck::close_allowance, "mesh units", "that length"},
+      Member{"off_by", &MedialCheck::off_by, "mesh units", "how far the worst of these is from the middle"},
+      Member{"off_at", &MedialCheck::off_at, "mesh units", "and there"},
+      Member{"sought_angle", &MedialCheck::sought_angle, "degrees",
+             "from where the axis must have all; 0 where that was not looked at"},
+      Member{"missing_allowance", &MedialCheck::missing_allowance, "mesh units",
+             "how close the axis must come to the balls"},
+      Member{"balls", &MedialCheck::balls, "", "from random points of the solid that see more than that"},
+      Member{"missed_share", &MedialCheck::missed_share, "", "of these, those that the axis has nothing near"},
+      Member{"missed_by", &MedialCheck::missed_by, "mesh units", "how far the worst of all is from the axis"},
+      Member{"missed_at", &MedialCheck::missed_at, "mesh units", "and there"},
+      Member{"holds", &MedialCheck::holds, "", "whether enough is in the middle, and little is missed"},
+  };
+};
+
 /// What to look at besides numbers of components, tunnels and voids: for files that do not hold everything.
 struct CertificateOptions {
   /// Where vertices and edges lie. Without it, the Betti numbers of the whole solid and the whole axis are compared,
@@ -159,6 +226,12 @@ struct CertificateOptions {
   bool angles = true;      ///< of vertices; with footprints
   bool sites = true;       ///< with footprints: a site that is none() is not looked at
   bool balls = true;       ///< with radii: to measure what the balls fill
+  bool medial = true;      ///< with positions and radii: whether it is in the middle; sheets and curves by their angles
+  // What the axis says of itself, for the medial check; what is not known stays unset.
+  std::optional<double> theta = {};      ///< degrees
+  std::optional<double> lambda = {};     ///< mesh units
+  std::optional<double> spacing = {};    ///< side of a voxel, mesh units
+  std::optional<double> deviation = {};  ///< DecimatedAxis::deviation, mesh units
 };
 
 template <>
@@ -173,6 +246,13 @@ struct Description<CertificateOptions> {
       Member{"angles", &CertificateOptions::angles, "", "of vertices; with footprints"},
       Member{"sites", &CertificateOptions::sites, "", "of vertices; with footprints"},
       Member{"balls", &CertificateOptions::balls, "", "what the balls fill; with radii"},
+      Member{"medial", &CertificateOptions::medial, "", "whether it is in the middle of the solid; with radii"},
+      Member{"theta", &CertificateOptions::theta, "degrees", "of the axis, as it says"},
+      Member{"lambda", &CertificateOptions::lambda, "mesh units", "of the axis, as it says", Range::at_least(0)},
+      Member{"spacing", &CertificateOptions::spacing, "mesh units", "side of its voxels, as it says",
+             Range::positive()},
+      Member{"deviation", &CertificateOptions::deviation, "mesh units",
+             "how far vertices that were taken out moved it, as it says", Range::at_least(0)},
   };
 };
 
@@ -186,6 +266,7 @@ struct Certificate {
   GeometryCheck geometry;
   EdgeCheck edges;
   BallUnionCheck balls;
+  MedialCheck medial;
   std::vector<std::string> mismatches;  ///< one sentence each; empty where all holds
 
   [[nodiscard]] bool holds() const { return mismatches.empty(); }
@@ -206,6 +287,7 @@ struct Description<Certificate> {
       Member{"geometry", &Certificate::geometry, "", "vertices"},
       Member{"edges", &Certificate::edges, "", "edges"},
       Member{"balls", &Certificate::balls, "", "what the balls fill"},
+      Member{"medial", &Certificate::medial, "", "whether it is in the middle, and all that is there"},
       Member{"mismatches", &Certificate::mismatches, "", "one sentence each; empty where all holds"},
       Fact{"holds", &Certificate::holds, "", "whether nothing differs"},
   };

@@ -1,0 +1,415 @@
+#include "certificate/medial_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/core/random.hpp"
+#include "certificate/maximal_ball.hpp"
+#include "certificate/triangle_search.hpp"
+
+namespace blum::verifier {
+namespace {
+
+constexpr double least_share = 0.95;       ///< of samples that must be in the middle: true axes have 0.99
+constexpr double least_close_share = 0.5;  ///< of samples that must be close to the middle: true axes have 0.8
+constexpr double most_missed = 0.05;       ///< share of balls that may be far from the axis: of true axes 0.01 are
+constexpr double most_vertices_off = 0.1;  ///< share of vertices that see one wall away from the middle
+constexpr double few_vertices = 16;        ///< that may do so at any rate
+constexpr double noise_of_meshes = 10;     ///< degrees from which two walls are two
+constexpr double noise_of_images = 20;     ///< the same between steps of voxels
+constexpr double well_above = 30;          ///< degrees over theta from where the axis must have all
+constexpr std::size_t few_balls = 20;      ///< too few to tell anything
+constexpr std::size_t most_samples_of_sheets = 8'192;
+constexpr std::size_t most_samples_of_curves = 2'048;
+constexpr std::size_t most_samples_of_vertices = 4'096;
+constexpr std::size_t most_points_tried = 16'384;
+constexpr std::size_t grain = 64;
+
+/// Lengths within which an axis may be off, as the verifier sees the solid.
+struct Allowances {
+  double voxel = 0;
+  double middle = 0;   ///< of a point of the axis, from the middle
+  double close = 0;    ///< the same, for half of all
+  double missing = 0;  ///< of a point of the middle, from the axis
+  double apart = 0;    ///< footprints that are closer than this may count for nothing
+  double noise = 0;    ///< degrees
+};
+
+/// A file may not excuse everything by coarse voxels.
+Allowances allowances(const SolidOracle& solid, const CertificateOptions& options, double factor) {
+  const double diagonal = solid.diagonal();
+  const double voxel = std::min(options.spacing ? *options.spacing * factor : diagonal / 32, diagonal / 8);
+  const double moved = std::min(options.deviation ? *options.deviation * factor : 0, diagonal / 16);
+  const double longest = std::max(voxel, solid.grain() / 2);
+  Allowances all;
+  all.voxel = longest;
+  all.middle = 1.5 * longest + moved;
+  all.close = std::max(longest / 3, moved + longest / 12);
+  all.missing = 2 * longest + moved;
+  all.apart = 4 * longest + (options.lambda ? *options.lambda * factor : 0);
+  all.noise = solid.grain() > 0 && solid.slack() == 0 ? noise_of_images : noise_of_meshes;
+  return all;
+}
+
+/// A point of the axis to look at.
+struct AxisPoint {
+  Vec3d at;
+  std::uint32_t body = 0;
+};
+
+/// Points of triangles or edges, spread evenly over their size.
+class Spread {
+ public:
+  void add(double size, std::uint32_t cell) {
+    if (!(size > 0) || !std::isfinite(size)) return;
+    total_ += size;
+    cells_.push_back(cell);
+    ends_.push_back(total_);
+  }
+  [[nodiscard]] double total() const { return total_; }
+  /// The cell at a share of all.
+  [[nodiscard]] std::uint32_t at(double share) const {
+    const auto end = std::upper_bound(ends_.begin(), ends_.end(), share * total_);
+    return cells_[std::min(static_cast<std::size_t>(end - ends_.begin()), cells_.size() - 1)];
+  }
+
+ private:
+  double total_ = 0;
+  std::vector<std::uint32_t> cells_;
+  std::vector<double> ends_;
+};
+
+/// As many as a size can hold at so many for each unit, few where it is small.
+std::size_t sample_count(double units, std::size_t most) {
+  constexpr double per_unit = 16;
+  constexpr std::size_t least = 64;
+  if (!(units > 0)) return 0;
+  return units * per_unit >= static_cast<double>(most) ? most
+                                                       : std::max(least, static_cast<std::size_t>(units * per_unit));
+}
+
+/// What is told of samples.
+struct Offsets {
+  std::size_t count = 0, close = 0, off = 0;
+  double furthest = 0;
+  Vec3d where;
+
+  void add(double offset, double close_enough, double allowed, const Vec3d& at) {
+    ++count;
+    if (offset <= close_enough) ++close;
+    if (!(offset <= allowed)) ++off;
+    if (!(offset < HUGE_VAL) || offset <= furthest) return;
+    furthest = offset;
+    where = at;
+  }
+  void add(const Offsets& other) {
+    count += other.count;
+    close += other.close;
+    off += other.off;
+    if (other.furthest <= furthest) return;
+    furthest = other.furthest;
+    where = other.where;
+  }
+};
+
+class Middle {
+ public:
+  Middle(const KnownSolid& solid, const Allowances& allowed) : solid_(*solid.solid), allowed_(allowed) {}
+
+  /// How far a point is from the middle between two walls, about; HUGE_VAL where there is no second one.
+  [[nodiscard]] double offset(const AxisPoint& point) const {
+    const Vec3d foot = solid_.closest_point(point.at, point.body);
+    const double depth = length(point.at - foot);
+    const double nothing = 1e-9 * solid_.diagonal(point.body);
+    if (!(depth > nothing)) return is_thin(point) ? 0 : HUGE_VAL;
+    // Nearly always another wall is close behind.
+    TouchingBall ball = grown_ball(solid_, point.body, point.at, allowed_.noise, allowed_.middle);
+    if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, allowed_.noise);
+    return ball.radius > 0 ? distance_to_middle(point.at, ball) : HUGE_VAL;
+  }
+
+ private:
+  /// Whether a point of the surface has the other side of the solid near by, all around.
+  [[nodiscard]] bool is_thin(const AxisPoint& point) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const double sign : {-1.0, 1.0}) {
+        Vec3d beside = point.at;
+        beside[axis] += sign * allowed_.middle;
+        if (solid_.depth(beside, point.body) > 0.5 * allowed_.middle) return false;
+      }
+    }
+    return true;
+  }
+
+  const SolidOracle& solid_;
+  const Allowances& allowed_;
+};
+
+/// @param point  gives the k-th of some points.
+template <class Point>
+Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& allowed, const Point& point,
+                   const Context& context) {
+  std::vector<Offsets> parts(count / grain + 1);
+  parallel_for(context, count, grain, "looking for the middle", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const AxisPoint p = point(k);
+      parts[range.begin / grain].add(middle.offset(p), allowed.close, allowed.middle, p.at);
+    }
+  });
+  Offsets all;
+  for (const Offsets& part : parts) all.add(part);
+  return all;
+}
+
+double area(const MedialView& axis, std::size_t t) {
+  const auto& [a, b, c] = axis.triangles[t];
+  return 0.5 * length(cross(axis.positions[b] - axis.positions[a], axis.positions[c] - axis.positions[a]));
+}
+
+/// A point of a triangle, all alike.
+Vec3d random_point(const MedialView& axis, std::uint32_t t, Random& random) {
+  double u = random.uniform();
+  double v = random.uniform();
+  if (u + v > 1) {
+    u = 1 - u;
+    v = 1 - v;
+  }
+  const auto& [a, b, c] = axis.triangles[t];
+  const Vec3d& p = axis.positions[a];
+  return p + (axis.positions[b] - p) * u + (axis.positions[c] - p) * v;
+}
+
+/// What of an axis is seen at more than theta, by what it says of itself.
+class Claimed {
+ public:
+  Claimed(const MedialView& axis, double theta) : axis_(axis), is_claimed_(axis.positions.size(), false) {
+    for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
+      const double size = area(axis, t);
+      if (std::isfinite(size)) all_ += size;
+      if (!(axis.triangle_angle[t] > theta)) continue;
+      sheets_.add(size, t);
+      for (const std::uint32_t v : axis.triangles[t]) is_claimed_[v] = true;
+    }
+    for (std::uint32_t e = 0; e < axis.edges.size(); ++e) {
+      if (axis.edge_role(e) != MedialRole::curve || !(axis.edge_angle[e] > theta)) continue;
+      curves_.add(length(axis.positions[axis.edges[e][0]] - axis.positions[axis.edges[e][1]]), e);
+      for (const std::uint32_t v : axis.edges[e]) is_claimed_[v] = true;
+    }
+  }
+
+  [[nodiscard]] const Spread& sheets() const { return sheets_; }
+  [[nodiscard]] const Spread& curves() const { return curves_; }
+  [[nodiscard]] bool contains(std::size_t vertex) const { return is_claimed_[vertex]; }
+  /// Of the area of all triangles, what is only there for homotopy.
+  [[nodiscard]] double rest_of_area() const { return all_ > 0 ? std::max(0.0, 1 - sheets_.total() / all_) : 0; }
+
+ private:
+  const MedialView& axis_;
+  std::vector<bool> is_claimed_;
+  Spread sheets_, curves_;
+  double all_ = 0;
+};
+
+/// Vertices with one wall, of those that should have two: some of them, where they are many.
+Offsets offsets_of_vertices(const MedialView& axis, const Claimed& claimed, const Middle& middle,
+                            const Allowances& allowed, const std::vector<std::uint32_t>& body_of, MedialCheck& check,
+                            const Context& context) {
+  std::vector<std::uint32_t> single;
+  for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
+    if (!is_finite(axis.positions[v])) continue;
+    const Vec3d& p = axis.positions[v];
+    const double angle = degrees_between(axis.footprint(v, 0) - p, axis.footprint(v, 1) - p);
+    if (angle >= 0.5 * noise_of_meshes) continue;
+    ++check.one_wall;
+    if (claimed.contains(v)) single.push_back(v);
+  }
+  const std::size_t every = single.size() / most_samples_of_vertices + 1;
+  return offsets_of((single.size() + every - 1) / every, middle, allowed,
+                    [&](std::size_t k) {
+                      const std::uint32_t v = single[k * every];
+                      return AxisPoint{axis.positions[v], body_of[v]};
+                    },
+                    context);
+}
+
+// ---- What is missing ----
+
+/// The cells of an axis to look for the closest of.
+TriangleSearch search_of(const MedialView& axis, const Context& context) {
+  TriangleMesh cells;
+  cells.vertices.assign(axis.positions.begin(), axis.positions.end());
+  std::vector<bool> is_named(axis.positions.size(), false);
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    for (const std::uint32_t v : {a, b, c}) is_named[v] = true;
+    if (is_finite(cells.vertices[a]) && is_finite(cells.vertices[b]) && is_finite(cells.vertices[c])) {
+      cells.triangles.push_back({a, b, c});
+    }
+  };
+  for (const auto& [a, b, c] : axis.triangles) add(a, b, c);
+  for (std::size_t e = 0; e < axis.edges.size(); ++e) {
+    if (axis.edge_role(e) == MedialRole::curve) add(axis.edges[e][0], axis.edges[e][1], axis.edges[e][1]);
+  }
+  for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
+    if (!is_named[v]) add(v, v, v);
+  }
+  return {cells, {}, context};
+}
+
+/// A ball that is in the middle between two walls, from a random point of the solid; radius 0 where that gives none.
+TouchingBall random_ball(const KnownSolid& solid, const Spread& boxes, const Allowances& allowed, double sought,
+                         std::uint64_t seed) {
+  constexpr double nearly_whole = 0.1;  // voxels: the facets of round things are all near at once
+  Random random(0xb1a5ULL + seed);
+  const std::uint32_t body = boxes.at(random.uniform());
+  const Box3 box = solid.solid->box(body);
+  const Vec3d share = random.in_cube();
+  const Vec3d size = box.upper - box.lower;
+  const Vec3d p = box.lower + Vec3d{share.x * size.x, share.y * size.y, share.z * size.z};
+  const Location location = solid.solid->locate(p);
+  if (location.outside_by > 0 || location.body != body) return {};
+  TouchingBall ball = grown_ball(*solid.solid, body, p, sought);
+  if (!(ball.radius > 0) || length(ball.first - ball.second) < allowed.apart) return {};
+  const bool fits =
+      ball.is_whole || ball.radius - solid.solid->distance(ball.centre, body) <= nearly_whole * allowed.voxel;
+  return fits && solid.solid->depth(ball.centre, body) > 0 ? ball : TouchingBall{};
+}
+
+Offsets missing(const MedialView& axis, const KnownSolid& solid, const Allowances& allowed, double sought,
+                const Context& context) {
+  Spread boxes;
+  for (std::uint32_t b = 0; b < solid.bodies.size(); ++b) {
+    const Vec3d size = solid.solid->box(b).size();
+    boxes.add(size.x * size.y * size.z, b);
+  }
+  if (!(boxes.total() > 0)) return {};
+  const TriangleSearch search = search_of(axis, context);
+  std::vector<Offsets> parts(most_points_tried / grain + 1);
+  parallel_for(context, most_points_tried, grain, "looking for what is missing", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const TouchingBall ball = random_ball(solid, boxes, allowed, sought, k);
+      if (!(ball.radius > 0)) continue;
+      parts[range.begin / grain].add(search.nearest(ball.centre).distance, allowed.missing, allowed.missing,
+                                     ball.centre);
+    }
+  });
+  Offsets all;
+  for (const Offsets& part : parts) all.add(part);
+  return all;
+}
+
+// ---- What is said of it ----
+
+std::string place_text(const Vec3d& at) {
+  return rounded_text(at.x) + " " + rounded_text(at.y) + " " + rounded_text(at.z);
+}
+
+std::string percent(double share) {
+  return rounded_text(std::round(share * 1000) / 10) + " %";
+}
+
+void explain(const MedialCheck& check, std::vector<std::string>& mismatches) {
+  const std::string allowed = " (allowed: " + rounded_text(check.allowance) + ")";
+  if (check.medial_share < least_share) {
+    mismatches.push_back("of the sheets and curves that two walls should see, only " + percent(check.medial_share) +
+                         " are in the middle between two, the worst " + rounded_text(check.off_by) + " off it at " +
+                         place_text(check.off_at) + allowed);
+  }
+  if (check.close_share < least_close_share) {
+    mismatches.push_back("of the sheets and curves that two walls should see, only " + percent(check.close_share) +
+                         " are within " + rounded_text(check.close_allowance) + " of the middle between two");
+  }
+  const double vertices_off = most_vertices_off * static_cast<double>(check.claimed_vertices);
+  if (static_cast<double>(check.one_wall_off) > std::max(vertices_off, few_vertices)) {
+    mismatches.push_back("of the " + count_text(check.claimed_vertices) + " vertices that two walls should see, " +
+                         count_text(check.one_wall_off) + " have one and are not near the middle" + allowed);
+  }
+  if (check.balls >= few_balls && check.missed_share > most_missed) {
+    mismatches.push_back("the axis misses " + percent(check.missed_share) +
+                         " of what random points of the solid show at more than " + rounded_text(check.sought_angle) +
+                         " degrees, by up to " + rounded_text(check.missed_by) + " at " + place_text(check.missed_at) +
+                         " (allowed: " + rounded_text(check.missing_allowance) + ")");
+  }
+}
+
+void note_share(MedialCheck& check, const Offsets& sheets, const Offsets& curves, double weight_of_sheets) {
+  const auto mean = [&](std::size_t of_sheets, std::size_t of_curves) {
+    const auto share = [](std::size_t some, std::size_t all) {
+      return all > 0 ? static_cast<double>(some) / static_cast<double>(all) : 1;
+    };
+    return weight_of_sheets * share(of_sheets, sheets.count) + (1 - weight_of_sheets) * share(of_curves, curves.count);
+  };
+  check.samples = sheets.count + curves.count;
+  check.medial_share = mean(sheets.count - sheets.off, curves.count - curves.off);
+  check.close_share = mean(sheets.close, curves.close);
+  const Offsets& worst = curves.furthest > sheets.furthest ? curves : sheets;
+  check.off_by = worst.furthest;
+  check.off_at = worst.where;
+}
+
+}  // namespace
+
+MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const std::vector<std::uint32_t>& body_of,
+                         const CertificateOptions& options, double factor, std::vector<std::string>& mismatches,
+                         const Context& context) {
+  const Allowances allowed = allowances(*solid.solid, options, factor);
+  const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL);
+  const Middle middle(solid, allowed);
+  MedialCheck check;
+  check.homotopy_share = claimed.rest_of_area();
+  const auto at = [](std::size_t k, std::size_t count, Random& random) {
+    return (static_cast<double>(k) + random.uniform()) / static_cast<double>(count);
+  };
+  const std::size_t on_sheets =
+      sample_count(claimed.sheets().total() / (allowed.voxel * allowed.voxel), most_samples_of_sheets);
+  const Offsets sheets = offsets_of(
+      on_sheets, middle, allowed,
+      [&](std::size_t k) {
+        Random random(0x5a3eULL + k);
+        const std::uint32_t t = claimed.sheets().at(at(k, on_sheets, random));
+        return AxisPoint{random_point(axis, t, random), body_of[axis.triangles[t][0]]};
+      },
+      context);
+  const std::size_t on_curves = sample_count(claimed.curves().total() / allowed.voxel, most_samples_of_curves);
+  const Offsets curves = offsets_of(
+      on_curves, middle, allowed,
+      [&](std::size_t k) {
+        Random random(0xc0deULL + k);
+        const auto& [a, b] = axis.edges[claimed.curves().at(at(k, on_curves, random))];
+        return AxisPoint{axis.positions[a] + (axis.positions[b] - axis.positions[a]) * random.uniform(), body_of[a]};
+      },
+      context);
+  // A curve counts as much as a strip of sheet a voxel wide.
+  const double size_of_curves = claimed.curves().total() * allowed.voxel;
+  const double size = claimed.sheets().total() + size_of_curves;
+  note_share(check, sheets, curves, size > 0 ? claimed.sheets().total() / size : 1);
+  for (std::size_t v = 0; v < axis.positions.size(); ++v) check.claimed_vertices += claimed.contains(v) ? 1 : 0;
+  if (options.footprints) {
+    const Offsets single = offsets_of_vertices(axis, claimed, middle, allowed, body_of, check, context);
+    check.one_wall_off = single.off;
+  }
+  if (options.theta) {
+    const double theta = std::max(*options.theta, allowed.noise);
+    check.sought_angle = std::min(theta + well_above, 0.5 * (theta + 180));
+    const Offsets missed = missing(axis, solid, allowed, check.sought_angle, context);
+    check.balls = missed.count;
+    if (missed.count > 0) check.missed_share = static_cast<double>(missed.off) / static_cast<double>(missed.count);
+    check.missed_by = missed.furthest / factor;
+    check.missed_at = missed.where / factor;
+  }
+  check.allowance = allowed.middle / factor;
+  check.missing_allowance = allowed.missing / factor;
+  check.close_allowance = allowed.close / factor;
+  check.off_by /= factor;
+  check.off_at = check.off_at / factor;
+  const std::size_t before = mismatches.size();
+  explain(check, mismatches);
+  check.holds = mismatches.size() == before;
+  return check;
+}
+
+}  // namespace blum::verifier
