@@ -15,15 +15,17 @@
 namespace blum::verifier {
 namespace {
 
-constexpr double least_share = 0.95;       ///< of samples that must be in the middle: true axes have 0.99
-constexpr double least_close_share = 0.5;  ///< of samples that must be close to the middle: true axes have 0.8
-constexpr double most_missed = 0.05;       ///< share of balls that may be far from the axis: of true axes 0.01 are
-constexpr double most_vertices_off = 0.1;  ///< share of vertices that see one wall away from the middle
-constexpr double few_vertices = 16;        ///< that may do so at any rate
-constexpr double noise_of_meshes = 10;     ///< degrees from which two walls are two
-constexpr double noise_of_images = 20;     ///< the same between steps of voxels
-constexpr double well_above = 30;          ///< degrees over theta from where the axis must have all
-constexpr std::size_t few_balls = 20;      ///< too few to tell anything
+constexpr double least_share = 0.95;            ///< of samples that must be in the middle: true axes have 0.99
+constexpr double least_close_share = 0.5;       ///< of samples that must be close to the middle: true axes have 0.8
+constexpr double most_missed = 0.05;            ///< share of balls that may be far from the axis: of true axes 0.01 are
+constexpr double most_vertices_off = 0.1;       ///< share of vertices that see one wall away from the middle
+constexpr double most_deep_of_one_wall = 0.25;  ///< of vertices deep inside: of true axes 0.1 have one footprint
+constexpr double enough_sheet = 256;            ///< square voxels from which that is asked
+constexpr double few_vertices = 16;             ///< that may do so at any rate
+constexpr double noise_of_meshes = 10;          ///< degrees from which two walls are two
+constexpr double noise_of_images = 20;          ///< the same between steps of voxels
+constexpr double well_above = 30;               ///< degrees over theta from where the axis must have all
+constexpr std::size_t few_balls = 20;           ///< too few to tell anything
 constexpr std::size_t most_samples_of_sheets = 8'192;
 constexpr std::size_t most_samples_of_curves = 2'048;
 constexpr std::size_t most_samples_of_vertices = 4'096;
@@ -224,8 +226,11 @@ Offsets offsets_of_vertices(const MedialView& axis, const Claimed& claimed, cons
     if (!is_finite(axis.positions[v])) continue;
     const Vec3d& p = axis.positions[v];
     const double angle = degrees_between(axis.footprint(v, 0) - p, axis.footprint(v, 1) - p);
+    const bool is_deep = claimed.contains(v) && axis.radius[v] > allowed.middle;
+    check.deep_vertices += is_deep ? 1 : 0;
     if (angle >= 0.5 * noise_of_meshes) continue;
     ++check.one_wall;
+    check.deep_one_wall += is_deep ? 1 : 0;
     if (claimed.contains(v)) single.push_back(v);
   }
   const std::size_t every = single.size() / most_samples_of_vertices + 1;
@@ -359,6 +364,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   const Allowances allowed = allowances(*solid.solid, options, factor);
   const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL);
   const Middle middle(solid, allowed);
+  const std::size_t before = mismatches.size();
   MedialCheck check;
   check.homotopy_share = claimed.rest_of_area();
   const auto at = [](std::size_t k, std::size_t count, Random& random) {
@@ -391,6 +397,13 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   if (options.footprints) {
     const Offsets single = offsets_of_vertices(axis, claimed, middle, allowed, body_of, check, context);
     check.one_wall_off = single.off;
+    const double one_wall = static_cast<double>(check.deep_one_wall);
+    if (one_wall > most_deep_of_one_wall * static_cast<double>(check.deep_vertices) &&
+        claimed.sheets().total() > enough_sheet * allowed.voxel * allowed.voxel) {
+      mismatches.push_back("of the " + count_text(check.deep_vertices) +
+                           " vertices deep inside that two walls should " + "see, " + count_text(check.deep_one_wall) +
+                           " have the same footprint twice");
+    }
   }
   if (options.theta) {
     const double theta = std::max(*options.theta, allowed.noise);
@@ -406,7 +419,6 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   check.close_allowance = allowed.close / factor;
   check.off_by /= factor;
   check.off_at = check.off_at / factor;
-  const std::size_t before = mismatches.size();
   explain(check, mismatches);
   check.holds = mismatches.size() == before;
   return check;

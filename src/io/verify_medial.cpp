@@ -20,8 +20,8 @@ CertificateOptions checkable(const MedialClaims& claims, SiteIds sites, Certific
   options.footprints = options.footprints && claims.has_footprints;
   options.angles = options.angles && claims.has_angles;
   options.sites = options.sites && claims.has_sites && claims.metadata.site_ids == sites;
-  options.medial = options.medial && claims.has_radii;
   const MedialMetadata& metadata = claims.metadata;
+  options.medial = options.medial && claims.has_radii && (claims.has_angles || metadata.theta);
   const auto take = [](std::optional<double>& own, const std::optional<double>& said) {
     if (!own) own = said;
   };

@@ -87,7 +87,7 @@ def test_every_format_holds_the_axis_and_verifies(solids, axes, tmp_path, end):
     assert ("radius_error" in geometry) == ("balls" in certificate) == (end != "obj")
     assert ("footprint_error" in geometry) == (end in ("vtp", "ply", "npz")) == ("not checked" not in out)
     checked = ["topology", "positions", "edges"] + ["radii"] * (end != "obj")
-    checked += ["footprints", "angles", "sites"] * (end in ("vtp", "ply", "npz"))
+    checked += ["footprints", "angles", "sites", "medial"] * (end in ("vtp", "ply", "npz"))
     assert certificate["checked"] == checked
 
 

@@ -157,7 +157,7 @@ struct Description<BallUnionCheck> {
 /// is off the middle by how far it is from the bisector of both. Walls that this ball sees at less than 10 degrees
 /// (images: 20) are one. Only what says of itself that two walls see it at more than theta is asked: the rest is there
 /// for homotopy alone, and may lie anywhere in the solid. 95 % must be within the allowance: 1.5 voxels, and the
-/// deviation; voxels are taken to be 1/8 of the diagonal at most, and 1/32 of it where nothing is known. Half must be
+/// deviation; voxels are taken to be 1/8 of the diagonal at most, and 1/32 of it where nothing is known. 60 % must be
 /// within a third of a voxel, or within the deviation where that is more.
 ///
 /// The other way, balls are grown from random points of the solid. Where two walls further apart than 4 voxels (and
@@ -165,12 +165,15 @@ struct Description<BallUnionCheck> {
 /// 3 voxels and the deviation: for 95 % of the balls, if there are 20. Without a theta, this is not looked at.
 ///
 /// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
-/// too; a tenth of those vertices, or 16, need not.
+/// too; a tenth of those vertices, or 16, need not. Of those deeper than the allowance at most a quarter may have one,
+/// where sheets are larger than 256 square voxels.
 struct MedialCheck {
   double allowance = 0;              ///< how far from the middle a point may be, mesh units
   std::size_t one_wall = 0;          ///< vertices with one footprint, or two seen at less than 5 degrees
   std::size_t claimed_vertices = 0;  ///< vertices of what should be seen at more than theta
   std::size_t one_wall_off = 0;      ///< of those that both are (some, where many), those that are not near the middle
+  std::size_t deep_vertices = 0;     ///< vertices that should be seen at more than theta, deeper than the allowance
+  std::size_t deep_one_wall = 0;     ///< of these, those with one footprint
   double homotopy_share = 0;         ///< of the area of all triangles: what only homotopy keeps, at theta or less
   std::size_t samples = 0;           ///< points of sheets and curves that were looked at
   double medial_share = 1;           ///< of these, what is in the middle, by area; a curve counts as a voxel wide
@@ -197,6 +200,9 @@ struct Description<MedialCheck> {
       Member{"claimed_vertices", &MedialCheck::claimed_vertices, "", "vertices of what two walls should see"},
       Member{"one_wall_off", &MedialCheck::one_wall_off, "",
              "of those that both are (some, where many), those that are not near the middle"},
+      Member{"deep_vertices", &MedialCheck::deep_vertices, "",
+             "of what two walls should see, deeper than the allowance"},
+      Member{"deep_one_wall", &MedialCheck::deep_one_wall, "", "of these, those that see one wall"},
       Member{"homotopy_share", &MedialCheck::homotopy_share, "", "of the area: what only homotopy keeps"},
       Member{"samples", &MedialCheck::samples, "", "points of sheets and curves that were looked at"},
       Member{"medial_share", &MedialCheck::medial_share, "", "of these, what is in the middle, by area"},

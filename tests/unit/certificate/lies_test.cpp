@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "blum/core/random.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/io/verify_medial.hpp"
 #include "blum/medial_axis/decimate.hpp"
@@ -122,7 +123,160 @@ TEST(Lies, AllVerticesHalfAVoxelOff) {
     const Vec3d towards = v.footprints[0] - v.position;
     return v.position + towards * std::min(0.5 * lie.voxel / length(towards), 0.9);
   });
-  expect_refused(lie, "middle between two");
+  expect_refused(lie, "have the same footprint twice");
+}
+
+TEST(Lies, OneVertexMoved) {
+  True lie = bracket();
+  lie.axis.vertices[lie.axis.vertices.size() / 2].position += Vec3d{1e-3, 2e-3, -1e-3};
+  expect_refused(lie, "a radius differs from the exact distance");
+}
+
+TEST(Lies, AllVerticesShifted) {
+  True lie = bracket();
+  for (VertexRow& vertex : lie.axis.vertices) vertex.position += Vec3d{0, 0, 2 * lie.voxel};
+  expect_refused(lie, "a radius differs from the exact distance");
+}
+
+TEST(Lies, VerticesSpreadOverTheSolid) {
+  True lie = box();
+  Random random(3);
+  move_honestly(lie, [&](const VertexRow&) { return (random.in_cube() - Vec3d{0.5, 0.5, 0.5}) * 0.9; });
+  expect_refused(lie, "have the same footprint twice");
+}
+
+TEST(Lies, ErasedSecondFootprints) {
+  True lie = bracket();
+  for (VertexRow& vertex : lie.axis.vertices) {
+    vertex.footprints[1] = vertex.footprints[0];
+    vertex.sites[1] = vertex.sites[0];
+    vertex.separation_angle = 0;
+  }
+  expect_refused(lie, "have the same footprint twice");
+}
+
+TEST(Lies, SecondFootprintsOfOtherVertices) {
+  True lie = bracket();
+  for (std::size_t v = 1; v < lie.axis.vertices.size(); ++v) {
+    std::swap(lie.axis.vertices[v].footprints[1], lie.axis.vertices[v - 1].footprints[1]);
+  }
+  expect_refused(lie, "the distance to a footprint differs from the radius");
+}
+
+TEST(Lies, FootprintsOffTheSurface) {
+  True lie = bracket();
+  for (VertexRow& vertex : lie.axis.vertices) {
+    const Vec3d out = vertex.footprints[1] - vertex.position;
+    vertex.footprints[1] = vertex.position + Vec3d{-out.y, out.x, out.z};
+  }
+  expect_refused(lie, "a footprint lies off the surface");
+}
+
+TEST(Lies, SitesOfOtherFootprints) {
+  True lie = bracket();
+  for (VertexRow& vertex : lie.axis.vertices) std::swap(vertex.sites[0], vertex.sites[1]);
+  expect_refused(lie, "a footprint lies off the site");
+}
+
+TEST(Lies, SitesThatThereAreNot) {
+  True lie = bracket();
+  lie.axis.vertices[3].sites[0] = SiteId(1'000'000);
+  expect_refused(lie, "on a site that the solid does not have");
+}
+
+TEST(Lies, ScaledRadii) {
+  for (const double by : {0.5, 0.999, 1.001, 2.0}) {
+    True lie = bracket();
+    for (VertexRow& vertex : lie.axis.vertices) vertex.radius *= by;
+    expect_refused(lie, "a radius differs from the exact distance");
+  }
+}
+
+TEST(Lies, ScaledAxis) {
+  True lie = box();
+  for (VertexRow& vertex : lie.axis.vertices) {
+    vertex.position *= 0.5;
+    vertex.radius *= 0.5;
+    for (Vec3d& foot : vertex.footprints) foot *= 0.5;
+  }
+  expect_refused(lie, "a radius differs from the exact distance");
+}
+
+TEST(Lies, FalseAnglesOfVertices) {
+  True lie = bracket();
+  for (VertexRow& vertex : lie.axis.vertices) vertex.separation_angle = 180;
+  expect_refused(lie, "a separation angle differs from the angle between the footprints");
+}
+
+/// Leaves the triangles that `keep` says, with the edges and vertices that they need.
+template <class Keep>
+void drop_triangles(True& lie, const Keep& keep) {
+  std::erase_if(lie.axis.triangles, [&](const test::TriangleRow& t) { return !keep(t); });
+}
+
+TEST(Lies, MissingTriangle) {
+  True lie = bracket();
+  lie.axis.triangles.erase(lie.axis.triangles.begin() + static_cast<std::ptrdiff_t>(lie.axis.triangles.size() / 2));
+  expect_refused(lie, "");
+}
+
+TEST(Lies, MissingSheets) {
+  True lie = bracket();
+  ASSERT_GT(lie.axis.sheet_count, 10U);
+  drop_triangles(lie, [](const test::TriangleRow& t) { return t.sheet < 2; });
+  expect_refused(lie, "the axis misses");
+}
+
+TEST(Lies, HalfOfTheSheetsMissing) {
+  True lie = box();
+  drop_triangles(lie, [](const test::TriangleRow& t) { return t.sheet % 2 == 0; });
+  expect_refused(lie, "the axis misses");
+}
+
+TEST(Lies, ATreeInPlaceOfTheAxis) {
+  // The centre of the box, with a curve to it, and nothing else: a ball has no more homotopy than that.
+  True lie = box();
+  const SiteTable sites(lie.mesh);
+  const Bvh bvh(lie.mesh, sites);
+  AxisRows tree;
+  for (const double x : {-0.2, -0.1, 0.0}) {
+    const NearestSite nearest = *bvh.nearest(Vec3d{x, 0, 0});
+    tree.vertices.push_back(
+        {{x, 0, 0}, nearest.distance, {nearest.point, nearest.point}, {nearest.site, nearest.site}});
+  }
+  tree.edges = {{{0, 1}}, {{1, 2}}};
+  lie.axis = tree;
+  expect_refused(lie, "the axis misses");
+}
+
+TEST(Lies, TheAxisOfALargerAngle) {
+  True lie = axis_of(make_bracket({}), 40, 150);
+  lie.claims.metadata.theta = 20;
+  expect_refused(lie, "the axis misses");
+}
+
+TEST(Lies, TheAxisOfAnotherSolid) {
+  True lie = bracket();
+  lie.axis = box().axis;
+  expect_refused(lie, "differs");
+  lie = box();
+  lie.mesh = make_box({.size = {1, 1, 1.1}});
+  expect_refused(lie, "differs");
+}
+
+TEST(Lies, FalseRuleOfTheSolid) {
+  True lie = box();
+  lie.claims.metadata.solid_rule = "voxels";
+  expect_refused(lie, "the file says that its solid is 'voxels'");
+}
+
+TEST(Lies, WithholdsWhatBlumWrites) {
+  for (bool MedialClaims::* const has :
+       {&MedialClaims::has_radii, &MedialClaims::has_footprints, &MedialClaims::has_angles, &MedialClaims::has_sites}) {
+    True lie = box();
+    lie.claims.*has = false;
+    expect_refused(lie, "holds no");
+  }
 }
 
 }  // namespace
