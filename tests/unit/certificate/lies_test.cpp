@@ -129,7 +129,7 @@ TEST(Lies, AllVerticesHalfAVoxelOff) {
 TEST(Lies, OneVertexMoved) {
   True lie = bracket();
   lie.axis.vertices[lie.axis.vertices.size() / 2].position += Vec3d{1e-3, 2e-3, -1e-3};
-  expect_refused(lie, "a radius differs from the exact distance");
+  expect_refused(lie, "the distance to a footprint differs from the radius");
 }
 
 TEST(Lies, AllVerticesShifted) {
@@ -217,7 +217,7 @@ void drop_triangles(True& lie, const Keep& keep) {
 TEST(Lies, MissingTriangle) {
   True lie = bracket();
   lie.axis.triangles.erase(lie.axis.triangles.begin() + static_cast<std::ptrdiff_t>(lie.axis.triangles.size() / 2));
-  expect_refused(lie, "");
+  expect_refused(lie, "tunnel");
 }
 
 TEST(Lies, MissingSheets) {
@@ -250,7 +250,7 @@ TEST(Lies, ATreeInPlaceOfTheAxis) {
 }
 
 TEST(Lies, TheAxisOfALargerAngle) {
-  True lie = axis_of(make_bracket({}), 40, 150);
+  True lie = axis_of(make_box({}), 32, 120);
   lie.claims.metadata.theta = 20;
   expect_refused(lie, "the axis misses");
 }
