@@ -43,15 +43,19 @@ std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const AxisLists& lists
   return edges;
 }
 
+/// Height of a triangle whose corners lie on a line, in voxels.
+constexpr double sliver = 0.1;
+
 class ShortEdges {
  public:
   ShortEdges(AxisLists& lists, const Surface& surface, double voxel, const ShortLengths& lengths,
              const Context& context)
       : lists_(lists, surface, context), voxel_(voxel), lengths_(lengths), context_(context) {
     if (lengths.of_crumbs > 0) crumbs_ = edges_of_crumbs(lists, context);
+    if (lengths.of_slivers > 0) find_slivers(lists.triangles);
     for (const auto& [a, b] : lists_.edges()) {
       const double size = length(lists_.position(a) - lists_.position(b));
-      if (size <= limit(a, b, is_of_crumb(a, b))) short_.emplace_back(size, a, b);
+      if (size <= limit(a, b, longest(a, b))) short_.emplace_back(size, a, b);
     }
     std::sort(short_.begin(), short_.end());
   }
@@ -73,15 +77,38 @@ class ShortEdges {
   }
 
  private:
-  [[nodiscard]] bool is_of_crumb(std::uint32_t a, std::uint32_t b) const {
-    return std::binary_search(crumbs_.begin(), crumbs_.end(), std::array{a, b});
+  using Edge = std::array<std::uint32_t, 2>;
+
+  void find_slivers(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    for (const auto& t : triangles) {
+      if (std::min({lists_.rank(t[0]), lists_.rank(t[1]), lists_.rank(t[2])}) == 0) continue;
+      std::array<std::pair<double, Edge>, 3> sides;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = t[k];
+        const std::uint32_t b = t[(k + 1) % 3];
+        sides[k] = {length(lists_.position(a) - lists_.position(b)), {std::min(a, b), std::max(a, b)}};
+      }
+      std::sort(sides.begin(), sides.end());
+      const double twice_area =
+          length(cross(lists_.position(t[1]) - lists_.position(t[0]), lists_.position(t[2]) - lists_.position(t[0])));
+      if (twice_area <= sliver * voxel_ * sides[2].first) slivers_.push_back(sides[0].second);
+    }
+    detail::sort_unique(slivers_);
   }
-  [[nodiscard]] double limit(std::uint32_t a, std::uint32_t b, bool of_crumb) const {
+
+  /// Up to which length an edge may be contracted for what it is a side of, in voxels.
+  [[nodiscard]] double longest(std::uint32_t a, std::uint32_t b) const {
+    const Edge edge{std::min(a, b), std::max(a, b)};
+    const bool is_of_sliver = std::binary_search(slivers_.begin(), slivers_.end(), edge);
+    const bool is_of_crumb = std::binary_search(crumbs_.begin(), crumbs_.end(), edge);
+    return std::max(is_of_sliver ? lengths_.of_slivers : 0, is_of_crumb ? lengths_.of_crumbs : 0);
+  }
+  [[nodiscard]] double limit(std::uint32_t a, std::uint32_t b, double least_voxels) const {
     const int least = std::min(lists_.rank(a), lists_.rank(b));
     const double voxels = least >= ShrinkingLists::on_seam ? lengths_.on_seams
                           : least > 0                      ? lengths_.on_rims
                                                            : lengths_.others;
-    return (of_crumb ? std::max(voxels, lengths_.of_crumbs) : voxels) * voxel_;
+    return std::max(voxels, least_voxels) * voxel_;
   }
 
   /// @return  whether the edge is gone.
@@ -89,7 +116,7 @@ class ShortEdges {
     std::uint32_t from = lists_.now(a);
     std::uint32_t to = lists_.now(b);
     if (from == to) return true;
-    if (length(lists_.position(from) - lists_.position(to)) > 2 * limit(from, to, is_of_crumb(a, b))) return false;
+    if (length(lists_.position(from) - lists_.position(to)) > 2 * limit(from, to, longest(a, b))) return false;
     // Seams and curves stay before rims, these before the insides of sheets.
     if (std::pair(lists_.rank(from), to) > std::pair(lists_.rank(to), from)) std::swap(from, to);
     if (!lists_.may_contract(from, to)) {
@@ -103,7 +130,7 @@ class ShortEdges {
   ShrinkingLists lists_;
   double voxel_;
   ShortLengths lengths_;
-  std::vector<std::array<std::uint32_t, 2>> crumbs_;  ///< sorted
+  std::vector<Edge> crumbs_, slivers_;  ///< sides of these, sorted
   const Context& context_;
   std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> short_;
 };

@@ -13,6 +13,7 @@ struct ShortLengths {
   double on_seams = 0.15;  ///< between two vertices of seams or curves
   double on_rims = 0.15;   ///< between two vertices of rims
   double of_crumbs = 0;    ///< of sheets of a few triangles
+  double of_slivers = 0;   ///< the shortest sides of triangles between borders whose corners lie on a line
 };
 
 /// Contracts edges much shorter than a voxel where that keeps the homotopy type and edges in the solid: ribbons become

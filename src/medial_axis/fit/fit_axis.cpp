@@ -15,6 +15,7 @@
 #include "medial_axis/fit/contract_short.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/unfold.hpp"
+#include "medial_axis/governors.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/solid_paths.hpp"
 #include "medial_axis/walls.hpp"
@@ -25,12 +26,17 @@ namespace {
 constexpr std::size_t vertices_per_range = 64;
 /// Voxels that a vertex of a seam may move.
 constexpr double most_moved = 1.5;
+constexpr double most_moved_to_curve = 2.5;
 /// Radius where sheets end that reach the surface, in voxels.
 constexpr double least_radius = 0.02;
 /// Where the angle is looked at on the way outwards and inwards, in voxels.
 constexpr std::array outwards{0.25, 0.5, 1.0, 1.5, 2.0, 2.5};
 constexpr std::array inwards{-0.25, -0.5, -1.0, -1.5, -2.0, -2.5};
 constexpr int halvings = 9;
+/// How far from a vertex what lies opposite of a footprint is looked for, and how much further than this it may be, in
+/// voxels.
+constexpr double opposite_step = 0.3;
+constexpr double facets = 0.02;
 
 /// What the edges at a vertex are.
 struct Kind {
@@ -69,14 +75,22 @@ class Fitter {
   /// Puts vertices of ribbons in the middle of what is round, before what does not show is taken for excess.
   void find_centres() {
     move([&](std::uint32_t v) -> Moved {
-      if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v])) return std::nullopt;
+      if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v], 3)) return std::nullopt;
       Moved found = between(v, 3);
-      return found && is_shown(*found) ? found : std::nullopt;
+      return found && is_shown(*found, 3) ? found : std::nullopt;
     });
   }
   /// Puts vertices that know of one wall only between two.
   void find_sheets() {
     move([&](std::uint32_t v) { return lists_.vertices[v].separation_angle > 0 ? std::nullopt : between(v, 2); });
+  }
+  /// What each vertex sees, degrees.
+  [[nodiscard]] std::vector<double> angles() const {
+    std::vector<double> out(lists_.vertices.size());
+    parallel_for(context_, out.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
+      for (std::size_t v = range.begin; v < range.end; ++v) out[v] = angle_seen(lists_.vertices[v]);
+    });
+    return out;
   }
   void place_seams() {
     move([&](std::uint32_t v) { return balanced(v); });
@@ -84,6 +98,25 @@ class Fitter {
   /// Vertices inside of a sheet that were put on another one beyond the seam go to this.
   void straighten() {
     move([&](std::uint32_t v) { return straightened(v); });
+  }
+  /// Borders that leave what is round between two vertices that show go back there.
+  void take_back() {
+    move([&](std::uint32_t v) -> Moved {
+      if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v], 3)) return std::nullopt;
+      std::size_t shown = 0;
+      const AxisVertex* nearest = nullptr;
+      for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
+        const auto& [a, b] = incidence_.edges()[e];
+        const AxisVertex& other = lists_.vertices[a == v ? b : a];
+        if (!is_shown(other, 3)) continue;
+        ++shown;
+        const Vec3d& at = lists_.vertices[v].position;
+        const bool is_nearer =
+            nearest == nullptr || squared_length(other.position - at) < squared_length(nearest->position - at);
+        if (is_nearer) nearest = &other;
+      }
+      return shown > 1 ? Moved(*nearest) : std::nullopt;
+    });
   }
   void cut_rims() {
     move([&](std::uint32_t v) { return cut(v); });
@@ -101,11 +134,15 @@ class Fitter {
       if (auto found = between(v, 4)) return found;
       return between(v, 3);
     }
-    return kind.seams + kind.curves > 0 ? between(v, 3) : std::nullopt;
+    const bool is_alone = kind.rims + kind.seams + kind.curves + kind.inner == 0;
+    return is_alone || kind.seams + kind.curves > 0 ? between(v, 3) : std::nullopt;
   }
 
   [[nodiscard]] Moved between(std::uint32_t v, std::size_t walls) const {
-    return balanced_at(lists_.vertices[v].position, feet_around(v), walls, {voxel_, most_moved * voxel_, true});
+    const AxisVertex& vertex = lists_.vertices[v];
+    // What does not show may lie beside what is round by more than a voxel.
+    const double reach = is_shown(vertex, 3) ? most_moved : most_moved_to_curve;
+    return balanced_at(vertex.position, feet_around(v), walls, {voxel_, reach * voxel_, true});
   }
 
   /// balance(), with sites of the input.
@@ -113,6 +150,7 @@ class Fitter {
                                   const BalanceLimits& limits) const {
     Moved found = balance(surface_, start, feet, walls, limits);
     if (!found) return found;
+    if (walls > 2) widen(*found);
     for (SiteId& site : found->sites) site = target_.input_site(site);
     return found;
   }
@@ -149,6 +187,20 @@ class Fitter {
     return least;
   }
 
+  /// Of round things, the footprint opposite of the first one, where that is as close.
+  void widen(AxisVertex& vertex) const {
+    const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
+    const double step = std::min(opposite_step * voxel_, 0.5 * vertex.radius);
+    const NearestPoint opposite = surface_.nearest(vertex.position + away * step, {});
+    const double limit = vertex.radius + 1e-6 * voxel_ + 1e-9 * vertex.radius;
+    if (length(opposite.point - vertex.position) > limit) return;
+    const double angle = angle_at(vertex.position, vertex.footprints[0], opposite.point);
+    if (angle <= vertex.separation_angle) return;
+    vertex.footprints[1] = opposite.point;
+    vertex.sites[1] = opposite.site;
+    vertex.separation_angle = angle;
+  }
+
   /// Rims and ends: where the angle is theta, or the radius next to nothing.
   [[nodiscard]] Moved cut(std::uint32_t v) const {
     const Kind& kind = kinds_[v];
@@ -161,22 +213,37 @@ class Fitter {
     return std::nullopt;
   }
 
-  [[nodiscard]] bool is_shown(const AxisVertex& vertex) const {
-    return vertex.separation_angle > target_.theta && vertex.radius >= least_radius * voxel_;
+  /// @param walls  of what the vertex lies on: sheets have two footprints, which tell their angle.
+  [[nodiscard]] bool is_shown(const AxisVertex& vertex, std::size_t walls) const {
+    if (vertex.radius < least_radius * voxel_) return false;
+    return (walls > 2 ? angle_seen(vertex) : vertex.separation_angle) > target_.theta;
+  }
+
+  /// The largest angle between footprints of a vertex, or between the first one and what lies opposite and is as far
+  /// but for the facets of round things: few of these meet in any one point.
+  [[nodiscard]] double angle_seen(const AxisVertex& vertex) const {
+    const double own = vertex.separation_angle;
+    if (own > target_.theta || !(vertex.radius > 0)) return own;
+    const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
+    const Vec3d beyond = vertex.position + away * std::min(opposite_step * voxel_, 0.5 * vertex.radius);
+    const Vec3d opposite = surface_.nearest(beyond, {}).point;
+    if (length(opposite - vertex.position) > vertex.radius + facets * voxel_) return own;
+    return std::max(own, angle_at(vertex.position, vertex.footprints[0], opposite));
   }
 
   /// The last vertex on the way from a vertex along its sheet or seam that shows.
   [[nodiscard]] Moved slide(std::uint32_t v, const Vec3d& direction, std::size_t walls) const {
     const AxisVertex& own = lists_.vertices[v];
     const std::uint32_t inner = best_neighbour(v);
-    const std::vector<Footprint> feet = walls == 2 ? feet_of(is_shown(own) ? v : inner) : feet_around(v);
+    const std::vector<Footprint> feet = walls == 2 ? feet_of(is_shown(own, walls) ? v : inner) : feet_around(v);
+    const AxisVertex& start_of_sheet = is_shown(own, walls) ? own : lists_.vertices[inner];
     Vec3d origin = own.position;
     bool is_past = false;  // whether the last point is past the border, and not past something else
     const auto at = [&](double t) -> Moved {
-      const Moved found =
-          balanced_at(origin + direction * (t * voxel_), feet, walls, {voxel_, most_moved * voxel_, walls > 2});
-      is_past = found && !is_shown(*found);
-      return found && is_shown(*found) ? found : std::nullopt;
+      Moved found = balanced_at(origin + direction * (t * voxel_), feet, walls, {voxel_, most_moved * voxel_, true});
+      if (found && walls == 2 && !goes_on(start_of_sheet, *found)) found.reset();
+      is_past = found && !is_shown(*found, walls);
+      return found && is_shown(*found, walls) ? found : std::nullopt;
     };
     if (squared_length(direction) > 0) {
       if (Moved start = at(0)) {
@@ -200,7 +267,15 @@ class Fitter {
         bad = t;
       }
     }
-    return is_shown(lists_.vertices[inner]) && !is_shown(own) ? towards(v, inner, walls) : std::nullopt;
+    return is_shown(lists_.vertices[inner], walls) && !is_shown(own, walls) ? towards(v, inner, walls) : std::nullopt;
+  }
+
+  /// Whether two vertices lie on one smooth sheet, by the directions from one footprint to the other.
+  [[nodiscard]] static bool goes_on(const AxisVertex& a, const AxisVertex& b) {
+    constexpr double least = 0.9;  // cosine
+    const Vec3d p = a.footprints[1] - a.footprints[0];
+    const Vec3d q = b.footprints[1] - b.footprints[0];
+    return std::abs(dot(p, q)) >= least * length(p) * length(q);
   }
 
   /// Between a place that shows and one that does not.
@@ -226,7 +301,7 @@ class Fitter {
     const auto at = [&](double t) -> Moved {
       const Moved found =
           balanced_at(from.position + way * t, feet, std::min<std::size_t>(walls, 2), {voxel_, voxel_, false});
-      return found && is_shown(*found) ? found : std::nullopt;
+      return found && is_shown(*found, walls) ? found : std::nullopt;
     };
     return last_shown(at, 0, 1, from);
   }
@@ -337,6 +412,12 @@ class Fitter {
       const auto& [a, b] = incidence_.edges()[e];
       add_feet(a == v ? b : a, feet);
     }
+    for (std::size_t k = 0; k < 6 && incidence_.edges_of_vertex()[v].empty(); ++k) {
+      Vec3d beside = lists_.vertices[v].position;
+      beside[k / 2] += k % 2 == 0 ? voxel_ : -voxel_;
+      const NearestPoint at = surface_.nearest(beside, {});
+      feet.push_back({at.point, at.element, 7});
+    }
     if (feet.size() > most_walls) feet.resize(most_walls);
     return feet;
   }
@@ -397,15 +478,16 @@ class Fitter {
 }  // namespace
 
 void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context) {
-  Fitter(lists, target, context).find_centres();
-  trim(lists, target.theta, context);
   constexpr ShortLengths nothing{};
   constexpr ShortLengths with_seams{.on_seams = 0.6};
-  constexpr ShortLengths with_rims{.on_seams = 0.6, .on_rims = 0.3, .of_crumbs = 1.5};
+  constexpr ShortLengths with_rims{.on_seams = 0.6, .on_rims = 0.3, .of_crumbs = 1.5, .of_slivers = 4};
   const auto take = [&](void (Fitter::*step)(), const ShortLengths& lengths) {
     (Fitter(lists, target, context).*step)();
     contract_short(lists, target.surface, target.voxel, lengths, context);
   };
+  const auto trim_excess = [&] { trim(lists, Fitter(lists, target, context).angles(), target.theta, context); };
+  Fitter(lists, target, context).find_centres();
+  trim_excess();
   take(&Fitter::find_sheets, nothing);
   take(&Fitter::place_seams, with_seams);
   take(&Fitter::place_seams, with_seams);
@@ -413,6 +495,9 @@ void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context)
   take(&Fitter::straighten, with_seams);
   take(&Fitter::cut_rims, with_seams);
   take(&Fitter::cut_rims, with_rims);
+  trim_excess();
+  take(&Fitter::place_seams, with_rims);
+  take(&Fitter::take_back, with_rims);
   unfold(lists, target.surface, target.voxel, context);
 }
 

@@ -15,8 +15,9 @@ namespace {
 
 class Trimmer {
  public:
-  Trimmer(AxisLists& lists, double theta, const Context& context)
+  Trimmer(AxisLists& lists, const std::vector<double>& angles, double theta, const Context& context)
       : lists_(lists),
+        angles_(angles),
         theta_(theta),
         incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
         triangles_left_(incidence_.edges().size()),
@@ -48,7 +49,7 @@ class Trimmer {
   }
 
  private:
-  [[nodiscard]] double angle(std::uint32_t v) const { return lists_.vertices[v].separation_angle; }
+  [[nodiscard]] double angle(std::uint32_t v) const { return angles_[v]; }
 
   /// The largest angle of a triangle's vertices; infinite where it is there for what no vertex sees.
   [[nodiscard]] double angle_of_triangle(std::uint32_t t) const {
@@ -135,6 +136,7 @@ class Trimmer {
   }
 
   AxisLists& lists_;
+  const std::vector<double>& angles_;
   double theta_;
   Incidence incidence_;
   std::vector<std::uint32_t> triangles_left_, edges_left_;
@@ -145,8 +147,8 @@ class Trimmer {
 
 }  // namespace
 
-void trim(AxisLists& lists, double theta, const Context& context) {
-  Trimmer(lists, theta, context).run();
+void trim(AxisLists& lists, const std::vector<double>& angles, double theta, const Context& context) {
+  Trimmer(lists, angles, theta, context).run();
 }
 
 }  // namespace blum
