@@ -29,11 +29,12 @@ LOWER = {
 }
 LOWER["io"] = set(LOWER)
 # Single headers of layers that a layer does not see otherwise. The certificate takes types of input and names from
-# these, and has searches and predicates of its own. Three things it does share: self-intersections, whose answers are
-# exact and tested against a slow search; the mesh without its crossings, whose shells, crossings and inside it checks
-# itself; and the numbers of sites, which files hold.
+# these, and has searches and predicates of its own. Four things it does share: self-intersections and the sign of a
+# determinant, whose answers are exact and tested against slow ones; the mesh without its crossings, whose shells,
+# crossings and inside it checks itself; and the numbers of sites, which files hold.
 SHARED = {
     "certificate": {
+        "blum/geometry/orient3d.hpp",
         "blum/geometry/resolve_crossings.hpp",
         "blum/geometry/self_intersections.hpp",
         "blum/geometry/sites.hpp",

@@ -131,11 +131,11 @@ void add_certificate(TextTable& table, const Certificate& c) {
   if (c.holds()) {
     table.add("certified",
               "against " + std::string(against_text(c.against)) + ": " + axis + ", as many as the solid" +
-                  (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : "") +
-                  " (numbers are compared, not homotopy classes)");
+                  (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : ""));
   } else {
     table.add("NOT certified", axis + "; the solid " + betti_text(c.solid));  // why is told by the error
   }
+  table.add("proven", c.homology.shown);
   std::string geometry = "vertices and edges in the solid";
   if (!c.geometry.holds || !c.edges.holds) geometry = "wrong";
   if (c.edges.pushed > 0) {

@@ -400,9 +400,11 @@ def certify(
 ) -> Certificate:
     """Checks an axis against the mesh or image whose solid it is said to have.
 
-    Betti numbers are compared body by body; vertices, radii, footprints, sites and angles with exact searches; edges
-    must lie in the solid. Points of sheets and curves must be in the middle between two walls, and what is there in the
-    solid at well more than theta must not be missing: see :class:`MedialCheck`. Nothing of what made the axis is used. What the axis (or the file that it was read from)
+    Betti numbers are compared body by body; against polyhedra, loops and closed surfaces must be around the tunnels
+    and voids of their body, by linking numbers (``homology``). Vertices, radii, footprints, sites and angles are
+    checked with exact searches; edges must lie in the solid. Points of sheets and curves must be in the middle between
+    two walls, and what is there in the solid at well more than theta must not be missing: see :class:`MedialCheck`.
+    Nothing of what made the axis is used. What the axis (or the file that it was read from)
     says of itself is checked as `blum verify` does it: the rule of its solid, its voxels' sides, which attributes
     it has.
 

@@ -11,6 +11,7 @@
 #include "blum/geometry/self_intersections.hpp"
 #include "certificate/bounding_mesh.hpp"
 #include "certificate/checks.hpp"
+#include "certificate/homology/homology_check.hpp"
 #include "certificate/medial_check.hpp"
 #include "certificate/scaling.hpp"
 #include "certificate/shells.hpp"
@@ -74,6 +75,7 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
     certificate.axis = homology(complex.view(), context);
     certificate.bodies = {{certificate.solid, certificate.axis}};
     compare_topology(certificate, [](std::size_t) { return std::string("the solid"); });
+    certificate.homology.shown = "nothing: places were not looked at";
     return certificate;
   }
   const MedialView axis(complex);
@@ -82,15 +84,22 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
   const verifier::AxisParts parts = verifier::parts_in_bodies(axis.cells(), locations, body_count, context);
   certificate.axis = sum(parts.betti);
   for (std::size_t b = 0; b < body_count; ++b) certificate.bodies.push_back({solid.bodies[b], parts.betti[b]});
-  compare_topology(certificate, [&](std::size_t b) {
+  const auto name = [&](std::size_t b) {
     if (body_count == 1) return std::string("the solid");
     const Vec3d at = solid.solid->box(static_cast<std::uint32_t>(b)).center() / factor;
     return "body " + std::to_string(b + 1) + " of " + std::to_string(body_count) + " (around " + rounded_text(at.x) +
            " " + rounded_text(at.y) + " " + rounded_text(at.z) + ")";
-  });
+  };
+  compare_topology(certificate, name);
   certificate.geometry =
       verifier::check_vertices(axis, solid, locations, certificate.checked, factor, certificate.mismatches, context);
-  certificate.edges = verifier::check_edges(axis, solid, locations, parts, factor, certificate.mismatches, context);
+  const Incidence incidence(axis.cells(), context);
+  std::vector<verifier::PushedEdge> pushed;
+  certificate.edges =
+      verifier::check_edges(axis, incidence, solid, locations, parts, factor, pushed, certificate.mismatches, context);
+  certificate.homology = verifier::check_homology({axis, incidence, solid, locations, parts, pushed, factor},
+                                                  certificate.edges.holds && certificate.geometry.not_finite == 0,
+                                                  certificate.bodies, name, certificate.mismatches, context);
   if (certificate.checked.medial) {
     certificate.medial = verifier::check_medial(axis, solid, parts.body_of, certificate.checked, factor,
                                                 certificate.mismatches, context);

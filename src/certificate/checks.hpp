@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "blum/certificate/certificate.hpp"
+#include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/context.hpp"
+#include "certificate/body_edges.hpp"
 #include "certificate/solid_oracle.hpp"
 
 namespace blum::verifier {
@@ -53,10 +55,12 @@ struct AxisParts {
                                            const std::vector<Location>& locations, const CertificateOptions& options,
                                            double factor, std::vector<std::string>& mismatches, const Context& context);
 
-/// The same for what lies between vertices.
-[[nodiscard]] EdgeCheck check_edges(const MedialView& axis, const KnownSolid& solid,
+/// The same for what lies between vertices. @param incidence  of the axis.  @param pushed  is given the edges that were
+/// pushed into the solid, rising.
+[[nodiscard]] EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                                     const std::vector<Location>& locations, const AxisParts& parts, double factor,
-                                    std::vector<std::string>& mismatches, const Context& context);
+                                    std::vector<PushedEdge>& pushed, std::vector<std::string>& mismatches,
+                                    const Context& context);
 
 /// @throws Cancelled.
 [[nodiscard]] BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid,

@@ -7,94 +7,23 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "certificate/body_edges.hpp"
 #include "certificate/checks.hpp"
 
 namespace blum::verifier {
 namespace {
 
-constexpr double corner_of_diagonal = 1.0 / 64;
 /// Of what vertices are allowed: an edge along the surface is asked about as often as this goes into it.
 constexpr double more_for_edges = 10;
-
-/// A point, and how deep it lies in a body.
-struct Stop {
-  Vec3d at;
-  double depth = 0;
-};
-
-/// What edges are asked about.
-class BodyEdges {
- public:
-  BodyEdges(const SolidOracle& solid, std::uint32_t body, double allowed)
-      : solid_(solid),
-        body_(body),
-        allowed_(allowed),
-        corner_(std::max(corner_of_diagonal * solid.diagonal(body), solid.grain() / 2)) {}
-
-  [[nodiscard]] double allowed() const { return allowed_; }
-  /// How far out an edge may be that can be pushed in.
-  [[nodiscard]] double corner() const { return corner_; }
-
-  /// The point of a segment that is furthest out, as far as that is more than is allowed. A ball as large as a point is
-  /// deep lies in the body, so that only what is between such balls is left to ask about.
-  [[nodiscard]] Stop furthest_out(const Stop& a, const Stop& b, double allowed) const {
-    constexpr double nearly = 1.25;  // enough of what is too much anyway
-    Stop worst = a.depth < b.depth ? a : b;
-    std::vector<std::pair<Stop, Stop>> stack{{a, b}};
-    while (!stack.empty()) {
-      const auto [p, q] = stack.back();
-      stack.pop_back();
-      const double gap = length(q.at - p.at);
-      // The least depth that distances leave room for is half of this.
-      if (p.depth + q.depth - gap >= 2 * std::min(-allowed, nearly * worst.depth)) continue;
-      const double begin = std::max(p.depth, 0.0);
-      const double end = gap - std::max(q.depth, 0.0);
-      Stop middle{p.at + (q.at - p.at) * ((begin + end) / (2 * gap)), 0};
-      if (middle.at == p.at || middle.at == q.at) continue;
-      const Stop& known = std::abs(p.depth) > std::abs(q.depth) ? p : q;
-      middle.depth = solid_.depth_beside(middle.at, body_, known.at, known.depth, allowed / 2);
-      if (middle.depth < worst.depth) worst = middle;
-      stack.emplace_back(p, middle);
-      stack.emplace_back(middle, q);
-    }
-    return worst;
-  }
-
-  /// Whether a segment that leaves the body can be pushed into it: the point that is furthest out goes through the
-  /// closest point of the surface, and both parts are asked again. Past an edge of the solid that soon succeeds; across
-  /// a gap it never does.
-  /// @param moves  how many points may be moved yet.
-  [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, int& moves) const {
-    const Stop worst = furthest_out(a, b, allowed_);
-    if (-worst.depth <= allowed_) return true;
-    if (moves-- <= 0) return false;
-    const Stop moved = pushed_in(worst);
-    return can_be_pushed_in(a, moved, moves) && can_be_pushed_in(moved, b, moves);
-  }
-
- private:
-  /// A point as far inside as one is outside, or less far in where the body is thin.
-  [[nodiscard]] Stop pushed_in(const Stop& out) const {
-    const Vec3d foot = solid_.closest_point(out.at, body_);
-    for (const double far : {1.0, 0.25}) {
-      const Stop in{foot + (foot - out.at) * far, solid_.depth(foot + (foot - out.at) * far, body_)};
-      if (in.depth > 0) return in;
-    }
-    return {foot, 0};
-  }
-
-  const SolidOracle& solid_;
-  std::uint32_t body_;
-  double allowed_;
-  double corner_;
-};
 
 /// What is found of some of the edges.
 struct Findings {
   EdgeCheck check;
   double allowed = 0;  ///< for the worst
+  std::vector<PushedEdge> ways;
 
   void add(const Findings& other) {
+    ways.insert(ways.end(), other.ways.begin(), other.ways.end());
     check.pushed += other.check.pushed;
     check.pushed_by = std::max(check.pushed_by, other.check.pushed_by);
     check.outside += other.check.outside;
@@ -106,15 +35,17 @@ struct Findings {
 };
 
 /// Looks at one edge.
-Findings look_at(const Stop& a, const Stop& b, const BodyEdges& body, bool may_push) {
-  int moves = 64;
+Findings look_at(std::uint32_t edge, const Stop& a, const Stop& b, const BodyEdges& body, bool may_push) {
+  int moves = most_moves;
+  std::vector<Vec3d> way;
   Findings found;
   const Stop worst = body.furthest_out(a, b, body.allowed());
   if (-worst.depth <= body.allowed()) return found;
   may_push = may_push && -worst.depth <= body.corner() && std::min(a.depth, b.depth) >= -body.allowed();
-  if (may_push && body.can_be_pushed_in(a, b, moves)) {
+  if (may_push && body.can_be_pushed_in(a, b, moves, way)) {
     found.check.pushed = 1;
     found.check.pushed_by = -worst.depth;
+    found.ways.push_back({edge, std::move(way)});
     return found;
   }
   found.check.outside = 1;
@@ -133,11 +64,10 @@ std::string explained(const EdgeCheck& check, double allowed) {
 
 }  // namespace
 
-EdgeCheck check_edges(const MedialView& axis, const KnownSolid& solid, const std::vector<Location>& locations,
-                      const AxisParts& parts, double factor, std::vector<std::string>& mismatches,
-                      const Context& context) {
+EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
+                      const std::vector<Location>& locations, const AxisParts& parts, double factor,
+                      std::vector<PushedEdge>& pushed, std::vector<std::string>& mismatches, const Context& context) {
   constexpr std::size_t grain = 256;
-  const Incidence incidence(axis.cells(), context);
   const std::span<const std::array<std::uint32_t, 2>> edges = incidence.edges();
   std::vector<double> allowed = tolerances(solid);
   const double slack = solid.solid->slack();
@@ -152,11 +82,13 @@ EdgeCheck check_edges(const MedialView& axis, const KnownSolid& solid, const std
         const Vec3d& at = axis.positions[v];
         return Stop{at, locations[v].body == body ? locations[v].depth : solid.solid->depth(at, body)};
       };
-      found[range.begin / grain].add(look_at(stop(a), stop(b), {*solid.solid, body, allowed[body]}, slack == 0));
+      found[range.begin / grain].add(
+          look_at(static_cast<std::uint32_t>(e), stop(a), stop(b), {*solid.solid, body, allowed[body]}, slack == 0));
     }
   });
   Findings all;
   for (const Findings& part : found) all.add(part);
+  pushed = std::move(all.ways);
   EdgeCheck check = all.check;
   check.edges = edges.size();
   check.pushed_by /= factor;

@@ -84,6 +84,10 @@ class ShellOracle : public SolidOracle {
     return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p, body).triangle));
   }
 
+  [[nodiscard]] std::unique_ptr<Complement> complement(const Context& context) const override {
+    return std::make_unique<Complement>(complement_of_mesh(mesh_, shells_, context));
+  }
+
   [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
     return verifier::distance_from_site(named_, sites_, p, site);
   }

@@ -13,6 +13,7 @@
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/voxel_set.hpp"
+#include "certificate/homology/complement.hpp"
 
 namespace blum::verifier {
 
@@ -66,6 +67,8 @@ class SolidOracle {
   [[nodiscard]] virtual double slack() const { return 0; }
   /// Distance of a point from a site; HUGE_VAL where there is no such site.
   [[nodiscard]] virtual double distance_from_site(const Vec3d& p, SiteId site) const = 0;
+  /// What linking and winding numbers are taken with; nullptr where that is not known.
+  [[nodiscard]] virtual std::unique_ptr<Complement> complement(const Context& /*context*/) const { return nullptr; }
   /// Points of the surface, close enough together for `step` unless they would be too many. @throws Cancelled.
   [[nodiscard]] virtual Samples samples(double step, const Context& context) const = 0;
 };

@@ -77,7 +77,7 @@ def test_every_format_holds_the_axis_and_verifies(solids, axes, tmp_path, end):
     output = tmp_path / f"box.{end}"
     summary = run_json("medial", solids / "box.obj", "-o", output, "--resolution", 16)
     counts = axis_of(summary)["counts"]
-    assert counts_in(output) == (counts["vertices"], counts["triangles"]) and counts["triangles"] > 100
+    assert counts_in(output) == (counts["vertices"], counts["triangles"]) and counts["triangles"] > 10
     assert summary["outputs"] == [str(output)] and names(tmp_path) == [output.name]
     out, _ = run("verify", solids / "box.obj", output)
     assert "certified" in out and "NOT" not in out
@@ -168,7 +168,8 @@ def test_sites_of_images_are_voxels_that_are_not_selected(tmp_path):
 
 
 def test_lambda_leaves_out_what_is_thin(solids, axes, tmp_path):
-    few = axis_of(run_json("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 16, "--lambda", 0.5))
+    options = ["--resolution", 16, "--simplify", 0, "--lambda", 0.5]
+    few = axis_of(run_json("medial", solids / "box.obj", "-o", tmp_path / "b.npz", *options))
     assert few["certificate"]["certified"]
     assert 0 < few["counts"]["vertices"] < len(np.load(axes / "box.npz")["vertices"])
 
@@ -404,7 +405,7 @@ def test_a_link_and_permissions_of_an_output_stay(solids, tmp_path):
     run("medial", solids / "box.obj", "-o", tmp_path / "b.npz", "--resolution", 12)
     assert (tmp_path / "b.npz").is_symlink() and names(tmp_path / "real") == ["b.npz"]
     assert (tmp_path / "real" / "b.npz").stat().st_mode & 0o777 == 0o600
-    assert len(np.load(tmp_path / "b.npz")["vertices"]) > 100
+    assert len(np.load(tmp_path / "b.npz")["vertices"]) > 8
 
 
 def test_summary_of_what_is_not_certified_lists_no_output(solids, tmp_path):

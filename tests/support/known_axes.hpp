@@ -1,4 +1,4 @@
-// Solids whose medial axes are known: boxes, cylinders, extruded polygons, balls and ellipsoids of revolution.
+// Blum: solids whose medial axes are known, for tests. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>

@@ -1,0 +1,172 @@
+#include "certificate/homology/axis_labels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "blum/core/parallel.hpp"
+
+namespace blum::verifier {
+
+AxisLabels::AxisLabels(const AxisInSolid& given, const Complement& complement, const std::vector<bool>& is_wanted,
+                       const Context& context)
+    : given_(given),
+      complement_(complement),
+      is_wanted_(is_wanted),
+      allowed_(tolerances(given.solid)),
+      positions_(given.axis.positions.begin(), given.axis.positions.end()) {
+  constexpr std::uint32_t most_attempts = 4;
+  slide_from_surface();
+  for (std::uint32_t body = 0; body < allowed_.size(); ++body) box_.extend(given.solid.solid->box(body));
+  for (const Vec3d& p : positions_) {
+    if (is_finite(p)) box_.extend(p);
+  }
+  for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
+    apex_ = std::make_unique<Apex>(box_, attempt);
+    curtains_ = std::make_unique<Curtains>(complement, *apex_, context);
+    edges_ =
+        std::make_unique<EdgeLabels>(*curtains_, given.incidence.edges(), positions_, given.parts.body_of, context);
+    take_pushed(*curtains_);
+    if (doubtful_ == 0) return;
+  }
+}
+
+void AxisLabels::slide_from_surface() {
+  // Far less than edges are allowed to be outside by, and far more than rounding.
+  constexpr double of_tolerance = 1.0 / 16;
+  constexpr double steepest = 32;
+  const auto& edges = given_.incidence.edges();
+  const auto& locations = given_.locations;
+  for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+    const std::uint32_t body = given_.parts.body_of[v];
+    const double near = allowed_[body] * of_tolerance;
+    if (!is_wanted_[body] || locations[v].depth >= near) continue;
+    std::uint32_t deepest = v;
+    for (const std::uint32_t e : given_.incidence.edges_of_vertex()[v]) {
+      const std::uint32_t other = edges[e][0] == v ? edges[e][1] : edges[e][0];
+      if (locations[other].body == body && locations[other].depth > locations[deepest].depth) deepest = other;
+    }
+    const Vec3d along = given_.axis.positions[deepest] - given_.axis.positions[v];
+    const double far = length(along);
+    if (!(far > 0) || !(locations[deepest].depth > 2 * near)) continue;
+    for (double step = 2; step <= steepest; step *= 2) {
+      positions_[v] = given_.axis.positions[v] + along * std::min(0.5, step * near / far);
+      if (given_.solid.solid->depth(positions_[v], body) >= near) break;
+    }
+  }
+}
+
+void AxisLabels::take_pushed(const Curtains& curtains) {
+  replaced_.clear();
+  std::unordered_set<std::uint32_t> doubtful(edges_->doubtful().begin(), edges_->doubtful().end());
+  for (const PushedEdge& pushed : given_.pushed) {
+    const auto [a, b] = given_.incidence.edges()[pushed.edge];
+    const std::uint32_t body = given_.parts.body_of[a];
+    if (!is_wanted_[body]) continue;
+    Way way{positions_[a]};
+    way.insert(way.end(), pushed.way.begin(), pushed.way.end());
+    way.push_back(positions_[b]);
+    doubtful.erase(pushed.edge);
+    if (!curtains.add(way, body, replaced_[pushed.edge])) doubtful.insert(pushed.edge);
+  }
+  doubtful_ = doubtful.size();
+}
+
+bool AxisLabels::is_across(std::size_t triangle, SparseRow& row) const {
+  row.clear();
+  const auto& corners = given_.axis.triangles[triangle];
+  const auto& sides = given_.incidence.sides()[triangle];
+  for (std::size_t k = 0; k < 3; ++k) add(sides[k], corners[k] < corners[(k + 1) % 3] ? 1 : -1, row);
+  if (row.empty()) return false;
+  tidy(row);
+  return !row.empty();
+}
+
+std::vector<std::uint32_t> AxisLabels::triangles_across(const Context& context) {
+  constexpr std::size_t grain = 4096;
+  const std::size_t count = given_.axis.triangles.size();
+  std::vector<std::vector<std::uint32_t>> parts(count / grain + 1);
+  parallel_for(context, count, grain, "", [&](const WorkRange& range) {
+    SparseRow row;
+    for (std::size_t t = range.begin; t < range.end; ++t) {
+      if (is_across(t, row)) parts[range.begin / grain].push_back(static_cast<std::uint32_t>(t));
+    }
+  });
+  std::vector<std::uint32_t> across;
+  for (const auto& part : parts) across.insert(across.end(), part.begin(), part.end());
+  constexpr std::size_t most_looked_at = 20000;
+  std::unordered_set<std::uint32_t> looked_at;
+  std::unordered_set<std::uint32_t> found(across.begin(), across.end());
+  SparseRow row;
+  for (std::size_t k = 0; k < across.size(); ++k) {  // grows
+    throw_if_cancelled(context);
+    for (const std::uint32_t e : given_.incidence.sides()[across[k]]) {
+      if (looked_at.size() >= most_looked_at || !looked_at.insert(e).second || !look_closely(e)) continue;
+      for (const std::uint32_t t : given_.incidence.triangles_of_edge()[e]) {
+        if (is_across(t, row) && found.insert(t).second) across.push_back(t);
+      }
+    }
+  }
+  lead_over_triangles(across, context);
+  std::sort(across.begin(), across.end());
+  return across;
+}
+
+void AxisLabels::lead_over_triangles(std::vector<std::uint32_t>& across, const Context& context) {
+  SparseRow row;
+  const auto count_at = [&](std::uint32_t e) {
+    const auto around = given_.incidence.triangles_of_edge()[e];
+    return std::count_if(around.begin(), around.end(), [&](std::uint32_t t) { return is_across(t, row); });
+  };
+  for (bool is_better = true; is_better;) {
+    throw_if_cancelled(context);
+    is_better = false;
+    std::erase_if(across, [&](std::uint32_t t) { return !is_across(t, row); });
+    for (const std::uint32_t t : across) {
+      for (std::size_t k = 0; k < 3 && is_across(t, row); ++k) {
+        const std::uint32_t e = given_.incidence.sides()[t][k];
+        const auto pushed = replaced_.find(e);
+        if (pushed == replaced_.end()) continue;
+        const auto before = count_at(e);
+        std::vector<Label> other = over_other_sides(t, k);
+        other.swap(pushed->second);
+        if (count_at(e) < before) {
+          is_better = true;
+        } else {
+          other.swap(pushed->second);
+        }
+      }
+    }
+  }
+}
+
+std::vector<Label> AxisLabels::over_other_sides(std::uint32_t triangle, std::size_t side) const {
+  const auto& corners = given_.axis.triangles[triangle];
+  const auto sign = [&](std::size_t k) { return corners[k] < corners[(k + 1) % 3] ? 1 : -1; };
+  std::vector<Label> labels;
+  for (const std::size_t k : {(side + 1) % 3, (side + 2) % 3}) {
+    for (const Label& label : of(given_.incidence.sides()[triangle][k])) {
+      labels.push_back({label.segment, -sign(side) * sign(k) * label.times});
+    }
+  }
+  return labels;
+}
+
+bool AxisLabels::look_closely(std::uint32_t edge) {
+  constexpr double fine = 1e-3;
+  const auto [a, b] = given_.incidence.edges()[edge];
+  const std::uint32_t body = given_.parts.body_of[a];
+  const SolidOracle& solid = *given_.solid.solid;
+  const BodyEdges edges(solid, body, fine * allowed_[body]);
+  const auto stop = [&](std::uint32_t v) { return Stop{positions_[v], solid.depth(positions_[v], body)}; };
+  int moves = most_moves;
+  Way way{positions_[a]};
+  if (!edges.can_be_pushed_in(stop(a), stop(b), moves, way) || way.size() == 1) return false;
+  way.push_back(positions_[b]);
+  std::vector<Label> labels;
+  if (!curtains_->add(way, body, labels)) return false;
+  replaced_[edge] = std::move(labels);
+  return true;
+}
+
+}  // namespace blum::verifier

@@ -1,0 +1,269 @@
+#include "certificate/homology/closed_surfaces.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "blum/complex/complex.hpp"
+#include "certificate/box_hierarchy.hpp"
+#include "certificate/homology/apex.hpp"
+
+namespace blum::verifier {
+namespace {
+
+using Face = std::array<std::uint32_t, 3>;
+
+constexpr std::uint32_t none = 0xffffffffU;
+
+/// Whether a triangle passes a side of its own from the lower vertex to the higher one.
+bool rises(const Face& face, std::size_t side) {
+  return face[side] < face[(side + 1) % 3];
+}
+
+/// The triangles that are left when what has a free edge is taken away, in bodies with voids; each once.
+class Core {
+ public:
+  Core(const ComplexView& axis, const Incidence& incidence, const std::vector<bool>& is_wanted)
+      : axis_(axis), incidence_(incidence), is_in_(axis.triangles.size(), false) {
+    for (std::size_t t = 0; t < is_in_.size(); ++t) is_in_[t] = is_wanted[axis.triangles[t][0]];
+    take_doubles();
+    std::vector<std::uint32_t> count(incidence.edges().size(), 0);
+    std::vector<std::uint32_t> free;
+    for_each([&](std::uint32_t t) {
+      for (const std::uint32_t e : incidence.sides()[t]) ++count[e];
+    });
+    for (std::uint32_t e = 0; e < count.size(); ++e) {
+      if (count[e] == 1) free.push_back(e);
+    }
+    while (!free.empty()) {
+      const std::uint32_t e = free.back();
+      free.pop_back();
+      if (count[e] != 1) continue;
+      for (const std::uint32_t t : at_edge(e)) {
+        is_in_[t] = false;
+        for (const std::uint32_t side : incidence.sides()[t]) {
+          if (--count[side] == 1) free.push_back(side);
+        }
+      }
+    }
+  }
+
+  template <class Use>
+  void for_each(const Use& use) const {
+    for (std::uint32_t t = 0; t < is_in_.size(); ++t) {
+      if (is_in_[t]) use(t);
+    }
+  }
+  /// Those at an edge.
+  [[nodiscard]] std::vector<std::uint32_t> at_edge(std::uint32_t e) const {
+    std::vector<std::uint32_t> found;
+    for (const std::uint32_t t : incidence_.triangles_of_edge()[e]) {
+      if (is_in_[t]) found.push_back(t);
+    }
+    return found;
+  }
+  [[nodiscard]] const Face& face(std::uint32_t t) const { return axis_.triangles[t]; }
+  /// 1 or -1 by the way that a triangle passes one of its sides.
+  [[nodiscard]] int sign(std::uint32_t t, std::uint32_t edge) const {
+    const auto& sides = incidence_.sides()[t];
+    const auto side = static_cast<std::size_t>(std::find(sides.begin(), sides.end(), edge) - sides.begin());
+    return rises(face(t), side) ? 1 : -1;
+  }
+  [[nodiscard]] const Incidence& incidence() const { return incidence_; }
+  [[nodiscard]] std::size_t size() const { return is_in_.size(); }
+
+ private:
+  /// Of triangles with the same sides the first one stays.
+  void take_doubles() {
+    const auto sorted = [&](std::uint32_t t) {
+      Face sides = incidence_.sides()[t];
+      std::sort(sides.begin(), sides.end());
+      return sides;
+    };
+    for (std::uint32_t t = 0; t < is_in_.size(); ++t) {
+      if (!is_in_[t]) continue;
+      const Face own = sorted(t);
+      for (const std::uint32_t other : incidence_.triangles_of_edge()[own[0]]) {
+        if (other > t && is_in_[other] && sorted(other) == own) is_in_[other] = false;
+      }
+    }
+  }
+
+  ComplexView axis_;
+  const Incidence& incidence_;
+  std::vector<bool> is_in_;
+};
+
+/// Triangles that hang together over edges of two triangles, turned alike as far as possible.
+class Sheets {
+ public:
+  explicit Sheets(const Core& core) : sheet_(core.size(), none), facing_(core.size(), 0) {
+    std::vector<std::uint32_t> line;
+    core.for_each([&](std::uint32_t first) {
+      if (sheet_[first] != none) return;
+      const std::uint32_t sheet = count();
+      two_sided_.push_back(true);
+      first_.push_back(first);
+      sheet_[first] = sheet;
+      facing_[first] = 1;
+      line.assign(1, first);
+      while (!line.empty()) {
+        const std::uint32_t t = line.back();
+        line.pop_back();
+        for (const std::uint32_t e : core.incidence().sides()[t]) {
+          const auto both = core.at_edge(e);
+          if (both.size() != 2) continue;
+          const std::uint32_t other = both[0] == t ? both[1] : both[0];
+          const int wanted = core.sign(t, e) == core.sign(other, e) ? -facing_[t] : facing_[t];
+          if (sheet_[other] != none) {
+            if (facing_[other] != wanted) two_sided_[sheet] = false;
+            continue;
+          }
+          sheet_[other] = sheet;
+          facing_[other] = static_cast<std::int8_t>(wanted);
+          line.push_back(other);
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(first_.size()); }
+  [[nodiscard]] std::uint32_t of(std::uint32_t triangle) const { return sheet_[triangle]; }
+  [[nodiscard]] int facing(std::uint32_t triangle) const { return facing_[triangle]; }
+  [[nodiscard]] bool is_two_sided(std::uint32_t sheet) const { return two_sided_[sheet]; }
+  [[nodiscard]] std::uint32_t first_triangle(std::uint32_t sheet) const { return first_[sheet]; }
+
+ private:
+  std::vector<std::uint32_t> sheet_;
+  std::vector<std::int8_t> facing_;
+  std::vector<bool> two_sided_;
+  std::vector<std::uint32_t> first_;
+};
+
+/// For each sheet its border along the seams; seams that the same sheets meet in alike count once.
+struct Borders {
+  std::vector<SparseRow> rows;
+  std::uint32_t columns = 0;
+
+  Borders(const Core& core, const Sheets& sheets) : rows(sheets.count()) {
+    std::map<SparseRow, std::uint32_t> known;
+    for (std::uint32_t e = 0; e < core.incidence().edges().size(); ++e) {
+      const auto around = core.at_edge(e);
+      if (around.size() < 3) continue;
+      SparseRow seam;
+      for (const std::uint32_t t : around) seam.emplace_back(sheets.of(t), sheets.facing(t) * core.sign(t, e));
+      tidy_keeping_parity(seam);
+      if (seam.empty() || !known.try_emplace(seam, columns).second) continue;
+      for (const auto& [sheet, times] : seam) rows[sheet].emplace_back(columns, times);
+      ++columns;
+    }
+  }
+
+ private:
+  /// Adds entries of one sheet, and turns all alike.
+  static void tidy_keeping_parity(SparseRow& row) {
+    tidy(row);
+    if (row.empty() || row.front().second > 0) return;
+    for (auto& entry : row) entry.second = -entry.second;
+  }
+};
+
+/// Adds to each sheet's row how often lines from the voids cross it; false where that cannot be told.
+bool add_crossings(const Core& core, const Sheets& sheets, const std::vector<Vec3d>& positions,
+                   const std::vector<std::uint32_t>& body_of, const Complement& complement, const Apex& apex,
+                   std::uint32_t first_column, std::vector<SparseRow>& rows, const Context& context) {
+  std::vector<Box3> boxes;
+  std::vector<std::uint32_t> triangles;
+  core.for_each([&](std::uint32_t t) {
+    Box3& box = boxes.emplace_back();
+    for (const std::uint32_t v : core.face(t)) box.extend(apex.seen(positions[v]));
+    triangles.push_back(t);
+  });
+  const BoxHierarchy tree(boxes, context);
+  bool is_certain = true;
+  for (std::uint32_t k = 0; k < complement.voids().size(); ++k) {
+    throw_if_cancelled(context);
+    const auto& [point, body] = complement.voids()[k];
+    const Vec3d seen = apex.seen(point);
+    const double room = apex.rounding();
+    const auto meets = [&](const Box3& box) {
+      return box.lower.x <= seen.x + room && seen.x - room <= box.upper.x && box.lower.y <= seen.y + room &&
+             seen.y - room <= box.upper.y && box.lower.z <= seen.z + room;
+    };
+    tree.search(
+        1, [&](std::uint32_t n) { return meets(tree.node(n).box) ? 0.0 : 2.0; },
+        [&](std::uint32_t place) {
+          const std::uint32_t item = tree.order()[place];
+          const std::uint32_t t = triangles[item];
+          const auto [a, b, c] = core.face(t);
+          if (!meets(boxes[item]) || body_of[a] != body) return 1.0;
+          const auto times = apex.crossing_above(point, positions[a], positions[b], positions[c]);
+          if (!times) is_certain = false;
+          if (times.value_or(0) != 0) rows[sheets.of(t)].emplace_back(first_column + k, sheets.facing(t) * *times);
+          return 1.0;
+        });
+  }
+  for (SparseRow& row : rows) tidy(row);
+  return is_certain;
+}
+
+constexpr std::size_t most_steps = 300'000'000;
+
+/// What the cycles of the sheets of a body wind around.
+std::optional<std::vector<SparseRow>> wound(Elimination::Over over, const std::vector<SparseRow>& rows,
+                                            const std::vector<bool>& is_taken, std::uint32_t columns) {
+  Elimination seams(over, columns, most_steps);
+  for (std::size_t s = 0; s < rows.size(); ++s) {
+    if (is_taken[s]) seams.add(rows[s]);
+  }
+  if (!seams.is_complete()) return std::nullopt;
+  return seams.left();
+}
+
+}  // namespace
+
+Windings windings(const ComplexView& axis, const Incidence& incidence, const std::vector<Vec3d>& positions,
+                  const std::vector<std::uint32_t>& body_of, const Complement& complement, std::size_t body_count,
+                  const Box3& box, const Context& context) {
+  constexpr std::uint32_t most_attempts = 4;
+  Windings result{std::vector<std::size_t>(body_count, 0), true, true};
+  if (complement.voids().empty()) return result;
+  std::vector<std::size_t> voids(body_count, 0);
+  for (const Complement::Void& one : complement.voids()) ++voids[one.body];
+  std::vector<bool> is_wanted(positions.size());
+  for (std::size_t v = 0; v < is_wanted.size(); ++v) is_wanted[v] = voids[body_of[v]] > 0;
+  const Core core(axis, incidence, is_wanted);
+  const Sheets sheets(core);
+  const Borders borders(core, sheets);
+  std::vector<SparseRow> rows;
+  result.is_certain = false;
+  for (std::uint32_t attempt = 0; attempt < most_attempts && !result.is_certain; ++attempt) {
+    rows = borders.rows;
+    const Apex apex(box, attempt);
+    result.is_certain =
+        add_crossings(core, sheets, positions, body_of, complement, apex, borders.columns, rows, context);
+  }
+  if (!result.is_certain) return result;
+  const auto void_count = static_cast<std::uint32_t>(complement.voids().size());
+  for (std::size_t body = 0; body < body_count; ++body) {
+    if (voids[body] == 0) continue;
+    std::vector<bool> is_own(sheets.count());
+    std::vector<bool> is_own_and_two_sided(sheets.count());
+    for (std::uint32_t s = 0; s < sheets.count(); ++s) {
+      is_own[s] = body_of[core.face(sheets.first_triangle(s))[0]] == body;
+      is_own_and_two_sided[s] = is_own[s] && sheets.is_two_sided(s);
+    }
+    const auto around = wound(Elimination::Over::two, rows, is_own, borders.columns);
+    if (around) result.rank[body] = rank_modulo_2(*around, borders.columns + void_count);
+    const auto exact = wound(Elimination::Over::integers, rows, is_own_and_two_sided, borders.columns);
+    Elimination all(Elimination::Over::integers, borders.columns + void_count, most_steps);
+    if (exact) {
+      for (const SparseRow& row : *exact) all.add(row);
+    }
+    result.over_integers = result.over_integers && all.rank() == voids[body];
+  }
+  return result;
+}
+
+}  // namespace blum::verifier

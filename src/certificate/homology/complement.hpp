@@ -1,0 +1,70 @@
+// Blum: cycles and points around a solid, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "certificate/shells.hpp"
+
+namespace blum::verifier {
+
+/// For each body of a solid closed paths that generate the first homology of what is not in it, and a point in each of
+/// its voids. By Alexander duality, linking numbers with the paths tell every class of the body's first homology apart,
+/// and winding numbers around the points every class of the second one. Paths and points may lie on the boundary.
+class Complement {
+ public:
+  /// A straight part of paths, named once however many run along it.
+  struct Segment {
+    std::array<std::uint32_t, 2> ends;  ///< among points()
+    std::uint32_t body = 0;
+  };
+  /// A path that runs along a segment.
+  struct Use {
+    std::uint32_t path = 0;
+    std::int32_t times = 0;  ///< below 0 where it runs the other way
+  };
+  struct Void {
+    Vec3d point;
+    std::uint32_t body = 0;
+  };
+
+  /// Part of a path, as it is found.
+  struct Step {
+    std::array<std::uint32_t, 2> ends;
+    std::uint32_t path = 0;
+    std::int32_t times = 0;
+  };
+
+  Complement() = default;
+  /// @param body_of_path  in rising order.
+  Complement(std::vector<Vec3d> points, std::vector<Step> steps, const std::vector<std::uint32_t>& body_of_path,
+             std::vector<Void> voids);
+
+  [[nodiscard]] const Vec3d& point(std::uint32_t index) const { return points_[index]; }
+  [[nodiscard]] const std::vector<Segment>& segments() const { return segments_; }
+  [[nodiscard]] std::span<const Use> paths_along(std::size_t segment) const {
+    return std::span(uses_).subspan(first_[segment], first_[segment + 1] - first_[segment]);
+  }
+  [[nodiscard]] std::size_t path_count() const { return path_count_; }
+  [[nodiscard]] const std::vector<Void>& voids() const { return voids_; }
+
+ private:
+  std::vector<Vec3d> points_;
+  std::vector<Segment> segments_;
+  std::vector<std::size_t> first_{0};
+  std::vector<Use> uses_;
+  std::size_t path_count_ = 0;
+  std::vector<Void> voids_;
+};
+
+/// Paths along the edges of the shells, which generate their homology and so that of the complement; a corner of each
+/// void's shell. @throws Cancelled. Cost: nothing for shells without handles.
+[[nodiscard]] Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells, const Context& context);
+
+}  // namespace blum::verifier

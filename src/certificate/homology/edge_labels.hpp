@@ -1,0 +1,79 @@
+// Blum: which curtains the edges of an axis cross, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "certificate/box_hierarchy.hpp"
+#include "certificate/homology/apex.hpp"
+#include "certificate/homology/complement.hpp"
+
+namespace blum::verifier {
+
+/// How often something crosses the curtain of a segment of a Complement.
+struct Label {
+  std::uint32_t segment = 0;
+  std::int32_t times = 0;
+};
+
+/// Way points from one end of an edge to the other one, both included.
+using Way = std::vector<Vec3d>;
+
+/// The curtains of all segments of a complement.
+class Curtains {
+ public:
+  /// Both must stay. @throws Cancelled.
+  Curtains(const Complement& complement, const Apex& apex, const Context& context);
+
+  /// Adds the crossings of a way with the curtains of a body's segments; false where one cannot be told.
+  [[nodiscard]] bool add(std::span<const Vec3d> way, std::uint32_t body, std::vector<Label>& labels) const;
+
+  /// Places in the tree of what a box may cross.
+  void near(const Box3& seen, std::vector<std::uint32_t>& places) const;
+  /// The same as add() for one segment between points that are seen in a box, and these curtains only.
+  [[nodiscard]] bool add(const Vec3d& a, const Vec3d& b, const Box3& seen, std::uint32_t body,
+                         std::span<const std::uint32_t> places, std::vector<Label>& labels) const;
+  [[nodiscard]] const Apex& apex() const { return apex_; }
+
+ private:
+  const Complement& complement_;
+  const Apex& apex_;
+  BoxHierarchy tree_;
+  std::vector<Box3> boxes_;  ///< in the tree's order: from the apex to the segment, as seen
+};
+
+/// The labels of the edges of an axis.
+class EdgeLabels {
+ public:
+  /// @param positions  of the vertices.  @param body_of  of each vertex.  @throws Cancelled.
+  EdgeLabels(const Curtains& curtains, std::span<const std::array<std::uint32_t, 2>> edges,
+             const std::vector<Vec3d>& positions, const std::vector<std::uint32_t>& body_of, const Context& context);
+
+  [[nodiscard]] std::span<const Label> of(std::size_t edge) const {
+    const Part& part = parts_[edge / grain];
+    const std::size_t k = edge % grain;
+    if (part.ends.empty()) return {};
+    const std::size_t begin = k == 0 ? 0 : part.ends[k - 1];
+    return std::span(part.labels).subspan(begin, part.ends[k] - begin);
+  }
+  /// Edges of which a crossing cannot be told, rising.
+  [[nodiscard]] const std::vector<std::uint32_t>& doubtful() const { return doubtful_; }
+
+ private:
+  static constexpr std::size_t grain = 64;
+  /// Some edges beside each other.
+  struct Part {
+    std::vector<std::uint32_t> ends;  ///< of the labels of each edge; empty where there are none
+    std::vector<Label> labels;
+    std::vector<std::uint32_t> doubtful;
+  };
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> doubtful_;
+};
+
+}  // namespace blum::verifier

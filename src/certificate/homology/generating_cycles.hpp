@@ -1,0 +1,70 @@
+// Blum: cycles that generate the homology of a complex, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/complex/incidence.hpp"
+#include "blum/core/context.hpp"
+
+namespace blum::verifier {
+
+/// A graph with cells of dimension 2: each row of `sides` names the edges around a cell, `per_cell` of them.
+struct CellGraph {
+  std::size_t vertex_count = 0;
+  std::span<const std::array<std::uint32_t, 2>> edges;
+  std::span<const std::uint32_t> sides;
+  std::size_t per_cell = 3;
+};
+
+/// Edges that close cycles which generate the fundamental group of each component. First cells are taken away at free
+/// edges, over and over; then a shortest-path tree of what is left is grown, and an edge closes a cycle unless a cell
+/// leads it back to the tree and those before. As many as there are tunnels where all collapses to a graph or to
+/// spheres; else a few more.
+class GeneratingCycles {
+ public:
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  /// @throws Cancelled. Cost: linear.
+  GeneratingCycles(const CellGraph& graph, const Context& context);
+
+  /// The edges that close the cycles, rising.
+  [[nodiscard]] const std::vector<std::uint32_t>& closing() const { return closing_; }
+
+  /// Calls use(edge, sign) along the cycle that an edge closes: 1 where an edge is passed from its first vertex to its
+  /// second one, else -1.
+  template <class Use>
+  void walk(std::uint32_t closing, const Use& use) const {
+    auto [a, b] = edges_[closing];
+    use(closing, 1);
+    const auto up = [&](std::uint32_t& v, int sign) {
+      const std::uint32_t e = parent_edge_[v];
+      const bool is_first = edges_[e][0] == v;
+      use(e, is_first ? sign : -sign);
+      v = edges_[e][is_first ? 1 : 0];
+    };
+    while (a != b) {
+      if (depth_[b] >= depth_[a]) {
+        up(b, 1);
+      } else {
+        up(a, -1);
+      }
+    }
+  }
+
+ private:
+  void collapse(const CellGraph& graph, const IndexRows& cells_of_edge, const Context& context);
+  void grow_trees(const CellGraph& graph, const Context& context);
+  void find_closing(const CellGraph& graph, const IndexRows& cells_of_edge, const Context& context);
+
+  std::span<const std::array<std::uint32_t, 2>> edges_;
+  std::vector<bool> is_edge_left_, is_cell_left_;
+  std::vector<std::uint32_t> parent_edge_;  ///< of each vertex; none at a root
+  std::vector<std::uint32_t> depth_;
+  std::vector<std::uint32_t> closing_;
+};
+
+}  // namespace blum::verifier

@@ -1,0 +1,208 @@
+#include "certificate/homology/homology_check.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "blum/core/exact_text.hpp"
+#include "certificate/homology/axis_labels.hpp"
+#include "certificate/homology/closed_surfaces.hpp"
+#include "certificate/homology/elimination.hpp"
+#include "certificate/homology/generating_cycles.hpp"
+
+namespace blum::verifier {
+namespace {
+
+constexpr std::size_t most_steps = 300'000'000;
+
+/// What is known of one body.
+struct BodyProof {
+  bool is_compared = false;         ///< whether its Betti numbers agree
+  std::size_t generators = 0;       ///< of the fundamental group of the axis in it
+  bool loops_over_integers = true;  ///< whether loops of the axis span all of its first homology
+  std::size_t across = 0;           ///< triangles that span its tunnels
+};
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return count_text(count) + " " + (count == 1 ? one : many);
+}
+
+/// Looks at loops: fills the ranks of bodies and of proofs.
+class Loops {
+ public:
+  Loops(const AxisInSolid& given, const GeneratingCycles& cycles, const Complement& complement)
+      : given_(given), cycles_(cycles), complement_(complement) {}
+
+  void look(HomologyCheck& check, std::vector<BodyCheck>& bodies, std::vector<BodyProof>& proofs,
+            const Context& context) const {
+    std::vector<bool> is_wanted(bodies.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b) is_wanted[b] = proofs[b].is_compared && bodies[b].solid[1] > 0;
+    if (std::find(is_wanted.begin(), is_wanted.end(), true) == is_wanted.end()) return;
+    check.paths = complement_.path_count();
+    AxisLabels labels(given_, complement_, is_wanted, context);
+    check.doubtful = labels.doubtful();
+    if (check.doubtful > 0) return;
+    count_triangles(labels, is_wanted, check, proofs, context);
+    std::vector<std::vector<SparseRow>> rows(bodies.size());
+    for (const std::uint32_t closing : cycles_.closing()) {
+      throw_if_cancelled(context);
+      const std::uint32_t body = body_of(closing);
+      if (!is_wanted[body]) continue;
+      SparseRow row = linked(labels, closing);
+      if (!row.empty()) rows[body].push_back(std::move(row));
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      throw_if_cancelled(context);
+      if (!is_wanted[b]) continue;
+      bodies[b].tunnels_met = static_cast<std::int64_t>(rank_modulo_2(rows[b], complement_.path_count()));
+      Elimination exact(Elimination::Over::integers, complement_.path_count(), most_steps);
+      for (SparseRow& row : rows[b]) exact.add(std::move(row));
+      proofs[b].loops_over_integers = exact.rank() == static_cast<std::size_t>(bodies[b].solid[1]);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t body_of(std::uint32_t edge) const {
+    return given_.parts.body_of[given_.incidence.edges()[edge][0]];
+  }
+
+  /// How often each path is linked with the cycle that an edge closes.
+  [[nodiscard]] SparseRow linked(const AxisLabels& labels, std::uint32_t closing) const {
+    std::vector<std::pair<std::uint32_t, std::int64_t>> crossed;
+    cycles_.walk(closing, [&](std::uint32_t e, int sign) {
+      for (const Label& label : labels.of(e)) crossed.emplace_back(label.segment, std::int64_t{sign} * label.times);
+    });
+    tidy(crossed);
+    SparseRow row;
+    for (const auto& [segment, times] : crossed) {
+      for (const Complement::Use& use : complement_.paths_along(segment)) row.emplace_back(use.path, times * use.times);
+    }
+    tidy(row);
+    return row;
+  }
+
+  void count_triangles(AxisLabels& labels, const std::vector<bool>& is_wanted, HomologyCheck& check,
+                       std::vector<BodyProof>& proofs, const Context& context) const {
+    for (const auto& corners : given_.axis.triangles) check.triangles += is_wanted[given_.parts.body_of[corners[0]]];
+    const std::vector<std::uint32_t> across = labels.triangles_across(context);
+    check.across = across.size();
+    for (const std::uint32_t t : across) ++proofs[given_.parts.body_of[given_.axis.triangles[t][0]]].across;
+    if (across.empty()) return;
+    for (const std::uint32_t v : given_.axis.triangles[across.front()]) check.where += given_.axis.positions[v] / 3.0;
+    check.where = check.where / given_.factor;
+  }
+
+  const AxisInSolid& given_;
+  const GeneratingCycles& cycles_;
+  const Complement& complement_;
+};
+
+/// What follows for a body. @param surfaces  nullptr where voids could not be looked at.
+Proven proven_of(const BodyCheck& body, const BodyProof& proof, bool loops_are_known, const Windings* surfaces) {
+  if (!proof.is_compared) return Proven::nothing;
+  const bool has_tunnels = body.solid[1] > 0;
+  const bool has_voids = body.solid[2] > 0;
+  if (has_tunnels && (!loops_are_known || proof.across > 0 || body.tunnels_met != body.solid[1])) {
+    return Proven::betti_numbers;
+  }
+  if (has_voids && (surfaces == nullptr || !surfaces->is_certain || body.voids_met != body.solid[2])) {
+    return Proven::betti_numbers;
+  }
+  const bool is_exact = proof.generators == static_cast<std::size_t>(body.solid[1]) && proof.loops_over_integers &&
+                        (!has_voids || surfaces->over_integers);
+  if (!is_exact) return Proven::homology_modulo_2;
+  return has_tunnels ? Proven::homology : Proven::homotopy_type;
+}
+
+std::string sentence(Proven proven) {
+  switch (proven) {
+    case Proven::homotopy_type:
+      return "the axis is homotopy equivalent to the solid";
+    case Proven::homology:
+      return "the way of the axis into the solid is an isomorphism of homology";
+    case Proven::homology_modulo_2:
+      return "the way of the axis into the solid is an isomorphism of homology modulo 2 (over the integers it was not "
+             "shown)";
+    case Proven::betti_numbers:
+      return "the axis has the Betti numbers of the solid";
+    default:
+      return "nothing";
+  }
+}
+
+}  // namespace
+
+HomologyCheck check_homology(const AxisInSolid& given, bool edges_hold, std::vector<BodyCheck>& bodies,
+                             const std::function<std::string(std::size_t)>& name, std::vector<std::string>& mismatches,
+                             const Context& context) {
+  HomologyCheck check;
+  std::vector<BodyProof> proofs(bodies.size());
+  bool needs_complement = false;
+  bool all_agree = true;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const bool agrees = bodies[b].solid == bodies[b].axis;
+    all_agree = all_agree && agrees;
+    proofs[b].is_compared = agrees && edges_hold;
+    bodies[b].proven = agrees ? Proven::betti_numbers : Proven::nothing;
+    needs_complement =
+        needs_complement || (proofs[b].is_compared && (bodies[b].solid[1] > 0 || bodies[b].solid[2] > 0));
+  }
+  if (!edges_hold || !all_agree) {
+    check.proven = all_agree ? Proven::betti_numbers : Proven::nothing;
+    check.shown = all_agree ? sentence(check.proven) + ", and no more: edges leave the solid"
+                            : "the axis has other Betti numbers than the solid";
+    return check;
+  }
+  const auto& sides = given.incidence.sides();
+  const GeneratingCycles cycles({given.axis.positions.size(),
+                                 given.incidence.edges(),
+                                 {sides.empty() ? nullptr : sides.front().data(), 3 * sides.size()},
+                                 3},
+                                context);
+  for (const std::uint32_t e : cycles.closing())
+    ++proofs[given.parts.body_of[given.incidence.edges()[e][0]]].generators;
+  std::unique_ptr<Complement> complement;
+  Windings surfaces;
+  if (needs_complement) complement = given.solid.solid->complement(context);
+  if (complement != nullptr) {
+    Loops(given, cycles, *complement).look(check, bodies, proofs, context);
+    Box3 box;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) box.extend(given.solid.solid->box(b));
+    surfaces = windings(given.axis.cells(), given.incidence, {given.axis.positions.begin(), given.axis.positions.end()},
+                        given.parts.body_of, *complement, bodies.size(), box, context);
+  }
+  check.proven = Proven::homotopy_type;
+  check.holds = true;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    BodyCheck& body = bodies[b];
+    if (complement != nullptr) body.voids_met = static_cast<std::int64_t>(surfaces.rank[b]);
+    const bool loops_are_known = complement != nullptr && check.doubtful == 0;
+    body.proven = proven_of(body, proofs[b], loops_are_known, complement == nullptr ? nullptr : &surfaces);
+    check.proven = std::min(check.proven, body.proven);
+    if (loops_are_known && body.tunnels_met < body.solid[1]) {
+      check.holds = false;
+      mismatches.push_back("loops of the axis run around " + count_text(static_cast<std::uint64_t>(body.tunnels_met)) +
+                           " of the " + counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " +
+                           name(b) + ": others run around nothing, or around the same");
+    }
+    if (complement != nullptr && surfaces.is_certain && body.voids_met < body.solid[2]) {
+      check.holds = false;
+      mismatches.push_back("closed surfaces of the axis are around " +
+                           count_text(static_cast<std::uint64_t>(body.voids_met)) + " of the " +
+                           counted(static_cast<std::size_t>(body.solid[2]), "void", "voids") + " of " + name(b));
+    }
+  }
+  check.shown = sentence(check.proven);
+  if (complement == nullptr && needs_complement) check.shown += ", and no more: it is made of voxels";
+  if (check.across > 0) {
+    check.shown += ", and no more: " + counted(check.across, "triangle spans", "triangles span") +
+                   " a tunnel of the solid, the first one at " + rounded_text(check.where.x) + " " +
+                   rounded_text(check.where.y) + " " + rounded_text(check.where.z);
+  }
+  if (check.doubtful > 0) {
+    check.shown += ", and no more: " + counted(check.doubtful, "edge touches", "edges touch") + " the surface";
+  }
+  return check;
+}
+
+}  // namespace blum::verifier
