@@ -191,7 +191,7 @@ Vec3d random_point(const MedialView& axis, std::uint32_t t, Random& random) {
 /// What of an axis is seen at more than theta, by what it says of itself.
 class Claimed {
  public:
-  Claimed(const MedialView& axis, double theta) : axis_(axis), is_claimed_(axis.positions.size(), false) {
+  Claimed(const MedialView& axis, double theta) : is_claimed_(axis.positions.size(), false) {
     for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
       const double size = area(axis, t);
       if (std::isfinite(size)) all_ += size;
@@ -213,7 +213,6 @@ class Claimed {
   [[nodiscard]] double rest_of_area() const { return all_ > 0 ? std::max(0.0, 1 - sheets_.total() / all_) : 0; }
 
  private:
-  const MedialView& axis_;
   std::vector<bool> is_claimed_;
   Spread sheets_, curves_;
   double all_ = 0;
