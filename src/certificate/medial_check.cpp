@@ -15,19 +15,20 @@
 namespace blum::verifier {
 namespace {
 
-constexpr double least_share = 0.95;            ///< of samples that must be in the middle: true axes have 0.99
-constexpr double least_close_share = 0.5;       ///< of samples that must be close to the middle: true axes have 0.8
-constexpr double most_missed = 0.05;            ///< share of balls that may be far from the axis: of true axes 0.01 are
-constexpr double most_vertices_off = 0.1;       ///< share of vertices that see one wall away from the middle
-constexpr double most_deep_of_one_wall = 0.6;   ///< of vertices deep inside: of true axes 0.4 have one footprint (a rod at 0)
-constexpr double enough_sheet = 256;            ///< square voxels from which that is asked
-constexpr double few_vertices = 16;             ///< that may do so at any rate
-constexpr double noise_of_meshes = 10;          ///< degrees from which two walls are two
-constexpr double noise_of_images = 20;          ///< the same between steps of voxels
-constexpr double well_above = 30;               ///< degrees over theta from where the axis must have all
-constexpr double most_missed_of_voxels = 0.1;   ///< the same where only voxels tell inside from outside
-constexpr double few_missed = 3;                ///< balls that may be missed at any rate
-constexpr std::size_t few_balls = 20;           ///< too few to tell anything
+constexpr double least_share = 0.95;       ///< of samples that must be in the middle: true axes have 0.99
+constexpr double least_close_share = 0.5;  ///< of samples that must be close to the middle: true axes have 0.8
+constexpr double most_missed = 0.05;       ///< share of balls that may be far from the axis: of true axes 0.01 are
+constexpr double most_vertices_off = 0.1;  ///< share of vertices that see one wall away from the middle
+constexpr double most_deep_of_one_wall =
+    0.6;                                ///< of vertices deep inside: of true axes 0.4 have one footprint (a rod at 0)
+constexpr double enough_sheet = 256;    ///< square voxels from which that is asked
+constexpr double few_vertices = 16;     ///< that may do so at any rate
+constexpr double noise_of_meshes = 10;  ///< degrees from which two walls are two
+constexpr double noise_of_images = 20;  ///< the same between steps of voxels
+constexpr double well_above = 30;       ///< degrees over theta from where the axis must have all
+constexpr double most_missed_of_voxels = 0.1;  ///< the same where only voxels tell inside from outside
+constexpr double few_missed = 3;               ///< balls that may be missed at any rate
+constexpr std::size_t few_balls = 20;          ///< too few to tell anything
 constexpr std::size_t most_samples_of_sheets = 8'192;
 constexpr std::size_t most_samples_of_curves = 2'048;
 constexpr std::size_t most_samples_of_vertices = 4'096;

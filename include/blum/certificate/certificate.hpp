@@ -223,7 +223,8 @@ struct Description<BallUnionCheck> {
 ///
 /// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
 /// too; a tenth of those vertices, or 16, need not. Of those deeper than the allowance at most three in five may have
-/// one, where sheets are larger than 256 square voxels. Against the voxels of a mesh, what is in the middle is told only.
+/// one, where sheets are larger than 256 square voxels. Against the voxels of a mesh, what is in the middle is told
+/// only.
 struct MedialCheck {
   double allowance = 0;              ///< how far from the middle a point may be, mesh units
   std::size_t one_wall = 0;          ///< vertices with one footprint, or two seen at less than 5 degrees
