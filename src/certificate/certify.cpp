@@ -87,8 +87,8 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
   const auto name = [&](std::size_t b) {
     if (body_count == 1) return std::string("the solid");
     const Vec3d at = solid.solid->box(static_cast<std::uint32_t>(b)).center() / factor;
-    return "body " + std::to_string(b + 1) + " of " + std::to_string(body_count) + " (around " + rounded_text(at.x) +
-           " " + rounded_text(at.y) + " " + rounded_text(at.z) + ")";
+    return "body " + std::to_string(b + 1) + " of " + std::to_string(body_count) + " (around " +
+           verifier::place_text(at) + ")";
   };
   compare_topology(certificate, name);
   certificate.geometry =

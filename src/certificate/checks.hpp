@@ -10,6 +10,7 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/context.hpp"
+#include "blum/core/exact_text.hpp"
 #include "certificate/body_edges.hpp"
 #include "certificate/solid_oracle.hpp"
 
@@ -19,6 +20,11 @@ namespace blum::verifier {
   return is_finite(axis.positions[vertex]) && std::isfinite(axis.radius[vertex]) &&
          is_finite(axis.footprint(vertex, 0)) && is_finite(axis.footprint(vertex, 1)) &&
          std::isfinite(axis.separation_angle[vertex]);
+}
+
+/// Coordinates, as messages tell them.
+[[nodiscard]] inline std::string place_text(const Vec3d& at) {
+  return rounded_text(at.x) + " " + rounded_text(at.y) + " " + rounded_text(at.z);
 }
 
 /// How far off positions may be in each body.

@@ -56,10 +56,9 @@ Findings look_at(std::uint32_t edge, const Stop& a, const Stop& b, const BodyEdg
 }
 
 std::string explained(const EdgeCheck& check, double allowed) {
-  const auto& [x, y, z] = check.where;
   return "of the " + count_text(check.edges) + " edges of the axis " + count_text(check.outside) +
-         " leave the solid between their ends, by up to " + rounded_text(check.outside_by) + " at " + rounded_text(x) +
-         " " + rounded_text(y) + " " + rounded_text(z) + " (allowed: " + rounded_text(allowed) + ")";
+         " leave the solid between their ends, by up to " + rounded_text(check.outside_by) + " at " +
+         verifier::place_text(check.where) + " (allowed: " + rounded_text(allowed) + ")";
 }
 
 }  // namespace

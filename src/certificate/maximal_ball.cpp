@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "certificate/angle.hpp"
 
 namespace blum::verifier {
-
-double degrees_between(const Vec3d& a, const Vec3d& b) {
-  return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
-}
 
 TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, double floor, double more) {
   constexpr int most_steps = 64;
@@ -49,7 +46,7 @@ TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3
 }
 
 double distance_to_middle(const Vec3d& p, const TouchingBall& ball) {
-  return length(p - ball.centre) * std::sin(0.5 * ball.angle * std::numbers::pi / 180);
+  return length(p - ball.centre) * std::sin(0.5 * ball.angle / degrees_per_radian);
 }
 
 }  // namespace blum::verifier

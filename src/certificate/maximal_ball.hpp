@@ -9,9 +9,6 @@
 
 namespace blum::verifier {
 
-/// Degrees between two vectors; 0 where one of them has no length.
-[[nodiscard]] double degrees_between(const Vec3d& a, const Vec3d& b);
-
 /// A ball inside of a solid whose surface it touches in two points.
 struct TouchingBall {
   Vec3d centre;

@@ -9,6 +9,8 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
+#include "certificate/angle.hpp"
+#include "certificate/checks.hpp"
 #include "certificate/maximal_ball.hpp"
 #include "certificate/triangle_search.hpp"
 
@@ -310,10 +312,6 @@ Offsets missing(const MedialView& axis, const KnownSolid& solid, const Allowance
 }
 
 // ---- What is said of it ----
-
-std::string place_text(const Vec3d& at) {
-  return rounded_text(at.x) + " " + rounded_text(at.y) + " " + rounded_text(at.z);
-}
 
 std::string percent(double share) {
   return rounded_text(std::round(share * 1000) / 10) + " %";

@@ -2,10 +2,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "certificate/angle.hpp"
 #include "certificate/checks.hpp"
 
 namespace blum::verifier {
@@ -13,7 +13,6 @@ namespace {
 
 constexpr double tolerance_of_diagonal = 1e-6;
 constexpr double tolerance_of_angles = 1e-4;  // degrees
-constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
 /// What is found of some of the vertices.
 struct Findings {
@@ -44,10 +43,6 @@ void note(double& largest, Worst& worst, double error, double allowed) {
   worst.add(error, allowed);
 }
 
-double angle_between(const Vec3d& a, const Vec3d& b) {
-  return std::atan2(length(cross(a, b)), dot(a, b)) * degrees_per_radian;
-}
-
 /// Adds what the footprints of a vertex are off by.
 void look_at_footprints(const MedialView& axis, std::size_t v, const Location& location, const SolidOracle& solid,
                         double allowed, const CertificateOptions& options, Findings& found) {
@@ -65,7 +60,7 @@ void look_at_footprints(const MedialView& axis, std::size_t v, const Location& l
   const Vec3d b = axis.footprint(v, 1) - axis.positions[v];
   // Positions that may be off turn the directions of footprints.
   const double turned = 2 * allowed / std::max(std::min(length(a), length(b)), allowed) * degrees_per_radian;
-  note(found.check.angle_error, found.angle, std::abs(axis.separation_angle[v] - angle_between(a, b)),
+  note(found.check.angle_error, found.angle, std::abs(axis.separation_angle[v] - degrees_between(a, b)),
        tolerance_of_angles + turned);
 }
 

@@ -214,12 +214,12 @@ struct Description<BallUnionCheck> {
 /// is off the middle by how far it is from the bisector of both. Walls that this ball sees at less than 10 degrees
 /// (images: 20) are one. Only what says of itself that two walls see it at more than theta is asked: the rest is there
 /// for homotopy alone, and may lie anywhere in the solid. 95 % must be within the allowance: 1.5 voxels, and the
-/// deviation; voxels are taken to be 1/8 of the diagonal at most, and 1/32 of it where nothing is known. 60 % must be
+/// deviation; voxels are taken to be 1/8 of the diagonal at most, and 1/32 of it where nothing is known. Half must be
 /// within a third of a voxel, or within the deviation where that is more.
 ///
 /// The other way, balls are grown from random points of the solid. Where two walls further apart than 4 voxels (and
 /// lambda) are seen at well more than theta (30 degrees, or half of the way to 180), the axis must have a point within
-/// 3 voxels and the deviation: for 95 % of the balls, if there are 20. Without a theta, this is not looked at.
+/// 2 voxels and the deviation: for 95 % of the balls, if there are 20. Without a theta, this is not looked at.
 ///
 /// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
 /// too; a tenth of those vertices, or 16, need not. Of those deeper than the allowance at most three in five may have

@@ -196,8 +196,7 @@ HomologyCheck check_homology(const AxisInSolid& given, bool edges_hold, std::vec
   if (complement == nullptr && needs_complement) check.shown += ", and no more: it is made of voxels";
   if (check.across > 0) {
     check.shown += ", and no more: " + counted(check.across, "triangle spans", "triangles span") +
-                   " a tunnel of the solid, the first one at " + rounded_text(check.where.x) + " " +
-                   rounded_text(check.where.y) + " " + rounded_text(check.where.z);
+                   " a tunnel of the solid, the first one at " + verifier::place_text(check.where);
   }
   if (check.doubtful > 0) {
     check.shown += ", and no more: " + counted(check.doubtful, "edge touches", "edges touch") + " the surface";

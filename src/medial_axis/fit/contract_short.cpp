@@ -19,14 +19,14 @@ namespace {
 constexpr std::uint32_t most_of_crumb = 8;
 
 /// The edges of sheets of a few triangles, and of curves that end next to a sheet.
-std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const AxisLists& lists, const Context& context) {
-  const Incidence incidence({lists.vertices.size(), lists.edges, lists.triangles}, context);
-  detail::UnionFind sheets(lists.triangles.size());
+std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const Incidence& incidence) {
+  const std::size_t triangles = incidence.sides().size();
+  detail::UnionFind sheets(triangles);
   for (std::size_t e = 0; e < incidence.edges().size(); ++e) {
     const auto at = incidence.triangles_of_edge()[e];
     if (at.size() == 2) sheets.join(at[0], at[1]);
   }
-  std::vector<std::uint32_t> size(lists.triangles.size(), 0);
+  std::vector<std::uint32_t> size(triangles, 0);
   for (std::uint32_t t = 0; t < size.size(); ++t) ++size[sheets.find(t)];
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (std::uint32_t t = 0; t < size.size(); ++t) {
@@ -51,9 +51,9 @@ class ShortEdges {
   ShortEdges(AxisLists& lists, const Surface& surface, double voxel, const ShortLengths& lengths,
              const Context& context)
       : lists_(lists, surface, context), voxel_(voxel), lengths_(lengths), context_(context) {
-    if (lengths.of_crumbs > 0) crumbs_ = edges_of_crumbs(lists, context);
+    if (lengths.of_crumbs > 0) crumbs_ = edges_of_crumbs(lists_.incidence());
     if (lengths.of_slivers > 0) find_slivers(lists.triangles);
-    for (const auto& [a, b] : lists_.edges()) {
+    for (const auto& [a, b] : lists_.incidence().edges()) {
       const double size = length(lists_.position(a) - lists_.position(b));
       if (size <= limit(a, b, longest(a, b))) short_.emplace_back(size, a, b);
     }

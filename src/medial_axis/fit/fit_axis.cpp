@@ -12,6 +12,7 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/core/parallel.hpp"
 #include "medial_axis/fit/balance.hpp"
+#include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/contract_short.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/unfold.hpp"
@@ -106,8 +107,7 @@ class Fitter {
       std::size_t shown = 0;
       const AxisVertex* nearest = nullptr;
       for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-        const auto& [a, b] = incidence_.edges()[e];
-        const AxisVertex& other = lists_.vertices[a == v ? b : a];
+        const AxisVertex& other = lists_.vertices[other_end(e, v)];
         if (!is_shown(other, 3)) continue;
         ++shown;
         const Vec3d& at = lists_.vertices[v].position;
@@ -124,6 +124,17 @@ class Fitter {
 
  private:
   using Moved = std::optional<AxisVertex>;
+
+  [[nodiscard]] std::uint32_t other_end(std::uint32_t edge, std::uint32_t v) const {
+    const auto& [a, b] = incidence_.edges()[edge];
+    return a == v ? b : a;
+  }
+  /// The corner of a triangle that is not on its side.
+  [[nodiscard]] std::uint32_t third_corner(std::uint32_t triangle, std::uint32_t side) const {
+    const auto& [a, b] = incidence_.edges()[side];
+    const auto& t = lists_.triangles[triangle];
+    return t[0] ^ t[1] ^ t[2] ^ a ^ b;
+  }
 
   // ---- Where vertices go ----
 
@@ -172,26 +183,23 @@ class Fitter {
   [[nodiscard]] double least_cosine(std::uint32_t v, const Vec3d& position) const {
     double least = 1;
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const auto& [a, b] = incidence_.edges()[e];
-      const std::uint32_t other = a == v ? b : a;
-      const Vec3d along = lists_.vertices[other].position - position;
-      std::array<Vec3d, 2> leaves;
-      for (std::size_t k = 0; k < 2; ++k) {
-        const auto& t = lists_.triangles[incidence_.triangles_of_edge()[e][k]];
-        leaves[k] = cross(along, lists_.vertices[t[0] ^ t[1] ^ t[2] ^ a ^ b].position - position);
-      }
-      const double scale = length(leaves[0]) * length(leaves[1]);
-      // On both sides of the edge, so that these face opposite ways.
-      if (scale > 0) least = std::min(least, -dot(leaves[0], leaves[1]) / scale);
+      const auto at = incidence_.triangles_of_edge()[e];
+      least = std::min(least, cosine_of_bend(position, lists_.vertices[other_end(e, v)].position,
+                                             lists_.vertices[third_corner(at[0], e)].position,
+                                             lists_.vertices[third_corner(at[1], e)].position));
     }
     return least;
   }
 
+  /// What is closest a little further away from the first footprint of a vertex that is not on the surface.
+  [[nodiscard]] NearestPoint opposite_of(const AxisVertex& vertex) const {
+    const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
+    return surface_.nearest(vertex.position + away * std::min(opposite_step * voxel_, 0.5 * vertex.radius), {});
+  }
+
   /// Of round things, the footprint opposite of the first one, where that is as close.
   void widen(AxisVertex& vertex) const {
-    const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
-    const double step = std::min(opposite_step * voxel_, 0.5 * vertex.radius);
-    const NearestPoint opposite = surface_.nearest(vertex.position + away * step, {});
+    const NearestPoint opposite = opposite_of(vertex);
     const double limit = vertex.radius + 1e-6 * voxel_ + 1e-9 * vertex.radius;
     if (length(opposite.point - vertex.position) > limit) return;
     const double angle = angle_at(vertex.position, vertex.footprints[0], opposite.point);
@@ -224,9 +232,7 @@ class Fitter {
   [[nodiscard]] double angle_seen(const AxisVertex& vertex) const {
     const double own = vertex.separation_angle;
     if (own > target_.theta || !(vertex.radius > 0)) return own;
-    const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
-    const Vec3d beyond = vertex.position + away * std::min(opposite_step * voxel_, 0.5 * vertex.radius);
-    const Vec3d opposite = surface_.nearest(beyond, {}).point;
+    const Vec3d opposite = opposite_of(vertex).point;
     if (length(opposite - vertex.position) > vertex.radius + facets * voxel_) return own;
     return std::max(own, angle_at(vertex.position, vertex.footprints[0], opposite));
   }
@@ -309,8 +315,7 @@ class Fitter {
   [[nodiscard]] std::uint32_t best_neighbour(std::uint32_t v) const {
     std::uint32_t best = v;
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const auto& [a, b] = incidence_.edges()[e];
-      const std::uint32_t other = a == v ? b : a;
+      const std::uint32_t other = other_end(e, v);
       if (lists_.vertices[other].separation_angle > lists_.vertices[best].separation_angle || best == v) best = other;
     }
     return best;
@@ -322,15 +327,13 @@ class Fitter {
   [[nodiscard]] Vec3d direction_of_rim(std::uint32_t v) const {
     constexpr int reach = 4;
     Vec3d sum;
-    std::uint32_t from = v;
     for (const std::uint32_t first : incidence_.edges_of_vertex()[v]) {
       if (incidence_.triangles_of_edge()[first].size() != 1) continue;
       std::uint32_t e = first;
-      from = v;
+      std::uint32_t from = v;
       for (int n = 0; n < reach; ++n) {
         sum += outwards_of(e) / (1 + n);
-        const auto& [a, b] = incidence_.edges()[e];
-        const std::uint32_t next = a == from ? b : a;
+        const std::uint32_t next = other_end(e, from);
         if (!kinds_[next].is_rim()) break;
         const std::uint32_t at = e;
         for (const std::uint32_t other : incidence_.edges_of_vertex()[next]) {
@@ -354,12 +357,8 @@ class Fitter {
 
   /// From a triangle outwards through its side, as long as the side.
   [[nodiscard]] Vec3d outwards_of(std::uint32_t e) const {
-    const std::uint32_t t = incidence_.triangles_of_edge()[e][0];
+    const std::uint32_t third = third_corner(incidence_.triangles_of_edge()[e][0], e);
     const auto& [a, b] = incidence_.edges()[e];
-    std::uint32_t third = a;
-    for (const std::uint32_t v : lists_.triangles[t]) {
-      if (v != a && v != b) third = v;
-    }
     const Vec3d& at = lists_.vertices[a].position;
     const Vec3d along = lists_.vertices[b].position - at;
     const Vec3d in = lists_.vertices[third].position - at;
@@ -376,8 +375,7 @@ class Fitter {
       for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
         const std::size_t count = incidence_.triangles_of_edge()[e].size();
         if (triangles == 0 ? count > 0 : count < triangles) continue;
-        const auto& [a, b] = incidence_.edges()[e];
-        const std::uint32_t other = a == at ? b : a;
+        const std::uint32_t other = other_end(e, at);
         if (other != before) return other;
       }
       return at;
@@ -409,8 +407,7 @@ class Fitter {
   [[nodiscard]] std::vector<Footprint> feet_around(std::uint32_t v) const {
     std::vector<Footprint> feet = feet_of(v);
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const auto& [a, b] = incidence_.edges()[e];
-      add_feet(a == v ? b : a, feet);
+      add_feet(other_end(e, v), feet);
     }
     for (std::size_t k = 0; k < 6 && incidence_.edges_of_vertex()[v].empty(); ++k) {
       Vec3d beside = lists_.vertices[v].position;

@@ -4,7 +4,6 @@
 #include <numeric>
 #include <utility>
 
-#include "blum/complex/incidence.hpp"
 #include "medial_axis/place_vertices.hpp"
 
 namespace blum {
@@ -13,15 +12,14 @@ ShrinkingLists::ShrinkingLists(AxisLists& lists, const Surface& surface, const C
     : lists_(lists),
       paths_(surface),
       cells_({lists.vertices.size(), lists.edges, lists.triangles}),
+      incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
       rank_(lists.vertices.size(), 0),
       into_(lists.vertices.size()) {
   std::iota(into_.begin(), into_.end(), 0U);
-  const Incidence incidence({lists.vertices.size(), lists.edges, lists.triangles}, context);
-  edges_.assign(incidence.edges().begin(), incidence.edges().end());
-  for (std::uint32_t e = 0; e < edges_.size(); ++e) {
-    const std::size_t count = incidence.triangles_of_edge()[e].size();
+  for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
+    const std::size_t count = incidence_.triangles_of_edge()[e].size();
     const int weight = count == 2 ? 0 : count == 1 ? 1 : on_seam;
-    for (const std::uint32_t v : edges_[e]) rank_[v] += weight;
+    for (const std::uint32_t v : incidence_.edges()[e]) rank_[v] += weight;
   }
   // Ends of seams and curves stay where they are, too, so that these do not become shorter.
   for (int& rank : rank_) rank += rank / on_seam == 1 ? 8 * on_seam : 0;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
 #include "medial_axis/axis_lists.hpp"
 #include "medial_axis/shrinking_complex.hpp"
@@ -22,7 +23,8 @@ class ShrinkingLists {
   ShrinkingLists(AxisLists& lists, const Surface& surface, const Context& context);
 
   [[nodiscard]] const ShrinkingComplex& cells() const { return cells_; }
-  [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
+  /// Of the lists at first.
+  [[nodiscard]] const Incidence& incidence() const { return incidence_; }
   [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
   [[nodiscard]] int rank(std::uint32_t v) const { return rank_[v]; }
   /// The vertex that another one was contracted to, or itself.
@@ -41,7 +43,7 @@ class ShrinkingLists {
   AxisLists& lists_;
   SolidPaths paths_;
   ShrinkingComplex cells_;
-  std::vector<std::array<std::uint32_t, 2>> edges_;  ///< at first
+  Incidence incidence_;
   std::vector<int> rank_;
   std::vector<std::uint32_t> into_;
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blum/core/sort_unique.hpp"
+#include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
 
 namespace blum {
@@ -30,7 +31,7 @@ class Unfolder {
     for (int round = 0; round < most_rounds; ++round) {
       throw_if_cancelled(context_);
       bool is_changed = false;
-      for (const auto& [a, b] : lists_.edges()) {
+      for (const auto& [a, b] : lists_.incidence().edges()) {
         const std::uint32_t p = lists_.now(a);
         const std::uint32_t q = lists_.now(b);
         if (p != q && is_folded_at(p, q)) is_changed = unfold_at(p, q) || is_changed;
@@ -49,11 +50,8 @@ class Unfolder {
 
   /// Whether two triangles at an edge lie one over the other; one without area bends nothing.
   [[nodiscard]] bool is_folded(const std::array<std::uint32_t, 2>& edge, std::uint32_t p, std::uint32_t q) const {
-    const Vec3d& at = lists_.position(edge[0]);
-    const Vec3d along = lists_.position(edge[1]) - at;
-    const Vec3d u = cross(along, lists_.position(p) - at);
-    const Vec3d v = cross(along, lists_.position(q) - at);
-    return -dot(u, v) < folded * length(u) * length(v);
+    return cosine_of_bend(lists_.position(edge[0]), lists_.position(edge[1]), lists_.position(p), lists_.position(q)) <
+           folded;
   }
   [[nodiscard]] bool is_folded_at(std::uint32_t a, std::uint32_t b) const {
     std::array<std::uint32_t, 2> thirds{};
