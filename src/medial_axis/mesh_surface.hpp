@@ -28,6 +28,7 @@ class MeshSurface final : public Surface {
     return bounds_solid_ && nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
   }
   [[nodiscard]] std::optional<double> first_crossing(const Vec3d& from, const Vec3d& to) const override;
+  [[nodiscard]] bool crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c) const override;
   [[nodiscard]] Vec3d outwards(std::uint32_t element) const override;
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
 

@@ -319,6 +319,18 @@ std::vector<Stop> landmarks_of(const GovernorField& governors, const CellStructu
   return stops;
 }
 
+Box3 box_of_vertex(const GovernorField& governors, const CellStructure& structure, Cell vertex) {
+  constexpr double rounding = 1e-9;
+  const GridSpec& grid = governors.solid().grid;
+  const ExtraCell* extra = structure.is_extra(vertex) ? &structure.extra()->cell(vertex) : nullptr;
+  const Vec3d margin = grid.spacing * rounding;
+  if (extra != nullptr && extra->box) return {extra->box->lower - margin, extra->box->upper + margin};
+  const Cell place = extra == nullptr ? vertex : extra->place.value_or(vertex);
+  const Vec3d middle = corner_at(grid, structure.lattice().place(node_of(place)));
+  const Vec3d half = grid.spacing * 0.5 + margin;
+  return {middle - half, middle + half};
+}
+
 std::optional<Stop> home_of_cell(const GovernorField& governors, const CellStructure& structure, Cell cell) {
   return structure.is_extra(cell) ? home_of_extra(governors, structure, cell)
                                   : deepest_of(governors, structure.lattice(), cell);

@@ -32,6 +32,9 @@ namespace blum {
 [[nodiscard]] std::vector<Stop> landmarks_of(const GovernorField& governors, const CellStructure& structure,
                                              Cell vertex);
 
+/// The box of the grid that a vertex of a model stands for a component in, a little larger than it is.
+[[nodiscard]] Box3 box_of_vertex(const GovernorField& governors, const CellStructure& structure, Cell vertex);
+
 /// The place of a vertex, as paths begin and end there.
 [[nodiscard]] inline Stop stop_of(const AxisVertex& vertex) {
   return {vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};

@@ -31,9 +31,10 @@ class Shaper {
  public:
   static constexpr std::uint32_t first_own = 0xf0000000U;
 
-  Shaper(const AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors)
+  Shaper(const AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors, const Context& context)
       : piece_(piece), corners_(corners), governors_(governors), paths_(governors.surface()) {
     find_twins();
+    find_homes(context);
   }
 
   /// The chain of an edge that would leave the solid, or that has a twin; nullopt where it is a segment.
@@ -42,9 +43,13 @@ class Shaper {
     const Stop a = stop_at(ends[0]);
     const Stop b = stop_at(ends[1]);
     const bool has_twin = std::binary_search(twins_.begin(), twins_.end(), c);
-    if (!has_twin && paths_.is_straight(a, b)) return std::nullopt;
     std::optional<std::vector<Stop>> between;
-    if (!has_twin) between = paths_.pushed(a, b);
+    if (is_near_extra_[ends[0]] != 0 || is_near_extra_[ends[1]] != 0) between = through_component(c, has_twin);
+    if (between && between->empty() && !has_twin) return std::nullopt;
+    if (!between && !has_twin) {
+      if (paths_.is_straight(a, b)) return std::nullopt;
+      between = paths_.pushed(a, b);
+    }
     if (!between) between = through_middle(c, a, b);
     if (has_twin && (!between || between->empty())) between = {middle_of(a, b)};
     if (!between) return std::nullopt;
@@ -61,12 +66,20 @@ class Shaper {
                                             std::span<const AxisVertex> vertices) const {
     if (touches_extra(c)) return fan(c, outline, vertices);
     const auto stop = [&](std::uint32_t v) { return stop_of(vertices[v]); };
+    const bool is_near_extra = std::any_of(outline.begin(), outline.end(), [&](std::uint32_t v) {
+      return v >= is_near_extra_.size() || is_near_extra_[v] != 0;
+    });
     if (outline.size() == 4) {
-      const auto [p, q, r] = triangles_of(outline, vertices)[0];
-      if (paths_.is_straight(stop(p), stop(r))) return std::nullopt;
+      const auto halves = triangles_of(outline, vertices);
+      const auto& [p, q, r] = halves[0];
+      const auto is_open = [&](const auto& t) { return paths_.is_open(stop(t[0]), stop(t[1]), stop(t[2])); };
+      if (paths_.is_straight(stop(p), stop(r)) && (!is_near_extra || (is_open(halves[0]) && is_open(halves[1])))) {
+        return std::nullopt;
+      }
     }
     Shape shape;
-    if (clip(outline, stop, shape.items)) return shape;
+    // The polygon on the other side of a bent edge would cut off the same corners of it.
+    if (outline.size() == corners_.of_cells()[c].size() && clip(outline, stop, shape.items)) return shape;
     return fan(c, outline, vertices);
   }
 
@@ -89,6 +102,27 @@ class Shaper {
       if (edges[e][0] == edges[e - 1][0] && edges[e][1] == edges[e - 1][1]) twins_.push_back(edges[e][2]);
     }
     std::sort(twins_.begin(), twins_.end());
+  }
+
+  /// Finds a point of the component of each vertex that is extra, or next to such cells: there the solid may have
+  /// holes narrower than a voxel, and a vertex may lie beyond one of them.
+  void find_homes(const Context& context) {
+    const CellStructure& structure = piece_.structure;
+    const auto cells = corners_.vertex_cells();
+    is_near_extra_.assign(cells.size(), 0);
+    homes_.resize(cells.size());
+    if (structure.extra() == nullptr) return;
+    parallel_for(context, cells.size(), cells_per_range, "edges", [&](const WorkRange& range) {
+      for (std::size_t v = range.begin; v < range.end; ++v) {
+        const auto is_special = [&](Cell cell) {
+          return structure.is_extra(cell) || structure.extra()->is_mixed(cell);
+        };
+        bool is_near = is_special(cells[v]);
+        structure.for_each_coface(cells[v], [&](Cell edge) { is_near = is_near || is_special(edge); });
+        is_near_extra_[v] = is_near ? 1 : 0;
+        if (is_near) homes_[v] = home_of(cells[v]);
+      }
+    });
   }
 
   /// Whether a polygon is extra, or has such a corner: then others may have the same corners.
@@ -124,6 +158,52 @@ class Shaper {
     path->insert(path->end(), rest->begin(), rest->end());
     return path;
   }
+  /// The stops between the ends of an edge on a way that can be pulled, in the solid, over the one from component to
+  /// component that the edge stands for: of a straight one, none. nullopt where no way was found.
+  /// @param stops_there  whether a stop in the component of the edge stays in any case.
+  [[nodiscard]] std::optional<std::vector<Stop>> through_component(std::uint32_t c, bool stops_there) const {
+    const std::optional<Stop> middle = home_of(piece_.cells[c].cell);
+    if (!middle) return std::nullopt;
+    const auto ends = corners_.of_cells()[c];
+    auto path = from_component(*middle, ends[0]);
+    const auto rest = from_component(*middle, ends[1]);
+    if (!path || !rest) return std::nullopt;
+    std::reverse(path->begin(), path->end());
+    const std::size_t at_middle = path->size() - 1;
+    path->insert(path->end(), rest->begin() + 1, rest->end());
+    if (!stops_there || at_middle == 0 || at_middle + 1 == path->size())
+      path = paths_.pulled_over_open(std::move(*path));
+    if (path->size() < 2) return std::vector<Stop>{};
+    return std::vector<Stop>(path->begin() + 1, path->end() - 1);
+  }
+
+  /// A way from a point of the component of an edge or polygon to a vertex of it, both included, over a point of the
+  /// vertex's component; pulled tight.
+  [[nodiscard]] std::optional<std::vector<Stop>> from_component(const Stop& start, std::uint32_t vertex) const {
+    const Stop end = stop_at(vertex);
+    std::vector<Stop> way{start};
+    if (const std::optional<Stop>& home = is_near_extra_[vertex] != 0 ? homes_[vertex] : std::nullopt) {
+      if (!add_way(way, *home, vertex)) return std::nullopt;
+    }
+    if (!add_way(way, end, vertex)) return std::nullopt;
+    return paths_.pulled_over_open(std::move(way));
+  }
+
+  /// Adds the stops to another one. @return  whether a way was found.
+  [[nodiscard]] bool add_way(std::vector<Stop>& way, const Stop& to, std::uint32_t vertex) const {
+    if (way.back().at == to.at) return true;
+    if (!paths_.is_straight(way.back(), to)) {
+      const Box3 box = box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
+      const bool is_in_box = holds(box, way.back().at) && holds(box, to.at);
+      const SolidPaths there = is_in_box ? SolidPaths(governors_.surface(), box) : paths_;
+      const std::optional<std::vector<Stop>> between = there.path(way.back(), to, landmarks(vertex));
+      if (!between) return false;
+      way.insert(way.end(), between->begin(), between->end());
+    }
+    way.push_back(to);
+    return true;
+  }
+
   [[nodiscard]] std::vector<Stop> landmarks(std::uint32_t vertex) const {
     return landmarks_of(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
   }
@@ -143,7 +223,10 @@ class Shaper {
       sum += corners.back().at;
     }
     std::vector<Stop> middles;
-    if (const auto home = home_of(piece_.cells[c].cell)) middles.push_back(*home);
+    if (const auto home = home_of(piece_.cells[c].cell)) {
+      if (const auto chains = chains_from(*home, c, outline)) return wheel(outline, corners, *home, *chains);
+      middles.push_back(*home);
+    }
     const Vec3d mean = sum / static_cast<double>(outline.size());
     if (const auto at = paths_.stop_at(mean, {corners[0].nearest.point, corners[0].nearest.element, 7})) {
       middles.push_back(*at);
@@ -168,25 +251,49 @@ class Shaper {
       for (std::size_t m = first; m < std::min(middles.size(), first + most_tries) && !is_good(); ++m) look_from(m);
     }
     if (middles.empty()) middles.push_back(paths_.inside_near(mean, corners[0]));
-    return wheel(c, outline, corners, middles[best]);
+    return wheel(outline, corners, middles[best], any_chains(c, middles[best], corners));
   }
 
-  /// Triangles around a middle, between chains to the corners that it is joined to.
-  [[nodiscard]] Shape wheel(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
-                            const Stop& middle) const {
-    Shape shape;
-    shape.own.push_back(vertex_at(middle));
-    std::vector<std::pair<std::size_t, std::vector<Stop>>> chains;  // by corner
-    for (std::size_t k = 0; k < outline.size(); ++k) {
+  /// The stops between a middle and places of an outline, by place.
+  using Chains = std::vector<std::pair<std::size_t, std::vector<Stop>>>;
+
+  /// Those to the corners of a polygon from a point of its component, through the components of the corners; nullopt
+  /// where one of them was not found.
+  [[nodiscard]] std::optional<Chains> chains_from(const Stop& home, std::uint32_t c,
+                                                  const std::vector<std::uint32_t>& outline) const {
+    Chains chains;
+    for (const std::uint32_t corner : corners_.of_cells()[c]) {
+      const auto way = from_component(home, corner);
+      if (!way) return std::nullopt;
+      const auto place = std::find(outline.begin(), outline.end(), corner) - outline.begin();
+      const auto last = way->size() > 1 ? way->end() - 1 : way->end();
+      chains.emplace_back(static_cast<std::size_t>(place), std::vector<Stop>(way->begin() + 1, last));
+    }
+    std::sort(chains.begin(), chains.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    return chains;
+  }
+
+  /// Those to places of an outline that a middle can be joined to, whatever the solid has between them.
+  [[nodiscard]] Chains any_chains(std::uint32_t c, const Stop& middle, std::span<const Stop> corners) const {
+    Chains chains;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
       if (auto between = paths_.pushed(middle, corners[k])) chains.emplace_back(k, std::move(*between));
     }
     if (chains.size() < 2) {
       const std::vector<Stop> landmarks = around(c);
       chains.clear();
-      for (std::size_t k = 0; k < outline.size(); ++k) {
+      for (std::size_t k = 0; k < corners.size(); ++k) {
         chains.emplace_back(k, paths_.path(middle, corners[k], landmarks).value_or(std::vector<Stop>{}));
       }
     }
+    return chains;
+  }
+
+  /// Triangles around a middle, between chains to the corners that it is joined to.
+  [[nodiscard]] Shape wheel(const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
+                            const Stop& middle, const Chains& chains) const {
+    Shape shape;
+    shape.own.push_back(vertex_at(middle));
     std::vector<std::vector<std::uint32_t>> spokes;
     for (const auto& [corner, between] : chains) {
       std::vector<std::uint32_t>& spoke = spokes.emplace_back(1, first_own);
@@ -223,24 +330,35 @@ class Shaper {
     return all;
   }
 
-  /// Fills a polygon of a few corners: cuts off the shortest ears, of these first such that stay in the solid.
+  /// Fills a polygon of a few corners: cuts off the shortest ears, of these first such that no part of the surface
+  /// comes through, then such that stay in the solid. Where a polygon has vertices of its own, no two others are
+  /// joined: another polygon that has both may join them as well.
   /// @return  whether all do.
   template <class StopOf>
   bool clip(std::vector<std::uint32_t> polygon, const StopOf& stop_of_place, std::vector<std::uint32_t>& items) const {
     bool stays = true;
+    const auto is_own = [](std::uint32_t place) { return place >= first_own; };
+    const bool has_own = std::any_of(polygon.begin(), polygon.end(), is_own);
     while (polygon.size() > 3) {
       const std::size_t size = polygon.size();
       std::vector<std::pair<double, std::size_t>> ears;
       const auto before = [&](std::size_t k) { return polygon[k == 0 ? size - 1 : k - 1]; };
       const auto after = [&](std::size_t k) { return polygon[k + 1 == size ? 0 : k + 1]; };
       for (std::size_t k = 0; k < size; ++k) {
+        if (has_own && !is_own(before(k)) && !is_own(after(k))) continue;
         ears.emplace_back(squared_length(stop_of_place(after(k)).at - stop_of_place(before(k)).at), k);
       }
       std::sort(ears.begin(), ears.end());
       const auto is_joined = [&](const std::pair<double, std::size_t>& ear) {
         return paths_.is_straight(stop_of_place(before(ear.second)), stop_of_place(after(ear.second)));
       };
-      auto ear = std::find_if(ears.begin(), ears.end(), is_joined);
+      const auto is_open = [&](const std::pair<double, std::size_t>& ear) {
+        const std::size_t k = ear.second;
+        return is_joined(ear) &&
+               paths_.is_open(stop_of_place(before(k)), stop_of_place(polygon[k]), stop_of_place(after(k)));
+      };
+      auto ear = std::find_if(ears.begin(), ears.end(), is_open);
+      if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), is_joined);
       if (ear == ears.end()) {
         stays = false;
         ear = ears.begin();
@@ -258,6 +376,8 @@ class Shaper {
   const GovernorField& governors_;
   SolidPaths paths_;
   std::vector<std::uint32_t> twins_;
+  std::vector<std::uint8_t> is_near_extra_;  ///< of each vertex place
+  std::vector<std::optional<Stop>> homes_;   ///< of those
 };
 
 /// Shapes of cells, where they are more than their corners.
@@ -334,7 +454,7 @@ void shape_cells(AxisPiece& piece, const AxisCorners& corners, const GovernorFie
   Shapes filled;
   const Outlines outlines(corners, bent);
   if (governors.solid().extra != nullptr) {
-    const Shaper shaper(piece, corners, governors);
+    const Shaper shaper(piece, corners, governors, context);
     bent = shapes_of(piece, 1, context, [&](std::uint32_t c) { return shaper.bent(c); });
     take_vertices(piece, bent);
     filled =

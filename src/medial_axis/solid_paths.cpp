@@ -36,6 +36,7 @@ Footprint foot_of(const NearestPoint& nearest) {
 }  // namespace
 
 std::optional<Stop> SolidPaths::stop_at(const Vec3d& at, const Footprint& near) const {
+  if (within_ && !holds(*within_, at)) return std::nullopt;
   const NearestPoint nearest = surface_.nearest(at, near);
   if (!(nearest.distance > 0) || !surface_.is_inside(at, nearest)) return std::nullopt;
   return Stop{at, nearest};
@@ -53,6 +54,28 @@ bool SolidPaths::is_straight(const Stop& a, const Stop& b) const {
   // A ball as large as a point is deep lies in the solid.
   if (a.nearest.distance + b.nearest.distance >= size * (1 + overlap)) return true;
   return !surface_.first_crossing(a.at, b.at);
+}
+
+bool SolidPaths::is_open(const Stop& a, const Stop& b, const Stop& c) const {
+  const auto holds_others = [](const Stop& ball, const Stop& p, const Stop& q) {
+    const double reach = ball.nearest.distance * (1 - overlap);
+    return length(p.at - ball.at) <= reach && length(q.at - ball.at) <= reach;
+  };
+  if (holds_others(a, b, c) || holds_others(b, c, a) || holds_others(c, a, b)) return true;
+  return !surface_.crosses(a.at, b.at, c.at);
+}
+
+std::vector<Stop> SolidPaths::pulled_over_open(std::vector<Stop> path) const {
+  for (bool has_changed = true; has_changed;) {
+    has_changed = false;
+    for (std::size_t k = 1; k + 1 < path.size();) {
+      const bool goes = is_straight(path[k - 1], path[k + 1]) && is_open(path[k - 1], path[k], path[k + 1]);
+      if (goes) path.erase(path.begin() + static_cast<std::ptrdiff_t>(k));
+      has_changed = has_changed || goes;
+      if (!goes) ++k;
+    }
+  }
+  return path;
 }
 
 /// As far inside as a point is outside, or in the middle where the solid is thin.
@@ -132,8 +155,10 @@ std::optional<std::vector<Stop>> SolidPaths::pushed(const Stop& a, const Stop& b
   return std::nullopt;
 }
 
-std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, std::span<const Stop> landmarks) const {
+std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, std::span<const Stop> marks) const {
   if (auto found = pushed(a, b)) return found;
+  std::vector<Stop> landmarks(marks.begin(), marks.end());
+  if (within_) std::erase_if(landmarks, [&](const Stop& stop) { return !holds(*within_, stop.at); });
   if (auto found = shortest(a, b, landmarks, {any_length, most_looks})) return found;
   std::vector<Stop> more(landmarks.begin(), landmarks.end());
   for (const Stop& landmark : landmarks) {

@@ -15,11 +15,19 @@ struct Stop {
   NearestPoint nearest;  ///< of the surface
 };
 
+/// Whether a box, its sides included, holds a point.
+[[nodiscard]] inline bool holds(const Box3& box, const Vec3d& at) {
+  return max(box.lower, at) == at && min(box.upper, at) == at;
+}
+
 /// Finds chains of segments that do not leave a solid.
 class SolidPaths {
  public:
   /// @param surface  that bounds the solid. It must stay.
   explicit SolidPaths(const Surface& surface) : surface_(surface) {}
+
+  /// @param within  where all stops must lie that are found: so do the paths between them.
+  SolidPaths(const Surface& surface, const Box3& within) : surface_(surface), within_(within) {}
 
   /// A point, if it lies in the solid and not on its surface.
   [[nodiscard]] std::optional<Stop> stop_at(const Vec3d& at, const Footprint& near) const;
@@ -29,6 +37,13 @@ class SolidPaths {
 
   /// Whether a segment stays in the solid, its ends being in it.
   [[nodiscard]] bool is_straight(const Stop& a, const Stop& b) const;
+
+  /// Whether the sides of a triangle can be pulled over it: no part of the surface comes through it.
+  [[nodiscard]] bool is_open(const Stop& a, const Stop& b, const Stop& c) const;
+
+  /// A path without those stops that the segments next to them can be pulled over: ends stay, and what the path runs
+  /// around.
+  [[nodiscard]] std::vector<Stop> pulled_over_open(std::vector<Stop> path) const;
 
   /// The stops between two on the way that pushing finds, if it finds any; none where the segment stays in the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> pushed(const Stop& a, const Stop& b) const;
@@ -63,6 +78,7 @@ class SolidPaths {
   [[nodiscard]] std::vector<Stop> pulled_tight(const Stop& a, const Stop& b, const std::vector<Stop>& between) const;
 
   const Surface& surface_;
+  std::optional<Box3> within_;
 };
 
 }  // namespace blum

@@ -56,6 +56,9 @@ class Surface {
     return std::nullopt;
   }
 
+  /// Whether a triangle, which need not be one of the surface, and the surface cross; false where that is not known.
+  [[nodiscard]] virtual bool crosses(const Vec3d& /*a*/, const Vec3d& /*b*/, const Vec3d& /*c*/) const { return false; }
+
   /// The direction that an element faces away from the solid, of unit length; zero where that is not known.
   [[nodiscard]] virtual Vec3d outwards(std::uint32_t /*element*/) const { return {}; }
 

@@ -42,6 +42,9 @@ ExtraCell extra_cell(const detail::ModelCells& cells, std::size_t k, int exponen
   for (std::size_t end = 0; end < 2; ++end) {
     cell.ends[end] = {scaled(cells.ends[k][end].point, exponent), cells.ends[k][end].triangle};
   }
+  if (const std::optional<Box3>& box = cells.boxes[k]) {
+    cell.box = Box3{scaled(box->lower, exponent), scaled(box->upper, exponent)};
+  }
   return cell;
 }
 

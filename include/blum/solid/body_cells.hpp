@@ -29,6 +29,7 @@ struct ExtraCell {
   /// The cell of the voxels that lies there; none where the model's cubes were split.
   std::optional<Cell> place = {};
   Vec3d witness;            ///< a point of the solid's component that the cell stands for, mesh units
+  std::optional<Box3> box;  ///< vertices in split cubes: of what is left of the cube, mesh units
   std::array<End, 2> ends;  ///< polygons: of the interval that it stands for
 };
 

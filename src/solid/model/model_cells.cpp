@@ -221,7 +221,10 @@ class Assembly {
       name(ids.corners, 3, cells.corners().size(), [&](std::uint32_t k) { return region.is_inside(k) ? 1U : 0U; });
     }
     out_.witness.assign(out_.size(), Vec3d{});
-    if (voxels_ != nullptr) out_.ends.assign(out_.size(), {});
+    if (voxels_ != nullptr) {
+      out_.ends.assign(out_.size(), {});
+      out_.boxes.assign(out_.size(), {});
+    }
     has_witness_.assign(out_.size(), false);
   }
 
@@ -343,6 +346,8 @@ class Assembly {
       const std::size_t others = region.components_of_box(b) - bodies.size();
       for (std::uint32_t k = 0; k < region.components_of_box(b); ++k) {
         begin_cell();
+        const BoxCell& box = region.boxes()[b];
+        if (voxels_ != nullptr) out_.boxes[out_.first_face.size() - 1] = Box3{box.low, box.high};
         if (k >= others) set_witness(mesh_.vertices()[bodies[k - others]]);
       }
     }

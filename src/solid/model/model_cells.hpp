@@ -31,6 +31,8 @@ struct ModelCells {
   std::vector<Vec3d> witness;                    ///< of each cell: a point of its component
   std::vector<std::array<IntervalEnd, 2>> ends;  ///< of each extra cell: of a polygon's interval, the lower one first
 
+  std::vector<std::optional<Box3>> boxes;  ///< of each extra cell: of vertices in split cubes
+
   [[nodiscard]] std::size_t size() const { return dimension.size(); }
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::uint32_t cell) const {
     return std::span(faces).subspan(first_face[cell], first_face[cell + 1] - first_face[cell]);
