@@ -65,6 +65,14 @@ bool SolidPaths::is_open(const Stop& a, const Stop& b, const Stop& c) const {
   return !surface_.crosses(a.at, b.at, c.at);
 }
 
+bool SolidPaths::can_sweep(const std::array<Stop, 2>& from, const std::array<Stop, 2>& to) const {
+  const auto is_swept = [&](std::size_t first, std::size_t second) {
+    return is_straight(from[second], to[first]) && is_open(from[first], from[second], to[first]) &&
+           is_open(from[second], to[first], to[second]);
+  };
+  return is_swept(0, 1) || is_swept(1, 0);
+}
+
 std::vector<Stop> SolidPaths::pulled_over_open(std::vector<Stop> path) const {
   for (bool has_changed = true; has_changed;) {
     has_changed = false;

@@ -1,6 +1,7 @@
 // Blum: paths that stay in a solid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,6 +41,10 @@ class SolidPaths {
 
   /// Whether the sides of a triangle can be pulled over it: no part of the surface comes through it.
   [[nodiscard]] bool is_open(const Stop& a, const Stop& b, const Stop& c) const;
+
+  /// Whether a segment in the solid can be moved to where another one is without leaving it, ends along straight lines:
+  /// `false` also where that is not easy to see.
+  [[nodiscard]] bool can_sweep(const std::array<Stop, 2>& from, const std::array<Stop, 2>& to) const;
 
   /// A path without those stops that the segments next to them can be pulled over: ends stay, and what the path runs
   /// around.

@@ -436,7 +436,7 @@ class Fitter {
     });
     lists_.vertices = std::move(after);
     for (bool is_changed = true; is_changed;) {
-      const std::vector<std::uint8_t> leaves = edges_that_leave(is_moved);
+      const std::vector<std::uint8_t> leaves = edges_that_leave(is_moved, before);
       is_changed = false;
       for (std::uint32_t e = 0; e < leaves.size(); ++e) {
         if (leaves[e] == 0) continue;
@@ -450,13 +450,18 @@ class Fitter {
     }
   }
 
-  [[nodiscard]] std::vector<std::uint8_t> edges_that_leave(const std::vector<std::uint8_t>& is_moved) const {
+  /// Edges that leave the solid, or that swept over a part of the surface on their way.
+  [[nodiscard]] std::vector<std::uint8_t> edges_that_leave(const std::vector<std::uint8_t>& is_moved,
+                                                           const std::vector<AxisVertex>& before) const {
     std::vector<std::uint8_t> leaves(incidence_.edges().size(), 0);
     parallel_for(context_, leaves.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
       for (std::size_t e = range.begin; e < range.end; ++e) {
         const auto& [a, b] = incidence_.edges()[e];
         if (is_moved[a] == 0 && is_moved[b] == 0) continue;
-        leaves[e] = paths_.is_straight(stop_of(lists_.vertices[a]), stop_of(lists_.vertices[b])) ? 0 : 1;
+        const std::array<Stop, 2> now{stop_of(lists_.vertices[a]), stop_of(lists_.vertices[b])};
+        const bool stays =
+            paths_.is_straight(now[0], now[1]) && paths_.can_sweep({stop_of(before[a]), stop_of(before[b])}, now);
+        leaves[e] = stays ? 0 : 1;
       }
     });
     return leaves;

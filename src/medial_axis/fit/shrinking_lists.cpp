@@ -32,10 +32,13 @@ std::uint32_t ShrinkingLists::now(std::uint32_t v) const {
 
 bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to) {
   if (!cells_.may_contract(from, to)) return false;
+  const Stop source = stop_of(lists_.vertices[from]);
   const Stop target = stop_of(lists_.vertices[to]);
   bool stays = true;
   const auto look = [&](std::uint32_t v) {
-    if (stays && v != to) stays = paths_.is_straight(target, stop_of(lists_.vertices[v]));
+    if (!stays || v == to) return;
+    const Stop other = stop_of(lists_.vertices[v]);
+    stays = paths_.is_straight(target, other) && paths_.is_open(source, target, other);
   };
   cells_.for_each_triangle(from, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
     look(p);
