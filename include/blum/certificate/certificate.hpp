@@ -141,7 +141,7 @@ struct Description<EdgeCheck> {
 /// linking numbers of the axis's loops with closed paths along the surface that generate the homology of what is
 /// outside, and winding numbers of its closed surfaces around a point of each void (Alexander duality). A loop that
 /// runs round nothing, or twice round one tunnel and never round another, is found out and refused. A triangle across a
-/// hole is found, too: with one, no more than numbers is said to be proven. Looked at where Betti numbers agree and
+/// hole is found out, too, and refused. Looked at where Betti numbers agree and
 /// edges lie in the solid; not for tunnels and voids of voxels, of which numbers alone are compared.
 struct HomologyCheck {
   std::size_t paths = 0;      ///< closed ones along the surface that linking numbers were taken with

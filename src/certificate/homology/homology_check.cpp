@@ -192,12 +192,14 @@ HomologyCheck check_homology(const AxisInSolid& given, bool edges_hold, std::vec
                            counted(static_cast<std::size_t>(body.solid[2]), "void", "voids") + " of " + name(b));
     }
   }
+  if (check.across > 0) {
+    check.holds = false;
+    mismatches.push_back(counted(check.across, "triangle of the axis spans", "triangles of the axis span") +
+                         " a tunnel of the solid, the first one at " + verifier::place_text(check.where));
+  }
   check.shown = sentence(check.proven);
   if (complement == nullptr && needs_complement) check.shown += ", and no more: it is made of voxels";
-  if (check.across > 0) {
-    check.shown += ", and no more: " + counted(check.across, "triangle spans", "triangles span") +
-                   " a tunnel of the solid, the first one at " + verifier::place_text(check.where);
-  }
+  if (check.across > 0) check.shown += ", and no more: triangles span a tunnel of the solid";
   if (check.doubtful > 0) {
     check.shown += ", and no more: " + counted(check.doubtful, "edge touches", "edges touch") + " the surface";
   }
