@@ -294,6 +294,25 @@ TEST(MedialHostileMesh, AThinPlateKeepsItsHoles) {
   }
 }
 
+/// Two vertices on either side of a narrow hole may see each other: edges and triangles must still run as the solid
+/// does.
+TEST(MedialHostileMesh, NoTriangleSpansAHoleNarrowerThanAVoxel) {
+  for (const double radius : {0.02, 0.005}) {
+    for (const int holes : {1, 2}) {
+      SCOPED_TRACE(::testing::Message() << "radius " << radius << ", holes " << holes * holes);
+      TriangleMesh plate = make_plate({.holes_x = holes, .holes_y = holes, .hole_radius = radius});
+      for (Vec3d& v : plate.vertices) v = test::turned(v);
+      const MedialAxis axis = medial_axis(plate, {.resolution = 24});
+      for (const Complex& complex : {axis.simplify(20), axis.fitted(20), axis.fitted(60)}) {
+        const Certificate found = certify(complex, plate);
+        EXPECT_TRUE(found.holds());
+        EXPECT_EQ(found.homology.across, 0U);
+        EXPECT_EQ(found.homology.proven, Proven::homology) << found.homology.shown;
+      }
+    }
+  }
+}
+
 TEST(MedialHostileMesh, BodiesThatTouchStayApart) {
   const TriangleMesh box = test::box_between({0, 0, 0}, {1, 1, 1});
   for (const Vec3d& offset : {Vec3d{1, 0, 0}, Vec3d{1, 0.3, 0.2}, Vec3d{1, 1, 0}, Vec3d{1, 1, 1}, Vec3d{1.001, 0, 0}}) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,15 @@ namespace blum::test {
 inline TriangleMesh moved(TriangleMesh mesh, double scale, const Vec3d& offset = {}) {
   for (Vec3d& v : mesh.vertices) v = v * scale + offset;
   return mesh;
+}
+
+/// A point after turns about two axes, by angles that no grid likes.
+inline Vec3d turned(const Vec3d& p) {
+  constexpr double about_z = 0.3;
+  constexpr double about_x = 0.5;
+  const Vec3d q{std::cos(about_z) * p.x - std::sin(about_z) * p.y, std::sin(about_z) * p.x + std::cos(about_z) * p.y,
+                p.z};
+  return {q.x, std::cos(about_x) * q.y - std::sin(about_x) * q.z, std::sin(about_x) * q.y + std::cos(about_x) * q.z};
 }
 
 /// Each triangle with its own three vertices.
