@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <functional>
 #include <optional>
+#include <queue>
+#include <unordered_set>
+#include <utility>
 
 #include "blum/geometry/triangle_contact.hpp"
 
@@ -34,6 +38,25 @@ Footprint closest_on_triangle(const Vec3d& query, const Vec3d& a, const Vec3d& b
     if (squared_length(query - other.point) < squared_length(query - best.point)) best = other;
   }
   return best;
+}
+
+/// The middle of the part of a segment in a box.
+std::optional<Vec3d> middle_within(const Vec3d& a, const Vec3d& b, const Box3& box) {
+  double low = 0;
+  double high = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double step = b[axis] - a[axis];
+    const double to_lower = box.lower[axis] - a[axis];
+    const double to_upper = box.upper[axis] - a[axis];
+    if (step == 0) {
+      if (to_lower > 0 || to_upper < 0) return std::nullopt;
+      continue;
+    }
+    low = std::max(low, std::min(to_lower / step, to_upper / step));
+    high = std::min(high, std::max(to_lower / step, to_upper / step));
+  }
+  if (!(low <= high)) return std::nullopt;
+  return a + (b - a) * (0.5 * (low + high));
 }
 
 }  // namespace
@@ -96,6 +119,63 @@ bool MeshSurface::crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c) const 
     return !is_found;
   });
   return is_found;
+}
+
+/// Calls visit(other triangle, its ends) for each side of a triangle that another one shares.
+template <class Visit>
+void MeshSurface::for_each_neighbour(std::uint32_t triangle, const Visit& visit) const {
+  const Triangle& own = mesh_.triangles[triangle];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t a = own[k];
+    const std::uint32_t b = own[(k + 1) % 3];
+    for (std::uint32_t at = first_[a]; at < first_[a + 1]; ++at) {
+      const Triangle& other = mesh_.triangles[triangles_[at]];
+      if (triangles_[at] != triangle && (other[0] == b || other[1] == b || other[2] == b)) visit(triangles_[at], a, b);
+    }
+  }
+}
+
+std::optional<std::vector<SurfacePoint>> MeshSurface::way_over(std::uint32_t from, std::uint32_t to,
+                                                               const Box3& within) const {
+  constexpr std::size_t most_triangles = 2000;
+  struct Reached {
+    std::uint32_t triangle;
+    std::size_t before;
+    Vec3d entry;
+    double way;
+  };
+  std::vector<Reached> reached;
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
+  std::unordered_set<std::uint32_t> done;
+  const Triangle& first = mesh_.triangles[from];
+  const Vec3d start = (mesh_.vertices[first[0]] + mesh_.vertices[first[1]] + mesh_.vertices[first[2]]) / 3.0;
+  reached.push_back({from, 0, max(within.lower, min(within.upper, start)), 0});
+  next.emplace(0.0, 0);
+  while (!next.empty() && done.size() < most_triangles) {
+    const std::size_t at = next.top().second;
+    next.pop();
+    const Reached here = reached[at];
+    if (!done.insert(here.triangle).second) continue;
+    if (here.triangle == to) {
+      std::vector<SurfacePoint> way;
+      for (std::size_t n = at; n != 0; n = reached[n].before) {
+        const Vec3d sum = outwards(reached[n].triangle) + outwards(reached[reached[n].before].triangle);
+        way.push_back({reached[n].entry, squared_length(sum) > 0 ? -sum / length(sum) : sum});
+      }
+      std::reverse(way.begin(), way.end());
+      return way;
+    }
+    for_each_neighbour(here.triangle, [&](std::uint32_t other, std::uint32_t a, std::uint32_t b) {
+      if (done.contains(other)) return;
+      const std::optional<Vec3d> entry = middle_within(mesh_.vertices[a], mesh_.vertices[b], within);
+      if (!entry) return;
+      const double way = here.way + length(*entry - here.entry);
+      next.emplace(way, reached.size());
+      reached.push_back({other, at, *entry, way});
+    });
+  }
+  return std::nullopt;
 }
 
 Vec3d MeshSurface::outwards(std::uint32_t element) const {

@@ -29,10 +29,14 @@ class MeshSurface final : public Surface {
   }
   [[nodiscard]] std::optional<double> first_crossing(const Vec3d& from, const Vec3d& to) const override;
   [[nodiscard]] bool crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c) const override;
+  [[nodiscard]] std::optional<std::vector<SurfacePoint>> way_over(std::uint32_t from, std::uint32_t to,
+                                                                  const Box3& within) const override;
   [[nodiscard]] Vec3d outwards(std::uint32_t element) const override;
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
 
  private:
+  template <class Visit>
+  void for_each_neighbour(std::uint32_t triangle, const Visit& visit) const;
   [[nodiscard]] Footprint closest_on(std::uint32_t triangle, const Vec3d& query) const;
 
   MeshView mesh_;

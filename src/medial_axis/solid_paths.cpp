@@ -168,6 +168,7 @@ std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, 
   std::vector<Stop> landmarks(marks.begin(), marks.end());
   if (within_) std::erase_if(landmarks, [&](const Stop& stop) { return !holds(*within_, stop.at); });
   if (auto found = shortest(a, b, landmarks, {any_length, most_looks})) return found;
+  if (auto found = along_walls(a, b)) return found;
   std::vector<Stop> more(landmarks.begin(), landmarks.end());
   for (const Stop& landmark : landmarks) {
     for (const Stop* end : {&a, &b}) {
@@ -184,6 +185,92 @@ std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, 
   }
   if (auto found = shortest(a, b, more, {any_length, most_looks})) return found;
   return over_strewn(a, b, landmarks);
+}
+
+/// The wall closest to a stop, and the one on the opposite side of a thin part.
+std::vector<SolidPaths::Wall> SolidPaths::walls_of(const Stop& stop) const {
+  std::vector<Wall> walls;
+  const auto add = [&](const Vec3d& at) {
+    const NearestPoint foot = surface_.nearest(at, foot_of(stop.nearest));
+    walls.push_back({{foot.point, -surface_.outwards(foot.element)}, foot.element});
+  };
+  add(stop.nearest.point);
+  constexpr double thick = 64;
+  const Vec3d away = stop.at - stop.nearest.point;
+  if (const auto opposite = surface_.first_crossing(stop.at, stop.at + away * thick)) {
+    add(stop.at + away * (thick * *opposite));
+  }
+  return walls;
+}
+
+/// A path beside a way over the surface.
+std::optional<std::vector<Stop>> SolidPaths::along_walls(const Stop& a, const Stop& b) const {
+  Box3 box;
+  if (within_) {
+    box = *within_;
+  } else {
+    const double reach = 2 * length(b.at - a.at);
+    for (const Vec3d& at : {a.at, b.at}) {
+      box.extend(at - Vec3d{reach, reach, reach});
+      box.extend(at + Vec3d{reach, reach, reach});
+    }
+  }
+  const std::vector<Wall> ends = walls_of(b);
+  for (const Wall& from : walls_of(a)) {
+    for (const Wall& to : ends) {
+      const auto over = surface_.way_over(from.element, to.element, box);
+      if (!over) continue;
+      std::vector<SurfacePoint> way;
+      if (holds(box, from.point.at)) way.push_back(from.point);
+      way.insert(way.end(), over->begin(), over->end());
+      if (holds(box, to.point.at)) way.push_back(to.point);
+      if (auto found = inside_of(way, a, b)) return found;
+      if (auto found = pushed_beside(way, a, b)) return found;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The points of a way over the surface, moved a little into the solid, less and less until all segments stay in it;
+/// then into the middle of what is thin there.
+std::optional<std::vector<Stop>> SolidPaths::inside_of(std::span<const SurfacePoint> way, const Stop& a,
+                                                       const Stop& b) const {
+  const double size = length(b.at - a.at);
+  for (double depth = 1e-2 * size; depth > 1e-8 * size; depth *= 0.1) {
+    std::vector<Stop> path{a};
+    for (const SurfacePoint& point : way) {
+      const std::optional<Stop> stop = stop_at(point.at + point.inwards * depth, foot_of(a.nearest));
+      if (!stop || !is_straight(path.back(), *stop)) break;
+      path.push_back(*stop);
+    }
+    if (path.size() != way.size() + 1 || !is_straight(path.back(), b)) continue;
+    path.push_back(b);
+    for (std::size_t k = 1; k + 1 < path.size(); ++k) {
+      const Stop middle = centred(path[k]);
+      if (is_straight(path[k - 1], middle) && is_straight(middle, path[k + 1])) path[k] = middle;
+    }
+    return std::vector<Stop>(path.begin() + 1, path.end() - 1);
+  }
+  return std::nullopt;
+}
+
+/// Pushed from one point of a way over the surface to the next, each in the middle of what is behind it.
+std::optional<std::vector<Stop>> SolidPaths::pushed_beside(std::span<const SurfacePoint> way, const Stop& a,
+                                                           const Stop& b) const {
+  std::vector<Stop> path{a};
+  const auto join = [&](const Stop& to) {
+    const std::optional<std::vector<Stop>> between = pushed(path.back(), to);
+    if (!between) return false;
+    path.insert(path.end(), between->begin(), between->end());
+    path.push_back(to);
+    return true;
+  };
+  for (const SurfacePoint& point : way) {
+    const std::optional<Stop> stop = pushed_in(point.at - point.inwards * (1e-3 * length(b.at - a.at)), a);
+    if (stop && !join(*stop)) return std::nullopt;
+  }
+  if (!join(b)) return std::nullopt;
+  return std::vector<Stop>(path.begin() + 1, path.end() - 1);
 }
 
 /// A path over landmarks and points strewn around two stops, finer and finer; at last also over the creases between

@@ -54,7 +54,8 @@ class SolidPaths {
   [[nodiscard]] std::optional<std::vector<Stop>> pushed(const Stop& a, const Stop& b) const;
 
   /// The stops between two such that segments from one to the next stay in the solid; nullopt where none were found.
-  /// Tried in turn: none; those of pushing; some of the landmarks; these and what is met when walking along thin parts;
+  /// Tried in turn: none; those of pushing; some of the landmarks; along the walls next to the two; landmarks and what
+  /// is met when walking along thin parts;
   /// points strewn around the two, finer and finer.
   /// @param landmarks  points in the same part of the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> path(const Stop& a, const Stop& b,
@@ -68,6 +69,17 @@ class SolidPaths {
   [[nodiscard]] std::optional<Stop> at_crease(const Stop& a, const Stop& b) const;
   [[nodiscard]] std::optional<Stop> pushed_in(const Vec3d& outside, const Stop& near) const;
   [[nodiscard]] Stop centred(const Stop& stop) const;
+  [[nodiscard]] std::optional<std::vector<Stop>> along_walls(const Stop& a, const Stop& b) const;
+  [[nodiscard]] std::optional<std::vector<Stop>> inside_of(std::span<const SurfacePoint> way, const Stop& a,
+                                                           const Stop& b) const;
+  [[nodiscard]] std::optional<std::vector<Stop>> pushed_beside(std::span<const SurfacePoint> way, const Stop& a,
+                                                               const Stop& b) const;
+  /// A point of the surface that a stop sees.
+  struct Wall {
+    SurfacePoint point;
+    std::uint32_t element;
+  };
+  [[nodiscard]] std::vector<Wall> walls_of(const Stop& stop) const;
   void walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const;
   /// What a search may do: no step is longer than `longest`, and so many segments are looked at.
   struct SearchLimits {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
@@ -22,6 +23,12 @@ struct NearestPoint {
   double distance = 0;
   SiteId site;
   std::uint32_t element = 0;  ///< one that the site lies on
+};
+
+/// A point of a surface, and where the solid is.
+struct SurfacePoint {
+  Vec3d at;
+  Vec3d inwards;  ///< unit length: between the directions of the elements there
 };
 
 /// What the construction of a medial axis asks of the boundary of a solid. Functions may be called from many threads.
@@ -58,6 +65,13 @@ class Surface {
 
   /// Whether a triangle, which need not be one of the surface, and the surface cross; false where that is not known.
   [[nodiscard]] virtual bool crosses(const Vec3d& /*a*/, const Vec3d& /*b*/, const Vec3d& /*c*/) const { return false; }
+
+  /// Points on a short way over the surface from one element to another, each on an edge between two elements; nullopt
+  /// where there is none within a box, where it is long, and where elements have no edges.
+  [[nodiscard]] virtual std::optional<std::vector<SurfacePoint>> way_over(std::uint32_t /*from*/, std::uint32_t /*to*/,
+                                                                          const Box3& /*within*/) const {
+    return std::nullopt;
+  }
 
   /// The direction that an element faces away from the solid, of unit length; zero where that is not known.
   [[nodiscard]] virtual Vec3d outwards(std::uint32_t /*element*/) const { return {}; }
