@@ -169,6 +169,15 @@ std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, 
   if (within_) std::erase_if(landmarks, [&](const Stop& stop) { return !holds(*within_, stop.at); });
   if (auto found = shortest(a, b, landmarks, {any_length, most_looks})) return found;
   if (auto found = along_walls(a, b)) return found;
+  for (const Stop& landmark : landmarks) {
+    auto found = pushed_or_along_walls(a, landmark);
+    if (!found) continue;
+    const auto rest = pushed_or_along_walls(landmark, b);
+    if (!rest) continue;
+    found->push_back(landmark);
+    found->insert(found->end(), rest->begin(), rest->end());
+    return found;
+  }
   std::vector<Stop> more(landmarks.begin(), landmarks.end());
   for (const Stop& landmark : landmarks) {
     for (const Stop* end : {&a, &b}) {
@@ -229,6 +238,11 @@ std::optional<std::vector<Stop>> SolidPaths::along_walls(const Stop& a, const St
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::vector<Stop>> SolidPaths::pushed_or_along_walls(const Stop& a, const Stop& b) const {
+  auto found = pushed(a, b);
+  return found ? found : along_walls(a, b);
 }
 
 /// The points of a way over the surface, moved a little into the solid, less and less until all segments stay in it;
