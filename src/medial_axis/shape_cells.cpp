@@ -224,7 +224,7 @@ class Shaper {
     }
     std::vector<Stop> middles;
     if (const auto home = home_of(piece_.cells[c].cell)) {
-      if (const auto chains = chains_from(*home, c, outline)) return wheel(outline, corners, *home, *chains);
+      if (const auto chains = chains_from(*home, c, outline, corners)) return wheel(outline, corners, *home, *chains);
       middles.push_back(*home);
     }
     const Vec3d mean = sum / static_cast<double>(outline.size());
@@ -257,20 +257,47 @@ class Shaper {
   /// The stops between a middle and places of an outline, by place.
   using Chains = std::vector<std::pair<std::size_t, std::vector<Stop>>>;
 
-  /// Those to the corners of a polygon from a point of its component, through the components of the corners; nullopt
-  /// where one of them was not found.
+  /// Those to the corners of a polygon, and to what is between them, from a point of its component, through the
+  /// components of the corners; nullopt where one to a corner was not found.
+  /// @param stops  at the outline.
   [[nodiscard]] std::optional<Chains> chains_from(const Stop& home, std::uint32_t c,
-                                                  const std::vector<std::uint32_t>& outline) const {
+                                                  const std::vector<std::uint32_t>& outline,
+                                                  std::span<const Stop> stops) const {
+    const auto corners = corners_.of_cells()[c];
+    const auto is_corner = [&](std::uint32_t place) {
+      return std::find(corners.begin(), corners.end(), place) != corners.end();
+    };
+    const std::size_t size = outline.size();
     Chains chains;
-    for (const std::uint32_t corner : corners_.of_cells()[c]) {
-      const auto way = from_component(home, corner);
-      if (!way) return std::nullopt;
-      const auto place = std::find(outline.begin(), outline.end(), corner) - outline.begin();
+    for (std::size_t k = 0; k < size; ++k) {
+      std::optional<std::vector<Stop>> way;
+      if (is_corner(outline[k])) {
+        way = from_component(home, outline[k]);
+        if (!way) return std::nullopt;
+      } else {
+        std::size_t before = k;
+        std::size_t after = k;
+        while (!is_corner(outline[before])) before = before == 0 ? size - 1 : before - 1;
+        while (!is_corner(outline[after])) after = after + 1 == size ? 0 : after + 1;
+        for (const std::size_t end : {before, after}) {
+          if (!way) way = within_component(home, stops[k], outline[end]);
+        }
+        if (!way) continue;
+      }
       const auto last = way->size() > 1 ? way->end() - 1 : way->end();
-      chains.emplace_back(static_cast<std::size_t>(place), std::vector<Stop>(way->begin() + 1, last));
+      chains.emplace_back(k, std::vector<Stop>(way->begin() + 1, last));
     }
-    std::sort(chains.begin(), chains.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     return chains;
+  }
+
+  /// A way between two points of the component of a vertex in the box that it lies in.
+  [[nodiscard]] std::optional<std::vector<Stop>> within_component(const Stop& from, const Stop& to,
+                                                                  std::uint32_t vertex) const {
+    const Box3 box = box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
+    if (!holds(box, from.at) || !holds(box, to.at)) return std::nullopt;
+    std::vector<Stop> way{from};
+    if (!add_way(way, to, vertex)) return std::nullopt;
+    return paths_.pulled_over_open(std::move(way));
   }
 
   /// Those to places of an outline that a middle can be joined to, whatever the solid has between them.
@@ -315,7 +342,7 @@ class Shaper {
         if (k == chains[next].first) break;
       }
       sector.insert(sector.end(), spokes[next].rbegin(), spokes[next].rend() - 1);
-      clip(std::move(sector), stop, shape.items);
+      clip(std::move(sector), stop, shape.items, &shape);
     }
     return shape;
   }
@@ -333,9 +360,13 @@ class Shaper {
   /// Fills a polygon of a few corners: cuts off the shortest ears, of these first such that no part of the surface
   /// comes through, then such that stay in the solid. Where a polygon has vertices of its own, no two others are
   /// joined: another polygon that has both may join them as well.
+  /// @param more   if not null, takes vertices: where no ear can be cut off by a segment, one is by a path.
+  /// @param apart  places that paths join already, so that no triangle may.
   /// @return  whether all do.
   template <class StopOf>
-  bool clip(std::vector<std::uint32_t> polygon, const StopOf& stop_of_place, std::vector<std::uint32_t>& items) const {
+  bool clip(std::vector<std::uint32_t> polygon, const StopOf& stop_of_place, std::vector<std::uint32_t>& items,
+            Shape* more = nullptr, std::vector<std::array<std::uint32_t, 2>> apart = {}) const {
+    constexpr std::size_t most_detours = 3;
     bool stays = true;
     const auto is_own = [](std::uint32_t place) { return place >= first_own; };
     const bool has_own = std::any_of(polygon.begin(), polygon.end(), is_own);
@@ -346,6 +377,8 @@ class Shaper {
       const auto after = [&](std::size_t k) { return polygon[k + 1 == size ? 0 : k + 1]; };
       for (std::size_t k = 0; k < size; ++k) {
         if (has_own && !is_own(before(k)) && !is_own(after(k))) continue;
+        const std::array<std::uint32_t, 2> ends{std::min(before(k), after(k)), std::max(before(k), after(k))};
+        if (std::find(apart.begin(), apart.end(), ends) != apart.end()) continue;
         ears.emplace_back(squared_length(stop_of_place(after(k)).at - stop_of_place(before(k)).at), k);
       }
       std::sort(ears.begin(), ears.end());
@@ -359,6 +392,25 @@ class Shaper {
       };
       auto ear = std::find_if(ears.begin(), ears.end(), is_open);
       if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), is_joined);
+      if (ear == ears.end() && more != nullptr && apart.size() < most_detours) {
+        const auto shortest = std::min_element(ears.begin(), ears.end());
+        const std::size_t k = shortest->second;
+        const auto path = paths_.path(stop_of_place(before(k)), stop_of_place(after(k)), {});
+        if (path && !path->empty()) {
+          std::vector<std::uint32_t> places;
+          for (const Stop& stop : *path) {
+            places.push_back(first_own + static_cast<std::uint32_t>(more->own.size()));
+            more->own.push_back(vertex_at(stop));
+          }
+          std::vector<std::uint32_t> cut_off{before(k), polygon[k], after(k)};
+          cut_off.insert(cut_off.end(), places.rbegin(), places.rend());
+          apart.push_back({std::min(before(k), after(k)), std::max(before(k), after(k))});
+          stays = clip(std::move(cut_off), stop_of_place, items, more, apart) && stays;
+          polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
+          polygon.insert(polygon.begin() + static_cast<std::ptrdiff_t>(k), places.begin(), places.end());
+          continue;
+        }
+      }
       if (ear == ears.end()) {
         stays = false;
         ear = ears.begin();
