@@ -148,9 +148,13 @@ std::optional<std::vector<SurfacePoint>> MeshSurface::way_over(std::uint32_t fro
   using Entry = std::pair<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
   std::unordered_set<std::uint32_t> done;
-  const Triangle& first = mesh_.triangles[from];
-  const Vec3d start = (mesh_.vertices[first[0]] + mesh_.vertices[first[1]] + mesh_.vertices[first[2]]) / 3.0;
-  reached.push_back({from, 0, max(within.lower, min(within.upper, start)), 0});
+  const auto middle_of = [&](std::uint32_t triangle) {
+    const Triangle& t = mesh_.triangles[triangle];
+    const Vec3d sum = mesh_.vertices[t[0]] + mesh_.vertices[t[1]] + mesh_.vertices[t[2]];
+    return max(within.lower, min(within.upper, sum / 3.0));
+  };
+  const Vec3d goal = middle_of(to);
+  reached.push_back({from, 0, middle_of(from), 0});
   next.emplace(0.0, 0);
   while (!next.empty() && done.size() < most_triangles) {
     const std::size_t at = next.top().second;
@@ -171,7 +175,7 @@ std::optional<std::vector<SurfacePoint>> MeshSurface::way_over(std::uint32_t fro
       const std::optional<Vec3d> entry = middle_within(mesh_.vertices[a], mesh_.vertices[b], within);
       if (!entry) return;
       const double way = here.way + length(*entry - here.entry);
-      next.emplace(way, reached.size());
+      next.emplace(way + length(*entry - goal), reached.size());
       reached.push_back({other, at, *entry, way});
     });
   }

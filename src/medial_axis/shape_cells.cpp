@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "medial_axis/fill_polygon.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/solid_paths.hpp"
 
@@ -77,9 +78,11 @@ class Shaper {
         return std::nullopt;
       }
     }
-    Shape shape;
     // The polygon on the other side of a bent edge would cut off the same corners of it.
-    if (outline.size() == corners_.of_cells()[c].size() && clip(outline, stop, shape.items)) return shape;
+    if (outline.size() == corners_.of_cells()[c].size()) {
+      PolygonFiller filler(paths_, stop, {});
+      if (filler.fill(outline, {})) return Shape{filler.triangles(), {}};
+    }
     return fan(c, outline, vertices);
   }
 
@@ -333,17 +336,28 @@ class Shaper {
       if (v >= first_own) return stop_of(shape.own[v - first_own]);
       return corners[static_cast<std::size_t>(std::find(outline.begin(), outline.end(), v) - outline.begin())];
     };
-    // A sector from one spoke along the border to the next.
+    const auto add = [&](const Stop& at) {
+      shape.own.push_back(vertex_at(at));
+      return first_own + static_cast<std::uint32_t>(shape.own.size() - 1);
+    };
+    PolygonFiller filler(paths_, stop, add);
+    // A sector from one spoke along the border to the next. Its sides belong to others, too.
     for (std::size_t n = 0; n < spokes.size(); ++n) {
       const std::size_t next = (n + 1) % spokes.size();
-      std::vector<std::uint32_t> sector = spokes[n];
+      std::vector<std::uint32_t> border;
       for (std::size_t k = chains[n].first;; k = (k + 1) % outline.size()) {
-        sector.push_back(outline[k]);
+        border.push_back(outline[k]);
         if (k == chains[next].first) break;
       }
+      std::vector<std::uint32_t> sector = spokes[n];
+      sector.insert(sector.end(), border.begin(), border.end());
       sector.insert(sector.end(), spokes[next].rbegin(), spokes[next].rend() - 1);
-      clip(std::move(sector), stop, shape.items, &shape);
+      std::vector<std::vector<std::uint32_t>> sides{spokes[n], spokes[next], border};
+      sides[0].push_back(border.front());
+      sides[1].push_back(border.back());
+      filler.fill(std::move(sector), std::move(sides));
     }
+    shape.items = filler.triangles();
     return shape;
   }
 
@@ -355,72 +369,6 @@ class Shaper {
       all.insert(all.end(), own.begin(), own.end());
     }
     return all;
-  }
-
-  /// Fills a polygon of a few corners: cuts off the shortest ears, of these first such that no part of the surface
-  /// comes through, then such that stay in the solid. Where a polygon has vertices of its own, no two others are
-  /// joined: another polygon that has both may join them as well.
-  /// @param more   if not null, takes vertices: where no ear can be cut off by a segment, one is by a path.
-  /// @param apart  places that paths join already, so that no triangle may.
-  /// @return  whether all do.
-  template <class StopOf>
-  bool clip(std::vector<std::uint32_t> polygon, const StopOf& stop_of_place, std::vector<std::uint32_t>& items,
-            Shape* more = nullptr, std::vector<std::array<std::uint32_t, 2>> apart = {}) const {
-    constexpr std::size_t most_detours = 3;
-    bool stays = true;
-    const auto is_own = [](std::uint32_t place) { return place >= first_own; };
-    const bool has_own = std::any_of(polygon.begin(), polygon.end(), is_own);
-    while (polygon.size() > 3) {
-      const std::size_t size = polygon.size();
-      std::vector<std::pair<double, std::size_t>> ears;
-      const auto before = [&](std::size_t k) { return polygon[k == 0 ? size - 1 : k - 1]; };
-      const auto after = [&](std::size_t k) { return polygon[k + 1 == size ? 0 : k + 1]; };
-      for (std::size_t k = 0; k < size; ++k) {
-        if (has_own && !is_own(before(k)) && !is_own(after(k))) continue;
-        const std::array<std::uint32_t, 2> ends{std::min(before(k), after(k)), std::max(before(k), after(k))};
-        if (std::find(apart.begin(), apart.end(), ends) != apart.end()) continue;
-        ears.emplace_back(squared_length(stop_of_place(after(k)).at - stop_of_place(before(k)).at), k);
-      }
-      std::sort(ears.begin(), ears.end());
-      const auto is_joined = [&](const std::pair<double, std::size_t>& ear) {
-        return paths_.is_straight(stop_of_place(before(ear.second)), stop_of_place(after(ear.second)));
-      };
-      const auto is_open = [&](const std::pair<double, std::size_t>& ear) {
-        const std::size_t k = ear.second;
-        return is_joined(ear) &&
-               paths_.is_open(stop_of_place(before(k)), stop_of_place(polygon[k]), stop_of_place(after(k)));
-      };
-      auto ear = std::find_if(ears.begin(), ears.end(), is_open);
-      if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), is_joined);
-      if (ear == ears.end() && more != nullptr && apart.size() < most_detours) {
-        const auto shortest = std::min_element(ears.begin(), ears.end());
-        const std::size_t k = shortest->second;
-        const auto path = paths_.path(stop_of_place(before(k)), stop_of_place(after(k)), {});
-        if (path && !path->empty()) {
-          std::vector<std::uint32_t> places;
-          for (const Stop& stop : *path) {
-            places.push_back(first_own + static_cast<std::uint32_t>(more->own.size()));
-            more->own.push_back(vertex_at(stop));
-          }
-          std::vector<std::uint32_t> cut_off{before(k), polygon[k], after(k)};
-          cut_off.insert(cut_off.end(), places.rbegin(), places.rend());
-          apart.push_back({std::min(before(k), after(k)), std::max(before(k), after(k))});
-          stays = clip(std::move(cut_off), stop_of_place, items, more, apart) && stays;
-          polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
-          polygon.insert(polygon.begin() + static_cast<std::ptrdiff_t>(k), places.begin(), places.end());
-          continue;
-        }
-      }
-      if (ear == ears.end()) {
-        stays = false;
-        ear = ears.begin();
-      }
-      const std::size_t k = ear->second;
-      items.insert(items.end(), {before(k), polygon[k], after(k)});
-      polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
-    }
-    items.insert(items.end(), polygon.begin(), polygon.end());
-    return stays;
   }
 
   const AxisPiece& piece_;

@@ -260,7 +260,7 @@ std::optional<std::vector<Stop>> SolidPaths::inside_of(std::span<const SurfacePo
     if (path.size() != way.size() + 1 || !is_straight(path.back(), b)) continue;
     path.push_back(b);
     for (std::size_t k = 1; k + 1 < path.size(); ++k) {
-      const Stop middle = centred(path[k]);
+      const Stop middle = centred(path[k], size);
       if (is_straight(path[k - 1], middle) && is_straight(middle, path[k + 1])) path[k] = middle;
     }
     return std::vector<Stop>(path.begin() + 1, path.end() - 1);
@@ -349,13 +349,21 @@ std::vector<Stop> SolidPaths::pulled_tight(const Stop& a, const Stop& b, const s
   return kept;
 }
 
-/// The middle between the two walls of a thin part.
+/// The middle between the two walls of a part of a thickness of 65 times the depth of a stop in it, or less.
 Stop SolidPaths::centred(const Stop& stop) const {
-  const Vec3d away = stop.at - stop.nearest.point;
   constexpr double thick = 64;
-  const std::optional<double> opposite = surface_.first_crossing(stop.at, stop.at + away * thick);
-  if (!opposite || !(*opposite * thick > 1)) return stop;
-  const auto middle = stop_at(stop.at + away * (0.5 * (*opposite * thick - 1)), foot_of(stop.nearest));
+  return centred(stop, thick * length(stop.at - stop.nearest.point));
+}
+
+/// The middle between the wall next to a stop and the one beyond, which is looked for up to a distance from the stop.
+Stop SolidPaths::centred(const Stop& stop, double reach) const {
+  const Vec3d away = stop.at - stop.nearest.point;
+  const double depth = length(away);
+  if (!(depth > 0)) return stop;
+  const Vec3d direction = away / depth;
+  const std::optional<double> opposite = surface_.first_crossing(stop.at, stop.at + direction * reach);
+  if (!opposite || !(*opposite * reach > depth)) return stop;
+  const auto middle = stop_at(stop.at + direction * (0.5 * (*opposite * reach - depth)), foot_of(stop.nearest));
   return middle && middle->nearest.distance > stop.nearest.distance ? *middle : stop;
 }
 

@@ -69,6 +69,7 @@ class SolidPaths {
   [[nodiscard]] std::optional<Stop> at_crease(const Stop& a, const Stop& b) const;
   [[nodiscard]] std::optional<Stop> pushed_in(const Vec3d& outside, const Stop& near) const;
   [[nodiscard]] Stop centred(const Stop& stop) const;
+  [[nodiscard]] Stop centred(const Stop& stop, double reach) const;
   [[nodiscard]] std::optional<std::vector<Stop>> pushed_or_along_walls(const Stop& a, const Stop& b) const;
   [[nodiscard]] std::optional<std::vector<Stop>> along_walls(const Stop& a, const Stop& b) const;
   [[nodiscard]] std::optional<std::vector<Stop>> inside_of(std::span<const SurfacePoint> way, const Stop& a,

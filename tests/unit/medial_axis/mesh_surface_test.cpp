@@ -8,6 +8,7 @@
 
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
+#include "blum/geometry/triangle_contact.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
 #include "support/mesh_places.hpp"
@@ -168,6 +169,52 @@ TEST(MeshSurface, FollowingGoesNoFurtherThanItsReach) {
     stopped += length(free.point - start.point) > reach ? 1 : 0;
   }
   EXPECT_GT(stopped, 50);
+}
+
+TEST(MeshSurface, TrianglesCrossTheSurfaceWhereOneOfItsTrianglesDoes) {
+  const Sample s(make_torus({}));
+  const std::vector<Vec3d> places = test::places_around(s.mesh, 300, 7);
+  std::size_t crossing = 0;
+  for (std::size_t k = 0; k + 2 < places.size(); ++k) {
+    const Vec3d& a = places[k];
+    // Large ones and small ones.
+    const double size = k % 2 == 0 ? 1 : 0.1;
+    const Vec3d b = a + (places[k + 1] - a) * size;
+    const Vec3d c = a + (places[k + 2] - a) * size;
+    const detail::ContactTriangle own{{a, b, c}, {1000000, 1000001, 1000002}};
+    if (detail::has_no_area(own.points)) continue;
+    bool wanted = false;
+    for (const Triangle& t : s.mesh.triangles) {
+      const detail::ContactTriangle wall{{s.mesh.vertices[t[0]], s.mesh.vertices[t[1]], s.mesh.vertices[t[2]]}, t};
+      wanted = wanted || detail::contact(own, wall) == detail::Contact::crossing;
+    }
+    EXPECT_EQ(s.surface.crosses(a, b, c), wanted) << k;
+    crossing += wanted ? 1 : 0;
+  }
+  EXPECT_GT(crossing, 50U);
+  EXPECT_LT(crossing, 250U);
+}
+
+TEST(MeshSurface, WaysOverTheSurfaceLeadFromTriangleToTriangleInTheirBox) {
+  const Sample s(make_sphere({.radius = 1}));
+  const auto triangle_at = [&](const Vec3d& p) { return s.surface.nearest(p, {}).element; };
+  const std::uint32_t from = triangle_at({2, 0.1, 0.2});
+  const std::uint32_t to = triangle_at({0.1, 2, 0.3});
+  const Box3 all{{-2, -2, -2}, {2, 2, 2}};
+  const auto way = s.surface.way_over(from, to, all);
+  ASSERT_TRUE(way.has_value());
+  ASSERT_GT(way->size(), 2U);
+  for (std::size_t k = 0; k < way->size(); ++k) {
+    const SurfacePoint& point = (*way)[k];
+    EXPECT_NEAR(s.brute.nearest(point.at).distance, 0, tolerance);
+    EXPECT_LT(dot(point.inwards, point.at), -0.9 * length(point.at)) << "towards the centre";
+    if (k == 0) continue;
+    const Vec3d middle = 0.5 * (point.at + (*way)[k - 1].at);
+    EXPECT_NEAR(s.brute.nearest(middle).distance, 0, tolerance) << "both lie on one triangle";
+  }
+  EXPECT_TRUE(s.surface.way_over(from, from, all)->empty());
+  const Box3 half{{0.5, -2, -2}, {2, 2, 2}};
+  EXPECT_FALSE(s.surface.way_over(from, to, half).has_value());
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "blum/shapes/generators.hpp"
@@ -144,6 +147,74 @@ TEST(SolidPaths, PointsStrewnAroundLeadThroughSeveralFolds) {
     EXPECT_LT(stops->size(), 12U);
     for (std::size_t k = 0; k + 1 < stops->size(); ++k) EXPECT_TRUE(s.paths.is_straight((*stops)[k], (*stops)[k + 1]));
   }
+}
+
+/// A plate with one hole of radius 0.005 in the middle.
+TriangleMesh pierced_plate() {
+  return make_plate({.holes_x = 1, .holes_y = 1, .hole_radius = 0.005});
+}
+
+TEST(SolidPaths, ATriangleAroundANarrowHoleIsNotOpen) {
+  const Sample s(pierced_plate());
+  const Vec3d hole = bounds(s.mesh).center();
+  const Stop a = s.at(hole + Vec3d{-0.2, -0.1, 0});
+  const Stop b = s.at(hole + Vec3d{0.2, -0.1, 0});
+  const Stop beyond = s.at(hole + Vec3d{0, 0.2, 0});
+  const Stop before = s.at(hole + Vec3d{0, -0.2, 0});
+  EXPECT_FALSE(s.paths.is_open(a, b, beyond));
+  EXPECT_TRUE(s.paths.is_open(a, b, before));
+  EXPECT_TRUE(s.paths.is_straight(a, b)) << "all sides of both are in the solid";
+  EXPECT_EQ(s.paths.pulled_over_open({a, beyond, b}).size(), 3U);
+  EXPECT_EQ(s.paths.pulled_over_open({a, before, b}).size(), 2U);
+}
+
+TEST(SolidPaths, SegmentsAreNotSweptOverAHole) {
+  const Sample s(pierced_plate());
+  const Vec3d hole = bounds(s.mesh).center();
+  const auto segment = [&](double y) {
+    return std::array<Stop, 2>{s.at(hole + Vec3d{-0.2, y, 0}), s.at(hole + Vec3d{0.2, y, 0})};
+  };
+  EXPECT_TRUE(s.paths.can_sweep(segment(0.1), segment(0.3)));
+  EXPECT_FALSE(s.paths.can_sweep(segment(-0.1), segment(0.1)));
+}
+
+TEST(SolidPaths, PathsInABoxStayThere) {
+  const Sample s(slit_block(1e-3));
+  const Stop a = s.at({-0.3, 0, 0.2});
+  const Stop b = s.at({0.3, 0, 0.2});
+  const Box3 low{{-0.5, -0.5, -0.1}, {0.5, 0.5, 0.5}};
+  const auto path = SolidPaths(s.surface, low).path(a, b, {});
+  ASSERT_TRUE(path.has_value());
+  ASSERT_FALSE(path->empty());
+  for (const Stop& stop : *path) EXPECT_TRUE(holds(low, stop.at));
+  const Box3 high{{-0.5, -0.5, 0.1}, {0.5, 0.5, 0.5}};
+  EXPECT_FALSE(SolidPaths(s.surface, high).path(a, b, {}).has_value()) << "the slit parts this box";
+}
+
+TEST(SolidPaths, ThinWallsThatTurnAreFollowedFromTriangleToTriangle) {
+  const double thickness = 1e-5;
+  TriangleMesh shell = make_sphere({.radius = 1});
+  TriangleMesh inner = test::moved(make_sphere({.radius = 1}), 1 - thickness);
+  reverse_triangles(inner);
+  append(shell, inner);
+  const Sample s(shell);
+  const auto in_wall = [&](double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vec3d out{std::cos(angle), std::sin(angle), 0.1};
+    const double t = *s.surface.first_crossing({0, 0, 0}, out * 2.0);
+    return s.at(out * (2 * t + 0.4 * thickness));
+  };
+  const Stop a = in_wall(10);
+  const Stop b = in_wall(70);
+  const auto path = s.paths.path(a, b, {});
+  ASSERT_TRUE(path.has_value());
+  Stop last = a;
+  for (const Stop& stop : *path) {
+    EXPECT_TRUE(s.paths.is_straight(last, stop));
+    EXPECT_GT(stop.nearest.distance, 0.1 * thickness) << "in the middle of the wall";
+    last = stop;
+  }
+  EXPECT_TRUE(s.paths.is_straight(last, b));
 }
 
 }  // namespace

@@ -1,0 +1,102 @@
+#include "medial_axis/fill_polygon.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace blum {
+namespace {
+
+/// How often paths may take the place of edges in all polygons of one filler.
+constexpr int most_detours = 24;
+
+bool has(const PolygonFiller::Places& places, std::uint32_t place) {
+  return std::find(places.begin(), places.end(), place) != places.end();
+}
+
+}  // namespace
+
+/// A corner of a polygon and those next to it.
+struct PolygonFiller::Ear {
+  double squared_length = 0;  ///< of what joins the two next to the corner
+  std::size_t corner = 0;     ///< in the polygon
+  std::uint32_t before = 0, place = 0, after = 0;
+};
+
+std::vector<PolygonFiller::Ear> PolygonFiller::ears_of(const Places& polygon, const std::vector<Places>& sides) const {
+  const std::size_t size = polygon.size();
+  std::vector<Ear> ears;
+  for (std::size_t k = 0; k < size; ++k) {
+    Ear ear{0, k, polygon[k == 0 ? size - 1 : k - 1], polygon[k], polygon[k + 1 == size ? 0 : k + 1]};
+    const auto has_both = [&](const Places& side) { return has(side, ear.before) && has(side, ear.after); };
+    if (std::any_of(sides.begin(), sides.end(), has_both)) continue;
+    ear.squared_length = squared_length(stop_of_(ear.after).at - stop_of_(ear.before).at);
+    ears.push_back(ear);
+  }
+  std::sort(ears.begin(), ears.end(), [](const Ear& a, const Ear& b) {
+    return a.squared_length != b.squared_length ? a.squared_length < b.squared_length : a.corner < b.corner;
+  });
+  return ears;
+}
+
+bool PolygonFiller::is_joined(const Ear& ear) const {
+  return paths_.is_straight(stop_of_(ear.before), stop_of_(ear.after));
+}
+
+bool PolygonFiller::is_open(const Ear& ear) const {
+  return is_joined(ear) && paths_.is_open(stop_of_(ear.before), stop_of_(ear.place), stop_of_(ear.after));
+}
+
+/// New places on a way between the two next to a corner; none where no way was found.
+PolygonFiller::Places PolygonFiller::path_along(const Ear& ear) {
+  Places places;
+  if (!add_ || detours_ >= most_detours) return places;
+  ++detours_;
+  const auto path = paths_.path(stop_of_(ear.before), stop_of_(ear.after), {});
+  if (!path) return places;
+  for (const Stop& stop : *path) places.push_back(add_(stop));
+  return places;
+}
+
+bool PolygonFiller::fill(Places polygon, std::vector<Places> sides) {
+  bool stays = true;
+  while (polygon.size() > 3) {
+    const std::vector<Ear> ears = ears_of(polygon, sides);
+    auto ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_open(e); });
+    if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_joined(e); });
+    if (ear == ears.end() && !ears.empty()) {
+      ear = ears.begin();
+      if (const Places path = path_along(*ear); !path.empty()) {
+        Places cut_off{ear->before, ear->place, ear->after};
+        cut_off.insert(cut_off.end(), path.rbegin(), path.rend());
+        // What is left over of the polygon has the path as well.
+        std::vector<Places> sides_there = sides;
+        Places& shared = sides_there.emplace_back(path);
+        shared.push_back(ear->before);
+        shared.push_back(ear->after);
+        stays = fill(std::move(cut_off), std::move(sides_there)) && stays;
+        const auto at = polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear->corner));
+        polygon.insert(at, path.begin(), path.end());
+        continue;
+      }
+      stays = false;
+    }
+    if (ear == ears.end()) {  // a vertex in the middle joins no two of them
+      if (!add_) return false;
+      Vec3d sum;
+      for (const std::uint32_t place : polygon) sum += stop_of_(place).at;
+      const std::uint32_t middle =
+          add_(paths_.inside_near(sum / static_cast<double>(polygon.size()), stop_of_(polygon[0])));
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        triangles_.insert(triangles_.end(), {middle, polygon[k], polygon[(k + 1) % polygon.size()]});
+      }
+      return false;
+    }
+    triangles_.insert(triangles_.end(), {ear->before, ear->place, ear->after});
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear->corner));
+  }
+  triangles_.insert(triangles_.end(), polygon.begin(), polygon.end());
+  return stays;
+}
+
+}  // namespace blum
