@@ -115,7 +115,7 @@ class Shaper {
     is_near_extra_.assign(cells.size(), 0);
     homes_.resize(cells.size());
     if (structure.extra() == nullptr) return;
-    parallel_for(context, cells.size(), cells_per_range, "edges", [&](const WorkRange& range) {
+    parallel_for(context, cells.size(), cells_per_range, "", [&](const WorkRange& range) {
       for (std::size_t v = range.begin; v < range.end; ++v) {
         const auto is_special = [&](Cell cell) {
           return structure.is_extra(cell) || structure.extra()->is_mixed(cell);
