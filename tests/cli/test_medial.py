@@ -12,11 +12,12 @@ from tool import BLUM, FORMATS, names, run, run_json
 
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
 
-COARSE = ["--resolution", 8, "--max-resolution", 8]  # too coarse for plates that cross
+COARSE = ["--resolution", 8, "--max-resolution", 8, "--simplify", 0]  # too coarse for plates that cross
+WHY_NOT = "closed surfaces of the axis are around 1 of the 2 voids"  # of these, between plates
 
 
 def crossing_plates(folder):
-    """Three square plates far thinner than a voxel that cross at a slant: some edges of their axis leave them."""
+    """Five square plates far thinner than a voxel that cross at a slant, around two voids: the axis misses one of them."""
     path = folder / "plates.obj"
     random = np.random.default_rng(6)
     lines, faces = [], []
@@ -35,7 +36,7 @@ def crossing_plates(folder):
         (3, 7, 5),
     ]
     box = np.array([[x, y, z] for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)]) * [1, 1, 0.0005]
-    for _ in range(3):
+    for _ in range(5):
         axes, _ = np.linalg.qr(random.normal(size=(3, 3)))
         axes *= np.sign(np.linalg.det(axes))
         faces += [f"f {' '.join(str(len(lines) + corner + 1) for corner in side)}" for side in sides]
@@ -358,7 +359,7 @@ def test_an_open_mesh_is_certified_against_voxels(solids, axes, tmp_path):
 def test_what_is_not_certified_is_not_written(solids, tmp_path):
     (tmp_path / "p.npz").write_bytes(b"old")
     _, err = run("medial", crossing_plates(tmp_path.parent), "-o", tmp_path / "p.npz", *COARSE, status=3)
-    assert "NOT certified" in err and "leave the solid between their ends" in err
+    assert "NOT certified" in err and WHY_NOT in err
     assert "nothing was written" in err
     assert (tmp_path / "p.npz").read_bytes() == b"old" and names(tmp_path) == ["p.npz"]
     run("medial", crossing_plates(tmp_path.parent), "-o", tmp_path / "q.vtp", "--theta", "20,60", *COARSE, status=3)
@@ -382,7 +383,7 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(solids, tmp_pa
     assert summary["certified"] is False and summary["outputs"] == [str(tmp_path / "p.npz")]
     assert len(summary["mismatches"]) == 1
     assert names(tmp_path) == ["p.npz"]
-    assert "leave the solid" in run("verify", crossing_plates(tmp_path.parent), tmp_path / "p.npz", status=3)[1]
+    assert WHY_NOT in run("verify", crossing_plates(tmp_path.parent), tmp_path / "p.npz", status=3)[1]
 
 
 def test_drafts_touch_no_file_of_others(solids, tmp_path):
