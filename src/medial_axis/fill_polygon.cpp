@@ -58,7 +58,7 @@ PolygonFiller::Places PolygonFiller::path_along(const Ear& ear) {
   return places;
 }
 
-bool PolygonFiller::fill(Places polygon, std::vector<Places> sides) {
+bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
   bool stays = true;
   while (polygon.size() > 3) {
     const std::vector<Ear> ears = ears_of(polygon, sides);
@@ -74,7 +74,7 @@ bool PolygonFiller::fill(Places polygon, std::vector<Places> sides) {
         Places& shared = sides_there.emplace_back(path);
         shared.push_back(ear->before);
         shared.push_back(ear->after);
-        stays = fill(std::move(cut_off), std::move(sides_there)) && stays;
+        stays = fill(std::move(cut_off), sides_there) && stays;
         const auto at = polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear->corner));
         polygon.insert(at, path.begin(), path.end());
         continue;

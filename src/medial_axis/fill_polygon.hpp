@@ -26,7 +26,7 @@ class PolygonFiller {
   /// @param sides  groups of places that other polygons have, too. No edge joins two of a group: another polygon that
   ///               has both may join them as well.
   /// @return  whether all edges stay in the solid. They are of the complex in any case.
-  bool fill(Places polygon, std::vector<Places> sides);
+  bool fill(Places polygon, const std::vector<Places>& sides);
 
   /// Three places for each triangle, of all polygons.
   [[nodiscard]] const Places& triangles() const { return triangles_; }

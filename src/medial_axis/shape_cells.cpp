@@ -355,7 +355,7 @@ class Shaper {
       std::vector<std::vector<std::uint32_t>> sides{spokes[n], spokes[next], border};
       sides[0].push_back(border.front());
       sides[1].push_back(border.back());
-      filler.fill(std::move(sector), std::move(sides));
+      filler.fill(std::move(sector), sides);
     }
     shape.items = filler.triangles();
     return shape;
