@@ -80,6 +80,16 @@ class ShellOracle : public SolidOracle {
     return is_inside ? own : -own;
   }
 
+  [[nodiscard]] bool is_clear(const Vec3d& a, const Vec3d& b, std::uint32_t body) const override {
+    const double reach = length(b - a);
+    const double nothing = 1e-13 * diagonal();
+    std::vector<Crossing> crossings;
+    if (!(reach > nothing) || !search_.crossings(line_between(a, b), crossings, reach)) return false;
+    return std::none_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
+      return body_of_[crossing.triangle] == body && crossing.at >= -nothing && crossing.at <= reach + nothing;
+    });
+  }
+
   [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t body) const override {
     return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p, body).triangle));
   }

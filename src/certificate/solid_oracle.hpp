@@ -59,6 +59,11 @@ class SolidOracle {
                                             double /*other_depth*/, double /*near*/) const {
     return depth(p, body);
   }
+  /// Whether the segment between two points is known to meet no boundary of a body; false also where rounding leaves
+  /// doubt, or this solid cannot tell.
+  [[nodiscard]] virtual bool is_clear(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
+    return false;
+  }
   /// The closest point of the surface of a body.
   [[nodiscard]] virtual Vec3d closest_point(const Vec3d& p, std::uint32_t body) const = 0;
   /// The diagonal of a voxel, where the solid is made of voxels; else 0.
