@@ -270,8 +270,14 @@ TriangleSearch search_of(const MedialView& axis, const Context& context) {
 }
 
 /// A ball that is in the middle between two walls, from a random point of the solid; radius 0 where that gives none.
+///
+/// The surface may reach a little into the ball, because the facets of a round thing are all near at once. On a plane
+/// that reaches by d into a ball of radius r, the closest point is up to acos(1 - d/r) aside from where the ball was
+/// thought to touch it, and the angle is less by as much: d is no more than the step from theta to the sought angle
+/// gives. In a wedge of 164 degrees, 0.1 voxel alone would show 175.
+/// @param above_theta  degrees from the axis's theta to the sought angle.
 TouchingBall random_ball(const KnownSolid& solid, const Spread& boxes, const Allowances& allowed, double sought,
-                         std::uint64_t seed) {
+                         double above_theta, std::uint64_t seed) {
   constexpr double nearly_whole = 0.1;  // voxels: the facets of round things are all near at once
   Random random(0xb1a5ULL + seed);
   const std::uint32_t body = boxes.at(random.uniform());
@@ -283,13 +289,14 @@ TouchingBall random_ball(const KnownSolid& solid, const Spread& boxes, const All
   if (location.outside_by > 0 || location.body != body) return {};
   TouchingBall ball = grown_ball(*solid.solid, body, p, sought);
   if (!(ball.radius > 0) || length(ball.first - ball.second) < allowed.apart) return {};
-  const bool fits =
-      ball.is_whole || ball.radius - solid.solid->distance(ball.centre, body) <= nearly_whole * allowed.voxel;
+  const double reaching_in =
+      std::min(nearly_whole * allowed.voxel, ball.radius * (1 - std::cos(above_theta / degrees_per_radian)));
+  const bool fits = ball.is_whole || ball.radius - solid.solid->distance(ball.centre, body) <= reaching_in;
   return fits && solid.solid->depth(ball.centre, body) > 0 ? ball : TouchingBall{};
 }
 
 Offsets missing(const MedialView& axis, const KnownSolid& solid, const Allowances& allowed, double sought,
-                const Context& context) {
+                double above_theta, const Context& context) {
   Spread boxes;
   for (std::uint32_t b = 0; b < solid.bodies.size(); ++b) {
     const Vec3d size = solid.solid->box(b).size();
@@ -300,7 +307,7 @@ Offsets missing(const MedialView& axis, const KnownSolid& solid, const Allowance
   std::vector<Offsets> parts(most_points_tried / grain + 1);
   parallel_for(context, most_points_tried, grain, "looking for what is missing", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
-      const TouchingBall ball = random_ball(solid, boxes, allowed, sought, k);
+      const TouchingBall ball = random_ball(solid, boxes, allowed, sought, above_theta, k);
       if (!(ball.radius > 0)) continue;
       parts[range.begin / grain].add(search.nearest(ball.centre).distance, allowed.missing, allowed.missing,
                                      ball.centre);
@@ -412,7 +419,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   if (options.theta) {
     const double theta = std::max(*options.theta, allowed.noise);
     check.sought_angle = std::min(theta + well_above, 0.5 * (theta + 180));
-    const Offsets missed = missing(axis, solid, allowed, check.sought_angle, context);
+    const Offsets missed = missing(axis, solid, allowed, check.sought_angle, check.sought_angle - theta, context);
     check.balls = missed.count;
     if (missed.count > 0) check.missed_share = static_cast<double>(missed.off) / static_cast<double>(missed.count);
     check.missed_by = missed.furthest / factor;
