@@ -73,7 +73,7 @@ void measure_surface(const std::vector<Sample>& samples, const BallUnion& balls,
 }
 
 constexpr std::size_t directions_per_ball = 32;
-constexpr std::size_t most_directions = 500'000;
+constexpr std::size_t most_directions = 100'000;
 
 /// Directions spread evenly along a spiral from pole to pole.
 std::array<Vec3d, directions_per_ball> directions() {

@@ -89,9 +89,10 @@ class VoxelOracle : public SolidOracle {
       if (b % 4096 == 0) throw_if_cancelled(context);
       faces_.for_each_face(b, [&](const VoxelFaces::Face&) { ++count; });
     }
+    constexpr std::size_t most = 250'000;
     const double face = face_diagonal();
-    if (step < face / 2 && 4 * count <= most_samples) return {samples_of_faces(2, context), face / 4};
-    if (count <= most_samples) return {samples_of_faces(1, context), face / 2};
+    if (step < face / 2 && 4 * count <= most) return {samples_of_faces(2, context), face / 4};
+    if (count <= most) return {samples_of_faces(1, context), face / 2};
     return {samples_of_bricks(context), 4 * length(faces_.grid().spacing)};
   }
 

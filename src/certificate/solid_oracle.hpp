@@ -78,8 +78,9 @@ class SolidOracle {
   [[nodiscard]] virtual Samples samples(double step, const Context& context) const = 0;
 };
 
-/// No more samples than this are taken, unless there are more triangles.
-inline constexpr std::size_t most_samples = 250'000;
+/// No more samples of a mesh than this are taken, unless it has more triangles. Each is searched for among all balls,
+/// which is told and not judged: five times as many cost more than all that is judged.
+inline constexpr std::size_t most_samples = 50'000;
 
 /// A solid, and the Betti numbers of its bodies.
 struct KnownSolid {

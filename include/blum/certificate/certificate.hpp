@@ -181,10 +181,10 @@ struct BallUnionCheck {
   /// the solid; 0 for exact radii.
   double balls_beyond_solid = 0;
   /// How far points of the surface of the union are from the surface of the solid at most, over 32 points of each ball;
-  /// of more than 15,600 balls, over those of 7,800 to 15,600 of them.
+  /// of more than 3,100 balls, over those of 1,500 to 3,100 of them.
   double balls_to_surface = 0;
   /// Each point of the surface is at most this far from a sample, mesh units: the median edge of the axis, or
-  /// 1/256 of the diagonal where that is less, or more where that would take over 250,000 samples. Samples of
+  /// 1/256 of the diagonal where that is less, or more where that would take over 50,000 samples. Samples of
   /// voxels are one or four points of each face; above 250,000 faces, one for each direction of faces in 4 x 4 x 4
   /// voxels.
   double step = 0;
