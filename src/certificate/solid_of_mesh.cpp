@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "blum/geometry/sites.hpp"
 #include "certificate/shells.hpp"
@@ -95,7 +97,13 @@ class ShellOracle : public SolidOracle {
   }
 
   [[nodiscard]] std::unique_ptr<Complement> complement(const Context& context) const override {
-    return std::make_unique<Complement>(complement_of_mesh(mesh_, shells_, context));
+    std::vector<std::vector<std::uint32_t>> walls(shells_.shells.size());  // the triangles of voids
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const std::uint32_t shell = shells_.of_triangle[t];
+      if (shell != no_group && shells_.shells[shell].depth % 2 == 1) walls[shell].push_back(t);
+    }
+    const auto point = [&](std::uint32_t shell) { return point_of_void(shell, walls[shell]); };
+    return std::make_unique<Complement>(complement_of_mesh(mesh_, shells_, point, context));
   }
 
   [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
@@ -103,6 +111,45 @@ class ShellOracle : public SolidOracle {
   }
 
  private:
+  /// A point deep in a void: the deepest of the middles of some chords. Flat triangles of an axis in a bent wall reach
+  /// into what is beside the wall, so that a point near the wall may be on either side of them.
+  [[nodiscard]] Vec3d point_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
+    constexpr std::size_t most_chords = 32;
+    Vec3d best = mesh_.vertices[mesh_.triangles[walls.front()][0]];
+    double depth_of_best = 0;
+    const std::size_t every = (walls.size() + most_chords - 1) / most_chords;
+    for (std::size_t k = 0; k < walls.size(); k += every) {
+      for (const double side : {1.0, -1.0}) {
+        const std::optional<Vec3d> middle = middle_of_chord(walls[k], side);
+        if (!middle || innermost_around(*middle) != shell) continue;
+        const double own_depth = search_.nearest(*middle).distance;
+        if (own_depth <= depth_of_best) continue;
+        depth_of_best = own_depth;
+        best = *middle;
+      }
+    }
+    return best;
+  }
+
+  /// Halfway from the centre of a triangle along its normal to what is met first; nullopt where that is nothing, or
+  /// cannot be told.
+  [[nodiscard]] std::optional<Vec3d> middle_of_chord(std::uint32_t triangle, double side) const {
+    const std::array<Vec3d, 3> corners = corners_of(mesh_, triangle);
+    const Vec3d start = (corners[0] + corners[1] + corners[2]) / 3.0;
+    const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    if (!(length(normal) > 0)) return std::nullopt;
+    const double reach = diagonal();
+    const Vec3d end = start + normal * (side * reach / length(normal));
+    std::vector<Crossing> crossings;
+    if (!search_.crossings(line_between(start, end), crossings, reach)) return std::nullopt;
+    double first = reach;
+    for (const Crossing& crossing : crossings) {
+      if (crossing.triangle != triangle && crossing.at > 0) first = std::min(first, crossing.at);
+    }
+    if (!(first < reach)) return std::nullopt;
+    return start + (end - start) * (0.5 * first / reach);
+  }
+
   /// The innermost shell around a point; nullopt where there is none, or the point lies on the surface.
   [[nodiscard]] std::optional<std::uint32_t> innermost_around(const Vec3d& p) const {
     constexpr std::uint32_t most_lines = 24;

@@ -22,21 +22,16 @@ std::vector<std::array<std::uint32_t, 3>> triangles_with_handles(const MeshView&
   return triangles;
 }
 
-/// A corner of each shell; the body of the shell at each vertex.
-struct Corners {
-  std::vector<std::uint32_t> of_shell;
-  std::vector<std::uint32_t> body_of_vertex;
-
-  Corners(const MeshView& mesh, const ClosedShells& shells)
-      : of_shell(shells.shells.size(), no_group), body_of_vertex(mesh.vertices.size(), 0) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const std::uint32_t shell = shells.of_triangle[t];
-      if (shell == no_group) continue;
-      if (of_shell[shell] == no_group) of_shell[shell] = mesh.triangles[t][0];
-      for (const std::uint32_t v : mesh.triangles[t]) body_of_vertex[v] = shells.shells[shell].body;
-    }
+/// The body of the shell at each vertex.
+std::vector<std::uint32_t> bodies_of_vertices(const MeshView& mesh, const ClosedShells& shells) {
+  std::vector<std::uint32_t> body_of_vertex(mesh.vertices.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::uint32_t shell = shells.of_triangle[t];
+    if (shell == no_group) continue;
+    for (const std::uint32_t v : mesh.triangles[t]) body_of_vertex[v] = shells.shells[shell].body;
   }
-};
+  return body_of_vertex;
+}
 
 }  // namespace
 
@@ -64,12 +59,12 @@ Complement::Complement(std::vector<Vec3d> points, std::vector<Step> steps,
   }
 }
 
-Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells, const Context& context) {
-  const Corners corners(mesh, shells);
+Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells,
+                              const std::function<Vec3d(std::uint32_t)>& point_of_void, const Context& context) {
   std::vector<Complement::Void> voids;
-  for (std::size_t s = 0; s < shells.shells.size(); ++s) {
+  for (std::uint32_t s = 0; s < shells.shells.size(); ++s) {
     const ClosedShell& shell = shells.shells[s];
-    if (shell.depth % 2 == 1) voids.push_back({mesh.vertices[corners.of_shell[s]], shell.body});
+    if (shell.depth % 2 == 1) voids.push_back({point_of_void(s), shell.body});
   }
   const auto triangles = triangles_with_handles(mesh, shells);
   if (triangles.empty()) return {{}, {}, {}, std::move(voids)};
@@ -77,11 +72,12 @@ Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells, 
   const GeneratingCycles cycles(
       {mesh.vertices.size(), incidence.edges(), {incidence.sides().front().data(), 3 * incidence.sides().size()}, 3},
       context);
+  const std::vector<std::uint32_t> body_of_vertex = bodies_of_vertices(mesh, shells);
   std::vector<Complement::Step> steps;
   std::vector<std::uint32_t> body_of_path;
   for (const std::uint32_t closing : cycles.closing()) {
     const auto path = static_cast<std::uint32_t>(body_of_path.size());
-    body_of_path.push_back(corners.body_of_vertex[incidence.edges()[closing][0]]);
+    body_of_path.push_back(body_of_vertex[incidence.edges()[closing][0]]);
     cycles.walk(closing, [&](std::uint32_t e, int sign) { steps.push_back({incidence.edges()[e], path, sign}); });
   }
   return {{mesh.vertices.begin(), mesh.vertices.end()}, std::move(steps), body_of_path, std::move(voids)};

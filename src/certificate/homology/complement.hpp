@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -63,8 +64,11 @@ class Complement {
   std::vector<Void> voids_;
 };
 
-/// Paths along the edges of the shells, which generate their homology and so that of the complement; a corner of each
-/// void's shell. @throws Cancelled. Cost: nothing for shells without handles.
-[[nodiscard]] Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells, const Context& context);
+/// Paths along the edges of the shells, which generate their homology and so that of the complement; a point in each
+/// void. @throws Cancelled. Cost: nothing for shells without handles.
+/// @param point_of_void  by its shell: a point in the void, or on its boundary.
+[[nodiscard]] Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells,
+                                            const std::function<Vec3d(std::uint32_t)>& point_of_void,
+                                            const Context& context);
 
 }  // namespace blum::verifier
