@@ -14,10 +14,10 @@ struct CornerCase {
   static constexpr std::uint8_t none = 255;
 
   std::uint8_t patches = 0;
-  std::array<std::uint8_t, 8> patch_of{};          ///< of each voxel; none where it is selected
+  std::array<std::uint8_t, 8> patch_of{};           ///< of each voxel; none where it is selected
   std::array<std::array<std::int8_t, 3>, 8> way{};  ///< of each patch: the sum of its voxels' (+-1, +-1, +-1)
-  /// Bit e: the edge from the corner up along axis e has two voxels selected, diagonally opposite of each other, and the
-  /// other two not. The surface passes it twice.
+  /// Bit e: the edge from the corner up along axis e has two voxels selected, diagonally opposite of each other, and
+  /// the other two not. The surface passes it twice.
   std::uint8_t double_edges = 0;
   /// Two voxels that are diagonally opposite of each other and nothing else: the patch is a ring around the corner.
   bool is_ring = false;

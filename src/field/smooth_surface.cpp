@@ -108,8 +108,9 @@ class Embedding {
       back.erase(std::unique(back.begin(), back.end()), back.end());
       std::erase_if(back, [this](std::uint32_t v) { return steps_[v] == 0; });
       if (back.empty()) {
-        throw InvalidGrid("the spacing is so small beside the origin that rounded coordinates make the surface cross "
-                          "itself: move the image closer to the origin");
+        throw InvalidGrid(
+            "the spacing is so small beside the origin that rounded coordinates make the surface cross "
+            "itself: move the image closer to the origin");
       }
       for (const std::uint32_t v : back) {
         --steps_[v];

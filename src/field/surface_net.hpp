@@ -17,8 +17,8 @@ struct NetBox {
 };
 
 /// The surface between a set of voxels and the rest as a closed, oriented manifold of quadrilaterals and triangles that
-/// face the rest. Coordinates are in voxels: integer where voxels have their centres. Positions are those of the surface
-/// of the boxes, but for a little room where boxes touch only in an edge or a corner, which are joined there.
+/// face the rest. Coordinates are in voxels: integer where voxels have their centres. Positions are those of the
+/// surface of the boxes, but for a little room where boxes touch only in an edge or a corner, which are joined there.
 struct SurfaceNet {
   static constexpr std::uint32_t none = 0xffffffff;
 

@@ -45,15 +45,15 @@ struct SmoothSurface {
 ///   that touch in an edge or a corner are joined.
 /// - It is an oriented manifold that does not cross or touch itself, also where the grid's direction mirrors.
 /// - Each vertex stays within half a voxel of its place on the surface of the boxes, along each axis.
-/// - Smoothing is by Taubin's filter (1995), which does not shrink: waves of the surface along an axis that are shorter
-///   than some 7 voxels go, longer ones stay. Of balls and round tubes of radius 1.5 voxels and more, the mean radius
-///   is kept within 0.1 voxels.
+/// - Smoothing is by Taubin's filter (1995), which hardly shrinks: waves of the surface that are shorter than some 5
+///   voxels go, long ones stay. Of round tubes of radius 1.5 voxels and more, and balls of 2 and more, the mean radius
+///   is right within 0.1 voxels.
 ///
 /// @return      vertices in world coordinates. The same bytes for any number of threads.
 /// @throws InvalidImage (also when no voxel is selected), InvalidOption (also for more than max_id_count vertices or
 /// triangles), InvalidGrid where the spacing is too small beside the origin for coordinates to tell voxels apart;
 /// OutOfMemory, Cancelled.
-/// Cost: O(voxels / 64) and, for each of the surface's faces, about a microsecond of a core and 300 bytes.
+/// Cost: O(voxels / 64) and, for each of the surface's faces, about 5 microseconds of a core and 300 bytes.
 /// Method: docs/theory/smooth-surfaces.md.
 [[nodiscard]] SmoothSurface smooth_surface(const VoxelImageView& image, const LabelSelection& selection = {},
                                            const SmoothSurfaceOptions& options = {}, const Context& context = {});

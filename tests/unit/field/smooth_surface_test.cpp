@@ -120,15 +120,14 @@ TEST(SmoothSurface, PlatesRodsAndVoxelsAtTheBorder) {
   }
   // Plates one voxel apart, and a slanted one of one voxel.
   expect_surface(image_of({12, 12, 9}, [](auto, auto, std::int64_t k) { return k % 2 == 0; }));
-  expect_surface(image_of({14, 14, 14}, [](std::int64_t i, std::int64_t j, std::int64_t k) {
-    return (i + 2 * j + 3 * k) / 4 == 9;
-  }));
+  expect_surface(image_of({14, 14, 14},
+                          [](std::int64_t i, std::int64_t j, std::int64_t k) { return (i + 2 * j + 3 * k) / 4 == 9; }));
   // A board of voxels that touch in edges, and one of those that touch in corners.
   expect_surface(image_of({8, 8, 1}, [](std::int64_t i, std::int64_t j, auto) { return (i + j) % 2 == 0; }));
-  expect_surface(image_of({8, 8, 8}, [](std::int64_t i, std::int64_t j, std::int64_t k) {
-    return i % 2 == j % 2 && j % 2 == k % 2;
-  }));
-  expect_surface(image_of({6, 6, 6}, [](std::int64_t i, std::int64_t j, std::int64_t k) { return (i + j + k) % 2 == 0; }));
+  expect_surface(image_of(
+      {8, 8, 8}, [](std::int64_t i, std::int64_t j, std::int64_t k) { return i % 2 == j % 2 && j % 2 == k % 2; }));
+  expect_surface(
+      image_of({6, 6, 6}, [](std::int64_t i, std::int64_t j, std::int64_t k) { return (i + j + k) % 2 == 0; }));
 }
 
 TEST(SmoothSurface, GridsOfAnyKind) {
@@ -232,8 +231,7 @@ TEST(SmoothSurface, BallsAndToriKeepTheirRadius) {
 TEST(SmoothSurface, PlanesAreFlat) {
   // A thick slanted slab: the boxes' normals are off by up to 55 degrees.
   const Vec3d up = 1 / std::sqrt(0.78) * Vec3d{0.3, 0.2, 0.8};
-  const Errors errors =
-      errors_of([&](const Vec3d& p) { return std::abs(dot(p - Vec3d{20, 20, 20}, up)) - 7.3; }, 40);
+  const Errors errors = errors_of([&](const Vec3d& p) { return std::abs(dot(p - Vec3d{20, 20, 20}, up)) - 7.3; }, 40);
   EXPECT_LT(std::abs(errors.mean), 0.1);
   EXPECT_LT(errors.normal, 6);
 }
@@ -253,9 +251,8 @@ TEST(SmoothSurface, SameBytesForAnyNumberOfThreads) {
     const SmoothSurface many = smooth_surface(image, {}, {}, {.threads = threads});
     EXPECT_EQ(one.mesh.triangles, many.mesh.triangles);
     ASSERT_EQ(one.mesh.vertices.size(), many.mesh.vertices.size());
-    EXPECT_EQ(std::memcmp(one.mesh.vertices.data(), many.mesh.vertices.data(),
-                          one.mesh.vertices.size() * sizeof(Vec3d)),
-              0);
+    EXPECT_EQ(
+        std::memcmp(one.mesh.vertices.data(), many.mesh.vertices.data(), one.mesh.vertices.size() * sizeof(Vec3d)), 0);
     EXPECT_EQ(one.largest_move, many.largest_move);
   }
 }
