@@ -48,7 +48,7 @@ constexpr void add_patch(CornerCase& corner, unsigned voxels) {
     corner.patch_of[voxel] = corner.patches;
     for (unsigned axis = 0; axis < 3; ++axis) {
       std::int8_t& sum = corner.way[corner.patches][axis];
-      sum = static_cast<std::int8_t>(sum + (is_in(voxel, axis) ? 1 : -1));
+      sum = static_cast<std::int8_t>(sum + ((voxel >> axis & 1U) != 0 ? 1 : -1));
     }
   }
   ++corner.patches;

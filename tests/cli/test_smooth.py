@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-
 from tool import BLUM, names, run, run_json
 
 pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")

@@ -1,9 +1,8 @@
-# Proves that smooth_surface makes meshes with the topology of the voxels, in the world of the image, and that medial axes
-# of them and of the tool's files are certified.
+# Proves that smooth_surface makes meshes with the topology of the voxels, in the world of the image, and that medial
+# axes of them and of the tool's files are certified.
+import blum
 import numpy as np
 import pytest
-
-import blum
 
 
 def ball(radius, size=24, middle=(11.3, 11.6, 11.8)):
