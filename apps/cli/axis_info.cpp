@@ -31,6 +31,7 @@ std::string made_text(const MedialMetadata& m) {
   if (m.spacing) add("voxels of side " + rounded_text(*m.spacing));
   if (m.label) add("label " + std::to_string(*m.label));
   if (m.threshold) add("threshold " + rounded_text(*m.threshold));
+  if (m.smooth) add("smooth surface of " + plural(static_cast<std::size_t>(*m.smooth), "iteration", "iterations"));
   if (m.weld) add(*m.weld > 0 ? "welded within " + rounded_text(*m.weld) : "welded");
   return text.empty() ? "the file does not tell" : text;
 }
@@ -100,6 +101,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
                      {"label", or_null(m.label)},
                      {"threshold", or_null(m.threshold)},
                      {"weld", or_null(m.weld)},
+                     {"smooth", or_null(m.smooth)},
                      {"bounds", to_json(box)}};
   TextTable table;
   table.add("file", path.string() + ": medial axis");

@@ -47,8 +47,8 @@ std::string missing_options(const SolidSelection& given, InputKind kind, const M
     return "; the file of the axis does not tell how the mesh was read: if --weld was given then, give it here too";
   }
   if (given.label || given.threshold) return {};
-  return "; the file of the axis does not tell which voxels it is of: if --label or --threshold was given then, give "
-         "it here too";
+  return "; the file of the axis does not tell which voxels it is of: if --label or --threshold was given then, or "
+         "--smooth, give it here too";
 }
 
 }  // namespace blum::cli

@@ -11,6 +11,7 @@
 #include "axis_solid.hpp"
 #include "blum/certificate/certificate.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/field/smooth_surface.hpp"
 #include "blum/io/draft.hpp"
 #include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
@@ -38,6 +39,7 @@ constexpr const char* examples = R"(Examples:
   blum medial knot.ply -o knot.obj --theta 170            curves, for Blender
   blum medial part.stl -o part.vtp --graph part.json      its sheets with their thickness, seams, curves, junctions
   blum medial scan.nii.gz -o vessels.npz --label 1,3      vessels-label1.npz and vessels-label3.npz
+  blum medial scan.nii.gz -o vessels.npz --smooth         of the smooth surface that the voxels sample
 
 Exit status 3: the axis could not be certified, and no file was written.)";
 
@@ -49,6 +51,7 @@ struct Arguments {
   std::vector<std::string> labels;
   bool allow_uncertified = false;
   bool nested = false;
+  bool smooth = false;
   ReportOptions report;
 };
 
@@ -64,6 +67,8 @@ struct Request {
   std::optional<double> weld;
   bool allow_uncertified = false;
   bool nested = false;
+  bool smooth = false;          ///< images: of their smooth surface
+  bool has_resolution = false;  ///< or a spacing: voxels need not be those of the image
   int threads = 0;
   ReportOptions report;
 };
@@ -97,6 +102,8 @@ Request parse(const Arguments& a) {
   if (a.prune && *a.prune != "sheets") throw UsageError("--prune '" + *a.prune + "': must be sheets");
   r.prunes_sheets = a.prune.has_value();
   r.nested = a.nested;
+  r.smooth = a.smooth;
+  r.has_resolution = a.options.has("resolution") || a.options.has("spacing");
   if (r.nested && file_extension(r.output) != ".npz") {
     throw UsageError("--nested needs an output with the extension .npz: the other formats hold the axis of one angle");
   }
@@ -122,14 +129,16 @@ Request parse(const Arguments& a) {
 
 void check_applicable(const Arguments& a, const fs::path& input, InputKind kind) {
   if (kind == InputKind::mesh) {
-    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, input, "a mesh", "images");
+    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}, {a.smooth, "--smooth"}},
+                 input, "a mesh", "images");
     return;
   }
+  refuse_given({{a.weld.has_value(), "--weld"}}, input, "an image", "meshes");
+  if (a.smooth) return;
   refuse_given({{a.options.has("resolution"), "--resolution"},
                 {a.options.has("spacing"), "--spacing"},
-                {a.options.has("max_resolution"), "--max-resolution"},
-                {a.weld.has_value(), "--weld"}},
-               input, "an image", "meshes");
+                {a.options.has("max_resolution"), "--max-resolution"}},
+               input, "an image", "meshes and images with --smooth");
 }
 
 /// OUT-theta20.vtp for OUT.vtp.
@@ -248,7 +257,8 @@ MedialMetadata metadata_of(const Request& r, const SolidInput& input, const Labe
   metadata.spacing = report.bodies.front().spacing;
   metadata.solid_rule = to_string(report.rule);
   metadata.grid = report.grid;
-  record(selection, r.weld, input.kind, metadata);
+  record(selection, r.weld, r.smooth ? InputKind::image : input.kind, metadata);
+  if (r.smooth) metadata.smooth = SmoothSurfaceOptions{}.iterations;
   return metadata;
 }
 
@@ -354,14 +364,36 @@ MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, 
   return medial_axis(input.mesh.mesh, options, context);
 }
 
-void add_solid(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
+/// The smooth surface of an image as the input.
+SolidInput smooth_input(Run& run, const SolidInput& image, const LabelSelection& selection, const Context& context) {
+  Stopwatch watch;
+  SmoothSurface surface = smooth_surface(image.image, selection, {}, context);
+  run.phases.push_back({"surface", watch.lap()});
+  run.table.add("smooth", count_text(surface.mesh.triangles.size()) + " triangles; moved by at most " +
+                              rounded_text(surface.largest_move) + " voxels from the boxes");
+  SolidInput out;
+  out.json = {{"iterations", SmoothSurfaceOptions{}.iterations},
+              {"triangles", surface.mesh.triangles.size()},
+              {"largest_move", surface.largest_move},
+              {"held_vertices", surface.held_vertices}};
+  out.mesh.mesh = std::move(surface.mesh);
+  return out;
+}
+
+void add_solid(Run& run, const Request& r, const SolidInput& given, const LabelSelection& selection,
                const std::optional<std::int64_t>& label, const fs::path& output, const Context& context) {
   MedialAxisOptions options = r.options;
   options.selection = selection;
+  const SolidInput surface = r.smooth ? smooth_input(run, given, selection, context) : SolidInput{};
+  const SolidInput& input = r.smooth ? surface : given;
+  if (r.smooth && !r.has_resolution) {
+    const Vec3d& sides = given.image.grid.spacing;
+    options.spacing = std::min({sides.x, sides.y, sides.z});
+  }
   const MedialAxis axis = make_axis(input, options, context);
   const MedialAxisReport& report = axis.report();
   run.phases.insert(run.phases.end(), report.phases.begin(), report.phases.end());
-  Json json;
+  Json json = {{"smooth", surface.json}};
   if (label) {
     json["label"] = *label;
     run.table.add("label", std::to_string(*label));
@@ -498,6 +530,9 @@ void add_medial_command(const CommandLine& line) {
   a->options.add_to(*command, "", {"least_theta"});
   add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
+  command->add_flag(
+      "--smooth", a->smooth,
+      "Image: the solid is what the smooth surface bounds that the voxels sample, instead of their boxes");
   add_graph_option(*command, a->graph, "Its sheets, seams, curves and junctions as a graph");
   command->add_flag("--nested", a->nested,
                     "Keep the axes of all angles from --theta on as well (.npz), for `blum view`");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "axis_solid.hpp"
+#include "blum/field/smooth_surface.hpp"
 #include "blum/io/medial_io.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
@@ -34,14 +35,15 @@ struct Arguments {
   std::vector<std::string> axes;
   std::optional<std::string> threshold, weld, threads;
   std::vector<std::string> labels;
+  bool smooth = false;
   ReportOptions report;
 };
 
 SolidSelection solid_of_options(const Arguments& a, InputKind kind) {
   const SolidSelection given = parse_solid(a.labels, a.threshold, a.weld);
   if (kind == InputKind::mesh) {
-    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}}, a.input, "a mesh",
-                 "images");
+    refuse_given({{!a.labels.empty(), "--label"}, {a.threshold.has_value(), "--threshold"}, {a.smooth, "--smooth"}},
+                 a.input, "a mesh", "images");
   } else {
     refuse_given({{a.weld.has_value(), "--weld"}}, a.input, "an image", "meshes");
   }
@@ -51,11 +53,12 @@ SolidSelection solid_of_options(const Arguments& a, InputKind kind) {
 /// Certifies one axis after the other.
 class Verifier {
  public:
-  Verifier(fs::path path, InputKind kind, SolidSelection given, const Context& context)
-      : path_(std::move(path)), kind_(kind), given_(given), context_(context) {}
+  Verifier(fs::path path, InputKind kind, SolidSelection given, bool smooth, const Context& context)
+      : path_(std::move(path)), kind_(kind), given_(given), smooth_(smooth), context_(context) {}
 
   void verify(const fs::path& axis) {
-    const MedialFile file = read_axis(axis);
+    MedialFile file = read_axis(axis);
+    if (smooth_ && !file.metadata.smooth) file.metadata.smooth = SmoothSurfaceOptions{}.iterations;
     const auto& [selection, warning] = solid_of_axis(given_, kind_, file.metadata, axis);
     const SolidInput& solid = load(selection.weld);
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
@@ -112,6 +115,7 @@ class Verifier {
   fs::path path_;
   InputKind kind_;
   SolidSelection given_;
+  bool smooth_;
   const Context& context_;
   std::optional<SolidInput> solid_;
   std::optional<double> weld_;
@@ -134,7 +138,7 @@ void run(const Arguments& a) {
   Progress progress(!a.report.quiet);
   const Interrupt interrupt;
   const Context context = make_context(parse_threads(a.threads), progress, interrupt);
-  Verifier verifier(path, kind, given, context);
+  Verifier verifier(path, kind, given, a.smooth, context);
   for (const fs::path& axis : axes) verifier.verify(axis);
   progress.clear();
   report(a.report, verifier.json(), verifier.text());
@@ -152,6 +156,7 @@ void add_verify_command(const CommandLine& line) {
   add_label_option(*command, a->labels, "Image: the voxels of value L (default: as AXIS tells)");
   add_text_option(*command, "--threshold", a->threshold, "T",
                   "Image: the voxels of value T or more (default: as AXIS tells)");
+  command->add_flag("--smooth", a->smooth, "Image: AXIS is that of the smooth surface (default: as AXIS tells)");
   add_weld_option(*command, a->weld, weld_of_axis_help);
   add_threads_option(*command, a->threads);
   add_report_options(*command, a->report, "Write the certificates as JSON; - is standard output");

@@ -10,10 +10,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "blum/field/image_reference.hpp"
+#include "blum/field/smooth_surface.hpp"
 #include "blum/grid/image_values.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/grid/voxel_topology.hpp"
@@ -39,6 +41,7 @@ VoxelImageView::Values values_of(const ValuesIn& array) {
 
 void bind_transforms(nb::module_& m) {
   bind_options<DistanceTransformOptions>(m);
+  bind_options<SmoothSurfaceOptions>(m);
   bind_struct<ImageValues>(m);
   bind_struct<VoxelTopology>(m);
   m.def(
@@ -74,6 +77,19 @@ void bind_transforms(nb::module_& m) {
                            [&](const Context& context) { return selected_voxels(image.view, selection, context); }));
       },
       nb::arg("image"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("threads"),
+      nb::arg("progress").none());
+  m.def(
+      "smooth_surface",
+      [](const ImageArrays& image, std::optional<std::int64_t> label, std::optional<double> threshold,
+         const nb::dict& options, int threads, nb::object progress) {
+        const LabelSelection selection = LabelSelection::of(label, threshold);
+        const auto chosen = options_from<SmoothSurfaceOptions>(options);
+        SmoothSurface out = run({threads, std::move(progress)}, [&](const Context& context) {
+          return smooth_surface(image.view, selection, chosen, context);
+        });
+        return nb::make_tuple(arrays_of(std::move(out.mesh)), out.largest_move);
+      },
+      nb::arg("image"), nb::arg("label").none(), nb::arg("threshold").none(), nb::arg("options"), nb::arg("threads"),
       nb::arg("progress").none());
   m.def(
       "voxel_topology",

@@ -60,6 +60,7 @@ from ._mesh import (
     weld_clusters,
 )
 from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
+from ._smooth import smooth_surface
 from ._solid import CellularModel, Solid, SolidBody
 from ._structs import *  # noqa: F403
 from ._transform import distance_transform, distance_transforms
@@ -131,6 +132,7 @@ __all__ = [
     "selected_voxels",
     "self_intersections",
     "shapes",
+    "smooth_surface",
     "solid_rule",
     "subdivided",
     "thread_count",

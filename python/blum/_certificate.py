@@ -36,6 +36,7 @@ class Claim:
     lambda_: float | None = None  #: mesh units
     spacing: float | None = None  #: smallest side of a voxel, mesh units
     deviation: float | None = None  #: from the axis with all vertices, mesh units
+    smooth: int | None = None  #: of an image: iterations of the smooth surface of its voxels; None: of their boxes
 
 
 def certified(
@@ -99,6 +100,7 @@ def _claims(claim: Claim, grid: Grid | None, sites: str) -> dict[str, Any]:
         "lambda_": claim.lambda_,
         "spacing": claim.spacing,
         "deviation": claim.deviation,
+        "smooth": claim.smooth,
     }
 
 

@@ -57,6 +57,7 @@ class Origin:
     grid: Grid | None = None
     source: str = ""
     weld: float | None = None
+    smooth: int | None = None
     site_ids: str = "features"
     version: str = ""  #: of Blum, where a file that it wrote was read
 
@@ -347,6 +348,7 @@ def _claim(axis: MedialComplex) -> Claim:
         origin.lambda_,
         origin.spacing,
         origin.deviation,
+        origin.smooth,
     )
 
 

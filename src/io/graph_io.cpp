@@ -23,6 +23,7 @@ Attributes told(const MedialMetadata& metadata) {
   add("deviation", metadata.deviation);
   add("label", metadata.label);
   add("threshold", metadata.threshold);
+  if (metadata.smooth) out.emplace_back("smooth", std::int64_t{*metadata.smooth});
   return out;
 }
 

@@ -12,6 +12,9 @@
 
 namespace blum::medial_files {
 
+/// Of MedialMetadata::smooth.
+constexpr int most_smoothing = 1000;
+
 [[nodiscard]] FileMetadata to_pairs(const MedialMetadata& metadata);
 /// @throws FormatError with `name` when a known key has a value that it cannot have.
 [[nodiscard]] MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name);

@@ -34,6 +34,10 @@ void check_metadata(const MedialMetadata& metadata) {
   if (metadata.label && metadata.threshold) {
     throw InvalidOption("the metadata have a label and a threshold; a solid is selected by one of them");
   }
+  if (metadata.smooth && (*metadata.smooth < 0 || *metadata.smooth > medial_files::most_smoothing)) {
+    throw InvalidOption("smooth of the metadata is " + std::to_string(*metadata.smooth) + ", but must be 0 to " +
+                        std::to_string(medial_files::most_smoothing));
+  }
   if (metadata.grid) validate(*metadata.grid);
 }
 

@@ -133,6 +133,7 @@ FileMetadata to_pairs(const MedialMetadata& metadata) {
   if (metadata.label) pairs.emplace_back("label", std::to_string(*metadata.label));
   if (metadata.threshold) pairs.emplace_back("threshold", exact_text(*metadata.threshold));
   if (metadata.weld) pairs.emplace_back("weld", exact_text(*metadata.weld));
+  if (metadata.smooth) pairs.emplace_back("smooth", std::to_string(*metadata.smooth));
   return pairs;
 }
 
@@ -157,6 +158,11 @@ MedialMetadata from_pairs(const FileMetadata& pairs, const std::string& name) {
     throw FormatError(name + ": the metadata say a label and a threshold, but the solid can only be by one of them");
   }
   metadata.weld = reader.not_negative("weld");
+  metadata.smooth = reader.number<int>("smooth");
+  if (metadata.smooth && (*metadata.smooth < 0 || *metadata.smooth > most_smoothing)) {
+    throw FormatError(name + ": the metadata say smooth '" + std::to_string(*metadata.smooth) +
+                      "', but it must be 0 to " + std::to_string(most_smoothing));
+  }
   return metadata;
 }
 

@@ -6,6 +6,7 @@
 
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/field/smooth_surface.hpp"
 #include "blum/field/voxels_inside.hpp"
 #include "blum/grid/selected_voxels.hpp"
 #include "blum/solid/solid_rule.hpp"
@@ -102,6 +103,10 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshVi
 
 Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
                    const LabelSelection& selection, const CertificateOptions& options, const Context& context) {
+  if (claims.metadata.smooth) {
+    const SmoothSurface surface = smooth_surface(image, selection, {.iterations = *claims.metadata.smooth}, context);
+    return verify(axis, claims, surface.mesh, options, 1e300, context);
+  }
   const VoxelSet voxels = selected_voxels(image, selection, context);
   const CertificateOptions checks = checkable(claims, SiteIds::voxels, options);
   return with_claims(certify(CompleteAxis(axis).get(), voxels, image.grid, nullptr, checks, context), claims,

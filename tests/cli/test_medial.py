@@ -222,6 +222,7 @@ def test_summary_has_its_keys(solids, tmp_path):
     assert summary["total_seconds"] == pytest.approx(sum(summary["seconds"].values()))
     (solid,) = summary["solids"]
     assert {
+        "smooth",
         "rule",
         "reason",
         "reversed_shells",

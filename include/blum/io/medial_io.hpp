@@ -38,6 +38,9 @@ struct MedialMetadata {
   std::optional<std::int64_t> label = {};  ///< those of this value
   std::optional<double> threshold = {};    ///< those of this value or more, in image values
   std::optional<double> weld = {};  ///< MeshReadOptions::weld, >= 0, mesh units; unset: the default of the format
+  /// Images: the solid is what the smooth surface of its voxels bounds, with SmoothSurfaceOptions::iterations; unset:
+  /// the union of their boxes.
+  std::optional<int> smooth = {};
 };
 
 template <>
@@ -58,6 +61,7 @@ struct Description<MedialMetadata> {
       Member{"label", &MedialMetadata::label, "", "of the voxels of an image"},
       Member{"threshold", &MedialMetadata::threshold, "", "least value of the voxels of an image"},
       Member{"weld", &MedialMetadata::weld, "mesh units", "how the vertices of a mesh were merged"},
+      Member{"smooth", &MedialMetadata::smooth, "", "of the voxels of an image: iterations of their smooth surface"},
   };
 };
 

@@ -54,7 +54,8 @@ class UntoldVoxels : public InvalidMesh {
                                  const CertificateOptions& options = {}, double available_memory = 1e300,
                                  const Context& context = {});
 
-/// The same against the union of the selected, closed voxels of an image. @throws as certify() and selected_voxels().
+/// The same against the union of the selected, closed voxels of an image; or, where the claims say so, against what
+/// their smooth surface bounds (MedialMetadata::smooth). @throws as certify(), selected_voxels() and smooth_surface().
 [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
                                  const LabelSelection& selection, const CertificateOptions& options = {},
                                  const Context& context = {});

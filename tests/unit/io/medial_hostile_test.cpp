@@ -133,6 +133,7 @@ TEST(MedialHostile, Ply) {
         "only a part of the grid", ""},
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"site_ids\": \"x\"}\n"), "not known", ""},
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"weld\": \"-1\"}\n"), "weld '-1'", ""},
+       {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"smooth\": \"-1\"}\n"), "smooth '-1'", ""},
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"label\": \"1.5\"}\n"), "label '1.5'", ""},
        {replaced(ply_with("", "0 0 0\n"), "1.0\n", "1.0\ncomment blum {\"label\": \"1\", \"threshold\": \"2\"}\n"),
         "a label and a threshold", ""},

@@ -41,6 +41,7 @@ void expect_same(const MedialMetadata& a, const MedialMetadata& b) {
   EXPECT_EQ(a.label, b.label);
   EXPECT_EQ(a.threshold, b.threshold);
   EXPECT_EQ(a.weld, b.weld);
+  EXPECT_EQ(a.smooth, b.smooth);
 }
 
 /// What an .obj file keeps: places, triangles, curves. A .ma file keeps the radii as well.
@@ -137,6 +138,7 @@ TEST_P(MedialFiles, KeepAThreshold) {
   MedialMetadata metadata;
   metadata.threshold = -1.0 / 3.0;
   metadata.weld = 0;
+  metadata.smooth = 60;
   write_medial(path, sample_complex(), metadata);
   expect_same(read_medial(path).metadata, keeps_all() ? metadata : MedialMetadata{});
 }
@@ -252,6 +254,9 @@ TEST_P(MedialFiles, FailedWriteLeavesNothing) {
   metadata.weld = -1;
   EXPECT_THROW(write_medial(path, sample_complex(), metadata), InvalidOption);
   metadata.weld.reset();
+  metadata.smooth = 1001;
+  EXPECT_THROW(write_medial(path, sample_complex(), metadata), InvalidOption);
+  metadata.smooth.reset();
   metadata.label = 1;
   metadata.threshold = 1;
   EXPECT_THROW(write_medial(path, sample_complex(), metadata), InvalidOption);
