@@ -55,7 +55,7 @@ def certified(
     if grid is not None and not isinstance(grid, Grid):
         raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
     has = dict(claim.has)
-    asked: dict[str, Any] = {name: has[name] for name in ("radii", "footprints", "angles", "sites")}
+    asked: dict[str, Any] = {name: has[name] for name in ("radii", "footprints", "angles", "sites", "labels")}
     asked |= {"balls": has["radii"], **checks}
     count = integer(threads, "threads")
     of_image = triangles is None and is_image(shape)
