@@ -135,7 +135,8 @@ class Angles {
     std::vector<Sized> curves;
     for (std::uint32_t n = 0; n < axis_.edges.size(); ++n) {
       const auto& [a, b] = axis_.edges[n];
-      if (!incidence_.triangles_of_edge()[incidence_.edge_of_listed()[n]].empty() || !(axis_.edge_angle[n] > 0)) continue;
+      if (!incidence_.triangles_of_edge()[incidence_.edge_of_listed()[n]].empty() || !(axis_.edge_angle[n] > 0))
+        continue;
       add(curves, length(axis_.positions[a] - axis_.positions[b]), n);
     }
     const auto of_triangle = [&](std::uint32_t t) {
@@ -209,8 +210,9 @@ void explain(const AngleCheck& check, double theta, std::vector<std::string>& mi
                          " have a separation angle below that of their triangles");
   }
   if (check.rims >= few && check.low_rims_share > most_low_rims) {
-    mismatches.push_back("of the rims, " + percent(check.low_rims_share) + " are of sheets that nothing sees at more than " +
-                         rounded_text(theta) + " degrees, which the axis at that theta does not have");
+    mismatches.push_back("of the rims, " + percent(check.low_rims_share) +
+                         " are of sheets that nothing sees at more than " + rounded_text(theta) +
+                         " degrees, which the axis at that theta does not have");
   }
 }
 

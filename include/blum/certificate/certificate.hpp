@@ -349,10 +349,10 @@ struct Description<LabelCheck> {
 /// Whether the separation angles of triangles and edges are those of their places: told by shares, since a triangle has
 /// the largest angle that is seen within half a voxel of it, and that of others which went for it.
 struct AngleCheck {
-  std::size_t triangles = 0;  ///< whose corners all see two walls
-  double below_share = 0;     ///< of their area: what says 10 degrees less than each of the three corners sees
-  std::size_t samples = 0;    ///< triangles that were looked at
-  double above_share = 0;     ///< of these: what says 20 degrees more than is seen within a voxel
+  std::size_t triangles = 0;      ///< whose corners all see two walls
+  double below_share = 0;         ///< of their area: what says 10 degrees less than each of the three corners sees
+  std::size_t samples = 0;        ///< triangles that were looked at
+  double above_share = 0;         ///< of these: what says 20 degrees more than is seen within a voxel
   std::size_t curve_samples = 0;  ///< edges of curves that were looked at
   double curves_above_share = 0;  ///< the same of these
   std::size_t borders = 0;        ///< rims and seams
