@@ -24,7 +24,7 @@ class Claim:
     """An axis as its certificate sees it, with what it (or the file that it was read from) says of itself."""
 
     complex: Complex
-    has: Mapping[str, bool]  #: which attributes are more than fillers: radii, footprints, angles, sites
+    has: Mapping[str, bool]  #: which attributes are more than fillers: radii, footprints, angles, sites, labels
     grid: Grid | None  #: of the voxels' centres, where that is known
     label: int | None  #: of an image: the voxels of this value
     threshold: float | None  #: of an image: the voxels of this value or more

@@ -24,12 +24,10 @@ namespace blum {
 namespace {
 
 using test::AxisRows;
+using test::box_between;
 using test::VertexRow;
 
-using test::box_between;
-
-/// Axes made by hand have no roles.
-constexpr CertificateOptions unlabelled{.labels = false};
+constexpr CertificateOptions unlabelled{.labels = false};  ///< axes made by hand have no roles
 
 /// A vertex whose radius and footprint are what the library's own hierarchy tells.
 VertexRow vertex_at(const Bvh& bvh, const Vec3d& p) {

@@ -220,8 +220,7 @@ TEST(ColumnLies, FootprintsOfTheMirroredVertex) {
   expect_refused(lie, "the distance to a footprint differs from the radius");
 }
 
-TEST(ColumnLies, ATriangleAcrossADent) {
-  // A large triangle inside of a box with a spike of nothing through its middle: its edges and corners are inside.
+TEST(ColumnLies, ATriangleAcrossTheHole) {
   True lie{make_torus({}), {}, {}};
   const SiteTable sites(lie.mesh);
   const Bvh bvh(lie.mesh, sites);
