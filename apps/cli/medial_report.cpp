@@ -44,6 +44,18 @@ std::string medial_text(const MedialCheck& check) {
          rounded_text(check.sought_angle) + " degrees (" + count_text(check.balls) + " balls)";
 }
 
+/// What is told of roles, sheets, and the angles of triangles and edges.
+std::string labels_text(const Certificate& c) {
+  if (!c.checked.labels && !c.checked.angles) return "not looked at";
+  std::string text;
+  if (c.checked.labels) text = c.labels.holds ? "roles and sheets follow from the triangles" : "wrong roles or sheets";
+  if (!c.checked.angles) return text;
+  if (!text.empty()) text += "; ";
+  if (!c.angles.holds) return text + "wrong angles of triangles or edges";
+  return text + "of the triangles " + percent(c.angles.below_share) + " say less than their corners see, " +
+         percent(c.angles.above_share) + " more than is seen around them";
+}
+
 }  // namespace
 
 MedialFile read_axis(const std::filesystem::path& path) {
@@ -64,6 +76,36 @@ Certificate certificate_of(const MedialFile& file, const SolidInput& input, cons
   }
 }
 
+namespace {
+
+/// With names as the text has them.
+std::vector<std::pair<bool, const char*>> what_files_may_lack(const Certificate& c) {
+  return {{c.checked.radii, "radii"},
+          {c.checked.footprints, "footprints"},
+          {c.checked.angles, "separation angles"},
+          {c.checked.sites, "sites"},
+          {c.checked.labels, "roles and sheets"}};
+}
+
+/// What a file may say that no certificate judges.
+std::vector<std::string> taken_as_said(const Certificate& c) {
+  std::vector<std::string> all;
+  if (c.checked.deviation) all.emplace_back("deviation");
+  for (const char* const what : {"source", "version"}) all.emplace_back(what);
+  return all;
+}
+
+Json not_checked_json(const Certificate& c) {
+  Json all = Json::array();
+  for (const auto& [is_checked, what] : what_files_may_lack(c)) {
+    if (!is_checked) all.push_back(std::string(what) + ": not in the file");
+  }
+  for (const std::string& what : taken_as_said(c)) all.push_back(what + ": taken as said");
+  return all;
+}
+
+}  // namespace
+
 NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std::string& rest)
     : std::runtime_error([&] {
         std::string all;
@@ -75,11 +117,15 @@ Json certificate_json(const Certificate& c) {
   Json json = {{"certified", c.holds()}};
   json.update(to_json(c));
   json.erase("holds");
-  Json checked = {"topology", "positions", "edges"};
-  for (const char* const what : {"radii", "footprints", "angles", "sites", "medial"}) {
+  Json checked = {"topology", "positions", "edges", "triangles"};
+  for (const char* const what : {"radii", "footprints", "angles", "sites", "labels", "medial"}) {
     if (json["checked"][what]) checked.push_back(what);
   }
+  for (const char* const what : {"theta", "lambda", "spacing"}) {
+    if (!json["checked"][what].is_null()) checked.push_back(what);
+  }
   json["checked"] = checked;
+  json["not_checked"] = not_checked_json(c);
   const auto wrong =
       std::count_if(c.bodies.begin(), c.bodies.end(), [](const BodyCheck& body) { return body.solid != body.axis; });
   json["bodies"] = {{"count", c.bodies.size()}, {"wrong", wrong}};
@@ -90,6 +136,8 @@ Json certificate_json(const Certificate& c) {
   if (!c.checked.footprints) geometry.erase("footprint_error");
   if (!c.checked.sites) geometry.erase("site_error");
   if (!c.checked.angles) geometry.erase("angle_error");
+  if (!c.checked.labels) json.erase("labels");
+  if (!c.checked.angles) json.erase("angles");
   if (!c.checked.balls) json.erase("balls");
   if (!c.checked.medial) json.erase("medial");
   return json;
@@ -136,11 +184,18 @@ void add_certificate(TextTable& table, const Certificate& c) {
     table.add("NOT certified", axis + "; the solid " + betti_text(c.solid));  // why is told by the error
   }
   table.add("proven", c.homology.shown);
-  std::string geometry = "vertices and edges in the solid";
-  if (!c.geometry.holds || !c.edges.holds) geometry = "wrong";
+  std::string geometry = "vertices, edges and triangles in the solid";
+  if (!c.geometry.holds || !c.edges.holds || !c.triangles.holds) geometry = "wrong";
   if (c.edges.pushed > 0) {
     geometry += ", but for " + plural(c.edges.pushed, "edge that cuts a corner", "edges that cut corners") +
                 " by up to " + rounded_text(c.edges.pushed_by);
+  }
+  if (c.triangles.holds && c.triangles.leaving > 0) {
+    geometry += ", but for the insides of " + plural(c.triangles.leaving, "triangle", "triangles") + ", by up to " +
+                rounded_text(c.triangles.outside_by);
+  }
+  if (c.triangles.undecided > 0) {
+    geometry += ", " + plural(c.triangles.undecided, "triangle", "triangles") + " in thin walls undecided";
   }
   if (c.checked.radii) geometry += "; radii off by at most " + rounded_text(c.geometry.radius_error);
   if (c.checked.footprints) {
@@ -148,12 +203,14 @@ void add_certificate(TextTable& table, const Certificate& c) {
   }
   table.add("geometry", geometry + " (tolerance " + rounded_text(c.geometry.tolerance) + ")");
   std::string unknown;
-  for (const auto& [is_checked, what] :
-       {std::pair{c.checked.radii, "radii"}, std::pair{c.checked.footprints, "footprints"},
-        std::pair{c.checked.angles, "separation angles"}, std::pair{c.checked.sites, "sites"}}) {
+  for (const auto& [is_checked, what] : what_files_may_lack(c)) {
     if (!is_checked) unknown += (unknown.empty() ? "" : ", ") + std::string(what);
   }
+  table.add("labels", labels_text(c));
   if (!unknown.empty()) table.add("not checked", "not in the file: " + unknown);
+  std::string said;
+  for (const std::string& what : taken_as_said(c)) said += (said.empty() ? "" : ", ") + what;
+  table.add("as said", said);
   if (c.checked.medial) table.add("medial", medial_text(c.medial));
   if (!c.checked.balls) return;
   table.add("balls", "the solid reaches at most " + rounded_text(c.balls.solid_to_balls) +

@@ -28,7 +28,12 @@ namespace {
 /// What an axis says of itself. @param has  which attributes are more than fillers.
 MedialClaims claims_from(const nb::dict& metadata, const nb::dict& has) {
   const auto holds = [&](const char* name) { return nb::cast<bool>(has[name]); };
-  return {options_from<MedialMetadata>(metadata), holds("radii"), holds("footprints"), holds("sites"), holds("angles")};
+  return {options_from<MedialMetadata>(metadata),
+          holds("radii"),
+          holds("footprints"),
+          holds("sites"),
+          holds("angles"),
+          holds("labels")};
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class Claim:
     """An axis as its certificate sees it, with what it (or the file that it was read from) says of itself."""
 
     complex: Complex
-    has: Mapping[str, bool]  #: which attributes are more than fillers: radii, footprints, angles, sites
+    has: Mapping[str, bool]  #: which attributes are more than fillers: radii, footprints, angles, sites, labels
     grid: Grid | None  #: of the voxels' centres, where that is known
     label: int | None  #: of an image: the voxels of this value
     threshold: float | None  #: of an image: the voxels of this value or more
@@ -56,7 +56,7 @@ def certified(
     if grid is not None and not isinstance(grid, Grid):
         raise TypeError(f"grid must be a blum.Grid, not {type(grid).__name__}")
     has = dict(claim.has)
-    asked: dict[str, Any] = {name: has[name] for name in ("radii", "footprints", "angles", "sites")}
+    asked: dict[str, Any] = {name: has[name] for name in ("radii", "footprints", "angles", "sites", "labels")}
     asked |= {"balls": has["radii"], **checks}
     count = integer(threads, "threads")
     of_image = triangles is None and is_image(shape)

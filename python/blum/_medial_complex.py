@@ -406,6 +406,8 @@ def certify(
     and voids of their body, by linking numbers (``homology``). Vertices, radii, footprints, sites and angles are
     checked with exact searches; edges must lie in the solid. Points of sheets and curves must be in the middle between
     two walls, and what is there in the solid at well more than theta must not be missing: see :class:`MedialCheck`.
+    Roles, sheets and the angles of triangles and edges must be those of their places: see :class:`LabelCheck` and
+    :class:`AngleCheck`.
     Nothing of what made the axis is used. What the axis (or the file that it was read from)
     says of itself is checked as `blum verify` does it: the rule of its solid, its voxels' sides, which attributes
     it has.

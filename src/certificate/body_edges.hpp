@@ -36,8 +36,8 @@ class BodyEdges {
   [[nodiscard]] double corner() const { return corner_; }
 
   /// The point of a segment that is furthest out, as far as that is more than is allowed. A ball as large as a point is
-  /// deep lies in the body, so that only what is between such balls is left to ask about. In a thin wall these are many:
-  /// so first it is asked whether the segment meets the boundary at all.
+  /// deep lies in the body, so that only what is between such balls is left to ask about. In a thin wall these are
+  /// many: so first it is asked whether the segment meets the boundary at all.
   [[nodiscard]] Stop furthest_out(const Stop& a, const Stop& b, double allowed) const {
     constexpr double nearly = 1.25;  // enough of what is too much anyway
     Stop worst = a.depth < b.depth ? a : b;

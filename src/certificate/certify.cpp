@@ -93,6 +93,7 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
   compare_topology(certificate, name);
   certificate.geometry =
       verifier::check_vertices(axis, solid, locations, certificate.checked, factor, certificate.mismatches, context);
+  verifier::check_claims(certificate.checked, solid.solid->diagonal() / factor, certificate.mismatches);
   const Incidence incidence(axis.cells(), context);
   std::vector<verifier::PushedEdge> pushed;
   certificate.edges =
@@ -100,6 +101,15 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
   certificate.homology = verifier::check_homology({axis, incidence, solid, locations, parts, pushed, factor},
                                                   certificate.edges.holds && certificate.geometry.not_finite == 0,
                                                   certificate.bodies, name, certificate.mismatches, context);
+  certificate.triangles = verifier::check_triangles(axis, solid, locations, parts, certificate.checked, factor,
+                                                    certificate.mismatches, context);
+  if (certificate.checked.labels) {
+    certificate.labels = verifier::check_labels(axis, incidence, certificate.mismatches, context);
+  }
+  if (certificate.checked.angles) {
+    certificate.angles = verifier::check_angles(axis, incidence, solid, parts.body_of, certificate.checked, factor,
+                                                certificate.mismatches, context);
+  }
   if (certificate.checked.medial) {
     certificate.medial = verifier::check_medial(axis, solid, parts.body_of, certificate.checked, factor,
                                                 certificate.mismatches, context);
@@ -138,6 +148,7 @@ CertificateOptions consistent(CertificateOptions options) {
   options.footprints = options.footprints && options.radii;
   options.angles = options.angles && options.footprints;
   options.sites = options.sites && options.footprints;
+  options.labels = options.labels && options.positions;
   options.balls = options.balls && options.radii;
   options.medial = options.medial && options.radii;
   return options;
@@ -149,6 +160,7 @@ constexpr CertificateOptions only_places{.positions = true,
                                          .footprints = false,
                                          .angles = false,
                                          .sites = false,
+                                         .labels = false,
                                          .balls = false,
                                          .medial = false};
 

@@ -27,6 +27,9 @@ namespace blum::verifier {
   return rounded_text(at.x) + " " + rounded_text(at.y) + " " + rounded_text(at.z);
 }
 
+/// Of what vertices are allowed: an edge along the surface is asked about as often as this goes into it.
+inline constexpr double more_for_edges = 10;
+
 /// How far off positions may be in each body.
 [[nodiscard]] std::vector<double> tolerances(const KnownSolid& solid);
 
@@ -67,6 +70,25 @@ struct AxisParts {
                                     const std::vector<Location>& locations, const AxisParts& parts, double factor,
                                     std::vector<PushedEdge>& pushed, std::vector<std::string>& mismatches,
                                     const Context& context);
+
+/// The same for triangles between their edges.
+[[nodiscard]] TriangleCheck check_triangles(const MedialView& axis, const KnownSolid& solid,
+                                            const std::vector<Location>& locations, const AxisParts& parts,
+                                            const CertificateOptions& options, double factor,
+                                            std::vector<std::string>& mismatches, const Context& context);
+
+/// The same for roles and sheets.
+[[nodiscard]] LabelCheck check_labels(const MedialView& axis, const Incidence& incidence,
+                                      std::vector<std::string>& mismatches, const Context& context);
+
+/// The same for the separation angles of triangles and edges. @param body_of  of each vertex: see AxisParts.
+[[nodiscard]] AngleCheck check_angles(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
+                                      const std::vector<std::uint32_t>& body_of, const CertificateOptions& options,
+                                      double factor, std::vector<std::string>& mismatches, const Context& context);
+
+/// Adds what cannot be so of what an axis says of itself, and takes it out: theta, lambda, spacing, deviation.
+/// @param diagonal  of the solid, as the caller knows it.
+void check_claims(CertificateOptions& options, double diagonal, std::vector<std::string>& mismatches);
 
 /// @throws Cancelled.
 [[nodiscard]] BallUnionCheck check_balls(const MedialView& axis, const SolidOracle& solid,

@@ -13,9 +13,6 @@
 namespace blum::verifier {
 namespace {
 
-/// Of what vertices are allowed: an edge along the surface is asked about as often as this goes into it.
-constexpr double more_for_edges = 10;
-
 /// What is found of some of the edges.
 struct Findings {
   EdgeCheck check;

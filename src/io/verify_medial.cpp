@@ -21,6 +21,7 @@ CertificateOptions checkable(const MedialClaims& claims, SiteIds sites, Certific
   options.footprints = options.footprints && claims.has_footprints;
   options.angles = options.angles && claims.has_angles;
   options.sites = options.sites && claims.has_sites && claims.metadata.site_ids == sites;
+  options.labels = options.labels && claims.has_labels;
   const MedialMetadata& metadata = claims.metadata;
   options.medial = options.medial && claims.has_radii && (claims.has_angles || metadata.theta);
   const auto take = [](std::optional<double>& own, const std::optional<double>& said) {
@@ -54,7 +55,7 @@ Certificate with_claims(Certificate certificate, const MedialClaims& claims, con
 }  // namespace
 
 MedialClaims claims_of(const MedialFile& file) {
-  return {file.metadata, file.has_radii, file.has_footprints, file.has_sites, file.has_angles};
+  return {file.metadata, file.has_radii, file.has_footprints, file.has_sites, file.has_angles, file.has_labels};
 }
 
 std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found, const GridSpec* image_grid) {
@@ -73,6 +74,7 @@ std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule foun
   for (const auto& [is_there, what] :
        {std::pair{claims.has_radii, "radii"}, std::pair{claims.has_footprints, "footprints"},
         std::pair{claims.has_angles, "separation angles"}, std::pair{claims.has_sites, "sites"},
+        std::pair{claims.has_labels, "roles and sheets"},
         std::pair{!claims.has_sites || metadata.site_ids == sites, "sites of this kind of solid"}}) {
     if (!is_there) out.push_back("the file says that Blum " + metadata.version + " wrote it, but holds no " + what);
   }

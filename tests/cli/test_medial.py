@@ -87,9 +87,15 @@ def test_every_format_holds_the_axis_and_verifies(solids, axes, tmp_path, end):
     geometry = certificate["geometry"]
     assert ("radius_error" in geometry) == ("balls" in certificate) == (end != "obj")
     assert ("footprint_error" in geometry) == (end in ("vtp", "ply", "npz")) == ("not checked" not in out)
-    checked = ["topology", "positions", "edges"] + ["radii"] * (end != "obj")
-    checked += ["footprints", "angles", "sites", "medial"] * (end in ("vtp", "ply", "npz"))
+    checked = ["topology", "positions", "edges", "triangles"] + ["radii"] * (end != "obj")
+    columns = ["footprints", "angles", "sites", "labels", "medial", "theta", "lambda", "spacing"]
+    checked += columns * (end in ("vtp", "ply", "npz"))
     assert certificate["checked"] == checked
+    lacking = ["radii"] * (end == "obj") + ["footprints", "separation angles", "sites", "roles and sheets"]
+    lacking = [name + ": not in the file" for name in lacking] * (end in ("obj", "ma"))
+    said = [name for name in certificate["not_checked"] if name not in lacking]
+    assert certificate["not_checked"][: len(lacking)] == lacking
+    assert said[-2:] == ["source: taken as said", "version: taken as said"] and "as said" in out
 
 
 def test_angles_give_a_file_each_and_nested_axes(solids, tmp_path):

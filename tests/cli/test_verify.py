@@ -206,7 +206,9 @@ def test_files_of_other_programs_are_checked_as_far_as_they_go(solids, axes, tmp
     out, _ = run("verify", solids / "box.obj", foreign("radius", *SITES, *FOOTPRINTS, "separation_angle"))
     assert "not in the file: radii, footprints, separation angles, sites" in out
     certificate = run_json("verify", solids / "box.obj", foreign(*SITES))["certificate"]
-    assert certificate["checked"] == ["topology", "positions", "edges", "radii", "footprints", "angles", "medial"]
+    parts = ["topology", "positions", "edges", "triangles", "radii", "footprints", "angles", "labels", "medial"]
+    assert certificate["checked"] == parts
+    assert "sites: not in the file" in certificate["not_checked"]
 
 
 def test_positions_of_obj_files_are_verified(solids, axes, tmp_path):

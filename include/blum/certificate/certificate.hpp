@@ -280,6 +280,110 @@ struct Description<MedialCheck> {
   };
 };
 
+/// Whether the triangles of an axis lie in the solid between their edges: a ball as large as a point is deep covers a
+/// part of a triangle; what the balls of the corners leave is cut up until balls cover it, or a point of it is found
+/// outside. Triangles are flat and the solid is not, so that they may leave it by what edges that cut a corner may, and
+/// the deviation; those that leave it by less are told.
+struct TriangleCheck {
+  std::size_t triangles = 0;  ///< looked at
+  std::size_t leaving = 0;    ///< of them, those that leave the body of their corners by more than the tolerance
+  std::size_t outside = 0;    ///< of these, those that do so by more than the allowance
+  double outside_by = 0;      ///< how far the furthest is out, mesh units
+  Vec3d where;                ///< and there, mesh units
+  std::size_t undecided = 0;  ///< those in walls so thin that 512 points of them do not tell
+  double tolerance = 0;       ///< that of edges, mesh units
+  double allowance = 0;       ///< in the largest body, mesh units
+  bool holds = false;         ///< none is outside
+};
+
+template <>
+struct Description<TriangleCheck> {
+  static constexpr std::string_view name = "TriangleCheck";
+  static constexpr std::string_view doc = "Whether triangles lie in the solid between their edges";
+  static constexpr std::tuple members{
+      Member{"triangles", &TriangleCheck::triangles, "", "looked at"},
+      Member{"leaving", &TriangleCheck::leaving, "", "of them, those that leave the solid by more than the tolerance"},
+      Member{"outside", &TriangleCheck::outside, "", "of these, those that do so by more than the allowance"},
+      Member{"outside_by", &TriangleCheck::outside_by, "mesh units", "how far the furthest is out"},
+      Member{"where", &TriangleCheck::where, "mesh units", "and there"},
+      Member{"undecided", &TriangleCheck::undecided, "", "those in walls so thin that it cannot be told"},
+      Member{"tolerance", &TriangleCheck::tolerance, "mesh units", "that of edges"},
+      Member{"allowance", &TriangleCheck::allowance, "mesh units", "how far out is allowed"},
+      Member{"holds", &TriangleCheck::holds, "", "whether none is outside"},
+  };
+};
+
+/// Whether an axis lists what it should, and labels it as its triangles ask for: all edges of one triangle as rims,
+/// all of three or more as seams, those of none as curves, and no others; vertices by what ends at them (MedialRole).
+/// Each sheet hangs together over edges of two triangles, and two sheets share such edges only next to seams. Whether
+/// sheets go on past a seam there, the file decides. No exception is allowed.
+struct LabelCheck {
+  std::size_t doubled = 0;       ///< cells that name the vertices of another one
+  std::size_t inner_listed = 0;  ///< listed edges of two triangles
+  std::size_t unlisted = 0;      ///< edges of one triangle, or of three or more, that are not listed
+  std::size_t edge_roles = 0;    ///< edges of a false role
+  std::size_t vertex_roles = 0;  ///< vertices of a false role
+  std::size_t sheets = 0;        ///< labels of triangles
+  std::size_t torn = 0;          ///< of them, those that do not hang together
+  std::size_t parted = 0;        ///< edges of two sheets, away from seams
+  bool holds = false;            ///< nothing is wrong
+};
+
+template <>
+struct Description<LabelCheck> {
+  static constexpr std::string_view name = "LabelCheck";
+  static constexpr std::string_view doc = "Whether roles and sheets are those that the triangles give";
+  static constexpr std::tuple members{
+      Member{"doubled", &LabelCheck::doubled, "", "cells that name the vertices of another one"},
+      Member{"inner_listed", &LabelCheck::inner_listed, "", "listed edges of two triangles"},
+      Member{"unlisted", &LabelCheck::unlisted, "", "rims and seams that are not listed"},
+      Member{"edge_roles", &LabelCheck::edge_roles, "", "edges of a false role"},
+      Member{"vertex_roles", &LabelCheck::vertex_roles, "", "vertices of a false role"},
+      Member{"sheets", &LabelCheck::sheets, "", "labels of triangles"},
+      Member{"torn", &LabelCheck::torn, "", "of them, those that do not hang together"},
+      Member{"parted", &LabelCheck::parted, "", "edges of two sheets, away from seams"},
+      Member{"holds", &LabelCheck::holds, "", "whether nothing is wrong"},
+  };
+};
+
+/// Whether the separation angles of triangles and edges are those of their places: told by shares, since a triangle has
+/// the largest angle that is seen within half a voxel of it, and that of others which went for it.
+struct AngleCheck {
+  std::size_t triangles = 0;      ///< whose corners all see two walls
+  double below_share = 0;         ///< of their area: what says 10 degrees less than each of the three corners sees
+  std::size_t samples = 0;        ///< triangles that were looked at
+  double above_share = 0;         ///< of these: what says 20 degrees more than is seen within a voxel
+  std::size_t curve_samples = 0;  ///< edges of curves that were looked at
+  double curves_above_share = 0;  ///< the same of these
+  std::size_t borders = 0;        ///< rims and seams
+  std::size_t borders_above = 0;  ///< of them, those that say more than all their triangles
+  std::size_t borders_below = 0;  ///< those that say 20 degrees less
+  std::size_t rims = 0;           ///< looked at; none where theta is not known
+  double low_rims_share = 0;      ///< of their length: rims of sheets that nothing sees at more than theta
+  bool holds = false;             ///< shares are small
+};
+
+template <>
+struct Description<AngleCheck> {
+  static constexpr std::string_view name = "AngleCheck";
+  static constexpr std::string_view doc = "Whether separation angles of triangles and edges are those of their places";
+  static constexpr std::tuple members{
+      Member{"triangles", &AngleCheck::triangles, "", "whose corners all see two walls"},
+      Member{"below_share", &AngleCheck::below_share, "", "of their area: what says less than each corner sees"},
+      Member{"samples", &AngleCheck::samples, "", "triangles that were looked at"},
+      Member{"above_share", &AngleCheck::above_share, "", "of these: what says more than is seen within a voxel"},
+      Member{"curve_samples", &AngleCheck::curve_samples, "", "edges of curves that were looked at"},
+      Member{"curves_above_share", &AngleCheck::curves_above_share, "", "the same of these"},
+      Member{"borders", &AngleCheck::borders, "", "rims and seams"},
+      Member{"borders_above", &AngleCheck::borders_above, "", "of them, those that say more than all their triangles"},
+      Member{"borders_below", &AngleCheck::borders_below, "", "those that say 20 degrees less"},
+      Member{"rims", &AngleCheck::rims, "", "looked at; none where theta is not known"},
+      Member{"low_rims_share", &AngleCheck::low_rims_share, "",
+             "of their length: rims of sheets that nothing sees at more than theta"},
+      Member{"holds", &AngleCheck::holds, "", "whether shares are small"},
+  };
+};
+
 /// What to look at besides numbers of components, tunnels and voids: for files that do not hold everything.
 struct CertificateOptions {
   /// Where vertices and edges lie. Without it, the Betti numbers of the whole solid and the whole axis are compared,
@@ -287,8 +391,9 @@ struct CertificateOptions {
   bool positions = true;
   bool radii = true;       ///< with positions
   bool footprints = true;  ///< with radii
-  bool angles = true;      ///< of vertices; with footprints
+  bool angles = true;      ///< of vertices, triangles and edges; with footprints
   bool sites = true;       ///< with footprints: a site that is none() is not looked at
+  bool labels = true;      ///< roles of vertices and edges, and sheets; with positions
   bool balls = true;       ///< with radii: to measure what the balls fill
   bool medial = true;      ///< with positions and radii: whether it is in the middle; sheets and curves by their angles
   // What the axis says of itself, for the medial check; what is not known stays unset.
@@ -307,8 +412,9 @@ struct Description<CertificateOptions> {
       Member{"positions", &CertificateOptions::positions, "", "where vertices and edges lie"},
       Member{"radii", &CertificateOptions::radii, "", "of vertices"},
       Member{"footprints", &CertificateOptions::footprints, "", "of vertices; with radii"},
-      Member{"angles", &CertificateOptions::angles, "", "of vertices; with footprints"},
+      Member{"angles", &CertificateOptions::angles, "", "of vertices, triangles and edges; with footprints"},
       Member{"sites", &CertificateOptions::sites, "", "of vertices; with footprints"},
+      Member{"labels", &CertificateOptions::labels, "", "roles and sheets; with positions"},
       Member{"balls", &CertificateOptions::balls, "", "what the balls fill; with radii"},
       Member{"medial", &CertificateOptions::medial, "", "whether it is in the middle of the solid; with radii"},
       Member{"theta", &CertificateOptions::theta, "degrees", "of the axis, as it says"},
@@ -329,6 +435,9 @@ struct Certificate {
   bool topology_holds = false;
   GeometryCheck geometry;
   EdgeCheck edges;
+  TriangleCheck triangles;
+  LabelCheck labels;  ///< with CertificateOptions::labels
+  AngleCheck angles;  ///< with CertificateOptions::angles
   HomologyCheck homology;
   BallUnionCheck balls;
   MedialCheck medial;
@@ -351,6 +460,9 @@ struct Description<Certificate> {
       Member{"topology_holds", &Certificate::topology_holds, "", "whether they all do"},
       Member{"geometry", &Certificate::geometry, "", "vertices"},
       Member{"edges", &Certificate::edges, "", "edges"},
+      Member{"triangles", &Certificate::triangles, "", "triangles between their edges"},
+      Member{"labels", &Certificate::labels, "", "roles and sheets"},
+      Member{"angles", &Certificate::angles, "", "separation angles of triangles and edges"},
       Member{"homology", &Certificate::homology, "", "what the axis runs around"},
       Member{"balls", &Certificate::balls, "", "what the balls fill"},
       Member{"medial", &Certificate::medial, "", "whether it is in the middle, and all that is there"},

@@ -21,6 +21,7 @@ struct MedialClaims {
   bool has_footprints = true;
   bool has_sites = true;
   bool has_angles = true;
+  bool has_labels = true;
 };
 [[nodiscard]] MedialClaims claims_of(const MedialFile& file);
 

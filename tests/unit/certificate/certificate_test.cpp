@@ -24,9 +24,10 @@ namespace blum {
 namespace {
 
 using test::AxisRows;
+using test::box_between;
 using test::VertexRow;
 
-using test::box_between;
+constexpr CertificateOptions unlabelled{.labels = false};  ///< axes made by hand have no roles
 
 /// A vertex whose radius and footprint are what the library's own hierarchy tells.
 VertexRow vertex_at(const Bvh& bvh, const Vec3d& p) {
@@ -62,7 +63,7 @@ std::string complaints(const Certificate& certificate) {
 
 TEST(Certificate, HoldsForTheCentresOfABallAndABox) {
   const TriangleMesh ball = make_sphere({.radius = 2});
-  const Certificate c = certify(ball_axis(ball, {}), ball);
+  const Certificate c = certify(ball_axis(ball, {}), ball, unlabelled);
   EXPECT_TRUE(c.holds()) << complaints(c);
   EXPECT_TRUE(c.topology_holds && c.geometry.holds);
   EXPECT_EQ(c.against, SolidRule::polyhedron);
@@ -79,7 +80,7 @@ TEST(Certificate, HoldsForTheCentresOfABallAndABox) {
   EXPECT_GT(c.balls.step, 0);
 
   const TriangleMesh box = make_box({});
-  const Certificate b = certify(ball_axis(box, {}), box);
+  const Certificate b = certify(ball_axis(box, {}), box, unlabelled);
   EXPECT_TRUE(b.holds()) << complaints(b);
   EXPECT_NEAR(b.balls.solid_to_balls, std::sqrt(0.75) - 0.5, 1e-12) << "corners";
   EXPECT_NEAR(b.balls.mean_solid_to_balls, 0.1403, 2e-3)
@@ -91,7 +92,7 @@ TEST(Certificate, HoldsForTheCentreLineOfATorus) {
   const TriangleMesh torus = make_torus({});
   for (const std::uint32_t parts : {96U, 500U}) {
     const AxisRows axis = torus_axis(torus, parts);
-    const Certificate c = certify(axis, torus);
+    const Certificate c = certify(axis, torus, unlabelled);
     EXPECT_TRUE(c.holds()) << complaints(c);
     EXPECT_EQ(c.solid, (BettiNumbers{1, 1, 0}));
     const double edge = 2 * std::sin(std::numbers::pi / parts);
@@ -116,19 +117,19 @@ TEST(Certificate, SeveralBodiesAndVoids) {
   for (const Vec3d& p : {Vec3d{0.5, 0.5, 0.5}, Vec3d{2.75, 1.5, 1.5}, Vec3d{1.5, 1.5, 1.5}}) {
     axis.vertices.push_back(vertex_at(bvh, p));
   }
-  Certificate c = certify(axis, mesh);
+  Certificate c = certify(axis, mesh, unlabelled);
   EXPECT_EQ(c.solid, (BettiNumbers{3, 0, 1}));
   EXPECT_TRUE(c.geometry.holds);
   EXPECT_EQ(complaints(c), "body 2 of 3 (around 2.5 1.5 1.5) has 1 void, the axis in it 0\n");
   // As many in all, but not in the same bodies.
   axis.vertices[2] = axis.vertices[0];
   EXPECT_TRUE(
-      complaints(certify(axis, mesh))
+      complaints(certify(axis, mesh, unlabelled))
           .starts_with("body 1 of 3 (around 0.5 0.5 0.5) has 1 component, the axis in it 2\nbody 2 of 3 (around 2.5"))
-      << complaints(certify(axis, mesh));
+      << complaints(certify(axis, mesh, unlabelled));
   // In the void is outside.
   axis.vertices[2] = vertex_at(bvh, {1.15, 1.5, 1.5});
-  c = certify(axis, mesh);
+  c = certify(axis, mesh, unlabelled);
   EXPECT_EQ(c.geometry.outside, 1U);
   EXPECT_NEAR(c.geometry.outside_by, 0.1, 1e-12);
   EXPECT_NE(complaints(c).find("of the 3 vertices of the axis 1 lie outside"), std::string::npos) << complaints(c);
@@ -150,17 +151,17 @@ TEST(Certificate, EdgesMayCutCornersButCrossNoGap) {
     const TriangleMesh u = make_extrusion(outline, {});
     const Vec3d middle = bounds(u).center();
     const auto at = [&](double x, double y) { return Vec3d{x, y, middle.z}; };
-    Certificate c = certify(axis_of(u, {at(-0.5, 2), at(-0.5, 0.5), at(0.5, 0.5), at(0.5, 2)}), u);
+    Certificate c = certify(axis_of(u, {at(-0.5, 2), at(-0.5, 0.5), at(0.5, 0.5), at(0.5, 2)}), u, unlabelled);
     EXPECT_TRUE(c.holds()) << complaints(c);
     EXPECT_EQ(c.edges.edges, 3U);
     EXPECT_EQ(c.edges.pushed, 0U);
-    c = certify(axis_of(u, {at(-0.5, 2), at(0.5, 2)}), u);
+    c = certify(axis_of(u, {at(-0.5, 2), at(0.5, 2)}), u, unlabelled);
     EXPECT_EQ(c.edges.outside, 1U) << gap;
     EXPECT_NEAR(c.edges.outside_by, gap, gap / 2);
     EXPECT_EQ(complaints(c).substr(0, 38), "of the 1 edges of the axis 1 leave the");
     // Past the corner by 0.02.
     const double past = 0.02 * std::sqrt(2.0);
-    c = certify(axis_of(u, {at(-gap - 0.1 + past, 1.1), at(-gap + 0.1 + past, 0.9)}), u);
+    c = certify(axis_of(u, {at(-gap - 0.1 + past, 1.1), at(-gap + 0.1 + past, 0.9)}), u, unlabelled);
     EXPECT_EQ(c.edges.pushed, gap > 0.1 ? 1U : 0U) << complaints(c);
     EXPECT_EQ(c.holds(), gap > 0.1) << complaints(c);
   }
@@ -173,11 +174,11 @@ TEST(Certificate, ToleratesWhatIsSmallForTheBody) {
   const Bvh bvh(mesh, SiteTable(mesh));
   AxisRows axis;
   axis.vertices = {vertex_at(bvh, {}), vertex_at(bvh, {5000, 0, 0})};
-  EXPECT_TRUE(certify(axis, mesh).holds());
+  EXPECT_TRUE(certify(axis, mesh, unlabelled).holds());
   axis.vertices[1].radius *= 1.001;
-  EXPECT_FALSE(certify(axis, mesh).holds());
+  EXPECT_FALSE(certify(axis, mesh, unlabelled).holds());
   axis.vertices[1] = vertex_at(bvh, {5000.0011, 0, 0});
-  EXPECT_EQ(certify(axis, mesh).geometry.outside, 1U);
+  EXPECT_EQ(certify(axis, mesh, unlabelled).geometry.outside, 1U);
 }
 
 TEST(Certificate, MeshesThatCrossThemselvesAreResolved) {
@@ -185,16 +186,16 @@ TEST(Certificate, MeshesThatCrossThemselvesAreResolved) {
   append(mesh, make_sphere({}), {1, 0.1, 0.05});
   EXPECT_EQ(solid_rule(mesh).rule, SolidRule::polyhedron);
   EXPECT_EQ(solid_rule(mesh).reason, "the mesh is closed, and manifold once its crossings are resolved");
-  const Certificate united = certify(ball_axis(mesh, {}), mesh, {.radii = false});
+  const Certificate united = certify(ball_axis(mesh, {}), mesh, {.radii = false, .labels = false});
   EXPECT_EQ(united.solid, (BettiNumbers{1, 0, 0}));
   EXPECT_TRUE(united.holds()) << complaints(united);
-  EXPECT_FALSE(certify(ball_axis(mesh, {3, 0, 0}), mesh, {.radii = false}).holds());
+  EXPECT_FALSE(certify(ball_axis(mesh, {3, 0, 0}), mesh, {.radii = false, .labels = false}).holds());
   EXPECT_EQ(solid_rule(make_void_cube({})).rule, SolidRule::polyhedron);
   // Not where it winds in no direction alone.
   TriangleMesh inwards = mesh;
   inwards.triangles = reversed_triangles(mesh.triangles);
   EXPECT_EQ(solid_rule(inwards).rule, SolidRule::winding);
-  EXPECT_THROW((void)certify(ball_axis(inwards, {}), inwards), InvalidMesh);
+  EXPECT_THROW((void)certify(ball_axis(inwards, {}), inwards, unlabelled), InvalidMesh);
   TriangleMesh open = make_box({});
   open.triangles.pop_back();
   EXPECT_EQ(solid_rule(open).rule, SolidRule::winding);
@@ -214,9 +215,9 @@ TEST(Certificate, PositionsAreCheckedWithoutRadii) {
   const TriangleMesh torus = make_torus({});
   AxisRows axis = torus_axis(torus);
   for (VertexRow& vertex : axis.vertices) vertex = {.position = vertex.position, .footprints = {}, .sites = {}};
-  EXPECT_TRUE(certify(axis, torus, {.radii = false}).holds());
+  EXPECT_TRUE(certify(axis, torus, {.radii = false, .labels = false}).holds());
   for (VertexRow& vertex : axis.vertices) vertex.position.x += 5;
-  const Certificate c = certify(axis, torus, {.radii = false});
+  const Certificate c = certify(axis, torus, {.radii = false, .labels = false});
   EXPECT_EQ(c.geometry.outside, 96U);
   EXPECT_EQ(c.edges.outside, 96U);
   EXPECT_FALSE(c.checked.footprints || c.checked.balls);
@@ -225,7 +226,7 @@ TEST(Certificate, PositionsAreCheckedWithoutRadii) {
 TEST(Certificate, CoarseNumbersEndTheSampling) {
   // Sides of 1 where numbers are 1/8 apart: no piece is as short as the step.
   const TriangleMesh box = test::moved(make_box({}), 1, {1e15, 1e15, 1e15});
-  EXPECT_GT(certify(ball_axis(box, {1e15, 1e15, 1e15}), box).balls.step, 0);
+  EXPECT_GT(certify(ball_axis(box, {1e15, 1e15, 1e15}), box, unlabelled).balls.step, 0);
 }
 
 /// A torus' axis that was tampered with.
@@ -236,7 +237,7 @@ class FalsifiedAxis : public testing::Test {
 
   void expect(const std::vector<std::string>& words) {
     for (const int threads : {1, 2, 7}) {
-      const Certificate c = certify(axis, torus, {}, {.threads = threads});
+      const Certificate c = certify(axis, torus, unlabelled, {.threads = threads});
       EXPECT_FALSE(c.holds());
       ASSERT_EQ(c.mismatches.size(), words.size()) << complaints(c);
       for (std::size_t k = 0; k < words.size(); ++k) {
@@ -270,15 +271,15 @@ TEST_F(FalsifiedAxis, ExtraSphere) {
 TEST_F(FalsifiedAxis, WrongRadius) {
   axis.vertices[17].radius += 1e-5;
   expect({"a radius differs", "the distance to a footprint differs"});
-  EXPECT_NEAR(certify(axis, torus).balls.balls_beyond_solid, 1e-5, 1e-10);
-  EXPECT_NEAR(certify(axis, torus).geometry.radius_error, 1e-5, 1e-10);
+  EXPECT_NEAR(certify(axis, torus, unlabelled).balls.balls_beyond_solid, 1e-5, 1e-10);
+  EXPECT_NEAR(certify(axis, torus, unlabelled).geometry.radius_error, 1e-5, 1e-10);
   axis.vertices[17].radius -= 2e-5;
   expect({"a radius differs", "the distance to a footprint differs"});
 }
 
 TEST_F(FalsifiedAxis, RadiusWithinTolerance) {
   axis.vertices[17].radius += 1e-7;
-  EXPECT_TRUE(certify(axis, torus).holds());
+  EXPECT_TRUE(certify(axis, torus, unlabelled).holds());
 }
 
 TEST_F(FalsifiedAxis, SmallerBall) {
@@ -309,7 +310,7 @@ TEST_F(FalsifiedAxis, OtherSites) {
   axis.vertices[3].sites[1] = SiteId(1U << 30U);
   expect({"a footprint is said to lie on a site that the solid does not have"});
   axis.vertices[3].sites[1] = SiteId::none();
-  EXPECT_TRUE(certify(axis, torus).holds());
+  EXPECT_TRUE(certify(axis, torus, unlabelled).holds());
 }
 
 TEST_F(FalsifiedAxis, OtherAngle) {
@@ -324,7 +325,7 @@ TEST_F(FalsifiedAxis, ChordsThroughTheHole) {
   expect({"of the 3 edges of the axis 3 leave the solid between their ends, by up to 0.1"});
   axis.edges.clear();
   axis.triangles = {{{0, 1, 2}}};
-  EXPECT_EQ(certify(axis, torus).edges.outside, 3U) << "edges of triangles, too";
+  EXPECT_EQ(certify(axis, torus, unlabelled).edges.outside, 3U) << "edges of triangles, too";
 }
 
 TEST_F(FalsifiedAxis, VertexOutside) {
@@ -342,15 +343,15 @@ TEST_F(FalsifiedAxis, NoNumbers) {
 TEST_F(FalsifiedAxis, NoAxisAtAll) {
   axis = {};
   expect({"1 component, the axis 0", "1 tunnel, the axis 0"});
-  EXPECT_NEAR(certify(axis, torus).balls.solid_to_balls, bounds(torus).diagonal(), 1e-12);
+  EXPECT_NEAR(certify(axis, torus, unlabelled).balls.solid_to_balls, bounds(torus).diagonal(), 1e-12);
 }
 
 TEST_F(FalsifiedAxis, MissingBallsAreMeasured) {
-  const Certificate whole = certify(axis, torus);
+  const Certificate whole = certify(axis, torus, unlabelled);
   // Half of the ring without balls: topology is all that is wrong, and the other half is 2 away.
   axis.vertices.resize(48);
   axis.edges.resize(47);
-  const Certificate half = certify(axis, torus);
+  const Certificate half = certify(axis, torus, unlabelled);
   EXPECT_EQ(complaints(half), "the solid has 1 tunnel, the axis 0\n");
   EXPECT_GT(half.balls.solid_to_balls, 1);
   EXPECT_GT(half.balls.mean_solid_to_balls, 10 * whole.balls.mean_solid_to_balls + 0.1);
@@ -358,7 +359,7 @@ TEST_F(FalsifiedAxis, MissingBallsAreMeasured) {
 
 TEST_F(FalsifiedAxis, NoVertexOfThatNumber) {
   axis.edges.push_back({{0, 96}});
-  EXPECT_THROW((void)certify(axis, torus), InvalidOption);
+  EXPECT_THROW((void)certify(axis, torus, unlabelled), InvalidOption);
 }
 
 TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
@@ -371,16 +372,16 @@ TEST_F(FalsifiedAxis, GeometryThatIsNotKnownIsNotJudged) {
 
 TEST_F(FalsifiedAxis, RadiiWithoutFootprintsAreJudgedAlone) {
   for (VertexRow& vertex : axis.vertices) vertex.footprints = {};
-  const Certificate c = certify(axis, torus, {.footprints = false});
+  const Certificate c = certify(axis, torus, {.footprints = false, .labels = false});
   EXPECT_TRUE(c.holds()) << complaints(c);
   EXPECT_EQ(c.geometry.vertices, axis.vertices.size());
   axis.vertices[5].radius *= 1.01;
-  EXPECT_FALSE(certify(axis, torus, {.footprints = false}).holds());
+  EXPECT_FALSE(certify(axis, torus, {.footprints = false, .labels = false}).holds());
 }
 
 TEST(Certificate, SolidsOfAnySize) {
   const TriangleMesh plain = make_torus({.ring_segments = 24, .tube_segments = 12});
-  const Certificate expected = certify(torus_axis(plain), plain);
+  const Certificate expected = certify(torus_axis(plain), plain, unlabelled);
   for (const double size : {1e-140, 1e-20, 1e20, 1e140}) {
     const TriangleMesh torus = test::moved(plain, size);
     AxisRows axis = torus_axis(plain);
@@ -389,13 +390,13 @@ TEST(Certificate, SolidsOfAnySize) {
       vertex.radius *= size;
       for (Vec3d& foot : vertex.footprints) foot *= size;
     }
-    Certificate c = certify(axis, torus);
+    Certificate c = certify(axis, torus, unlabelled);
     EXPECT_TRUE(c.holds()) << size << ": " << complaints(c);
     EXPECT_EQ(c.solid, (BettiNumbers{1, 1, 0}));
     EXPECT_NEAR(c.balls.solid_to_balls / size, expected.balls.solid_to_balls, 1e-9);
     EXPECT_NEAR(c.balls.mean_solid_to_balls / size, expected.balls.mean_solid_to_balls, 1e-3);
     axis.vertices[5].radius *= 1.01;
-    c = certify(axis, torus);
+    c = certify(axis, torus, unlabelled);
     EXPECT_NEAR(c.geometry.radius_error / axis.vertices[5].radius, 1 - 1 / 1.01, 1e-9);
     EXPECT_EQ(c.mismatches.size(), 2U) << complaints(c);
   }
@@ -404,9 +405,9 @@ TEST(Certificate, SolidsOfAnySize) {
 TEST(Certificate, TheSameForAnyNumberOfThreads) {
   const TriangleMesh torus = make_torus({});
   const AxisRows axis = torus_axis(torus, 300);
-  const Certificate one = certify(axis, torus, {}, {.threads = 1});
+  const Certificate one = certify(axis, torus, unlabelled, {.threads = 1});
   for (const int threads : {2, 7}) {
-    const Certificate other = certify(axis, torus, {}, {.threads = threads});
+    const Certificate other = certify(axis, torus, unlabelled, {.threads = threads});
     EXPECT_EQ(one.balls.mean_solid_to_balls, other.balls.mean_solid_to_balls);
     EXPECT_EQ(one.balls.solid_to_balls, other.balls.solid_to_balls);
     EXPECT_EQ(one.balls.balls_to_surface, other.balls.balls_to_surface);
@@ -419,7 +420,7 @@ TEST(Certificate, CancelStopsIt) {
   const TriangleMesh torus = make_torus({});
   std::stop_source source;
   source.request_stop();
-  EXPECT_THROW((void)certify(torus_axis(torus), torus, {}, {.cancel = source.get_token()}), Cancelled);
+  EXPECT_THROW((void)certify(torus_axis(torus), torus, unlabelled, {.cancel = source.get_token()}), Cancelled);
   const GridSpec grid{{}, {1, 1, 1}, {3, 3, 3}, {}};
   VoxelSet voxels(grid.size);
   EXPECT_THROW((void)certify({}, voxels, grid, nullptr), InvalidOption) << "no solid";
@@ -470,7 +471,7 @@ struct VoxelRing {
 
 TEST(VoxelCertificate, HoldsForTheMiddleOfARing) {
   const VoxelRing ring;
-  const Certificate c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
+  const Certificate c = certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled);
   EXPECT_TRUE(c.holds()) << complaints(c);
   EXPECT_EQ(c.edges.edges, 24U);
   EXPECT_EQ(c.against, SolidRule::voxels);
@@ -492,30 +493,31 @@ TEST(VoxelCertificate, BodyByBody) {
   };
   add(2);
   add(6.5);
-  EXPECT_TRUE(certify(axis, voxels, grid, nullptr).holds()) << complaints(certify(axis, voxels, grid, nullptr));
+  EXPECT_TRUE(certify(axis, voxels, grid, nullptr, unlabelled).holds())
+      << complaints(certify(axis, voxels, grid, nullptr, unlabelled));
   // The site is the voxel beyond the face, or none.
   axis.vertices[0].sites = {SiteId(2 + 9 * (2 + 3 * 1)), SiteId::none()};
-  EXPECT_TRUE(certify(axis, voxels, grid, nullptr).holds());
+  EXPECT_TRUE(certify(axis, voxels, grid, nullptr, unlabelled).holds());
   axis.vertices[0].sites[1] = SiteId(2);
-  EXPECT_FALSE(certify(axis, voxels, grid, nullptr).holds());
+  EXPECT_FALSE(certify(axis, voxels, grid, nullptr, unlabelled).holds());
   axis.vertices.clear();
   add(1);
   add(3);
-  EXPECT_EQ(complaints(certify(axis, voxels, grid, nullptr)),
+  EXPECT_EQ(complaints(certify(axis, voxels, grid, nullptr, unlabelled)),
             "body 1 of 2 (around 2 1 1) has 1 component, the axis in it 2\n"
             "body 2 of 2 (around 6.5 1 1) has 1 component, the axis in it 0\n");
   axis.vertices.clear();
   add(3);
   add(6);
   axis.edges = {{{0, 1}}};
-  const Certificate c = certify(axis, voxels, grid, nullptr);
+  const Certificate c = certify(axis, voxels, grid, nullptr, unlabelled);
   EXPECT_EQ(c.edges.outside, 1U) << complaints(c);
 }
 
 TEST(VoxelCertificate, FindsWhatIsFalse) {
   VoxelRing ring;
   ring.axis.vertices[4].radius = 2.25;
-  Certificate c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
+  Certificate c = certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled);
   EXPECT_EQ(c.mismatches.size(), 2U) << complaints(c);
   EXPECT_NEAR(c.geometry.radius_error, 0.75, 1e-12);
   EXPECT_NEAR(c.balls.balls_beyond_solid, 0.75, 1e-12);
@@ -528,25 +530,25 @@ TEST(VoxelCertificate, FindsWhatIsFalse) {
       vertex.radius *= size;
       for (Vec3d& foot : vertex.footprints) foot *= size;
     }
-    EXPECT_TRUE(certify(extreme.axis, extreme.voxels, extreme.grid, nullptr).holds()) << size;
+    EXPECT_TRUE(certify(extreme.axis, extreme.voxels, extreme.grid, nullptr, unlabelled).holds()) << size;
     extreme.axis.vertices[4].radius *= 1.5;
-    c = certify(extreme.axis, extreme.voxels, extreme.grid, nullptr);
+    c = certify(extreme.axis, extreme.voxels, extreme.grid, nullptr, unlabelled);
     EXPECT_NEAR(c.geometry.radius_error, 0.75 * size, 1e-12 * size);
   }
   ring = {};
   ring.voxels.erase(5, 2, 1);
   ring.voxels.erase(5, 2, 2);
   ring.voxels.erase(5, 2, 3);
-  c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
+  c = certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled);
   EXPECT_EQ(c.geometry.outside, 1U) << complaints(c);
   EXPECT_NEAR(c.geometry.outside_by, 0.5, 1e-12);
   EXPECT_NE(complaints(c).find("the solid has 2 tunnels, the axis 1"), std::string::npos) << complaints(c);
   ring = {};
   ring.voxels.erase(8, 8, 2);
-  c = certify(ring.axis, ring.voxels, ring.grid, nullptr);
+  c = certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled);
   EXPECT_NE(complaints(c).find("the solid has 1 void, the axis 0"), std::string::npos) << complaints(c);
   ring.grid.size[0] = 12;
-  EXPECT_THROW((void)certify(ring.axis, ring.voxels, ring.grid, nullptr), InvalidOption);
+  EXPECT_THROW((void)certify(ring.axis, ring.voxels, ring.grid, nullptr, unlabelled), InvalidOption);
 }
 
 TEST(VoxelCertificate, VoxelsOfAnOpenMeshAreMeasuredAgainstTheMesh) {
@@ -558,12 +560,12 @@ TEST(VoxelCertificate, VoxelsOfAnOpenMeshAreMeasuredAgainstTheMesh) {
   const GridSpec grid{{0.5, 0.5, 0.5}, {1, 1, 1}, {4, 4, 4}, {}};
   const MeshView view = mesh;
   AxisRows axis = ball_axis(mesh, {2, 2, 2});
-  Certificate c = certify(axis, voxels, grid, &view);
+  Certificate c = certify(axis, voxels, grid, &view, unlabelled);
   EXPECT_TRUE(c.holds()) << complaints(c);
   EXPECT_EQ(c.against, SolidRule::winding);
   EXPECT_EQ(c.solid, (BettiNumbers{1, 0, 0}));
   axis = ball_axis(mesh, {2, 2, 9});
-  c = certify(axis, voxels, grid, &view);
+  c = certify(axis, voxels, grid, &view, unlabelled);
   EXPECT_EQ(c.geometry.outside, 1U) << complaints(c);
   EXPECT_EQ(c.mismatches.size(), 1U) << complaints(c);
   TriangleMesh points = make_points({});
@@ -573,7 +575,7 @@ TEST(VoxelCertificate, VoxelsOfAnOpenMeshAreMeasuredAgainstTheMesh) {
   VoxelSet one({1, 1, 1});
   one.insert(0, 0, 0);
   axis = ball_axis(mesh, {2, 2, 2});
-  EXPECT_THROW((void)certify(axis, one, {{2, 2, 2}, {1, 1, 1}, {1, 1, 1}, {}}, &view), InvalidGrid);
+  EXPECT_THROW((void)certify(axis, one, {{2, 2, 2}, {1, 1, 1}, {1, 1, 1}, {}}, &view, unlabelled), InvalidGrid);
 }
 
 TEST(CertificateSlow, ALargeAxis) {
@@ -589,7 +591,7 @@ TEST(CertificateSlow, ALargeAxis) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     if (fraction == 0 || fraction == 1) std::cout << phase << " " << fraction << ": " << seconds.count() << " s\n";
   };
-  const Certificate c = certify(axis, ball, {}, {.threads = 1, .progress = log});
+  const Certificate c = certify(axis, ball, unlabelled, {.threads = 1, .progress = log});
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   std::cout << axis.vertices.size() << " vertices, " << ball.triangles.size() << " triangles: " << seconds.count()
             << " s, step " << c.balls.step << "\n";

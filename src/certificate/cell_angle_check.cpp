@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/core/random.hpp"
+#include "certificate/angle.hpp"
+#include "certificate/checks.hpp"
+
+namespace blum::verifier {
+namespace {
+
+constexpr double noise = 10;               ///< degrees from which two footprints are two walls
+constexpr double nearly = 10;              ///< degrees by which an angle may be below those of all its corners
+constexpr double about = 20;               ///< degrees by which it may be above what is seen around it
+constexpr double same = 1e-3;              ///< degrees: rounding of float32
+constexpr double most_below = 0.2;         ///< share of the area: see docs/theory/medial-axis.md
+constexpr double most_above = 0.2;         ///< share of samples
+constexpr double most_curves_above = 0.6;  ///< the same of curves: those of true axes wind within a voxel
+constexpr double most_low_rims = 0.25;     ///< share of their length
+constexpr std::size_t few = 64;            ///< cells, or samples, from which shares tell something
+constexpr std::size_t most_samples = 1'024;
+constexpr std::size_t grain = 32;
+
+std::string percent(double share) {
+  return rounded_text(std::round(share * 1000) / 10) + " %";
+}
+
+/// Something to take samples of by its size.
+struct Sized {
+  double end = 0;  ///< the sum of the sizes so far
+  std::uint32_t cell = 0;
+};
+
+void add(std::vector<Sized>& cells, double size, std::uint32_t cell) {
+  if (!(size > 0) || !std::isfinite(size)) return;
+  cells.push_back({(cells.empty() ? 0 : cells.back().end) + size, cell});
+}
+
+double area(const MedialView& axis, const std::array<std::uint32_t, 3>& corners) {
+  const Vec3d& p = axis.positions[corners[0]];
+  return 0.5 * length(cross(axis.positions[corners[1]] - p, axis.positions[corners[2]] - p));
+}
+
+/// The largest angle at which a point sees two of the points of the surface that are closest to places near by.
+double seen_around(const SolidOracle& solid, std::uint32_t body, const Vec3d& p, double reach) {
+  std::array<Vec3d, 15> towards;
+  std::size_t count = 0;
+  towards[count++] = solid.closest_point(p, body) - p;
+  for (std::size_t k = 0; k < 14; ++k) {
+    Vec3d way;
+    if (k < 6) {
+      way[k / 2] = k % 2 == 0 ? reach : -reach;
+    } else {
+      for (std::size_t axis = 0; axis < 3; ++axis) way[axis] = (((k - 6) >> axis) % 2 == 0 ? reach : -reach) / 1.75;
+    }
+    towards[count++] = solid.closest_point(p + way, body) - p;
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < i; ++j) largest = std::max(largest, degrees_between(towards[i], towards[j]));
+  }
+  return largest;
+}
+
+class Angles {
+ public:
+  Angles(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
+         const std::vector<std::uint32_t>& body_of, double reach)
+      : axis_(axis), incidence_(incidence), solid_(*solid.solid), body_of_(body_of), reach_(reach) {}
+
+  /// Triangles and curves that say less than what each of their corners sees.
+  void compare_with_corners(AngleCheck& check) const {
+    double all = 0;
+    double below = 0;
+    for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
+      const double size = area(axis_, axis_.triangles[t]);
+      if (!std::isfinite(size)) continue;
+      const double least = least_angle(axis_.triangles[t]);
+      if (least < noise) continue;
+      ++check.triangles;
+      all += size;
+      if (axis_.triangle_angle[t] < least - nearly) below += size;
+    }
+    if (all > 0) check.below_share = below / all;
+  }
+
+  /// Rims and seams have the largest angle of their triangles, or less after vertices were taken out.
+  void compare_with_triangles(AngleCheck& check) const {
+    for (std::size_t n = 0; n < axis_.edges.size(); ++n) {
+      const auto triangles = incidence_.triangles_of_edge()[incidence_.edge_of_listed()[n]];
+      if (triangles.empty()) continue;
+      double largest = 0;
+      for (const std::uint32_t t : triangles) largest = std::max<double>(largest, axis_.triangle_angle[t]);
+      ++check.borders;
+      if (axis_.edge_angle[n] > largest + same) ++check.borders_above;
+      if (axis_.edge_angle[n] < largest - about) ++check.borders_below;
+    }
+  }
+
+  /// Sheets that reach no more than theta have no rim: what only homotopy keeps is closed, or ends at seams.
+  void look_for_low_rims(double theta, AngleCheck& check) const {
+    std::vector<float> of_sheet;
+    for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
+      const auto sheet = static_cast<std::size_t>(axis_.sheet[t]);
+      if (sheet >= of_sheet.size()) of_sheet.resize(sheet + 1, 0);
+      of_sheet[sheet] = std::max(of_sheet[sheet], axis_.triangle_angle[t]);
+    }
+    double all = 0;
+    double low = 0;
+    for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
+      const auto triangles = incidence_.triangles_of_edge()[e];
+      if (triangles.size() != 1) continue;
+      const auto& [a, b] = incidence_.edges()[e];
+      const double size = length(axis_.positions[a] - axis_.positions[b]);
+      if (!std::isfinite(size)) continue;
+      ++check.rims;
+      all += size;
+      if (of_sheet[static_cast<std::size_t>(axis_.sheet[triangles[0]])] <= theta) low += size;
+    }
+    if (all > 0) check.low_rims_share = low / all;
+  }
+
+  /// Samples of what says that it is seen at more than 0.
+  void compare_with_surface(AngleCheck& check, const Context& context) const {
+    std::vector<Sized> triangles;
+    for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
+      if (axis_.triangle_angle[t] > 0) add(triangles, area(axis_, axis_.triangles[t]), t);
+    }
+    std::vector<Sized> curves;
+    for (std::uint32_t n = 0; n < axis_.edges.size(); ++n) {
+      const auto& [a, b] = axis_.edges[n];
+      if (!incidence_.triangles_of_edge()[incidence_.edge_of_listed()[n]].empty() || !(axis_.edge_angle[n] > 0))
+        continue;
+      add(curves, length(axis_.positions[a] - axis_.positions[b]), n);
+    }
+    const auto of_triangle = [&](std::uint32_t t) {
+      const auto& [a, b, c] = axis_.triangles[t];
+      const Vec3d middle = (axis_.positions[a] + axis_.positions[b] + axis_.positions[c]) / 3.0;
+      return axis_.triangle_angle[t] > seen_around(solid_, body_of_[a], middle, reach_) + about;
+    };
+    const auto of_curve = [&](std::uint32_t n) {
+      const auto& [a, b] = axis_.edges[n];
+      const Vec3d middle = (axis_.positions[a] + axis_.positions[b]) * 0.5;
+      return axis_.edge_angle[n] > seen_around(solid_, body_of_[a], middle, reach_) + about;
+    };
+    std::tie(check.samples, check.above_share) = share_above(triangles, of_triangle, context);
+    std::tie(check.curve_samples, check.curves_above_share) = share_above(curves, of_curve, context);
+  }
+
+ private:
+  template <class Corners>
+  [[nodiscard]] double least_angle(const Corners& corners) const {
+    double least = 180;
+    for (const std::uint32_t v : corners) least = std::min(least, axis_.separation_angle[v]);
+    return least;
+  }
+
+  /// How many samples there are, and the share of them that say too much.
+  template <class IsAbove>
+  [[nodiscard]] static std::pair<std::size_t, double> share_above(const std::vector<Sized>& cells,
+                                                                  const IsAbove& is_above, const Context& context) {
+    const std::size_t count = cells.empty() ? 0 : std::min(most_samples, 2 * cells.size());
+    std::vector<std::size_t> parts(count / grain + 1, 0);
+    parallel_for(context, count, grain, "checking angles", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        Random random(0xa461eULL + k);
+        const double at = (static_cast<double>(k) + random.uniform()) / static_cast<double>(count) * cells.back().end;
+        const auto end = std::upper_bound(cells.begin(), cells.end() - 1, at,
+                                          [](double value, const Sized& cell) { return value < cell.end; });
+        if (is_above(end->cell)) ++parts[range.begin / grain];
+      }
+    });
+    std::size_t above = 0;
+    for (const std::size_t part : parts) above += part;
+    return {count, count > 0 ? static_cast<double>(above) / static_cast<double>(count) : 0};
+  }
+
+  const MedialView& axis_;
+  const Incidence& incidence_;
+  const SolidOracle& solid_;
+  const std::vector<std::uint32_t>& body_of_;
+  double reach_;
+};
+
+void explain(const AngleCheck& check, double theta, std::vector<std::string>& mismatches) {
+  if (check.triangles >= few && check.below_share > most_below) {
+    mismatches.push_back("of the triangles whose corners see two walls, " + percent(check.below_share) +
+                         " have a separation angle below those of all their corners");
+  }
+  if (check.samples >= few && check.above_share > most_above) {
+    mismatches.push_back("of the triangles, " + percent(check.above_share) +
+                         " have a separation angle above what is seen around them");
+  }
+  if (check.curve_samples >= few && check.curves_above_share > most_curves_above) {
+    mismatches.push_back("of the curves, " + percent(check.curves_above_share) +
+                         " have a separation angle above what is seen around them");
+  }
+  if (check.borders_above > 0) {
+    mismatches.push_back(count_text(check.borders_above) +
+                         " rims and seams have a separation angle above those of all their triangles");
+  }
+  if (check.borders >= few && 2 * check.borders_below > check.borders) {
+    mismatches.push_back("of the " + count_text(check.borders) + " rims and seams, " + count_text(check.borders_below) +
+                         " have a separation angle below that of their triangles");
+  }
+  if (check.rims >= few && check.low_rims_share > most_low_rims) {
+    mismatches.push_back("of the rims, " + percent(check.low_rims_share) +
+                         " are of sheets that nothing sees at more than " + rounded_text(theta) +
+                         " degrees, which the axis at that theta does not have");
+  }
+}
+
+}  // namespace
+
+AngleCheck check_angles(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
+                        const std::vector<std::uint32_t>& body_of, const CertificateOptions& options, double factor,
+                        std::vector<std::string>& mismatches, const Context& context) {
+  const double diagonal = solid.solid->diagonal();
+  const double voxel = std::min(options.spacing ? *options.spacing * factor : diagonal / 32, diagonal / 8);
+  const Angles angles(axis, incidence, solid, body_of, std::max(voxel, solid.solid->grain() / 2));
+  AngleCheck check;
+  angles.compare_with_corners(check);
+  angles.compare_with_triangles(check);
+  if (options.theta && options.labels) angles.look_for_low_rims(*options.theta, check);
+  throw_if_cancelled(context);
+  angles.compare_with_surface(check, context);
+  const std::size_t before = mismatches.size();
+  explain(check, options.theta.value_or(0), mismatches);
+  check.holds = mismatches.size() == before;
+  return check;
+}
+
+}  // namespace blum::verifier

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "blum/complex/medial_columns.hpp"
+#include "blum/core/exact_text.hpp"
+#include "blum/core/union_find.hpp"
+#include "certificate/checks.hpp"
+
+namespace blum::verifier {
+namespace {
+
+constexpr std::uint32_t no_sheet = 0xffffffffU;
+constexpr std::uint32_t many_sheets = 0xfffffffeU;
+
+/// What ends or lies at a vertex.
+struct Around {
+  std::uint32_t rims = 0, seams = 0, curves = 0;
+  std::uint32_t sheet = no_sheet;
+};
+
+/// What an edge of so many triangles is; MedialRole::sheet where it is not listed.
+MedialRole role_of_edge(std::size_t triangles) {
+  switch (triangles) {
+    case 0:
+      return MedialRole::curve;
+    case 1:
+      return MedialRole::rim;
+    case 2:
+      return MedialRole::sheet;
+    default:
+      return MedialRole::seam;
+  }
+}
+
+MedialRole role_of_vertex(const Around& at) {
+  const bool has_surface = at.sheet != no_sheet;
+  if (at.curves > 0) {
+    const bool is_alone = !has_surface && at.seams == 0 && at.rims == 0;
+    return is_alone && at.curves <= 2 ? MedialRole::curve : MedialRole::junction;
+  }
+  if (at.seams > 0) return at.seams == 2 && at.rims == 0 ? MedialRole::seam : MedialRole::junction;
+  if (!has_surface) return MedialRole::curve;
+  if (at.sheet == many_sheets || at.rims > 2) return MedialRole::junction;
+  return at.rims > 0 ? MedialRole::rim : MedialRole::sheet;
+}
+
+/// How many cells name the same vertices as another one.
+template <class Cell>
+std::size_t doubled(std::span<const Cell> cells) {
+  std::vector<Cell> sorted(cells.begin(), cells.end());
+  for (Cell& cell : sorted) std::sort(cell.begin(), cell.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto distinct = std::unique(sorted.begin(), sorted.end()) - sorted.begin();
+  return cells.size() - static_cast<std::size_t>(distinct);
+}
+
+class Labels {
+ public:
+  Labels(const MedialView& axis, const Incidence& incidence) : axis_(axis), incidence_(incidence) {}
+
+  /// Which edges are listed, and as what.
+  void check_edges(LabelCheck& check) {
+    const std::size_t count = incidence_.edges().size();
+    std::vector<bool> is_listed(count, false);
+    for (std::size_t n = 0; n < axis_.edges.size(); ++n) {
+      const std::uint32_t e = incidence_.edge_of_listed()[n];
+      is_listed[e] = true;
+      const MedialRole role = role_of_edge(triangles_at(e));
+      if (role == MedialRole::sheet) {
+        ++check.inner_listed;
+      } else if (axis_.edge_role(n) != role) {
+        ++check.edge_roles;
+      }
+    }
+    for (std::uint32_t e = 0; e < count; ++e) {
+      if (!is_listed[e] && triangles_at(e) != 2) ++check.unlisted;
+    }
+  }
+
+  void check_vertices(LabelCheck& check) const {
+    std::vector<Around> around(axis_.positions.size());
+    for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
+      const MedialRole role = role_of_edge(triangles_at(e));
+      for (const std::uint32_t v : incidence_.edges()[e]) {
+        around[v].curves += role == MedialRole::curve ? 1 : 0;
+        around[v].rims += role == MedialRole::rim ? 1 : 0;
+        around[v].seams += role == MedialRole::seam ? 1 : 0;
+      }
+    }
+    for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
+      const auto sheet = static_cast<std::uint32_t>(axis_.sheet[t]);
+      for (const std::uint32_t v : axis_.triangles[t]) {
+        around[v].sheet = around[v].sheet == no_sheet || around[v].sheet == sheet ? sheet : many_sheets;
+      }
+    }
+    for (std::size_t v = 0; v < around.size(); ++v) {
+      if (axis_.role(v) != role_of_vertex(around[v])) ++check.vertex_roles;
+    }
+  }
+
+  /// Whether each sheet hangs together, and ends nowhere but at rims and seams.
+  void check_sheets(LabelCheck& check) const {
+    std::vector<bool> is_on_seam(axis_.positions.size(), false);
+    for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
+      if (triangles_at(e) <= 2) continue;
+      for (const std::uint32_t v : incidence_.edges()[e]) is_on_seam[v] = true;
+    }
+    detail::UnionFind joined(axis_.triangles.size());
+    for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
+      if (triangles_at(e) != 2) continue;
+      const std::span<const std::uint32_t> both = incidence_.triangles_of_edge()[e];
+      const auto& [a, b] = incidence_.edges()[e];
+      if (axis_.sheet[both[0]] == axis_.sheet[both[1]]) {
+        joined.join(both[0], both[1]);
+      } else if (!is_on_seam[a] && !is_on_seam[b]) {
+        ++check.parted;
+      }
+    }
+    count_torn(joined, check);
+  }
+
+ private:
+  [[nodiscard]] std::size_t triangles_at(std::uint32_t edge) const {
+    return incidence_.triangles_of_edge()[edge].size();
+  }
+
+  void count_torn(detail::UnionFind& joined, LabelCheck& check) const {
+    std::vector<std::array<std::uint32_t, 2>> parts;  // sheet, and a triangle that stands for a part of it
+    for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
+      if (joined.find(t) == t) parts.push_back({static_cast<std::uint32_t>(axis_.sheet[t]), t});
+    }
+    std::sort(parts.begin(), parts.end());
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const bool is_first = k == 0 || parts[k - 1][0] != parts[k][0];
+      check.sheets += is_first ? 1 : 0;
+      check.torn += is_first && k + 1 < parts.size() && parts[k + 1][0] == parts[k][0] ? 1 : 0;
+    }
+  }
+
+  const MedialView& axis_;
+  const Incidence& incidence_;
+};
+
+void explain(const LabelCheck& check, std::vector<std::string>& mismatches) {
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) mismatches.push_back(count_text(count) + " " + what);
+  };
+  add(check.doubled, "cells are there twice");
+  add(check.inner_listed, "edges are listed that lie inside of sheets");
+  add(check.unlisted, "rims and seams are not listed");
+  add(check.edge_roles, "edges have a role that their triangles do not give them");
+  add(check.vertex_roles, "vertices have a role that their edges and sheets do not give them");
+  add(check.torn, "sheets do not hang together over edges of two triangles");
+  add(check.parted, "edges away from seams part two sheets");
+}
+
+}  // namespace
+
+LabelCheck check_labels(const MedialView& axis, const Incidence& incidence, std::vector<std::string>& mismatches,
+                        const Context& context) {
+  LabelCheck check;
+  check.doubled = doubled(axis.edges) + doubled(axis.triangles);
+  Labels labels(axis, incidence);
+  labels.check_edges(check);
+  throw_if_cancelled(context);
+  labels.check_vertices(check);
+  labels.check_sheets(check);
+  const std::size_t before = mismatches.size();
+  explain(check, mismatches);
+  check.holds = mismatches.size() == before;
+  return check;
+}
+
+}  // namespace blum::verifier

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "certificate/body_edges.hpp"
+#include "certificate/checks.hpp"
+
+namespace blum::verifier {
+namespace {
+
+using Piece = std::array<Stop, 3>;
+
+/// Points of one triangle that are asked about: in walls that are as thin as nothing they would be endless.
+constexpr std::size_t most_points = 512;
+
+/// What is found of some of the triangles.
+struct Findings {
+  TriangleCheck check;
+
+  void add(const Findings& other) {
+    check.leaving += other.check.leaving;
+    check.outside += other.check.outside;
+    check.undecided += other.check.undecided;
+    if (!(other.check.outside_by > check.outside_by)) return;
+    check.outside_by = other.check.outside_by;
+    check.where = other.check.where;
+  }
+};
+
+/// Whether the balls that are as large as the corners are deep cover a piece, to within an amount: those of both ends
+/// of each side meet on it, and all three hold one more point, here the centre. They are convex, so that they then hold
+/// the six parts that the centre is a corner of.
+bool covers(const Piece& piece, double allowed) {
+  const Vec3d centre = (piece[0].at + piece[1].at + piece[2].at) / 3.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Stop& a = piece[k];
+    const Stop& b = piece[(k + 1) % 3];
+    if (a.depth + allowed < length(a.at - centre)) return false;
+    if (a.depth + b.depth + 2 * allowed < length(a.at - b.at)) return false;
+  }
+  return true;
+}
+
+/// Whether one ball does.
+bool covers(const Stop& ball, const Piece& piece, double allowed) {
+  return std::all_of(piece.begin(), piece.end(),
+                     [&](const Stop& corner) { return length(corner.at - ball.at) <= ball.depth + allowed; });
+}
+
+class TriangleInBody {
+ public:
+  TriangleInBody(const SolidOracle& solid, std::uint32_t body, double allowed)
+      : solid_(solid), body_(body), allowed_(allowed) {}
+
+  /// The point that is furthest out, about; sets is_undecided where too many points would have to be asked about.
+  [[nodiscard]] Stop furthest_out(const Piece& triangle, bool& is_undecided) const {
+    constexpr double nearly = 1.25;  // enough of what is too much anyway
+    Stop worst = *std::min_element(triangle.begin(), triangle.end(),
+                                   [](const Stop& a, const Stop& b) { return a.depth < b.depth; });
+    std::vector<Piece> stack{triangle};
+    std::size_t points = 0;
+    while (!stack.empty()) {
+      const Piece piece = stack.back();
+      stack.pop_back();
+      const double enough = std::max(allowed_, -nearly * worst.depth);
+      if (covers(piece, enough)) continue;
+      if (points >= most_points) {
+        is_undecided = true;
+        return worst;
+      }
+      points += 2;
+      const Stop centre = stop((piece[0].at + piece[1].at + piece[2].at) / 3.0);
+      if (centre.depth < worst.depth) worst = centre;
+      if (covers(centre, piece, std::max(allowed_, -nearly * worst.depth))) continue;
+      halve(piece, worst, stack);
+    }
+    return worst;
+  }
+
+ private:
+  [[nodiscard]] Stop stop(const Vec3d& at) const { return {at, solid_.depth(at, body_)}; }
+
+  /// Across the longest side; as long as numbers can tell the halves apart.
+  void halve(const Piece& piece, Stop& worst, std::vector<Piece>& stack) const {
+    std::size_t longest = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+      if (side(piece, k) > side(piece, longest)) longest = k;
+    }
+    const Stop& a = piece[longest];
+    const Stop& b = piece[(longest + 1) % 3];
+    const Stop& c = piece[(longest + 2) % 3];
+    const Stop middle = stop((a.at + b.at) * 0.5);
+    if (middle.at == a.at || middle.at == b.at) return;
+    if (middle.depth < worst.depth) worst = middle;
+    stack.push_back({a, middle, c});
+    stack.push_back({middle, b, c});
+  }
+  [[nodiscard]] static double side(const Piece& piece, std::size_t k) {
+    return squared_length(piece[(k + 1) % 3].at - piece[k].at);
+  }
+
+  const SolidOracle& solid_;
+  std::uint32_t body_;
+  double allowed_;
+};
+
+/// Looks at one triangle. @param most  how far out it may be.
+Findings look_at(const Piece& corners, const TriangleInBody& body, double allowed, double most) {
+  Findings found;
+  bool is_undecided = false;
+  const Stop worst = body.furthest_out(corners, is_undecided);
+  const double out = -worst.depth;
+  if (out > allowed) {
+    found.check.leaving = 1;
+    found.check.outside = out > most ? 1 : 0;
+    found.check.outside_by = out;
+    found.check.where = worst.at;
+  } else if (is_undecided) {
+    found.check.undecided = 1;
+  }
+  return found;
+}
+
+}  // namespace
+
+TriangleCheck check_triangles(const MedialView& axis, const KnownSolid& solid, const std::vector<Location>& locations,
+                              const AxisParts& parts, const CertificateOptions& options, double factor,
+                              std::vector<std::string>& mismatches, const Context& context) {
+  constexpr std::size_t grain = 256;
+  const SolidOracle& oracle = *solid.solid;
+  const double moved = std::min(options.deviation ? *options.deviation * factor : 0, oracle.diagonal() / 16);
+  std::vector<double> allowed = tolerances(solid);
+  std::vector<double> most(allowed.size());
+  for (std::uint32_t b = 0; b < allowed.size(); ++b) {
+    allowed[b] = more_for_edges * allowed[b] + oracle.slack();
+    most[b] = BodyEdges(oracle, b, allowed[b]).corner() + allowed[b] + moved;
+  }
+  std::vector<Findings> found(axis.triangles.size() / grain + 1);
+  parallel_for(context, axis.triangles.size(), grain, "checking triangles", [&](const WorkRange& range) {
+    for (std::size_t t = range.begin; t < range.end; ++t) {
+      const std::uint32_t body = parts.body_of[axis.triangles[t][0]];
+      Piece corners;
+      bool is_known = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = axis.triangles[t][k];
+        const Vec3d& at = axis.positions[v];
+        is_known = is_known && is_finite(at);
+        if (is_known) corners[k] = {at, locations[v].body == body ? locations[v].depth : oracle.depth(at, body)};
+      }
+      if (!is_known || covers(corners, allowed[body])) continue;
+      found[range.begin / grain].add(
+          look_at(corners, TriangleInBody(oracle, body, allowed[body]), allowed[body], most[body]));
+    }
+  });
+  Findings all;
+  for (const Findings& part : found) all.add(part);
+  TriangleCheck check = all.check;
+  check.triangles = axis.triangles.size();
+  check.outside_by /= factor;
+  check.where = check.where / factor;
+  check.tolerance = *std::max_element(allowed.begin(), allowed.end()) / factor;
+  check.allowance = *std::max_element(most.begin(), most.end()) / factor;
+  check.holds = check.outside == 0;
+  if (!check.holds) {
+    mismatches.push_back(count_text(check.outside) + " triangles leave the solid between their edges, by up to " +
+                         rounded_text(check.outside_by) + " at " + place_text(check.where) +
+                         " (allowed: " + rounded_text(check.allowance) + ")");
+  }
+  return check;
+}
+
+}  // namespace blum::verifier
