@@ -1,6 +1,7 @@
 // Blum: what the verifier asks a solid. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -62,6 +63,10 @@ class SolidOracle {
   /// Whether the segment between two points is known to meet no boundary of a body; false also where rounding leaves
   /// doubt, or this solid cannot tell.
   [[nodiscard]] virtual bool is_clear(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/) const {
+    return false;
+  }
+  /// The same for a triangle, sides included.
+  [[nodiscard]] virtual bool is_clear(const std::array<Vec3d, 3>& /*triangle*/, std::uint32_t /*body*/) const {
     return false;
   }
   /// The closest point of the surface of a body.

@@ -63,6 +63,8 @@ class TriangleInBody {
     constexpr double nearly = 1.25;  // enough of what is too much anyway
     Stop worst = *std::min_element(triangle.begin(), triangle.end(),
                                    [](const Stop& a, const Stop& b) { return a.depth < b.depth; });
+    // In thin walls balls are many: so first it is asked whether the triangle meets the boundary at all.
+    if (worst.depth > 0 && solid_.is_clear({triangle[0].at, triangle[1].at, triangle[2].at}, body_)) return worst;
     std::vector<Piece> stack{triangle};
     std::size_t points = 0;
     while (!stack.empty()) {

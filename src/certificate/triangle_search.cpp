@@ -77,6 +77,48 @@ bool may_meet(const ProbeLine& line, const Box3& box, double begin, double end, 
   return begin <= end + slack;
 }
 
+/// A triangle, and whether things come through it; where rounding leaves doubt, they may.
+class PiercedTriangle {
+ public:
+  /// @param normal  of length 1.  @param slack  what rounding may amount to.
+  PiercedTriangle(const std::array<Vec3d, 3>& corners, const Vec3d& normal, double slack)
+      : corners_(corners), normal_(normal), slack_(slack) {
+    for (const Vec3d& corner : corners) box_.extend(corner);
+    const Vec3d more{slack, slack, slack};
+    box_ = {box_.lower - more, box_.upper + more};
+  }
+
+  [[nodiscard]] bool may_meet(const Box3& box) const {
+    const bool is_apart = !(max(box.lower, box_.lower) == min(max(box.lower, box_.lower), min(box.upper, box_.upper)));
+    if (is_apart) return false;
+    const Vec3d half = 0.5 * (box.upper - box.lower);
+    const double reach = std::abs(normal_.x) * half.x + std::abs(normal_.y) * half.y + std::abs(normal_.z) * half.z;
+    return std::abs(height(0.5 * (box.lower + box.upper))) <= reach + slack_;
+  }
+
+  /// By a segment.
+  [[nodiscard]] bool may_be_pierced(const Vec3d& p, const Vec3d& q) const {
+    const double above = height(p);
+    const double below = height(q);
+    if ((above > slack_ && below > slack_) || (above < -slack_ && below < -slack_)) return false;
+    if (std::abs(above) <= slack_ || std::abs(below) <= slack_) return may_meet(Box3{min(p, q), max(p, q)});
+    const Vec3d at = p + (q - p) * (above / (above - below));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d side = corners_[(k + 1) % 3] - corners_[k];
+      if (dot(cross(normal_, side), at - corners_[k]) < -slack_ * length(side)) return false;
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] double height(const Vec3d& p) const { return dot(normal_, p - corners_[0]); }
+
+  const std::array<Vec3d, 3>& corners_;
+  Vec3d normal_;
+  double slack_;
+  Box3 box_;
+};
+
 }  // namespace
 
 ProbeLine line_through(const Vec3d& point, std::uint32_t attempt) {
@@ -227,6 +269,25 @@ bool TriangleSearch::crossings(const ProbeLine& line, std::vector<Crossing>& fou
         return is_certain ? 1.0 : -1.0;
       });
   return is_certain;
+}
+
+bool TriangleSearch::is_unpierced(const std::array<Vec3d, 3>& triangle, std::uint32_t group) const {
+  const Vec3d normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  const double size = length(normal);
+  if (!(size > 0)) return false;
+  const PiercedTriangle target(triangle, normal / size, 1e-12 * (bounds_.diagonal() + length(bounds_.center())));
+  bool is_unpierced = true;
+  tree_.search(
+      1, [&](std::uint32_t n) { return target.may_meet(tree_.node(n).box) ? 0.0 : 2.0; },
+      [&](std::uint32_t place) {
+        if (groups_[place] != group) return 1.0;
+        const Corners& corners = corners_[place];
+        for (std::size_t k = 0; k < 3 && is_unpierced; ++k) {
+          is_unpierced = !target.may_be_pierced(corners[k], corners[(k + 1) % 3]);
+        }
+        return is_unpierced ? 1.0 : -1.0;
+      });
+  return is_unpierced;
 }
 
 }  // namespace blum::verifier

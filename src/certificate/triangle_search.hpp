@@ -54,6 +54,9 @@ class TriangleSearch {
   /// to an edge to tell.
   [[nodiscard]] bool crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach = HUGE_VAL) const;
 
+  /// Whether no side of the triangles of a group comes through a triangle; false also where rounding leaves doubt.
+  [[nodiscard]] bool is_unpierced(const std::array<Vec3d, 3>& triangle, std::uint32_t group) const;
+
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
 
  private:
