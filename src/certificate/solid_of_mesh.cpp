@@ -92,8 +92,8 @@ class ShellOracle : public SolidOracle {
     });
   }
 
-  /// Where a part of the boundary goes through a triangle, it ends at a side of the triangle, or a side of its own comes
-  /// through.
+  /// Where a part of the boundary goes through a triangle, it ends at a side of the triangle, or a side of its own
+  /// comes through.
   [[nodiscard]] bool is_clear(const std::array<Vec3d, 3>& triangle, std::uint32_t body) const override {
     const auto& [a, b, c] = triangle;
     return is_clear(a, b, body) && is_clear(b, c, body) && is_clear(c, a, body) && search_.is_unpierced(triangle, body);

@@ -347,8 +347,8 @@ struct Description<LabelCheck> {
 };
 
 /// Whether the separation angles of triangles and edges are those of their places: told by shares, since a triangle has
-/// the largest angle that is seen within half a voxel of it, and that of others which went for it. Against the voxels of
-/// a mesh, what corners and places see is told only.
+/// the largest angle that is seen within half a voxel of it, and that of others which went for it. Against the voxels
+/// of a mesh, what corners and places see is told only.
 struct AngleCheck {
   std::size_t triangles = 0;      ///< whose corners all see two walls
   double below_share = 0;         ///< of their area: what says 10 degrees less than each of the three corners sees

@@ -95,12 +95,10 @@ TEST(Certificate, HoldsForTheCentreLineOfATorus) {
     const Certificate c = certify(axis, torus, unlabelled);
     EXPECT_TRUE(c.holds()) << complaints(c);
     EXPECT_EQ(c.solid, (BettiNumbers{1, 1, 0}));
-    const double edge = 2 * std::sin(std::numbers::pi / parts);
-    const double finest = std::min(edge, length(bounds(torus).size()) / 256);
+    const double finest = std::min(2 * std::sin(std::numbers::pi / parts), length(bounds(torus).size()) / 256);
     EXPECT_GT(c.balls.step, finest * (1 - 1e-9));
-    // Pieces with sides of a step have at least a ninth of its square.
     const double affordable = 3 * std::sqrt(4 * std::numbers::pi * std::numbers::pi * 0.3 / 50'000);
-    EXPECT_LT(c.balls.step, std::max(finest, affordable));
+    EXPECT_LT(c.balls.step, std::max(finest, affordable)) << "pieces are at least a ninth of a square of the step";
     EXPECT_LT(c.balls.solid_to_balls, 0.01);
     EXPECT_LT(c.balls.balls_to_surface, 0.01);
   }
