@@ -19,9 +19,8 @@ namespace {
 constexpr double noise = 10;               ///< degrees from which two footprints are two walls
 constexpr double nearly = 10;              ///< degrees by which an angle may be below those of all its corners
 constexpr double about = 20;               ///< degrees by which it may be above what is seen around it
-constexpr double alike = 30;               ///< degrees between the directions in which corners see the same wall
 constexpr double same = 1e-3;              ///< degrees: rounding of float32
-constexpr double most_below = 0.95;        ///< share of the area: see docs/theory/medial-axis.md
+constexpr double most_below = 0.8;         ///< share of the area: see docs/theory/medial-axis.md
 constexpr double most_above = 0.2;         ///< share of samples
 constexpr double most_curves_above = 0.6;  ///< the same of curves: those of true axes wind within a voxel
 constexpr double most_low_rims = 0.25;     ///< share of their length
@@ -79,20 +78,17 @@ class Angles {
   /// Triangles and curves that say less than what each of their corners sees.
   void compare_with_corners(AngleCheck& check) const {
     double all = 0;
-    double compared = 0;
     double below = 0;
     for (std::size_t t = 0; t < axis_.triangles.size(); ++t) {
       const double size = area(axis_, axis_.triangles[t]);
       if (!std::isfinite(size)) continue;
-      all += size;
       const double least = least_angle(axis_.triangles[t]);
-      if (least < noise || !see_the_same_walls(axis_.triangles[t])) continue;
+      if (least < noise) continue;
       ++check.triangles;
-      compared += size;
+      all += size;
       if (axis_.triangle_angle[t] < least - nearly) below += size;
     }
-    if (compared < 0.5 * all) check.triangles = 0;  // mostly round: what is left lies beside what is round
-    if (check.triangles > 0) check.below_share = below / compared;
+    if (all > 0) check.below_share = below / all;
   }
 
   /// Rims and seams have the largest angle of their triangles, or less after vertices were taken out.
@@ -159,20 +155,6 @@ class Angles {
   }
 
  private:
-  /// Whether the corners see their two walls in nearly the same directions. In the middle of round things each sees
-  /// others, at a large angle, that say nothing of the triangle.
-  [[nodiscard]] bool see_the_same_walls(const std::array<std::uint32_t, 3>& corners) const {
-    const auto towards = [&](std::uint32_t v, std::size_t which) {
-      return axis_.footprint(v, which) - axis_.positions[v];
-    };
-    const auto is_alike = [&](std::uint32_t a, std::uint32_t b, std::size_t swapped) {
-      return degrees_between(towards(a, 0), towards(b, swapped)) < alike &&
-             degrees_between(towards(a, 1), towards(b, 1 - swapped)) < alike;
-    };
-    const auto is_either = [&](std::uint32_t a, std::uint32_t b) { return is_alike(a, b, 0) || is_alike(a, b, 1); };
-    return is_either(corners[0], corners[1]) && is_either(corners[0], corners[2]);
-  }
-
   template <class Corners>
   [[nodiscard]] double least_angle(const Corners& corners) const {
     double least = 180;
@@ -211,7 +193,7 @@ class Angles {
 /// walls are seen that bound nothing, so that shares that places tell are told, and not judged.
 void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<std::string>& mismatches) {
   if (!by_voxels && check.triangles >= few && check.below_share > most_below) {
-    mismatches.push_back("of the triangles whose corners see the same two walls, " + percent(check.below_share) +
+    mismatches.push_back("of the triangles whose corners see two walls, " + percent(check.below_share) +
                          " have a separation angle below those of all their corners");
   }
   if (!by_voxels && check.samples >= few && check.above_share > most_above) {

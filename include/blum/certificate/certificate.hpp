@@ -350,7 +350,7 @@ struct Description<LabelCheck> {
 /// the largest angle that is seen within half a voxel of it, and that of others which went for it. Against voxels, of
 /// images or meshes, what corners and places see is told only.
 struct AngleCheck {
-  std::size_t triangles = 0;      ///< whose corners see the same two walls; 0 if less than half of the area is there
+  std::size_t triangles = 0;      ///< whose corners all see two walls
   double below_share = 0;         ///< of their area: what says 10 degrees less than each of the three corners sees
   std::size_t samples = 0;        ///< triangles that were looked at
   double above_share = 0;         ///< of these: what says 20 degrees more than is seen within a voxel
@@ -369,7 +369,7 @@ struct Description<AngleCheck> {
   static constexpr std::string_view name = "AngleCheck";
   static constexpr std::string_view doc = "Whether separation angles of triangles and edges are those of their places";
   static constexpr std::tuple members{
-      Member{"triangles", &AngleCheck::triangles, "", "whose corners see the same two walls"},
+      Member{"triangles", &AngleCheck::triangles, "", "whose corners all see two walls"},
       Member{"below_share", &AngleCheck::below_share, "", "of their area: what says less than each corner sees"},
       Member{"samples", &AngleCheck::samples, "", "triangles that were looked at"},
       Member{"above_share", &AngleCheck::above_share, "", "of these: what says more than is seen within a voxel"},

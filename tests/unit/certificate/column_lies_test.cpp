@@ -156,7 +156,7 @@ TEST(ColumnLies, FalseAnglesOfTriangles) {
   for (const float factor : {0.25F, 0.5F, 0.8F}) {
     True lie = bracket();
     for (TriangleRow& triangle : lie.axis.triangles) triangle.separation_angle *= factor;
-    expect_refused(lie, "a separation angle above those of all their triangles");
+    expect_refused(lie, "below those of all their corners");
   }
   True lie = bracket();
   for (TriangleRow& triangle : lie.axis.triangles) triangle.separation_angle = 180;
@@ -170,7 +170,7 @@ TEST(ColumnLies, EverythingForHomotopyAlone) {
   True lie = bracket();
   for (TriangleRow& triangle : lie.axis.triangles) triangle.separation_angle = 0;
   for (EdgeRow& edge : lie.axis.edges) edge.separation_angle = 0;
-  expect_refused(lie, "are of sheets that nothing sees at more than 60 degrees");
+  expect_refused(lie, "below those of all their corners");
 }
 
 TEST(ColumnLies, FalseAnglesOfEdges) {
