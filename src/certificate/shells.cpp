@@ -156,15 +156,21 @@ std::vector<std::vector<std::uint32_t>> members(const ClosedShells& shells) {
   return lists;
 }
 
+/// A shell, and whether it faces outwards: 1 if so, -1 if inwards, 0 where rounding leaves doubt.
+struct Measured {
+  ClosedShell shell;
+  std::int8_t faces_outwards = 0;
+};
+
 /// Measures a shell: its genus by its homology, its volume by the tetrahedra over a point of it.
-ClosedShell measured(const MeshView& mesh, const std::vector<std::uint32_t>& triangles,
-                     const std::vector<std::int8_t>& facing, std::vector<std::uint32_t>& number,
-                     const Context& context) {
+Measured measured(const MeshView& mesh, const std::vector<std::uint32_t>& triangles,
+                  const std::vector<std::int8_t>& facing, std::vector<std::uint32_t>& number, const Context& context) {
   std::vector<Triangle> own;
   own.reserve(triangles.size());
   std::vector<std::uint32_t> vertices;
   const Vec3d origin = mesh.vertices[mesh.triangles[triangles.front()][0]];
   double volume = 0;
+  double sum = 0;  // of what is added to it
   for (const std::uint32_t t : triangles) {
     Triangle& corners = own.emplace_back(mesh.triangles[t]);
     std::array<Vec3d, 3> at;
@@ -177,11 +183,14 @@ ClosedShell measured(const MeshView& mesh, const std::vector<std::uint32_t>& tri
       }
       corners[k] = name;
     }
-    volume += facing[t] * dot(at[0], cross(at[1], at[2])) / 6;
+    const double tetrahedron = dot(at[0], cross(at[1], at[2])) / 6;
+    volume += facing[t] * tetrahedron;
+    sum += std::abs(tetrahedron);
   }
   const BettiNumbers betti = homology({vertices.size(), {}, own}, context);
   for (const std::uint32_t v : vertices) number[v] = no_group;
-  return {betti[1] / 2, std::abs(volume), 0, 0};
+  const bool is_certain = std::abs(volume) > 1e-9 * sum;
+  return {{betti[1] / 2, std::abs(volume), 0, 0}, static_cast<std::int8_t>(!is_certain ? 0 : volume > 0 ? 1 : -1)};
 }
 
 /// A stretch of a line between two crossings that lies in a shell.
@@ -290,7 +299,12 @@ ClosedShells cut_into_shells(const MeshView& mesh, const Context& context) {
   throw_if_cancelled(context);
   const auto lists = members(result);
   std::vector<std::uint32_t> number(mesh.vertices.size(), no_group);
-  for (std::size_t s = 0; s < lists.size(); ++s) result.shells[s] = measured(mesh, lists[s], facing, number, context);
+  result.outwards.assign(mesh.triangles.size(), 0);
+  for (std::size_t s = 0; s < lists.size(); ++s) {
+    const auto [shell, faces_outwards] = measured(mesh, lists[s], facing, number, context);
+    result.shells[s] = shell;
+    for (const std::uint32_t t : lists[s]) result.outwards[t] = static_cast<std::int8_t>(facing[t] * faces_outwards);
+  }
   return result;
 }
 

@@ -24,6 +24,8 @@ struct ClosedShell {
 struct ClosedShells {
   std::vector<ClosedShell> shells;
   std::vector<std::uint32_t> of_triangle;  ///< no_group for triangles that name a vertex twice: they bound nothing
+  std::vector<std::int8_t>
+      outwards;  ///< of each triangle: 1 if its normal leads out of its shell, -1 if in, 0: unknown
   std::uint32_t bodies = 0;
 };
 

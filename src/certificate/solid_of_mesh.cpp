@@ -35,15 +35,17 @@ class ShellOracle : public SolidOracle {
   [[nodiscard]] double diagonal() const override { return search_.bounds().diagonal(); }
 
   [[nodiscard]] Location locate(const Vec3d& p) const override {
+    const TriangleSearch::Nearest closest = search_.nearest(p);
+    if (side_of(p, closest) == Side::inside) {
+      return {body_of_[closest.triangle], closest.distance, 0, closest.distance};
+    }
     if (const std::optional<std::uint32_t> shell = innermost_around(p)) {
       const ClosedShell& around = shells_.shells[*shell];
       const double own = distance(p, around.body);
       const bool is_inside = around.depth % 2 == 0;
       return {around.body, own, is_inside ? 0 : own, is_inside ? own : -own};
     }
-    const TriangleSearch::Nearest nearest = search_.nearest(p);
-    const std::uint32_t body = body_of_[nearest.triangle];
-    return {body, nearest.distance, nearest.distance, -nearest.distance};
+    return {body_of_[closest.triangle], closest.distance, closest.distance, -closest.distance};
   }
 
   [[nodiscard]] double distance(const Vec3d& p, std::uint32_t body) const override {
@@ -57,7 +59,9 @@ class ShellOracle : public SolidOracle {
   [[nodiscard]] Box3 box(std::uint32_t body) const override { return boxes_[body]; }
 
   [[nodiscard]] double depth(const Vec3d& p, std::uint32_t body) const override {
-    const double own = distance(p, body);
+    const TriangleSearch::Nearest closest = search_.nearest(p, body);
+    const double own = closest.distance;
+    if (const Side side = side_of(p, closest); side != Side::unknown) return side == Side::inside ? own : -own;
     const std::optional<std::uint32_t> shell = innermost_around(p);
     return shell && shells_.shells[*shell].body == body && shells_.shells[*shell].depth % 2 == 0 ? own : -own;
   }
@@ -118,6 +122,23 @@ class ShellOracle : public SolidOracle {
   }
 
  private:
+  enum class Side { inside, outside, unknown };
+
+  /// On which side of its closest triangle a point lies, seen from the solid: where this point of the triangle is no
+  /// point of others, nothing of the boundary is in between.
+  [[nodiscard]] Side side_of(const Vec3d& p, const TriangleSearch::Nearest& closest) const {
+    constexpr double nearly = 1 - 1e-6;
+    if (!closest.is_alone || !(closest.distance > 1e-9 * diagonal())) return Side::unknown;
+    const int outwards = shells_.outwards[closest.triangle];
+    const auto [a, b, c] = corners_of(mesh_, closest.triangle);
+    const Vec3d normal = cross(b - a, c - a);
+    const double height = dot(p - a, normal) / length(normal);
+    if (outwards == 0 || !(std::abs(height) >= nearly * closest.distance)) return Side::unknown;
+    const bool is_in_shell = (height > 0) != (outwards > 0);
+    const bool is_void = shells_.shells[shells_.of_triangle[closest.triangle]].depth % 2 == 1;
+    return is_in_shell != is_void ? Side::inside : Side::outside;
+  }
+
   /// A point deep in a void: the deepest of the middles of some chords. Flat triangles of an axis in a bent wall reach
   /// into what is beside the wall, so that a point near the wall may be on either side of them.
   [[nodiscard]] Vec3d point_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {

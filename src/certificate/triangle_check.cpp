@@ -63,8 +63,11 @@ class TriangleInBody {
     constexpr double nearly = 1.25;  // enough of what is too much anyway
     Stop worst = *std::min_element(triangle.begin(), triangle.end(),
                                    [](const Stop& a, const Stop& b) { return a.depth < b.depth; });
+    // One as thin as this is where its sides are, and these are judged as edges.
+    if (is_sliver(triangle)) return worst;
     // In thin walls balls are many: so first it is asked whether the triangle meets the boundary at all.
     if (worst.depth > 0 && solid_.is_clear({triangle[0].at, triangle[1].at, triangle[2].at}, body_)) return worst;
+    const std::size_t most = points_for(triangle);
     std::vector<Piece> stack{triangle};
     std::size_t points = 0;
     while (!stack.empty()) {
@@ -72,7 +75,7 @@ class TriangleInBody {
       stack.pop_back();
       const double enough = std::max(allowed_, -nearly * worst.depth);
       if (covers(piece, enough)) continue;
-      if (points >= most_points) {
+      if (points >= most) {
         is_undecided = true;
         return worst;
       }
@@ -87,6 +90,25 @@ class TriangleInBody {
 
  private:
   [[nodiscard]] Stop stop(const Vec3d& at) const { return {at, solid_.depth(at, body_)}; }
+
+  [[nodiscard]] static double area(const Piece& piece) {
+    return 0.5 * length(cross(piece[1].at - piece[0].at, piece[2].at - piece[0].at));
+  }
+  [[nodiscard]] bool is_sliver(const Piece& triangle) const {
+    constexpr double thin = 1e-3;
+    const double longest = std::sqrt(std::max({side(triangle, 0), side(triangle, 1), side(triangle, 2)}));
+    return 2 * area(triangle) <= thin * allowed_ * longest;
+  }
+
+  /// Few where balls as large as those of the corners would have to be far too many to cover a triangle: these only
+  /// find what lies well outside. Each part that is halved no more is at most as large as the square of a ball's
+  /// radius.
+  [[nodiscard]] std::size_t points_for(const Piece& triangle) const {
+    constexpr std::size_t few_points = 64;
+    const double deepest = std::max({triangle[0].depth, triangle[1].depth, triangle[2].depth}) + allowed_;
+    const bool is_hopeless = area(triangle) > 0.5 * static_cast<double>(most_points) * deepest * deepest;
+    return is_hopeless ? few_points : most_points;
+  }
 
   /// Across the longest side; as long as numbers can tell the halves apart.
   void halve(const Piece& piece, Stop& worst, std::vector<Piece>& stack) const {

@@ -178,6 +178,47 @@ double distance_from_site(const MeshView& mesh, const SiteTable& sites, const Ve
   return std::sqrt(squared_distance(p, corners));
 }
 
+namespace {
+
+constexpr double as_close = 1 + 1e-8;  ///< of squared distances: about the same
+
+/// The points of triangles that are about as close to a point as the closest one.
+class ClosePoints {
+ public:
+  /// @param best  the least squared distance so far, this one included.
+  void add(const Vec3d& point, double squared, double best) {
+    const auto is_far = [&](const Found& found) { return found.squared > best * as_close; };
+    if (count_ == found_.size()) {
+      count_ = static_cast<std::size_t>(std::remove_if(found_.begin(), found_.end(), is_far) - found_.begin());
+    }
+    is_full_ = is_full_ || count_ == found_.size();
+    if (!is_full_) found_[count_++] = {point, squared};
+  }
+  /// Whether there is just one at the place of the closest one.
+  [[nodiscard]] bool is_alone(double best) const {
+    constexpr double as_near = 1e-12;  // squared, of the squared distance
+    if (is_full_) return false;
+    const Found* closest = nullptr;
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (closest == nullptr || found_[k].squared < closest->squared) closest = &found_[k];
+    }
+    return std::none_of(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const Found& found) {
+      return &found != closest && squared_length(found.point - closest->point) <= as_near * best;
+    });
+  }
+
+ private:
+  struct Found {
+    Vec3d point;
+    double squared = 0;
+  };
+  std::array<Found, 16> found_{};
+  std::size_t count_ = 0;
+  bool is_full_ = false;
+};
+
+}  // namespace
+
 TriangleSearch::TriangleSearch(const MeshView& mesh, std::span<const std::uint32_t> groups, const Context& context) {
   std::vector<Box3> boxes;
   std::vector<std::uint32_t> kept;
@@ -240,18 +281,21 @@ double TriangleSearch::bound(const Vec3d& p, std::uint32_t node) const {
 TriangleSearch::Nearest TriangleSearch::nearest(const Vec3d& p, std::uint32_t group) const {
   double best = HUGE_VAL;
   std::uint32_t triangle = 0;
+  ClosePoints close;
   tree_.search(
       best, [&](std::uint32_t n) { return bound(p, n); },
       [&](std::uint32_t place) {
-        if (group != no_group && groups_[place] != group) return best;
-        const double squared = squared_distance(p, corners_[place]);
+        if (group != no_group && groups_[place] != group) return best * as_close;
+        const Vec3d closest = closest_point(p, corners_[place]);
+        const double squared = squared_length(p - closest);
+        if (squared <= best * as_close) close.add(closest, squared, std::min(best, squared));
         if (squared < best) {
           best = squared;
           triangle = triangles_[place];
         }
-        return best;
+        return best * as_close;
       });
-  return {std::sqrt(best), triangle};
+  return {std::sqrt(best), triangle, close.is_alone(best)};
 }
 
 bool TriangleSearch::crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach) const {

@@ -40,6 +40,7 @@ class TriangleSearch {
   struct Nearest {
     double distance = 0;
     std::uint32_t triangle = 0;
+    bool is_alone = false;  ///< its closest point is none of another triangle asked of, up to rounding
   };
 
   TriangleSearch() = default;

@@ -7,7 +7,7 @@
 namespace blum {
 namespace {
 
-/// How often paths may take the place of edges in all polygons of one filler.
+/// How many paths may be looked for in all polygons of one filler, to take the place of edges.
 constexpr int most_detours = 24;
 
 bool has(const PolygonFiller::Places& places, std::uint32_t place) {
@@ -21,6 +21,12 @@ struct PolygonFiller::Ear {
   double squared_length = 0;  ///< of what joins the two next to the corner
   std::size_t corner = 0;     ///< in the polygon
   std::uint32_t before = 0, place = 0, after = 0;
+};
+
+/// A corner, and new places on a way between those next to it.
+struct PolygonFiller::Detour {
+  Ear over;
+  Places places;
 };
 
 std::vector<PolygonFiller::Ear> PolygonFiller::ears_of(const Places& polygon, const std::vector<Places>& sides) const {
@@ -47,15 +53,38 @@ bool PolygonFiller::is_open(const Ear& ear) const {
   return is_joined(ear) && paths_.is_open(stop_of_(ear.before), stop_of_(ear.place), stop_of_(ear.after));
 }
 
-/// New places on a way between the two next to a corner; none where no way was found.
-PolygonFiller::Places PolygonFiller::path_along(const Ear& ear) {
-  Places places;
-  if (!add_ || detours_ >= most_detours) return places;
-  ++detours_;
-  const auto path = paths_.path(stop_of_(ear.before), stop_of_(ear.after), {});
-  if (!path) return places;
-  for (const Stop& stop : *path) places.push_back(add_(stop));
-  return places;
+/// A corner to cut off, and new places on a way between the two next to it, the shortest ears first. A way that runs
+/// over a corner of the polygon leaves the same one to fill.
+std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon, std::span<const Ear> ears) {
+  for (const Ear& ear : ears) {
+    if (!add_ || detours_ >= most_detours) return std::nullopt;
+    ++detours_;
+    const auto path = paths_.path(stop_of_(ear.before), stop_of_(ear.after), {});
+    const auto is_corner = [&](const Stop& stop) {
+      return std::any_of(polygon.begin(), polygon.end(),
+                         [&](std::uint32_t place) { return stop_of_(place).at == stop.at; });
+    };
+    if (!path || path->empty() || std::any_of(path->begin(), path->end(), is_corner)) continue;
+    Detour found{ear, {}};
+    for (const Stop& stop : *path) found.places.push_back(add_(stop));
+    return found;
+  }
+  return std::nullopt;
+}
+
+/// Triangles around a new vertex that all corners of a polygon can be joined to. @return  whether there is a place for
+/// it.
+bool PolygonFiller::fan_out(const Places& polygon) {
+  if (!add_) return false;
+  std::vector<Stop> corners;
+  for (const std::uint32_t place : polygon) corners.push_back(stop_of_(place));
+  const std::optional<Stop> middle = paths_.seeing_all(corners);
+  if (!middle) return false;
+  const std::uint32_t hub = add_(*middle);
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    triangles_.insert(triangles_.end(), {hub, polygon[k], polygon[(k + 1) % polygon.size()]});
+  }
+  return true;
 }
 
 bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
@@ -64,21 +93,23 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
     const std::vector<Ear> ears = ears_of(polygon, sides);
     auto ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_open(e); });
     if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_joined(e); });
+    if (ear == ears.end() && fan_out(polygon)) return stays;
     if (ear == ears.end() && !ears.empty()) {
-      ear = ears.begin();
-      if (const Places path = path_along(*ear); !path.empty()) {
-        Places cut_off{ear->before, ear->place, ear->after};
+      if (const auto found = detour(polygon, ears)) {
+        const auto& [over, path] = *found;
+        Places cut_off{over.before, over.place, over.after};
         cut_off.insert(cut_off.end(), path.rbegin(), path.rend());
         // What is left over of the polygon has the path as well.
         std::vector<Places> sides_there = sides;
         Places& shared = sides_there.emplace_back(path);
-        shared.push_back(ear->before);
-        shared.push_back(ear->after);
+        shared.push_back(over.before);
+        shared.push_back(over.after);
         stays = fill(std::move(cut_off), sides_there) && stays;
-        const auto at = polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear->corner));
+        const auto at = polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(over.corner));
         polygon.insert(at, path.begin(), path.end());
         continue;
       }
+      ear = ears.begin();
       stays = false;
     }
     if (ear == ears.end()) {  // a vertex in the middle joins no two of them

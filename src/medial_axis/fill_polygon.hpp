@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -33,10 +35,12 @@ class PolygonFiller {
 
  private:
   struct Ear;
+  struct Detour;
   [[nodiscard]] std::vector<Ear> ears_of(const Places& polygon, const std::vector<Places>& sides) const;
   [[nodiscard]] bool is_joined(const Ear& ear) const;
   [[nodiscard]] bool is_open(const Ear& ear) const;
-  [[nodiscard]] Places path_along(const Ear& ear);
+  bool fan_out(const Places& polygon);
+  [[nodiscard]] std::optional<Detour> detour(const Places& polygon, std::span<const Ear> ears);
 
   const SolidPaths& paths_;
   std::function<Stop(std::uint32_t)> stop_of_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "blum/geometry/triangle_contact.hpp"
+#include "medial_axis/clip_points.hpp"
 
 namespace blum {
 namespace {
@@ -180,6 +181,21 @@ std::optional<std::vector<SurfacePoint>> MeshSurface::way_over(std::uint32_t fro
     });
   }
   return std::nullopt;
+}
+
+std::vector<SurfacePoint> MeshSurface::points_in(const Box3& box) const {
+  std::vector<SurfacePoint> points;
+  bvh_.for_each_within(box.center(), 0.5 * box.diagonal(), [&](const NearestPrimitive& near) {
+    const Triangle& t = mesh_.triangles[near.primitive];
+    const Vec3d facing = outwards(near.primitive);
+    add_clip_points({mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]}, facing, box, points);
+    for_each_neighbour(near.primitive, [&](std::uint32_t other, std::uint32_t a, std::uint32_t b) {
+      if (other < near.primitive) return;  // it has been, or is, asked for the same edge
+      add_clip_points({{mesh_.vertices[a], mesh_.vertices[b]}, {facing, outwards(other)}}, box, points);
+    });
+    return true;
+  });
+  return points;
 }
 
 Vec3d MeshSurface::outwards(std::uint32_t element) const {

@@ -31,6 +31,7 @@ class MeshSurface final : public Surface {
   [[nodiscard]] bool crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c) const override;
   [[nodiscard]] std::optional<std::vector<SurfacePoint>> way_over(std::uint32_t from, std::uint32_t to,
                                                                   const Box3& within) const override;
+  [[nodiscard]] std::vector<SurfacePoint> points_in(const Box3& box) const override;
   [[nodiscard]] Vec3d outwards(std::uint32_t element) const override;
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
 

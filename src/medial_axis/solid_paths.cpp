@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -26,6 +27,8 @@ constexpr std::size_t most_strewn = 6000;
 constexpr double most_parts = 2.2;
 constexpr int most_looks_at_strewn = 20000;
 constexpr double any_length = std::numeric_limits<double>::infinity();
+/// A stop is deeper than this part of its largest coordinate: closer to the surface, it may lie on either side.
+constexpr double least_depth = 1e-12;
 /// Balls around the ends that overlap by this part of the length leave no room for rounding.
 constexpr double overlap = 1e-9;
 
@@ -38,7 +41,8 @@ Footprint foot_of(const NearestPoint& nearest) {
 std::optional<Stop> SolidPaths::stop_at(const Vec3d& at, const Footprint& near) const {
   if (within_ && !holds(*within_, at)) return std::nullopt;
   const NearestPoint nearest = surface_.nearest(at, near);
-  if (!(nearest.distance > 0) || !surface_.is_inside(at, nearest)) return std::nullopt;
+  const double size = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+  if (!(nearest.distance > least_depth * size) || !surface_.is_inside(at, nearest)) return std::nullopt;
   return Stop{at, nearest};
 }
 
@@ -193,7 +197,8 @@ std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, 
     walk(landmark, b, more);
   }
   if (auto found = shortest(a, b, more, {any_length, most_looks})) return found;
-  return over_strewn(a, b, landmarks);
+  if (auto found = over_strewn(a, b, landmarks)) return found;
+  return over_border(a, b);
 }
 
 /// The wall closest to a stop, and the one on the opposite side of a thin part.
@@ -292,11 +297,40 @@ std::optional<std::vector<Stop>> SolidPaths::pushed_beside(std::span<const Surfa
 std::optional<std::vector<Stop>> SolidPaths::over_strewn(const Stop& a, const Stop& b,
                                                          std::span<const Stop> landmarks) const {
   for (const auto& [parts, has_creases] : strewn_parts) {
-    std::vector<Stop> all = strewn(a, b, parts);
+    std::vector<Stop> all = strewn(0.5 * (a.at + b.at), 2 * length(b.at - a.at), parts);
     all.insert(all.end(), landmarks.begin(), landmarks.end());
     const double longest = most_parts * 2 * length(b.at - a.at) / parts;
     if (has_creases) add_creases(longest, all);
     if (const auto found = shortest(a, b, all, {longest, most_looks_at_strewn})) return pulled_tight(a, b, *found);
+  }
+  return std::nullopt;
+}
+
+/// A path along the border of the part of the solid in the box: over elements of the surface and through the sides of
+/// the box, as close to these as it takes. Where this border is connected, there is one.
+std::optional<std::vector<Stop>> SolidPaths::over_border(const Stop& a, const Stop& b) const {
+  if (!within_) return std::nullopt;
+  std::vector<SurfacePoint> points = surface_.points_in(*within_);
+  for (const Stop* stop : {&a, &b}) {
+    for (const Wall& wall : walls_of(*stop)) points.push_back(wall.point);
+  }
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    Vec3d at = within_->lower;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if ((corner >> axis & 1) != 0) at[axis] = within_->upper[axis];
+    }
+    points.push_back({at, {}});
+  }
+  const double size = within_->diagonal();
+  for (double depth = 1e-3 * size; depth > 1e-8 * size; depth *= 0.1) {
+    std::vector<Stop> stops;
+    for (const SurfacePoint& point : points) {
+      const Vec3d at = max(within_->lower, min(within_->upper, point.at + point.inwards * depth));
+      if (const auto stop = stop_at(at, foot_of(a.nearest))) stops.push_back(*stop);
+    }
+    auto found = shortest(a, b, stops, {any_length, most_looks_at_strewn});
+    if (!found) continue;
+    return pulled_tight(a, b, *found);
   }
   return std::nullopt;
 }
@@ -311,27 +345,60 @@ void SolidPaths::add_creases(double longest, std::vector<Stop>& stops) const {
   }
 }
 
-/// Points of a lattice in a box twice as large as two stops are far from each other, each in the part of the solid next
-/// to it, in the middle where that is thin.
-std::vector<Stop> SolidPaths::strewn(const Stop& a, const Stop& b, int parts) const {
-  const Vec3d middle = 0.5 * (a.at + b.at);
-  const double step = 2 * length(b.at - a.at) / parts;
+/// Points of a lattice in a cube, each in the part of the solid next to it, in the middle where that is thin.
+std::vector<Stop> SolidPaths::strewn(const Vec3d& middle, double side, int parts) const {
+  const double step = side / parts;
   std::vector<Stop> stops;
   const auto offset = [&](int k) { return (k + 0.5 - 0.5 * parts) * step; };
   for (int k = 0; k < parts; ++k) {
     for (int j = 0; j < parts; ++j) {
       for (int i = 0; i < parts; ++i) {
         const Vec3d at = middle + Vec3d{offset(i), offset(j), offset(k)};
-        if (const auto stop = stop_at(at, foot_of(a.nearest))) {
+        if (const auto stop = stop_at(at, {})) {
           stops.push_back(*stop);
           if (const Stop deeper = centred(*stop); deeper.at != stop->at) stops.push_back(deeper);
-        } else if (const auto pushed = pushed_in(at, a)) {
+        } else if (const auto pushed = pushed_in(at, {})) {
           stops.push_back(*pushed);
         }
       }
     }
   }
   return stops;
+}
+
+std::optional<Stop> SolidPaths::seeing_all(std::span<const Stop> corners) const {
+  std::optional<Stop> best;
+  // Whether no better one need be looked for.
+  const auto look_at = [&](std::span<const Stop> stops) {
+    for (const Stop& stop : stops) {
+      if (!std::all_of(corners.begin(), corners.end(), [&](const Stop& c) { return is_straight(stop, c); })) continue;
+      bool is_all_open = true;
+      for (std::size_t k = 0; is_all_open && k < corners.size(); ++k) {
+        is_all_open = is_open(stop, corners[k], corners[(k + 1) % corners.size()]);
+      }
+      if (is_all_open || !best) best = stop;
+      if (is_all_open) return true;
+    }
+    return false;
+  };
+  Box3 box;
+  for (const Stop& corner : corners) box.extend(corner.at);
+  const double size = box.diagonal();
+  const Vec3d reach{0.25 * size, 0.25 * size, 0.25 * size};
+  if (look_at(strewn(box.center(), size, 6))) return best;
+  // Thin plates turn and meet at creases of the surface: there more of them is seen.
+  std::vector<Stop> creases;
+  for (const SurfacePoint& point : surface_.points_in({box.lower - reach, box.upper + reach})) {
+    for (double depth = 1e-2 * size; depth > 1e-6 * size; depth *= 0.1) {
+      const auto stop = stop_at(point.at + point.inwards * depth, {});
+      if (!stop) continue;
+      creases.push_back(centred(*stop, size));
+      break;
+    }
+  }
+  if (look_at(creases) || best) return best;
+  look_at(strewn(box.center(), size, 12));
+  return best;
 }
 
 /// The stops of a path but for those that segments from others can pass by.

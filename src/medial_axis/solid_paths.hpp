@@ -55,11 +55,16 @@ class SolidPaths {
 
   /// The stops between two such that segments from one to the next stay in the solid; nullopt where none were found.
   /// Tried in turn: none; those of pushing; some of the landmarks; along the walls next to the two; landmarks and what
-  /// is met when walking along thin parts;
-  /// points strewn around the two, finer and finer.
+  /// is met when walking along thin parts; points strewn around the two, finer and finer; along the border of what the
+  /// solid has in the box that bounds the search.
   /// @param landmarks  points in the same part of the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> path(const Stop& a, const Stop& b,
                                                       std::span<const Stop> landmarks) const;
+
+  /// A point that segments in the solid join to all of some others, of those such that none of the surface comes
+  /// through the triangles from one to the next, if there are any; nullopt where none was found among points strewn
+  /// around these.
+  [[nodiscard]] std::optional<Stop> seeing_all(std::span<const Stop> corners) const;
 
  private:
   [[nodiscard]] bool push_in(const Stop& a, const Stop& b, int depth, int& moves, std::vector<Stop>& between) const;
@@ -92,8 +97,9 @@ class SolidPaths {
                                                           const SearchLimits& limits) const;
   [[nodiscard]] std::optional<std::vector<Stop>> over_strewn(const Stop& a, const Stop& b,
                                                              std::span<const Stop> landmarks) const;
+  [[nodiscard]] std::optional<std::vector<Stop>> over_border(const Stop& a, const Stop& b) const;
   void add_creases(double longest, std::vector<Stop>& stops) const;
-  [[nodiscard]] std::vector<Stop> strewn(const Stop& a, const Stop& b, int parts) const;
+  [[nodiscard]] std::vector<Stop> strewn(const Vec3d& middle, double side, int parts) const;
   [[nodiscard]] std::vector<Stop> pulled_tight(const Stop& a, const Stop& b, const std::vector<Stop>& between) const;
 
   const Surface& surface_;

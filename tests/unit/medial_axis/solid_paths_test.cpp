@@ -217,5 +217,50 @@ TEST(SolidPaths, ThinWallsThatTurnAreFollowedFromTriangleToTriangle) {
   EXPECT_TRUE(s.paths.is_straight(last, b));
 }
 
+TEST(SolidPaths, PointsWithinRoundingOfTheSurfaceAreNoStops) {
+  const Sample s(make_box({}));
+  EXPECT_FALSE(s.paths.stop_at({0.5 - 5e-17, 0, 0}, {}).has_value());
+  EXPECT_FALSE(s.paths.stop_at({0.5 - 1e-14, 0, 0}, {}).has_value());
+  EXPECT_TRUE(s.paths.stop_at({0.5 - 1e-9, 0, 0}, {}).has_value());
+}
+
+TEST(SolidPaths, APointThatSeesAllCornersIsFoundInAFold) {
+  for (const double thickness : {0.1, 1e-3, 1e-4}) {
+    SCOPED_TRACE(thickness);
+    const Sample s(folded_strip(4, thickness));
+    const double mid = 0.5 * thickness;
+    // Two on the way up, two on the way down: those of different slopes do not see each other.
+    const std::vector<Stop> corners{s.at({0.22, -0.3, 0.88 + mid}), s.at({0.22, 0.3, 0.88 + mid}),
+                                    s.at({0.28, 0.3, 0.88 + mid}), s.at({0.28, -0.3, 0.88 + mid})};
+    EXPECT_FALSE(s.paths.is_straight(corners[0], corners[2]));
+    const auto middle = s.paths.seeing_all(corners);
+    ASSERT_TRUE(middle.has_value());
+    for (std::size_t k = 0; k < corners.size(); ++k) EXPECT_TRUE(s.paths.is_straight(*middle, corners[k]));
+  }
+  const Sample s(folded_strip(4, 1e-3));
+  const std::vector<Stop> too_far{s.at({0.125, 0, 0.5005}), s.at({0.625, 0, 0.5005})};
+  EXPECT_FALSE(s.paths.seeing_all(too_far).has_value());
+}
+
+TEST(SolidPaths, TheBorderOfWhatABoxHoldsLeadsThroughThinFolds) {
+  for (const double thickness : {1e-2, 1e-4}) {
+    SCOPED_TRACE(thickness);
+    const Sample s(folded_strip(6, thickness));
+    const Box3 box{{0.02, -0.4, -0.5}, {0.98, 0.4, 1.5}};
+    const double mid = 0.5 * thickness;
+    const Stop from = s.at({0.05, -0.4, 0.3 + mid});
+    const Stop to = s.at({0.55, 0.4, 0.7 + mid});
+    const auto path = SolidPaths(s.surface, box).path(from, to, {});
+    ASSERT_TRUE(path.has_value());
+    Stop last = from;
+    for (const Stop& stop : *path) {
+      EXPECT_TRUE(holds(box, stop.at));
+      EXPECT_TRUE(s.paths.is_straight(last, stop));
+      last = stop;
+    }
+    EXPECT_TRUE(s.paths.is_straight(last, to));
+  }
+}
+
 }  // namespace
 }  // namespace blum
