@@ -9,6 +9,8 @@ namespace {
 
 /// How many paths may be looked for in all polygons of one filler, to take the place of edges.
 constexpr int most_detours = 24;
+/// For how many polygons a point may be looked for that sees all corners.
+constexpr int most_fans = 8;
 
 bool has(const PolygonFiller::Places& places, std::uint32_t place) {
   return std::find(places.begin(), places.end(), place) != places.end();
@@ -75,7 +77,8 @@ std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon
 /// Triangles around a new vertex that all corners of a polygon can be joined to. @return  whether there is a place for
 /// it.
 bool PolygonFiller::fan_out(const Places& polygon) {
-  if (!add_) return false;
+  if (!add_ || fans_ >= most_fans) return false;
+  ++fans_;
   std::vector<Stop> corners;
   for (const std::uint32_t place : polygon) corners.push_back(stop_of_(place));
   const std::optional<Stop> middle = paths_.seeing_all(corners);
@@ -93,7 +96,6 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
     const std::vector<Ear> ears = ears_of(polygon, sides);
     auto ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_open(e); });
     if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_joined(e); });
-    if (ear == ears.end() && fan_out(polygon)) return stays;
     if (ear == ears.end() && !ears.empty()) {
       if (const auto found = detour(polygon, ears)) {
         const auto& [over, path] = *found;
@@ -109,6 +111,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
         polygon.insert(at, path.begin(), path.end());
         continue;
       }
+      if (fan_out(polygon)) return stays;
       ear = ears.begin();
       stays = false;
     }

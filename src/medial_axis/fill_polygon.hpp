@@ -47,6 +47,7 @@ class PolygonFiller {
   std::function<std::uint32_t(const Stop&)> add_;
   Places triangles_;
   int detours_ = 0;
+  int fans_ = 0;
 };
 
 }  // namespace blum
