@@ -8,7 +8,7 @@ namespace blum {
 namespace {
 
 /// How many paths may be looked for in all polygons of one filler, to take the place of edges.
-constexpr int most_detours = 24;
+constexpr int most_detours = 60;
 /// For how many polygons a point may be looked for that sees all corners.
 constexpr int most_fans = 8;
 
@@ -56,7 +56,7 @@ bool PolygonFiller::is_open(const Ear& ear) const {
 }
 
 /// A corner to cut off, and new places on a way between the two next to it, the shortest ears first. A way that runs
-/// over a corner of the polygon leaves the same one to fill.
+/// over a corner of the polygon, or through the ball around it, leaves about the same one to fill.
 std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon, std::span<const Ear> ears) {
   for (const Ear& ear : ears) {
     if (!add_ || detours_ >= most_detours) return std::nullopt;
@@ -64,7 +64,7 @@ std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon
     const auto path = paths_.path(stop_of_(ear.before), stop_of_(ear.after), {});
     const auto is_corner = [&](const Stop& stop) {
       return std::any_of(polygon.begin(), polygon.end(),
-                         [&](std::uint32_t place) { return stop_of_(place).at == stop.at; });
+                         [&](std::uint32_t place) { return length(stop_of_(place).at - stop.at) < stop.nearest.distance; });
     };
     if (!path || path->empty() || std::any_of(path->begin(), path->end(), is_corner)) continue;
     Detour found{ear, {}};
