@@ -63,8 +63,9 @@ std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon
     ++detours_;
     const auto path = paths_.path(stop_of_(ear.before), stop_of_(ear.after), {});
     const auto is_corner = [&](const Stop& stop) {
-      return std::any_of(polygon.begin(), polygon.end(),
-                         [&](std::uint32_t place) { return length(stop_of_(place).at - stop.at) < stop.nearest.distance; });
+      return std::any_of(polygon.begin(), polygon.end(), [&](std::uint32_t place) {
+        return length(stop_of_(place).at - stop.at) < stop.nearest.distance;
+      });
     };
     if (!path || path->empty() || std::any_of(path->begin(), path->end(), is_corner)) continue;
     Detour found{ear, {}};

@@ -30,6 +30,8 @@ constexpr double most_moved = 1.5;
 constexpr double most_moved_to_curve = 2.5;
 /// Radius where sheets end that reach the surface, in voxels.
 constexpr double least_radius = 0.02;
+/// Separation angle, in degrees, between walls that do not meet near by.
+constexpr double parallel = 175;
 /// Where the angle is looked at on the way outwards and inwards, in voxels.
 constexpr std::array outwards{0.25, 0.5, 1.0, 1.5, 2.0, 2.5};
 constexpr std::array inwards{-0.25, -0.5, -1.0, -1.5, -2.0, -2.5};
@@ -218,12 +220,24 @@ class Fitter {
     }
     if (kind.is_seam_end()) return slide(v, direction_of_end(v, 3), 3);
     if (kind.is_curve_end()) return slide(v, direction_of_end(v, 0), 3);
-    return std::nullopt;
+    return kind.rims + kind.seams + kind.curves == 0 ? at_mouth(v) : std::nullopt;
+  }
+
+  /// Where a thin wall begins that a vertex lies next to: there the angle drops to next to nothing, also inside of a
+  /// sheet that goes on beyond for homotopy alone.
+  [[nodiscard]] Moved at_mouth(std::uint32_t v) const {
+    if (is_shown(lists_.vertices[v], 2) || incidence_.edges_of_vertex()[v].empty()) return std::nullopt;
+    const std::uint32_t inner = best_neighbour(v);
+    const AxisVertex& thin = lists_.vertices[inner];
+    const bool is_thin = thin.radius < least_radius * voxel_ && thin.separation_angle >= parallel;
+    // Edges to what lies beyond come out of the wall: the mouth is met to well within the wall's thickness.
+    return is_thin && is_shown(thin, 2) ? towards(v, inner, 2, 3 * halvings) : std::nullopt;
   }
 
   /// @param walls  of what the vertex lies on: sheets have two footprints, which tell their angle.
   [[nodiscard]] bool is_shown(const AxisVertex& vertex, std::size_t walls) const {
-    if (vertex.radius < least_radius * voxel_) return false;
+    // Sheets end where their two walls meet; between parallel ones the radius may be as small anywhere.
+    if (vertex.radius < least_radius * voxel_ && vertex.separation_angle < parallel) return false;
     return (walls > 2 ? angle_seen(vertex) : vertex.separation_angle) > target_.theta;
   }
 
@@ -286,8 +300,8 @@ class Fitter {
 
   /// Between a place that shows and one that does not.
   template <class At>
-  [[nodiscard]] Moved last_shown(const At& at, double good, double bad, Moved best) const {
-    for (int n = 0; n < halvings; ++n) {
+  [[nodiscard]] Moved last_shown(const At& at, double good, double bad, Moved best, int times = halvings) const {
+    for (int n = 0; n < times; ++n) {
       const double t = 0.5 * (good + bad);
       if (const Moved found = at(t)) {
         best = found;
@@ -300,7 +314,7 @@ class Fitter {
   }
 
   /// The last vertex that shows on the way from a neighbour that does.
-  [[nodiscard]] Moved towards(std::uint32_t v, std::uint32_t neighbour, std::size_t walls) const {
+  [[nodiscard]] Moved towards(std::uint32_t v, std::uint32_t neighbour, std::size_t walls, int times = halvings) const {
     const AxisVertex& from = lists_.vertices[neighbour];
     const Vec3d way = lists_.vertices[v].position - from.position;
     const std::vector<Footprint> feet = feet_of(neighbour);
@@ -309,7 +323,7 @@ class Fitter {
           balanced_at(from.position + way * t, feet, std::min<std::size_t>(walls, 2), {voxel_, voxel_, false});
       return found && is_shown(*found, walls) ? found : std::nullopt;
     };
-    return last_shown(at, 0, 1, from);
+    return last_shown(at, 0, 1, from, times);
   }
 
   [[nodiscard]] std::uint32_t best_neighbour(std::uint32_t v) const {
