@@ -7,11 +7,6 @@
 namespace blum {
 namespace {
 
-/// How many paths may be looked for in all polygons of one filler, to take the place of edges.
-constexpr int most_detours = 60;
-/// For how many polygons a point may be looked for that sees all corners.
-constexpr int most_fans = 8;
-
 bool has(const PolygonFiller::Places& places, std::uint32_t place) {
   return std::find(places.begin(), places.end(), place) != places.end();
 }
@@ -59,8 +54,7 @@ bool PolygonFiller::is_open(const Ear& ear) const {
 /// over a corner of the polygon, or through the ball around it, leaves about the same one to fill.
 std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon, std::span<const Ear> ears) {
   for (const Ear& ear : ears) {
-    if (!add_ || detours_ >= most_detours) return std::nullopt;
-    ++detours_;
+    if (!add_ || budget_.detours-- <= 0) return std::nullopt;
     const auto path = paths_.path(stop_of_(ear.before), stop_of_(ear.after), {});
     const auto is_corner = [&](const Stop& stop) {
       return std::any_of(polygon.begin(), polygon.end(), [&](std::uint32_t place) {
@@ -77,12 +71,11 @@ std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon
 
 /// Triangles around a new vertex that all corners of a polygon can be joined to. @return  whether there is a place for
 /// it.
-bool PolygonFiller::fan_out(const Places& polygon) {
-  if (!add_ || fans_ >= most_fans) return false;
-  ++fans_;
+bool PolygonFiller::fan_out(const Places& polygon, bool is_open) {
+  if (!add_ || budget_.fans-- <= 0) return false;
   std::vector<Stop> corners;
   for (const std::uint32_t place : polygon) corners.push_back(stop_of_(place));
-  const std::optional<Stop> middle = paths_.seeing_all(corners);
+  const std::optional<Stop> middle = paths_.seeing_all(corners, is_open);
   if (!middle) return false;
   const std::uint32_t hub = add_(*middle);
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -96,6 +89,8 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
   while (polygon.size() > 3) {
     const std::vector<Ear> ears = ears_of(polygon, sides);
     auto ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_open(e); });
+    if (ear == ears.end() && fan_out(polygon, true)) return stays;
+    if (ear == ears.end()) is_all_open_ = false;
     if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_joined(e); });
     if (ear == ears.end() && !ears.empty()) {
       if (const auto found = detour(polygon, ears)) {
@@ -112,7 +107,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
         polygon.insert(at, path.begin(), path.end());
         continue;
       }
-      if (fan_out(polygon)) return stays;
+      if (fan_out(polygon, false)) return stays;
       ear = ears.begin();
       stays = false;
     }
@@ -129,6 +124,10 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
     }
     triangles_.insert(triangles_.end(), {ear->before, ear->place, ear->after});
     polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear->corner));
+  }
+  if (!paths_.is_open(stop_of_(polygon[0]), stop_of_(polygon[1]), stop_of_(polygon[2]))) {
+    if (fan_out(polygon, true)) return stays;
+    is_all_open_ = false;
   }
   triangles_.insert(triangles_.end(), polygon.begin(), polygon.end());
   return stays;

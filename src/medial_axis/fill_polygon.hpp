@@ -12,6 +12,12 @@
 
 namespace blum {
 
+/// How many ways past the surface may be looked for while polygons are filled; counted down.
+struct FillBudget {
+  int detours = 60;  ///< paths that take the place of edges
+  int fans = 8;      ///< points that see all corners
+};
+
 /// Fills polygons of a few corners with triangles whose edges stay in a solid.
 class PolygonFiller {
  public:
@@ -19,9 +25,10 @@ class PolygonFiller {
 
   /// @param stop_of  where a place is.
   /// @param add      makes a vertex and tells its place; empty where there must be none.
+  /// @param budget   it must stay.
   PolygonFiller(const SolidPaths& paths, std::function<Stop(std::uint32_t)> stop_of,
-                std::function<std::uint32_t(const Stop&)> add)
-      : paths_(paths), stop_of_(std::move(stop_of)), add_(std::move(add)) {}
+                std::function<std::uint32_t(const Stop&)> add, FillBudget& budget)
+      : paths_(paths), stop_of_(std::move(stop_of)), add_(std::move(add)), budget_(budget) {}
 
   /// Cuts off the shortest ears, of these first such that no part of the surface comes through, then such that stay in
   /// the solid; where there are none, one along a path of new vertices.
@@ -29,6 +36,9 @@ class PolygonFiller {
   ///               has both may join them as well.
   /// @return  whether all edges stay in the solid. They are of the complex in any case.
   bool fill(Places polygon, const std::vector<Places>& sides);
+
+  /// Whether none of the surface comes through the triangles: false also where that is not easy to see.
+  [[nodiscard]] bool is_all_open() const { return is_all_open_; }
 
   /// Three places for each triangle, of all polygons.
   [[nodiscard]] const Places& triangles() const { return triangles_; }
@@ -39,15 +49,15 @@ class PolygonFiller {
   [[nodiscard]] std::vector<Ear> ears_of(const Places& polygon, const std::vector<Places>& sides) const;
   [[nodiscard]] bool is_joined(const Ear& ear) const;
   [[nodiscard]] bool is_open(const Ear& ear) const;
-  bool fan_out(const Places& polygon);
+  bool fan_out(const Places& polygon, bool is_open);
   [[nodiscard]] std::optional<Detour> detour(const Places& polygon, std::span<const Ear> ears);
 
   const SolidPaths& paths_;
   std::function<Stop(std::uint32_t)> stop_of_;
   std::function<std::uint32_t(const Stop&)> add_;
   Places triangles_;
-  int detours_ = 0;
-  int fans_ = 0;
+  FillBudget& budget_;
+  bool is_all_open_ = true;
 };
 
 }  // namespace blum

@@ -80,8 +80,9 @@ class Shaper {
     }
     // The polygon on the other side of a bent edge would cut off the same corners of it.
     if (outline.size() == corners_.of_cells()[c].size()) {
-      PolygonFiller filler(paths_, stop, {});
-      if (filler.fill(outline, {})) return Shape{filler.triangles(), {}};
+      FillBudget budget;
+      PolygonFiller filler(paths_, stop, {}, budget);
+      if (filler.fill(outline, {}) && (filler.is_all_open() || !is_near_extra)) return Shape{filler.triangles(), {}};
     }
     return fan(c, outline, vertices);
   }
@@ -141,6 +142,10 @@ class Shaper {
   }
 
   [[nodiscard]] Stop stop_at(std::uint32_t place) const { return stop_of(piece_.vertices[place]); }
+
+  static void append(const std::vector<std::uint32_t>& triangles, std::vector<std::uint32_t>& items) {
+    items.insert(items.end(), triangles.begin(), triangles.end());
+  }
 
   static void add_own(Shape& shape, std::span<const Stop> stops) {
     for (const Stop& stop : stops) {
@@ -227,7 +232,8 @@ class Shaper {
     }
     std::vector<Stop> middles;
     if (const auto home = home_of(piece_.cells[c].cell)) {
-      if (const auto chains = chains_from(*home, c, outline, corners)) return wheel(outline, corners, *home, *chains);
+      if (const auto chains = chains_from(*home, c, outline, corners))
+        return wheel(c, outline, corners, *home, *chains);
       middles.push_back(*home);
     }
     const Vec3d mean = sum / static_cast<double>(outline.size());
@@ -254,7 +260,7 @@ class Shaper {
       for (std::size_t m = first; m < std::min(middles.size(), first + most_tries) && !is_good(); ++m) look_from(m);
     }
     if (middles.empty()) middles.push_back(paths_.inside_near(mean, corners[0]));
-    return wheel(outline, corners, middles[best], any_chains(c, middles[best], corners));
+    return wheel(c, outline, corners, middles[best], any_chains(c, middles[best], corners));
   }
 
   /// The stops between a middle and places of an outline, by place.
@@ -320,7 +326,7 @@ class Shaper {
   }
 
   /// Triangles around a middle, between chains to the corners that it is joined to.
-  [[nodiscard]] Shape wheel(const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
+  [[nodiscard]] Shape wheel(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::span<const Stop> corners,
                             const Stop& middle, const Chains& chains) const {
     Shape shape;
     shape.own.push_back(vertex_at(middle));
@@ -340,7 +346,8 @@ class Shaper {
       shape.own.push_back(vertex_at(at));
       return first_own + static_cast<std::uint32_t>(shape.own.size() - 1);
     };
-    PolygonFiller filler(paths_, stop, add);
+    FillBudget budget;
+    FillBudget second_budget{24, 4};
     // A sector from one spoke along the border to the next. Its sides belong to others, too.
     for (std::size_t n = 0; n < spokes.size(); ++n) {
       const std::size_t next = (n + 1) % spokes.size();
@@ -355,10 +362,48 @@ class Shaper {
       std::vector<std::vector<std::uint32_t>> sides{spokes[n], spokes[next], border};
       sides[0].push_back(border.front());
       sides[1].push_back(border.back());
-      filler.fill(std::move(sector), sides);
+      // Beyond these boxes, triangles may be on the other side of a void: it is second choice.
+      const SolidPaths there(governors_.surface(), box_around(c, outline, chains[n].first, chains[next].first));
+      const std::size_t own = shape.own.size();
+      PolygonFiller filler(there, stop, add, budget);
+      const bool stays = filler.fill(sector, sides);
+      if (stays && filler.is_all_open()) {
+        append(filler.triangles(), shape.items);
+        continue;
+      }
+      const std::vector<AxisVertex> first(shape.own.begin() + static_cast<std::ptrdiff_t>(own), shape.own.end());
+      shape.own.resize(own);
+      PolygonFiller anywhere(paths_, stop, add, second_budget);
+      if (anywhere.fill(sector, sides) && (anywhere.is_all_open() || !stays)) {
+        append(anywhere.triangles(), shape.items);
+        continue;
+      }
+      shape.own.resize(own);
+      shape.own.insert(shape.own.end(), first.begin(), first.end());
+      append(filler.triangles(), shape.items);
     }
-    shape.items = filler.triangles();
     return shape;
+  }
+
+  /// A box around those of the vertices at a part of the outline of a polygon, and at the edges that it begins and ends
+  /// on.
+  [[nodiscard]] Box3 box_around(std::uint32_t c, const std::vector<std::uint32_t>& outline, std::size_t first,
+                                std::size_t last) const {
+    const auto corners = corners_.of_cells()[c];
+    const auto is_corner = [&](std::size_t k) {
+      return std::find(corners.begin(), corners.end(), outline[k]) != corners.end();
+    };
+    const std::size_t size = outline.size();
+    while (!is_corner(first)) first = first == 0 ? size - 1 : first - 1;
+    while (!is_corner(last)) last = (last + 1) % size;
+    Box3 box;
+    for (std::size_t k = first;; k = (k + 1) % size) {
+      if (is_corner(k)) {
+        box.extend(box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[outline[k]]));
+        box.extend(piece_.vertices[outline[k]].position);
+      }
+      if (k == last) return box;
+    }
   }
 
   /// The landmarks of all corners of a polygon.

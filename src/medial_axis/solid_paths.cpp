@@ -366,7 +366,37 @@ std::vector<Stop> SolidPaths::strewn(const Vec3d& middle, double side, int parts
   return stops;
 }
 
-std::optional<Stop> SolidPaths::seeing_all(std::span<const Stop> corners) const {
+/// Where the planes through three stops along the walls next to them meet: there thin plates do in whose middle these
+/// are.
+std::vector<Stop> SolidPaths::where_walls_meet(std::span<const Stop> stops, const Box3& box) const {
+  constexpr std::size_t most_stops = 8;
+  constexpr double least = 1e-3;  // of the volume that three directions span
+  const std::size_t count = std::min(stops.size(), most_stops);
+  const double size = box.diagonal();
+  std::vector<Stop> found;
+  const auto direction = [&](std::size_t k) {
+    return (stops[k].at - stops[k].nearest.point) / stops[k].nearest.distance;
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t m = k + 1; m < count; ++m) {
+      for (std::size_t n = m + 1; n < count; ++n) {
+        const Vec3d u = direction(k);
+        const Vec3d v = direction(m);
+        const Vec3d w = direction(n);
+        const double volume = dot(u, cross(v, w));
+        if (!(std::abs(volume) > least)) continue;
+        const Vec3d at = (cross(v, w) * dot(u, stops[k].at) + cross(w, u) * dot(v, stops[m].at) +
+                          cross(u, v) * dot(w, stops[n].at)) /
+                         volume;
+        if (length(at - box.center()) > size) continue;
+        if (const auto stop = stop_at(at, {})) found.push_back(*stop);
+      }
+    }
+  }
+  return found;
+}
+
+std::optional<Stop> SolidPaths::seeing_all(std::span<const Stop> corners, bool is_open_only) const {
   std::optional<Stop> best;
   // Whether no better one need be looked for.
   const auto look_at = [&](std::span<const Stop> stops) {
@@ -376,7 +406,7 @@ std::optional<Stop> SolidPaths::seeing_all(std::span<const Stop> corners) const 
       for (std::size_t k = 0; is_all_open && k < corners.size(); ++k) {
         is_all_open = is_open(stop, corners[k], corners[(k + 1) % corners.size()]);
       }
-      if (is_all_open || !best) best = stop;
+      if (is_all_open || (!best && !is_open_only)) best = stop;
       if (is_all_open) return true;
     }
     return false;
@@ -385,7 +415,7 @@ std::optional<Stop> SolidPaths::seeing_all(std::span<const Stop> corners) const 
   for (const Stop& corner : corners) box.extend(corner.at);
   const double size = box.diagonal();
   const Vec3d reach{0.25 * size, 0.25 * size, 0.25 * size};
-  if (look_at(strewn(box.center(), size, 6))) return best;
+  if (look_at(where_walls_meet(corners, box)) || look_at(strewn(box.center(), size, 6))) return best;
   // Thin plates turn and meet at creases of the surface: there more of them is seen.
   std::vector<Stop> creases;
   for (const SurfacePoint& point : surface_.points_in({box.lower - reach, box.upper + reach})) {

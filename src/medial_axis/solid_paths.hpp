@@ -64,7 +64,7 @@ class SolidPaths {
   /// A point that segments in the solid join to all of some others, of those such that none of the surface comes
   /// through the triangles from one to the next, if there are any; nullopt where none was found among points strewn
   /// around these.
-  [[nodiscard]] std::optional<Stop> seeing_all(std::span<const Stop> corners) const;
+  [[nodiscard]] std::optional<Stop> seeing_all(std::span<const Stop> corners, bool is_open) const;
 
  private:
   [[nodiscard]] bool push_in(const Stop& a, const Stop& b, int depth, int& moves, std::vector<Stop>& between) const;
@@ -98,6 +98,7 @@ class SolidPaths {
   [[nodiscard]] std::optional<std::vector<Stop>> over_strewn(const Stop& a, const Stop& b,
                                                              std::span<const Stop> landmarks) const;
   [[nodiscard]] std::optional<std::vector<Stop>> over_border(const Stop& a, const Stop& b) const;
+  [[nodiscard]] std::vector<Stop> where_walls_meet(std::span<const Stop> stops, const Box3& box) const;
   void add_creases(double longest, std::vector<Stop>& stops) const;
   [[nodiscard]] std::vector<Stop> strewn(const Vec3d& middle, double side, int parts) const;
   [[nodiscard]] std::vector<Stop> pulled_tight(const Stop& a, const Stop& b, const std::vector<Stop>& between) const;
