@@ -69,18 +69,17 @@ std::optional<PolygonFiller::Detour> PolygonFiller::detour(const Places& polygon
   return std::nullopt;
 }
 
-/// Triangles around a new vertex that all corners of a polygon can be joined to. @return  whether there is a place for
-/// it.
-bool PolygonFiller::fan_out(const Places& polygon, bool is_open) {
+/// Triangles around a new vertex that all corners of a polygon can be joined to; those that the surface comes through
+/// are filled in the same way. @return  whether there is a place for it.
+/// @param least_open  how many of the triangles none of the surface may come through.
+bool PolygonFiller::fan_out(const Places& polygon, std::size_t least_open) {
   if (!add_ || budget_.fans-- <= 0) return false;
   std::vector<Stop> corners;
   for (const std::uint32_t place : polygon) corners.push_back(stop_of_(place));
-  const std::optional<Stop> middle = paths_.seeing_all(corners, is_open);
+  const std::optional<Hub> middle = paths_.seeing_all(corners, least_open);
   if (!middle) return false;
-  const std::uint32_t hub = add_(*middle);
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    triangles_.insert(triangles_.end(), {hub, polygon[k], polygon[(k + 1) % polygon.size()]});
-  }
+  const std::uint32_t hub = add_(middle->stop);
+  for (std::size_t k = 0; k < polygon.size(); ++k) fill({hub, polygon[k], polygon[(k + 1) % polygon.size()]}, {});
   return true;
 }
 
@@ -89,7 +88,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
   while (polygon.size() > 3) {
     const std::vector<Ear> ears = ears_of(polygon, sides);
     auto ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_open(e); });
-    if (ear == ears.end() && fan_out(polygon, true)) return stays;
+    if (ear == ears.end() && fan_out(polygon, polygon.size() - 1)) return stays;
     if (ear == ears.end()) is_all_open_ = false;
     if (ear == ears.end()) ear = std::find_if(ears.begin(), ears.end(), [&](const Ear& e) { return is_joined(e); });
     if (ear == ears.end() && !ears.empty()) {
@@ -107,7 +106,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
         polygon.insert(at, path.begin(), path.end());
         continue;
       }
-      if (fan_out(polygon, false)) return stays;
+      if (fan_out(polygon, 0)) return stays;
       ear = ears.begin();
       stays = false;
     }
@@ -126,7 +125,7 @@ bool PolygonFiller::fill(Places polygon, const std::vector<Places>& sides) {
     polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear->corner));
   }
   if (!paths_.is_open(stop_of_(polygon[0]), stop_of_(polygon[1]), stop_of_(polygon[2]))) {
-    if (fan_out(polygon, true)) return stays;
+    if (fan_out(polygon, 2)) return stays;
     is_all_open_ = false;
   }
   triangles_.insert(triangles_.end(), polygon.begin(), polygon.end());

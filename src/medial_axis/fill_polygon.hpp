@@ -49,7 +49,7 @@ class PolygonFiller {
   [[nodiscard]] std::vector<Ear> ears_of(const Places& polygon, const std::vector<Places>& sides) const;
   [[nodiscard]] bool is_joined(const Ear& ear) const;
   [[nodiscard]] bool is_open(const Ear& ear) const;
-  bool fan_out(const Places& polygon, bool is_open);
+  bool fan_out(const Places& polygon, std::size_t least_open);
   [[nodiscard]] std::optional<Detour> detour(const Places& polygon, std::span<const Ear> ears);
 
   const SolidPaths& paths_;

@@ -396,18 +396,18 @@ std::vector<Stop> SolidPaths::where_walls_meet(std::span<const Stop> stops, cons
   return found;
 }
 
-std::optional<Stop> SolidPaths::seeing_all(std::span<const Stop> corners, bool is_open_only) const {
-  std::optional<Stop> best;
+std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::size_t least_open) const {
+  std::optional<Hub> best;
   // Whether no better one need be looked for.
   const auto look_at = [&](std::span<const Stop> stops) {
     for (const Stop& stop : stops) {
       if (!std::all_of(corners.begin(), corners.end(), [&](const Stop& c) { return is_straight(stop, c); })) continue;
-      bool is_all_open = true;
-      for (std::size_t k = 0; is_all_open && k < corners.size(); ++k) {
-        is_all_open = is_open(stop, corners[k], corners[(k + 1) % corners.size()]);
+      std::size_t open = 0;
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        open += is_open(stop, corners[k], corners[(k + 1) % corners.size()]) ? 1 : 0;
       }
-      if (is_all_open || (!best && !is_open_only)) best = stop;
-      if (is_all_open) return true;
+      if (open >= least_open && (!best || open > best->open)) best = Hub{stop, open};
+      if (open == corners.size()) return true;
     }
     return false;
   };

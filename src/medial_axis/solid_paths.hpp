@@ -16,6 +16,12 @@ struct Stop {
   NearestPoint nearest;  ///< of the surface
 };
 
+/// A point that sees the corners of a polygon.
+struct Hub {
+  Stop stop;
+  std::size_t open = 0;  ///< triangles with two corners next to each other that none of the surface comes through
+};
+
 /// Whether a box, its sides included, holds a point.
 [[nodiscard]] inline bool holds(const Box3& box, const Vec3d& at) {
   return max(box.lower, at) == at && min(box.upper, at) == at;
@@ -61,10 +67,10 @@ class SolidPaths {
   [[nodiscard]] std::optional<std::vector<Stop>> path(const Stop& a, const Stop& b,
                                                       std::span<const Stop> landmarks) const;
 
-  /// A point that segments in the solid join to all of some others, of those such that none of the surface comes
-  /// through the triangles from one to the next, if there are any; nullopt where none was found among points strewn
-  /// around these.
-  [[nodiscard]] std::optional<Stop> seeing_all(std::span<const Stop> corners, bool is_open) const;
+  /// A point that segments in the solid join to all of some others, of those found among points strewn around these the
+  /// one with the most triangles from each to the next that none of the surface comes through.
+  /// @param least_open  how many there must be of these triangles.
+  [[nodiscard]] std::optional<Hub> seeing_all(std::span<const Stop> corners, std::size_t least_open) const;
 
  private:
   [[nodiscard]] bool push_in(const Stop& a, const Stop& b, int depth, int& moves, std::vector<Stop>& between) const;

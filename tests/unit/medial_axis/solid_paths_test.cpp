@@ -233,13 +233,13 @@ TEST(SolidPaths, APointThatSeesAllCornersIsFoundInAFold) {
     const std::vector<Stop> corners{s.at({0.22, -0.3, 0.88 + mid}), s.at({0.22, 0.3, 0.88 + mid}),
                                     s.at({0.28, 0.3, 0.88 + mid}), s.at({0.28, -0.3, 0.88 + mid})};
     EXPECT_FALSE(s.paths.is_straight(corners[0], corners[2]));
-    const auto middle = s.paths.seeing_all(corners, false);
+    const auto middle = s.paths.seeing_all(corners, 0);
     ASSERT_TRUE(middle.has_value());
-    for (std::size_t k = 0; k < corners.size(); ++k) EXPECT_TRUE(s.paths.is_straight(*middle, corners[k]));
+    for (std::size_t k = 0; k < corners.size(); ++k) EXPECT_TRUE(s.paths.is_straight(middle->stop, corners[k]));
   }
   const Sample s(folded_strip(4, 1e-3));
   const std::vector<Stop> too_far{s.at({0.125, 0, 0.5005}), s.at({0.625, 0, 0.5005})};
-  EXPECT_FALSE(s.paths.seeing_all(too_far, false).has_value());
+  EXPECT_FALSE(s.paths.seeing_all(too_far, 0).has_value());
 }
 
 TEST(SolidPaths, TheBorderOfWhatABoxHoldsLeadsThroughThinFolds) {
