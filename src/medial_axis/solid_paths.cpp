@@ -366,10 +366,29 @@ std::vector<Stop> SolidPaths::strewn(const Vec3d& middle, double side, int parts
   return stops;
 }
 
+namespace {
+
+/// Of stops those that are next to different walls, or as far from the same plane by more than an amount.
+std::vector<Stop> on_different_planes(std::span<const Stop> stops, double apart) {
+  constexpr double parallel = 1e-6;
+  std::vector<Stop> found;
+  const auto direction = [](const Stop& stop) { return (stop.at - stop.nearest.point) / stop.nearest.distance; };
+  for (const Stop& stop : stops) {
+    const Vec3d own = direction(stop);
+    const auto is_same = [&](const Stop& other) {
+      return std::abs(dot(own, direction(other))) > 1 - parallel && std::abs(dot(own, stop.at - other.at)) < apart;
+    };
+    if (std::none_of(found.begin(), found.end(), is_same)) found.push_back(stop);
+  }
+  return found;
+}
+
+}  // namespace
+
 /// Where the planes through three stops along the walls next to them meet: there thin plates do in whose middle these
 /// are.
 std::vector<Stop> SolidPaths::where_walls_meet(std::span<const Stop> stops, const Box3& box) const {
-  constexpr std::size_t most_stops = 8;
+  constexpr std::size_t most_stops = 12;
   constexpr double least = 1e-3;  // of the volume that three directions span
   const std::size_t count = std::min(stops.size(), most_stops);
   const double size = box.diagonal();
@@ -415,7 +434,9 @@ std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::si
   for (const Stop& corner : corners) box.extend(corner.at);
   const double size = box.diagonal();
   const Vec3d reach{0.25 * size, 0.25 * size, 0.25 * size};
-  if (look_at(where_walls_meet(corners, box)) || look_at(strewn(box.center(), size, 6))) return best;
+  if (look_at(where_walls_meet(corners, box))) return best;
+  const std::vector<Stop> around = strewn(box.center(), size, 6);
+  if (look_at(around) || look_at(where_walls_meet(on_different_planes(around, 1e-3 * size), box))) return best;
   // Thin plates turn and meet at creases of the surface: there more of them is seen.
   std::vector<Stop> creases;
   for (const SurfacePoint& point : surface_.points_in({box.lower - reach, box.upper + reach})) {

@@ -23,6 +23,7 @@ HARD = [
     ("bellows", 4, 64),
     ("crossing_rods", 7, 64),
     ("crossed_plates", 5, 64),
+    ("drillings", 5, 64),
 ]
 ALL = [(*name, 48) for name in names() if name not in TOO_SLOW]
 CHOSEN = ALL if os.environ.get("BLUM_MADE_SOLIDS") == "300" else HARD
@@ -37,3 +38,17 @@ def test_axes_of_made_solids_are_certified(family, variant, resolution):
         found = blum.certify(complex_, mesh)
         assert found, found.mismatches
         assert found.homology.across == 0
+
+
+def test_discs_that_close_tubes_end_at_the_rim_of_their_wall():
+    """Walls far thinner than a voxel: the sheet in the middle of each ends where the tube's side begins."""
+    made = made_solid("membranes", 6)
+    mesh = blum.Mesh(made.vertices, made.triangles)
+    axis = blum.medial_axis(mesh, resolution=64)
+    for theta in (120.0, 170.0):
+        complex_ = axis.simplify(theta, fit=True)
+        found = blum.certify(complex_, mesh)
+        assert found, found.mismatches
+    # Of the triangles that say 180 degrees, no corner sees less.
+    angles = complex_.separation_angle[complex_.triangles].min(axis=1)
+    assert (angles[complex_.triangle_angle > 179] > 170).all()
