@@ -12,9 +12,11 @@
 #include "blum/certificate/certificate.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/field/smooth_surface.hpp"
+#include "blum/io/certified_axis.hpp"
 #include "blum/io/draft.hpp"
 #include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
+#include "blum/medial_axis/axis_forms.hpp"
 #include "blum/medial_axis/decimate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
@@ -262,13 +264,6 @@ MedialMetadata metadata_of(const Request& r, const SolidInput& input, const Labe
   return metadata;
 }
 
-/// The smallest side of a voxel of any body.
-double least_spacing(const MedialAxisReport& report) {
-  double least = report.bodies.front().spacing;
-  for (const BodyReport& body : report.bodies) least = std::min(least, body.spacing);
-  return least;
-}
-
 /// Writes an axis to the last draft, reads it again and certifies it.
 Certificate write_and_certify(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
                               const MedialAxis& axis, const Complex& complex, const MedialMetadata& metadata,
@@ -291,23 +286,11 @@ Certificate write_and_certify(Run& run, const Request& r, const SolidInput& inpu
   return certificate;
 }
 
-/// A way to write an axis.
-struct Candidate {
-  bool is_fitted = false;
-  std::optional<double> tolerance;  ///< vertices go within it, mesh units; all stay without
-  std::string without;              ///< what the next candidate lacks, as a warning tells it
-};
-
-/// The best one first: fitted and simplified; simplified; as the cells have it.
-std::vector<Candidate> candidates_of(const Request& r, const MedialAxisReport& report) {
-  const double tolerance = r.simplify.value_or(0.25 * least_spacing(report));
-  std::vector<Candidate> out;
-  if (tolerance > 0 && !r.prunes_sheets && report.rule == SolidRule::polyhedron) {
-    out.push_back({true, tolerance, "borders of sheets stay at the cells of the grid: elsewhere, "});
-  }
-  if (tolerance > 0) out.push_back({false, tolerance, "the axis keeps all vertices: with fewer, "});
-  out.push_back({});
-  return out;
+/// The forms that an axis is written in. @param pruned  whether it is a given one without some of its sheets.
+std::vector<AxisForm> forms_of(const Request& r, const MedialAxisReport& report, bool pruned) {
+  std::vector<AxisForm> forms = axis_forms(report, r.simplify);
+  if (pruned) std::erase_if(forms, [](const AxisForm& form) { return form.is_fitted; });
+  return forms;
 }
 
 /// Writes and certifies an axis at one angle: the first of its candidates that is certified, or else the last.
@@ -317,40 +300,39 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   const MedialAxisReport& report = axis.report();
   MedialMetadata metadata = metadata_of(r, input, selection, report, theta);
   run.drafts.emplace_back(name);
-  Certificate certificate;
-  DecimatedAxis lean;
-  std::vector<std::string> warnings;
   std::size_t vertices_before = 0;
-  for (const Candidate& candidate : candidates_of(r, report)) {
+  const auto make = [&](const AxisForm& form) {
     Stopwatch watch;
-    Complex complex = pruned != nullptr     ? *pruned
-                      : candidate.is_fitted ? axis.fitted(theta, context)
-                                            : axis.simplify(theta, context);
+    Complex complex = pruned != nullptr ? *pruned : axis_in_form(axis, theta, {form.is_fitted, {}, {}}, context).axis;
     vertices_before = complex.positions.size();
-    lean =
-        candidate.tolerance ? decimate(complex, *candidate.tolerance, context) : DecimatedAxis{std::move(complex), 0};
+    DecimatedAxis lean =
+        form.tolerance ? decimate(complex, *form.tolerance, context) : DecimatedAxis{std::move(complex), 0};
     const bool is_lean = lean.axis.positions.size() < vertices_before;
     metadata.deviation = is_lean ? std::optional(lean.deviation) : std::nullopt;
     run.phases.push_back({"simplify", watch.lap()});
-    certificate = write_and_certify(run, r, input, selection, axis, lean.axis, metadata, context);
-    if (certificate.holds()) break;
-    warnings.push_back("at theta " + rounded_text(theta) + " " + candidate.without + certificate.mismatches.front());
+    return lean;
+  };
+  const auto certify = [&](const DecimatedAxis& made) {
+    return write_and_certify(run, r, input, selection, axis, made.axis, metadata, context);
+  };
+  const CertifiedAxis made = first_certified(forms_of(r, report, pruned != nullptr), make, certify);
+  const Certificate& certificate = made.certificate;
+  for (const std::string& warning : made.warnings) {
+    run.warnings.push_back("at theta " + rounded_text(theta) + " " + warning);
   }
-  // Where none is certified, the mismatches of the last one are told, and not what was tried before.
-  if (certificate.holds()) run.warnings.insert(run.warnings.end(), warnings.begin(), warnings.end());
   run.is_kept.push_back((certificate.holds() && report.topology_matches) || r.allow_uncertified);
-  const MedialCounts counts = count(lean.axis);
+  const MedialCounts counts = count(made.axis.axis);
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   if (metadata.deviation) {
     run.table.add("simplified", "from " + count_text(vertices_before) + " vertices; moved by at most " +
-                                    rounded_text(lean.deviation));
+                                    rounded_text(made.axis.deviation));
   }
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
-                  {"deviation", lean.deviation},
+                  {"deviation", made.axis.deviation},
                   {"vertices_before", vertices_before},
-                  {"graph", add_graph(run, r, input, lean.axis, metadata, name, context)},
+                  {"graph", add_graph(run, r, input, made.axis.axis, metadata, name, context)},
                   {"certificate", certificate_json(certificate)}});
   add_certificate(run.table, certificate);
   for (const std::string& mismatch : certificate.mismatches) {

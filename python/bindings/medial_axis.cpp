@@ -15,6 +15,7 @@
 #include "blum/complex/medial_columns.hpp"
 #include "blum/complex/sample_axis.hpp"
 #include "blum/field/ball_union.hpp"
+#include "blum/medial_axis/axis_forms.hpp"
 #include "blum/medial_axis/decimate.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "call.hpp"
@@ -50,6 +51,16 @@ void bind_axis(nb::module_& m) {
            [](const MedialAxis& axis) {
              return run({0, nb::none()}, [&](const Context& context) { return axis.nested(context); });
            })
+      .def(
+          "forms",
+          [](const MedialAxis& axis, std::optional<double> tolerance) {
+            nb::list out;
+            for (const AxisForm& form : axis_forms(axis.report(), tolerance)) {
+              out.append(nb::make_tuple(form.is_fitted, form.tolerance, form.without));
+            }
+            return out;
+          },
+          nb::arg("tolerance").none())
       .def_prop_ro("least_theta", &MedialAxis::least_theta)
       .def_prop_ro("report", [](const MedialAxis& axis) { return result_of(axis.report()); });
   m.def(

@@ -60,6 +60,39 @@ class MedialAxis:
         )
         return MedialComplex._of(cut(angle), EVERYTHING, origin)
 
+    def certified(
+        self, theta: Real = 60.0, *, tolerance: Real | None = None, threads: int = 0, progress: Progress = False
+    ) -> MedialComplex:
+        """The axis at theta as `blum medial` writes it, with its certificate: look whether that holds.
+
+        With its borders where they belong and few vertices; where that is not certified, simpler: with borders at the
+        cells of the grid, then with all vertices. A warning tells what failed.
+
+        Parameters
+        ----------
+        theta : float
+            As for :meth:`simplify`.
+        tolerance : float, optional
+            As for :meth:`MedialComplex.decimate`; 0 keeps all vertices, and borders at the cells.
+
+        >>> import blum
+        >>> axis = blum.medial_axis(blum.generate("box"), resolution=32).certified(60)
+        >>> axis.certificate.holds, axis.counts["sheets"]
+        (True, 12)
+        """
+        failed: list[str] = []
+        for is_fitted, most, without in self._core.forms(optional_number(tolerance, "tolerance")):
+            found = self.simplify(theta, fit=is_fitted)
+            if most is not None:
+                lean = found.decimate(most, threads=threads, progress=progress)
+                found = lean if len(lean.vertices) < len(found.vertices) else found
+            if found.certificate.holds:
+                for sentence in failed:
+                    warnings.warn(sentence, InputWarning, stacklevel=2)
+                break
+            failed.append(f"at theta {float(theta):g} {without}{found.certificate.mismatches[0]}")
+        return found
+
     @takes("AxisGraphOptions")
     def graph(self, theta: Real = 60.0, **options: Unpack[AxisGraphOptions]) -> AxisGraph:
         """The graph of the axis at theta degrees; see :func:`axis_graph`.

@@ -93,6 +93,7 @@ struct MedialAxis::Data {
   std::vector<AxisPiece> pieces;
   std::vector<std::unique_ptr<BodySurface>> surfaces;  ///< of the pieces of a polyhedron
   double least_theta = 0;
+  double lambda = 0;
 };
 
 /// Makes the pieces of an axis one after the other.
@@ -102,6 +103,7 @@ class MedialAxisBuilder {
       : options_(options), context_(context), data_(std::make_unique<MedialAxis::Data>()) {
     check(options);
     data_->least_theta = options.least_theta;
+    data_->lambda = options.lambda;
   }
 
   MedialAxis of(const Solid& solid) {
@@ -238,6 +240,10 @@ Complex MedialAxis::fitted(double theta, const Context& context) const {
     append(std::move(own), lists);
   }
   return labelled(std::move(lists), context);
+}
+
+double MedialAxis::lambda() const {
+  return data_->lambda;
 }
 
 double MedialAxis::least_theta() const {

@@ -1,5 +1,7 @@
 """Proves that medial axes of the Python package are those of the tool, are certified, and that a wrong axis is not."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -59,7 +61,7 @@ def test_defaults_are_those_of_the_tool(plate, tmp_path):
     tool.run("medial", tmp_path / "plate.ply", "-o", tmp_path / "axis.npz", "--resolution", 64)
     theirs, ours = (
         blum.read_medial(tmp_path / "axis.npz"),
-        blum.medial_axis(tmp_path / "plate.ply", resolution=64).simplify(fit=True).decimate(),
+        blum.medial_axis(tmp_path / "plate.ply", resolution=64).certified(),
     )
     for name in ("vertices", "radius", "footprints", "sites", "role", "edges", "triangles", "triangle_sheet"):
         assert np.array_equal(getattr(theirs, name), getattr(ours, name)), name
@@ -67,6 +69,27 @@ def test_defaults_are_those_of_the_tool(plate, tmp_path):
         ours.write(tmp_path / f"ours.{end}")
         tool.run("verify", tmp_path / "plate.ply", tmp_path / f"ours.{end}")
     assert (tmp_path / "ours.npz").read_bytes() == (tmp_path / "axis.npz").read_bytes()
+
+
+def test_a_simpler_form_takes_the_place_of_one_that_is_not_certified(axis, monkeypatch):
+    forms = axis._core.forms(None)
+    assert [is_fitted for is_fitted, _, _ in forms] == [True, False, False]
+    assert forms[0][1] == forms[1][1] == pytest.approx(0.25 * axis.report.bodies[0].spacing)
+    judged = []
+
+    def third_holds(piece):
+        if not any(piece is other for other in judged):
+            judged.append(piece)
+        return SimpleNamespace(holds=len(judged) == 3, mismatches=["something is wrong"])
+
+    monkeypatch.setattr(blum.MedialComplex, "certificate", property(third_holds))
+    with pytest.warns(blum.InputWarning) as told:
+        found = axis.certified(60)
+    assert [str(warning.message) for warning in told] == [
+        "at theta 60 borders of sheets stay at the cells of the grid: elsewhere, something is wrong",
+        "at theta 60 the axis keeps all vertices: with fewer, something is wrong",
+    ]
+    assert np.array_equal(found.vertices, axis.simplify(60).vertices)
 
 
 def test_a_wrong_axis_is_not_certified(axis, plate):

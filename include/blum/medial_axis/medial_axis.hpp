@@ -154,6 +154,9 @@ class MedialAxis {
   /// MedialAxisOptions::least_theta.
   [[nodiscard]] double least_theta() const;
 
+  /// MedialAxisOptions::lambda, mesh units.
+  [[nodiscard]] double lambda() const;
+
   [[nodiscard]] const MedialAxisReport& report() const;
 
  private:

@@ -1,0 +1,35 @@
+// Blum: the forms that a medial axis is written in. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/medial_axis/decimate.hpp"
+#include "blum/medial_axis/medial_axis.hpp"
+
+namespace blum {
+
+/// A way to take an axis of one angle from that of all angles.
+struct AxisForm {
+  bool is_fitted = false;           ///< MedialAxis::fitted(), not simplify()
+  std::optional<double> tolerance;  ///< vertices go within it (decimate()), mesh units; without it all stay
+  std::string without;  ///< what the next form lacks that this one has, for a sentence that goes on with why
+};
+
+/// The forms of an axis, the best first: with its borders where they belong and few vertices; with few vertices; as the
+/// cells have it. The last one is as good as the cells; the others are for people, and where walls are thin one may
+/// fail that the next one does not (see certified_axis()).
+/// @param tolerance  mesh units, >= 0; 0 keeps all vertices, and leaves the last form only. Default: a quarter of the
+///                   smallest side of a voxel.
+[[nodiscard]] std::vector<AxisForm> axis_forms(const MedialAxisReport& report, std::optional<double> tolerance = {});
+
+/// The axis at an angle in a form. @throws as fitted() and decimate().
+[[nodiscard]] DecimatedAxis axis_in_form(const MedialAxis& axis, double theta, const AxisForm& form,
+                                         const Context& context = {});
+
+/// The smallest side of a voxel of any body, mesh units.
+[[nodiscard]] double least_spacing(const MedialAxisReport& report);
+
+}  // namespace blum

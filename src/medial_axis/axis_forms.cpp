@@ -1,0 +1,33 @@
+#include "blum/medial_axis/axis_forms.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "blum/core/error.hpp"
+
+namespace blum {
+
+double least_spacing(const MedialAxisReport& report) {
+  double least = report.bodies.front().spacing;
+  for (const BodyReport& body : report.bodies) least = std::min(least, body.spacing);
+  return least;
+}
+
+std::vector<AxisForm> axis_forms(const MedialAxisReport& report, std::optional<double> tolerance) {
+  const double most = tolerance.value_or(0.25 * least_spacing(report));
+  if (!(most >= 0)) throw InvalidOption("the tolerance of an axis is at least 0");
+  std::vector<AxisForm> forms;
+  if (most > 0 && report.rule == SolidRule::polyhedron) {
+    forms.push_back({true, most, "borders of sheets stay at the cells of the grid: elsewhere, "});
+  }
+  if (most > 0) forms.push_back({false, most, "the axis keeps all vertices: with fewer, "});
+  forms.emplace_back();
+  return forms;
+}
+
+DecimatedAxis axis_in_form(const MedialAxis& axis, double theta, const AxisForm& form, const Context& context) {
+  Complex complex = form.is_fitted ? axis.fitted(theta, context) : axis.simplify(theta, context);
+  return form.tolerance ? decimate(complex, *form.tolerance, context) : DecimatedAxis{std::move(complex), 0};
+}
+
+}  // namespace blum
