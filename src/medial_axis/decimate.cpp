@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -250,7 +251,31 @@ class Decimator {
     for (std::uint32_t t = 0; t < angle_.size(); ++t) {
       if (cells_.has_triangle(t)) angles[k++] = angle_[t];
     }
+    give_borders_angles(out);
     return out;
+  }
+
+  /// Rims and seams have the largest angle of the triangles that are left at them.
+  static void give_borders_angles(Complex& axis) {
+    const auto of_triangle = axis.triangle_columns.get<float>(medial_columns::separation_angle);
+    std::vector<std::pair<std::array<std::uint32_t, 2>, float>> sides;
+    sides.reserve(3 * axis.triangles.size());
+    for (std::size_t t = 0; t < axis.triangles.size(); ++t) {
+      const auto& [a, b, c] = axis.triangles[t];
+      for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
+        sides.push_back({{std::min(p, q), std::max(p, q)}, of_triangle[t]});
+      }
+    }
+    std::sort(sides.begin(), sides.end());
+    const auto angles = axis.edge_columns.edit<float>(medial_columns::separation_angle);
+    for (std::size_t e = 0; e < axis.edges.size(); ++e) {
+      const std::array<std::uint32_t, 2> edge{std::min(axis.edges[e][0], axis.edges[e][1]),
+                                              std::max(axis.edges[e][0], axis.edges[e][1])};
+      // The last of an edge's sides has the largest angle.
+      const auto after = std::upper_bound(sides.begin(), sides.end(), edge,
+                                          [](const auto& value, const auto& side) { return value < side.first; });
+      if (after != sides.begin() && std::prev(after)->first == edge) angles[e] = std::prev(after)->second;
+    }
   }
 
   struct Side {
