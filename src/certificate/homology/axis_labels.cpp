@@ -152,6 +152,26 @@ std::vector<Label> AxisLabels::over_other_sides(std::uint32_t triangle, std::siz
   return labels;
 }
 
+bool AxisLabels::look_at_thin_parts(const Context& context) {
+  constexpr std::size_t most_looked_at = 50000;
+  const auto& edges = given_.incidence.edges();
+  std::vector<std::uint32_t> thin;
+  for (const bool of_curves : {true, false}) {
+    for (std::uint32_t e = 0; e < edges.size() && thin.size() < most_looked_at; ++e) {
+      const std::uint32_t body = given_.parts.body_of[edges[e][0]];
+      if (!is_wanted_[body] || given_.incidence.triangles_of_edge()[e].empty() != of_curves) continue;
+      const double depth = std::min(given_.locations[edges[e][0]].depth, given_.locations[edges[e][1]].depth);
+      if (depth < more_for_edges * allowed_[body] && !replaced_.contains(e)) thin.push_back(e);
+    }
+  }
+  bool is_changed = false;
+  for (std::size_t k = 0; k < thin.size(); ++k) {
+    if (k % 256 == 0) throw_if_cancelled(context);
+    is_changed = look_closely(thin[k]) || is_changed;
+  }
+  return is_changed;
+}
+
 bool AxisLabels::look_closely(std::uint32_t edge) {
   constexpr double fine = 1e-3;
   const auto [a, b] = given_.incidence.edges()[edge];

@@ -35,6 +35,10 @@ class AxisLabels {
   /// as doubles allow: one that cuts a corner by less than what is allowed runs past it.
   [[nodiscard]] std::vector<std::uint32_t> triangles_across(const Context& context);
 
+  /// Looks as closely at edges with an end that is less deep than edges may cut corners, those of curves first: in thin
+  /// parts they may run past a path that lies within that. @return  whether that makes a difference.
+  bool look_at_thin_parts(const Context& context);
+
   /// Adds to the times that each path is linked with, for an edge passed once (or `sign` -1: backwards).
   void add(std::uint32_t edge, int sign, SparseRow& row) const {
     for (const Label& label : of(edge)) {

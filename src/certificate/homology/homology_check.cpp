@@ -42,6 +42,20 @@ class Loops {
     AxisLabels labels(given_, complement_, is_wanted, context);
     check.doubtful = labels.doubtful();
     if (check.doubtful > 0) return;
+    measure(labels, is_wanted, check, bodies, proofs, context);
+    const auto is_short = [&](std::size_t b) { return is_wanted[b] && bodies[b].tunnels_met < bodies[b].solid[1]; };
+    bool is_any_short = false;
+    for (std::size_t b = 0; b < bodies.size(); ++b) is_any_short = is_any_short || is_short(b);
+    if (is_any_short && labels.look_at_thin_parts(context)) measure(labels, is_wanted, check, bodies, proofs, context);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t body_of(std::uint32_t edge) const {
+    return given_.parts.body_of[given_.incidence.edges()[edge][0]];
+  }
+
+  void measure(AxisLabels& labels, const std::vector<bool>& is_wanted, HomologyCheck& check,
+               std::vector<BodyCheck>& bodies, std::vector<BodyProof>& proofs, const Context& context) const {
     count_triangles(labels, is_wanted, check, proofs, context);
     std::vector<std::vector<SparseRow>> rows(bodies.size());
     for (const std::uint32_t closing : cycles_.closing()) {
@@ -61,11 +75,6 @@ class Loops {
     }
   }
 
- private:
-  [[nodiscard]] std::uint32_t body_of(std::uint32_t edge) const {
-    return given_.parts.body_of[given_.incidence.edges()[edge][0]];
-  }
-
   /// How often each path is linked with the cycle that an edge closes.
   [[nodiscard]] SparseRow linked(const AxisLabels& labels, std::uint32_t closing) const {
     std::vector<std::pair<std::uint32_t, std::int64_t>> crossed;
@@ -83,6 +92,9 @@ class Loops {
 
   void count_triangles(AxisLabels& labels, const std::vector<bool>& is_wanted, HomologyCheck& check,
                        std::vector<BodyProof>& proofs, const Context& context) const {
+    check.triangles = 0;
+    check.where = {};
+    for (BodyProof& proof : proofs) proof.across = 0;
     for (const auto& corners : given_.axis.triangles) check.triangles += is_wanted[given_.parts.body_of[corners[0]]];
     const std::vector<std::uint32_t> across = labels.triangles_across(context);
     check.across = across.size();
