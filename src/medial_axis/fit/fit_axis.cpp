@@ -229,7 +229,9 @@ class Fitter {
     if (is_shown(lists_.vertices[v], 2) || incidence_.edges_of_vertex()[v].empty()) return std::nullopt;
     const std::uint32_t inner = best_neighbour(v);
     const AxisVertex& thin = lists_.vertices[inner];
-    const bool is_thin = thin.radius < least_radius * voxel_ && thin.separation_angle >= parallel;
+    constexpr double wider = 4;
+    const bool is_thin = thin.radius < least_radius * voxel_ && thin.separation_angle >= parallel &&
+                         wider * thin.radius < lists_.vertices[v].radius;
     // Edges to what lies beyond come out of the wall: the mouth is met to well within the wall's thickness.
     return is_thin && is_shown(thin, 2) ? towards(v, inner, 2, 3 * halvings) : std::nullopt;
   }

@@ -85,7 +85,8 @@ class Unfolder {
     return count;
   }
 
-  /// The triangles of a vertex and of all vertices around it.
+  /// The triangles of a vertex, and those with an edge between two around it: what may fold when the vertex moves to
+  /// one of these.
   [[nodiscard]] std::vector<Triangle3> triangles_around(std::uint32_t v) const {
     std::vector<std::uint32_t> around{v};
     lists_.cells().for_each_triangle(v, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
@@ -99,7 +100,13 @@ class Unfolder {
     }
     detail::sort_unique(numbers);
     std::vector<Triangle3> triangles;
-    for (const std::uint32_t t : numbers) triangles.push_back(lists_.cells().triangle(t));
+    for (const std::uint32_t t : numbers) {
+      const Triangle3& corners = lists_.cells().triangle(t);
+      const auto near = std::count_if(corners.begin(), corners.end(), [&](std::uint32_t u) {
+        return std::binary_search(around.begin(), around.end(), u);
+      });
+      if (near > 1) triangles.push_back(corners);
+    }
     return triangles;
   }
 
