@@ -19,7 +19,7 @@ WHY_NOT = "closed surfaces of the axis are around 3 of the 4 voids"  # of these,
 def crossing_plates(folder):
     """Five square plates far thinner than a voxel that cross at a slant, around four voids: the axis misses one of them."""
     path = folder / "plates.obj"
-    random = np.random.default_rng(4)
+    random = np.random.default_rng(0)
     lines, faces = [], []
     sides = [
         (0, 2, 1),
