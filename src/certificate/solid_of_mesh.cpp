@@ -129,7 +129,7 @@ class ShellOracle : public SolidOracle {
   [[nodiscard]] Side side_of(const Vec3d& p, const TriangleSearch::Nearest& closest) const {
     constexpr double nearly = 1 - 1e-6;
     if (!closest.is_alone || !(closest.distance > 1e-9 * diagonal())) return Side::unknown;
-    const int outwards = shells_.outwards[closest.triangle];
+    const std::int8_t outwards = shells_.outwards[closest.triangle];
     const auto [a, b, c] = corners_of(mesh_, closest.triangle);
     const Vec3d normal = cross(b - a, c - a);
     const double height = dot(p - a, normal) / length(normal);

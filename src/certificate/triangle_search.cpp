@@ -197,10 +197,10 @@ class ClosePoints {
   /// Whether there is just one at the place of the closest one.
   [[nodiscard]] bool is_alone(double best) const {
     constexpr double as_near = 1e-12;  // squared, of the squared distance
-    if (is_full_) return false;
-    const Found* closest = nullptr;
-    for (std::size_t k = 0; k < count_; ++k) {
-      if (closest == nullptr || found_[k].squared < closest->squared) closest = &found_[k];
+    if (is_full_ || count_ == 0) return false;
+    const Found* closest = found_.data();
+    for (std::size_t k = 1; k < count_; ++k) {
+      if (found_[k].squared < closest->squared) closest = &found_[k];
     }
     return std::none_of(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const Found& found) {
       return &found != closest && squared_length(found.point - closest->point) <= as_near * best;
