@@ -293,7 +293,7 @@ std::vector<AxisForm> forms_of(const Request& r, const MedialAxisReport& report,
   return forms;
 }
 
-/// Writes and certifies an axis at one angle: the first of its candidates that is certified, or else the last.
+/// Writes and certifies an axis at one angle: the first of its forms that is certified, or else the last.
 void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
               const MedialAxis& axis, const Complex* pruned, double theta, const fs::path& name, Json& axes,
               const Context& context) {
@@ -303,10 +303,9 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
   std::size_t vertices_before = 0;
   const auto make = [&](const AxisForm& form) {
     Stopwatch watch;
-    Complex complex = pruned != nullptr ? *pruned : axis_in_form(axis, theta, {form.is_fitted, {}, {}}, context).axis;
+    Complex complex = pruned != nullptr ? *pruned : whole_axis(axis, theta, form, context);
     vertices_before = complex.positions.size();
-    DecimatedAxis lean =
-        form.tolerance ? decimate(complex, *form.tolerance, context) : DecimatedAxis{std::move(complex), 0};
+    DecimatedAxis lean = decimate(std::move(complex), form, context);
     const bool is_lean = lean.axis.positions.size() < vertices_before;
     metadata.deviation = is_lean ? std::optional(lean.deviation) : std::nullopt;
     run.phases.push_back({"simplify", watch.lap()});

@@ -24,8 +24,7 @@ struct ClosedShell {
 struct ClosedShells {
   std::vector<ClosedShell> shells;
   std::vector<std::uint32_t> of_triangle;  ///< no_group for triangles that name a vertex twice: they bound nothing
-  std::vector<std::int8_t>
-      outwards;  ///< of each triangle: 1 if its normal leads out of its shell, -1 if in, 0: unknown
+  std::vector<std::int8_t> outwards;       ///< 1 where a triangle's normal leads out of its shell, -1 in, 0 unknown
   std::uint32_t bodies = 0;
 };
 

@@ -25,9 +25,16 @@ std::vector<AxisForm> axis_forms(const MedialAxisReport& report, std::optional<d
   return forms;
 }
 
+Complex whole_axis(const MedialAxis& axis, double theta, const AxisForm& form, const Context& context) {
+  return form.is_fitted ? axis.fitted(theta, context) : axis.simplify(theta, context);
+}
+
+DecimatedAxis decimate(Complex whole, const AxisForm& form, const Context& context) {
+  return form.tolerance ? decimate(whole, *form.tolerance, context) : DecimatedAxis{std::move(whole), 0};
+}
+
 DecimatedAxis axis_in_form(const MedialAxis& axis, double theta, const AxisForm& form, const Context& context) {
-  Complex complex = form.is_fitted ? axis.fitted(theta, context) : axis.simplify(theta, context);
-  return form.tolerance ? decimate(complex, *form.tolerance, context) : DecimatedAxis{std::move(complex), 0};
+  return decimate(whole_axis(axis, theta, form, context), form, context);
 }
 
 }  // namespace blum

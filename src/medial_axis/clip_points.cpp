@@ -1,21 +1,24 @@
 #include "medial_axis/clip_points.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace blum {
 namespace {
 
-constexpr std::size_t no_axis = 3;
+Vec3d unit(const Vec3d& v) {
+  const double size = length(v);
+  return size > 0 ? v / size : Vec3d{};
+}
 
-/// A part of a segment, and the axes of the sides of the box that cut it off; no_axis where an end is left.
-struct Part {
-  double low = 0, high = 1;
-  std::size_t low_axis = no_axis, high_axis = no_axis;
-};
+Vec3d in_plane(Vec3d v, std::size_t axis) {
+  v[axis] = 0;
+  return unit(v);
+}
 
-std::optional<Part> part_within(const Vec3d& a, const Vec3d& b, const Box3& box) {
-  Part part;
+}  // namespace
+
+std::optional<SegmentPart> part_within(const Vec3d& a, const Vec3d& b, const Box3& box) {
+  SegmentPart part;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double step = b[axis] - a[axis];
     const double to_lower = box.lower[axis] - a[axis];
@@ -39,31 +42,19 @@ std::optional<Part> part_within(const Vec3d& a, const Vec3d& b, const Box3& box)
   return part;
 }
 
-Vec3d unit(const Vec3d& v) {
-  const double size = length(v);
-  return size > 0 ? v / size : Vec3d{};
-}
-
-Vec3d in_plane(Vec3d v, std::size_t axis) {
-  v[axis] = 0;
-  return unit(v);
-}
-
-}  // namespace
-
 void add_clip_points(const ClippedEdge& edge, const Box3& box, std::vector<SurfacePoint>& points) {
   const auto& [a, b] = edge.ends;
-  const std::optional<Part> part = part_within(a, b, box);
+  const std::optional<SegmentPart> part = part_within(a, b, box);
   if (!part) return;
   const auto& [m, n] = edge.outwards;
-  points.push_back({a + (b - a) * (0.5 * (part->low + part->high)), -unit(m + n)});
+  points.push_back({a + (b - a) * part->middle(), -unit(m + n)});
   const auto add_side = [&](double t, std::size_t axis) {
     Vec3d at = a + (b - a) * t;
     at = max(box.lower, min(box.upper, at));
     points.push_back({at, -unit(in_plane(m, axis) + in_plane(n, axis))});
   };
-  if (part->low_axis != no_axis) add_side(part->low, part->low_axis);
-  if (part->high_axis != no_axis) add_side(part->high, part->high_axis);
+  if (part->low_axis) add_side(part->low, *part->low_axis);
+  if (part->high_axis) add_side(part->high, *part->high_axis);
 }
 
 void add_clip_points(const std::array<Vec3d, 3>& triangle, const Vec3d& outwards, const Box3& box,

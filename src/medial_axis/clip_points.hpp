@@ -2,11 +2,24 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "medial_axis/surface.hpp"
 
 namespace blum {
+
+/// A part of a segment, and the axes of the sides of a box that cut it off; none where an end of the segment is left.
+struct SegmentPart {
+  double low = 0, high = 1;
+  std::optional<std::size_t> low_axis, high_axis;
+
+  [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+};
+
+/// The part of a segment in a box; nullopt where there is none.
+[[nodiscard]] std::optional<SegmentPart> part_within(const Vec3d& a, const Vec3d& b, const Box3& box);
 
 /// An edge between two triangles.
 struct ClippedEdge {

@@ -43,21 +43,9 @@ Footprint closest_on_triangle(const Vec3d& query, const Vec3d& a, const Vec3d& b
 
 /// The middle of the part of a segment in a box.
 std::optional<Vec3d> middle_within(const Vec3d& a, const Vec3d& b, const Box3& box) {
-  double low = 0;
-  double high = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double step = b[axis] - a[axis];
-    const double to_lower = box.lower[axis] - a[axis];
-    const double to_upper = box.upper[axis] - a[axis];
-    if (step == 0) {
-      if (to_lower > 0 || to_upper < 0) return std::nullopt;
-      continue;
-    }
-    low = std::max(low, std::min(to_lower / step, to_upper / step));
-    high = std::min(high, std::max(to_lower / step, to_upper / step));
-  }
-  if (!(low <= high)) return std::nullopt;
-  return a + (b - a) * (0.5 * (low + high));
+  const std::optional<SegmentPart> part = part_within(a, b, box);
+  if (!part) return std::nullopt;
+  return a + (b - a) * part->middle();
 }
 
 }  // namespace

@@ -36,6 +36,11 @@ Footprint foot_of(const NearestPoint& nearest) {
   return {nearest.point, nearest.element, 7};
 }
 
+/// The direction from the wall next to a stop, of unit length.
+Vec3d away_from_wall(const Stop& stop) {
+  return (stop.at - stop.nearest.point) / stop.nearest.distance;
+}
+
 }  // namespace
 
 std::optional<Stop> SolidPaths::stop_at(const Vec3d& at, const Footprint& near) const {
@@ -372,11 +377,10 @@ namespace {
 std::vector<Stop> on_different_planes(std::span<const Stop> stops, double apart) {
   constexpr double parallel = 1e-6;
   std::vector<Stop> found;
-  const auto direction = [](const Stop& stop) { return (stop.at - stop.nearest.point) / stop.nearest.distance; };
   for (const Stop& stop : stops) {
-    const Vec3d own = direction(stop);
+    const Vec3d own = away_from_wall(stop);
     const auto is_same = [&](const Stop& other) {
-      return std::abs(dot(own, direction(other))) > 1 - parallel && std::abs(dot(own, stop.at - other.at)) < apart;
+      return std::abs(dot(own, away_from_wall(other))) > 1 - parallel && std::abs(dot(own, stop.at - other.at)) < apart;
     };
     if (std::none_of(found.begin(), found.end(), is_same)) found.push_back(stop);
   }
@@ -393,15 +397,12 @@ std::vector<Stop> SolidPaths::where_walls_meet(std::span<const Stop> stops, cons
   const std::size_t count = std::min(stops.size(), most_stops);
   const double size = box.diagonal();
   std::vector<Stop> found;
-  const auto direction = [&](std::size_t k) {
-    return (stops[k].at - stops[k].nearest.point) / stops[k].nearest.distance;
-  };
   for (std::size_t k = 0; k < count; ++k) {
     for (std::size_t m = k + 1; m < count; ++m) {
       for (std::size_t n = m + 1; n < count; ++n) {
-        const Vec3d u = direction(k);
-        const Vec3d v = direction(m);
-        const Vec3d w = direction(n);
+        const Vec3d u = away_from_wall(stops[k]);
+        const Vec3d v = away_from_wall(stops[m]);
+        const Vec3d w = away_from_wall(stops[n]);
         const double volume = dot(u, cross(v, w));
         if (!(std::abs(volume) > least)) continue;
         const Vec3d at = (cross(v, w) * dot(u, stops[k].at) + cross(w, u) * dot(v, stops[m].at) +
@@ -491,7 +492,7 @@ void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& 
   constexpr double before_wall = 0.9;
   Stop at = centred(from);
   for (int step = 0; step < most_steps; ++step) {
-    const Vec3d away = (at.at - at.nearest.point) / at.nearest.distance;
+    const Vec3d away = away_from_wall(at);
     const Vec3d wish = towards.at - at.at;
     const Vec3d move = wish - away * dot(wish, away);
     if (!(squared_length(move) > 1e-6 * squared_length(wish))) return;

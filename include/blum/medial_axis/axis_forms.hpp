@@ -25,7 +25,14 @@ struct AxisForm {
 ///                   smallest side of a voxel.
 [[nodiscard]] std::vector<AxisForm> axis_forms(const MedialAxisReport& report, std::optional<double> tolerance = {});
 
-/// The axis at an angle in a form. @throws as fitted() and decimate().
+/// The axis at an angle before vertices are taken out of it. @throws as fitted().
+[[nodiscard]] Complex whole_axis(const MedialAxis& axis, double theta, const AxisForm& form,
+                                 const Context& context = {});
+
+/// What a form leaves of a whole axis. @throws as decimate().
+[[nodiscard]] DecimatedAxis decimate(Complex whole, const AxisForm& form, const Context& context = {});
+
+/// Both: the axis at an angle in a form. @throws as these.
 [[nodiscard]] DecimatedAxis axis_in_form(const MedialAxis& axis, double theta, const AxisForm& form,
                                          const Context& context = {});
 
