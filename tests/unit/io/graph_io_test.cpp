@@ -2,41 +2,29 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include "blum/core/error.hpp"
 #include "blum/io/graph_io.hpp"
 #include "io/vtk_xml.hpp"
+#include "unit/io/temporary_folder.hpp"
 
 namespace blum {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 class GraphFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "blum_graph_files";
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string written(const char* name, const AxisGraph& graph, const MedialMetadata& metadata = {}) {
     write_graph(folder_ / name, graph, metadata);
-    std::ifstream file(folder_ / name, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
+    return test::file_content(folder_ / name);
   }
 
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 /// Two sheets at a closed seam, a curve between two junctions, a closed curve, two patches.
@@ -144,8 +132,8 @@ TEST_F(GraphFiles, OtherExtensionsAreRefused) {
   for (const char* const name : {"g.gml", "g", "g.json.gz"}) {
     EXPECT_THROW(write_graph(folder_ / name, {}), InvalidOption) << name;
   }
-  EXPECT_THROW(write_graph(folder_ / "none" / "g.json", {}), FileError);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_THROW(write_graph(folder_.path() / "none" / "g.json", {}), FileError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
 }  // namespace
