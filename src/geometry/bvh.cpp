@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -113,6 +114,11 @@ struct Bvh::Data {
   }
 
   [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
+
+  /// The last leaf repeats its last primitive, which is not told twice.
+  [[nodiscard]] bool is_triangle(std::size_t leaf, std::size_t lane) const {
+    return lane < lanes_of(leaf) && order[leaf * lanes + lane] < triangles;
+  }
 
   /// Calls limit = offer(leaf, lane, limit) for the primitives that may lie within `limit`, in units of blocks.
   template <class Offer>
@@ -328,9 +334,11 @@ void Bvh::for_each_crossing(const Ray& ray, double limit, FunctionRef<double(con
   double furthest = limit;
   visit_along(data.tree, scaled, furthest * t_factor, [&](std::size_t leaf) {
     const PrimitiveBlock& block = data.leaves[leaf];
-    for (std::size_t lane = 0; lane < data.lanes_of(leaf); ++lane) {
-      const std::uint32_t primitive = data.order[leaf * lanes + lane];
-      if (primitive >= data.triangles) continue;
+    // A little further, as what is crossed at the limit itself is found as far as rounding allows.
+    const double end = std::min(furthest * t_factor * (1 + 1e-9), 1e300);
+    for (unsigned bits = may_cross(block, scaled, end); bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      if (!data.is_triangle(leaf, lane)) continue;
       const std::optional<detail::TriangleCrossing> found =
           detail::crossing(scaled, {block.position(0, lane), block.position(1, lane), block.position(2, lane)});
       if (!found || !(found->t / t_factor <= furthest)) continue;
@@ -366,6 +374,18 @@ std::vector<std::optional<RayCrossing>> Bvh::first_crossings(std::span<const Ray
     for (std::size_t i = range.begin; i < range.end; ++i) out[i] = first_crossing(rays[i], limit);
   });
   return out;
+}
+
+void Bvh::for_each_near(const std::array<Vec3d, 3>& triangle, FunctionRef<bool(TriangleId)> visit) const {
+  const Data& data = *data_;
+  const ProbeTriangle probe({triangle[0] * data.scale, triangle[1] * data.scale, triangle[2] * data.scale});
+  for_each_touching(data.tree, probe.box, 0, [&](std::size_t leaf) {
+    for (unsigned bits = may_meet(data.leaves[leaf], probe); bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      if (data.is_triangle(leaf, lane) && !visit(TriangleId(data.order[leaf * lanes + lane]))) return false;
+    }
+    return true;
+  });
 }
 
 bool Bvh::may_touch(const Box3& box) const {

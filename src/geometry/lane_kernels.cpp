@@ -38,6 +38,32 @@ void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[
   }
 }
 
+void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double (&out)[lanes]) {
+  // Each end of a slab is rounded three times (Ize 2013: 1 + 2 gamma(3) makes up for it at one end).
+  constexpr double widened = 1 + 2e-15;
+  alignas(64) double enter[lanes] = {};
+  alignas(64) double leave[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) leave[i] = block.lower[0][i] <= block.upper[0][i] ? HUGE_VAL : -1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double origin = ray.origin[axis];
+    const double factor = inverse[axis];
+    if (factor == 0) {
+      for (std::size_t i = 0; i < lanes; ++i) {
+        const double outside = std::max(block.lower[axis][i] - origin, origin - block.upper[axis][i]);
+        leave[i] = outside > 0 ? -1 : leave[i];
+      }
+      continue;
+    }
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const double first = (block.lower[axis][i] - origin) * factor;
+      const double last = (block.upper[axis][i] - origin) * factor;
+      enter[i] = std::max(enter[i], std::min(first, last) * (2 - widened));
+      leave[i] = std::min(leave[i], std::max(first, last) * widened);
+    }
+  }
+  for (std::size_t i = 0; i < lanes; ++i) out[i] = enter[i] <= leave[i] ? enter[i] : NAN;
+}
+
 /// A bit for each lane with a 1; the others must hold 0.
 inline unsigned bits_of(const double (&flags)[lanes]) {
   static_assert(lanes == 8);
@@ -93,6 +119,102 @@ unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle) {
   for (std::size_t i = 0; i < lanes; ++i) meet[i] = touch(group.box, i, triangle.box);
   if (bits_of(meet) == 0) return 0;
   for (std::size_t i = 0; i < lanes; ++i) meet[i] *= 1 - is_beside(group, i, triangle);
+  return bits_of(meet);
+}
+
+/// Of sums of products of three factors that were rounded before, like orient3d's; with room, also for products so
+/// small that they lose digits.
+constexpr double triple_rounding = 1e-14;
+constexpr double least_product = 1e-300;
+
+/// Whether a value is for certain above 0: 1 or 0.
+inline double is_above(double value, double magnitude) {
+  return value > triple_rounding * magnitude + least_product ? 1.0 : 0.0;
+}
+
+/// A sum of products, and of their magnitudes.
+struct Rounded {
+  double value;
+  double magnitude;
+};
+
+/// d . (u x v)
+inline Rounded triple(const Vec3d& d, const Vec3d& u, const Vec3d& v) {
+  const double xy = u.x * v.y, yx = u.y * v.x, yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z;
+  return {d.x * (yz - zy) + d.y * (zx - xz) + d.z * (xy - yx),
+          std::abs(d.x) * (std::abs(yz) + std::abs(zy)) + std::abs(d.y) * (std::abs(zx) + std::abs(xz)) +
+              std::abs(d.z) * (std::abs(xy) + std::abs(yx))};
+}
+
+inline Vec3d corner_at(const PrimitiveBlock& block, std::size_t k, std::size_t i) {
+  return {block.corner[k][0][i], block.corner[k][1][i], block.corner[k][2][i]};
+}
+
+unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
+  const Vec3d o = ray.origin;
+  const Vec3d d = ray.direction;
+  alignas(64) double meet[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const Vec3d u = corner_at(block, 0, i) - o;
+    const Vec3d v = corner_at(block, 1, i) - o;
+    const Vec3d w = corner_at(block, 2, i) - o;
+    const Rounded uv = triple(d, u, v), vw = triple(d, v, w), wu = triple(d, w, u);
+    const double left =
+        is_above(uv.value, uv.magnitude) + is_above(vw.value, vw.magnitude) + is_above(wu.value, wu.magnitude);
+    const double right =
+        is_above(-uv.value, uv.magnitude) + is_above(-vw.value, vw.magnitude) + is_above(-wu.value, wu.magnitude);
+    // Heights above the plane of the triangle, times twice its area, at the origin and at the end.
+    const Vec3d ab = v - u;
+    const Vec3d ac = w - u;
+    const Rounded start = triple(u, ab, ac);
+    const Rounded slope = triple(d, ab, ac);
+    const double last = end * slope.value - start.value;
+    const double bound = end * slope.magnitude + start.magnitude;
+    const double above = is_above(-start.value, start.magnitude) * is_above(last, bound);
+    const double below = is_above(start.value, start.magnitude) * is_above(-last, bound);
+    meet[i] = left * right + above + below > 0 ? 0.0 : 1.0;
+  }
+  return bits_of(meet);
+}
+
+unsigned may_meet_block(const PrimitiveBlock& block, const ProbeTriangle& other) {
+  const auto& [a, b, c] = other.corners;
+  alignas(64) double meet[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const Vec3d u = corner_at(block, 0, i);
+    const Vec3d v = corner_at(block, 1, i);
+    const Vec3d w = corner_at(block, 2, i);
+    double touch = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      touch *= std::min(std::min(u[axis], v[axis]), w[axis]) <= other.box.upper[axis] ? 1.0 : 0.0;
+      touch *= std::max(std::max(u[axis], v[axis]), w[axis]) >= other.box.lower[axis] ? 1.0 : 0.0;
+    }
+    double above = 1;
+    double below = 1;
+    const auto look = [&](double height, double magnitude) {
+      above *= is_above(height, magnitude);
+      below *= is_above(-height, magnitude);
+    };
+    const auto look_at_corner = [&](const Vec3d& p) {
+      const double x = p.x - a.x, y = p.y - a.y, z = p.z - a.z;
+      look(other.normal.x * x + other.normal.y * y + other.normal.z * z,
+           other.magnitude.x * std::abs(x) + other.magnitude.y * std::abs(y) + other.magnitude.z * std::abs(z));
+    };
+    look_at_corner(u);
+    look_at_corner(v);
+    look_at_corner(w);
+    const double beside = above + below;
+    above = 1;
+    below = 1;
+    const auto look_from_corner = [&](const Vec3d& p) {
+      const Rounded height = triple(p - u, v - u, w - u);
+      look(height.value, height.magnitude);
+    };
+    look_from_corner(a);
+    look_from_corner(b);
+    look_from_corner(c);
+    meet[i] = beside + above + below > 0 ? 0.0 : touch;
+  }
   return bits_of(meet);
 }
 
@@ -244,6 +366,9 @@ std::size_t best_index() {
 }
 
 HWY_EXPORT(squared_distances);
+HWY_EXPORT(entries);
+HWY_EXPORT(may_cross);
+HWY_EXPORT(may_meet_block);
 HWY_EXPORT(touching);
 HWY_EXPORT(may_meet);
 HWY_EXPORT(approximate_distances);
@@ -257,6 +382,9 @@ HWY_EXPORT(add_triangles);
 
 // Chosen once: the loops take tens of nanoseconds, and a look-up would be felt.
 const auto best_squared_distances = BLUM_BEST(squared_distances);
+const auto best_entries = BLUM_BEST(entries);
+const auto best_may_cross = BLUM_BEST(may_cross);
+const auto best_may_meet_block = BLUM_BEST(may_meet_block);
 const auto best_touching = BLUM_BEST(touching);
 const auto best_may_meet = BLUM_BEST(may_meet);
 const auto best_approximate_distances = BLUM_BEST(approximate_distances);
@@ -268,6 +396,18 @@ const auto best_add_triangles = BLUM_BEST(add_triangles);
 
 void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[lanes]) {
   best_squared_distances(block, query, out);
+}
+
+void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double (&out)[lanes]) {
+  best_entries(block, ray, inverse, out);
+}
+
+unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
+  return best_may_cross(block, ray, end);
+}
+
+unsigned may_meet(const PrimitiveBlock& block, const ProbeTriangle& other) {
+  return best_may_meet_block(block, other);
 }
 
 unsigned touching(const BoxBlock& block, const Box3& box) {

@@ -67,4 +67,16 @@ void offer_closest(const PrimitiveBlock& block, std::size_t lane, const Vec3d& q
   best.offer(length(rest), query - rest, block.face[lane]);
 }
 
+ProbeTriangle::ProbeTriangle(const std::array<Vec3d, 3>& triangle) : corners(triangle) {
+  for (const Vec3d& p : triangle) box.extend(p);
+  const Vec3d v = triangle[1] - triangle[0];
+  const Vec3d w = triangle[2] - triangle[0];
+  for (std::size_t x = 0; x < 3; ++x) {
+    const double left = v[(x + 1) % 3] * w[(x + 2) % 3];
+    const double right = v[(x + 2) % 3] * w[(x + 1) % 3];
+    normal[x] = left - right;
+    magnitude[x] = std::abs(left) + std::abs(right);
+  }
+}
+
 }  // namespace blum

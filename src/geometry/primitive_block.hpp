@@ -6,6 +6,7 @@
 
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/ray.hpp"
 #include "geometry/lanes.hpp"
 
 namespace blum {
@@ -45,6 +46,24 @@ struct SiteCandidate {
 /// Distances from a point to eight closed primitives, good to about 1e-12 of the lengths involved; for slivers a lower
 /// bound.
 void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, double (&out)[lanes]);
+
+/// A bit for each triangle of a block that a ray may cross between its origin and t = end: not those that its line for
+/// certain goes by, nor those in whose plane it neither begins nor arrives. @param end  may be infinite.
+[[nodiscard]] unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end);
+
+/// A triangle that others are compared with.
+struct ProbeTriangle {
+  std::array<Vec3d, 3> corners;
+  Box3 box;
+  Vec3d normal;     ///< (b - a) x (c - a)
+  Vec3d magnitude;  ///< of the products that are summed up to the normal
+
+  explicit ProbeTriangle(const std::array<Vec3d, 3>& triangle);
+};
+
+/// A bit for each triangle of a block that may have a point in common with another one: not those whose boxes do not
+/// touch, nor those of which one lies for certain on one side of the other's plane.
+[[nodiscard]] unsigned may_meet(const PrimitiveBlock& block, const ProbeTriangle& other);
 
 /// Offers the closest site of one primitive, with its distance good to rounding of the lengths involved, whatever the
 /// shape of the triangle.

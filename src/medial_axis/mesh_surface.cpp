@@ -98,11 +98,9 @@ bool MeshSurface::crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c) const 
   constexpr std::array<std::uint32_t, 3> other_corners{~0U, ~0U - 1, ~0U - 2};  // none that the mesh has
   const detail::ContactTriangle own{{a, b, c}, other_corners};
   if (detail::has_no_area(own.points)) return false;
-  const Vec3d middle = (a + b + c) / 3.0;
-  const double reach = std::max({length(a - middle), length(b - middle), length(c - middle)});
   bool is_found = false;
-  bvh_.for_each_within(middle, reach, [&](const NearestPrimitive& near) {
-    const Triangle& t = mesh_.triangles[near.primitive];
+  bvh_.for_each_near(own.points, [&](TriangleId near) {
+    const Triangle& t = mesh_.triangles[near.value];
     const detail::ContactTriangle wall{{mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]}, t};
     is_found = !detail::has_no_area(wall.points) && detail::contact(own, wall) == detail::Contact::crossing;
     return !is_found;

@@ -109,6 +109,11 @@ class Bvh {
       std::span<const Ray> rays, double limit = std::numeric_limits<double>::infinity(),
       const Context& context = {}) const;
 
+  /// Calls visit(triangle) for the triangles of the mesh that may have a point in common with a triangle that need not
+  /// be one of them, in no stated order, until it returns false. None is left out that has one; most others are: those
+  /// whose boxes do not touch, and those of which one lies on one side of the other's plane.
+  void for_each_near(const std::array<Vec3d, 3>& triangle, FunctionRef<bool(TriangleId)> visit) const;
+
   /// Whether the box of a primitive may touch this box: false only if the box is free of the mesh.
   [[nodiscard]] bool may_touch(const Box3& box) const;
 

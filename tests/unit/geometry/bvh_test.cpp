@@ -10,6 +10,7 @@
 
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
+#include "blum/geometry/triangle_contact.hpp"
 #include "blum/shapes/generators.hpp"
 #include "support/mesh_places.hpp"
 
@@ -163,6 +164,41 @@ TEST(Bvh, FindsTheKClosestPrimitivesAndThoseWithinADistance) {
   int calls = 0;
   bvh.for_each_within({}, 1e9, [&](const NearestPrimitive&) { return ++calls < 5; });
   EXPECT_EQ(calls, 5);
+}
+
+TEST(Bvh, TrianglesNearAnotherAreAllThatItMeetsAndFewMore) {
+  for (const double scale : {1.0, 1e-40, 1e40}) {
+    const TriangleMesh mesh = test::moved(test::awkward_soup(300, 33), scale);
+    const Bvh bvh(mesh, SiteTable(mesh));
+    const std::vector<Vec3d> places = test::places_around(mesh, 300, 34);
+    std::size_t met = 0;
+    std::size_t told = 0;
+    for (std::size_t i = 0; i + 2 < places.size(); ++i) {
+      const double size = i % 3 == 0 ? 0.01 : 1;
+      const std::array<Vec3d, 3> own{places[i], places[i] + (places[i + 1] - places[i]) * size,
+                                     places[i] + (places[i + 2] - places[i]) * size};
+      std::vector<std::uint32_t> near;
+      bvh.for_each_near(own, [&](TriangleId t) {
+        near.push_back(t.value);
+        return true;
+      });
+      std::sort(near.begin(), near.end());
+      EXPECT_EQ(std::adjacent_find(near.begin(), near.end()), near.end());
+      told += near.size();
+      constexpr std::array<std::uint32_t, 3> others{~0U, ~0U - 1, ~0U - 2};
+      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& corners = mesh.triangles[t];
+        const std::array<Vec3d, 3> wall{mesh.vertices[corners[0]], mesh.vertices[corners[1]],
+                                        mesh.vertices[corners[2]]};
+        if (detail::has_no_area(wall) || detail::has_no_area(own)) continue;
+        if (detail::contact({own, others}, {wall, corners}) == detail::Contact::none) continue;
+        ++met;
+        EXPECT_TRUE(std::binary_search(near.begin(), near.end(), t));
+      }
+    }
+    EXPECT_GT(met, 100U);
+    EXPECT_LT(told, 3 * met);
+  }
 }
 
 TEST(Bvh, RaysCrossWhatEveryTriangleAloneSays) {
