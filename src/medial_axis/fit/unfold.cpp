@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -47,6 +48,12 @@ class Unfolder {
     std::uint32_t third;
     bool operator<(const Side& other) const { return ends < other.ends; }
   };
+  /// Triangles around a vertex, ready to tell how they fold wherever this one goes.
+  struct Around {
+    std::vector<Side> fixed;                            ///< of the triangles that do not have the vertex; sorted
+    std::size_t fixed_folds = 0;                        ///< at these
+    std::vector<std::array<std::uint32_t, 2>> corners;  ///< the other two, of the triangles that have it
+  };
 
   /// Whether two triangles at an edge lie one over the other; one without area bends nothing.
   [[nodiscard]] bool is_folded(const std::array<std::uint32_t, 2>& edge, std::uint32_t p, std::uint32_t q) const {
@@ -64,24 +71,52 @@ class Unfolder {
     return count == 2 && is_folded({a, b}, thirds[0], thirds[1]);
   }
 
-  /// Folds between triangles, were a vertex at another one.
-  [[nodiscard]] std::size_t folds(const std::vector<Triangle3>& triangles, std::uint32_t from, std::uint32_t to) {
-    sides_.clear();
-    for (Triangle3 t : triangles) {
-      std::replace(t.begin(), t.end(), from, to);
-      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t p = t[k];
-        const std::uint32_t q = t[(k + 1) % 3];
-        sides_.push_back({{std::min(p, q), std::max(p, q)}, t[(k + 2) % 3]});
+  static Side side_of(std::uint32_t p, std::uint32_t q, std::uint32_t third) {
+    return {{std::min(p, q), std::max(p, q)}, third};
+  }
+  [[nodiscard]] bool is_folded(std::span<const Side> at_one_edge) const {
+    return at_one_edge.size() == 2 && is_folded(at_one_edge[0].ends, at_one_edge[0].third, at_one_edge[1].third);
+  }
+  template <class Visit>
+  static void for_each_edge(std::span<const Side> sorted, const Visit& visit) {
+    for (std::size_t first = 0, last = 0; first < sorted.size(); first = last) {
+      while (last < sorted.size() && sorted[last].ends == sorted[first].ends) ++last;
+      visit(sorted.subspan(first, last - first));
+    }
+  }
+
+  [[nodiscard]] Around around(std::uint32_t v) const {
+    Around out;
+    for (const Triangle3& t : triangles_around(v)) {
+      const auto at = static_cast<std::size_t>(std::find(t.begin(), t.end(), v) - t.begin());
+      if (at < 3) {
+        out.corners.push_back({t[(at + 1) % 3], t[(at + 2) % 3]});
+        continue;
       }
+      for (std::size_t k = 0; k < 3; ++k) out.fixed.push_back(side_of(t[k], t[(k + 1) % 3], t[(k + 2) % 3]));
     }
-    std::sort(sides_.begin(), sides_.end());
-    std::size_t count = 0;
-    for (std::size_t first = 0, last = 0; first < sides_.size(); first = last) {
-      while (last < sides_.size() && sides_[last].ends == sides_[first].ends) ++last;
-      if (last - first == 2 && is_folded(sides_[first].ends, sides_[first].third, sides_[first + 1].third)) ++count;
+    std::sort(out.fixed.begin(), out.fixed.end());
+    for_each_edge(out.fixed, [&](std::span<const Side> at) { out.fixed_folds += is_folded(at) ? 1 : 0; });
+    return out;
+  }
+  /// Folds between the triangles around a vertex, were it at another one.
+  [[nodiscard]] std::size_t folds(const Around& around, std::uint32_t to) {
+    moved_.clear();
+    for (const auto& [p, q] : around.corners) {
+      if (p == to || q == to) continue;
+      moved_.insert(moved_.end(), {side_of(p, q, to), side_of(p, to, q), side_of(q, to, p)});
     }
+    std::sort(moved_.begin(), moved_.end());
+    std::size_t count = around.fixed_folds;
+    for_each_edge(moved_, [&](std::span<const Side> at) {
+      const auto [first, last] = std::equal_range(around.fixed.begin(), around.fixed.end(), at[0]);
+      const std::span<const Side> beside(first, last);
+      if (beside.size() > 2) return;  // folded neither before nor after
+      at_edge_.assign(beside.begin(), beside.end());
+      count -= is_folded(at_edge_) ? 1 : 0;
+      at_edge_.insert(at_edge_.end(), at.begin(), at.end());
+      count += is_folded(at_edge_) ? 1 : 0;
+    });
     return count;
   }
 
@@ -132,12 +167,12 @@ class Unfolder {
     });
     std::optional<std::tuple<std::ptrdiff_t, double, std::uint32_t, std::uint32_t>> best;
     for (const std::uint32_t from : corners) {
-      const std::vector<Triangle3> triangles = triangles_around(from);
-      const auto before = static_cast<std::ptrdiff_t>(folds(triangles, from, from));
+      const Around triangles = around(from);
+      const auto before = static_cast<std::ptrdiff_t>(folds(triangles, from));
       for (const std::uint32_t to : neighbours(from)) {
         const double size = length(lists_.position(from) - lists_.position(to));
         if (size > most_moved_ || !keeps_borders(from, to)) continue;
-        const auto after = static_cast<std::ptrdiff_t>(folds(triangles, from, to));
+        const auto after = static_cast<std::ptrdiff_t>(folds(triangles, to));
         const std::tuple entry(after - before, size, from, to);
         if (after < before && (!best || entry < *best) && lists_.may_contract(from, to)) best = entry;
       }
@@ -159,7 +194,7 @@ class Unfolder {
   ShrinkingLists lists_;
   double most_moved_;
   const Context& context_;
-  std::vector<Side> sides_;
+  std::vector<Side> moved_, at_edge_;  ///< kept, so that they need no new memory
 };
 
 }  // namespace
