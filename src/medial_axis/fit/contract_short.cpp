@@ -117,8 +117,9 @@ class ShortEdges {
     std::uint32_t to = lists_.now(b);
     if (from == to) return true;
     if (length(lists_.position(from) - lists_.position(to)) > 2 * limit(from, to, longest(a, b))) return false;
-    // Seams and curves stay before rims, these before the insides of sheets.
-    if (std::pair(lists_.rank(from), to) > std::pair(lists_.rank(to), from)) std::swap(from, to);
+    // Seams and curves stay before rims, these before the insides of sheets, and there what knows its two walls.
+    const auto worth = [&](std::uint32_t v) { return std::pair(lists_.rank(v), lists_.angle(v) > 0); };
+    if (std::tuple(worth(from), to) > std::tuple(worth(to), from)) std::swap(from, to);
     if (!lists_.may_contract(from, to)) {
       std::swap(from, to);
       if (!lists_.may_contract(from, to)) return false;

@@ -85,7 +85,9 @@ class Fitter {
   }
   /// Puts vertices that know of one wall only between two.
   void find_sheets() {
-    move([&](std::uint32_t v) { return lists_.vertices[v].separation_angle > 0 ? std::nullopt : between(v, 2); });
+    const auto is_asked = [&](std::uint32_t v) { return !(lists_.vertices[v].separation_angle > 0); };
+    find_elements_around(is_asked);
+    move([&](std::uint32_t v) { return is_asked(v) ? between(v, 2) : std::nullopt; });
   }
   /// What each vertex sees, degrees.
   [[nodiscard]] std::vector<double> angles() const {
@@ -100,6 +102,7 @@ class Fitter {
   }
   /// Vertices inside of a sheet that were put on another one beyond the seam go to this.
   void straighten() {
+    find_elements_around([&](std::uint32_t v) { return is_bent(v); });
     move([&](std::uint32_t v) { return straightened(v); });
   }
   /// Borders that leave what is round between two vertices that show go back there.
@@ -170,15 +173,19 @@ class Fitter {
 
   /// A vertex inside of a sheet where this bends: on the seam, if it bends less then.
   [[nodiscard]] Moved straightened(std::uint32_t v) const {
-    constexpr double sharp = 0.9;   // cosine: 25 degrees
     constexpr double better = 0.5;  // of what is missing to 1
-    const Kind& kind = kinds_[v];
-    if (kind.seams + kind.curves + kind.rims > 0) return std::nullopt;
+    if (!is_bent(v)) return std::nullopt;
     const double bend = least_cosine(v, lists_.vertices[v].position);
-    if (bend > sharp) return std::nullopt;
     const Moved found = between(v, 3);
     if (!found || 1 - least_cosine(v, found->position) > better * (1 - bend)) return std::nullopt;
     return found;
+  }
+
+  /// Whether a vertex lies inside of a sheet that bends there.
+  [[nodiscard]] bool is_bent(std::uint32_t v) const {
+    constexpr double sharp = 0.9;  // cosine: 25 degrees
+    const Kind& kind = kinds_[v];
+    return kind.seams + kind.curves + kind.rims == 0 && least_cosine(v, lists_.vertices[v].position) <= sharp;
   }
 
   /// Of the angles by which the sheet bends at the edges of a vertex, were it elsewhere; 1 where it is flat.
@@ -405,14 +412,40 @@ class Fitter {
 
   // ---- Walls ----
 
+  using Elements = std::array<std::uint32_t, 2>;
+
+  /// What the footprints of a vertex lie on.
+  [[nodiscard]] Elements elements_of(const AxisVertex& vertex) const {
+    const std::uint32_t first = surface_.nearest(vertex.footprints[0], {}).element;
+    return {first, vertex.separation_angle == 0 ? first : surface_.nearest(vertex.footprints[1], {}).element};
+  }
+  /// Finds these once for the vertices asked for and their neighbours, before vertices move; most of them are looked at
+  /// from several sides.
+  template <class IsAsked>
+  void find_elements_around(const IsAsked& is_asked) {
+    elements_.assign(lists_.vertices.size(), std::nullopt);
+    std::vector<std::uint8_t> is_near(lists_.vertices.size(), 0);
+    for (std::uint32_t v = 0; v < is_near.size(); ++v) {
+      if (!is_asked(v)) continue;
+      is_near[v] = 1;
+      for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) is_near[other_end(e, v)] = 1;
+    }
+    parallel_for(context_, is_near.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
+      for (std::size_t v = range.begin; v < range.end; ++v) {
+        if (is_near[v] != 0) elements_[v] = elements_of(lists_.vertices[v]);
+      }
+    });
+  }
+
   void add_feet(std::uint32_t v, std::vector<Footprint>& feet) const {
     const AxisVertex& vertex = lists_.vertices[v];
+    const bool is_known = v < elements_.size() && elements_[v];
+    const Elements elements = is_known ? *elements_[v] : elements_of(vertex);
     for (std::size_t k = 0; k < 2; ++k) {
       if (k == 1 && vertex.separation_angle == 0) break;
-      const NearestPoint at = surface_.nearest(vertex.footprints[k], {});
-      const Footprint foot{vertex.footprints[k], at.element, 7};
-      const auto is_known = [&](const Footprint& other) { return other.element == foot.element; };
-      if (std::none_of(feet.begin(), feet.end(), is_known)) feet.push_back(foot);
+      const Footprint foot{vertex.footprints[k], elements[k], 7};
+      const auto is_same = [&](const Footprint& other) { return other.element == foot.element; };
+      if (std::none_of(feet.begin(), feet.end(), is_same)) feet.push_back(foot);
     }
   }
   [[nodiscard]] std::vector<Footprint> feet_of(std::uint32_t v) const {
@@ -491,12 +524,14 @@ class Fitter {
   const Context& context_;
   Incidence incidence_;
   std::vector<Kind> kinds_;
+  std::vector<std::optional<Elements>> elements_;  ///< empty, or of some vertices
 };
 
 }  // namespace
 
 void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context) {
   constexpr ShortLengths nothing{};
+  constexpr ShortLengths inside{.on_seams = 0, .on_rims = 0};
   constexpr ShortLengths with_seams{.on_seams = 0.6};
   constexpr ShortLengths with_rims{.on_seams = 0.6, .on_rims = 0.3, .of_crumbs = 1.5, .of_slivers = 4};
   const auto take = [&](void (Fitter::*step)(), const ShortLengths& lengths) {
@@ -506,6 +541,8 @@ void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context)
   const auto trim_excess = [&] { trim(lists, Fitter(lists, target, context).angles(), target.theta, context); };
   Fitter(lists, target, context).find_centres();
   trim_excess();
+  // Of vertices close beside each other one is put on its sheet, not all.
+  contract_short(lists, target.surface, target.voxel, inside, context);
   take(&Fitter::find_sheets, nothing);
   take(&Fitter::place_seams, with_seams);
   take(&Fitter::place_seams, with_seams);
