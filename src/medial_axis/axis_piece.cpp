@@ -145,10 +145,11 @@ AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floo
     for (const Cell cell : {removal.cell, removal.face}) piece.cells[corners.index_of(cell)].level = removal.level;
   }
   timer.lap("collapse");
-  piece.vertices = place_vertices(governors, piece.structure, corners.vertex_cells(), context);
+  const Witnesses witnesses(governors, piece.structure, context);
+  piece.vertices = place_vertices(witnesses, corners.vertex_cells(), context);
   if (solid.is_exact) keep_edges_inside(piece, corners, governors, context);
   make_equal(piece, corners.of_cells(), same_place * governors.voxel());
-  shape_cells(piece, corners, governors, context);
+  shape_cells(piece, corners, witnesses, context);
   timer.lap("vertices");
   return piece;
 }

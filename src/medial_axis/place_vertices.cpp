@@ -208,64 +208,10 @@ AxisVertex vertex_at_corner(const GovernorField& governors, const std::array<std
 
 namespace {
 
-/// Calls use(place) for voxels that are inside around a cell of the lattice.
-template <class Use>
-void for_each_voxel_inside(const GovernorField& governors, const CellLattice& lattice, Cell cell, const Use& use) {
-  lattice.for_each_cube_around(cell, [&](const std::array<std::int64_t, 3>& at) {
-    if (governors.solid().voxels.contains(at[0], at[1], at[2])) use(at);
-  });
-}
-
-/// The deepest voxel around a cell of the lattice.
-std::optional<Stop> deepest_of(const GovernorField& governors, const CellLattice& lattice, Cell cell) {
-  const VoxelSolid& solid = governors.solid();
-  std::optional<std::array<std::int64_t, 3>> deepest;
-  const auto depth = [&](const std::array<std::int64_t, 3>& v) {
-    return solid.depth[solid.grid.index(v[0], v[1], v[2])];
-  };
-  for_each_voxel_inside(governors, lattice, cell, [&](const std::array<std::int64_t, 3>& at) {
-    if (!deepest || depth(at) > depth(*deepest)) deepest = at;
-  });
-  if (!deepest) return std::nullopt;
-  const Governor g = governors.at((*deepest)[0], (*deepest)[1], (*deepest)[2]);
-  return SolidPaths(governors.surface()).stop_at(g.centre, g.foot);
-}
-
-/// Calls use(stop) for points of the component of a cell: its own, and those of cells that it is a face of.
-template <class Use>
-void for_each_witness(const GovernorField& governors, const CellStructure& structure, Cell cell, const Use& use) {
-  const SolidPaths paths(governors.surface());
-  const auto offer_cell = [&](Cell other) {
-    if (structure.is_extra(other)) {
-      if (const auto stop = paths.stop_at(structure.extra()->cell(other).witness, {})) use(*stop);
-    } else if (const auto stop = deepest_of(governors, structure.lattice(), other)) {
-      use(*stop);
-    }
-  };
-  if (structure.is_extra(cell)) offer_cell(cell);
-  const auto offer_cofaces = [&](Cell below) {
-    structure.for_each_coface(below, [&](Cell coface) {
-      // Cells of the lattice are found by their voxels, unless none of these is there.
-      if (structure.is_extra(below) || structure.is_extra(coface)) offer_cell(coface);
-    });
-  };
-  offer_cofaces(cell);
-  structure.for_each_coface(cell, [&](Cell coface) {
-    if (structure.is_extra(cell) || structure.is_extra(coface)) offer_cofaces(coface);
-  });
-}
-
-std::optional<Stop> home_of_extra(const GovernorField& governors, const CellStructure& structure, Cell cell) {
-  std::optional<Stop> best;
-  for_each_witness(governors, structure, cell, [&](const Stop& stop) {
-    if (!best || stop.nearest.distance > best->nearest.distance) best = stop;
-  });
-  return best;
-}
-
 /// Whether a vertex lies in the component that its cell stands for, as far as lines tell: others may have been closer.
-bool is_in_component(const GovernorField& governors, const CellStructure& structure, Cell cell,
-                     const AxisVertex& vertex) {
+bool is_in_component(const Witnesses& witnesses, Cell cell, const AxisVertex& vertex) {
+  const GovernorField& governors = witnesses.governors();
+  const CellStructure& structure = witnesses.structure();
   constexpr double furthest = 1.3;  // voxels, from the corner: 0.7 along each axis is 1.21
   const Vec3d corner = corner_at(governors.solid().grid, structure.lattice().place(node_of(cell)));
   if (length(vertex.position - corner) > furthest * governors.longest_voxel()) return false;
@@ -277,15 +223,16 @@ bool is_in_component(const GovernorField& governors, const CellStructure& struct
     is_in_ball = is_in_ball || length(vertex.position - g.centre) < 0.99 * length(g.centre - g.foot.point);
   });
   if (is_in_ball) return true;
-  const std::optional<Stop> home = deepest_of(governors, structure.lattice(), cell);
+  const std::optional<Stop> home = witnesses.deepest_voxel(cell);
   return !home || SolidPaths(governors.surface()).is_straight(*home, stop_of(vertex));
 }
 
 /// In the middle of a thin part where there is one: the ball there holds the point that it was found from.
-AxisVertex place_extra(const GovernorField& governors, const CellStructure& structure, Cell cell) {
+AxisVertex place_extra(const Witnesses& witnesses, Cell cell) {
+  const GovernorField& governors = witnesses.governors();
   const Surface& surface = governors.surface();
-  const std::optional<Stop> home = home_of_cell(governors, structure, cell);
-  if (!home) return vertex_on_surface(surface.nearest(structure.extra()->cell(cell).witness, {}));
+  const std::optional<Stop> home = witnesses.home_of(cell);
+  if (!home) return vertex_on_surface(surface.nearest(witnesses.structure().extra()->cell(cell).witness, {}));
   const auto ball = ball_around(surface, home->nearest, home->at, 2 * governors.longest_voxel());
   if (!ball) return vertex_of_one_wall(home->at, home->nearest);
   const double reach = most_moved * governors.longest_voxel();
@@ -299,26 +246,6 @@ AxisVertex place_extra(const GovernorField& governors, const CellStructure& stru
 
 }  // namespace
 
-std::vector<Stop> landmarks_of(const GovernorField& governors, const CellStructure& structure, Cell vertex) {
-  std::vector<Stop> stops;
-  if (!structure.is_extra(vertex)) {
-    const SolidPaths paths(governors.surface());
-    for_each_voxel_inside(governors, structure.lattice(), vertex, [&](const std::array<std::int64_t, 3>& at) {
-      const Governor g = governors.at(at[0], at[1], at[2]);
-      if (const auto stop = paths.stop_at(g.centre, g.foot)) stops.push_back(*stop);
-    });
-  }
-  for_each_witness(governors, structure, vertex, [&](const Stop& stop) {
-    const auto is_known = [&](const Stop& other) { return other.at == stop.at; };
-    if (std::none_of(stops.begin(), stops.end(), is_known)) stops.push_back(stop);
-  });
-  std::sort(stops.begin(), stops.end(), [](const Stop& a, const Stop& b) {
-    if (a.nearest.distance != b.nearest.distance) return a.nearest.distance > b.nearest.distance;
-    return a.at[0] != b.at[0] ? a.at[0] < b.at[0] : a.at[1] != b.at[1] ? a.at[1] < b.at[1] : a.at[2] < b.at[2];
-  });
-  return stops;
-}
-
 Box3 box_of_vertex(const GovernorField& governors, const CellStructure& structure, Cell vertex) {
   constexpr double rounding = 1e-9;
   const GridSpec& grid = governors.solid().grid;
@@ -331,24 +258,20 @@ Box3 box_of_vertex(const GovernorField& governors, const CellStructure& structur
   return {middle - half, middle + half};
 }
 
-std::optional<Stop> home_of_cell(const GovernorField& governors, const CellStructure& structure, Cell cell) {
-  return structure.is_extra(cell) ? home_of_extra(governors, structure, cell)
-                                  : deepest_of(governors, structure.lattice(), cell);
-}
-
-std::vector<AxisVertex> place_vertices(const GovernorField& governors, const CellStructure& structure,
-                                       std::span<const Cell> cells, const Context& context) {
-  const Placer placer(governors);
+std::vector<AxisVertex> place_vertices(const Witnesses& witnesses, std::span<const Cell> cells,
+                                       const Context& context) {
+  const CellStructure& structure = witnesses.structure();
+  const Placer placer(witnesses.governors());
   std::vector<AxisVertex> vertices(cells.size());
   parallel_for(context, cells.size(), nodes_per_range, "vertices", [&](const WorkRange& range) {
     for (std::size_t n = range.begin; n < range.end; ++n) {
       if (structure.is_extra(cells[n])) {
-        vertices[n] = place_extra(governors, structure, cells[n]);
+        vertices[n] = place_extra(witnesses, cells[n]);
         continue;
       }
       vertices[n] = placer.place(structure.lattice().place(node_of(cells[n])));
-      if (structure.extra() != nullptr && !is_in_component(governors, structure, cells[n], vertices[n])) {
-        vertices[n] = place_extra(governors, structure, cells[n]);
+      if (structure.extra() != nullptr && !is_in_component(witnesses, cells[n], vertices[n])) {
+        vertices[n] = place_extra(witnesses, cells[n]);
       }
     }
   });

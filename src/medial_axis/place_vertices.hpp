@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "medial_axis/cell_complex.hpp"
 #include "medial_axis/governors.hpp"
 #include "medial_axis/solid_paths.hpp"
+#include "medial_axis/witnesses.hpp"
 
 namespace blum {
 
@@ -20,17 +20,8 @@ namespace blum {
 /// stays where it is where only one wall is near. Extra ones lie in the middle of the component of the solid that they
 /// stand for. Radius and first footprint are those of an exact query.
 /// @param cells  vertices of the structure.
-[[nodiscard]] std::vector<AxisVertex> place_vertices(const GovernorField& governors, const CellStructure& structure,
-                                                     std::span<const Cell> cells, const Context& context);
-
-/// A point of the component of the solid that a cell of a model stands for, as deep as one known; nullopt where none is
-/// known that is not on the surface.
-[[nodiscard]] std::optional<Stop> home_of_cell(const GovernorField& governors, const CellStructure& structure,
-                                               Cell cell);
-
-/// All points known of the component that a vertex of a model stands for, the deepest first.
-[[nodiscard]] std::vector<Stop> landmarks_of(const GovernorField& governors, const CellStructure& structure,
-                                             Cell vertex);
+[[nodiscard]] std::vector<AxisVertex> place_vertices(const Witnesses& witnesses, std::span<const Cell> cells,
+                                                     const Context& context);
 
 /// The box of the grid that a vertex of a model stands for a component in, a little larger than it is.
 [[nodiscard]] Box3 box_of_vertex(const GovernorField& governors, const CellStructure& structure, Cell vertex);

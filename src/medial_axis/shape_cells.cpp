@@ -32,8 +32,12 @@ class Shaper {
  public:
   static constexpr std::uint32_t first_own = 0xf0000000U;
 
-  Shaper(const AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors, const Context& context)
-      : piece_(piece), corners_(corners), governors_(governors), paths_(governors.surface()) {
+  Shaper(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context)
+      : piece_(piece),
+        corners_(corners),
+        governors_(witnesses.governors()),
+        witnesses_(witnesses),
+        paths_(governors_.surface()) {
     find_twins();
     find_homes(context);
   }
@@ -213,12 +217,12 @@ class Shaper {
   }
 
   [[nodiscard]] std::vector<Stop> landmarks(std::uint32_t vertex) const {
-    return landmarks_of(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
+    return witnesses_.landmarks_of(corners_.vertex_cells()[vertex]);
   }
 
   /// A point of the component that a cell stands for.
   [[nodiscard]] std::optional<Stop> home_of(Cell cell) const {
-    return home_of_cell(governors_, piece_.structure, cell);
+    return witnesses_.home_of(cell);
   }
 
   /// Triangles around a vertex in the middle, the best of some.
@@ -419,6 +423,7 @@ class Shaper {
   const AxisPiece& piece_;
   const AxisCorners& corners_;
   const GovernorField& governors_;
+  const Witnesses& witnesses_;
   SolidPaths paths_;
   std::vector<std::uint32_t> twins_;
   std::vector<std::uint8_t> is_near_extra_;  ///< of each vertex place
@@ -494,12 +499,13 @@ class Outlines {
 
 }  // namespace
 
-void shape_cells(AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors, const Context& context) {
+void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context) {
+  const GovernorField& governors = witnesses.governors();
   Shapes bent;
   Shapes filled;
   const Outlines outlines(corners, bent);
   if (governors.solid().extra != nullptr) {
-    const Shaper shaper(piece, corners, governors, context);
+    const Shaper shaper(piece, corners, witnesses, context);
     bent = shapes_of(piece, 1, context, [&](std::uint32_t c) { return shaper.bent(c); });
     take_vertices(piece, bent);
     filled =

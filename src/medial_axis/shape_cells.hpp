@@ -4,13 +4,13 @@
 #include "blum/core/context.hpp"
 #include "medial_axis/axis_corners.hpp"
 #include "medial_axis/axis_piece.hpp"
-#include "medial_axis/governors.hpp"
+#include "medial_axis/witnesses.hpp"
 
 namespace blum {
 
 /// Makes segments of edges and triangles of polygons, between the vertices that were placed. Of a polyhedron none of
 /// these leaves the solid where that can be helped: edges that would are led through points of the components that
 /// they stand for, polygons that would get a vertex in their middle.
-void shape_cells(AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors, const Context& context);
+void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context);
 
 }  // namespace blum

@@ -165,7 +165,8 @@ TEST(PlaceVertices, ThreadsDoNotMatter) {
   const Sample s(make_wedge({.angle = 40}), 0.05);
   const GovernorField governors(s.solid, s.surface);
   for (const int threads : {1, 2, 7}) {
-    const auto vertices = place_vertices(governors, s.piece.structure, s.cells, {.threads = threads});
+    const Context context{.threads = threads};
+    const auto vertices = place_vertices(Witnesses(governors, s.piece.structure, context), s.cells, context);
     ASSERT_LE(vertices.size(), s.piece.vertices.size());
     for (std::size_t n = 0; n < vertices.size(); ++n) {
       ASSERT_EQ(vertices[n].position, s.piece.vertices[n].position);
