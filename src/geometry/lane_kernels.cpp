@@ -141,9 +141,9 @@ struct Rounded {
 /// d . (u x v)
 inline Rounded triple(const Vec3d& d, const Vec3d& u, const Vec3d& v) {
   const double xy = u.x * v.y, yx = u.y * v.x, yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z;
-  return {d.x * (yz - zy) + d.y * (zx - xz) + d.z * (xy - yx),
-          std::abs(d.x) * (std::abs(yz) + std::abs(zy)) + std::abs(d.y) * (std::abs(zx) + std::abs(xz)) +
-              std::abs(d.z) * (std::abs(xy) + std::abs(yx))};
+  return {d.x * (yz - zy) + d.y * (zx - xz) + d.z * (xy - yx), std::abs(d.x) * (std::abs(yz) + std::abs(zy)) +
+                                                                   std::abs(d.y) * (std::abs(zx) + std::abs(xz)) +
+                                                                   std::abs(d.z) * (std::abs(xy) + std::abs(yx))};
 }
 
 inline Vec3d corner_at(const PrimitiveBlock& block, std::size_t k, std::size_t i) {

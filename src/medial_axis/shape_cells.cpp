@@ -221,9 +221,7 @@ class Shaper {
   }
 
   /// A point of the component that a cell stands for.
-  [[nodiscard]] std::optional<Stop> home_of(Cell cell) const {
-    return witnesses_.home_of(cell);
-  }
+  [[nodiscard]] std::optional<Stop> home_of(Cell cell) const { return witnesses_.home_of(cell); }
 
   /// Triangles around a vertex in the middle, the best of some.
   [[nodiscard]] Shape fan(std::uint32_t c, const std::vector<std::uint32_t>& outline,

@@ -48,9 +48,9 @@ constexpr double sliver = 0.1;
 
 class ShortEdges {
  public:
-  ShortEdges(AxisLists& lists, const Surface& surface, double voxel, const ShortLengths& lengths,
-             const Context& context)
-      : lists_(lists, surface, context), voxel_(voxel), lengths_(lengths), context_(context) {
+  ShortEdges(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
+             const ShortLengths& lengths, const Context& context)
+      : lists_(lists, incidence, surface), voxel_(voxel), lengths_(lengths), context_(context) {
     if (lengths.of_crumbs > 0) crumbs_ = edges_of_crumbs(lists_.incidence());
     if (lengths.of_slivers > 0) find_slivers(lists.triangles);
     for (const auto& [a, b] : lists_.incidence().edges()) {
@@ -60,7 +60,9 @@ class ShortEdges {
     std::sort(short_.begin(), short_.end());
   }
 
-  void run() {
+  /// @return  whether any edge was contracted.
+  bool run() {
+    const std::size_t all = short_.size();
     // What one contraction forbids another one may allow.
     for (bool is_changed = true; is_changed && !short_.empty();) {
       throw_if_cancelled(context_);
@@ -73,7 +75,9 @@ class ShortEdges {
       short_ = std::move(left);
       is_changed = short_.size() < count;
     }
+    if (short_.size() == all) return false;
     lists_.write();
+    return true;
   }
 
  private:
@@ -138,9 +142,9 @@ class ShortEdges {
 
 }  // namespace
 
-void contract_short(AxisLists& lists, const Surface& surface, double voxel, const ShortLengths& lengths,
-                    const Context& context) {
-  ShortEdges(lists, surface, voxel, lengths, context).run();
+bool contract_short(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
+                    const ShortLengths& lengths, const Context& context) {
+  return ShortEdges(lists, incidence, surface, voxel, lengths, context).run();
 }
 
 }  // namespace blum

@@ -1,6 +1,7 @@
 // Blum: edges that the borders of an axis left without length. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
 #include "medial_axis/axis_lists.hpp"
 #include "medial_axis/surface.hpp"
@@ -18,9 +19,11 @@ struct ShortLengths {
 
 /// Contracts edges much shorter than a voxel where that keeps the homotopy type and edges in the solid: ribbons become
 /// curves, and two seams beside each other one.
-/// @param voxel  mesh units.
+/// @param incidence  of the lists as they are.
+/// @param voxel      mesh units.
+/// @return           whether any edge was contracted.
 /// @throws Cancelled. Cost: near-linear.
-void contract_short(AxisLists& lists, const Surface& surface, double voxel, const ShortLengths& lengths,
-                    const Context& context);
+bool contract_short(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
+                    const ShortLengths& lengths, const Context& context);
 
 }  // namespace blum

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -88,7 +89,10 @@ class Fitter {
     const auto is_asked = [&](std::uint32_t v) { return !(lists_.vertices[v].separation_angle > 0); };
     find_elements_around(is_asked);
     move([&](std::uint32_t v) { return is_asked(v) ? between(v, 2) : std::nullopt; });
+    elements_.clear();
   }
+  /// Of the lists, as long as none of their edges goes.
+  [[nodiscard]] const Incidence& incidence() const { return incidence_; }
   /// What each vertex sees, degrees.
   [[nodiscard]] std::vector<double> angles() const {
     std::vector<double> out(lists_.vertices.size());
@@ -104,6 +108,7 @@ class Fitter {
   void straighten() {
     find_elements_around([&](std::uint32_t v) { return is_bent(v); });
     move([&](std::uint32_t v) { return straightened(v); });
+    elements_.clear();
   }
   /// Borders that leave what is round between two vertices that show go back there.
   void take_back() {
@@ -527,6 +532,46 @@ class Fitter {
   std::vector<std::optional<Elements>> elements_;  ///< empty, or of some vertices
 };
 
+/// The steps one after the other. What is told by the triangles alone is kept from step to step while these stay.
+class Fitting {
+ public:
+  Fitting(AxisLists& lists, const FitTarget& target, const Context& context)
+      : lists_(lists), target_(target), context_(context) {}
+
+  using Step = void (Fitter::*)();
+
+  void take(Step step) { (fitter().*step)(); }
+  void take(Step step, const ShortLengths& lengths) {
+    take(step);
+    contract(lengths);
+  }
+  void contract(const ShortLengths& lengths) {
+    if (contract_short(lists_, fitter().incidence(), target_.surface, target_.voxel, lengths, context_)) {
+      fitter_.reset();
+    }
+  }
+  /// Takes away what lies beyond the angle and can go.
+  void trim_excess() {
+    trim(lists_, fitter().angles(), target_.theta, context_);
+    fitter_.reset();
+  }
+  void take_folds_away() {
+    unfold(lists_, fitter().incidence(), target_.surface, target_.voxel, context_);
+    fitter_.reset();
+  }
+
+ private:
+  Fitter& fitter() {
+    if (!fitter_) fitter_ = std::make_unique<Fitter>(lists_, target_, context_);
+    return *fitter_;
+  }
+
+  AxisLists& lists_;
+  const FitTarget& target_;
+  const Context& context_;
+  std::unique_ptr<Fitter> fitter_;
+};
+
 }  // namespace
 
 void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context) {
@@ -534,26 +579,22 @@ void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context)
   constexpr ShortLengths inside{.on_seams = 0, .on_rims = 0};
   constexpr ShortLengths with_seams{.on_seams = 0.6};
   constexpr ShortLengths with_rims{.on_seams = 0.6, .on_rims = 0.3, .of_crumbs = 1.5, .of_slivers = 4};
-  const auto take = [&](void (Fitter::*step)(), const ShortLengths& lengths) {
-    (Fitter(lists, target, context).*step)();
-    contract_short(lists, target.surface, target.voxel, lengths, context);
-  };
-  const auto trim_excess = [&] { trim(lists, Fitter(lists, target, context).angles(), target.theta, context); };
-  Fitter(lists, target, context).find_centres();
-  trim_excess();
+  Fitting fitting(lists, target, context);
+  fitting.take(&Fitter::find_centres);
+  fitting.trim_excess();
   // Of vertices close beside each other one is put on its sheet, not all.
-  contract_short(lists, target.surface, target.voxel, inside, context);
-  take(&Fitter::find_sheets, nothing);
-  take(&Fitter::place_seams, with_seams);
-  take(&Fitter::place_seams, with_seams);
-  take(&Fitter::straighten, with_seams);
-  take(&Fitter::straighten, with_seams);
-  take(&Fitter::cut_rims, with_seams);
-  take(&Fitter::cut_rims, with_rims);
-  trim_excess();
-  take(&Fitter::place_seams, with_rims);
-  take(&Fitter::take_back, with_rims);
-  unfold(lists, target.surface, target.voxel, context);
+  fitting.contract(inside);
+  fitting.take(&Fitter::find_sheets, nothing);
+  fitting.take(&Fitter::place_seams, with_seams);
+  fitting.take(&Fitter::place_seams, with_seams);
+  fitting.take(&Fitter::straighten, with_seams);
+  fitting.take(&Fitter::straighten, with_seams);
+  fitting.take(&Fitter::cut_rims, with_seams);
+  fitting.take(&Fitter::cut_rims, with_rims);
+  fitting.trim_excess();
+  fitting.take(&Fitter::place_seams, with_rims);
+  fitting.take(&Fitter::take_back, with_rims);
+  fitting.take_folds_away();
 }
 
 }  // namespace blum

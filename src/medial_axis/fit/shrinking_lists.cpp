@@ -8,11 +8,11 @@
 
 namespace blum {
 
-ShrinkingLists::ShrinkingLists(AxisLists& lists, const Surface& surface, const Context& context)
+ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface)
     : lists_(lists),
       paths_(surface),
       cells_({lists.vertices.size(), lists.edges, lists.triangles}),
-      incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
+      incidence_(incidence),
       rank_(lists.vertices.size(), 0),
       into_(lists.vertices.size()) {
   std::iota(into_.begin(), into_.end(), 0U);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "blum/complex/incidence.hpp"
-#include "blum/core/context.hpp"
 #include "medial_axis/axis_lists.hpp"
 #include "medial_axis/shrinking_complex.hpp"
 #include "medial_axis/solid_paths.hpp"
@@ -19,8 +18,9 @@ class ShrinkingLists {
   /// Vertices of seams and curves rank from here on, those of rims from 1 to there.
   static constexpr int on_seam = 1024;
 
-  /// @param lists  is to be left as it is until write().
-  ShrinkingLists(AxisLists& lists, const Surface& surface, const Context& context);
+  /// @param lists      is to be left as it is until write().
+  /// @param incidence  of the lists; outlives this.
+  ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface);
 
   [[nodiscard]] const ShrinkingComplex& cells() const { return cells_; }
   /// Of the lists at first.
@@ -45,7 +45,7 @@ class ShrinkingLists {
   AxisLists& lists_;
   SolidPaths paths_;
   ShrinkingComplex cells_;
-  Incidence incidence_;
+  const Incidence& incidence_;
   std::vector<int> rank_;
   std::vector<std::uint32_t> into_;
 };

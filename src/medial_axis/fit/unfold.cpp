@@ -25,8 +25,8 @@ constexpr int most_rounds = 4;
 
 class Unfolder {
  public:
-  Unfolder(AxisLists& lists, const Surface& surface, double voxel, const Context& context)
-      : lists_(lists, surface, context), most_moved_(most_moved * voxel), context_(context) {}
+  Unfolder(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel, const Context& context)
+      : lists_(lists, incidence, surface), most_moved_(most_moved * voxel), context_(context) {}
 
   void run() {
     for (int round = 0; round < most_rounds; ++round) {
@@ -199,8 +199,9 @@ class Unfolder {
 
 }  // namespace
 
-void unfold(AxisLists& lists, const Surface& surface, double voxel, const Context& context) {
-  Unfolder(lists, surface, voxel, context).run();
+void unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
+            const Context& context) {
+  Unfolder(lists, incidence, surface, voxel, context).run();
 }
 
 }  // namespace blum

@@ -1,6 +1,7 @@
 // Blum: folds in the sheets of an axis. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
 #include "medial_axis/axis_lists.hpp"
 #include "medial_axis/surface.hpp"
@@ -9,8 +10,8 @@ namespace blum {
 
 /// Where two triangles of a sheet lie one over the other, as vertices that were moved leave them, contracts the edge
 /// next to them that takes most of such folds away. Seams stay on seams and rims on rims; homotopy type and solid as in
-/// contract_short(). @param voxel  mesh units.
+/// contract_short(). @param incidence  of the lists as they are. @param voxel  mesh units.
 /// @throws Cancelled. Cost: near-linear.
-void unfold(AxisLists& lists, const Surface& surface, double voxel, const Context& context);
+void unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel, const Context& context);
 
 }  // namespace blum
