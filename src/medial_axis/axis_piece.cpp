@@ -145,7 +145,7 @@ AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floo
     for (const Cell cell : {removal.cell, removal.face}) piece.cells[corners.index_of(cell)].level = removal.level;
   }
   timer.lap("collapse");
-  const Witnesses witnesses(governors, piece.structure, context);
+  const Witnesses witnesses(governors, piece.structure);
   piece.vertices = place_vertices(witnesses, corners.vertex_cells(), context);
   if (solid.is_exact) keep_edges_inside(piece, corners, governors, context);
   make_equal(piece, corners.of_cells(), same_place * governors.voxel());

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 
-#include "blum/core/parallel.hpp"
-
 namespace blum {
 namespace {
-
-constexpr std::size_t cells_per_range = 512;
 
 bool is_deeper(const Stop& a, const Stop& b) {
   if (a.nearest.distance != b.nearest.distance) return a.nearest.distance > b.nearest.distance;
@@ -16,20 +12,22 @@ bool is_deeper(const Stop& a, const Stop& b) {
 
 }  // namespace
 
-Witnesses::Witnesses(const GovernorField& governors, const CellStructure& structure, const Context& context)
-    : governors_(governors), structure_(structure), paths_(governors.surface()), nearest_(structure.extra_count()) {
-  parallel_for(context, nearest_.size(), cells_per_range, "", [&](const WorkRange& range) {
-    for (std::size_t n = range.begin; n < range.end; ++n) {
-      const Cell cell = structure_.first_extra() + static_cast<Cell>(n);
-      const auto stop = paths_.stop_at(structure_.extra()->cell(cell).witness, {});
-      if (stop) nearest_[n] = stop->nearest;
-    }
-  });
-}
+Witnesses::Witnesses(const GovernorField& governors, const CellStructure& structure)
+    : governors_(governors), structure_(structure), paths_(governors.surface()), known_(structure.extra_count()) {}
 
 std::optional<Stop> Witnesses::witness_of(Cell extra) const {
-  const auto& nearest = nearest_[extra - structure_.first_extra()];
-  return nearest ? std::optional(Stop{structure_.extra()->cell(extra).witness, *nearest}) : std::nullopt;
+  const Vec3d& at = structure_.extra()->cell(extra).witness;
+  Known& known = known_[extra - structure_.first_extra()];
+  if (known.state.load(std::memory_order_acquire) == State::known) {
+    return known.nearest ? std::optional(Stop{at, *known.nearest}) : std::nullopt;
+  }
+  const std::optional<Stop> stop = paths_.stop_at(at, {});
+  State expected = State::unknown;  // one thread writes; others that asked at the same time found the same
+  if (known.state.compare_exchange_strong(expected, State::being_written)) {
+    if (stop) known.nearest = stop->nearest;
+    known.state.store(State::known, std::memory_order_release);
+  }
+  return stop;
 }
 
 std::optional<Stop> Witnesses::deepest_voxel(Cell cell) const {

@@ -1,10 +1,12 @@
 // Blum: points of a solid that its cells stand for. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <atomic>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "blum/core/context.hpp"
 #include "medial_axis/cell_complex.hpp"
 #include "medial_axis/governors.hpp"
 #include "medial_axis/solid_paths.hpp"
@@ -20,11 +22,11 @@ void for_each_voxel_inside(const GovernorField& governors, const CellLattice& la
 }
 
 /// What is known of the components of the solid that the cells of a model stand for: points in them. Those of extra
-/// cells are looked up once, as each is asked for by all cells around.
+/// cells are kept once they are looked up, as each is asked for by all cells around. May be asked from many threads.
 class Witnesses {
  public:
-  /// @throws Cancelled. Cost: a closest point for each extra cell, and 48 bytes.
-  Witnesses(const GovernorField& governors, const CellStructure& structure, const Context& context);
+  /// Cost: 56 bytes for each extra cell.
+  Witnesses(const GovernorField& governors, const CellStructure& structure);
 
   /// A point of the component of a cell, as deep as one known; nullopt where none is known that is not on the surface.
   [[nodiscard]] std::optional<Stop> home_of(Cell cell) const;
@@ -37,6 +39,13 @@ class Witnesses {
   [[nodiscard]] const CellStructure& structure() const { return structure_; }
 
  private:
+  enum class State : std::uint8_t { unknown, being_written, known };
+  /// The closest point to the witness of an extra cell, if that is inside.
+  struct Known {
+    std::atomic<State> state{State::unknown};
+    std::optional<NearestPoint> nearest;
+  };
+
   [[nodiscard]] std::optional<Stop> witness_of(Cell extra) const;
   template <class Use>
   void for_each_witness(Cell cell, const Use& use) const;
@@ -44,7 +53,7 @@ class Witnesses {
   const GovernorField& governors_;
   const CellStructure& structure_;
   SolidPaths paths_;
-  std::vector<std::optional<NearestPoint>> nearest_;  ///< to the witness of each extra cell, where that is inside
+  mutable std::vector<Known> known_;
 };
 
 }  // namespace blum

@@ -166,7 +166,7 @@ TEST(PlaceVertices, ThreadsDoNotMatter) {
   const GovernorField governors(s.solid, s.surface);
   for (const int threads : {1, 2, 7}) {
     const Context context{.threads = threads};
-    const auto vertices = place_vertices(Witnesses(governors, s.piece.structure, context), s.cells, context);
+    const auto vertices = place_vertices(Witnesses(governors, s.piece.structure), s.cells, context);
     ASSERT_LE(vertices.size(), s.piece.vertices.size());
     for (std::size_t n = 0; n < vertices.size(); ++n) {
       ASSERT_EQ(vertices[n].position, s.piece.vertices[n].position);
