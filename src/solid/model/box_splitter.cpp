@@ -14,6 +14,9 @@ namespace {
 /// Cubes beside each other are not split into more boxes: a tunnel at a slant takes about as many as it is longer than
 /// wide.
 constexpr std::size_t most_boxes = std::size_t{1} << 17U;
+/// A cut opens a hole where this stays in its plane: as far as it is wide, over how much it slants. Beyond so many cuts
+/// in one box they are not begun.
+constexpr double most_cuts_along_hole = 8192;
 /// Boxes are not cut to less than this part of the spacing.
 constexpr double least_part = 1e-12;
 
@@ -48,7 +51,7 @@ void BoxSplitter::split(SplitBox box, const Context& context, std::vector<SplitB
     SplitBox next_box = std::move(waiting.back());
     waiting.pop_back();
     const std::optional<Cut> cut = test(next_box);
-    if (cut && out.size() + waiting.size() < most_boxes && can_cut(next_box, *cut)) {
+    if (cut && !cut->is_hopeless && out.size() + waiting.size() < most_boxes && can_cut(next_box, *cut)) {
       auto [lower, upper] = halves(std::move(next_box), *cut);
       waiting.push_back(std::move(upper));
       waiting.push_back(std::move(lower));
@@ -121,7 +124,7 @@ void BoxSplitter::find_passes(const SplitBox& box) {
   }
 }
 
-std::optional<Vec3d> BoxSplitter::connect_face(const SplitBox& box, std::size_t face) {
+std::optional<BoxSplitter::Hole> BoxSplitter::connect_face(const SplitBox& box, std::size_t face) {
   const std::array<std::size_t, 4> around = sides_of(face);
   std::array<std::uint32_t, 5> first{};
   unsigned border = 0;
@@ -187,12 +190,32 @@ std::optional<Vec3d> BoxSplitter::connect_face(const SplitBox& box, std::size_t 
   for (std::uint32_t k = 0; k < first[4]; ++k)
     interval_part_[face].push_back(first_part_[face] + square_.of_interval(k));
   if (passes) return std::nullopt;
+  return hole_between(box, face, loop_edges);
+}
+
+BoxSplitter::Hole BoxSplitter::hole_between(const SplitBox& box, std::size_t face,
+                                            std::span<const std::uint32_t> edges) const {
+  const std::size_t axis = face / 2;
+  const double plane = face % 2 == 0 ? box.box.low[axis] : box.box.high[axis];
+  Vec3d slant{};  // of the edges, for each unit along the axis
+  Box3 around;
   Vec3d sum{};
-  for (const std::uint32_t edge : loop_edges) {
+  for (const std::uint32_t edge : edges) {
     const auto [a, b] = mesh_.ends(edge);
-    sum += a + (b - a) * std::clamp((plane - a[axis]) / (b[axis] - a[axis]), 0.0, 1.0);
+    const double rise = b[axis] - a[axis];
+    const Vec3d at = a + (b - a) * std::clamp((plane - a[axis]) / rise, 0.0, 1.0);
+    sum += at;
+    around.extend(at);
+    slant += (b - a) / rise;
   }
-  return sum / static_cast<double>(loop_edges.size());
+  const auto count = static_cast<double>(edges.size());
+  const double depth = box.box.high[axis] - box.box.low[axis];
+  const std::size_t u = next_axis(axis);
+  const std::size_t v = next_axis(u);
+  const auto cuts = [&](std::size_t across) {
+    return std::abs(slant[across]) / count * depth / (around.upper[across] - around.lower[across]);
+  };
+  return {sum / count, cuts(u) > most_cuts_along_hole && cuts(v) > most_cuts_along_hole};
 }
 
 void BoxSplitter::connect_edges(const SplitBox& box) {
@@ -220,12 +243,12 @@ void BoxSplitter::connect_edges(const SplitBox& box) {
 }
 
 /// A cut through a hole of a face opens it; across the longer side, so that boxes stay compact.
-BoxSplitter::Cut BoxSplitter::cut_beside(const SplitBox& box, std::size_t face, const Vec3d& hole) const {
+BoxSplitter::Cut BoxSplitter::cut_beside(const SplitBox& box, std::size_t face, const Hole& hole) const {
   const Vec3d size = box.box.high - box.box.low;
   const std::size_t u = next_axis(face / 2);
   const std::size_t v = next_axis(u);
   const std::size_t axis = size[u] >= size[v] ? u : v;
-  return {axis, hole[axis], ModelObstacle::hole_in_square};
+  return {axis, hole.middle[axis], ModelObstacle::hole_in_square, hole.is_hopeless};
 }
 
 BoxSplitter::Cut BoxSplitter::cut_through_middle(const SplitBox& box, ModelObstacle obstacle) const {

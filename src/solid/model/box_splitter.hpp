@@ -43,6 +43,12 @@ class BoxSplitter {
     std::size_t axis = 0;
     double at = 0;
     ModelObstacle obstacle = ModelObstacle::handle;
+    bool is_hopeless = false;  ///< cuts would not end
+  };
+  /// Of a face.
+  struct Hole {
+    Vec3d middle;
+    bool is_hopeless = false;  ///< it runs at a slant through the box, and is far longer than wide
   };
   /// An edge of the box.
   struct Side {
@@ -55,10 +61,12 @@ class BoxSplitter {
   [[nodiscard]] std::optional<Cut> test(SplitBox& box);
   void find_crossings(const SplitBox& box);
   void find_passes(const SplitBox& box);
-  /// A point of the first hole in a face.
-  [[nodiscard]] std::optional<Vec3d> connect_face(const SplitBox& box, std::size_t face);
+  /// Joins what belongs together in a face. @return  the first hole in it.
+  [[nodiscard]] std::optional<Hole> connect_face(const SplitBox& box, std::size_t face);
+  /// @param edges  of the mesh, that lead through a face around a hole.
+  [[nodiscard]] Hole hole_between(const SplitBox& box, std::size_t face, std::span<const std::uint32_t> edges) const;
   void connect_edges(const SplitBox& box);
-  [[nodiscard]] Cut cut_beside(const SplitBox& box, std::size_t face, const Vec3d& hole) const;
+  [[nodiscard]] Cut cut_beside(const SplitBox& box, std::size_t face, const Hole& hole) const;
   [[nodiscard]] Cut cut_through_middle(const SplitBox& box, ModelObstacle obstacle) const;
   [[nodiscard]] bool can_cut(const SplitBox& box, const Cut& cut) const;
   [[nodiscard]] std::array<SplitBox, 2> halves(SplitBox&& box, const Cut& cut) const;
