@@ -1,0 +1,205 @@
+#include "medial_axis/rim_reach.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace blum {
+namespace {
+
+constexpr double tangent_of_cone = 2.1445;  // of 65 degrees
+constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing may be in between
+constexpr int most_halvings = 6;
+/// Planes that are closer to each other than this, as the determinant of their normals, have no point in common that
+/// is worth looking for.
+constexpr double least_determinant = 0.05;
+constexpr double corner_tolerance = 1e-6;  // of the reach
+
+struct Point2 {
+  double x = 0, y = 0;
+};
+
+/// The plane of a start with the start as origin and its direction as x.
+struct Frame {
+  Vec3d origin, x, y, normal;
+
+  [[nodiscard]] Point2 flat(const Vec3d& p) const { return {dot(p - origin, x), dot(p - origin, y)}; }
+  [[nodiscard]] Vec3d lifted(const Point2& p) const { return origin + x * p.x + y * p.y; }
+};
+
+/// Where a plane cuts a triangle; nullopt where it does not, or holds it.
+std::optional<std::array<Vec3d, 2>> section(const std::array<Vec3d, 3>& corners, const Frame& frame) {
+  std::array<double, 3> side{};
+  for (std::size_t k = 0; k < 3; ++k) side[k] = dot(corners[k] - frame.origin, frame.normal);
+  std::array<Vec3d, 2> ends{};
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    if ((side[k] < 0) == (side[next] < 0) || found == 2) continue;
+    ends[found++] = corners[k] + (corners[next] - corners[k]) * (side[k] / (side[k] - side[next]));
+  }
+  return found == 2 ? std::optional(ends) : std::nullopt;
+}
+
+/// The part of a segment in the cone around x; nullopt where there is none.
+std::optional<std::array<Point2, 2>> in_cone(const Point2& a, const Point2& b) {
+  double from = 0;
+  double to = 1;
+  for (const double sign : {1.0, -1.0}) {
+    const double at_a = tangent_of_cone * a.x + sign * a.y;  // >= 0 inside
+    const double at_b = tangent_of_cone * b.x + sign * b.y;
+    if (at_a < 0 && at_b < 0) return std::nullopt;
+    if (at_a < 0) from = std::max(from, at_a / (at_a - at_b));
+    if (at_b < 0) to = std::min(to, at_a / (at_a - at_b));
+  }
+  if (from > to) return std::nullopt;
+  const auto on = [&](double t) { return Point2{a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t}; };
+  return std::array{on(from), on(to)};
+}
+
+Point2 closest_to_origin(const std::array<Point2, 2>& segment) {
+  const auto& [a, b] = segment;
+  const Point2 along{b.x - a.x, b.y - a.y};
+  const double square = along.x * along.x + along.y * along.y;
+  const double t = square > 0 ? std::clamp(-(a.x * along.x + a.y * along.y) / square, 0.0, 1.0) : 0;
+  return {a.x + along.x * t, a.y + along.y * t};
+}
+
+std::optional<Frame> frame_of(const RimStart& start) {
+  if (!start.normal) return std::nullopt;
+  const Vec3d across = cross(*start.normal, start.outwards);
+  if (!(length(across) > 0.5)) return std::nullopt;
+  const Vec3d y = across / length(across);
+  return Frame{start.at, cross(y, *start.normal), y, *start.normal};
+}
+
+/// The closest point in the plane and the cone, seen or not.
+std::optional<RimTarget> closest_in_plane(const SearchMesh& surface, const Frame& frame, double reach) {
+  std::optional<RimTarget> best;
+  std::tuple best_of(reach, std::numeric_limits<std::uint32_t>::max());
+  surface.bvh().for_each_within(frame.origin, reach, [&](const NearestPrimitive& found) {
+    if (found.distance > std::get<0>(best_of)) return true;
+    std::array<Vec3d, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = surface.mesh().vertices[surface.mesh().triangles[found.primitive][k]];
+    }
+    const auto cut = section(corners, frame);
+    if (!cut) return true;
+    const auto seen = in_cone(frame.flat((*cut)[0]), frame.flat((*cut)[1]));
+    if (!seen) return true;
+    const Point2 at = closest_to_origin(*seen);
+    const std::tuple own(std::hypot(at.x, at.y), found.primitive);
+    if (own >= best_of) return true;
+    best_of = own;
+    best = RimTarget{frame.lifted(at), found.primitive};
+    return true;
+  });
+  return best;
+}
+
+/// Where planes through points meet, as x with normal . x = normal . point.
+std::optional<Vec3d> meeting_point(const std::array<Vec3d, 3>& normals, const std::array<Vec3d, 3>& points) {
+  const double determinant = dot(normals[0], cross(normals[1], normals[2]));
+  if (std::abs(determinant) < least_determinant) return std::nullopt;
+  Vec3d sum{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum += cross(normals[(k + 1) % 3], normals[(k + 2) % 3]) * dot(normals[k], points[k] - points[0]);
+  }
+  return points[0] + sum / determinant;
+}
+
+/// Halfway between two starts.
+std::optional<RimStart> halfway(const RimStart& a, const RimStart& b) {
+  RimStart out{(a.at + b.at) * 0.5, a.outwards + b.outwards, a.normal, std::max(a.reach, b.reach)};
+  if (a.normal && b.normal) {
+    const Vec3d sum = *a.normal + *b.normal * (dot(*a.normal, *b.normal) < 0 ? -1.0 : 1.0);
+    out.normal = sum / length(sum);
+  } else if (b.normal) {
+    out.normal = b.normal;
+  }
+  const double size = length(out.outwards);
+  if (!(size > 0.1)) return std::nullopt;
+  out.outwards = out.outwards / size;
+  return out;
+}
+
+}  // namespace
+
+SearchMesh::SearchMesh(TriangleMesh mesh, const Context& context)
+    : mesh_(std::move(mesh)), bvh_(mesh_, SiteTable(mesh_, context), context) {}
+
+Vec3d SearchMesh::normal(std::uint32_t triangle) const {
+  const auto& [a, b, c] = mesh_.triangles[triangle];
+  const Vec3d normal = cross(mesh_.vertices[b] - mesh_.vertices[a], mesh_.vertices[c] - mesh_.vertices[a]);
+  const double size = length(normal);
+  return size > 0 ? normal / size : Vec3d{};
+}
+
+std::optional<RimTarget> find_target(const SearchMesh& surface, const RimStart& start) {
+  std::optional<RimTarget> target;
+  double reach = start.reach;
+  if (const auto ahead = surface.bvh().first_crossing({start.at, start.outwards}, reach)) {
+    reach = ahead->t;
+    target = RimTarget{start.at + start.outwards * ahead->t, ahead->triangle.value};
+  }
+  const std::optional<Frame> frame = frame_of(start);
+  if (!frame) return target;
+  const std::optional<RimTarget> closest = closest_in_plane(surface, *frame, reach);
+  if (!closest) return target;
+  const Vec3d way = closest->at - start.at;
+  if (!(length(way) > 0)) return std::nullopt;
+  if (const auto before = surface.bvh().first_crossing({start.at, way}, nearly_all)) {
+    return RimTarget{start.at + way * before->t, before->triangle.value};
+  }
+  return closest;
+}
+
+std::vector<Vec3d> BorderPath::between(const Stop& a, const Stop& b) const {
+  std::vector<Vec3d> path;
+  add_between(a, b, 0, path);
+  return path;
+}
+
+bool BorderPath::is_on_surface(const Vec3d& at, double tolerance) const {
+  return surface_.bvh().nearest(at, tolerance).has_value();
+}
+
+void BorderPath::add_between(const Stop& a, const Stop& b, int depth, std::vector<Vec3d>& path) const {
+  const double reach = std::max(a.start.reach, b.start.reach);
+  const bool is_short = length(b.target.at - a.target.at) < corner_tolerance * reach;
+  if (is_short || depth == most_halvings) return;
+  if (is_on_surface((a.target.at + b.target.at) * 0.5, tolerance_)) return;
+  std::optional<Stop> middle = corner(a, b);
+  if (!middle) {
+    const std::optional<RimStart> start = halfway(a.start, b.start);
+    const std::optional<RimTarget> target = start ? find_target(surface_, *start) : std::nullopt;
+    if (!target) return;
+    middle = Stop{*start, *target};
+  }
+  add_between(a, *middle, depth + 1, path);
+  path.push_back(middle->target.at);
+  add_between(*middle, b, depth + 1, path);
+}
+
+/// The point of the surface where the planes at two of its points meet the plane between their starts.
+std::optional<BorderPath::Stop> BorderPath::corner(const Stop& a, const Stop& b) const {
+  const std::optional<RimStart> start = halfway(a.start, b.start);
+  if (!start) return std::nullopt;
+  const Vec3d across = cross(b.target.at - a.target.at, start->outwards);
+  const Vec3d normal = start->normal.value_or(length(across) > 0 ? across / length(across) : Vec3d{});
+  const std::array normals{surface_.normal(a.target.triangle), surface_.normal(b.target.triangle), normal};
+  const Vec3d middle = (a.target.at + b.target.at) * 0.5;
+  const auto at = meeting_point(normals, {a.target.at, b.target.at, middle});
+  const double gap = length(b.target.at - a.target.at);
+  if (!at || length(*at - middle) > 2 * start->reach || length(*at - middle) > 8 * gap) return std::nullopt;
+  if (!is_on_surface(*at, corner_tolerance * start->reach)) return std::nullopt;
+  const auto nearest = surface_.bvh().nearest_primitives(*at, 1, corner_tolerance * start->reach);
+  if (nearest.empty()) return std::nullopt;
+  return Stop{*start, {nearest[0].point, nearest[0].primitive}};
+}
+
+}  // namespace blum

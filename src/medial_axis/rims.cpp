@@ -1,0 +1,163 @@
+#include "medial_axis/rims.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <span>
+
+#include "blum/complex/incidence.hpp"
+#include "blum/core/union_find.hpp"
+
+namespace blum {
+namespace {
+
+Vec3d unit(const Vec3d& v) {
+  const double size = length(v);
+  return size > 0 ? v / size : Vec3d{};
+}
+
+class RimFinder {
+ public:
+  RimFinder(const Complex& axis, const Context& context) : axis_(axis), incidence_(axis.view(), context) {}
+
+  Rims find() {
+    add_edges();
+    for (std::uint32_t v = 0; v < axis_.positions.size(); ++v) {
+      if (!at_vertex_[v].empty()) add_corners(v);
+    }
+    return std::move(rims_);
+  }
+
+ private:
+  [[nodiscard]] const Vec3d& at(std::uint32_t v) const { return axis_.positions[v]; }
+  [[nodiscard]] std::size_t triangles_at(std::uint32_t edge) const {
+    return incidence_.triangles_of_edge()[edge].size();
+  }
+  [[nodiscard]] Vec3d normal_of(std::uint32_t t) const {
+    const auto& [a, b, c] = axis_.triangles[t];
+    return unit(cross(at(b) - at(a), at(c) - at(a)));
+  }
+
+  void add_edges() {
+    at_vertex_.resize(axis_.positions.size());
+    for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
+      if (triangles_at(e) != 1) continue;
+      RimEdge edge;
+      edge.triangle = incidence_.triangles_of_edge()[e][0];
+      const auto& sides = incidence_.sides()[edge.triangle];
+      const auto side = static_cast<std::size_t>(std::find(sides.begin(), sides.end(), e) - sides.begin());
+      const auto& triangle = axis_.triangles[edge.triangle];
+      edge.vertices = {triangle[side], triangle[(side + 1) % 3]};
+      const Vec3d along = at(edge.vertices[1]) - at(edge.vertices[0]);
+      edge.normal = normal_of(edge.triangle);
+      edge.outwards = unit(cross(along, edge.normal));
+      edge.length = length(along);
+      for (std::uint32_t end = 0; end < 2; ++end) {
+        at_vertex_[edge.vertices[end]].push_back({static_cast<std::uint32_t>(rims_.edges.size()), end});
+      }
+      rims_.edges.push_back(edge);
+    }
+  }
+
+  /// The groups of triangles around a vertex that hang together through edges at it, those of seams included.
+  void add_corners(std::uint32_t v) {
+    const std::span<const std::uint32_t> around = incidence_.triangles_of_vertex()[v];
+    detail::UnionFind groups(around.size());
+    std::map<std::uint32_t, std::uint32_t> first_at;  // of an edge: a triangle's place in `around`
+    for (std::uint32_t k = 0; k < around.size(); ++k) {
+      for (const std::uint32_t e : incidence_.sides()[around[k]]) {
+        if (!has_end(e, v)) continue;
+        const auto [known, is_new] = first_at.try_emplace(e, k);
+        if (!is_new) groups.join(known->second, k);
+      }
+    }
+    std::map<std::uint32_t, std::uint32_t> corner_of;  // of a group
+    for (const RimEnd& end : at_vertex_[v]) {
+      RimEdge& edge = rims_.edges[end.edge];
+      const auto place = std::lower_bound(around.begin(), around.end(), edge.triangle) - around.begin();
+      const std::uint32_t group = groups.find(static_cast<std::uint32_t>(place));
+      const auto [known, is_new] = corner_of.try_emplace(group, static_cast<std::uint32_t>(rims_.corners.size()));
+      if (is_new) add_corner(v, around, groups, group);
+      edge.corners[end.end] = known->second;
+    }
+  }
+
+  void add_corner(std::uint32_t v, std::span<const std::uint32_t> around, detail::UnionFind& groups,
+                  std::uint32_t group) {
+    RimCorner corner;
+    corner.vertex = v;
+    Vec3d normal{};
+    Vec3d inwards{};  // towards the triangles
+    bool ends_seam = false;
+    for (std::uint32_t k = 0; k < around.size(); ++k) {
+      if (groups.find(k) != group) continue;
+      const std::uint32_t t = around[k];
+      const Vec3d own = normal_of(t);
+      const double angle = angle_at(t, v);
+      normal += own * (dot(own, normal) < 0 ? -angle : angle);
+      inwards += middle_of(t) - at(v);
+      for (const std::uint32_t e : incidence_.sides()[t]) {
+        ends_seam = ends_seam || (has_end(e, v) && triangles_at(e) > 2);
+      }
+    }
+    if (!ends_seam && length(normal) > 0) corner.normal = unit(normal);
+    corner.outwards = outwards_of(v, corner.normal, around, groups, group);
+    if (length(corner.outwards) == 0) corner.outwards = unit(in_plane(-inwards, corner.normal));
+    rims_.corners.push_back(corner);
+  }
+
+  /// The mean over the rim edges of a group. Long ones count no more than the shortest but three times: a corner
+  /// between a long and a short side looks to the middle, and a step in a rim hardly matters.
+  [[nodiscard]] Vec3d outwards_of(std::uint32_t v, const std::optional<Vec3d>& normal,
+                                  std::span<const std::uint32_t> around, detail::UnionFind& groups,
+                                  std::uint32_t group) const {
+    std::vector<const RimEdge*> own;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const RimEnd& end : at_vertex_[v]) {
+      const RimEdge& edge = rims_.edges[end.edge];
+      const auto place = std::lower_bound(around.begin(), around.end(), edge.triangle) - around.begin();
+      if (groups.find(static_cast<std::uint32_t>(place)) != group || length(edge.outwards) == 0) continue;
+      own.push_back(&edge);
+      shortest = std::min(shortest, edge.length);
+    }
+    Vec3d sum{};
+    for (const RimEdge* const edge : own) sum += edge->outwards * std::min(edge->length, 3 * shortest);
+    return unit(in_plane(sum, normal));
+  }
+
+  static Vec3d in_plane(const Vec3d& v, const std::optional<Vec3d>& normal) {
+    return normal ? v - *normal * dot(v, *normal) : v;
+  }
+  [[nodiscard]] bool has_end(std::uint32_t edge, std::uint32_t v) const {
+    const auto& ends = incidence_.edges()[edge];
+    return ends[0] == v || ends[1] == v;
+  }
+  [[nodiscard]] Vec3d middle_of(std::uint32_t t) const {
+    const auto& [a, b, c] = axis_.triangles[t];
+    return (at(a) + at(b) + at(c)) / 3.0;
+  }
+  [[nodiscard]] double angle_at(std::uint32_t t, std::uint32_t v) const {
+    const auto& triangle = axis_.triangles[t];
+    const std::size_t k = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
+    const Vec3d a = at(triangle[(k + 1) % 3]) - at(v);
+    const Vec3d b = at(triangle[(k + 2) % 3]) - at(v);
+    return std::atan2(length(cross(a, b)), dot(a, b));
+  }
+
+  struct RimEnd {
+    std::uint32_t edge = 0, end = 0;
+  };
+  const Complex& axis_;
+  Incidence incidence_;
+  std::vector<std::vector<RimEnd>> at_vertex_;
+  Rims rims_;
+};
+
+}  // namespace
+
+Rims find_rims(const Complex& axis, const Context& context) {
+  return RimFinder(axis, context).find();
+}
+
+}  // namespace blum
