@@ -119,7 +119,7 @@ class AxisExtender {
         const RimCorner& corner = rims_.corners[c];
         Continued& own = continued_[c];
         own.start = {at(corner.vertex), corner.outwards, corner.normal, options_.max_length * radius(corner)};
-        if (radius(corner) <= stays_below[c]) {
+        if (corner.is_on_sheet || radius(corner) <= stays_below[c]) {
           own.reach = Reach::stays;
         } else if (length(corner.outwards) > 0) {
           find_border(corner, sheets, own);

@@ -17,6 +17,8 @@ constexpr int most_halvings = 6;
 /// Planes that are closer to each other than this, as the determinant of their normals, have no point in common that
 /// is worth looking for.
 constexpr double least_determinant = 0.05;
+/// A line and a direction span a plane where the sine of the angle between them is at least this.
+constexpr double least_slant = 0.1;
 constexpr double corner_tolerance = 1e-6;  // of the reach
 
 struct Point2 {
@@ -189,13 +191,17 @@ void BorderPath::add_between(const Stop& a, const Stop& b, int depth, std::vecto
 std::optional<BorderPath::Stop> BorderPath::corner(const Stop& a, const Stop& b) const {
   const std::optional<RimStart> start = halfway(a.start, b.start);
   if (!start) return std::nullopt;
-  const Vec3d across = cross(b.target.at - a.target.at, start->outwards);
-  const Vec3d normal = start->normal.value_or(length(across) > 0 ? across / length(across) : Vec3d{});
+  // A plane through both points: one along the sheet may be tilted, and far off at the corner.
+  const double gap = length(b.target.at - a.target.at);
+  Vec3d normal = cross(b.target.at - a.target.at, start->outwards) / gap;
+  if (length(normal) < least_slant) normal = start->normal.value_or(Vec3d{});
+  if (length(normal) > 0) normal = normal / length(normal);
   const std::array normals{surface_.normal(a.target.triangle), surface_.normal(b.target.triangle), normal};
   const Vec3d middle = (a.target.at + b.target.at) * 0.5;
   const auto at = meeting_point(normals, {a.target.at, b.target.at, middle});
-  const double gap = length(b.target.at - a.target.at);
-  if (!at || length(*at - middle) > 2 * start->reach || length(*at - middle) > 8 * gap) return std::nullopt;
+  if (!at) return std::nullopt;
+  const double off = std::min(length(*at - a.target.at), length(*at - b.target.at));
+  if (off > 2 * start->reach || length(*at - middle) > 8 * gap) return std::nullopt;
   if (!is_on_surface(*at, corner_tolerance * start->reach)) return std::nullopt;
   const auto nearest = surface_.bvh().nearest_primitives(*at, 1, corner_tolerance * start->reach);
   if (nearest.empty()) return std::nullopt;

@@ -81,6 +81,9 @@ class RimFinder {
       if (is_new) add_corner(v, around, groups, group);
       edge.corners[end.end] = known->second;
     }
+    bool is_on_sheet = false;
+    for (std::uint32_t k = 0; k < around.size(); ++k) is_on_sheet = is_on_sheet || !corner_of.contains(groups.find(k));
+    for (const auto& [group, corner] : corner_of) rims_.corners[corner].is_on_sheet = is_on_sheet;
   }
 
   void add_corner(std::uint32_t v, std::span<const std::uint32_t> around, detail::UnionFind& groups,

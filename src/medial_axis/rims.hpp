@@ -27,6 +27,7 @@ struct RimCorner {
   std::uint32_t vertex = 0;
   Vec3d outwards;               ///< in the tangent plane, away from the triangles; of unit length, or 0: not known
   std::optional<Vec3d> normal;  ///< of the tangent plane; none where a seam ends, or no triangle has area
+  bool is_on_sheet = false;     ///< whether the vertex lies in the middle of other triangles
 };
 
 struct Rims {

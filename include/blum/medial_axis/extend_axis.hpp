@@ -48,7 +48,7 @@ struct ExtendReport {
   std::size_t rim_vertices = 0;    ///< of the axis
   std::size_t reached_border = 0;  ///< that were joined to the surface
   std::size_t reached_sheet = 0;   ///< that were joined to another sheet, which was met first
-  std::size_t at_border = 0;       ///< that were at the border already (ExtendOptions::border_radius)
+  std::size_t at_border = 0;       ///< that were at the border (ExtendOptions::border_radius) or on a sheet already
   std::size_t not_reached = 0;     ///< that stay: nothing was met within ExtendOptions::max_length
   std::size_t left_out = 0;        ///< rim edges without triangles, as these would fold back or leave the solid
   std::size_t vertices = 0;        ///< new ones
@@ -68,7 +68,7 @@ struct Description<ExtendReport> {
       Member{"rim_vertices", &ExtendReport::rim_vertices, "", "of the axis; the sum of the next four"},
       Member{"reached_border", &ExtendReport::reached_border, "", "rim vertices that were joined to the surface"},
       Member{"reached_sheet", &ExtendReport::reached_sheet, "", "rim vertices that were joined to another sheet"},
-      Member{"at_border", &ExtendReport::at_border, "", "rim vertices that were at the border already"},
+      Member{"at_border", &ExtendReport::at_border, "", "rim vertices that were at the border or on another sheet already"},
       Member{"not_reached", &ExtendReport::not_reached, "", "rim vertices that met nothing within the length"},
       Member{"left_out", &ExtendReport::left_out, "",
              "rim edges without triangles, as these would fold back or leave the solid"},
