@@ -31,8 +31,7 @@ void bind_extend_axis(nb::module_& m) {
       [](const std::filesystem::path& path, const Complex& surface, const nb::dict& told) {
         auto metadata = options_from<MedialMetadata>(told);
         metadata.version = BLUM_VERSION;
-        run_call({0, nb::none()},
-                 [&](const Context& context) { write_extended(path, surface, metadata, context); });
+        run_call({0, nb::none()}, [&](const Context& context) { write_extended(path, surface, metadata, context); });
       },
       nb::arg("path"), nb::arg("surface"), nb::arg("metadata"));
 }

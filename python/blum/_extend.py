@@ -119,9 +119,7 @@ def extend_axis(
     if own is None:
         raise InvalidOption("what this axis was made from is no mesh that is known here: use extend_axis(axis, mesh)")
     with reporting(progress) as report:
-        core, told = _core.extend_axis(
-            axis._core, own._arrays, dict(options), integer(threads, "threads"), report
-        )
+        core, told = _core.extend_axis(axis._core, own._arrays, dict(options), integer(threads, "threads"), report)
     origin = getattr(axis, "_origin", None)
     known = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
     return ExtendedAxis._of(core, told, known)

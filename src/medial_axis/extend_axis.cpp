@@ -23,20 +23,14 @@ namespace blum {
 namespace {
 
 constexpr std::size_t rims_per_range = 64;
-constexpr double nearly_all = 1 - 1e-6;  // of the way to a point: nothing may be in between
-constexpr double nearly_none = 1e-6;     // of the way: what is met there is where it begins
 /// New vertices that are closer to each other than this part of the radius are one.
 constexpr double one_point = 1e-3;
 
-enum class Reach : std::uint8_t { stays, nothing, border, sheet };
-
 /// What becomes of a corner of a rim.
 struct Continued {
-  Reach reach = Reach::nothing;
   RimStart start;
-  RimTarget target;
-
-  [[nodiscard]] bool is_moved() const { return reach == Reach::border || reach == Reach::sheet; }
+  bool stays = false;               ///< at the border, or on another sheet
+  std::optional<RimTarget> target;  ///< none where it stays, or nothing is met
 };
 
 /// The triangles in front of a rim edge; their points are numbered as fill_strip() does.
@@ -75,17 +69,12 @@ class AxisExtender {
         options_(options),
         context_(context),
         rims_(find_rims(axis, context)),
-        surface_(boundary_of(solid), context),
         continued_(rims_.corners.size()),
         strips_(rims_.edges.size()) {}
 
   ExtendedAxis run() {
     begin_result();
-    if (!rims_.edges.empty()) {
-      find_borders();
-      make_strips();
-      if (find_sheets()) make_strips();
-    }
+    if (!rims_.edges.empty()) find_strips();
     std::vector<std::uint32_t> stands_for = number_new_vertices();
     for (std::size_t e = 0; e < strips_.size(); ++e) add_strip(e, stands_for);
     finish();
@@ -94,7 +83,6 @@ class AxisExtender {
 
  private:
   [[nodiscard]] Vec3d at(std::uint32_t v) const { return axis_.positions[v]; }
-  [[nodiscard]] double radius(const RimCorner& corner) const { return view_.radius[corner.vertex]; }
 
   /// Copies what stays: vertices, triangles, and the edges of no triangle.
   void begin_result() {
@@ -111,21 +99,19 @@ class AxisExtender {
 
   // --- Where rims lead to.
 
-  void find_borders() {
+  void find_starts() {
     const std::vector<double> stays_below = radii_at_borders();
-    const SearchMesh sheets({axis_.positions, axis_.triangles}, context_);
-    parallel_for(context_, rims_.corners.size(), rims_per_range, "rims", [&](const WorkRange& range) {
-      for (std::size_t c = range.begin; c < range.end; ++c) {
-        const RimCorner& corner = rims_.corners[c];
-        Continued& own = continued_[c];
-        own.start = {at(corner.vertex), corner.outwards, corner.normal, options_.max_length * radius(corner)};
-        if (corner.is_on_sheet || radius(corner) <= stays_below[c]) {
-          own.reach = Reach::stays;
-        } else if (length(corner.outwards) > 0) {
-          find_border(corner, sheets, own);
-        }
-      }
-    });
+    for (std::size_t c = 0; c < rims_.corners.size(); ++c) {
+      const RimCorner& corner = rims_.corners[c];
+      const double own = view_.radius[corner.vertex];
+      continued_[c].start = {at(corner.vertex),
+                             corner.outwards,
+                             corner.normal,
+                             own,
+                             options_.max_length * own,
+                             {corner.vertex, corner.vertex}};
+      continued_[c].stays = corner.is_on_sheet || own <= stays_below[c];
+    }
   }
 
   /// Of each corner: the radius up to which it is at the border already.
@@ -143,56 +129,34 @@ class AxisExtender {
     return of_corner;
   }
 
-  void find_border(const RimCorner& corner, const SearchMesh& sheets, Continued& own) const {
-    const std::optional<RimTarget> target = find_target(surface_, own.start);
-    if (!target) return;
-    own.target = *target;
-    own.reach = Reach::border;
-    const Vec3d way = target->at - own.start.at;
-    if (const auto met = first_sheet(sheets, {own.start.at, way}, nearly_all, corner.vertex)) {
-      own.target.at = own.start.at + way * *met;
-      own.reach = Reach::sheet;
-    }
+  /// First all rims go on as far as they can; then each ends at what it meets of the others. So walls end at each other
+  /// whose sheets both end before they meet.
+  void find_strips() {
+    find_starts();
+    const SearchMesh surface(boundary_of(solid_), context_);
+    const SearchMesh sheets({axis_.positions, axis_.triangles}, context_);
+    extend({&surface, &sheets, nullptr}, false);
+    const TriangleMesh strips = strips_as_mesh();
+    const std::optional<SearchMesh> met =
+        strips.triangles.empty() ? std::nullopt : std::optional<SearchMesh>(std::in_place, strips, context_);
+    extend({&surface, &sheets, met ? &*met : nullptr}, true);
   }
 
-  /// How far along a ray a triangle is met that does not have the vertex that it begins at.
-  [[nodiscard]] static std::optional<double> first_sheet(const SearchMesh& sheets, const Ray& ray, double limit,
-                                                         std::uint32_t vertex) {
-    std::optional<double> first;
-    double reach = limit;
-    sheets.bvh().for_each_crossing(ray, limit, [&](const RayCrossing& crossing) {
-      const Triangle& triangle = sheets.mesh().triangles[crossing.triangle.value];
-      const bool is_own = std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
-      if (!is_own && crossing.t > nearly_none * limit && crossing.t <= reach) {
-        first = crossing.t;
-        reach = crossing.t;
+  void extend(const RimObstacles& obstacles, bool is_final) {
+    const RimReach reach(obstacles, !is_final);
+    parallel_for(context_, continued_.size(), rims_per_range, "rims", [&](const WorkRange& range) {
+      for (std::size_t c = range.begin; c < range.end; ++c) {
+        if (!continued_[c].stays) continued_[c].target = reach.find(continued_[c].start);
       }
-      return reach;
     });
-    return first;
+    parallel_for(context_, strips_.size(), rims_per_range, "strips", [&](const WorkRange& range) {
+      for (std::size_t e = range.begin; e < range.end; ++e) strips_[e] = strip_of(rims_.edges[e], reach, is_final);
+    });
   }
 
-  /// Continues what met no border to the sheets and strips that it meets. Whether there are any.
-  bool find_sheets() {
-    const bool is_complete = std::none_of(continued_.begin(), continued_.end(),
-                                          [](const Continued& own) { return own.reach == Reach::nothing; });
-    if (is_complete) return false;
-    const SearchMesh all(with_strips(), context_);
-    bool is_any = false;
-    for (std::size_t c = 0; c < continued_.size(); ++c) {
-      Continued& own = continued_[c];
-      if (own.reach != Reach::nothing || length(own.start.outwards) == 0) continue;
-      const auto met = first_sheet(all, {own.start.at, own.start.outwards}, own.start.reach, rims_.corners[c].vertex);
-      if (!met) continue;
-      own.target.at = own.start.at + own.start.outwards * *met;
-      own.reach = Reach::sheet;
-      is_any = true;
-    }
-    return is_any;
-  }
-
-  [[nodiscard]] TriangleMesh with_strips() const {
-    TriangleMesh all{axis_.positions, axis_.triangles};
+  /// Its first vertices are those of the axis.
+  [[nodiscard]] TriangleMesh strips_as_mesh() const {
+    TriangleMesh all{axis_.positions};
     for (std::size_t e = 0; e < strips_.size(); ++e) {
       const auto first = static_cast<std::uint32_t>(all.vertices.size());
       const auto& ends = rims_.edges[e].vertices;
@@ -207,50 +171,47 @@ class AxisExtender {
 
   // --- Triangles in front of rims.
 
-  void make_strips() {
-    parallel_for(context_, strips_.size(), rims_per_range, "strips", [&](const WorkRange& range) {
-      for (std::size_t e = range.begin; e < range.end; ++e) strips_[e] = strip_of(rims_.edges[e]);
-    });
-  }
-
-  [[nodiscard]] Strip strip_of(const RimEdge& edge) const {
+  [[nodiscard]] Strip strip_of(const RimEdge& edge, const RimReach& reach, bool is_final) const {
     const std::array ends{&continued_[edge.corners[0]], &continued_[edge.corners[1]]};
     Strip strip;
-    if (!ends[0]->is_moved() && !ends[1]->is_moved()) return strip;
+    if (!ends[0]->target && !ends[1]->target) return strip;
     const double own = std::min(view_.radius[edge.vertices[0]], view_.radius[edge.vertices[1]]);
-    const auto is_on = [&](Reach reach) { return ends[0]->reach == reach && ends[1]->reach == reach; };
-    if (ends[0]->is_moved()) strip.line.push_back(ends[0]->target.at);
-    if (is_on(Reach::border)) {
-      const BorderPath path(surface_, options_.tolerance * own);
-      const std::vector<Vec3d> between =
-          path.between({ends[0]->start, ends[0]->target}, {ends[1]->start, ends[1]->target});
+    if (ends[0]->target) strip.line.push_back(ends[0]->target->at);
+    if (ends[0]->target && ends[1]->target) {
+      std::array<RimReach::Stop, 2> stops{{{ends[0]->start, *ends[0]->target}, {ends[1]->start, *ends[1]->target}}};
+      for (RimReach::Stop& stop : stops) stop.start.own = edge.vertices;
+      const std::vector<Vec3d> between = reach.between(stops[0], stops[1], options_.tolerance * own);
       strip.line.insert(strip.line.end(), between.begin(), between.end());
     }
-    const bool is_plain = strip.line.size() < 2;
-    if (ends[1]->is_moved()) strip.line.push_back(ends[1]->target.at);
-    if (is_plain && strip.line.size() == 2 && length(strip.line[1] - strip.line[0]) <= one_point * own) {
+    if (ends[1]->target) strip.line.push_back(ends[1]->target->at);
+    if (strip.line.size() == 2 && length(strip.line[1] - strip.line[0]) <= one_point * own) {
       strip.is_pinched = true;
       strip.line.pop_back();
     }
-    fill(edge, strip);
+    fill(edge, is_final, strip);
     return strip;
   }
 
   /// Where the line has no proper triangles, its ends alone may have.
-  void fill(const RimEdge& edge, Strip& strip) const {
+  void fill(const RimEdge& edge, bool is_final, Strip& strip) const {
     const auto is_inside = [&](const Vec3d& p) { return solid_.inside(p); };
     const std::array rim{at(edge.vertices[0]), at(edge.vertices[1])};
     for (int attempt = 0; attempt < 2; ++attempt) {
       const StripOutline outline{rim, strip.line, edge.normal};
       const auto triangles = fill_strip(outline);
-      if (triangles && is_strip_inside(outline, *triangles, is_inside)) {
+      if (triangles && (!is_final || is_strip_inside(outline, *triangles, is_inside))) {
         strip.triangles = *triangles;
         return;
       }
       if (strip.line.size() > 2) strip.line = {strip.line.front(), strip.line.back()};
     }
-    strip.is_left_out = true;
+    leave_out(strip);
+  }
+
+  static void leave_out(Strip& strip) {
+    strip.triangles.clear();
     strip.line.clear();
+    strip.is_left_out = true;
   }
 
   // --- The result.
@@ -273,27 +234,22 @@ class AxisExtender {
     for (std::size_t e = 0; e < strips_.size(); ++e) {
       if (strips_[e].triangles.empty()) continue;
       for (const std::uint32_t c : rims_.edges[e].corners) {
-        if (continued_[c].is_moved()) is_used[corners.find(c)] = true;
+        if (continued_[c].target) is_used[corners.find(c)] = true;
       }
     }
     std::vector<std::uint32_t> stands_for(rims_.corners.size());
     for (std::uint32_t c = 0; c < stands_for.size(); ++c) {
       const std::uint32_t v = rims_.corners[c].vertex;
       const std::uint32_t first = corners.find(c);
-      if (!continued_[c].is_moved()) {
+      if (!continued_[c].target) {
         stands_for[c] = v;
       } else if (first != c) {
         stands_for[c] = stands_for[first];
       } else if (is_used[c]) {
-        stands_for[c] = add_vertex(continued_[c].target.at, 2 * view_.radius[v]);
+        stands_for[c] = add_vertex(continued_[c].target->at, 2 * view_.radius[v]);
       }
     }
     return stands_for;
-  }
-
-  static void leave_out(Strip& strip) {
-    strip.triangles.clear();
-    strip.is_left_out = true;
   }
 
   std::uint32_t add_vertex(const Vec3d& position, double thickness) {
@@ -315,7 +271,7 @@ class AxisExtender {
     }
     std::vector<std::uint32_t> numbers{edge.vertices[0], edge.vertices[1]};
     for (std::size_t p = 0; p < strip.line.size(); ++p) {
-      if (p == 0 && continued_[edge.corners[0]].is_moved()) {
+      if (p == 0 && continued_[edge.corners[0]].target) {
         numbers.push_back(ends[0]);
       } else if (p + 1 == strip.line.size()) {
         numbers.push_back(ends[1]);
@@ -354,18 +310,17 @@ class AxisExtender {
     ExtendReport& report = out_.report;
     for (std::size_t e = 0; e < strips_.size(); ++e) {
       const RimEdge& edge = rims_.edges[e];
-      const auto stays = [&](std::uint32_t c) { return continued_[c].reach == Reach::stays; };
-      const bool is_at_border = stays(edge.corners[0]) && stays(edge.corners[1]);
+      const bool is_at_border = continued_[edge.corners[0]].stays && continued_[edge.corners[1]].stays;
       report.rim_length += edge.length;
       if (strips_[e].triangles.empty() && !is_at_border) report.open_length += edge.length;
       if (strips_[e].is_left_out) ++report.left_out;
     }
     report.rim_vertices = continued_.size();
     for (const Continued& own : continued_) {
-      ++(own.reach == Reach::border  ? report.reached_border
-         : own.reach == Reach::sheet ? report.reached_sheet
-         : own.reach == Reach::stays ? report.at_border
-                                     : report.not_reached);
+      ++(own.stays                           ? report.at_border
+         : !own.target                       ? report.not_reached
+         : own.target->end == RimEnd::border ? report.reached_border
+                                             : report.reached_sheet);
     }
     report.vertices = out_.surface.positions.size() - axis_.positions.size();
     report.triangles = out_.surface.triangles.size() - axis_.triangles.size();
@@ -379,7 +334,6 @@ class AxisExtender {
   const ExtendOptions& options_;
   const Context& context_;
   Rims rims_;
-  SearchMesh surface_;
   std::vector<Continued> continued_;  ///< of each corner
   std::vector<Strip> strips_;         ///< of each rim edge
   std::set<std::pair<std::uint32_t, std::uint32_t>> border_;

@@ -13,6 +13,11 @@ namespace {
 
 constexpr double tangent_of_cone = 2.1445;  // of 65 degrees
 constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing may be in between
+constexpr double nearly_none = 1e-6;        // of the way: what is met there is where it begins
+/// A rim whose surface is that close, as a part of its radius, ends at an edge of the part, and not where walls meet.
+constexpr double at_edge = 1.3;
+constexpr double sine_of_meeting = 0.26;  // of 15 degrees: less is one sheet that goes on
+constexpr double cosine_of_meeting = 0.966;
 constexpr int most_halvings = 6;
 /// Planes that are closer to each other than this, as the determinant of their normals, have no point in common that
 /// is worth looking for.
@@ -97,7 +102,7 @@ std::optional<RimTarget> closest_in_plane(const SearchMesh& surface, const Frame
     const std::tuple own(std::hypot(at.x, at.y), found.primitive);
     if (own >= best_of) return true;
     best_of = own;
-    best = RimTarget{frame.lifted(at), found.primitive};
+    best = RimTarget{frame.lifted(at), surface.normal(found.primitive)};
     return true;
   });
   return best;
@@ -116,7 +121,12 @@ std::optional<Vec3d> meeting_point(const std::array<Vec3d, 3>& normals, const st
 
 /// Halfway between two starts.
 std::optional<RimStart> halfway(const RimStart& a, const RimStart& b) {
-  RimStart out{(a.at + b.at) * 0.5, a.outwards + b.outwards, a.normal, std::max(a.reach, b.reach)};
+  RimStart out = a;
+  out.at = (a.at + b.at) * 0.5;
+  out.outwards = a.outwards + b.outwards;
+  out.radius = (a.radius + b.radius) / 2;
+  out.reach = std::max(a.reach, b.reach);
+  if (a.own != b.own) out.own = {a.own[0], b.own[1]};
   if (a.normal && b.normal) {
     const Vec3d sum = *a.normal + *b.normal * (dot(*a.normal, *b.normal) < 0 ? -1.0 : 1.0);
     out.normal = sum / length(sum);
@@ -141,12 +151,13 @@ Vec3d SearchMesh::normal(std::uint32_t triangle) const {
   return size > 0 ? normal / size : Vec3d{};
 }
 
-std::optional<RimTarget> find_target(const SearchMesh& surface, const RimStart& start) {
+std::optional<RimTarget> RimReach::on_surface(const RimStart& start) const {
+  const SearchMesh& surface = *obstacles_.surface;
   std::optional<RimTarget> target;
   double reach = start.reach;
   if (const auto ahead = surface.bvh().first_crossing({start.at, start.outwards}, reach)) {
     reach = ahead->t;
-    target = RimTarget{start.at + start.outwards * ahead->t, ahead->triangle.value};
+    target = RimTarget{start.at + start.outwards * ahead->t, surface.normal(ahead->triangle.value)};
   }
   const std::optional<Frame> frame = frame_of(start);
   if (!frame) return target;
@@ -155,40 +166,99 @@ std::optional<RimTarget> find_target(const SearchMesh& surface, const RimStart& 
   const Vec3d way = closest->at - start.at;
   if (!(length(way) > 0)) return std::nullopt;
   if (const auto before = surface.bvh().first_crossing({start.at, way}, nearly_all)) {
-    return RimTarget{start.at + way * before->t, before->triangle.value};
+    return RimTarget{start.at + way * before->t, surface.normal(before->triangle.value)};
   }
   return closest;
 }
 
-std::vector<Vec3d> BorderPath::between(const Stop& a, const Stop& b) const {
+std::optional<RimTarget> RimReach::first_on_way(const SearchMesh* sheets, const RimStart& start,
+                                                const Vec3d& way) const {
+  if (sheets == nullptr) return std::nullopt;
+  std::optional<RimTarget> first;
+  double reach = nearly_all;
+  sheets->bvh().for_each_crossing({start.at, way}, nearly_all, [&](const RayCrossing& crossing) {
+    const Triangle& triangle = sheets->mesh().triangles[crossing.triangle.value];
+    const bool is_own =
+        std::find_first_of(triangle.begin(), triangle.end(), start.own.begin(), start.own.end()) != triangle.end();
+    const Vec3d normal = sheets->normal(crossing.triangle.value);
+    const bool is_met = std::abs(dot(normal, way)) > sine_of_meeting * length(way);
+    if (!is_own && is_met && crossing.t > nearly_none && crossing.t <= reach) {
+      first = RimTarget{start.at + way * crossing.t, normal, RimEnd::sheet};
+      reach = crossing.t;
+    }
+    return reach;
+  });
+  return first;
+}
+
+std::optional<RimTarget> RimReach::find(const RimStart& start) const {
+  if (!(length(start.outwards) > 0)) return std::nullopt;
+  std::optional<RimTarget> target = on_surface(start);
+  if (!target) target = RimTarget{start.at + start.outwards * start.reach, start.outwards, RimEnd::open};
+  if (const auto met = first_on_way(obstacles_.sheets, start, target->at - start.at)) target = met;
+  const Vec3d way = target->at - start.at;
+  const bool is_at_edge = target->end == RimEnd::border && length(way) <= at_edge * start.radius;
+  if (!is_at_edge) {
+    if (const auto met = first_on_way(obstacles_.strips, start, way)) target = met;
+  }
+  if (target->end == RimEnd::open && !allows_open_) return std::nullopt;
+  return target;
+}
+
+std::vector<Vec3d> RimReach::between(const Stop& a, const Stop& b, double tolerance) const {
   std::vector<Vec3d> path;
-  add_between(a, b, 0, path);
+  add_between(a, b, tolerance, 0, path);
   return path;
 }
 
-bool BorderPath::is_on_surface(const Vec3d& at, double tolerance) const {
-  return surface_.bvh().nearest(at, tolerance).has_value();
+/// What a point lies on: the surface, or a sheet or strip that meets the plane of a normal.
+std::optional<RimTarget> RimReach::at(const Vec3d& point, double tolerance, const std::optional<Vec3d>& normal) const {
+  if (const auto near = obstacles_.surface->bvh().nearest_primitives(point, 1, tolerance); !near.empty()) {
+    return RimTarget{near[0].point, obstacles_.surface->normal(near[0].primitive)};
+  }
+  if (!normal) return std::nullopt;
+  std::optional<RimTarget> found;
+  std::tuple best(tolerance, std::numeric_limits<std::uint32_t>::max());
+  for (const SearchMesh* const sheets : {obstacles_.sheets, obstacles_.strips}) {
+    if (sheets == nullptr || found) continue;
+    sheets->bvh().for_each_within(point, tolerance, [&](const NearestPrimitive& near) {
+      const Vec3d own = sheets->normal(near.primitive);
+      const std::tuple of(near.distance, near.primitive);
+      if (std::abs(dot(own, *normal)) > cosine_of_meeting || of >= best) return true;
+      best = of;
+      found = RimTarget{near.point, own, RimEnd::sheet};
+      return true;
+    });
+  }
+  return found;
 }
 
-void BorderPath::add_between(const Stop& a, const Stop& b, int depth, std::vector<Vec3d>& path) const {
+bool RimReach::is_straight(const Stop& a, const Stop& b, double tolerance) const {
+  const Vec3d chord = b.target.at - a.target.at;
+  if (a.target.end == RimEnd::open) return std::abs(dot(a.target.normal, chord)) <= tolerance;
+  if (b.target.end == RimEnd::open) return std::abs(dot(b.target.normal, chord)) <= tolerance;
+  const std::optional<Vec3d> normal = a.start.normal ? a.start.normal : b.start.normal;
+  return at((a.target.at + b.target.at) * 0.5, tolerance, normal).has_value();
+}
+
+void RimReach::add_between(const Stop& a, const Stop& b, double tolerance, int depth, std::vector<Vec3d>& path) const {
   const double reach = std::max(a.start.reach, b.start.reach);
   const bool is_short = length(b.target.at - a.target.at) < corner_tolerance * reach;
-  if (is_short || depth == most_halvings) return;
-  if (is_on_surface((a.target.at + b.target.at) * 0.5, tolerance_)) return;
+  if (is_short || depth == most_halvings || is_straight(a, b, tolerance)) return;
   std::optional<Stop> middle = corner(a, b);
   if (!middle) {
     const std::optional<RimStart> start = halfway(a.start, b.start);
-    const std::optional<RimTarget> target = start ? find_target(surface_, *start) : std::nullopt;
+    const std::optional<RimTarget> target = start ? find(*start) : std::nullopt;
     if (!target) return;
     middle = Stop{*start, *target};
   }
-  add_between(a, *middle, depth + 1, path);
+  add_between(a, *middle, tolerance, depth + 1, path);
   path.push_back(middle->target.at);
-  add_between(*middle, b, depth + 1, path);
+  add_between(*middle, b, tolerance, depth + 1, path);
 }
 
-/// The point of the surface where the planes at two of its points meet the plane between their starts.
-std::optional<BorderPath::Stop> BorderPath::corner(const Stop& a, const Stop& b) const {
+/// The point where the planes at two targets meet a plane between their starts, if it lies on something.
+std::optional<RimReach::Stop> RimReach::corner(const Stop& a, const Stop& b) const {
   const std::optional<RimStart> start = halfway(a.start, b.start);
   if (!start) return std::nullopt;
   // A plane through both points: one along the sheet may be tilted, and far off at the corner.
@@ -196,16 +266,13 @@ std::optional<BorderPath::Stop> BorderPath::corner(const Stop& a, const Stop& b)
   Vec3d normal = cross(b.target.at - a.target.at, start->outwards) / gap;
   if (length(normal) < least_slant) normal = start->normal.value_or(Vec3d{});
   if (length(normal) > 0) normal = normal / length(normal);
-  const std::array normals{surface_.normal(a.target.triangle), surface_.normal(b.target.triangle), normal};
   const Vec3d middle = (a.target.at + b.target.at) * 0.5;
-  const auto at = meeting_point(normals, {a.target.at, b.target.at, middle});
-  if (!at) return std::nullopt;
-  const double off = std::min(length(*at - a.target.at), length(*at - b.target.at));
-  if (off > 2 * start->reach || length(*at - middle) > 8 * gap) return std::nullopt;
-  if (!is_on_surface(*at, corner_tolerance * start->reach)) return std::nullopt;
-  const auto nearest = surface_.bvh().nearest_primitives(*at, 1, corner_tolerance * start->reach);
-  if (nearest.empty()) return std::nullopt;
-  return Stop{*start, {nearest[0].point, nearest[0].primitive}};
+  const auto meeting = meeting_point({a.target.normal, b.target.normal, normal}, {a.target.at, b.target.at, middle});
+  if (!meeting) return std::nullopt;
+  const double off = std::min(length(*meeting - a.target.at), length(*meeting - b.target.at));
+  if (off > 2 * start->reach || length(*meeting - middle) > 8 * gap) return std::nullopt;
+  const std::optional<RimTarget> target = at(*meeting, corner_tolerance * start->reach, start->normal);
+  return target ? std::optional(Stop{*start, *target}) : std::nullopt;
 }
 
 }  // namespace blum
