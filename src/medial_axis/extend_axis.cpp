@@ -181,10 +181,14 @@ class AxisExtender {
       std::array<RimReach::Stop, 2> stops{{{ends[0]->start, *ends[0]->target}, {ends[1]->start, *ends[1]->target}}};
       for (RimReach::Stop& stop : stops) stop.start.own = edge.vertices;
       const std::vector<Vec3d> between = reach.between(stops[0], stops[1], options_.tolerance * own);
-      strip.line.insert(strip.line.end(), between.begin(), between.end());
+      for (const Vec3d& p : between) {
+        const double gap = std::min(length(p - strip.line.back()), length(p - ends[1]->target->at));
+        if (gap > one_point * own) strip.line.push_back(p);
+      }
     }
     if (ends[1]->target) strip.line.push_back(ends[1]->target->at);
-    if (strip.line.size() == 2 && length(strip.line[1] - strip.line[0]) <= one_point * own) {
+    if (ends[0]->target && ends[1]->target && strip.line.size() == 2 &&
+        length(strip.line[1] - strip.line[0]) <= one_point * own) {
       strip.is_pinched = true;
       strip.line.pop_back();
     }
@@ -203,9 +207,19 @@ class AxisExtender {
         strip.triangles = *triangles;
         return;
       }
-      if (strip.line.size() > 2) strip.line = {strip.line.front(), strip.line.back()};
+      keep_ends(edge, strip);
+      if (strip.line.empty()) break;
     }
     leave_out(strip);
+  }
+
+  /// Drops the points between the targets of the rim's ends.
+  void keep_ends(const RimEdge& edge, Strip& strip) const {
+    strip.line.clear();
+    for (const std::uint32_t c : edge.corners) {
+      if (continued_[c].target) strip.line.push_back(continued_[c].target->at);
+    }
+    if (strip.is_pinched) strip.line.pop_back();
   }
 
   static void leave_out(Strip& strip) {
@@ -263,7 +277,9 @@ class AxisExtender {
     Strip& strip = strips_[e];
     if (strip.triangles.empty()) return;
     const std::array ends{stands_for[edge.corners[0]], stands_for[edge.corners[1]]};
-    const bool is_plain = strip.line.size() <= 2;
+    const auto moved = std::count_if(edge.corners.begin(), edge.corners.end(),
+                                     [&](std::uint32_t c) { return continued_[c].target.has_value(); });
+    const bool is_plain = std::cmp_equal(strip.line.size(), moved);
     // What two strips have in common at their border would close a hole.
     if (is_plain && !strip.is_pinched && !border_.insert(std::minmax(ends[0], ends[1])).second) {
       leave_out(strip);
@@ -273,7 +289,7 @@ class AxisExtender {
     for (std::size_t p = 0; p < strip.line.size(); ++p) {
       if (p == 0 && continued_[edge.corners[0]].target) {
         numbers.push_back(ends[0]);
-      } else if (p + 1 == strip.line.size()) {
+      } else if (p + 1 == strip.line.size() && continued_[edge.corners[1]].target) {
         numbers.push_back(ends[1]);
       } else {
         numbers.push_back(add_vertex(strip.line[p], 2 * view_.radius[nearer_end(edge, strip.line[p])]));

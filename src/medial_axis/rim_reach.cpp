@@ -14,9 +14,7 @@ namespace {
 constexpr double tangent_of_cone = 2.1445;  // of 65 degrees
 constexpr double nearly_all = 1 - 1e-6;     // of the way to a point: nothing may be in between
 constexpr double nearly_none = 1e-6;        // of the way: what is met there is where it begins
-/// A rim whose surface is that close, as a part of its radius, ends at an edge of the part, and not where walls meet.
-constexpr double at_edge = 1.3;
-constexpr double sine_of_meeting = 0.26;  // of 15 degrees: less is one sheet that goes on
+constexpr double sine_of_meeting = 0.26;    // of 15 degrees: less is one sheet that goes on
 constexpr double cosine_of_meeting = 0.966;
 constexpr int most_halvings = 6;
 /// Planes that are closer to each other than this, as the determinant of their normals, have no point in common that
@@ -119,6 +117,10 @@ std::optional<Vec3d> meeting_point(const std::array<Vec3d, 3>& normals, const st
   return points[0] + sum / determinant;
 }
 
+bool is_own(const RimStart& start, const Triangle& triangle) {
+  return std::find_first_of(triangle.begin(), triangle.end(), start.own.begin(), start.own.end()) != triangle.end();
+}
+
 /// Halfway between two starts.
 std::optional<RimStart> halfway(const RimStart& a, const RimStart& b) {
   RimStart out = a;
@@ -177,12 +179,10 @@ std::optional<RimTarget> RimReach::first_on_way(const SearchMesh* sheets, const 
   std::optional<RimTarget> first;
   double reach = nearly_all;
   sheets->bvh().for_each_crossing({start.at, way}, nearly_all, [&](const RayCrossing& crossing) {
-    const Triangle& triangle = sheets->mesh().triangles[crossing.triangle.value];
-    const bool is_own =
-        std::find_first_of(triangle.begin(), triangle.end(), start.own.begin(), start.own.end()) != triangle.end();
     const Vec3d normal = sheets->normal(crossing.triangle.value);
     const bool is_met = std::abs(dot(normal, way)) > sine_of_meeting * length(way);
-    if (!is_own && is_met && crossing.t > nearly_none && crossing.t <= reach) {
+    const bool is_other = !is_own(start, sheets->mesh().triangles[crossing.triangle.value]);
+    if (is_other && is_met && crossing.t > nearly_none && crossing.t <= reach) {
       first = RimTarget{start.at + way * crossing.t, normal, RimEnd::sheet};
       reach = crossing.t;
     }
@@ -196,11 +196,7 @@ std::optional<RimTarget> RimReach::find(const RimStart& start) const {
   std::optional<RimTarget> target = on_surface(start);
   if (!target) target = RimTarget{start.at + start.outwards * start.reach, start.outwards, RimEnd::open};
   if (const auto met = first_on_way(obstacles_.sheets, start, target->at - start.at)) target = met;
-  const Vec3d way = target->at - start.at;
-  const bool is_at_edge = target->end == RimEnd::border && length(way) <= at_edge * start.radius;
-  if (!is_at_edge) {
-    if (const auto met = first_on_way(obstacles_.strips, start, way)) target = met;
-  }
+  if (const auto met = first_on_way(obstacles_.strips, start, target->at - start.at)) target = met;
   if (target->end == RimEnd::open && !allows_open_) return std::nullopt;
   return target;
 }
@@ -211,12 +207,12 @@ std::vector<Vec3d> RimReach::between(const Stop& a, const Stop& b, double tolera
   return path;
 }
 
-/// What a point lies on: the surface, or a sheet or strip that meets the plane of a normal.
-std::optional<RimTarget> RimReach::at(const Vec3d& point, double tolerance, const std::optional<Vec3d>& normal) const {
+/// What a point lies on: the surface, or a sheet or strip that meets the plane of a start.
+std::optional<RimTarget> RimReach::at(const Vec3d& point, double tolerance, const RimStart& start) const {
   if (const auto near = obstacles_.surface->bvh().nearest_primitives(point, 1, tolerance); !near.empty()) {
     return RimTarget{near[0].point, obstacles_.surface->normal(near[0].primitive)};
   }
-  if (!normal) return std::nullopt;
+  if (!start.normal) return std::nullopt;
   std::optional<RimTarget> found;
   std::tuple best(tolerance, std::numeric_limits<std::uint32_t>::max());
   for (const SearchMesh* const sheets : {obstacles_.sheets, obstacles_.strips}) {
@@ -224,7 +220,8 @@ std::optional<RimTarget> RimReach::at(const Vec3d& point, double tolerance, cons
     sheets->bvh().for_each_within(point, tolerance, [&](const NearestPrimitive& near) {
       const Vec3d own = sheets->normal(near.primitive);
       const std::tuple of(near.distance, near.primitive);
-      if (std::abs(dot(own, *normal)) > cosine_of_meeting || of >= best) return true;
+      if (std::abs(dot(own, *start.normal)) > cosine_of_meeting || of >= best) return true;
+      if (is_own(start, sheets->mesh().triangles[near.primitive])) return true;
       best = of;
       found = RimTarget{near.point, own, RimEnd::sheet};
       return true;
@@ -237,8 +234,7 @@ bool RimReach::is_straight(const Stop& a, const Stop& b, double tolerance) const
   const Vec3d chord = b.target.at - a.target.at;
   if (a.target.end == RimEnd::open) return std::abs(dot(a.target.normal, chord)) <= tolerance;
   if (b.target.end == RimEnd::open) return std::abs(dot(b.target.normal, chord)) <= tolerance;
-  const std::optional<Vec3d> normal = a.start.normal ? a.start.normal : b.start.normal;
-  return at((a.target.at + b.target.at) * 0.5, tolerance, normal).has_value();
+  return at((a.target.at + b.target.at) * 0.5, tolerance, a.start.normal ? a.start : b.start).has_value();
 }
 
 void RimReach::add_between(const Stop& a, const Stop& b, double tolerance, int depth, std::vector<Vec3d>& path) const {
@@ -271,7 +267,7 @@ std::optional<RimReach::Stop> RimReach::corner(const Stop& a, const Stop& b) con
   if (!meeting) return std::nullopt;
   const double off = std::min(length(*meeting - a.target.at), length(*meeting - b.target.at));
   if (off > 2 * start->reach || length(*meeting - middle) > 8 * gap) return std::nullopt;
-  const std::optional<RimTarget> target = at(*meeting, corner_tolerance * start->reach, start->normal);
+  const std::optional<RimTarget> target = at(*meeting, corner_tolerance * start->reach, *start);
   return target ? std::optional(Stop{*start, *target}) : std::nullopt;
 }
 

@@ -63,8 +63,8 @@ class RimReach {
   RimReach(const RimObstacles& obstacles, bool allows_open) : obstacles_(obstacles), allows_open_(allows_open) {}
 
   /// The closest point of the surface that the plane of a start has within 65 degrees of its direction, and that is
-  /// seen from there; without a plane, the point that the direction leads to. Or else what is met on the way: sheets,
-  /// and, unless the surface is as close as the radius, strips, both at 15 degrees or more.
+  /// seen from there; without a plane, the point that the direction leads to. Or else what is met on the way of sheets
+  /// and strips, at 15 degrees or more.
   [[nodiscard]] std::optional<RimTarget> find(const RimStart& start) const;
 
   struct Stop {
@@ -80,8 +80,7 @@ class RimReach {
   [[nodiscard]] std::optional<RimTarget> on_surface(const RimStart& start) const;
   [[nodiscard]] std::optional<RimTarget> first_on_way(const SearchMesh* sheets, const RimStart& start,
                                                       const Vec3d& way) const;
-  [[nodiscard]] std::optional<RimTarget> at(const Vec3d& point, double tolerance,
-                                            const std::optional<Vec3d>& normal) const;
+  [[nodiscard]] std::optional<RimTarget> at(const Vec3d& point, double tolerance, const RimStart& start) const;
   [[nodiscard]] bool is_straight(const Stop& a, const Stop& b, double tolerance) const;
   void add_between(const Stop& a, const Stop& b, double tolerance, int depth, std::vector<Vec3d>& path) const;
   [[nodiscard]] std::optional<Stop> corner(const Stop& a, const Stop& b) const;

@@ -1,7 +1,6 @@
 #include "medial_axis/rims.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <span>
@@ -96,9 +95,9 @@ class RimFinder {
     for (std::uint32_t k = 0; k < around.size(); ++k) {
       if (groups.find(k) != group) continue;
       const std::uint32_t t = around[k];
-      const Vec3d own = normal_of(t);
-      const double angle = angle_at(t, v);
-      normal += own * (dot(own, normal) < 0 ? -angle : angle);
+      const auto& [a, b, c] = axis_.triangles[t];
+      const Vec3d own = cross(at(b) - at(a), at(c) - at(a));  // longer for larger triangles, which slivers hardly tilt
+      normal += dot(own, normal) < 0 ? -own : own;
       inwards += middle_of(t) - at(v);
       for (const std::uint32_t e : incidence_.sides()[t]) {
         ends_seam = ends_seam || (has_end(e, v) && triangles_at(e) > 2);
@@ -140,14 +139,6 @@ class RimFinder {
     const auto& [a, b, c] = axis_.triangles[t];
     return (at(a) + at(b) + at(c)) / 3.0;
   }
-  [[nodiscard]] double angle_at(std::uint32_t t, std::uint32_t v) const {
-    const auto& triangle = axis_.triangles[t];
-    const std::size_t k = triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
-    const Vec3d a = at(triangle[(k + 1) % 3]) - at(v);
-    const Vec3d b = at(triangle[(k + 2) % 3]) - at(v);
-    return std::atan2(length(cross(a, b)), dot(a, b));
-  }
-
   struct RimEnd {
     std::uint32_t edge = 0, end = 0;
   };
