@@ -6,6 +6,7 @@
 #include <span>
 
 #include "blum/complex/incidence.hpp"
+#include "blum/complex/medial_columns.hpp"
 #include "blum/core/union_find.hpp"
 
 namespace blum {
@@ -16,9 +17,14 @@ Vec3d unit(const Vec3d& v) {
   return size > 0 ? v / size : Vec3d{};
 }
 
+constexpr std::size_t most_in_tangent = 64;
+
 class RimFinder {
  public:
-  RimFinder(const Complex& axis, const Context& context) : axis_(axis), incidence_(axis.view(), context) {}
+  RimFinder(const Complex& axis, const Context& context)
+      : axis_(axis),
+        radius_(axis.vertex_columns.get<double>(medial_columns::radius)),
+        incidence_(axis.view(), context) {}
 
   Rims find() {
     add_edges();
@@ -89,24 +95,45 @@ class RimFinder {
                   std::uint32_t group) {
     RimCorner corner;
     corner.vertex = v;
-    Vec3d normal{};
+    std::vector<std::uint32_t> own;
     Vec3d inwards{};  // towards the triangles
     bool ends_seam = false;
     for (std::uint32_t k = 0; k < around.size(); ++k) {
       if (groups.find(k) != group) continue;
       const std::uint32_t t = around[k];
-      const auto& [a, b, c] = axis_.triangles[t];
-      const Vec3d own = cross(at(b) - at(a), at(c) - at(a));  // longer for larger triangles, which slivers hardly tilt
-      normal += dot(own, normal) < 0 ? -own : own;
+      own.push_back(t);
       inwards += middle_of(t) - at(v);
       for (const std::uint32_t e : incidence_.sides()[t]) {
         ends_seam = ends_seam || (has_end(e, v) && triangles_at(e) > 2);
       }
     }
-    if (!ends_seam && length(normal) > 0) corner.normal = unit(normal);
+    if (!ends_seam) corner.normal = tangent_normal(v, std::move(own));
     corner.outwards = outwards_of(v, corner.normal, around, groups, group);
     if (length(corner.outwards) == 0) corner.outwards = unit(in_plane(-inwards, corner.normal));
     rims_.corners.push_back(corner);
+  }
+
+  /// The mean over triangles by their area, so that slivers hardly tilt it: those given, and what hangs together with
+  /// them within the radius, as small triangles at rims are rough.
+  [[nodiscard]] std::optional<Vec3d> tangent_normal(std::uint32_t v, std::vector<std::uint32_t> triangles) const {
+    for (std::size_t k = 0; k < triangles.size() && triangles.size() < most_in_tangent; ++k) {
+      for (const std::uint32_t e : incidence_.sides()[triangles[k]]) {
+        const std::span<const std::uint32_t> beside = incidence_.triangles_of_edge()[e];
+        if (beside.size() != 2) continue;
+        const std::uint32_t next = beside[beside[0] == triangles[k] ? 1 : 0];
+        const bool is_near = length(middle_of(next) - at(v)) <= radius_[v];
+        if (is_near && std::find(triangles.begin(), triangles.end(), next) == triangles.end()) {
+          triangles.push_back(next);
+        }
+      }
+    }
+    Vec3d sum{};
+    for (const std::uint32_t t : triangles) {
+      const auto& [a, b, c] = axis_.triangles[t];
+      const Vec3d own = cross(at(b) - at(a), at(c) - at(a));
+      sum += dot(own, sum) < 0 ? -own : own;
+    }
+    return length(sum) > 0 ? std::optional(unit(sum)) : std::nullopt;
   }
 
   /// The mean over the rim edges of a group. Long ones count no more than the shortest but three times: a corner
@@ -143,6 +170,7 @@ class RimFinder {
     std::uint32_t edge = 0, end = 0;
   };
   const Complex& axis_;
+  std::span<const double> radius_;
   Incidence incidence_;
   std::vector<std::vector<RimEnd>> at_vertex_;
   Rims rims_;

@@ -35,7 +35,7 @@ struct Rims {
   std::vector<RimCorner> corners;  ///< by rising vertex
 };
 
-/// @param axis  has no problem (problem_of). @throws Cancelled.
+/// @param axis  with radii; it has no problem (problem_of_medial). @throws Cancelled.
 [[nodiscard]] Rims find_rims(const Complex& axis, const Context& context);
 
 }  // namespace blum
