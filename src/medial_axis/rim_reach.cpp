@@ -86,22 +86,19 @@ std::optional<Frame> frame_of(const RimStart& start) {
 std::optional<RimTarget> closest_in_plane(const SearchMesh& surface, const Frame& frame, double reach) {
   std::optional<RimTarget> best;
   std::tuple best_of(reach, std::numeric_limits<std::uint32_t>::max());
-  surface.bvh().for_each_within(frame.origin, reach, [&](const NearestPrimitive& found) {
-    if (found.distance > std::get<0>(best_of)) return true;
+  surface.boxes().for_each_near(frame.origin, reach, [&](std::uint32_t triangle) {
     std::array<Vec3d, 3> corners{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = surface.mesh().vertices[surface.mesh().triangles[found.primitive][k]];
-    }
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.mesh().vertices[surface.mesh().triangles[triangle][k]];
     const auto cut = section(corners, frame);
-    if (!cut) return true;
-    const auto seen = in_cone(frame.flat((*cut)[0]), frame.flat((*cut)[1]));
-    if (!seen) return true;
+    const auto seen = cut ? in_cone(frame.flat((*cut)[0]), frame.flat((*cut)[1])) : std::nullopt;
+    if (!seen) return std::get<0>(best_of);
     const Point2 at = closest_to_origin(*seen);
-    const std::tuple own(std::hypot(at.x, at.y), found.primitive);
-    if (own >= best_of) return true;
-    best_of = own;
-    best = RimTarget{frame.lifted(at), surface.normal(found.primitive)};
-    return true;
+    const std::tuple own(std::hypot(at.x, at.y), triangle);
+    if (own < best_of) {
+      best_of = own;
+      best = RimTarget{frame.lifted(at), surface.normal(triangle)};
+    }
+    return std::get<0>(best_of);
   });
   return best;
 }
@@ -141,10 +138,18 @@ std::optional<RimStart> halfway(const RimStart& a, const RimStart& b) {
   return out;
 }
 
+std::vector<Box3> boxes_of(const TriangleMesh& mesh) {
+  std::vector<Box3> boxes(mesh.triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) boxes[t].extend(mesh.vertices[v]);
+  }
+  return boxes;
+}
+
 }  // namespace
 
 SearchMesh::SearchMesh(TriangleMesh mesh, const Context& context)
-    : mesh_(std::move(mesh)), bvh_(mesh_, SiteTable(mesh_, context), context) {}
+    : mesh_(std::move(mesh)), bvh_(mesh_, SiteTable(mesh_, context), context), boxes_(boxes_of(mesh_), context) {}
 
 Vec3d SearchMesh::normal(std::uint32_t triangle) const {
   const auto& [a, b, c] = mesh_.triangles[triangle];

@@ -8,6 +8,7 @@
 
 #include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/box_bvh.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 
@@ -21,11 +22,13 @@ class SearchMesh {
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
-  [[nodiscard]] Vec3d normal(std::uint32_t triangle) const;  ///< of unit length; 0 where there is no area
+  [[nodiscard]] const BoxBvh& boxes() const { return boxes_; }  ///< of the triangles
+  [[nodiscard]] Vec3d normal(std::uint32_t triangle) const;     ///< of unit length; 0 where there is no area
 
  private:
   TriangleMesh mesh_;
   Bvh bvh_;
+  BoxBvh boxes_;
 };
 
 /// A point of a rim in its solid, and where to go from there.

@@ -22,6 +22,7 @@
 #include "blum/medial_axis/axis_forms.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
+#include "blum/shapes/shape_catalog.hpp"
 
 namespace blum {
 namespace {
@@ -229,6 +230,24 @@ TEST_P(ExtendedProfile, HasWallsThatMeetWhereTheAxisHasGaps) {
 
 INSTANTIATE_TEST_SUITE_P(Profiles, ExtendedProfile, ::testing::ValuesIn(profiles),
                          [](const auto& info) { return std::string(info.param.name); });
+
+TEST(ExtendAxis, KeepsTheTopologyOfShapesThatAreNoThinWalls) {
+  std::size_t triangles = 0;
+  for (const char* const name : {"bracket", "gear", "star", "wedge", "menger", "spoon"}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = make_shape(name);
+    MedialAxisOptions options;
+    options.resolution = 40;
+    const MedialAxis axes = medial_axis(mesh, options);
+    for (const double theta : {40.0, 110.0, 150.0}) {
+      const Complex axis = axes.simplify(theta);
+      const ExtendedAxis made = extend_axis(axis, mesh);
+      check(mesh, axis, made);
+      triangles += made.report.triangles;
+    }
+  }
+  EXPECT_GT(triangles, 5000U);
+}
 
 TEST(ExtendAxis, LeavesAClosedSurfaceAsItIs) {
   NestedShellsOptions options;
