@@ -38,6 +38,7 @@ ExtendOptions parse_extend_length(const std::optional<std::string>& text, bool h
 }
 
 std::string extended_text(const ExtendReport& report) {
+  if (report.rim_vertices == 0) return "nothing: the axis has no rims";
   std::string text = "area from " + rounded_text(report.axis_area) + " to " + rounded_text(report.area) + " by " +
                      plural(report.triangles, "triangle", "triangles") + "; of " +
                      plural(report.rim_vertices, "rim vertex", "rim vertices") + " " +

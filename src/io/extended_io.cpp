@@ -46,6 +46,10 @@ void write_extended(const std::filesystem::path& path, const Complex& surface, c
     throw InvalidOption("'" + path.string() + "': extended axes are written to " + join_words(names, "or") +
                         " files; use one of these extensions");
   }
+  if (extension == ".stl" && surface.triangles.empty()) {
+    throw InvalidOption("'" + path.string() +
+                        "': the axis has no triangles, which is all that .stl files hold; use another extension");
+  }
   if (extension == ".stl") return write_mesh(path, MeshView{surface.positions, surface.triangles});
   ComplexWriteOptions options;
   options.allow_loss = true;

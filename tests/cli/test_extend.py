@@ -111,6 +111,15 @@ def test_what_is_refused(plate, tmp_path, arguments, message):
     assert message in err and not names(tmp_path)
 
 
+def test_axes_without_sheets_are_told(tmp_path):
+    run("make", "torus", "-o", tmp_path / "t.ply")
+    medial_of = ["medial", tmp_path / "t.ply", "-o", tmp_path / "a.vtp", "--resolution", 32, "--theta", 170, "--extend"]
+    _, err = run(*medial_of, tmp_path / "s.stl", status=2)
+    assert "no triangles" in err and names(tmp_path) == ["t.ply"]
+    out, _ = run(*medial_of, tmp_path / "s.obj")
+    assert "the axis has no rims" in out and names(tmp_path) == ["a.vtp", "s.obj", "t.ply"]
+
+
 def test_images_are_extended_when_smooth(tmp_path):
     run("make", "ball_image", "-o", tmp_path / "b.nrrd")
     _, err = run("medial", tmp_path / "b.nrrd", "-o", tmp_path / "a.vtp", "--extend", tmp_path / "s.ply", status=2)

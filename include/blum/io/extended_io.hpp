@@ -21,8 +21,7 @@ namespace blum {
 /// cannot hold are left out.
 ///
 /// A file appears under its name only when it is complete.
-/// @throws InvalidOption for another extension; InvalidMesh for .stl where there are no triangles; FileError;
-/// Cancelled.
+/// @throws InvalidOption for another extension, and for .stl where there are no triangles; FileError; Cancelled.
 void write_extended(const std::filesystem::path& path, const Complex& surface, const MedialMetadata& metadata = {},
                     const Context& context = {});
 

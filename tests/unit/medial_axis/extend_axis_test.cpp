@@ -182,6 +182,37 @@ TEST(ExtendAxis, LeavesAHoleOpenThatIsSmallerThanWhatIsOnePoint) {
   EXPECT_NEAR(made.report.area, 96, 1.5);
 }
 
+/// A band along a part of a circle.
+Outline arc(double radius, double thickness, double angle, int steps) {
+  Outline out;
+  for (int k = 0; k <= 2 * steps + 1; ++k) {
+    const bool is_outer = k <= steps;
+    const double at = angle * (is_outer ? k : 2 * steps + 1 - k) / steps;
+    const double r = radius + (is_outer ? 0.5 : -0.5) * thickness;
+    out.push_back({r * std::cos(at), r * std::sin(at)});
+  }
+  return out;
+}
+
+TEST(ExtendAxis, FollowsBentWallsAndRoundEnds) {
+  const double pi = std::acos(-1.0);
+  const TriangleMesh bent = extruded(arc(20, 2, pi, 48), 50);
+  const Complex axis = axis_of(bent, 110, 96);
+  const ExtendedAxis made = extend_axis(axis, bent);
+  check(bent, axis, made);
+  EXPECT_NEAR(made.report.area, pi * 20 * 50, 0.002 * pi * 20 * 50);
+  EXPECT_EQ(made.report.open_length, 0);
+
+  Outline round{{0, 0}, {60, 0}};
+  for (int k = 1; k < 12; ++k) round.push_back({60 + 1.5 * std::sin(pi * k / 12), 1.5 - 1.5 * std::cos(pi * k / 12)});
+  round.insert(round.end(), {{60, 3}, {0, 3}});
+  const TriangleMesh slab = extruded(round, 30);
+  const Complex middle = axis_of(slab, 110, 96);
+  const ExtendedAxis whole = extend_axis(middle, slab);
+  check(slab, middle, whole);
+  EXPECT_NEAR(whole.report.area, 61.5 * 30, 0.1);
+}
+
 struct Profile {
   const char* name;
   Outline outline;
