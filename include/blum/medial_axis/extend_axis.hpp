@@ -116,8 +116,8 @@ struct ExtendedAxis {
 /// @return       the same bytes for any number of threads.
 /// @throws InvalidOption for options out of range, where radii or sheets are missing, for the solid of an image, or
 /// saying problem_of_medial() of what there is; Cancelled.
-/// Cost: that of Solid::inside() and of some ray casts for each rim vertex: about 0.1 ms for each, 1 ms in bodies that
-/// are no thin walls.
+/// Cost: that of Solid::inside() and of some ray casts for each rim vertex: about 0.1 ms for each, some ms in large
+/// bodies that are no thin walls.
 [[nodiscard]] ExtendedAxis extend_axis(const Complex& axis, const Solid& solid, const ExtendOptions& options = {},
                                        const Context& context = {});
 
