@@ -34,13 +34,6 @@ std::optional<fs::path> parse_graph(const std::optional<std::string>& text) {
   return fs::path(*text);
 }
 
-fs::path graph_name(const fs::path& graph, const fs::path& output, const fs::path& name) {
-  fs::path out = graph.parent_path() / graph.stem();
-  out += name.stem().string().substr(output.stem().string().size());
-  out += graph.extension();
-  return out;
-}
-
 std::string graph_text(const AxisGraph& graph) {
   std::string text =
       plural(graph.sheets.size(), "sheet", "sheets") + ", " + plural(graph.seams.size(), "seam", "seams") + ", " +

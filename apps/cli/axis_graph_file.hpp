@@ -21,10 +21,6 @@ void add_graph_option(CLI::App& command, std::optional<std::string>& graph, cons
 /// The value of --graph. @throws UsageError for another extension than those of graphs.
 [[nodiscard]] std::optional<std::filesystem::path> parse_graph(const std::optional<std::string>& text);
 
-/// GRAPH-theta20.json for GRAPH.json where OUT.vtp became OUT-theta20.vtp.
-[[nodiscard]] std::filesystem::path graph_name(const std::filesystem::path& graph, const std::filesystem::path& output,
-                                               const std::filesystem::path& name);
-
 /// "13 sheets, 24 seams, 0 curves, 8 junctions; thinnest wall: sheet 3, 0.5 thick". A wall is a sheet of 1 % of the
 /// area or more whose median separation angle is 150 degrees or more; its thickness is the median.
 [[nodiscard]] std::string graph_text(const AxisGraph& graph);

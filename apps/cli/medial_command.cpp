@@ -14,14 +14,17 @@
 #include "blum/field/smooth_surface.hpp"
 #include "blum/io/certified_axis.hpp"
 #include "blum/io/draft.hpp"
+#include "blum/io/extended_io.hpp"
 #include "blum/io/graph_io.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/axis_forms.hpp"
 #include "blum/medial_axis/decimate.hpp"
+#include "blum/medial_axis/extend_axis.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
+#include "extended_file.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
 #include "medial_report.hpp"
@@ -40,6 +43,7 @@ constexpr const char* examples = R"(Examples:
   blum medial part.stl -o part.vtp --theta 20,60,120      part-theta20.vtp and so on
   blum medial knot.ply -o knot.obj --theta 170            curves, for Blender
   blum medial part.stl -o part.vtp --graph part.json      its sheets with their thickness, seams, curves, junctions
+  blum medial part.stl -o part.vtp --theta 110 --extend shell.ply   its sheets up to the surface, for shell elements
   blum medial scan.nii.gz -o vessels.npz --label 1,3      vessels-label1.npz and vessels-label3.npz
   blum medial scan.nii.gz -o vessels.npz --smooth         of the smooth surface that the voxels sample
 
@@ -48,7 +52,7 @@ Exit status 3: the axis could not be certified, and no file was written.)";
 struct Arguments {
   std::string input;
   std::string output;
-  std::optional<std::string> theta, prune, simplify, threshold, weld, threads, graph;
+  std::optional<std::string> theta, prune, simplify, threshold, weld, threads, graph, extend, extend_length;
   OptionTexts<MedialAxisOptions> options;
   std::vector<std::string> labels;
   bool allow_uncertified = false;
@@ -61,6 +65,8 @@ struct Request {
   fs::path input;
   fs::path output;
   std::optional<fs::path> graph;
+  std::optional<fs::path> extend;
+  ExtendOptions extending;
   MedialAxisOptions options;
   std::vector<double> thetas{60};  ///< rising where sheets are pruned
   bool prunes_sheets = false;
@@ -97,6 +103,8 @@ Request parse(const Arguments& a) {
   check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::write));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
   r.graph = parse_graph(a.graph);
+  r.extend = parse_extend(a.extend);
+  r.extending = parse_extend_length(a.extend_length, r.extend.has_value());
   exclude(a.options.has("resolution"), "--resolution", a.options.has("spacing"), "--spacing",
           "each sets the voxel size");
   r.options = a.options.read();
@@ -137,6 +145,7 @@ void check_applicable(const Arguments& a, const fs::path& input, InputKind kind)
   }
   refuse_given({{a.weld.has_value(), "--weld"}}, input, "an image", "meshes");
   if (a.smooth) return;
+  refuse_given({{a.extend.has_value(), "--extend"}}, input, "an image", "meshes and images with --smooth");
   refuse_given({{a.options.has("resolution"), "--resolution"},
                 {a.options.has("spacing"), "--spacing"},
                 {a.options.has("max_resolution"), "--max-resolution"}},
@@ -156,8 +165,9 @@ struct Run {
   Json solids = Json::array();
   std::vector<PhaseTime> phases;
   std::vector<Draft> drafts;
-  std::vector<Draft> graphs;  ///< of each draft, where graphs are asked for
-  std::vector<bool> is_kept;  ///< of each draft: whether it becomes a file
+  std::vector<Draft> graphs;    ///< of each draft, where graphs are asked for
+  std::vector<Draft> extended;  ///< of each draft, where extended axes are asked for
+  std::vector<bool> is_kept;    ///< of each draft: whether it becomes a file
   std::vector<std::string> warnings;
   std::vector<std::string> mismatches;
   TextTable table;
@@ -241,11 +251,27 @@ Json add_graph(Run& run, const Request& r, const SolidInput& input, const Comple
   Stopwatch watch;
   const AxisGraph graph =
       input.kind == InputKind::mesh ? axis_graph(complex, input.mesh.mesh, {}, context) : axis_graph(complex, context);
-  run.graphs.emplace_back(graph_name(*r.graph, r.output, name));
+  run.graphs.emplace_back(beside_axis(*r.graph, r.output, name));
   write_graph(run.graphs.back().path(), graph, metadata);
   run.phases.push_back({"graph", watch.lap()});
   run.table.add("graph", graph_text(graph));
   return graph_json(graph, run.graphs.back().name());
+}
+
+/// Writes the extended surface of an axis, where it is asked for; null where not.
+Json add_extended(Run& run, const Request& r, const SolidInput& input, const Complex& complex,
+                  const MedialMetadata& metadata, const fs::path& name, const Context& context) {
+  if (!r.extend) return nullptr;
+  Stopwatch watch;
+  const ExtendedAxis made = extend_axis(complex, input.mesh.mesh, r.extending, context);
+  run.extended.emplace_back(beside_axis(*r.extend, r.output, name));
+  write_extended(run.extended.back().path(), made.surface, metadata, context);
+  run.phases.push_back({"extend", watch.lap()});
+  run.table.add("extended", extended_text(made.report));
+  for (const std::string& warning : extended_warnings(made.report)) {
+    run.warnings.push_back("at theta " + rounded_text(metadata.theta.value_or(0)) + " " + warning);
+  }
+  return extended_json(made.report, run.extended.back().name());
 }
 
 MedialMetadata metadata_of(const Request& r, const SolidInput& input, const LabelSelection& selection,
@@ -332,6 +358,7 @@ void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSe
                   {"deviation", made.axis.deviation},
                   {"vertices_before", vertices_before},
                   {"graph", add_graph(run, r, input, made.axis.axis, metadata, name, context)},
+                  {"extended", add_extended(run, r, input, made.axis.axis, metadata, name, context)},
                   {"certificate", certificate_json(certificate)}});
   add_certificate(run.table, certificate);
   for (const std::string& mismatch : certificate.mismatches) {
@@ -415,8 +442,10 @@ void check_all_outputs(const Request& r, const std::vector<fs::path>& bases) {
     }
   }
   const std::size_t axes = files.size();
-  for (std::size_t f = r.report.files().size(); r.graph && f < axes; ++f) {
-    files.push_back(graph_name(*r.graph, r.output, files[f]));
+  for (const std::optional<fs::path>& further : {r.graph, r.extend}) {
+    for (std::size_t f = r.report.files().size(); further && f < axes; ++f) {
+      files.push_back(beside_axis(*further, r.output, files[f]));
+    }
   }
   check_outputs(files, {r.input});
 }
@@ -426,7 +455,7 @@ void finish(const Request& r, Run& run, const SolidInput& input, bool is_certifi
   Json outputs = Json::array();
   for (std::size_t d = 0; d < run.drafts.size(); ++d) {
     if (!run.is_kept[d]) continue;
-    for (const std::vector<Draft>* const kind : {&run.drafts, &run.graphs}) {
+    for (const std::vector<Draft>* const kind : {&run.drafts, &run.graphs, &run.extended}) {
       if (kind->empty()) continue;
       outputs.push_back((*kind)[d].name().string());
       run.table.add("wrote", (*kind)[d].name().string());
@@ -483,6 +512,7 @@ void run(const Arguments& arguments) {
     if (!run.is_kept[d]) continue;
     run.drafts[d].keep();
     if (r.graph) run.graphs[d].keep();
+    if (r.extend) run.extended[d].keep();
   }
   finish(r, run, input, is_certified, context);
   if (!is_certified) throw NotCertified(run.mismatches, written_text(r, run));
@@ -515,6 +545,7 @@ void add_medial_command(const CommandLine& line) {
       "--smooth", a->smooth,
       "Image: the solid is what the smooth surface bounds that the voxels sample, instead of their boxes");
   add_graph_option(*command, a->graph, "Its sheets, seams, curves and junctions as a graph");
+  add_extend_options(*command, a->extend, a->extend_length);
   command->add_flag("--nested", a->nested,
                     "Keep the axes of all angles from --theta on as well (.npz), for `blum view`");
   command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the axis even where it is not certified");

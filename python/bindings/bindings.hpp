@@ -17,6 +17,7 @@ void bind_complex(nb::module_& m);
 void bind_solid(nb::module_& m);
 void bind_medial_axis(nb::module_& m);
 void bind_axis_graph(nb::module_& m);
+void bind_extend_axis(nb::module_& m);
 void bind_centreline(nb::module_& m);
 void bind_certificate(nb::module_& m);
 void bind_files(nb::module_& m);

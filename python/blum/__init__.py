@@ -30,6 +30,7 @@ from ._errors import (
     InvalidOption,
     OutOfMemory,
 )
+from ._extend import ExtendedAxis, extend_axis
 from ._field import (
     ClosestPointQuery,
     ClosestPoints,
@@ -82,6 +83,7 @@ __all__ = [
     "DeviceField",
     "DeviceFieldSolver",
     "Error",
+    "ExtendedAxis",
     "Field",
     "FieldSolver",
     "FileError",
@@ -116,6 +118,7 @@ __all__ = [
     "distance_field",
     "distance_transform",
     "distance_transforms",
+    "extend_axis",
     "extrusion",
     "file_formats",
     "generate",

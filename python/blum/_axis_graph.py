@@ -53,7 +53,7 @@ def axis_graph(
     """
     if not isinstance(axis, Complex):
         raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
-    own = _mesh_of(axis, mesh, triangles)
+    own = mesh_of(axis, mesh, triangles)
     with reporting(progress) as report:
         found: AxisGraph = _core.axis_graph(
             axis._core, None if own is None else own._arrays, dict(options), integer(threads, "threads"), report
@@ -63,13 +63,13 @@ def axis_graph(
 
 def write_graph(path: PathLike, axis: Complex, mesh: Any, triangles: Any, options: AxisGraphOptions) -> None:
     """Writes the graph of an axis, with what is known of where the axis came from."""
-    own = _mesh_of(axis, mesh, triangles)
+    own = mesh_of(axis, mesh, triangles)
     origin = getattr(axis, "_origin", None)
     told = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
     _core.write_graph(Path(os.fspath(path)), axis._core, None if own is None else own._arrays, dict(options), told)
 
 
-def _mesh_of(axis: Complex, mesh: Any, triangles: Any) -> Mesh | None:
+def mesh_of(axis: Complex, mesh: Any, triangles: Any) -> Mesh | None:
     if mesh is not None:
         return as_mesh(mesh, triangles)
     known = getattr(getattr(axis, "_origin", None), "shape", None)

@@ -30,6 +30,7 @@ from ._arguments import (
 from ._certificate import Claim, certified
 from ._complex import core_arguments
 from ._errors import InvalidOption
+from ._extend import ExtendedAxis, extend_axis
 from ._field import Field
 from ._grid import Grid, grid_for
 from ._image import Image
@@ -37,7 +38,7 @@ from ._medial_columns import ROLES, MedialColumns, NestedComplex
 from ._mesh import Mesh
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import Bounds, Certificate, CertificateOptions
+from ._structs import Bounds, Certificate, CertificateOptions, ExtendOptions
 
 EVERYTHING = {"radii": True, "footprints": True, "angles": True, "sites": True, "labels": True}
 
@@ -225,6 +226,28 @@ class MedialComplex(MedialColumns):
             core, deviation = _core.decimate(self._core, most, integer(threads, "threads"), report)
         before = self._origin.deviation or 0.0
         return MedialComplex._of(core, self.has, replace(self._origin, deviation=before + deviation))
+
+    @takes("ExtendOptions")
+    def extend(
+        self,
+        mesh: Any = None,
+        triangles: Any = None,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+        **options: Unpack[ExtendOptions],
+    ) -> ExtendedAxis:
+        """Its sheets, continued from their rims to the surface: a mesh for shell elements; see :func:`extend_axis`.
+
+        Parameters
+        ----------
+        mesh, triangles
+            That the axis was made of. Default: the one that is known, where it was made here.
+        threads, progress
+            As for :func:`distance_field`.
+        **options
+        """
+        return extend_axis(self, mesh, triangles, threads=threads, progress=progress, **options)
 
     def reconstruct(
         self,

@@ -1,0 +1,125 @@
+"""Medial axes whose sheets are extended to the surface, for meshes of shell elements."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+
+from . import _core
+from ._arguments import FloatArray, IntArray, PathLike, integer
+from ._axis_graph import mesh_of
+from ._complex import Complex, core_arguments
+from ._errors import InvalidOption
+from ._mesh import Mesh
+from ._options import takes
+from ._progress import Progress, reporting
+from ._structs import ExtendOptions, ExtendReport
+
+# A class that has a member `_core` cannot name the module in its annotations.
+_CoreComplex = _core.Complex
+
+
+class ExtendedAxis(Complex):
+    """A medial axis whose sheets reach the surface: the vertices and triangles of the axis in their order, the new ones
+    behind them, and the curves of the axis as edges. What :func:`extend_axis` returns.
+    """
+
+    #: What became of the rims.
+    report: ExtendReport
+    _told: dict[str, Any]
+
+    @staticmethod
+    def _of(core: _CoreComplex, report: ExtendReport, told: dict[str, Any]) -> ExtendedAxis:
+        made = ExtendedAxis.__new__(ExtendedAxis)
+        made._core = core
+        made.report = report
+        made._told = told
+        return made
+
+    @property
+    def thickness(self) -> FloatArray:
+        """(n,): twice the radius of the axis at each vertex; at new ones, that of the rim that they extend."""
+        found: FloatArray = self.vertex_columns["thickness"]
+        return found
+
+    @property
+    def triangle_sheet(self) -> IntArray:
+        """(m,): the sheet of the axis that each triangle is of, or extends."""
+        found: IntArray = self.triangle_columns["sheet"]
+        return found
+
+    @property
+    def triangle_extended(self) -> IntArray:
+        """(m,): 1 for new triangles, 0 for those of the axis."""
+        found: IntArray = self.triangle_columns["extended"]
+        return found
+
+    def write(self, path: PathLike) -> None:
+        """Writes .vtp, .ply, .obj, .npz or .stl (triangles alone); the file appears complete or not at all."""
+        _core.write_extended(Path(os.fspath(path)), self._core, self._told)
+
+    def to_mesh(self) -> Mesh:
+        """The triangles alone."""
+        return Mesh(np.array(self.vertices), np.array(self.triangles))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (core_arguments(self), self.report, self._told)
+
+    def __repr__(self) -> str:
+        return f"ExtendedAxis({len(self.vertices):,} vertices, {len(self.triangles):,} triangles)"
+
+
+def _restored(arguments: tuple[Any, ...], report: ExtendReport, told: dict[str, Any]) -> ExtendedAxis:
+    return ExtendedAxis._of(_core.Complex(*arguments), report, told)
+
+
+@takes("ExtendOptions")
+def extend_axis(
+    axis: Complex,
+    mesh: Any = None,
+    triangles: Any = None,
+    *,
+    threads: int = 0,
+    progress: Progress = False,
+    **options: Unpack[ExtendOptions],
+) -> ExtendedAxis:
+    """The sheets of a medial axis, continued from their rims to the surface: for meshes of shell elements.
+
+    Take an axis of 100 to 120 degrees: less has sheets into edges, more has gaps where walls meet. What meets another
+    sheet first ends there, without sharing vertices with it. The topology is that of the axis.
+
+    Parameters
+    ----------
+    axis : MedialComplex
+        With radii and sheets; or another complex with these columns.
+    mesh, triangles
+        That the axis was made of, as for :func:`distance_field`. Default: the one that is known, where the axis was
+        made here.
+    threads, progress
+        As for :func:`distance_field`.
+    **options
+
+    Returns
+    -------
+    ExtendedAxis
+        Triangles with `thickness`, `triangle_sheet` and `triangle_extended`; `.report` tells what became of the rims.
+
+    >>> import blum
+    >>> plate = blum.generate("box", size_x=3, size_y=2, size_z=0.25)
+    >>> shell = blum.medial_axis(plate, resolution=48).certified(120).extend()
+    >>> round(shell.report.area, 6), shell.report.not_reached
+    (6.0, 0)
+    """
+    if not isinstance(axis, Complex):
+        raise TypeError(f"axis must be a blum.MedialComplex, not {type(axis).__name__}")
+    own = mesh_of(axis, mesh, triangles)
+    if own is None:
+        raise InvalidOption("what this axis was made from is no mesh that is known here: use extend_axis(axis, mesh)")
+    with reporting(progress) as report:
+        core, told = _core.extend_axis(axis._core, own._arrays, dict(options), integer(threads, "threads"), report)
+    origin = getattr(axis, "_origin", None)
+    known = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
+    return ExtendedAxis._of(core, told, known)
