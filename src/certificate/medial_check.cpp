@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "blum/core/exact_text.hpp"
@@ -25,6 +27,7 @@ constexpr double most_deep_of_one_wall =
     0.6;                                ///< of vertices deep inside: of true axes 0.4 have one footprint (a rod at 0)
 constexpr double enough_sheet = 256;    ///< square voxels from which that is asked
 constexpr double few_vertices = 16;     ///< that may do so at any rate
+constexpr double thin_part = 0.5;       ///< voxels: radius from which parts are not thin
 constexpr double noise_of_meshes = 10;  ///< degrees from which two walls are two
 constexpr double noise_of_images = 20;  ///< the same between steps of voxels
 constexpr double well_above = 30;       ///< degrees over theta from where the axis must have all
@@ -194,37 +197,49 @@ Vec3d random_point(const MedialView& axis, std::uint32_t t, Random& random) {
 /// What of an axis is seen at more than theta, by what it says of itself.
 class Claimed {
  public:
-  Claimed(const MedialView& axis, double theta) : is_claimed_(axis.positions.size(), false) {
+  Claimed(const MedialView& axis, double theta)
+      : is_claimed_(axis.positions.size(), false), least_radius_(axis.positions.size(), HUGE_VAL) {
     for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
       const double size = area(axis, t);
       if (std::isfinite(size)) all_ += size;
       if (!(axis.triangle_angle[t] > theta)) continue;
       sheets_.add(size, t);
-      for (const std::uint32_t v : axis.triangles[t]) is_claimed_[v] = true;
+      add_corners(axis, axis.triangles[t]);
     }
     for (std::uint32_t e = 0; e < axis.edges.size(); ++e) {
       if (axis.edge_role(e) != MedialRole::curve || !(axis.edge_angle[e] > theta)) continue;
       curves_.add(length(axis.positions[axis.edges[e][0]] - axis.positions[axis.edges[e][1]]), e);
-      for (const std::uint32_t v : axis.edges[e]) is_claimed_[v] = true;
+      add_corners(axis, axis.edges[e]);
     }
   }
 
   [[nodiscard]] const Spread& sheets() const { return sheets_; }
   [[nodiscard]] const Spread& curves() const { return curves_; }
   [[nodiscard]] bool contains(std::size_t vertex) const { return is_claimed_[vertex]; }
+  /// The smallest radius in the cells at a vertex.
+  [[nodiscard]] double least_radius_around(std::size_t vertex) const { return least_radius_[vertex]; }
   /// Of the area of all triangles, what is only there for homotopy.
   [[nodiscard]] double rest_of_area() const { return all_ > 0 ? std::max(0.0, 1 - sheets_.total() / all_) : 0; }
 
  private:
+  void add_corners(const MedialView& axis, std::span<const std::uint32_t> corners) {
+    double least = HUGE_VAL;
+    for (const std::uint32_t v : corners) {
+      is_claimed_[v] = true;
+      least = std::min<double>(least, axis.radius[v]);
+    }
+    for (const std::uint32_t v : corners) least_radius_[v] = std::min(least_radius_[v], least);
+  }
+
   std::vector<bool> is_claimed_;
+  std::vector<double> least_radius_;
   Spread sheets_, curves_;
   double all_ = 0;
 };
 
-/// Vertices with one wall, of those that should have two: some of them, where they are many.
-Offsets offsets_of_vertices(const MedialView& axis, const Claimed& claimed, const Middle& middle,
-                            const Allowances& allowed, const std::vector<std::uint32_t>& body_of, MedialCheck& check,
-                            const Context& context) {
+/// Looks at the vertices with one wall of those that should have two: at some of them, where they are many.
+void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Middle& middle, const Allowances& allowed,
+                      const std::vector<std::uint32_t>& body_of, MedialCheck& check, const Context& context) {
   std::vector<std::uint32_t> single;
   for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
     if (!is_finite(axis.positions[v])) continue;
@@ -238,12 +253,21 @@ Offsets offsets_of_vertices(const MedialView& axis, const Claimed& claimed, cons
     if (claimed.contains(v)) single.push_back(v);
   }
   const std::size_t every = single.size() / most_samples_of_vertices + 1;
-  return offsets_of((single.size() + every - 1) / every, middle, allowed,
-                    [&](std::size_t k) {
-                      const std::uint32_t v = single[k * every];
-                      return AxisPoint{axis.positions[v], body_of[v]};
-                    },
-                    context);
+  std::vector<double> offsets((single.size() + every - 1) / every);
+  parallel_for(context, offsets.size(), grain, "looking for the middle", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const std::uint32_t v = single[k * every];
+      offsets[k] = middle.offset({axis.positions[v], body_of[v]});
+    }
+  });
+  for (std::size_t k = 0; k < offsets.size(); ++k) {
+    const std::uint32_t v = single[k * every];
+    // Between the mouth of a thin part and the middle of a thick one the edges of the mouth are all that is close.
+    if (!(offsets[k] > allowed.middle) || claimed.least_radius_around(v) < thin_part * allowed.voxel) continue;
+    ++check.one_wall_off;
+    if (!(offsets[k] > allowed.missing)) continue;
+    if (check.one_wall_far++ == 0) check.far_at = axis.positions[v];
+  }
 }
 
 // ---- What is missing ----
@@ -343,6 +367,11 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
     mismatches.push_back("of the " + count_text(check.claimed_vertices) + " vertices that two walls should see, " +
                          count_text(check.one_wall_off) + " have one and are not near the middle" + allowed);
   }
+  if (!by_voxels && check.one_wall_far > 0) {
+    mismatches.push_back(
+        count_text(check.one_wall_far) + " vertices that two walls should see have one and are more than " +
+        rounded_text(check.missing_allowance) + " off the middle, the first at " + place_text(check.far_at));
+  }
   const auto balls = static_cast<double>(check.balls);
   if (check.balls >= few_balls && check.missed_share * balls > std::max(most_missed_here * balls, few_missed + 0.5)) {
     mismatches.push_back("the axis misses " + percent(check.missed_share) +
@@ -406,8 +435,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   note_share(check, sheets, curves, size > 0 ? claimed.sheets().total() / size : 1);
   for (std::size_t v = 0; v < axis.positions.size(); ++v) check.claimed_vertices += claimed.contains(v) ? 1 : 0;
   if (options.footprints) {
-    const Offsets single = offsets_of_vertices(axis, claimed, middle, allowed, body_of, check, context);
-    check.one_wall_off = single.off;
+    look_at_vertices(axis, claimed, middle, allowed, body_of, check, context);
     const double one_wall = static_cast<double>(check.deep_one_wall);
     if (one_wall > most_deep_of_one_wall * static_cast<double>(check.deep_vertices) &&
         claimed.sheets().total() > enough_sheet * allowed.voxel * allowed.voxel) {
@@ -430,6 +458,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   check.close_allowance = allowed.close / factor;
   check.off_by /= factor;
   check.off_at = check.off_at / factor;
+  check.far_at = check.far_at / factor;
   explain(check, solid.solid->slack() > 0, mismatches);
   check.holds = mismatches.size() == before;
   return check;

@@ -222,30 +222,33 @@ struct Description<BallUnionCheck> {
 /// 2 voxels and the deviation: for 95 % of the balls, if there are 20. Without a theta, this is not looked at.
 ///
 /// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
-/// too; a tenth of those vertices, or 16, need not. Of those deeper than the allowance at most three in five may have
-/// one, where sheets are larger than 256 square voxels. Against the voxels of a mesh, what is in the middle is told
-/// only.
+/// too, other than beside parts thinner than a voxel; a tenth of those vertices, or 16, need not, but none may be off
+/// by more than 2 voxels and the deviation. Of those deeper than the allowance at most three in five may have one,
+/// where sheets are larger than 256 square voxels. Against the voxels of a mesh, what is in the middle is told only.
 struct MedialCheck {
   double allowance = 0;              ///< how far from the middle a point may be, mesh units
   std::size_t one_wall = 0;          ///< vertices with one footprint, or two seen at less than 5 degrees
   std::size_t claimed_vertices = 0;  ///< vertices of what should be seen at more than theta
-  std::size_t one_wall_off = 0;      ///< of those that both are (some, where many), those that are not near the middle
-  std::size_t deep_vertices = 0;     ///< vertices that should be seen at more than theta, deeper than the allowance
-  std::size_t deep_one_wall = 0;     ///< of these, those with one footprint
-  double homotopy_share = 0;         ///< of the area of all triangles: what only homotopy keeps, at theta or less
-  std::size_t samples = 0;           ///< points of sheets and curves that were looked at
-  double medial_share = 1;           ///< of these, what is in the middle, by area; a curve counts as a voxel wide
-  double close_share = 1;            ///< the same within a third of a voxel, or the deviation
-  double close_allowance = 0;        ///< that length, mesh units
-  double off_by = 0;                 ///< how far the worst of these with two walls is from the middle, mesh units
-  Vec3d off_at;                      ///< and there, mesh units
-  double sought_angle = 0;           ///< degrees from which the axis must have all; 0 where that was not looked at
-  double missing_allowance = 0;      ///< how close the axis must come to the balls, mesh units
-  std::size_t balls = 0;             ///< from random points of the solid whose walls are seen at more than that
-  double missed_share = 0;           ///< of these, those that have no point of the axis near their centres
-  double missed_by = 0;              ///< how far the worst of all is from the axis, mesh units
-  Vec3d missed_at;                   ///< and there, mesh units
-  bool holds = false;                ///< enough is in the middle, and little is missed
+  std::size_t one_wall_off =
+      0;  ///< of those that both are (some, where many), not near the middle nor beside a thin part
+  std::size_t one_wall_far = 0;   ///< and of these, those that are far off
+  Vec3d far_at;                   ///< the first of these, mesh units
+  std::size_t deep_vertices = 0;  ///< vertices that should be seen at more than theta, deeper than the allowance
+  std::size_t deep_one_wall = 0;  ///< of these, those with one footprint
+  double homotopy_share = 0;      ///< of the area of all triangles: what only homotopy keeps, at theta or less
+  std::size_t samples = 0;        ///< points of sheets and curves that were looked at
+  double medial_share = 1;        ///< of these, what is in the middle, by area; a curve counts as a voxel wide
+  double close_share = 1;         ///< the same within a third of a voxel, or the deviation
+  double close_allowance = 0;     ///< that length, mesh units
+  double off_by = 0;              ///< how far the worst of these with two walls is from the middle, mesh units
+  Vec3d off_at;                   ///< and there, mesh units
+  double sought_angle = 0;        ///< degrees from which the axis must have all; 0 where that was not looked at
+  double missing_allowance = 0;   ///< how close the axis must come to the balls, mesh units
+  std::size_t balls = 0;          ///< from random points of the solid whose walls are seen at more than that
+  double missed_share = 0;        ///< of these, those that have no point of the axis near their centres
+  double missed_by = 0;           ///< how far the worst of all is from the axis, mesh units
+  Vec3d missed_at;                ///< and there, mesh units
+  bool holds = false;             ///< enough is in the middle, and little is missed
 };
 
 template <>
@@ -257,7 +260,9 @@ struct Description<MedialCheck> {
       Member{"one_wall", &MedialCheck::one_wall, "", "vertices that see one wall"},
       Member{"claimed_vertices", &MedialCheck::claimed_vertices, "", "vertices of what two walls should see"},
       Member{"one_wall_off", &MedialCheck::one_wall_off, "",
-             "of those that both are (some, where many), those that are not near the middle"},
+             "of those that both are (some, where many), those not near the middle nor beside a thin part"},
+      Member{"one_wall_far", &MedialCheck::one_wall_far, "", "of these, those far off"},
+      Member{"far_at", &MedialCheck::far_at, "mesh units", "the first of these"},
       Member{"deep_vertices", &MedialCheck::deep_vertices, "",
              "of what two walls should see, deeper than the allowance"},
       Member{"deep_one_wall", &MedialCheck::deep_one_wall, "", "of these, those that see one wall"},

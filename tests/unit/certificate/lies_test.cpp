@@ -74,19 +74,22 @@ void expect_refused(const True& lie, const std::string& reason) {
   EXPECT_NE(complaints(found).find(reason), std::string::npos) << complaints(found);
 }
 
-/// Moves vertices, and gives them the radii and the footprints that they have there.
+/// Moves a vertex, and gives it the radius and the footprint that it has there.
+void put_honestly(VertexRow& vertex, const Vec3d& place, const Bvh& bvh) {
+  vertex.position = place;
+  const NearestSite nearest = *bvh.nearest(place);
+  vertex.radius = nearest.distance;
+  vertex.footprints = {nearest.point, nearest.point};
+  vertex.sites = {nearest.site, nearest.site};
+  vertex.separation_angle = 0;
+}
+
+/// The same with all vertices.
 template <class Move>
 void move_honestly(True& lie, const Move& move) {
   const SiteTable sites(lie.mesh);
   const Bvh bvh(lie.mesh, sites);
-  for (VertexRow& vertex : lie.axis.vertices) {
-    vertex.position = move(vertex);
-    const NearestSite nearest = *bvh.nearest(vertex.position);
-    vertex.radius = nearest.distance;
-    vertex.footprints = {nearest.point, nearest.point};
-    vertex.sites = {nearest.site, nearest.site};
-    vertex.separation_angle = 0;
-  }
+  for (VertexRow& vertex : lie.axis.vertices) put_honestly(vertex, move(vertex), bvh);
 }
 
 TEST(Lies, WhatIsTrueHolds) {
@@ -130,6 +133,18 @@ TEST(Lies, OneVertexMoved) {
   True lie = bracket();
   lie.axis.vertices[lie.axis.vertices.size() / 2].position += Vec3d{1e-3, 2e-3, -1e-3};
   expect_refused(lie, "the distance to a footprint differs from the radius");
+}
+
+TEST(Lies, OneVertexMovedWithItsRadiusAndFootprint) {
+  for (const double voxels : {4.0, 6.0}) {
+    True lie = box();
+    VertexRow& deepest = *std::max_element(lie.axis.vertices.begin(), lie.axis.vertices.end(),
+                                           [](const auto& a, const auto& b) { return a.radius < b.radius; });
+    const SiteTable sites(lie.mesh);
+    const Vec3d towards = deepest.footprints[0] - deepest.position;
+    put_honestly(deepest, deepest.position + towards * (voxels * lie.voxel / length(towards)), Bvh(lie.mesh, sites));
+    expect_refused(lie, "off the middle, the first at");
+  }
 }
 
 TEST(Lies, AllVerticesShifted) {
