@@ -9,12 +9,15 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/medial_axis/axis_forms.hpp"
 #include "medial_axis/axis_piece.hpp"
 #include "medial_axis/contract_points.hpp"
 #include "medial_axis/fit/fit_axis.hpp"
 #include "medial_axis/label_sheets.hpp"
 #include "medial_axis/mesh_surface.hpp"
 #include "medial_axis/nest_pieces.hpp"
+#include "medial_axis/order_sheets.hpp"
+#include "medial_axis/patch_numbers.hpp"
 #include "medial_axis/voxel_surface.hpp"
 #include "medial_axis/voxelize.hpp"
 
@@ -23,6 +26,8 @@ namespace {
 
 constexpr int least_resolution = 8;
 constexpr int most_resolution = 800;
+/// What is smaller is a crumb of a sheet: voxels, by their sides.
+constexpr double crumb = 8;
 /// What a grid of voxels makes of a smooth surface: steps whose edges the axis would reach out for.
 constexpr NoiseFloor stairs{20, 120, 3, 3, 15, 0};
 
@@ -47,16 +52,6 @@ void check(const MedialAxisOptions& options) {
 
 double longest_side(const Box3& box) {
   return std::max({box.size().x, box.size().y, box.size().z});
-}
-
-/// The complex of lists, with sheets and roles.
-Complex labelled(AxisLists lists, const Context& context) {
-  Complex complex = complex_of(std::move(lists));
-  Incidence incidence(complex.view(), context);
-  if (contract_points(complex, incidence)) incidence = Incidence(complex.view(), context);
-  throw_if_cancelled(context);
-  label_sheets(complex, incidence);
-  return complex;
 }
 
 void add(BettiNumbers& sum, const BettiNumbers& part) {
@@ -92,8 +87,25 @@ struct MedialAxis::Data {
   MedialAxisReport report;
   std::vector<AxisPiece> pieces;
   std::vector<std::unique_ptr<BodySurface>> surfaces;  ///< of the pieces of a polyhedron
+  PatchNumbers patches;
   double least_theta = 0;
   double lambda = 0;
+
+  void order(Complex& complex) const {
+    const double spacing = least_spacing(report);
+    order_sheets(complex, patches, crumb * spacing * spacing);
+  }
+
+  /// The complex of lists, with sheets and roles.
+  [[nodiscard]] Complex labelled(AxisLists lists, const Context& context) const {
+    Complex complex = complex_of(std::move(lists));
+    Incidence incidence(complex.view(), context);
+    if (contract_points(complex, incidence)) incidence = Incidence(complex.view(), context);
+    throw_if_cancelled(context);
+    label_sheets(complex, incidence);
+    order(complex);
+    return complex;
+  }
 };
 
 /// Makes the pieces of an axis one after the other.
@@ -115,7 +127,9 @@ class MedialAxisBuilder {
     } else {
       const double spacing = options_.spacing.value_or(longest_side(solid.box()) / options_.resolution);
       if (!(spacing > 0)) throw InvalidMesh("the mesh is a single point, so it has no interior");
+      data_->patches = PatchNumbers(solid.sites());
       for (const SolidBody& body : solid.bodies()) add_body(solid, body, spacing);
+      data_->patches.choose_anchors();
     }
     return finish();
   }
@@ -173,6 +187,7 @@ class MedialAxisBuilder {
       throw without_interior(solid, voxelized.report.spacing);
     const bool is_polyhedron = report().rule == SolidRule::polyhedron;
     auto known = std::make_unique<BodySurface>(solid, body, is_polyhedron, context_);
+    data_->patches.add(body, known->sites, solid.sites(), context_);
     timer.lap("surface");
     AxisPiece& piece = add_piece(voxelized, known->surface, NoiseFloor{});
     for (AxisVertex& vertex : piece.vertices) {
@@ -222,7 +237,7 @@ Complex MedialAxis::simplify(double theta, const Context& context) const {
   check_theta(theta);
   AxisLists lists;
   for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, lists, context);
-  return labelled(std::move(lists), context);
+  return data_->labelled(std::move(lists), context);
 }
 
 Complex MedialAxis::fitted(double theta, const Context& context) const {
@@ -239,7 +254,7 @@ Complex MedialAxis::fitted(double theta, const Context& context) const {
              context);
     append(std::move(own), lists);
   }
-  return labelled(std::move(lists), context);
+  return data_->labelled(std::move(lists), context);
 }
 
 double MedialAxis::lambda() const {
@@ -251,7 +266,9 @@ double MedialAxis::least_theta() const {
 }
 
 Complex MedialAxis::nested(const Context& context) const {
-  return nest_pieces(data_->pieces, data_->least_theta, context);
+  Complex nested = nest_pieces(data_->pieces, data_->least_theta, context);
+  data_->order(nested);
+  return nested;
 }
 
 MedialAxis medial_axis(const Solid& solid, const MedialAxisOptions& options, const Context& context) {

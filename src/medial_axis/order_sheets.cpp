@@ -1,0 +1,190 @@
+#include "medial_axis/order_sheets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/medial_columns.hpp"
+
+namespace blum {
+namespace {
+
+/// What has at least this part of the largest area is a good part. Parts of symmetrical sheets are as large, or twice or
+/// three times so: this is neither.
+constexpr double good_part = 0.41;
+/// What centroids may be moved by a grid, as a part of the mesh's reach.
+constexpr double moved = 0.01;
+
+constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max();
+
+/// Areas by what they belong to.
+class Areas {
+ public:
+  void add(std::uint64_t key, double area) { areas_[key] += area; }
+
+  /// The smallest key with a good part of the area; unknown where there is none.
+  [[nodiscard]] std::uint64_t smallest() const {
+    double most = 0;
+    for (const auto& [key, area] : areas_) most = std::max(most, area);
+    std::uint64_t least = unknown;
+    for (const auto& [key, area] : areas_) {
+      if (area >= good_part * most) least = std::min(least, key);
+    }
+    return least;
+  }
+
+ private:
+  std::unordered_map<std::uint64_t, double> areas_;
+};
+
+double area_of(const Complex& axis, std::uint32_t triangle) {
+  const auto& [a, b, c] = axis.triangles[triangle];
+  const Vec3d& at = axis.positions[a];
+  return 0.5 * length(cross(axis.positions[b] - at, axis.positions[c] - at));
+}
+
+std::span<const std::int32_t> sheets_of(const Complex& axis) {
+  return axis.triangle_columns.get<std::int32_t>(medial_columns::sheet);
+}
+
+/// Gives sheets new numbers. @param order  their old ones.
+void renumber(Complex& axis, const std::vector<std::uint32_t>& order) {
+  std::vector<std::int32_t> number(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) number[order[k]] = static_cast<std::int32_t>(k);
+  for (std::int32_t& sheet : axis.triangle_columns.edit<std::int32_t>(medial_columns::sheet)) {
+    sheet = number[static_cast<std::size_t>(sheet)];
+  }
+}
+
+/// What sheets are told apart by.
+struct Traits {
+  double area = 0;
+  Vec3d centroid;
+  bool is_crumb = false;
+  std::uint64_t pair = unknown;
+  /// Lengths: distances of the centroid from anchors, and less the side of a square as large.
+  std::vector<double> measures;
+};
+
+class Sorter {
+ public:
+  Sorter(const Complex& axis, const PatchNumbers& patches, double least_area)
+      : axis_(axis), patches_(patches), sheets_(sheet_count(axis)) {
+    find_pairs();
+    measure(least_area);
+  }
+
+  std::vector<std::uint32_t> sorted() {
+    std::vector<std::uint32_t> order(sheets_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::tie(sheets_[a].is_crumb, sheets_[a].pair, a) < std::tie(sheets_[b].is_crumb, sheets_[b].pair, b);
+    });
+    const auto alike = [&](std::uint32_t a, std::uint32_t b) {
+      return sheets_[a].is_crumb == sheets_[b].is_crumb && sheets_[a].pair == sheets_[b].pair;
+    };
+    for_each_run(order, alike, [&](std::span<std::uint32_t> run) { sort_by_measure(run, 0); });
+    return order;
+  }
+
+ private:
+  /// The patches that each vertex lies between, the smaller number first; unknown where it does not know two walls.
+  [[nodiscard]] std::vector<std::uint64_t> pairs_of_vertices() const {
+    const MedialView view(axis_);
+    std::vector<std::uint64_t> pairs(axis_.positions.size(), unknown);
+    for (std::size_t v = 0; v < pairs.size(); ++v) {
+      if (view.footprint(v, 0) == view.footprint(v, 1)) continue;
+      const auto [low, high] = std::minmax({patches_.at(view.site(v, 0)), patches_.at(view.site(v, 1))});
+      if (high != PatchNumbers::none) pairs[v] = std::uint64_t{low} << 32U | high;
+    }
+    return pairs;
+  }
+
+  void find_pairs() {
+    const std::vector<std::uint64_t> pairs = pairs_of_vertices();
+    const std::span<const std::int32_t> sheet_of = sheets_of(axis_);
+    std::vector<Areas> areas(sheets_.size());
+    for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
+      const auto sheet = static_cast<std::size_t>(sheet_of[t]);
+      const double third = area_of(axis_, t) / 3;
+      for (const std::uint32_t v : axis_.triangles[t]) {
+        if (pairs[v] != unknown) areas[sheet].add(pairs[v], third);
+        sheets_[sheet].centroid += third * axis_.positions[v];
+      }
+      sheets_[sheet].area += 3 * third;
+    }
+    for (std::size_t s = 0; s < areas.size(); ++s) sheets_[s].pair = areas[s].smallest();
+  }
+
+  void measure(double least_area) {
+    for (Traits& sheet : sheets_) {
+      if (sheet.area > 0) sheet.centroid = sheet.centroid / sheet.area;
+      sheet.is_crumb = !(sheet.area >= least_area);
+      for (const Vec3d& anchor : patches_.anchors()) sheet.measures.push_back(length(sheet.centroid - anchor));
+      sheet.measures.push_back(-std::sqrt(sheet.area));
+    }
+  }
+
+  /// Calls use(run) for each longest run of neighbours that are alike.
+  template <class Alike, class Use>
+  static void for_each_run(std::span<std::uint32_t> order, const Alike& alike, const Use& use) {
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+      for (end = begin + 1; end < order.size() && alike(order[end - 1], order[end]);) ++end;
+      use(order.subspan(begin, end - begin));
+    }
+  }
+
+  /// Sorts by one measure, and by the next ones what is the same but for what a grid changes.
+  void sort_by_measure(std::span<std::uint32_t> run, std::size_t m) {
+    const auto sort_by = [&](std::size_t by) {
+      std::sort(run.begin(), run.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::tie(sheets_[a].measures[by], a) < std::tie(sheets_[b].measures[by], b);
+      });
+    };
+    if (run.size() < 2) return;
+    if (m == sheets_[run.front()].measures.size()) {
+      // None tells them apart for certain: the first one does it best.
+      sort_by(0);
+      return;
+    }
+    sort_by(m);
+    const auto alike = [&](std::uint32_t a, std::uint32_t b) {
+      return sheets_[b].measures[m] - sheets_[a].measures[m] <= moved * patches_.reach();
+    };
+    for_each_run(run, alike, [&](std::span<std::uint32_t> part) { sort_by_measure(part, m + 1); });
+  }
+
+  const Complex& axis_;
+  const PatchNumbers& patches_;
+  std::vector<Traits> sheets_;
+};
+
+}  // namespace
+
+void order_sheets(Complex& axis, const PatchNumbers& patches, double least_area) {
+  if (patches.is_empty()) return;
+  renumber(axis, Sorter(axis, patches, least_area).sorted());
+}
+
+void order_sheets_as(Complex& axis, std::span<const std::int32_t> before) {
+  const std::span<const std::int32_t> sheet_of = sheets_of(axis);
+  std::vector<Areas> areas(sheet_count(axis));
+  for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
+    areas[static_cast<std::size_t>(sheet_of[t])].add(static_cast<std::uint64_t>(before[t]), area_of(axis, t));
+  }
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  for (std::uint32_t s = 0; s < areas.size(); ++s) order.emplace_back(areas[s].smallest(), s);
+  std::sort(order.begin(), order.end());
+  std::vector<std::uint32_t> sheets;
+  for (const auto& [first, sheet] : order) sheets.push_back(sheet);
+  renumber(axis, sheets);
+}
+
+}  // namespace blum
