@@ -9,7 +9,6 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
-#include "blum/medial_axis/axis_forms.hpp"
 #include "medial_axis/axis_piece.hpp"
 #include "medial_axis/contract_points.hpp"
 #include "medial_axis/fit/fit_axis.hpp"
@@ -26,8 +25,6 @@ namespace {
 
 constexpr int least_resolution = 8;
 constexpr int most_resolution = 800;
-/// What is smaller is a crumb of a sheet: voxels, by their sides.
-constexpr double crumb = 8;
 /// What a grid of voxels makes of a smooth surface: steps whose edges the axis would reach out for.
 constexpr NoiseFloor stairs{20, 120, 3, 3, 15, 0};
 
@@ -91,11 +88,6 @@ struct MedialAxis::Data {
   double least_theta = 0;
   double lambda = 0;
 
-  void order(Complex& complex) const {
-    const double spacing = least_spacing(report);
-    order_sheets(complex, patches, crumb * spacing * spacing);
-  }
-
   /// The complex of lists, with sheets and roles.
   [[nodiscard]] Complex labelled(AxisLists lists, const Context& context) const {
     Complex complex = complex_of(std::move(lists));
@@ -103,7 +95,7 @@ struct MedialAxis::Data {
     if (contract_points(complex, incidence)) incidence = Incidence(complex.view(), context);
     throw_if_cancelled(context);
     label_sheets(complex, incidence);
-    order(complex);
+    order_sheets(complex, patches);
     return complex;
   }
 };
@@ -267,7 +259,7 @@ double MedialAxis::least_theta() const {
 
 Complex MedialAxis::nested(const Context& context) const {
   Complex nested = nest_pieces(data_->pieces, data_->least_theta, context);
-  data_->order(nested);
+  order_sheets(nested, data_->patches);
   return nested;
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
@@ -19,8 +19,10 @@ namespace {
 /// What has at least this part of the largest area is a good part. Parts of symmetrical sheets are as large, or twice or
 /// three times so: this is neither.
 constexpr double good_part = 0.41;
-/// What centroids may be moved by a grid, as a part of the mesh's reach.
-constexpr double moved = 0.01;
+
+/// Sheets with less than this part of the area of all of them come last: they may be there on one grid and not on
+/// another, and would move the numbers of others.
+constexpr double least_part = 0.001;
 
 constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max();
 
@@ -69,28 +71,26 @@ struct Traits {
   Vec3d centroid;
   bool is_crumb = false;
   std::uint64_t pair = unknown;
-  /// Lengths: distances of the centroid from anchors, and less the side of a square as large.
-  std::vector<double> measures;
+  /// The sum of those of the centroid from all anchors. Each has its weight: sheets at mirrored places may be as far from
+  /// one of them, and in the sum are not.
+  double distance = 0;
 };
 
 class Sorter {
  public:
-  Sorter(const Complex& axis, const PatchNumbers& patches, double least_area)
+  Sorter(const Complex& axis, const PatchNumbers& patches)
       : axis_(axis), patches_(patches), sheets_(sheet_count(axis)) {
     find_pairs();
-    measure(least_area);
+    measure();
   }
 
-  std::vector<std::uint32_t> sorted() {
+  std::vector<std::uint32_t> sorted() const {
     std::vector<std::uint32_t> order(sheets_.size());
     std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::tie(sheets_[a].is_crumb, sheets_[a].pair, a) < std::tie(sheets_[b].is_crumb, sheets_[b].pair, b);
-    });
-    const auto alike = [&](std::uint32_t a, std::uint32_t b) {
-      return sheets_[a].is_crumb == sheets_[b].is_crumb && sheets_[a].pair == sheets_[b].pair;
+    const auto rank = [&](std::uint32_t s) {
+      return std::make_tuple(sheets_[s].is_crumb, sheets_[s].pair, sheets_[s].distance, s);
     };
-    for_each_run(order, alike, [&](std::span<std::uint32_t> run) { sort_by_measure(run, 0); });
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
     return order;
   }
 
@@ -123,42 +123,18 @@ class Sorter {
     for (std::size_t s = 0; s < areas.size(); ++s) sheets_[s].pair = areas[s].smallest();
   }
 
-  void measure(double least_area) {
+  void measure() {
+    double all = 0;
+    for (const Traits& sheet : sheets_) all += sheet.area;
     for (Traits& sheet : sheets_) {
       if (sheet.area > 0) sheet.centroid = sheet.centroid / sheet.area;
-      sheet.is_crumb = !(sheet.area >= least_area);
-      for (const Vec3d& anchor : patches_.anchors()) sheet.measures.push_back(length(sheet.centroid - anchor));
-      sheet.measures.push_back(-std::sqrt(sheet.area));
+      sheet.is_crumb = !(sheet.area >= least_part * all);
+      double weight = 1;
+      for (const Vec3d& anchor : patches_.anchors()) {
+        sheet.distance += weight * length(sheet.centroid - anchor);
+        weight *= std::numbers::phi - 1;
+      }
     }
-  }
-
-  /// Calls use(run) for each longest run of neighbours that are alike.
-  template <class Alike, class Use>
-  static void for_each_run(std::span<std::uint32_t> order, const Alike& alike, const Use& use) {
-    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-      for (end = begin + 1; end < order.size() && alike(order[end - 1], order[end]);) ++end;
-      use(order.subspan(begin, end - begin));
-    }
-  }
-
-  /// Sorts by one measure, and by the next ones what is the same but for what a grid changes.
-  void sort_by_measure(std::span<std::uint32_t> run, std::size_t m) {
-    const auto sort_by = [&](std::size_t by) {
-      std::sort(run.begin(), run.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::tie(sheets_[a].measures[by], a) < std::tie(sheets_[b].measures[by], b);
-      });
-    };
-    if (run.size() < 2) return;
-    if (m == sheets_[run.front()].measures.size()) {
-      // None tells them apart for certain: the first one does it best.
-      sort_by(0);
-      return;
-    }
-    sort_by(m);
-    const auto alike = [&](std::uint32_t a, std::uint32_t b) {
-      return sheets_[b].measures[m] - sheets_[a].measures[m] <= moved * patches_.reach();
-    };
-    for_each_run(run, alike, [&](std::span<std::uint32_t> part) { sort_by_measure(part, m + 1); });
   }
 
   const Complex& axis_;
@@ -168,9 +144,9 @@ class Sorter {
 
 }  // namespace
 
-void order_sheets(Complex& axis, const PatchNumbers& patches, double least_area) {
+void order_sheets(Complex& axis, const PatchNumbers& patches) {
   if (patches.is_empty()) return;
-  renumber(axis, Sorter(axis, patches, least_area).sorted());
+  renumber(axis, Sorter(axis, patches).sorted());
 }
 
 void order_sheets_as(Complex& axis, std::span<const std::int32_t> before) {

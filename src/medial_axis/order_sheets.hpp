@@ -15,9 +15,9 @@ namespace blum {
 ///   have a good part of its area, by the smallest;
 /// - of one pair, by how far their centroids are from the first vertex of the mesh; where that is the same but for what
 ///   a grid changes, by how far they are from another vertex; at last, the larger one first.
-/// Sheets of next to no area come after all others. Without patches, numbers stay.
-/// @param least_area  from which on a sheet is no crumb.
-void order_sheets(Complex& axis, const PatchNumbers& patches, double least_area);
+/// Sheets with less than a thousandth of the area come after all others, in the same order. Without patches, numbers
+/// stay.
+void order_sheets(Complex& axis, const PatchNumbers& patches);
 
 /// The same for a part of an axis, in the order that its sheets had there: of several that are one now, by the smallest
 /// number of those that have a good part of its area.

@@ -14,7 +14,7 @@ constexpr double flat = 1;
 constexpr double smooth = 30;
 /// Flat parts count that have at least this part of the surface. No part of a regular prism or of a box of squares has
 /// just this, so that rounding decides nothing.
-constexpr double least_part = 0.0153;
+constexpr double least_part = 0.00437;
 /// How far anchors are from the line or plane of those before, as a part of the reach.
 constexpr double apart = 0.0937;
 
