@@ -39,6 +39,9 @@ void check(const MedialAxisOptions& options) {
   if (options.spacing && !(*options.spacing > 0 && std::isfinite(*options.spacing))) {
     throw InvalidOption("spacing is " + exact_text(*options.spacing) + ", but must be above 0");
   }
+  if (!(options.grid_shift >= -1 && options.grid_shift <= 1)) {
+    throw InvalidOption("grid_shift is " + exact_text(options.grid_shift) + " voxels, but must be -1 to 1");
+  }
   if (!(options.least_theta >= 0 && options.least_theta <= 180)) {
     throw InvalidOption("least_theta is " + exact_text(options.least_theta) + " degrees, but must be 0 to 180");
   }
@@ -143,8 +146,8 @@ class MedialAxisBuilder {
     const bool is_polyhedron = data_->report.rule == SolidRule::polyhedron;
     const double finest = longest_side(bounds(body.mesh)) / options_.max_resolution;
     while (true) {
-      Voxelized out =
-          is_polyhedron ? voxelize_body(body, spacing, context_) : voxelize_by_winding(body.mesh, spacing, context_);
+      Voxelized out = is_polyhedron ? voxelize_body(body, spacing, context_, options_.grid_shift)
+                                    : voxelize_by_winding(body.mesh, spacing, context_, options_.grid_shift);
       const bool is_done = out.report.topology_matches && out.report.voxels + out.report.extra_cells > 0;
       if (is_done || !(spacing > finest * (1 + 1e-9))) return out;
       spacing = std::max(0.5 * spacing, finest);

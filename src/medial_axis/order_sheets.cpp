@@ -20,6 +20,8 @@ namespace {
 /// three times so: this is neither.
 constexpr double good_part = 0.41;
 
+/// What is next to an edge between patches counts less: it could be of either.
+constexpr double weight_of_shared = 0.2;
 /// Sheets with less than this part of the area of all of them come last: they may be there on one grid and not on
 /// another, and would move the numbers of others.
 constexpr double least_part = 0.001;
@@ -95,27 +97,34 @@ class Sorter {
   }
 
  private:
-  /// The patches that each vertex lies between, the smaller number first; unknown where it does not know two walls.
-  [[nodiscard]] std::vector<std::uint64_t> pairs_of_vertices() const {
+  /// The patches that a vertex lies between, the smaller number first, and how much it says of its sheet.
+  struct Sides {
+    std::uint64_t pair = unknown;  ///< where it does not know two walls
+    double weight = 1;
+  };
+  [[nodiscard]] std::vector<Sides> sides_of_vertices() const {
     const MedialView view(axis_);
-    std::vector<std::uint64_t> pairs(axis_.positions.size(), unknown);
-    for (std::size_t v = 0; v < pairs.size(); ++v) {
+    std::vector<Sides> sides(axis_.positions.size());
+    for (std::size_t v = 0; v < sides.size(); ++v) {
       if (view.footprint(v, 0) == view.footprint(v, 1)) continue;
-      const auto [low, high] = std::minmax({patches_.at(view.site(v, 0)), patches_.at(view.site(v, 1))});
-      if (high != PatchNumbers::none) pairs[v] = std::uint64_t{low} << 32U | high;
+      const SiteId first = view.site(v, 0);
+      const SiteId second = view.site(v, 1);
+      const auto [low, high] = std::minmax({patches_.at(first), patches_.at(second)});
+      if (high != PatchNumbers::none) sides[v].pair = std::uint64_t{low} << 32U | high;
+      if (patches_.is_shared(first) || patches_.is_shared(second)) sides[v].weight = weight_of_shared;
     }
-    return pairs;
+    return sides;
   }
 
   void find_pairs() {
-    const std::vector<std::uint64_t> pairs = pairs_of_vertices();
+    const std::vector<Sides> sides = sides_of_vertices();
     const std::span<const std::int32_t> sheet_of = sheets_of(axis_);
     std::vector<Areas> areas(sheets_.size());
     for (std::uint32_t t = 0; t < axis_.triangles.size(); ++t) {
       const auto sheet = static_cast<std::size_t>(sheet_of[t]);
       const double third = area_of(axis_, t) / 3;
       for (const std::uint32_t v : axis_.triangles[t]) {
-        if (pairs[v] != unknown) areas[sheet].add(pairs[v], third);
+        if (sides[v].pair != unknown) areas[sheet].add(sides[v].pair, sides[v].weight * third);
         sheets_[sheet].centroid += third * axis_.positions[v];
       }
       sheets_[sheet].area += 3 * third;

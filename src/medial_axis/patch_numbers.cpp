@@ -61,18 +61,26 @@ double distance_from(const std::vector<Vec3d>& others, const Vec3d& point) {
 void PatchNumbers::add(const SolidBody& body, const SiteTable& own, const SiteTable& input, const Context& context) {
   const std::vector<std::uint32_t> of_face = numbers_of_faces(body, own, context);
   std::vector<std::uint32_t> of_own(own.size(), none);
-  const auto lower = [](std::uint32_t& to, std::uint32_t number) { to = std::min(to, number); };
+  std::vector<bool> is_shared(own.size(), false);
+  const auto offer = [&](SiteId site, std::uint32_t number) {
+    std::uint32_t& known = of_own[site.value];
+    if (number == none || number == known) return;
+    if (known != none) is_shared[site.value] = true;
+    known = std::min(known, number);
+  };
   for (std::uint32_t t = 0; t < of_face.size(); ++t) {
-    lower(of_own[own.id({SiteKind::face, t}).value], of_face[t]);
-    for (const std::uint32_t v : body.mesh.triangles[t]) lower(of_own[v], of_face[t]);
+    offer(own.id({SiteKind::face, t}), of_face[t]);
+    for (const std::uint32_t v : body.mesh.triangles[t]) offer(own.id({SiteKind::vertex, v}), of_face[t]);
     for (const EdgeId e : own.triangle_edges()[t]) {
-      if (e != EdgeId::none()) lower(of_own[own.id({SiteKind::edge, e.value}).value], of_face[t]);
+      if (e != EdgeId::none()) offer(own.id({SiteKind::edge, e.value}), of_face[t]);
     }
   }
   for (std::uint32_t site = 0; site < of_own.size(); ++site) {
     // What no triangle has may have no triangle to stand for it.
     if (of_own[site] == none) continue;
-    lower(number_of_[body.input_site(SiteId(site), own, input).value], of_own[site]);
+    const std::size_t to = body.input_site(SiteId(site), own, input).value;
+    number_of_[to] = std::min(number_of_[to], of_own[site]);
+    if (is_shared[site]) is_shared_[to] = true;
   }
   for (std::uint32_t v = 0; v < body.vertex_of.size(); ++v) {
     const bool is_used = of_own[v] != none;

@@ -26,7 +26,8 @@ class PatchNumbers {
   /// Of what has no mesh: no site has a number.
   PatchNumbers() = default;
   /// @param input  the sites of the mesh that the bodies are of.
-  explicit PatchNumbers(const SiteTable& input) : number_of_(input.size(), none) {}
+  explicit PatchNumbers(const SiteTable& input)
+      : number_of_(input.size(), none), is_shared_(input.size(), false) {}
 
   /// @param own  the sites of the body's mesh. @throws Cancelled. Cost: near-linear.
   void add(const SolidBody& body, const SiteTable& own, const SiteTable& input, const Context& context);
@@ -36,6 +37,8 @@ class PatchNumbers {
   [[nodiscard]] bool is_empty() const { return number_of_.empty(); }
   /// The smallest of those that a site of the input lies on; none where it lies on none.
   [[nodiscard]] std::uint32_t at(SiteId site) const { return site.has_value() ? number_of_[site.value] : none; }
+  /// Whether a site of the input lies on several: an edge or a vertex where they meet.
+  [[nodiscard]] bool is_shared(SiteId site) const { return site.has_value() && is_shared_[site.value]; }
   /// Up to four vertices, neither on a line nor in a plane as far as the mesh is not. Distances from them tell a place.
   [[nodiscard]] const std::vector<Vec3d>& anchors() const { return anchors_; }
   /// The distance of the first anchor from the vertex that is furthest from it.
@@ -43,6 +46,7 @@ class PatchNumbers {
 
  private:
   std::vector<std::uint32_t> number_of_;  ///< of each site of the input
+  std::vector<bool> is_shared_;
   std::vector<std::pair<std::uint32_t, Vec3d>> vertices_;
   std::vector<Vec3d> anchors_;
   double reach_ = 0;
