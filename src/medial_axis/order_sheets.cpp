@@ -16,8 +16,8 @@
 namespace blum {
 namespace {
 
-/// What has at least this part of the largest area is a good part. Parts of symmetrical sheets are as large, or twice or
-/// three times so: this is neither.
+/// What has at least this part of the largest area is a good part. Parts of symmetrical sheets are as large, or twice
+/// or three times so: this is neither.
 constexpr double good_part = 0.41;
 
 /// What is next to an edge between patches counts less: it could be of either.
@@ -73,8 +73,8 @@ struct Traits {
   Vec3d centroid;
   bool is_crumb = false;
   std::uint64_t pair = unknown;
-  /// The sum of those of the centroid from all anchors. Each has its weight: sheets at mirrored places may be as far from
-  /// one of them, and in the sum are not.
+  /// The sum of those of the centroid from all anchors. Each has its weight: sheets at mirrored places may be as far
+  /// from one of them, and in the sum are not.
   double distance = 0;
 };
 

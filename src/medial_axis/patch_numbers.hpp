@@ -26,8 +26,7 @@ class PatchNumbers {
   /// Of what has no mesh: no site has a number.
   PatchNumbers() = default;
   /// @param input  the sites of the mesh that the bodies are of.
-  explicit PatchNumbers(const SiteTable& input)
-      : number_of_(input.size(), none), is_shared_(input.size(), false) {}
+  explicit PatchNumbers(const SiteTable& input) : number_of_(input.size(), none), is_shared_(input.size(), false) {}
 
   /// @param own  the sites of the body's mesh. @throws Cancelled. Cost: near-linear.
   void add(const SolidBody& body, const SiteTable& own, const SiteTable& input, const Context& context);

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <ostream>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/medial_axis/decimate.hpp"
@@ -142,8 +144,9 @@ void expect_apart(std::span<const Sheet> sheets, const Tolerance& tolerance) {
   }
 }
 
+/// Areas are off where sheets end at the facets of what is round, and by up to a voxel all around.
 Tolerance tolerance_of(const TriangleMesh& mesh) {
-  return {0.008 * bounds(mesh).diagonal(), 0.05};
+  return {0.008 * bounds(mesh).diagonal(), 0.1};
 }
 
 class SheetNumbers : public testing::TestWithParam<Part> {
@@ -230,9 +233,9 @@ TEST(SlowSheetNumbersAtTheCells, AreTheSameButForCrumbs) {
   constexpr int resolution = 128;
   for (const Part& part : {parts()[0], parts()[1]}) {
     SCOPED_TRACE(part.name);
-    const Tolerance tolerance{2 * tolerance_of(part.mesh).distance, 0.1};
-    const std::vector<Sheet> sheets = without_crumbs(
-        sheets_of(medial_axis(part.mesh, {.resolution = resolution}).simplify(theta)));
+    const Tolerance tolerance = tolerance_of(part.mesh);
+    const std::vector<Sheet> sheets =
+        without_crumbs(sheets_of(medial_axis(part.mesh, {.resolution = resolution}).simplify(theta)));
     EXPECT_EQ(sheets.size(), part.sheets);
     const Mat3 turn = test::rotation({1, 2, 3}, 17);
     const MedialAxis turned = medial_axis(test::turned(part.mesh, turn), {.resolution = resolution});
@@ -249,19 +252,17 @@ TEST(SheetNumbersOfAnything, AreThoseOfTheLeastAngleInNestedAxes) {
 }
 
 TEST(SheetNumbersOfAnything, KeepTheirOrderWhereSheetsAreDropped) {
-  const TriangleMesh mesh = test::known_l_beam(0.6, 1).mesh;
-  const Complex whole = medial_axis(mesh, {.resolution = 64}).fitted(60);
-  const Complex pruned = prune_sheets(whole, 85);
-  const std::vector<Sheet> sheets = sheets_of(pruned);
-  ASSERT_GT(sheets.size(), 1U);
-  ASSERT_LT(sheets.size(), sheet_count(whole));
-  // Each is one of those that were there before, or several with one of these: in their order.
+  const TriangleMesh mesh = make_star({});
+  const Complex whole = medial_axis(mesh, {.resolution = 64}).fitted(40);
   const std::vector<Sheet> before = sheets_of(whole);
-  const double reach = tolerance_of(mesh).distance;
+  const std::vector<Sheet> left = sheets_of(prune_sheets(whole, 100));
+  ASSERT_GT(left.size(), 4U);
+  ASSERT_LT(left.size(), before.size());
   std::size_t next = 0;
-  for (const Sheet& sheet : sheets) {
-    while (next < before.size() && length(before[next].centroid - sheet.centroid) > reach) ++next;
-    EXPECT_LT(next, before.size());
+  for (const Sheet& sheet : left) {
+    const auto is_same = [&](const Sheet& other) { return length(other.centroid - sheet.centroid) < 1e-9; };
+    while (next < before.size() && !is_same(before[next])) ++next;
+    EXPECT_LT(next++, before.size()) << "all are there before, in this order";
   }
 }
 
@@ -269,7 +270,8 @@ TEST(SheetNumbersOfAnything, AreTheSameForAnyNumberOfThreads) {
   const TriangleMesh mesh = make_bracket();
   const Complex one = medial_axis(mesh, {.resolution = 48}, {.threads = 1}).fitted(theta, {.threads = 1});
   for (const int threads : {2, 7}) {
-    const Complex many = medial_axis(mesh, {.resolution = 48}, {.threads = threads}).fitted(theta, {.threads = threads});
+    const Complex many =
+        medial_axis(mesh, {.resolution = 48}, {.threads = threads}).fitted(theta, {.threads = threads});
     EXPECT_TRUE(std::ranges::equal(MedialView(many).sheet, MedialView(one).sheet)) << threads;
   }
 }

@@ -35,8 +35,8 @@ struct MedialAxisOptions {
   /// voxels of half the side, as long as at most this many lie along its own longest side. Less than `resolution` says:
   /// never.
   int max_resolution = 512;
-  /// Meshes: how far the grid is moved along each of its axes, -1 to 1 voxels. The grid lies around the mesh, and so goes
-  /// where that goes; by this one sees what depends on where it lies.
+  /// Meshes: how far the grid is moved along each of its axes, -1 to 1 voxels. The grid lies around the mesh, and so
+  /// goes where that goes; by this one sees what depends on where it lies.
   double grid_shift = 0;
   /// Pieces of the axis whose two footprints are closer than this count for nothing (the lambda-medial axis of Chazal
   /// and Lieutier 2005), >= 0, mesh units.
