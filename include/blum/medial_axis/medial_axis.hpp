@@ -174,6 +174,12 @@ class MedialAxis {
 
 /// The medial axis of a solid.
 ///
+/// Sheets of a mesh are numbered by the flat or smooth parts of the surface that they lie between, these by their first
+/// faces; of one pair, by the distances of their centroids from vertices of the mesh; those with less than a thousandth
+/// of the area come last. So the same sheet has the same number wherever the mesh lies and however fine the grid is,
+/// where that shows the same sheets (docs/guide/medial-axes.md has the rule in full). Sheets of an image are numbered
+/// in the order of their first triangles.
+///
 /// Vertices lie on the bisector of two parts of the surface where there are two, within 0.7 voxels of a corner of the
 /// voxel lattice; their radius is the exact distance to the surface (1e-9 of the extent).
 ///
