@@ -148,7 +148,8 @@ void check_applicable(const Arguments& a, const fs::path& input, InputKind kind)
   refuse_given({{a.extend.has_value(), "--extend"}}, input, "an image", "meshes and images with --smooth");
   refuse_given({{a.options.has("resolution"), "--resolution"},
                 {a.options.has("spacing"), "--spacing"},
-                {a.options.has("max_resolution"), "--max-resolution"}},
+                {a.options.has("max_resolution"), "--max-resolution"},
+                {a.options.has("grid_shift"), "--grid-shift"}},
                input, "an image", "meshes and images with --smooth");
 }
 

@@ -124,7 +124,11 @@ class MedialColumns(Complex):
 
     @property
     def triangle_sheet(self) -> IntArray:
-        """(m,): the sheet that each triangle is part of, 0 to sheet_count - 1."""
+        """(m,): the sheet that each triangle is part of, 0 to sheet_count - 1.
+
+        Of a mesh, the same sheet has the same number wherever the part lies and however fine the grid is, as long as
+        that shows the same sheets: numbers follow from the faces that sheets lie between.
+        """
         found: IntArray = self._needed("triangles", "sheet")
         return found
 

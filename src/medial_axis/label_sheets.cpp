@@ -9,6 +9,7 @@
 
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/union_find.hpp"
+#include "medial_axis/sheet_joiner.hpp"
 
 namespace blum {
 namespace {
@@ -37,84 +38,6 @@ MedialRole role_of(const Around& a) {
   if (a.curves <= 2 && a.seams == 0 && a.rims == 0 && a.sheet == no_sheet) return MedialRole::curve;
   return MedialRole::junction;
 }
-
-/// Two triangles that share an edge with no other.
-struct Hinge {
-  std::array<std::uint32_t, 2> vertices;
-  std::array<std::uint32_t, 2> triangles;
-};
-
-/// From an edge to the third vertex of a triangle, at a right angle to the edge.
-Vec3d leaf(const Complex& axis, const std::array<std::uint32_t, 2>& edge, std::uint32_t triangle) {
-  const auto& v = axis.triangles[triangle];
-  const std::uint32_t third = v[0] ^ v[1] ^ v[2] ^ edge[0] ^ edge[1];
-  const Vec3d& from = axis.positions[edge[0]];
-  const Vec3d along = axis.positions[edge[1]] - from;
-  const Vec3d out = axis.positions[third] - from;
-  const double squared = squared_length(along);
-  return squared > 0 ? out - along * (dot(out, along) / squared) : out;
-}
-
-/// The cosine of the angle at a hinge: -1 where it is flat, and where a triangle has no area.
-double cosine_of(const Complex& axis, const Hinge& hinge) {
-  const Vec3d a = leaf(axis, hinge.vertices, hinge.triangles[0]);
-  const Vec3d b = leaf(axis, hinge.vertices, hinge.triangles[1]);
-  const double scale = length(a) * length(b);
-  return scale > 0 ? dot(a, b) / scale : -1;
-}
-
-/// Joins the triangles of sheets. Where seams lie a step beside the crease of two sheets, first on one side of it and
-/// then on the other, the two hang together at the step: so sharp hinges at seams join nothing, unless what they cut
-/// off is only a few triangles.
-class SheetJoiner {
- public:
-  explicit SheetJoiner(const Complex& axis) : axis_(axis), sheets_(axis.triangles.size()) {}
-
-  detail::UnionFind join(const std::vector<Hinge>& hinges) {
-    std::vector<bool> is_on_seam(axis_.positions.size(), false);
-    const std::span<const std::int32_t> roles = axis_.edge_columns.get<std::int32_t>(medial_columns::role);
-    for (std::size_t e = 0; e < axis_.edges.size(); ++e) {
-      if (roles[e] != number_of(MedialRole::seam)) continue;
-      for (const std::uint32_t v : axis_.edges[e]) is_on_seam[v] = true;
-    }
-    std::vector<std::pair<double, Hinge>> sharp;
-    for (const Hinge& hinge : hinges) {
-      const bool is_at_seam = is_on_seam[hinge.vertices[0]] || is_on_seam[hinge.vertices[1]];
-      const double cosine = is_at_seam ? cosine_of(axis_, hinge) : -1;
-      if (cosine > sharp_cosine) {
-        sharp.emplace_back(cosine, hinge);
-      } else {
-        sheets_.join(hinge.triangles[0], hinge.triangles[1]);
-      }
-    }
-    join_small(sharp);
-    return std::move(sheets_);
-  }
-
- private:
-  static constexpr double sharp_cosine = -0.8;  ///< 37 degrees from flat
-  static constexpr std::size_t few = 8;         ///< triangles
-
-  /// Pieces of a few triangles go to the neighbour that they are flattest with.
-  void join_small(std::vector<std::pair<double, Hinge>>& sharp) {
-    std::sort(sharp.begin(), sharp.end(), [](const auto& a, const auto& b) {
-      return a.first != b.first ? a.first < b.first : a.second.triangles < b.second.triangles;
-    });
-    std::vector<std::size_t> size(axis_.triangles.size(), 0);
-    for (std::uint32_t t = 0; t < size.size(); ++t) ++size[sheets_.find(t)];
-    for (const auto& [cosine, hinge] : sharp) {
-      const std::uint32_t a = sheets_.find(hinge.triangles[0]);
-      const std::uint32_t b = sheets_.find(hinge.triangles[1]);
-      if (a == b || std::min(size[a], size[b]) >= few) continue;
-      const std::size_t sum = size[a] + size[b];
-      sheets_.join(a, b);
-      size[sheets_.find(a)] = sum;
-    }
-  }
-
-  const Complex& axis_;
-  detail::UnionFind sheets_;
-};
 
 /// Adds the sides of triangles that are rims or seams to the edges; returns those that are neither.
 std::vector<Hinge> add_rims_and_seams(Complex& axis, const Incidence& incidence) {
@@ -179,7 +102,7 @@ void find_vertex_roles(Complex& axis) {
 
 void label_sheets(Complex& axis, const Incidence& incidence) {
   const std::vector<Hinge> hinges = add_rims_and_seams(axis, incidence);
-  number_sheets(axis, SheetJoiner(axis).join(hinges));
+  number_sheets(axis, join_sheets(axis, hinges));
   find_vertex_roles(axis);
 }
 

@@ -7,7 +7,8 @@
 namespace blum {
 
 /// Numbers the sheets of a medial axis whose vertices and triangles are there, adds its rims and seams to the edges,
-/// which hold its curves, and tells the role of each vertex. Sheets are numbered by their first triangle.
+/// which hold its curves, and tells the role of each vertex. Sheets are numbered by their first triangle,
+/// until order_sheets() does better.
 /// @param incidence  of the axis as it is given.
 void label_sheets(Complex& axis, const Incidence& incidence);
 

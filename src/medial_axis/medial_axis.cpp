@@ -15,6 +15,8 @@
 #include "medial_axis/label_sheets.hpp"
 #include "medial_axis/mesh_surface.hpp"
 #include "medial_axis/nest_pieces.hpp"
+#include "medial_axis/order_sheets.hpp"
+#include "medial_axis/patch_numbers.hpp"
 #include "medial_axis/voxel_surface.hpp"
 #include "medial_axis/voxelize.hpp"
 
@@ -37,6 +39,9 @@ void check(const MedialAxisOptions& options) {
   if (options.spacing && !(*options.spacing > 0 && std::isfinite(*options.spacing))) {
     throw InvalidOption("spacing is " + exact_text(*options.spacing) + ", but must be above 0");
   }
+  if (!(options.grid_shift >= -1 && options.grid_shift <= 1)) {
+    throw InvalidOption("grid_shift is " + exact_text(options.grid_shift) + " voxels, but must be -1 to 1");
+  }
   if (!(options.least_theta >= 0 && options.least_theta <= 180)) {
     throw InvalidOption("least_theta is " + exact_text(options.least_theta) + " degrees, but must be 0 to 180");
   }
@@ -47,16 +52,6 @@ void check(const MedialAxisOptions& options) {
 
 double longest_side(const Box3& box) {
   return std::max({box.size().x, box.size().y, box.size().z});
-}
-
-/// The complex of lists, with sheets and roles.
-Complex labelled(AxisLists lists, const Context& context) {
-  Complex complex = complex_of(std::move(lists));
-  Incidence incidence(complex.view(), context);
-  if (contract_points(complex, incidence)) incidence = Incidence(complex.view(), context);
-  throw_if_cancelled(context);
-  label_sheets(complex, incidence);
-  return complex;
 }
 
 void add(BettiNumbers& sum, const BettiNumbers& part) {
@@ -92,8 +87,20 @@ struct MedialAxis::Data {
   MedialAxisReport report;
   std::vector<AxisPiece> pieces;
   std::vector<std::unique_ptr<BodySurface>> surfaces;  ///< of the pieces of a polyhedron
+  PatchNumbers patches;
   double least_theta = 0;
   double lambda = 0;
+
+  /// The complex of lists, with sheets and roles.
+  [[nodiscard]] Complex labelled(AxisLists lists, const Context& context) const {
+    Complex complex = complex_of(std::move(lists));
+    Incidence incidence(complex.view(), context);
+    if (contract_points(complex, incidence)) incidence = Incidence(complex.view(), context);
+    throw_if_cancelled(context);
+    label_sheets(complex, incidence);
+    order_sheets(complex, patches);
+    return complex;
+  }
 };
 
 /// Makes the pieces of an axis one after the other.
@@ -115,7 +122,9 @@ class MedialAxisBuilder {
     } else {
       const double spacing = options_.spacing.value_or(longest_side(solid.box()) / options_.resolution);
       if (!(spacing > 0)) throw InvalidMesh("the mesh is a single point, so it has no interior");
+      data_->patches = PatchNumbers(solid.sites());
       for (const SolidBody& body : solid.bodies()) add_body(solid, body, spacing);
+      data_->patches.choose_anchors();
     }
     return finish();
   }
@@ -137,8 +146,8 @@ class MedialAxisBuilder {
     const bool is_polyhedron = data_->report.rule == SolidRule::polyhedron;
     const double finest = longest_side(bounds(body.mesh)) / options_.max_resolution;
     while (true) {
-      Voxelized out =
-          is_polyhedron ? voxelize_body(body, spacing, context_) : voxelize_by_winding(body.mesh, spacing, context_);
+      Voxelized out = is_polyhedron ? voxelize_body(body, spacing, context_, options_.grid_shift)
+                                    : voxelize_by_winding(body.mesh, spacing, context_, options_.grid_shift);
       const bool is_done = out.report.topology_matches && out.report.voxels + out.report.extra_cells > 0;
       if (is_done || !(spacing > finest * (1 + 1e-9))) return out;
       spacing = std::max(0.5 * spacing, finest);
@@ -173,6 +182,7 @@ class MedialAxisBuilder {
       throw without_interior(solid, voxelized.report.spacing);
     const bool is_polyhedron = report().rule == SolidRule::polyhedron;
     auto known = std::make_unique<BodySurface>(solid, body, is_polyhedron, context_);
+    data_->patches.add(body, known->sites, solid.sites(), context_);
     timer.lap("surface");
     AxisPiece& piece = add_piece(voxelized, known->surface, NoiseFloor{});
     for (AxisVertex& vertex : piece.vertices) {
@@ -222,7 +232,7 @@ Complex MedialAxis::simplify(double theta, const Context& context) const {
   check_theta(theta);
   AxisLists lists;
   for (const AxisPiece& piece : data_->pieces) append_at(piece, theta, lists, context);
-  return labelled(std::move(lists), context);
+  return data_->labelled(std::move(lists), context);
 }
 
 Complex MedialAxis::fitted(double theta, const Context& context) const {
@@ -239,7 +249,7 @@ Complex MedialAxis::fitted(double theta, const Context& context) const {
              context);
     append(std::move(own), lists);
   }
-  return labelled(std::move(lists), context);
+  return data_->labelled(std::move(lists), context);
 }
 
 double MedialAxis::lambda() const {
@@ -251,7 +261,9 @@ double MedialAxis::least_theta() const {
 }
 
 Complex MedialAxis::nested(const Context& context) const {
-  return nest_pieces(data_->pieces, data_->least_theta, context);
+  Complex nested = nest_pieces(data_->pieces, data_->least_theta, context);
+  order_sheets(nested, data_->patches);
+  return nested;
 }
 
 MedialAxis medial_axis(const Solid& solid, const MedialAxisOptions& options, const Context& context) {

@@ -13,6 +13,7 @@
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
 #include "medial_axis/label_sheets.hpp"
+#include "medial_axis/order_sheets.hpp"
 
 namespace blum {
 namespace {
@@ -70,6 +71,9 @@ class Pruner {
     out.triangle_columns = complex_.triangle_columns.pick(kept);
     add_curves(out, number);
     label_sheets(out, Incidence(out.view()));
+    std::vector<std::int32_t> before;
+    for (const std::uint32_t t : kept) before.push_back(axis_.sheet[t]);
+    order_sheets_as(out, before);
     return out;
   }
 

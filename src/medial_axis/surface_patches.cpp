@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "blum/core/error.hpp"
 #include "blum/core/sort_unique.hpp"
@@ -15,7 +15,6 @@
 namespace blum {
 namespace {
 
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// So that a prism of twelve sides, whose edges bend by 30 degrees but for rounding, is one patch at 30.
 constexpr double rounding = 1e-6;  // degrees
 
@@ -30,7 +29,10 @@ bool runs_along(const Triangle& triangle, const Segment& edge) {
 }  // namespace
 
 SurfacePatches::SurfacePatches(const MeshView& mesh, double angle, const Context& context)
-    : mesh_((validate(mesh), mesh)), sites_(mesh, context) {
+    : SurfacePatches((validate(mesh), mesh), SiteTable(mesh, context), angle, context) {}
+
+SurfacePatches::SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context)
+    : mesh_(mesh), sites_(std::move(sites)) {
   find_normals();
   find_rows();
   join_faces(angle, context);

@@ -17,8 +17,14 @@ class SurfacePatches {
  public:
   /// @param angle  degrees. @throws InvalidMesh, Cancelled. Cost: near-linear. Lives no longer than the mesh.
   SurfacePatches(const MeshView& mesh, double angle, const Context& context);
+  /// The same with the sites of the mesh, which passes validate().
+  SurfacePatches(const MeshView& mesh, SiteTable sites, double angle, const Context& context);
+
+  static constexpr std::uint32_t none = 0xffffffffU;
 
   [[nodiscard]] const std::vector<AxisPatch>& patches() const { return patches_; }
+  /// That of a face; none for one without area.
+  [[nodiscard]] std::uint32_t of_face(std::uint32_t face) const { return patch_of_[face]; }
   /// Those that a site lies on, rising. @throws InvalidOption for a site that the mesh does not have.
   [[nodiscard]] std::vector<std::uint32_t> at(SiteId site) const;
 
@@ -38,7 +44,7 @@ class SurfacePatches {
   SiteTable sites_;
   std::vector<Vec3d> normals_;  ///< of twice the area's length
   Rows at_edges_, at_vertices_;
-  std::vector<std::uint32_t> patch_of_;  ///< of each face; none
+  std::vector<std::uint32_t> patch_of_;  ///< of each face
   std::vector<AxisPatch> patches_;
 };
 

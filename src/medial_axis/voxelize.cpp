@@ -28,14 +28,16 @@ constexpr Vec3d off_middle{0.11, 0.27, 0.37};
 
 using Place = std::array<std::int64_t, 3>;
 
-GridSpec voxels_around(const Box3& box, double spacing) {
+GridSpec voxels_around(const Box3& box, double spacing, double shift) {
   GridSpec grid;
   grid.spacing = {spacing, spacing, spacing};
   for (std::size_t a = 0; a < 3; ++a) {
     const double steps = std::ceil(box.size()[a] / spacing);
     if (!(steps < 1e6)) throw InvalidOption("a voxel side of " + exact_text(spacing) + " is too small for the mesh");
-    grid.size[a] = static_cast<std::int64_t>(steps) + 2 * margin;
-    grid.origin[a] = box.center()[a] - spacing * (0.5 * static_cast<double>(grid.size[a] - 1) - off_middle[a]);
+    const auto layers = margin + static_cast<int>(std::ceil(std::abs(shift)));
+    grid.size[a] = static_cast<std::int64_t>(steps) + 2 * layers;
+    const double off = off_middle[a] + shift;
+    grid.origin[a] = box.center()[a] - spacing * (0.5 * static_cast<double>(grid.size[a] - 1) - off);
   }
   return grid;
 }
@@ -132,11 +134,11 @@ BodyReport report_of(const VoxelSolid& solid, const Context& context) {
 
 }  // namespace
 
-Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context) {
+Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context, double shift) {
   Voxelized out;
   FieldOptions options;
   options.sign = SignMode::normals;
-  out.solid = solid_of(distance_field(body.mesh, voxels_around(bounds(body.mesh), spacing), options, context));
+  out.solid = solid_of(distance_field(body.mesh, voxels_around(bounds(body.mesh), spacing, shift), options, context));
   BodyCells cells = body_cells(body.mesh, out.solid.grid, context);
   out.solid.voxels = std::move(cells.inside);
   agree_with(out.solid.voxels, out.solid.depth, context);
@@ -151,11 +153,11 @@ Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& co
   return out;
 }
 
-Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context) {
+Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context, double shift) {
   Voxelized out;
   FieldOptions options;
   options.sign = SignMode::winding;
-  out.solid = solid_of(distance_field(mesh, voxels_around(bounds(mesh), spacing), options, context));
+  out.solid = solid_of(distance_field(mesh, voxels_around(bounds(mesh), spacing, shift), options, context));
   take_deeper_than(out.solid.depth.span(), 0, out.solid.voxels, context);
   out.report = report_of(out.solid, context);
   return out;

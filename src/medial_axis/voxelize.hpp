@@ -17,11 +17,12 @@ struct Voxelized {
 };
 
 /// Voxels of a body with its Betti numbers, as choose_voxels finds them.
-/// @param spacing  mesh units.
-[[nodiscard]] Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context);
+/// @param spacing  mesh units. @param shift  how far the grid is moved along each axis, voxels.
+[[nodiscard]] Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context, double shift = 0);
 
 /// The voxels whose centre has a winding number above 1/2.
-[[nodiscard]] Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context);
+[[nodiscard]] Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context,
+                                            double shift = 0);
 
 /// Voxels of an image, with a layer of others around the smallest box that holds them.
 /// @param first  the place in the image of the box's voxel (0, 0, 0); may be -1.

@@ -54,6 +54,30 @@ def test_larger_angles_give_parts_of_smaller_ones(axis):
     assert keys(axis.simplify(120)) <= keys(axis.simplify(60)) <= keys(axis.simplify(20))
 
 
+def test_sheets_keep_their_numbers_when_a_part_is_turned_or_the_grid_is_moved(plate):
+    def sheets(axis, turn):
+        corners = axis.vertices[axis.triangles] @ turn
+        sides = corners[:, 1:] - corners[:, :1]
+        area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+        moments = [np.bincount(axis.triangle_sheet, weights=area * x) for x in corners.mean(axis=1).T]
+        return np.transpose(moments) / np.bincount(axis.triangle_sheet, weights=area)[:, None]
+
+    cosine, sine = np.cos(np.radians(17)), np.sin(np.radians(17))
+    turn = np.array([[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]]) @ [
+        [cosine, -sine, 0],
+        [sine, cosine, 0],
+        [0, 0, 1],
+    ]
+    first = sheets(blum.medial_axis(plate, resolution=64).certified(60), np.eye(3))
+    apart = np.linalg.norm(first[:, None] - first, axis=2) + np.eye(len(first))
+    allowed = 0.01 * np.linalg.norm(np.ptp(plate.vertices, axis=0))
+    assert len(first) > 10 and apart.min() > 2 * allowed
+    turned = blum.medial_axis(plate.vertices @ turn.T, plate.triangles, resolution=64).certified(60)
+    shifted = blum.medial_axis(plate, resolution=64, grid_shift=0.3).certified(60)
+    for again in (sheets(turned, turn), sheets(shifted, np.eye(3))):
+        assert again.shape == first.shape and np.linalg.norm(again - first, axis=1).max() < allowed
+
+
 def test_defaults_are_those_of_the_tool(plate, tmp_path):
     import tool
 

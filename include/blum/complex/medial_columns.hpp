@@ -53,7 +53,8 @@ inline constexpr std::string_view separation_angle = "separation_angle";
 /// Vertices and edges, int32: MedialRole; of edges rim, seam or curve.
 inline constexpr std::string_view role = "role";
 /// Triangles, int32, from 0. Sheets are the triangles joined through edges that exactly two triangles share; next to a
-/// seam, not through edges where these are 37 degrees from flat, or more.
+/// seam, not through edges where these are 37 degrees from flat, or more. Of an axis of a mesh they are numbered by the
+/// faces that they lie between (see medial_axis()), of an image by their first triangle.
 inline constexpr std::string_view sheet = "sheet";
 
 /// Axes of all angles have these besides (MedialAxis::nested). Vertices, edges and triangles, float32, degrees: they

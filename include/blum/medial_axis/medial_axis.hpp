@@ -35,6 +35,9 @@ struct MedialAxisOptions {
   /// voxels of half the side, as long as at most this many lie along its own longest side. Less than `resolution` says:
   /// never.
   int max_resolution = 512;
+  /// Meshes: how far the grid is moved along each of its axes, -1 to 1 voxels. The grid lies around the mesh, and so
+  /// goes where that goes; by this one sees what depends on where it lies.
+  double grid_shift = 0;
   /// Pieces of the axis whose two footprints are closer than this count for nothing (the lambda-medial axis of Chazal
   /// and Lieutier 2005), >= 0, mesh units.
   double lambda = 0;
@@ -58,6 +61,8 @@ struct Description<MedialAxisOptions> {
              "meshes: a body whose model does not pass is done again with finer voxels, up to this many "
              "along its longest side",
              Range::between(8, 800)},
+      Member{"grid_shift", &MedialAxisOptions::grid_shift, "voxels",
+             "meshes: how far the grid is moved along each axis, to see what depends on that", Range::between(-1, 1)},
       Member{"lambda", &MedialAxisOptions::lambda, "mesh units",
              "pieces whose two footprints are closer than this count for nothing", Range::at_least(0)},
       Member{"least_theta", &MedialAxisOptions::least_theta, "degrees",
@@ -168,6 +173,12 @@ class MedialAxis {
 };
 
 /// The medial axis of a solid.
+///
+/// Sheets of a mesh are numbered by the flat or smooth parts of the surface that they lie between, these by their first
+/// faces; of one pair, by the distances of their centroids from vertices of the mesh; those with less than a thousandth
+/// of the area come last. So the same sheet has the same number wherever the mesh lies and however fine the grid is,
+/// where that shows the same sheets (docs/guide/medial-axes.md has the rule in full). Sheets of an image are numbered
+/// in the order of their first triangles.
 ///
 /// Vertices lie on the bisector of two parts of the surface where there are two, within 0.7 voxels of a corner of the
 /// voxel lattice; their radius is the exact distance to the surface (1e-9 of the extent).

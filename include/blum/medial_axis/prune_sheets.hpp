@@ -13,8 +13,8 @@ namespace blum {
 /// MedialAxis::simplify() cuts sheets apart at theta, this keeps each as it is or drops it.
 /// @param axis   as simplify() gives it, at a small theta: sheets are taken as they are labelled.
 /// @param theta  degrees, 0 to 180.
-/// @return       part of the axis with its columns (edges have those of medial_columns only), labelled anew; what a
-/// larger theta leaves of the result is part of it.
+/// @return       part of the axis with its columns (edges have those of medial_columns only), labelled anew with
+/// sheets in the order that they had; what a larger theta leaves of the result is part of it.
 /// @throws InvalidOption, also where it has no sheets or no angles of edges and triangles, or saying
 /// problem_of_medial() of what it has; Cancelled.
 /// Cost: O(n log n), more where many sheets are tried in vain. Method: Sud 2006, 5.6.

@@ -100,9 +100,23 @@ Vec3d on_page(double x, double distance, double degrees) {
   return {x, distance * std::cos(turn), distance * std::sin(turn)};
 }
 
+/// Puts a narrow strip between the first page and the second one at an edge of the fold, so that the bend is in two
+/// steps. @param edge  its ends; @param to  those of the second page's square there, further out.
+void put_strip(AxisRows& book, double fold, const Edge& edge, const Edge& to) {
+  const auto beside = static_cast<std::uint32_t>(book.vertices.size());
+  for (const std::uint32_t v : edge) {
+    book.vertices.emplace_back().position = on_page(book.vertices[v].position.x, 0.1, 180 - 0.5 * fold);
+  }
+  for (const Face& face :
+       {Face{edge[0], edge[1], beside}, Face{edge[1], beside + 1, beside}, Face{beside, beside + 1, to[0]},
+        Face{beside + 1, to[1], to[0]}, Face{edge[0], beside, to[0]}, Face{edge[1], to[1], beside + 1}}) {
+    book.triangles.push_back({face, 10, 0});
+  }
+}
+
 /// A book of two pages, folded by some angle along the x axis, with a third page of which one edge, of 16, is missing
 /// at the fold.
-AxisRows torn_book(double fold) {
+AxisRows torn_book(double fold, bool is_in_two_steps = false) {
   constexpr std::uint32_t steps = 16;
   AxisRows complex;
   const auto row_of_vertices = [&](double distance, double degrees) {
@@ -119,6 +133,10 @@ AxisRows torn_book(double fold) {
     for (const double distance : {1, 2}) {
       const std::vector<std::uint32_t> to = row_of_vertices(distance, degrees);
       for (std::uint32_t k = 0; k < steps; ++k) {
+        if (is_in_two_steps && degrees == 180 - fold && distance == 1 && k == steps / 2) {
+          put_strip(complex, fold, {from[k], from[k + 1]}, {to[k], to[k + 1]});
+          continue;
+        }
         const bool is_missing = degrees > 180 && distance == 1 && k == steps / 2;
         if (!is_missing) complex.triangles.push_back({{from[k], from[k + 1], to[k]}, 10, 0});
         complex.triangles.push_back({{from[k + 1], to[k + 1], to[k]}, 10, 0});
@@ -134,6 +152,11 @@ TEST(LabelSheets, ATornSeamDoesNotJoinSheets) {
   EXPECT_EQ(torn_book(90).sheet_count, 3U);
   EXPECT_EQ(torn_book(40).sheet_count, 3U);
   EXPECT_EQ(torn_book(20).sheet_count, 2U) << "nearly flat: they are one sheet";
+}
+
+TEST(LabelSheets, ATornSeamDoesNotJoinSheetsInSmallSteps) {
+  EXPECT_EQ(torn_book(60, true).sheet_count, 3U) << "twice 30 degrees";
+  EXPECT_EQ(torn_book(20, true).sheet_count, 2U);
 }
 
 TEST(LabelSheets, ASharpFoldIsOneSheetWhereNoSeamIsNear) {
