@@ -26,8 +26,9 @@ constexpr double most_vertices_off = 0.1;  ///< share of vertices that see one w
 constexpr double most_deep_of_one_wall =
     0.6;                                ///< of vertices deep inside: of true axes 0.4 have one footprint (a rod at 0)
 constexpr double enough_sheet = 256;    ///< square voxels from which that is asked
+constexpr double far_off = 1.5;         ///< allowances for what is missing, that such vertices may be off the middle
 constexpr double few_vertices = 16;     ///< that may do so at any rate
-constexpr double thin_part = 0.5;       ///< voxels: radius from which parts are not thin
+constexpr double thin_part = 1;         ///< voxels: radius from which parts are not thin
 constexpr double noise_of_meshes = 10;  ///< degrees from which two walls are two
 constexpr double noise_of_images = 20;  ///< the same between steps of voxels
 constexpr double well_above = 30;       ///< degrees over theta from where the axis must have all
@@ -265,7 +266,7 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
     // Between the mouth of a thin part and the middle of a thick one the edges of the mouth are all that is close.
     if (!(offsets[k] > allowed.middle) || claimed.least_radius_around(v) < thin_part * allowed.voxel) continue;
     ++check.one_wall_off;
-    if (!(offsets[k] > allowed.missing)) continue;
+    if (!(offsets[k] > far_off * allowed.missing)) continue;
     if (check.one_wall_far++ == 0) check.far_at = axis.positions[v];
   }
 }
@@ -370,7 +371,7 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
   if (!by_voxels && check.one_wall_far > 0) {
     mismatches.push_back(
         count_text(check.one_wall_far) + " vertices that two walls should see have one and are more than " +
-        rounded_text(check.missing_allowance) + " off the middle, the first at " + place_text(check.far_at));
+        rounded_text(far_off * check.missing_allowance) + " off the middle, the first at " + place_text(check.far_at));
   }
   const auto balls = static_cast<double>(check.balls);
   if (check.balls >= few_balls && check.missed_share * balls > std::max(most_missed_here * balls, few_missed + 0.5)) {
