@@ -223,7 +223,7 @@ struct Description<BallUnionCheck> {
 ///
 /// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
 /// too, other than beside parts thinner than a voxel; a tenth of those vertices, or 16, need not, but none may be off
-/// by more than 2 voxels and the deviation. Of those deeper than the allowance at most three in five may have one,
+/// by more than 3 voxels and the deviation. Of those deeper than the allowance at most three in five may have one,
 /// where sheets are larger than 256 square voxels. Against the voxels of a mesh, what is in the middle is told only.
 struct MedialCheck {
   double allowance = 0;              ///< how far from the middle a point may be, mesh units

@@ -136,7 +136,7 @@ TEST(Lies, OneVertexMoved) {
 }
 
 TEST(Lies, OneVertexMovedWithItsRadiusAndFootprint) {
-  for (const double voxels : {4.0, 6.0}) {
+  for (const double voxels : {6.0, 8.0}) {
     True lie = box();
     VertexRow& deepest = *std::max_element(lie.axis.vertices.begin(), lie.axis.vertices.end(),
                                            [](const auto& a, const auto& b) { return a.radius < b.radius; });
