@@ -195,45 +195,63 @@ Vec3d random_point(const MedialView& axis, std::uint32_t t, Random& random) {
   return p + (axis.positions[b] - p) * u + (axis.positions[c] - p) * v;
 }
 
+/// Between a vertex's footprints, degrees.
+double angle_at(const MedialView& axis, std::uint32_t v) {
+  const Vec3d& p = axis.positions[v];
+  return degrees_between(axis.footprint(v, 0) - p, axis.footprint(v, 1) - p);
+}
+
 /// What of an axis is seen at more than theta, by what it says of itself.
 class Claimed {
  public:
-  Claimed(const MedialView& axis, double theta)
-      : is_claimed_(axis.positions.size(), false), least_radius_(axis.positions.size(), HUGE_VAL) {
+  /// @param noise  degrees up to which one rough wall is seen.
+  Claimed(const MedialView& axis, double theta, double noise)
+      : is_claimed_(axis.positions.size(), false),
+        is_between_walls_(axis.positions.size(), false),
+        least_radius_(axis.positions.size(), HUGE_VAL),
+        two_walls_(std::max(theta, 2 * noise)) {
     for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
       const double size = area(axis, t);
       if (std::isfinite(size)) all_ += size;
       if (!(axis.triangle_angle[t] > theta)) continue;
       sheets_.add(size, t);
-      add_corners(axis, axis.triangles[t]);
+      add_corners(axis, axis.triangles[t], axis.triangle_angle[t]);
     }
     for (std::uint32_t e = 0; e < axis.edges.size(); ++e) {
       if (axis.edge_role(e) != MedialRole::curve || !(axis.edge_angle[e] > theta)) continue;
       curves_.add(length(axis.positions[axis.edges[e][0]] - axis.positions[axis.edges[e][1]]), e);
-      add_corners(axis, axis.edges[e]);
+      add_corners(axis, axis.edges[e], axis.edge_angle[e]);
     }
   }
 
   [[nodiscard]] const Spread& sheets() const { return sheets_; }
   [[nodiscard]] const Spread& curves() const { return curves_; }
   [[nodiscard]] bool contains(std::size_t vertex) const { return is_claimed_[vertex]; }
+  /// Whether a vertex should see two walls by what is beside it: by the angle of a cell and by its other corners.
+  [[nodiscard]] bool is_between_walls(std::size_t vertex) const { return is_between_walls_[vertex]; }
   /// The smallest radius in the cells at a vertex.
   [[nodiscard]] double least_radius_around(std::size_t vertex) const { return least_radius_[vertex]; }
   /// Of the area of all triangles, what is only there for homotopy.
   [[nodiscard]] double rest_of_area() const { return all_ > 0 ? std::max(0.0, 1 - sheets_.total() / all_) : 0; }
 
  private:
-  void add_corners(const MedialView& axis, std::span<const std::uint32_t> corners) {
+  void add_corners(const MedialView& axis, std::span<const std::uint32_t> corners, double angle) {
     double least = HUGE_VAL;
+    std::size_t between_walls = 0;
     for (const std::uint32_t v : corners) {
       is_claimed_[v] = true;
       least = std::min<double>(least, axis.radius[v]);
+      between_walls += angle_at(axis, v) > two_walls_ ? 1 : 0;
     }
-    for (const std::uint32_t v : corners) least_radius_[v] = std::min(least_radius_[v], least);
+    for (const std::uint32_t v : corners) {
+      least_radius_[v] = std::min(least_radius_[v], least);
+      if (angle > two_walls_ && between_walls + 1 >= corners.size()) is_between_walls_[v] = true;
+    }
   }
 
-  std::vector<bool> is_claimed_;
+  std::vector<bool> is_claimed_, is_between_walls_;
   std::vector<double> least_radius_;
+  double two_walls_ = 0;  ///< degrees from which two walls are seen, not one rough one
   Spread sheets_, curves_;
   double all_ = 0;
 };
@@ -244,8 +262,7 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
   std::vector<std::uint32_t> single;
   for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
     if (!is_finite(axis.positions[v])) continue;
-    const Vec3d& p = axis.positions[v];
-    const double angle = degrees_between(axis.footprint(v, 0) - p, axis.footprint(v, 1) - p);
+    const double angle = angle_at(axis, v);
     const bool is_deep = claimed.contains(v) && axis.radius[v] > allowed.middle;
     check.deep_vertices += is_deep ? 1 : 0;
     if (angle >= 0.5 * noise_of_meshes) continue;
@@ -266,7 +283,7 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
     // Between the mouth of a thin part and the middle of a thick one the edges of the mouth are all that is close.
     if (!(offsets[k] > allowed.middle) || claimed.least_radius_around(v) < thin_part * allowed.voxel) continue;
     ++check.one_wall_off;
-    if (!(offsets[k] > far_off * allowed.missing)) continue;
+    if (!(offsets[k] > far_off * allowed.missing) || !claimed.is_between_walls(v)) continue;
     if (check.one_wall_far++ == 0) check.far_at = axis.positions[v];
   }
 }
@@ -403,7 +420,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
                          const CertificateOptions& options, double factor, std::vector<std::string>& mismatches,
                          const Context& context) {
   const Allowances allowed = allowances(*solid.solid, options, factor);
-  const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL);
+  const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL, allowed.noise);
   const Middle middle(solid, allowed);
   const std::size_t before = mismatches.size();
   MedialCheck check;
