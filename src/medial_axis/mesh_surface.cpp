@@ -11,6 +11,7 @@
 
 #include "blum/geometry/triangle_contact.hpp"
 #include "medial_axis/clip_points.hpp"
+#include "medial_axis/void_points.hpp"
 
 namespace blum {
 namespace {
@@ -66,6 +67,7 @@ MeshSurface::MeshSurface(const MeshView& mesh, const SiteTable& sites, bool boun
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::uint32_t v : mesh.triangles[t]) triangles_[next[v]++] = t;
   }
+  if (bounds_solid) voids_ = points_of_voids(mesh, *this);
 }
 
 SiteId MeshSurface::site_of(const Footprint& foot) const {

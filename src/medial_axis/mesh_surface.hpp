@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -32,6 +33,7 @@ class MeshSurface final : public Surface {
   [[nodiscard]] std::optional<std::vector<SurfacePoint>> way_over(std::uint32_t from, std::uint32_t to,
                                                                   const Box3& within) const override;
   [[nodiscard]] std::vector<SurfacePoint> points_in(const Box3& box) const override;
+  [[nodiscard]] std::span<const Vec3d> voids() const override { return voids_; }
   [[nodiscard]] Vec3d outwards(std::uint32_t element) const override;
   [[nodiscard]] SiteId site_of(const Footprint& foot) const override;
 
@@ -47,6 +49,7 @@ class MeshSurface final : public Surface {
   Pseudonormals normals_;
   std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_
   std::vector<std::uint32_t> triangles_;  ///< around each vertex
+  std::vector<Vec3d> voids_;
 };
 
 }  // namespace blum

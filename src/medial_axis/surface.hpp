@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "blum/core/ids.hpp"
@@ -76,6 +77,9 @@ class Surface {
   /// Points on the elements that meet a box: in the middle of each edge's part in it, and where edges go through its
   /// sides, or its edges through elements. Moved inwards a little, those of one element in the box see one another.
   [[nodiscard]] virtual std::vector<SurfacePoint> points_in(const Box3& /*box*/) const { return {}; }
+
+  /// A point deep in each void that is known, by rising x; see points_of_voids().
+  [[nodiscard]] virtual std::span<const Vec3d> voids() const { return {}; }
 
   /// The direction that an element faces away from the solid, of unit length; zero where that is not known.
   [[nodiscard]] virtual Vec3d outwards(std::uint32_t /*element*/) const { return {}; }

@@ -15,11 +15,13 @@
 #include "medial_axis/fit/balance.hpp"
 #include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/contract_short.hpp"
+#include "medial_axis/fit/kind.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/unfold.hpp"
 #include "medial_axis/governors.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/solid_paths.hpp"
+#include "medial_axis/void_points.hpp"
 #include "medial_axis/walls.hpp"
 
 namespace blum {
@@ -42,18 +44,6 @@ constexpr int halvings = 9;
 constexpr double opposite_step = 0.3;
 constexpr double facets = 0.02;
 
-/// What the edges at a vertex are.
-struct Kind {
-  std::uint32_t rims = 0, seams = 0, curves = 0, inner = 0;
-
-  [[nodiscard]] bool is_rim() const { return rims == 2 && seams == 0 && curves == 0; }
-  [[nodiscard]] bool is_seam() const { return seams == 2 && rims == 0 && curves == 0; }
-  [[nodiscard]] bool is_seam_end() const { return seams == 1 && rims > 0 && curves == 0; }
-  [[nodiscard]] bool is_curve() const { return curves == 2 && rims + seams + inner == 0; }
-  [[nodiscard]] bool is_curve_end() const { return curves == 1 && rims + seams + inner == 0; }
-  [[nodiscard]] bool is_junction() const { return seams > 2 || (seams > 0 && curves > 0); }
-};
-
 class Fitter {
  public:
   Fitter(AxisLists& lists, const FitTarget& target, const Context& context)
@@ -64,17 +54,7 @@ class Fitter {
         voxel_(target.voxel),
         context_(context),
         incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
-        kinds_(lists.vertices.size()) {
-    for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
-      const std::size_t count = incidence_.triangles_of_edge()[e].size();
-      for (const std::uint32_t v : incidence_.edges()[e]) {
-        ++(count == 0   ? kinds_[v].curves
-           : count == 1 ? kinds_[v].rims
-           : count == 2 ? kinds_[v].inner
-                        : kinds_[v].seams);
-      }
-    }
-  }
+        kinds_(kinds_of(incidence_, lists.vertices.size())) {}
 
   /// Puts vertices of ribbons in the middle of what is round, before what does not show is taken for excess.
   void find_centres() {
@@ -513,12 +493,26 @@ class Fitter {
         const auto& [a, b] = incidence_.edges()[e];
         if (is_moved[a] == 0 && is_moved[b] == 0) continue;
         const std::array<Stop, 2> now{stop_of(lists_.vertices[a]), stop_of(lists_.vertices[b])};
-        const bool stays =
-            paths_.is_straight(now[0], now[1]) && paths_.can_sweep({stop_of(before[a]), stop_of(before[b])}, now);
+        const bool stays = paths_.is_straight(now[0], now[1]) &&
+                           paths_.can_sweep({stop_of(before[a]), stop_of(before[b])}, now) &&
+                           !moves_over_void(static_cast<std::uint32_t>(e), before);
         leaves[e] = stays ? 0 : 1;
       }
     });
     return leaves;
+  }
+
+  /// Whether a triangle at an edge moved over a void as a whole, which edges do not see.
+  [[nodiscard]] bool moves_over_void(std::uint32_t e, const std::vector<AxisVertex>& before) const {
+    const auto around = incidence_.triangles_of_edge()[e];
+    return !surface_.voids().empty() && std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
+      auto corners = lists_.triangles[t];
+      std::sort(corners.begin(), corners.end());
+      const auto places = [&](const std::vector<AxisVertex>& vertices) {
+        return std::array{vertices[corners[0]].position, vertices[corners[1]].position, vertices[corners[2]].position};
+      };
+      return moves_over_any(surface_.voids(), places(before), places(lists_.vertices));
+    });
   }
 
   AxisLists& lists_;

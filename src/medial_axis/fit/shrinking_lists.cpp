@@ -5,12 +5,14 @@
 #include <utility>
 
 #include "medial_axis/place_vertices.hpp"
+#include "medial_axis/void_points.hpp"
 
 namespace blum {
 
 ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface)
     : lists_(lists),
       paths_(surface),
+      voids_(surface.voids()),
       cells_({lists.vertices.size(), lists.edges, lists.triangles}),
       incidence_(incidence),
       rank_(lists.vertices.size(), 0),
@@ -43,6 +45,7 @@ bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to) {
   cells_.for_each_triangle(from, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
     look(p);
     look(q);
+    stays = stays && !holds_any(voids_, {source.at, position(p), position(q), target.at});
   });
   cells_.for_each_edge(from, [&](std::uint32_t, std::uint32_t other) { look(other); });
   return stays;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "blum/complex/incidence.hpp"
@@ -44,6 +45,7 @@ class ShrinkingLists {
 
   AxisLists& lists_;
   SolidPaths paths_;
+  std::span<const Vec3d> voids_;
   ShrinkingComplex cells_;
   const Incidence& incidence_;
   std::vector<int> rank_;

@@ -1,0 +1,36 @@
+// Blum: what vertices of an axis are by their edges. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "blum/complex/incidence.hpp"
+
+namespace blum {
+
+/// What the edges at a vertex are.
+struct Kind {
+  std::uint32_t rims = 0, seams = 0, curves = 0, inner = 0;
+
+  [[nodiscard]] bool is_rim() const { return rims == 2 && seams == 0 && curves == 0; }
+  [[nodiscard]] bool is_seam() const { return seams == 2 && rims == 0 && curves == 0; }
+  [[nodiscard]] bool is_seam_end() const { return seams == 1 && rims > 0 && curves == 0; }
+  [[nodiscard]] bool is_curve() const { return curves == 2 && rims + seams + inner == 0; }
+  [[nodiscard]] bool is_curve_end() const { return curves == 1 && rims + seams + inner == 0; }
+  [[nodiscard]] bool is_junction() const { return seams > 2 || (seams > 0 && curves > 0); }
+};
+
+/// @param incidence  of a complex of so many vertices.
+inline std::vector<Kind> kinds_of(const Incidence& incidence, std::size_t vertices) {
+  std::vector<Kind> kinds(vertices);
+  for (std::uint32_t e = 0; e < incidence.edges().size(); ++e) {
+    const std::size_t count = incidence.triangles_of_edge()[e].size();
+    for (const std::uint32_t v : incidence.edges()[e]) {
+      ++(count == 0 ? kinds[v].curves : count == 1 ? kinds[v].rims : count == 2 ? kinds[v].inner : kinds[v].seams);
+    }
+  }
+  return kinds;
+}
+
+}  // namespace blum
