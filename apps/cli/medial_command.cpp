@@ -28,6 +28,7 @@
 #include "files.hpp"
 #include "input_facts.hpp"
 #include "medial_report.hpp"
+#include "medial_run.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "solid_input.hpp"
@@ -161,19 +162,6 @@ fs::path with_theta(const fs::path& path, double theta) {
   return name;
 }
 
-/// What a run gathers for its summary.
-struct Run {
-  Json solids = Json::array();
-  std::vector<PhaseTime> phases;
-  std::vector<Draft> drafts;
-  std::vector<Draft> graphs;    ///< of each draft, where graphs are asked for
-  std::vector<Draft> extended;  ///< of each draft, where extended axes are asked for
-  std::vector<bool> is_kept;    ///< of each draft: whether it becomes a file
-  std::vector<std::string> warnings;
-  std::vector<std::string> mismatches;
-  TextTable table;
-};
-
 /// Where the model of a solid does not pass, and what there is to do about it.
 std::vector<std::string> shortfalls(const MedialAxisReport& report) {
   std::vector<std::string> out;
@@ -224,7 +212,7 @@ std::string sides_text(const MedialAxisReport& report) {
          (least->spacing < most->spacing ? " to " + rounded_text(most->spacing) : "");
 }
 
-void add_report(Run& run, const MedialAxisReport& report, std::optional<double> asked, Json& json) {
+void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<double> asked, Json& json) {
   std::size_t voxels = 0;
   std::size_t extra = 0;
   for (const BodyReport& body : report.bodies) {
@@ -246,7 +234,7 @@ void add_report(Run& run, const MedialAxisReport& report, std::optional<double> 
 }
 
 /// Writes the graph of an axis, where it is asked for; null where not.
-Json add_graph(Run& run, const Request& r, const SolidInput& input, const Complex& complex,
+Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const Complex& complex,
                const MedialMetadata& metadata, const fs::path& name, const Context& context) {
   if (!r.graph) return nullptr;
   Stopwatch watch;
@@ -260,7 +248,7 @@ Json add_graph(Run& run, const Request& r, const SolidInput& input, const Comple
 }
 
 /// Writes the extended surface of an axis, where it is asked for; null where not.
-Json add_extended(Run& run, const Request& r, const SolidInput& input, const Complex& complex,
+Json add_extended(MedialRun& run, const Request& r, const SolidInput& input, const Complex& complex,
                   const MedialMetadata& metadata, const fs::path& name, const Context& context) {
   if (!r.extend) return nullptr;
   Stopwatch watch;
@@ -292,9 +280,9 @@ MedialMetadata metadata_of(const Request& r, const SolidInput& input, const Labe
 }
 
 /// Writes an axis to the last draft, reads it again and certifies it.
-Certificate write_and_certify(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
-                              const MedialAxis& axis, const Complex& complex, const MedialMetadata& metadata,
-                              const Context& context) {
+Certificate write_and_certify(MedialRun& run, const Request& r, const SolidInput& input,
+                              const LabelSelection& selection, const MedialAxis& axis, const Complex& complex,
+                              const MedialMetadata& metadata, const Context& context) {
   Stopwatch watch;
   const fs::path& path = run.drafts.back().path();
   if (r.nested) {
@@ -321,7 +309,7 @@ std::vector<AxisForm> forms_of(const Request& r, const MedialAxisReport& report,
 }
 
 /// Writes and certifies an axis at one angle: the first of its forms that is certified, or else the last.
-void add_axis(Run& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
+void add_axis(MedialRun& run, const Request& r, const SolidInput& input, const LabelSelection& selection,
               const MedialAxis& axis, const Complex* pruned, double theta, const fs::path& name, Json& axes,
               const Context& context) {
   const MedialAxisReport& report = axis.report();
@@ -374,7 +362,8 @@ MedialAxis make_axis(const SolidInput& input, const MedialAxisOptions& options, 
 }
 
 /// The smooth surface of an image as the input.
-SolidInput smooth_input(Run& run, const SolidInput& image, const LabelSelection& selection, const Context& context) {
+SolidInput smooth_input(MedialRun& run, const SolidInput& image, const LabelSelection& selection,
+                        const Context& context) {
   Stopwatch watch;
   SmoothSurface surface = smooth_surface(image.image, selection, {}, context);
   run.phases.push_back({"surface", watch.lap()});
@@ -389,40 +378,76 @@ SolidInput smooth_input(Run& run, const SolidInput& image, const LabelSelection&
   return out;
 }
 
-void add_solid(Run& run, const Request& r, const SolidInput& given, const LabelSelection& selection,
-               const std::optional<std::int64_t>& label, const fs::path& output, const Context& context) {
-  MedialAxisOptions options = r.options;
-  options.selection = selection;
-  const SolidInput surface = r.smooth ? smooth_input(run, given, selection, context) : SolidInput{};
-  const SolidInput& input = r.smooth ? surface : given;
-  if (r.smooth && !r.has_resolution) {
-    const Vec3d& sides = given.image.grid.spacing;
-    options.spacing = std::min({sides.x, sides.y, sides.z});
-  }
-  const MedialAxis axis = make_axis(input, options, context);
+/// A solid whose axes are asked for.
+struct AskedSolid {
+  const SolidInput& input;
+  const LabelSelection& selection;
+  std::optional<std::int64_t> label;
+  const fs::path& output;
+  Json smooth;  ///< how its surface was made smooth; null where it was not
+};
+
+/// The axes of a solid on one grid. @return  whether its model passes.
+bool add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
+              const Context& context) {
+  const MedialAxis axis = make_axis(solid.input, options, context);
   const MedialAxisReport& report = axis.report();
   run.phases.insert(run.phases.end(), report.phases.begin(), report.phases.end());
-  Json json = {{"smooth", surface.json}};
-  if (label) {
-    json["label"] = *label;
-    run.table.add("label", std::to_string(*label));
+  Json json = {{"smooth", solid.smooth}, {"grid_shift", options.grid_shift}};
+  if (solid.label) {
+    json["label"] = *solid.label;
+    run.table.add("label", std::to_string(*solid.label));
   }
-  add_report(run, report, input.kind == InputKind::mesh ? std::optional(asked_spacing(input, options)) : std::nullopt,
-             json);
+  const bool is_mesh = solid.input.kind == InputKind::mesh;
+  add_report(run, report, is_mesh ? std::optional(asked_spacing(solid.input, options)) : std::nullopt, json);
   for (const std::string& shortfall : shortfalls(report)) run.mismatches.push_back(shortfall);
   Json axes = Json::array();
   Complex whole;
   if (r.prunes_sheets) whole = axis.simplify(0, context);
   for (const double theta : r.thetas) {
-    const fs::path name = r.thetas.size() == 1 ? output : with_theta(output, theta);
+    const fs::path name = r.thetas.size() == 1 ? solid.output : with_theta(solid.output, theta);
     Stopwatch watch;
     // From one angle to the next, so that what is left is nested.
     if (r.prunes_sheets) whole = prune_sheets(whole, theta, context);
     run.phases.push_back({"simplify", watch.lap()});
-    add_axis(run, r, input, selection, axis, r.prunes_sheets ? &whole : nullptr, theta, name, axes, context);
+    add_axis(run, r, solid.input, solid.selection, axis, r.prunes_sheets ? &whole : nullptr, theta, name, axes,
+             context);
   }
   json["axes"] = axes;
   run.solids.push_back(json);
+  return report.topology_matches;
+}
+
+/// Parts much thinner than a voxel may lie badly in one grid, and well in the next one: where an axis is not certified,
+/// the grid is moved, and what has the fewest failures is taken.
+void add_on_best_grid(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
+                      const Context& context) {
+  std::optional<MedialRun> best = std::make_optional<MedialRun>();
+  const bool model_passes = add_axes(*best, r, solid, options, context);
+  const bool can_move = model_passes && solid.input.kind == InputKind::mesh;
+  const std::string reason = best->mismatches.empty() ? "" : best->mismatches.front();
+  for (const double step : other_grids) {
+    if (!can_move || best->mismatches.empty()) break;
+    MedialAxisOptions moved = options;
+    moved.grid_shift = moved_grid(options.grid_shift, step);
+    MedialRun next;
+    next.warnings.push_back(moved_text(moved.grid_shift - options.grid_shift) + reason);
+    if (!add_axes(next, r, solid, moved, context) || next.mismatches.size() >= best->mismatches.size()) continue;
+    best.emplace(std::move(next));
+  }
+  run.add(std::move(*best));
+}
+
+void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const LabelSelection& selection,
+               const std::optional<std::int64_t>& label, const fs::path& output, const Context& context) {
+  MedialAxisOptions options = r.options;
+  options.selection = selection;
+  const SolidInput surface = r.smooth ? smooth_input(run, given, selection, context) : SolidInput{};
+  if (r.smooth && !r.has_resolution) {
+    const Vec3d& sides = given.image.grid.spacing;
+    options.spacing = std::min({sides.x, sides.y, sides.z});
+  }
+  add_on_best_grid(run, r, {r.smooth ? surface : given, selection, label, output, surface.json}, options, context);
 }
 
 std::vector<fs::path> outputs_of(const Request& r) {
@@ -451,7 +476,7 @@ void check_all_outputs(const Request& r, const std::vector<fs::path>& bases) {
   check_outputs(files, {r.input});
 }
 
-void finish(const Request& r, Run& run, const SolidInput& input, bool is_certified, const Context& context) {
+void finish(const Request& r, MedialRun& run, const SolidInput& input, bool is_certified, const Context& context) {
   const PhaseSummary spent = summarize(run.phases);
   Json outputs = Json::array();
   for (std::size_t d = 0; d < run.drafts.size(); ++d) {
@@ -481,7 +506,7 @@ void finish(const Request& r, Run& run, const SolidInput& input, bool is_certifi
 }
 
 /// What became of the files of a run in which something is not certified.
-std::string written_text(const Request& r, const Run& run) {
+std::string written_text(const Request& r, const MedialRun& run) {
   if (r.allow_uncertified) return {};
   const auto kept = std::count(run.is_kept.begin(), run.is_kept.end(), true);
   if (kept == 0) return "; nothing was written";
@@ -497,7 +522,7 @@ void run(const Arguments& arguments) {
   Progress progress(!r.report.quiet);
   const Interrupt interrupt;
   const Context context = make_context(r.threads, progress, interrupt);
-  Run run;
+  MedialRun run;
   Stopwatch watch;
   const SolidInput input = load_solid(r.input, r.weld);
   run.phases.push_back({"read", watch.lap()});

@@ -49,6 +49,7 @@ struct PhaseSummary {
 class TextTable {
  public:
   void add(std::string label, std::string content) { rows_.emplace_back(std::move(label), std::move(content)); }
+  void add(const TextTable& other) { rows_.insert(rows_.end(), other.rows_.begin(), other.rows_.end()); }
   [[nodiscard]] std::string text() const;
 
  private:

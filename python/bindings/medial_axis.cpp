@@ -85,6 +85,7 @@ void bind_axis(nb::module_& m) {
 }  // namespace
 
 void bind_medial_axis(nb::module_& m) {
+  m.attr("other_grids") = nb::tuple(nb::cast(other_grids));
   // Columns hold numbers, and blum.ROLES is indexed by them.
   static_assert([] {
     std::size_t number = 0;

@@ -1,6 +1,9 @@
 #include "blum/io/certified_axis.hpp"
 
+#include <cmath>
 #include <utility>
+
+#include "blum/core/exact_text.hpp"
 
 namespace blum {
 
@@ -30,6 +33,41 @@ CertifiedAxis certified_axis(const MedialAxis& axis, const MeshView& mesh, doubl
   return first_certified(
       axis_forms(axis.report(), tolerance),
       [&](const AxisForm& form) { return axis_in_form(axis, theta, form, context); }, certificate);
+}
+
+CertifiedAxis certified_axis(const MeshView& mesh, double theta, const MedialAxisOptions& options,
+                             std::optional<double> tolerance, const Context& context) {
+  const Solid solid = Solid::of(mesh, context);
+  bool model_passes = false;
+  const auto on_grid = [&](double shift) {
+    MedialAxisOptions moved = options;
+    moved.grid_shift = shift;
+    const MedialAxis axis = medial_axis(solid, moved, context);
+    model_passes = axis.report().topology_matches;
+    return certified_axis(axis, mesh, theta, tolerance, context);
+  };
+  CertifiedAxis first = on_grid(options.grid_shift);
+  return model_passes ? certified_on_some_grid(std::move(first), options.grid_shift, on_grid) : first;
+}
+
+CertifiedAxis certified_on_some_grid(CertifiedAxis first, double grid_shift, FunctionRef<CertifiedAxis(double)> make) {
+  for (const double step : other_grids) {
+    if (first.certificate.holds()) break;
+    CertifiedAxis moved = make(moved_grid(grid_shift, step));
+    if (!moved.certificate.holds()) continue;
+    moved.warnings.insert(moved.warnings.begin(), moved_text(step) + first.certificate.mismatches.front());
+    return moved;
+  }
+  return first;
+}
+
+double moved_grid(double grid_shift, double step) {
+  const double moved = grid_shift + step;
+  return std::abs(moved) <= 1 ? moved : grid_shift - step;
+}
+
+std::string moved_text(double step) {
+  return "the grid was moved by " + rounded_text(step) + " voxels: as it was, ";
 }
 
 }  // namespace blum

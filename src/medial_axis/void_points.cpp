@@ -92,8 +92,10 @@ bool holds_any(std::span<const Vec3d> points, const std::array<Vec3d, 4>& tetrah
     if (min(lower, *p) != lower || max(upper, *p) != upper) continue;
     const int side = detail::orient3d(a, b, c, d);
     if (side == 0) return false;
-    if (detail::orient3d(a, b, c, *p) == side && detail::orient3d(b, a, d, *p) == side &&
-        detail::orient3d(c, b, d, *p) == side && detail::orient3d(a, c, d, *p) == side) {
+    const auto is_beyond = [&](const Vec3d& u, const Vec3d& v, const Vec3d& w) {
+      return detail::orient3d(u, v, w, *p) == -side;
+    };
+    if (!is_beyond(a, b, c) && !is_beyond(b, a, d) && !is_beyond(c, b, d) && !is_beyond(a, c, d)) {
       return true;
     }
   }

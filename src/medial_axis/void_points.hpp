@@ -18,7 +18,8 @@ namespace blum {
 /// @return         by rising x. Cost: linear in the mesh, and up to 32 chords for each void.
 [[nodiscard]] std::vector<Vec3d> points_of_voids(const MeshView& mesh, const Surface& surface);
 
-/// Whether a tetrahedron holds one of some points. @param points  by rising x.
+/// Whether a tetrahedron, its sides included, holds one of some points; false where it is flat. @param points  by
+/// rising x.
 [[nodiscard]] bool holds_any(std::span<const Vec3d> points, const std::array<Vec3d, 4>& tetrahedron);
 
 /// Whether a triangle moves over one of some points, each corner along a line. Corners must be in the same order for

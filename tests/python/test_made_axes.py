@@ -52,3 +52,13 @@ def test_discs_that_close_tubes_end_at_the_rim_of_their_wall():
     # Of the triangles that say 180 degrees, no corner sees less.
     angles = complex_.separation_angle[complex_.triangles].min(axis=1)
     assert (angles[complex_.triangle_angle > 179] > 170).all()
+
+
+def test_a_grid_in_which_a_thin_void_lies_badly_is_moved():
+    """A void of a tenth of a voxel, whose tip comes through a face of the grid: no axis on that grid is around it."""
+    made = made_solid("crossed_plates", 4)
+    mesh = blum.Mesh(made.vertices, made.triangles)
+    axis = blum.medial_axis(mesh, resolution=64)
+    with pytest.warns(blum.InputWarning, match=r"the grid was moved by 0\.3 voxels: as it was, at theta 60 .*voids"):
+        found = axis.certified(60)
+    assert found.certificate.holds and found.homology() == (1, 0, 6)

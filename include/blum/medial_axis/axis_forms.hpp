@@ -1,6 +1,7 @@
 // Blum: the forms that a medial axis is written in. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,10 @@ struct AxisForm {
   std::optional<double> tolerance;  ///< vertices go within it (decimate()), mesh units; without it all stay
   std::string without;  ///< what the next form lacks that this one has, for a sentence that goes on with why
 };
+
+/// Where an axis is not certified in any form, by how many voxels the grid may be moved (MedialAxisOptions::grid_shift)
+/// to try again: how parts thinner than a voxel lie in the cells is a matter of luck then.
+inline constexpr std::array other_grids{0.3, -0.3, 0.15};
 
 /// The forms of an axis, the best first: with its borders where they belong and few vertices; with few vertices; as the
 /// cells have it. The last one is as good as the cells; the others are for people, and where walls are thin one may

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -66,6 +68,43 @@ TEST(CertifiedAxis, FormsAreTriedInTurnAndItIsToldWhatFailed) {
   EXPECT_FALSE(none.certificate.holds());
   EXPECT_TRUE(none.warnings.empty()) << "its certificate says why";
   expect_same(none.axis.axis, axis.simplify(60));
+}
+
+TEST(CertifiedAxis, OfAMeshIsThatOfItsAxis) {
+  const TriangleMesh box = make_box({});
+  const CertifiedAxis found = certified_axis(box, 60, {.resolution = 24});
+  EXPECT_TRUE(found.certificate.holds());
+  EXPECT_TRUE(found.warnings.empty());
+  expect_same(found.axis.axis, certified_axis(medial_axis(box, {.resolution = 24}), box, 60).axis.axis);
+}
+
+TEST(CertifiedAxis, MovedGridsAreTriedInTurnWhereNothingElseHolds) {
+  std::vector<double> shifts;
+  // Certificates that hold from the n-th grid on.
+  const auto found_from = [&](int n, double shift) {
+    shifts.clear();
+    const auto make = [&](double moved) {
+      shifts.push_back(moved);
+      CertifiedAxis made;
+      made.axis.deviation = moved;
+      if (n-- > 0) made.certificate.mismatches = {"something is wrong"};
+      return made;
+    };
+    return certified_on_some_grid(make(shift), shift, make);
+  };
+  EXPECT_TRUE(found_from(0, 0).warnings.empty());
+  EXPECT_EQ(shifts, std::vector<double>{0});
+  const CertifiedAxis third = found_from(2, 0);
+  EXPECT_EQ(shifts, (std::vector<double>{0, 0.3, -0.3}));
+  EXPECT_EQ(third.axis.deviation, -0.3);
+  EXPECT_EQ(third.warnings,
+            std::vector<std::string>{"the grid was moved by -0.3 voxels: as it was, something is wrong"});
+  const CertifiedAxis none = found_from(9, 0);
+  EXPECT_EQ(shifts.size(), 1 + other_grids.size());
+  EXPECT_FALSE(none.certificate.holds());
+  EXPECT_EQ(none.axis.deviation, 0) << "the first one";
+  static_cast<void>(found_from(9, 0.9));
+  for (const double shift : shifts) EXPECT_LE(std::abs(shift), 1) << "what medial_axis() allows";
 }
 
 }  // namespace
