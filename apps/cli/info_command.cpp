@@ -213,7 +213,10 @@ Json add_model(const Arguments& a, const MeshView& mesh, const Context& context,
             is_proven ? "that of the solid: proven, every component in a cell is contractible" : "not proven");
   for (const ModelFailure& failure : std::span(facts.failures).first(std::min(failure_limit, facts.failures.size()))) {
     table.add("", std::string(to_string(failure.obstacle)) + " between " + vector_text(failure.low) + " and " +
-                      vector_text(failure.high) + ": another --shift may pass");
+                      vector_text(failure.high) +
+                      (failure.obstacle == ModelObstacle::slanted_needle
+                           ? ": " + count_text(static_cast<std::uint64_t>(failure.cuts)) + " splits would open it"
+                           : ": another --shift may pass"));
   }
   if (facts.failures.size() > failure_limit) {
     table.add("", "and at " + count_text(facts.failures.size() - failure_limit) + " more places");

@@ -162,6 +162,14 @@ fs::path with_theta(const fs::path& path, double theta) {
   return name;
 }
 
+std::string advice(const std::vector<ModelFailure>& failures) {
+  const bool has_needle = std::any_of(failures.begin(), failures.end(), [](const ModelFailure& failure) {
+    return failure.obstacle == ModelObstacle::slanted_needle;
+  });
+  return has_needle ? "fill the narrow holes, or turn the part so that they run along an axis"
+                    : "raise --max-resolution, or mend the mesh there";
+}
+
 /// Where the model of a solid does not pass, and what there is to do about it.
 std::vector<std::string> shortfalls(const MedialAxisReport& report) {
   std::vector<std::string> out;
@@ -172,8 +180,7 @@ std::vector<std::string> shortfalls(const MedialAxisReport& report) {
     out.push_back("the model of " + (report.bodies.size() > 1 ? "body " + std::to_string(b + 1) : "the solid") +
                   " at voxels of side " + rounded_text(body.spacing) + " does not pass in " +
                   plural(body.failures.size(), "place", "places") + ", the first one at " + vector_text(at) + " (" +
-                  std::string(to_string(body.failures.front().obstacle)) +
-                  "): raise --max-resolution, or mend the mesh there");
+                  std::string(to_string(body.failures.front().obstacle)) + "): " + advice(body.failures));
   }
   return out;
 }

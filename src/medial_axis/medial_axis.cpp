@@ -58,6 +58,14 @@ void add(BettiNumbers& sum, const BettiNumbers& part) {
   for (std::size_t k = 0; k < 3; ++k) sum[k] += part[k];
 }
 
+/// Whether a needle keeps the model from passing with smaller voxels, too.
+/// @param smaller  the least part of a voxel's side.
+bool stays_stuck(const BodyReport& report, double smaller) {
+  constexpr double most_cuts = 8192;  // as the model has it
+  return std::any_of(report.failures.begin(), report.failures.end(),
+                     [&](const ModelFailure& failure) { return failure.cuts * smaller > most_cuts; });
+}
+
 InvalidMesh without_interior(const Solid& solid, double spacing) {
   if (solid.rule() == SolidRule::polyhedron) return InvalidMesh("the mesh has no interior");
   return InvalidMesh("the mesh has no interior: no winding number above 1/2 shows at voxels of " + exact_text(spacing) +
@@ -149,7 +157,7 @@ class MedialAxisBuilder {
       Voxelized out = is_polyhedron ? voxelize_body(body, spacing, context_, options_.grid_shift)
                                     : voxelize_by_winding(body.mesh, spacing, context_, options_.grid_shift);
       const bool is_done = out.report.topology_matches && out.report.voxels + out.report.extra_cells > 0;
-      if (is_done || !(spacing > finest * (1 + 1e-9))) return out;
+      if (is_done || !(spacing > finest * (1 + 1e-9)) || stays_stuck(out.report, finest / spacing)) return out;
       spacing = std::max(0.5 * spacing, finest);
     }
   }

@@ -54,6 +54,7 @@ struct Description<CellularModelOptions> {
 /// What keeps a cell from passing.
 enum class ModelObstacle : std::uint8_t {
   hole_in_square,  ///< the solid has a hole within a side of the box: an empty needle, say, that no split opens
+  slanted_needle,  ///< the same where it runs at a slant, and thousands of splits would not open it
   handle,          ///< a component in the box has a tunnel, or an inner boundary
   void_in_cube     ///< a void lies wholly inside of the box
 };
@@ -62,6 +63,7 @@ template <>
 struct Description<ModelObstacle> {
   static constexpr std::string_view name = "ModelObstacle";
   static constexpr std::array values{NamedValue{ModelObstacle::hole_in_square, "hole in square"},
+                                     NamedValue{ModelObstacle::slanted_needle, "slanted needle"},
                                      NamedValue{ModelObstacle::handle, "handle"},
                                      NamedValue{ModelObstacle::void_in_cube, "void in cube"}};
 };
@@ -71,6 +73,7 @@ struct ModelFailure {
   Vec3d low{};   ///< corner, mesh units
   Vec3d high{};  ///< the corner opposite
   ModelObstacle obstacle = ModelObstacle::handle;
+  double cuts = 0;  ///< slanted_needle: splits that it takes to open it in this box; with cubes half as large, half
 };
 
 template <>
@@ -81,6 +84,7 @@ struct Description<ModelFailure> {
       Member{"low", &ModelFailure::low, "mesh units", "corner of the box"},
       Member{"high", &ModelFailure::high, "mesh units", "the corner opposite"},
       Member{"obstacle", &ModelFailure::obstacle, "", "what keeps it from passing"},
+      Member{"cuts", &ModelFailure::cuts, "", "slanted needle: splits that it takes to open it in this box"},
   };
 };
 

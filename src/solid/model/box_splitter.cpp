@@ -51,12 +51,14 @@ void BoxSplitter::split(SplitBox box, const Context& context, std::vector<SplitB
     SplitBox next_box = std::move(waiting.back());
     waiting.pop_back();
     const std::optional<Cut> cut = test(next_box);
-    if (cut && !cut->is_hopeless && out.size() + waiting.size() < most_boxes && can_cut(next_box, *cut)) {
+    const bool is_needle = cut && cut->along_hole > most_cuts_along_hole;
+    if (cut && !is_needle && out.size() + waiting.size() < most_boxes && can_cut(next_box, *cut)) {
       auto [lower, upper] = halves(std::move(next_box), *cut);
       waiting.push_back(std::move(upper));
       waiting.push_back(std::move(lower));
     } else {
-      if (cut) next_box.obstacle = cut->obstacle;
+      if (cut) next_box.obstacle = is_needle ? ModelObstacle::slanted_needle : cut->obstacle;
+      if (is_needle) next_box.cuts_left = cut->along_hole;
       out.push_back(std::move(next_box));
     }
   }
@@ -215,7 +217,7 @@ BoxSplitter::Hole BoxSplitter::hole_between(const SplitBox& box, std::size_t fac
   const auto cuts = [&](std::size_t across) {
     return std::abs(slant[across]) / count * depth / (around.upper[across] - around.lower[across]);
   };
-  return {sum / count, cuts(u) > most_cuts_along_hole && cuts(v) > most_cuts_along_hole};
+  return {sum / count, std::min(cuts(u), cuts(v))};
 }
 
 void BoxSplitter::connect_edges(const SplitBox& box) {
@@ -248,7 +250,7 @@ BoxSplitter::Cut BoxSplitter::cut_beside(const SplitBox& box, std::size_t face, 
   const std::size_t u = next_axis(face / 2);
   const std::size_t v = next_axis(u);
   const std::size_t axis = size[u] >= size[v] ? u : v;
-  return {axis, hole.middle[axis], ModelObstacle::hole_in_square, hole.is_hopeless};
+  return {axis, hole.middle[axis], ModelObstacle::hole_in_square, hole.cuts};
 }
 
 BoxSplitter::Cut BoxSplitter::cut_through_middle(const SplitBox& box, ModelObstacle obstacle) const {

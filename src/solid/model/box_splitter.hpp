@@ -24,6 +24,7 @@ struct SplitBox {
   std::uint8_t inside = 0;                     ///< bit k: whether corner k (bits x, y, z: high) is inside the solid
   int splits = 0;                              ///< that it comes from
   std::optional<ModelObstacle> obstacle = {};  ///< why it does not pass, where it cannot be split further
+  double cuts_left = 0;                        ///< ModelObstacle::slanted_needle: what it takes to open that
 };
 
 /// Splits boxes that fail. A box passes by itself: none of its six sides has a hole, and each component in it is
@@ -43,12 +44,12 @@ class BoxSplitter {
     std::size_t axis = 0;
     double at = 0;
     ModelObstacle obstacle = ModelObstacle::handle;
-    bool is_hopeless = false;  ///< cuts would not end
+    double along_hole = 0;  ///< how many it takes to open a hole that slants
   };
   /// Of a face.
   struct Hole {
     Vec3d middle;
-    bool is_hopeless = false;  ///< it runs at a slant through the box, and is far longer than wide
+    double cuts = 0;  ///< that it takes to open it: how often its width goes into how far it slants
   };
   /// An edge of the box.
   struct Side {

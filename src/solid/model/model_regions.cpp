@@ -142,7 +142,8 @@ std::vector<ModelFailure> failures_of(std::span<const RefinedRegion> regions, in
   std::vector<ModelFailure> failures;
   for (const RefinedRegion& region : regions) {
     for (const StuckBox& stuck : region.stuck()) {
-      failures.push_back({scaled(stuck.box.low, -exponent), scaled(stuck.box.high, -exponent), stuck.obstacle});
+      failures.push_back(
+          {scaled(stuck.box.low, -exponent), scaled(stuck.box.high, -exponent), stuck.obstacle, stuck.cuts_left});
     }
   }
   return failures;

@@ -40,7 +40,7 @@ RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::
     boxes_.push_back(part.box);
     depth_ = std::max(depth_, part.splits);
     split_boxes_ += part.splits > 0 ? 1U : 0U;
-    if (part.obstacle) stuck_.push_back({part.box, *part.obstacle});
+    if (part.obstacle) stuck_.push_back({part.box, *part.obstacle, part.cuts_left});
     triangles_.push_back(std::move(part.triangles));
   }
   if (!context.cancel.stop_requested()) connect();

@@ -22,6 +22,7 @@ namespace blum::detail {
 struct StuckBox {
   BoxCell box;
   ModelObstacle obstacle;
+  double cuts_left = 0;
 };
 
 /// Some cubes of a grid, split into boxes, and what the solid's components in their cells are. Conventions are those of

@@ -163,6 +163,48 @@ TEST(CellularModel, EmptyNeedlesAreSplitUntilTheyPass) {
   }
 }
 
+/// A unit cube with a square channel from the bottom to the top, which may slant.
+TriangleMesh block_with_channel(double width, const Vec3d& slant) {
+  TriangleMesh mesh;
+  for (const double z : {0.0, 1.0}) {
+    const std::array<Vec3d, 4> outer{Vec3d{0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}};
+    mesh.vertices.insert(mesh.vertices.end(), outer.begin(), outer.end());
+    const Vec3d middle = Vec3d{0.37, 0.41, 0} + slant * z;
+    for (const Vec3d& corner : outer) {
+      mesh.vertices.push_back({middle.x + width * (corner.x - 0.5), middle.y + width * (corner.y - 0.5), z});
+    }
+  }
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const std::uint32_t n = (k + 1) % 4;
+    add(k, n, 8 + n, 8 + k);            // outside
+    add(4 + n, 4 + k, 12 + k, 12 + n);  // the channel
+    add(n, k, 4 + k, 4 + n);            // bottom
+    add(8 + k, 8 + n, 12 + n, 12 + k);  // top
+  }
+  return mesh;
+}
+
+TEST(CellularModel, ANeedleThatRunsAlongAnAxisIsOpenedAndOneThatSlantsIsNamed) {
+  constexpr double width = 1e-9;
+  const Solid upright = Solid::of(block_with_channel(width, {}));
+  ASSERT_EQ(upright.rule(), SolidRule::polyhedron) << upright.reason();
+  EXPECT_TRUE(upright.model({.resolution = 7}).report().passes);
+  const CellularModelReport report =
+      Solid::of(block_with_channel(width, {0.2, 0.3, 0})).model({.resolution = 7}).report();
+  EXPECT_FALSE(report.passes);
+  ASSERT_FALSE(report.failures.empty());
+  for (const ModelFailure& failure : report.failures) {
+    EXPECT_EQ(failure.obstacle, ModelObstacle::slanted_needle);
+    // It slants by 0.2 and 0.3 on a way of 1, and cubes are 1/7 large.
+    EXPECT_GT(failure.cuts, 0.1 / 7 / width);
+    EXPECT_LT(failure.cuts, 1.0 / 7 / width);
+  }
+}
+
 TEST(CellularModel, PlacesThatCannotBeSplitAreNamed) {
   const Solid solid = Solid::of(block_with_needle(3, 2, {0.1, 0.05, -0.2}));
   const CellularModelReport report = solid.model({.resolution = 7, .most_splits = 0}).report();

@@ -132,7 +132,7 @@ class Comparison {
     for (const StuckBox& box : region_.stuck()) {
       stuck.insert(box.box.cube);
       ASSERT_TRUE(is_failing(box.box.cube)) << name_ << " cube " << box.box.cube;
-      if (box.obstacle != ModelObstacle::hole_in_square) continue;
+      if (box.obstacle != ModelObstacle::hole_in_square && box.obstacle != ModelObstacle::slanted_needle) continue;
       doubtful_.insert(box.box.cube);
       grid_.lattice().for_each_face(box.box.cube, [&](Cell face) {
         grid_.lattice().for_each_coface(face, [&](Cell cube) { doubtful_.insert(cube); });
