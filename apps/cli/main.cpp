@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "commands.hpp"
@@ -127,11 +131,24 @@ int run(std::vector<std::string> arguments) {
   }
 }
 
+/// Each step of the long computations takes and gives back arrays of megabytes. By default, glibc gives these back to
+/// the system at once, which then clears their pages for the next step: a tenth of the time. Kept, they may be a
+/// quarter more.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int mebibyte = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 1024 * mebibyte);
+  mallopt(M_TRIM_THRESHOLD, 2047 * mebibyte);
+  mallopt(M_TOP_PAD, 128 * mebibyte);
+#endif
+}
+
 }  // namespace
 }  // namespace blum::cli
 
 int main(int count, char** values) {
   try {
+    blum::cli::keep_freed_memory();
     return blum::cli::run(std::vector<std::string>(values + std::min(count, 1), values + count));
   } catch (...) {
     std::fputs("blum: error: unexpected failure\n", stderr);
