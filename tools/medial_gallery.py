@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the pictures of medial axes in docs/pictures, from shapes that `blum make` makes. Needs VTK, NumPy and Pillow.
+"""Makes the pictures of medial axes in docs/pictures, from shapes that `blum make` and the tests make. Needs VTK, NumPy
+and Pillow, and manifold3d for those of the tests.
 
     tools/medial_gallery.py BLUM_PROGRAM [FOLDER] [--only NAME ...]      FOLDER is docs/pictures by default
 
@@ -26,7 +27,7 @@ MOST_BYTES = 150_000
 @dataclasses.dataclass
 class Picture:
     name: str  # of medial-NAME.png
-    shape: list[str]  # what `blum make` is given
+    shape: list[str]  # what `blum make` is given; or "made", family and number of a solid of tests/made
     eye: str = "1,-1.6,0.9"
     color: str = "radius"
     thetas: tuple[int, ...] = THETAS
@@ -42,6 +43,11 @@ PICTURES = [
     Picture("void-cube", ["void_cube"]),
     Picture("tubes", ["tube_image", "--nodes", "2", "--pitch", "61", "--radius", "13.4"], eye="1,-1.9,0.8",
             thetas=(60, 120, 170)),
+    Picture("gear", ["gear"], eye="0.6,-1,1.6"),
+    Picture("truss", ["made", "trusses", "3"], thetas=(60, 120)),
+    Picture("screw", ["made", "screws", "0"]),
+    Picture("vessels", ["made", "vessel_trees", "3"], thetas=(60, 120)),
+    Picture("spring", ["made", "springs", "1"], thetas=(60, 120)),
 ]
 
 
@@ -61,7 +67,7 @@ def voxel_faces(image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_obj(path: pathlib.Path, vertices: np.ndarray, polygons: np.ndarray) -> None:
-    lines = [f"v {x:g} {y:g} {z:g}" for x, y, z in vertices]
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
     lines += ["f " + " ".join(map(str, polygon)) for polygon in polygons + 1]
     path.write_text("\n".join(lines) + "\n")
 
@@ -72,10 +78,21 @@ def call(*command) -> None:
         sys.exit(f"{' '.join(map(str, command))}: {done.stderr.strip()}")
 
 
+def write_shape(picture: Picture, blum: pathlib.Path, path: pathlib.Path) -> None:
+    if picture.shape[0] != "made":
+        call(blum, "make", *picture.shape, "-o", path, "--quiet")
+        return
+    sys.path.insert(0, str(ROOT / "tests"))
+    from made import made_solid  # noqa: PLC0415  (needs more packages than the other pictures)
+
+    solid = made_solid(picture.shape[1], int(picture.shape[2]))
+    write_obj(path, np.asarray(solid.vertices), np.asarray(solid.triangles))
+
+
 def make(picture: Picture, blum: pathlib.Path, output: pathlib.Path, folder: pathlib.Path) -> None:
     is_image = picture.shape[0].endswith("_image")
-    solid = folder / ("solid.npy" if is_image else "solid.ply")
-    call(blum, "make", *picture.shape, "-o", solid, "--quiet")
+    solid = folder / ("solid.npy" if is_image else "solid.obj")
+    write_shape(picture, blum, solid)
     axis = folder / "axis.npz"
     call(blum, "medial", solid, "-o", axis, "--theta", ",".join(map(str, picture.thetas)), "--quiet", *picture.options)
     surface = solid
