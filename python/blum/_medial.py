@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, Unpack
 
