@@ -50,7 +50,9 @@ AxisGraph graph_of(const MedialFile& file, const Context& context) {
   if (!file.has_labels && !axis.triangles.empty()) {
     throw InvalidOption(missing_medial_column("triangles", medial_columns::sheet));
   }
-  return axis_graph(axis, context);
+  AxisGraphOptions options;
+  if (file.has_angles) options.homotopy_angle = file.metadata.theta;
+  return axis_graph(axis, options, context);
 }
 
 }  // namespace

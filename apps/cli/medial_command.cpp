@@ -245,8 +245,10 @@ Json add_graph(MedialRun& run, const Request& r, const SolidInput& input, const 
                const MedialMetadata& metadata, const fs::path& name, const Context& context) {
   if (!r.graph) return nullptr;
   Stopwatch watch;
-  const AxisGraph graph =
-      input.kind == InputKind::mesh ? axis_graph(complex, input.mesh.mesh, {}, context) : axis_graph(complex, context);
+  AxisGraphOptions options;
+  options.homotopy_angle = metadata.theta;
+  const AxisGraph graph = input.kind == InputKind::mesh ? axis_graph(complex, input.mesh.mesh, options, context)
+                                                        : axis_graph(complex, options, context);
   run.graphs.emplace_back(beside_axis(*r.graph, r.output, name));
   write_graph(run.graphs.back().path(), graph, metadata);
   run.phases.push_back({"graph", watch.lap()});

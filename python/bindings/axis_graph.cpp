@@ -19,7 +19,7 @@ using Path = std::filesystem::path;
 
 AxisGraph graph_of(const Complex& axis, const std::optional<MeshView>& mesh, const AxisGraphOptions& options,
                    const Context& context) {
-  return mesh ? axis_graph(axis, *mesh, options, context) : axis_graph(axis, context);
+  return mesh ? axis_graph(axis, *mesh, options, context) : axis_graph(axis, options, context);
 }
 
 std::optional<MeshView> view_of_mesh(const MeshArrays* mesh) {

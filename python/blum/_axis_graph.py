@@ -56,7 +56,7 @@ def axis_graph(
     own = mesh_of(axis, mesh, triangles)
     with reporting(progress) as report:
         found: AxisGraph = _core.axis_graph(
-            axis._core, None if own is None else own._arrays, dict(options), integer(threads, "threads"), report
+            axis._core, None if own is None else own._arrays, _told(axis, options), integer(threads, "threads"), report
         )
     return found
 
@@ -66,7 +66,14 @@ def write_graph(path: PathLike, axis: Complex, mesh: Any, triangles: Any, option
     own = mesh_of(axis, mesh, triangles)
     origin = getattr(axis, "_origin", None)
     told = {} if origin is None else {k: v for k, v in vars(origin).items() if k not in ("shape", "version")}
-    _core.write_graph(Path(os.fspath(path)), axis._core, None if own is None else own._arrays, dict(options), told)
+    arrays = None if own is None else own._arrays
+    _core.write_graph(Path(os.fspath(path)), axis._core, arrays, _told(axis, options), told)
+
+
+def _told(axis: Complex, options: AxisGraphOptions) -> dict[str, Any]:
+    """The options; what is there for homotopy alone is told by theta of the axis, where that is known."""
+    theta = getattr(getattr(axis, "_origin", None), "theta", None)
+    return ({} if theta is None else {"homotopy_angle": theta}) | dict(options)
 
 
 def mesh_of(axis: Complex, mesh: Any, triangles: Any) -> Mesh | None:

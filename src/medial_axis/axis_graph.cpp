@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -21,11 +22,16 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Follows seams and curves from junction to junction.
 class LineWalker {
  public:
-  LineWalker(const AxisParts& parts, AxisGraph& graph)
+  LineWalker(const AxisParts& parts, double homotopy_angle, AxisGraph& graph)
       : parts_(parts),
         graph_(graph),
+        is_for_homotopy_(parts.incidence().edges().size(), false),
         junction_at_(parts.view().positions.size(), none),
-        line_of_edge_(parts.incidence().edges().size(), none) {}
+        line_of_edge_(parts.incidence().edges().size(), none) {
+    for (std::size_t e = 0; e < parts.view().edges.size(); ++e) {
+      is_for_homotopy_[parts.incidence().edge_of_listed()[e]] = parts.view().edge_angle[e] <= homotopy_angle;
+    }
+  }
 
   void walk(const Context& context) {
     find_junctions();
@@ -70,6 +76,7 @@ class LineWalker {
     for (; edge != none; edge = next_edge(vertex, part)) {
       line_of_edge_[edge] = number;
       line.length += parts_.edge_length(edge);
+      if (is_for_homotopy_[edge]) line.homotopy_length += parts_.edge_length(edge);
       const auto& ends = parts_.incidence().edges()[edge];
       vertex = ends[0] == vertex ? ends[1] : ends[0];
       add_vertex(vertex, line);
@@ -121,10 +128,12 @@ class LineWalker {
     }
     detail::sort_unique(line.sheets);
     (part == EdgePart::seam ? graph_.seam_length : graph_.curve_length) += line.length;
+    if (part == EdgePart::curve) graph_.homotopy_curve_length += line.homotopy_length;
   }
 
   const AxisParts& parts_;
   AxisGraph& graph_;
+  std::vector<bool> is_for_homotopy_;        ///< of edges
   std::vector<std::uint32_t> junction_at_;   ///< of each vertex
   std::vector<std::uint32_t> line_of_edge_;  ///< among the seams or the curves
 };
@@ -198,7 +207,16 @@ class PatchPairs {
   std::vector<std::map<std::pair<std::uint32_t, std::uint32_t>, double>> areas_;  ///< of each sheet
 };
 
-AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const Context& context) {
+void check_angle(std::string_view name, double angle) {
+  if (angle >= 0 && angle <= 180) return;
+  throw InvalidOption(std::string(name) + " is " + exact_text(angle) + " degrees, but must be 0 to 180");
+}
+
+AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const AxisGraphOptions& options,
+                   const Context& context) {
+  check_angle("homotopy_angle", options.homotopy_angle.value_or(0));
+  constexpr double nothing = -1;
+  const double homotopy_angle = options.homotopy_angle.value_or(nothing);
   check_needed(axis);
   const CompleteAxis all(axis);
   if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
@@ -206,9 +224,9 @@ AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const Con
   }
   AxisGraph graph;
   const AxisParts parts(all.get(), context);
-  LineWalker walker(parts, graph);
+  LineWalker walker(parts, homotopy_angle, graph);
   walker.walk(context);
-  add_sheets(parts, walker.line_of_edge(), graph);
+  add_sheets(parts, walker.line_of_edge(), homotopy_angle, graph);
   if (patches == nullptr) return graph;
   graph.patches = patches->patches();
   PatchPairs(parts, *patches, graph).add();
@@ -217,17 +235,15 @@ AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const Con
 
 }  // namespace
 
-AxisGraph axis_graph(const Complex& axis, const Context& context) {
-  return graph_of(axis, nullptr, context);
+AxisGraph axis_graph(const Complex& axis, const AxisGraphOptions& options, const Context& context) {
+  return graph_of(axis, nullptr, options, context);
 }
 
 AxisGraph axis_graph(const Complex& axis, const MeshView& mesh, const AxisGraphOptions& options,
                      const Context& context) {
-  if (!(options.patch_angle >= 0 && options.patch_angle <= 180)) {
-    throw InvalidOption("patch_angle is " + exact_text(options.patch_angle) + " degrees, but must be 0 to 180");
-  }
+  check_angle("patch_angle", options.patch_angle);
   const SurfacePatches patches(mesh, options.patch_angle, context);
-  return graph_of(axis, &patches, context);
+  return graph_of(axis, &patches, options, context);
 }
 
 }  // namespace blum

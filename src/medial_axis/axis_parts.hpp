@@ -60,8 +60,10 @@ class AxisParts {
 };
 
 /// Puts into `graph` its sheets, but for their patches, and the sums over them. `graph.seams` is there.
+/// @param homotopy_angle  triangles of at most this are there for homotopy alone.
 /// @param seam_of_edge  of incidence().edges(): its place in the seams.
-void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, AxisGraph& graph);
+void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, double homotopy_angle,
+                AxisGraph& graph);
 
 /// Values with weights: the one up to which half of the weight lies; of those without weight the middle one, the lower
 /// of two. @param values  (value, weight), not empty; sorted by it.

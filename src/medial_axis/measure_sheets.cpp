@@ -16,12 +16,18 @@ struct Measured {
   std::vector<std::pair<double, double>> thickness, angle;  ///< of triangles: the mean of the corners, and the area
   Vec3d corners;                                            ///< the sum of all
   std::int64_t border_sides = 0, cut_vertices = 0;
+  bool is_shown = false;  ///< some triangle is there for what it sees
 };
 
 class SheetMeasurer {
  public:
-  SheetMeasurer(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, AxisGraph& graph)
-      : parts_(parts), seam_of_edge_(seam_of_edge), graph_(graph), measured_(parts.sheet_numbers().size()) {
+  SheetMeasurer(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, double homotopy_angle,
+                AxisGraph& graph)
+      : parts_(parts),
+        seam_of_edge_(seam_of_edge),
+        homotopy_angle_(homotopy_angle),
+        graph_(graph),
+        measured_(parts.sheet_numbers().size()) {
     constexpr double infinite = std::numeric_limits<double>::infinity();
     for (const std::uint32_t sheet : parts.sheet_numbers()) {
       graph_.sheets.emplace_back().sheet = sheet;
@@ -50,6 +56,7 @@ class SheetMeasurer {
     for (std::size_t s = 0; s < measured_.size(); ++s) finish(graph_.sheets[s], measured_[s]);
     for (const AxisSheet& sheet : graph_.sheets) {
       graph_.area += sheet.area;
+      graph_.homotopy_area += sheet.homotopy_area;
       graph_.rim_length += sheet.rim_length;
     }
   }
@@ -71,6 +78,11 @@ class SheetMeasurer {
                 sheet.separation_angle, measured.angle);
     ++sheet.triangles;
     sheet.area += area;
+    if (axis.triangle_angle[t] <= homotopy_angle_) {
+      sheet.homotopy_area += area;
+    } else {
+      measured.is_shown = true;
+    }
     sheet.centroid += area / 3 * corners;
     measured.corners += corners;
   }
@@ -106,19 +118,22 @@ class SheetMeasurer {
         sheet.area > 0 ? sheet.centroid / sheet.area : measured.corners / static_cast<double>(3 * sheet.triangles);
     const std::int64_t edges = (3 * triangles + measured.border_sides) / 2;
     sheet.euler_characteristic = measured.cut_vertices - edges + triangles;
+    sheet.for_homotopy = !measured.is_shown;
     detail::sort_unique(sheet.seams);
   }
 
   const AxisParts& parts_;
   const std::vector<std::uint32_t>& seam_of_edge_;
+  double homotopy_angle_;
   AxisGraph& graph_;
   std::vector<Measured> measured_;
 };
 
 }  // namespace
 
-void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, AxisGraph& graph) {
-  SheetMeasurer(parts, seam_of_edge, graph).measure();
+void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, double homotopy_angle,
+                AxisGraph& graph) {
+  SheetMeasurer(parts, seam_of_edge, homotopy_angle, graph).measure();
 }
 
 }  // namespace blum

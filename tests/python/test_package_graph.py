@@ -25,8 +25,16 @@ def check_whole(axis, graph):
     corners = axis.vertices[axis.triangles]
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     assert np.isclose(graph.area, areas.sum(), rtol=1e-12)
+    for_homotopy = axis.triangle_angle <= axis.theta
+    assert np.isclose(graph.homotopy_area, areas[for_homotopy].sum(), rtol=1e-12)
+    curves = (axis.edge_role == CURVE) & (axis.edge_angle <= axis.theta)
+    lengths = np.linalg.norm(np.diff(axis.vertices[axis.edges[curves]], axis=1)[:, 0], axis=1)
+    assert np.isclose(graph.homotopy_curve_length, lengths.sum(), rtol=1e-12)
+    assert np.isclose(sum(curve.homotopy_length for curve in graph.curves), lengths.sum(), rtol=1e-12)
     for sheet in graph.sheets:
         own = axis.triangle_sheet == sheet.sheet
+        assert np.isclose(sheet.homotopy_area, areas[own & for_homotopy].sum(), rtol=1e-12)
+        assert sheet.for_homotopy == for_homotopy[own].all()
         radii = axis.radius[np.unique(axis.triangles[own])]
         assert sheet.triangles == own.sum() and np.isclose(sheet.area, areas[own].sum(), rtol=1e-12)
         assert (sheet.thickness.minimum, sheet.thickness.maximum) == (2 * radii.min(), 2 * radii.max())
@@ -66,6 +74,20 @@ def test_graphs_hold_everything_once(bracket, theta):
     check_whole(axis, axis.graph())
     pruned = axis.prune_sheets(max(theta, 100))
     check_whole(pruned, pruned.graph())
+
+
+def test_membranes_around_voids_are_there_for_homotopy(tmp_path):
+    axis = blum.medial_axis(blum.generate("void_cube"), resolution=32).simplify(150)
+    check_whole(axis, axis.graph())
+    assert axis.graph().homotopy_area > 0.2 * axis.graph().area
+    share = axis.graph().homotopy_area / axis.graph().area
+    assert share == pytest.approx(axis.certificate.medial.homotopy_share, rel=1e-9)
+    assert axis.graph(homotopy_angle=180).homotopy_area == pytest.approx(axis.graph().area)
+    axis.write_graph(tmp_path / "void.json")
+    told = json.loads((tmp_path / "void.json").read_text())
+    assert told["homotopy_area"] == pytest.approx(axis.graph().homotopy_area)
+    network = axis.graph().to_networkx()
+    assert network.nodes["sheet0"]["homotopy_area"] == axis.graph().sheets[0].homotopy_area
 
 
 @pytest.mark.parametrize("name", ["box", "torus", "cylinder", "bodies", "plate", "ellipsoid"])

@@ -21,6 +21,9 @@ namespace blum {
 struct AxisGraphOptions {
   /// With the mesh: faces are of one patch where they are joined through edges that bend by at most this.
   double patch_angle = 30;
+  /// What carries at most this angle is there for homotopy alone: theta of the axis, degrees. Without it nothing counts
+  /// as such, as where angles are not known.
+  std::optional<double> homotopy_angle = {};
 };
 
 template <>
@@ -30,6 +33,9 @@ struct Description<AxisGraphOptions> {
   static constexpr std::tuple members{
       Member{"patch_angle", &AxisGraphOptions::patch_angle, "degrees",
              "with the mesh: patches are faces joined through edges that bend by at most this", Range::between(0, 180)},
+      Member{"homotopy_angle", &AxisGraphOptions::homotopy_angle, "degrees",
+             "theta of the axis: what carries at most this is there for homotopy alone; none: nothing is",
+             Range::between(0, 180)},
   };
 };
 
@@ -100,7 +106,8 @@ struct Description<AxisJunction> {
 /// A seam or a curve: a longest chain of edges between junctions, or a closed loop without any.
 struct AxisLine {
   double length = 0;
-  bool closed = false;  ///< a loop without a junction; one with a junction begins and ends there
+  double homotopy_length = 0;  ///< of its edges that are there for homotopy alone
+  bool closed = false;         ///< a loop without a junction; one with a junction begins and ends there
   std::optional<std::array<std::uint32_t, 2>> junctions;  ///< where it begins and ends; none for closed ones
   AxisSpread radius;
   std::vector<std::uint32_t> sheets;    ///< AxisSheet::sheet, rising: seams: that meet along it; curves: at its ends
@@ -116,6 +123,8 @@ struct Description<AxisLine> {
   static constexpr std::string_view doc = "A seam or a curve of an axis, from junction to junction or closed";
   static constexpr std::tuple members{
       Member{"length", &AxisLine::length, "mesh units", "of its edges"},
+      Member{"homotopy_length", &AxisLine::homotopy_length, "mesh units",
+             "of its edges that are there for homotopy alone"},
       Member{"closed", &AxisLine::closed, "", "whether it is a loop without a junction"},
       Member{"junctions", &AxisLine::junctions, "", "where it begins and ends; none of closed ones"},
       Member{"radius", &AxisLine::radius, "mesh units", "distance to the surface along it"},
@@ -174,6 +183,8 @@ struct AxisSheet {
   std::uint32_t sheet = 0;  ///< its number in medial_columns::sheet
   std::size_t triangles = 0;
   double area = 0;
+  double homotopy_area = 0;     ///< of its triangles that are there for homotopy alone: angles of theta or less
+  bool for_homotopy = false;    ///< all of them are
   AxisSpread thickness;         ///< twice the radius
   AxisSpread separation_angle;  ///< degrees, of vertices: near 180 between parallel walls
   Vec3d centroid;               ///< of the area
@@ -194,6 +205,9 @@ struct Description<AxisSheet> {
       Member{"sheet", &AxisSheet::sheet, "", "its number in the axis"},
       Member{"triangles", &AxisSheet::triangles, "", "that it has"},
       Member{"area", &AxisSheet::area, "square mesh units", "of the triangles"},
+      Member{"homotopy_area", &AxisSheet::homotopy_area, "square mesh units",
+             "of the triangles that are there for homotopy alone"},
+      Member{"for_homotopy", &AxisSheet::for_homotopy, "", "whether all of them are"},
       Member{"thickness", &AxisSheet::thickness, "mesh units", "twice the radius"},
       Member{"separation_angle", &AxisSheet::separation_angle, "degrees",
              "at which its vertices see their footprints: near 180 between parallel walls"},
@@ -220,7 +234,9 @@ struct AxisGraph {
   std::vector<AxisJunction> junctions;  ///< by rising vertex
   std::vector<AxisPatch> patches;       ///< of the mesh, by their first face; none without it
   double area = 0;                      ///< of all triangles
+  double homotopy_area = 0;             ///< of those that are there for homotopy alone
   double seam_length = 0, curve_length = 0, rim_length = 0;
+  double homotopy_curve_length = 0;  ///< of curves, what is there for homotopy alone
 };
 
 template <>
@@ -234,9 +250,13 @@ struct Description<AxisGraph> {
       Member{"junctions", &AxisGraph::junctions, "", "by rising vertex"},
       Member{"patches", &AxisGraph::patches, "", "smooth parts of the mesh; none without it"},
       Member{"area", &AxisGraph::area, "square mesh units", "of all triangles"},
+      Member{"homotopy_area", &AxisGraph::homotopy_area, "square mesh units",
+             "of those that are there for homotopy alone"},
       Member{"seam_length", &AxisGraph::seam_length, "mesh units", "of all seams"},
       Member{"curve_length", &AxisGraph::curve_length, "mesh units", "of all curves"},
       Member{"rim_length", &AxisGraph::rim_length, "mesh units", "of all rims"},
+      Member{"homotopy_curve_length", &AxisGraph::homotopy_curve_length, "mesh units",
+             "of curves that are there for homotopy alone"},
   };
 };
 
@@ -247,12 +267,17 @@ struct Description<AxisGraph> {
 /// the role junction is one of the junctions, which hold ends of lines besides. Lines run from the junction of the
 /// smaller number, are in the order of where they begin, and closed ones come last.
 ///
+/// Triangles and edges carry the angle for which they are there, whatever theta is, and 0 where only homotopy keeps
+/// them. So what carries theta or less is there for homotopy alone, as MedialCheck::homotopy_share counts it; or since
+/// something else kept it from being taken away.
+///
 /// @param axis  with radii and sheets: MedialAxis::simplify(), prune_sheets(), a file. Angles may be missing, and are
 /// 0.
 /// @return      sums are taken in double, in the order of triangles and edges; the same bytes every time.
-/// @throws InvalidOption where radii or sheets are missing, or saying problem_of_medial() of what there is; Cancelled.
-/// Cost: linear but for sorting; about 0.5 s for a million triangles, and 200 bytes for each.
-[[nodiscard]] AxisGraph axis_graph(const Complex& axis, const Context& context = {});
+/// @throws InvalidOption for an angle, where radii or sheets are missing, or saying problem_of_medial() of what there
+/// is; Cancelled. Cost: linear but for sorting; about 0.5 s for a million triangles, and 200 bytes for each.
+[[nodiscard]] AxisGraph axis_graph(const Complex& axis, const AxisGraphOptions& options = {},
+                                   const Context& context = {});
 
 /// The same with the patches of the mesh, and for every sheet those that it lies between: where the footprints of its
 /// vertices lie. Vertices whose two footprints are one point, or of which no sites are known, say nothing of it, so

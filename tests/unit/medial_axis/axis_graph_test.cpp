@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "blum/certificate/certificate.hpp"
 #include "blum/complex/incidence.hpp"
 #include "blum/medial_axis/axis_graph.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
@@ -351,14 +353,73 @@ TEST(AxisGraph, AWallOfABoxLiesBetweenItsTwoFaces) {
   EXPECT_EQ(graph.patches[pair.second[0]].normal, -normal);
 }
 
+TEST(AxisGraph, TellsWhatIsThereForHomotopyAlone) {
+  AxisRows axis;
+  const Numbers line = add_row(axis, 5, {0, 0, 0});
+  for (const Vec3d& way : {Vec3d{0, 1, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, 1}})
+    add_band(axis, line, add_row(axis, 5, way));
+  for (std::size_t t = 0; t < axis.triangles.size(); ++t) {
+    axis.triangles[t].separation_angle = t < 8 ? 90 : t < 16 ? 60 : t < 22 ? 0 : 120;
+  }
+  const std::uint32_t foot = add_vertex(axis, {0, 0, 3});
+  const std::uint32_t middle = add_vertex(axis, {0, 0, 4});
+  axis.edges.push_back({{foot, middle}, 30});
+  axis.edges.push_back({{middle, add_vertex(axis, {0, 0, 6})}, 150});
+  const Complex complex = labelled(axis);
+  const auto graph_at = [&](std::optional<double> theta) {
+    AxisGraphOptions options;
+    options.homotopy_angle = theta;
+    return axis_graph(complex, options);
+  };
+  const AxisGraph graph = graph_at(60);
+  ASSERT_EQ(graph.sheets.size(), 3U);
+  EXPECT_EQ(graph.sheets[0].homotopy_area, 0);
+  EXPECT_EQ(graph.sheets[1].homotopy_area, 4) << "60 degrees are no more than theta";
+  EXPECT_EQ(graph.sheets[2].homotopy_area, 3);
+  EXPECT_FALSE(graph.sheets[0].for_homotopy);
+  EXPECT_TRUE(graph.sheets[1].for_homotopy);
+  EXPECT_FALSE(graph.sheets[2].for_homotopy);
+  EXPECT_EQ(graph.homotopy_area, 7);
+  ASSERT_EQ(graph.curves.size(), 1U);
+  EXPECT_EQ(graph.curves[0].homotopy_length, 1);
+  EXPECT_EQ(graph.homotopy_curve_length, 1);
+  EXPECT_EQ(graph_at(0).homotopy_area, 3);
+  const AxisGraph unknown = graph_at({});
+  EXPECT_EQ(unknown.homotopy_area, 0);
+  EXPECT_FALSE(unknown.sheets[1].for_homotopy);
+  EXPECT_THROW(static_cast<void>(graph_at(-1)), InvalidOption);
+}
+
+TEST(AxisGraph, CountsMembranesAsTheCertificateDoes) {
+  // The surface around a void stays closed, also where nothing sees 150 degrees.
+  const TriangleMesh mesh = make_shape("void_cube", {});
+  MedialAxisOptions options;
+  options.resolution = 32;
+  const MedialAxis axis = medial_axis(mesh, options);
+  for (const double theta : {60.0, 150.0}) {
+    SCOPED_TRACE(theta);
+    const Complex fitted = axis.fitted(theta);
+    CertificateOptions certificate_options;
+    certificate_options.theta = theta;
+    certificate_options.balls = false;
+    certificate_options.spacing = axis.report().bodies.front().spacing;
+    const Certificate certificate = certify(fitted, mesh, certificate_options);
+    AxisGraphOptions graph_options;
+    graph_options.homotopy_angle = theta;
+    const AxisGraph graph = axis_graph(fitted, graph_options);
+    EXPECT_NEAR(graph.homotopy_area / graph.area, certificate.medial.homotopy_share, 1e-9);
+    EXPECT_EQ(graph.homotopy_area > 0.2 * graph.area, theta > 100);
+  }
+}
+
 TEST(AxisGraph, PatchesGoAroundFacetsUpToTheirAngle) {
   const TriangleMesh cylinder = make_shape("cylinder", {{"sides", 12}});
   Complex nothing;
   EXPECT_EQ(axis_graph(nothing, cylinder).patches.size(), 3U) << "bends by 30 degrees are smooth";
-  EXPECT_EQ(axis_graph(nothing, cylinder, {29}).patches.size(), 14U);
-  EXPECT_EQ(axis_graph(nothing, cylinder, {90}).patches.size(), 1U);
-  EXPECT_EQ(axis_graph(nothing, cylinder, {90}).patches[0].normal, (Vec3d{}));
-  EXPECT_THROW(static_cast<void>(axis_graph(nothing, cylinder, {181})), InvalidOption);
+  EXPECT_EQ(axis_graph(nothing, cylinder, {.patch_angle = 29}).patches.size(), 14U);
+  EXPECT_EQ(axis_graph(nothing, cylinder, {.patch_angle = 90}).patches.size(), 1U);
+  EXPECT_EQ(axis_graph(nothing, cylinder, {.patch_angle = 90}).patches[0].normal, (Vec3d{}));
+  EXPECT_THROW(static_cast<void>(axis_graph(nothing, cylinder, {.patch_angle = 181})), InvalidOption);
 }
 
 TEST(AxisGraph, AnotherMeshIsRefused) {
