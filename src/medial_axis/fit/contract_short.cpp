@@ -55,7 +55,7 @@ class ShortEdges {
     if (lengths.of_slivers > 0) find_slivers(lists.triangles);
     for (const auto& [a, b] : lists_.incidence().edges()) {
       const double size = length(lists_.position(a) - lists_.position(b));
-      if (size <= limit(a, b, longest(a, b))) short_.emplace_back(size, a, b);
+      if (size <= limit(a, b, longest(a, b))) short_.push_back({size, a, b});
     }
     std::sort(short_.begin(), short_.end());
   }
@@ -67,10 +67,11 @@ class ShortEdges {
     for (bool is_changed = true; is_changed && !short_.empty();) {
       throw_if_cancelled(context_);
       const std::size_t count = short_.size();
-      std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> left;
-      for (const auto& edge : short_) {
-        const auto [size, a, b] = edge;
-        if (!take(a, b)) left.push_back(edge);
+      std::vector<ShortEdge> left;
+      for (ShortEdge& edge : short_) {
+        if (take(edge)) continue;
+        edge.looked = lists_.contractions();
+        left.push_back(edge);
       }
       short_ = std::move(left);
       is_changed = short_.size() < count;
@@ -82,6 +83,14 @@ class ShortEdges {
 
  private:
   using Edge = std::array<std::uint32_t, 2>;
+  struct ShortEdge {
+    double length;
+    std::uint32_t a, b;
+    std::uint32_t looked = 0;  ///< ShrinkingLists::contractions() when it was looked at in vain
+    bool operator<(const ShortEdge& other) const {
+      return std::tie(length, a, b) < std::tie(other.length, other.a, other.b);
+    }
+  };
 
   void find_slivers(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
     for (const auto& t : triangles) {
@@ -116,10 +125,12 @@ class ShortEdges {
   }
 
   /// @return  whether the edge is gone.
-  bool take(std::uint32_t a, std::uint32_t b) {
+  bool take(const ShortEdge& edge) {
+    const auto [size, a, b, looked] = edge;
     std::uint32_t from = lists_.now(a);
     std::uint32_t to = lists_.now(b);
     if (from == to) return true;
+    if (looked > 0 && std::max(lists_.changed(from), lists_.changed(to)) <= looked) return false;
     if (length(lists_.position(from) - lists_.position(to)) > 2 * limit(from, to, longest(a, b))) return false;
     // Seams and curves stay before rims, these before the insides of sheets, and there what knows its two walls.
     const auto worth = [&](std::uint32_t v) { return std::pair(lists_.rank(v), lists_.angle(v) > 0); };
@@ -137,7 +148,7 @@ class ShortEdges {
   ShortLengths lengths_;
   std::vector<Edge> crumbs_, slivers_;  ///< sides of these, sorted
   const Context& context_;
-  std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> short_;
+  std::vector<ShortEdge> short_;
 };
 
 }  // namespace

@@ -16,7 +16,8 @@ ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, con
       cells_({lists.vertices.size(), lists.edges, lists.triangles}),
       incidence_(incidence),
       rank_(lists.vertices.size(), 0),
-      into_(lists.vertices.size()) {
+      into_(lists.vertices.size()),
+      changed_(lists.vertices.size(), 0) {
   std::iota(into_.begin(), into_.end(), 0U);
   for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
     const std::size_t count = incidence_.triangles_of_edge()[e].size();
@@ -33,7 +34,10 @@ std::uint32_t ShrinkingLists::now(std::uint32_t v) const {
 }
 
 bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to) {
-  if (!cells_.may_contract(from, to)) return false;
+  return cells_.may_contract(from, to) && stays_in_solid(from, to);
+}
+
+bool ShrinkingLists::stays_in_solid(std::uint32_t from, std::uint32_t to) const {
   const Stop source = stop_of(lists_.vertices[from]);
   const Stop target = stop_of(lists_.vertices[to]);
   bool stays = true;
@@ -54,11 +58,19 @@ bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to) {
 void ShrinkingLists::contract(std::uint32_t from, std::uint32_t to) {
   rank_[to] = std::max(rank_[to], rank_[from]);
   into_[from] = to;
+  ++contractions_;
   for (const auto& [triangle, third] : cells_.contract(from, to)) {
     if (is_joined(to, third)) continue;
     cells_.add_edge({to, third});
     lists_.add_edge({to, third}, lists_.triangle_angles[triangle]);
   }
+  changed_[from] = changed_[to] = contractions_;
+  const auto note = [&](std::uint32_t v) { changed_[v] = contractions_; };
+  cells_.for_each_triangle(to, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+    note(p);
+    note(q);
+  });
+  cells_.for_each_edge(to, [&](std::uint32_t, std::uint32_t other) { note(other); });
 }
 
 bool ShrinkingLists::is_joined(std::uint32_t a, std::uint32_t b) const {

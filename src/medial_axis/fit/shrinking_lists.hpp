@@ -35,7 +35,14 @@ class ShrinkingLists {
 
   /// Whether the edge between two vertices may be contracted to the second one.
   [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to);
+  /// The part of it that asks where the solid is: edges stay in it, and nothing is passed over. From many threads.
+  [[nodiscard]] bool stays_in_solid(std::uint32_t from, std::uint32_t to) const;
   void contract(std::uint32_t from, std::uint32_t to);
+
+  /// 1, and one more for each contraction.
+  [[nodiscard]] std::uint32_t contractions() const { return contractions_; }
+  /// contractions() after the last one that changed what is at a vertex; 0 for none.
+  [[nodiscard]] std::uint32_t changed(std::uint32_t v) const { return changed_[v]; }
 
   /// Puts what is left into the lists.
   void write();
@@ -50,6 +57,8 @@ class ShrinkingLists {
   const Incidence& incidence_;
   std::vector<int> rank_;
   std::vector<std::uint32_t> into_;
+  std::vector<std::uint32_t> changed_;
+  std::uint32_t contractions_ = 1;
 };
 
 }  // namespace blum
