@@ -222,8 +222,10 @@ struct Description<BallUnionCheck> {
 /// 2 voxels and the deviation: for 95 % of the balls, if there are 20. Without a theta, this is not looked at.
 ///
 /// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
-/// too, other than beside parts thinner than a voxel; a tenth of those vertices, or 16, need not, but none may be off
-/// by more than 3 voxels and the deviation. Of those deeper than the allowance at most three in five may have one,
+/// too, other than beside parts of less than two voxels (a radius below one); a tenth of those vertices, or 16, need
+/// not. But none may be off by more than 1.5 times `missing_allowance` where what is beside it surely sees two walls: a
+/// triangle or edge at it that says more than theta and than 20 degrees (images: 40), all of whose other corners see as
+/// much. Of those deeper than the allowance at most three in five may have one,
 /// where sheets are larger than 256 square voxels. Against the voxels of a mesh, what is in the middle is told only.
 struct MedialCheck {
   double allowance = 0;              ///< how far from the middle a point may be, mesh units
