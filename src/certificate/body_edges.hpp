@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -25,10 +26,13 @@ struct Stop {
 /// What edges are asked about.
 class BodyEdges {
  public:
-  BodyEdges(const SolidOracle& solid, std::uint32_t body, double allowed)
+  /// @param most_looks  points of edges whose depth is asked for, of all edges together; then none can be pushed in any
+  ///                    more. Without it, edges along a hole of no width take for ever where little is allowed.
+  BodyEdges(const SolidOracle& solid, std::uint32_t body, double allowed, std::size_t* most_looks = nullptr)
       : solid_(solid),
         body_(body),
         allowed_(allowed),
+        looks_left_(most_looks),
         corner_(std::max(corner_of_diagonal * solid.diagonal(body), solid.grain() / 2)) {}
 
   [[nodiscard]] double allowed() const { return allowed_; }
@@ -37,7 +41,7 @@ class BodyEdges {
 
   /// The point of a segment that is furthest out, as far as that is more than is allowed. A ball as large as a point is
   /// deep lies in the body, so that only what is between such balls is left to ask about. In a thin wall these are
-  /// many: so first it is asked whether the segment meets the boundary at all.
+  /// many: so first it is asked whether the segment meets the boundary at all. Infinitely far out after the last look.
   [[nodiscard]] Stop furthest_out(const Stop& a, const Stop& b, double allowed) const {
     constexpr double nearly = 1.25;  // enough of what is too much anyway
     Stop worst = a.depth < b.depth ? a : b;
@@ -55,6 +59,8 @@ class BodyEdges {
       const double end = gap - std::max(q.depth, 0.0);
       Stop middle{p.at + (q.at - p.at) * ((begin + end) / (2 * gap)), 0};
       if (middle.at == p.at || middle.at == q.at) continue;
+      if (looks_left_ != nullptr && *looks_left_ == 0) return {middle.at, -HUGE_VAL};
+      if (looks_left_ != nullptr) --*looks_left_;
       const Stop& known = std::abs(p.depth) > std::abs(q.depth) ? p : q;
       middle.depth = solid_.depth_beside(middle.at, body_, known.at, known.depth, allowed / 2);
       if (middle.depth < worst.depth) worst = middle;
@@ -72,7 +78,7 @@ class BodyEdges {
   [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, int& moves, std::vector<Vec3d>& way) const {
     const Stop worst = furthest_out(a, b, allowed_);
     if (-worst.depth <= allowed_) return true;
-    if (moves-- <= 0) return false;
+    if (worst.depth == -HUGE_VAL || moves-- <= 0) return false;
     const Stop moved = pushed_in(worst);
     if (!can_be_pushed_in(a, moved, moves, way)) return false;
     way.push_back(moved.at);
@@ -93,6 +99,7 @@ class BodyEdges {
   const SolidOracle& solid_;
   std::uint32_t body_;
   double allowed_;
+  std::size_t* looks_left_;
   double corner_;
 };
 

@@ -83,8 +83,8 @@ def test_what_cannot_be_is_said_before_any_work(solids, axes, tmp_path):
 
 
 def test_no_graph_without_a_certified_axis(tmp_path):
-    from test_medial import COARSE, crossing_plates
+    from test_medial import COARSE, block_with_needle
 
     output = ["-o", tmp_path / "p.ply", "--graph", tmp_path / "g.json"]
-    run("medial", crossing_plates(tmp_path), *output, *COARSE, status=3)
-    assert names(tmp_path) == ["plates.obj"]
+    run("medial", block_with_needle(tmp_path), *output, *COARSE, status=3)
+    assert names(tmp_path) == ["needle.obj"]

@@ -174,14 +174,19 @@ bool AxisLabels::look_at_thin_parts(const Context& context) {
 
 bool AxisLabels::look_closely(std::uint32_t edge) {
   constexpr double fine = 1e-3;
+  constexpr std::size_t most_looks_at_edge = 32'768;
   const auto [a, b] = given_.incidence.edges()[edge];
   const std::uint32_t body = given_.parts.body_of[a];
   const SolidOracle& solid = *given_.solid.solid;
-  const BodyEdges edges(solid, body, fine * allowed_[body]);
+  std::size_t looks = std::min(most_looks_at_edge, looks_left_);
+  looks_left_ -= looks;
+  const BodyEdges edges(solid, body, fine * allowed_[body], &looks);
   const auto stop = [&](std::uint32_t v) { return Stop{positions_[v], solid.depth(positions_[v], body)}; };
   int moves = most_moves;
   Way way{positions_[a]};
-  if (!edges.can_be_pushed_in(stop(a), stop(b), moves, way) || way.size() == 1) return false;
+  const bool is_found = edges.can_be_pushed_in(stop(a), stop(b), moves, way);
+  looks_left_ += looks;
+  if (!is_found || way.size() == 1) return false;
   way.push_back(positions_[b]);
   std::vector<Label> labels;
   if (!curtains_->add(way, body, labels)) return false;

@@ -72,6 +72,7 @@ class AxisLabels {
   std::unique_ptr<EdgeLabels> edges_;
   std::unordered_map<std::uint32_t, std::vector<Label>> replaced_;
   std::size_t doubtful_ = 0;
+  std::size_t looks_left_ = 1'000'000;  ///< for edges in thin parts: some 10 s at most
 };
 
 }  // namespace blum::verifier
