@@ -113,7 +113,8 @@ class Unfolder {
   }
   /// Folds between the triangles around a vertex, were it at another one.
   [[nodiscard]] std::size_t folds(const Around& around, std::uint32_t to, Scratch& scratch) const {
-    auto& [moved, at_edge] = scratch;
+    std::vector<Side>& moved = scratch.moved;
+    std::vector<Side>& at_edge = scratch.at_edge;
     moved.clear();
     for (const auto& [p, q] : around.corners) {
       if (p == to || q == to) continue;
