@@ -23,11 +23,13 @@ namespace {
 constexpr std::uint32_t none = 0xffffffffU;
 constexpr std::size_t steps_between_looks = std::size_t{1} << 14U;
 /// What goes first: vertices that move sheets by these parts of the tolerance.
-constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 1.0};
+constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 0.8};
 /// At each step sheets may move by this part of the least radius nearby; by the second one of the tolerance anyway:
 /// flat ones do by rounding, and reach out to where the radius is 0.
 constexpr double part_of_radius = 0.5;
 constexpr double nothing = 1e-6;
+/// Rims, seams and curves may move by this part of the tolerance: they say most for the fewest vertices.
+constexpr double part_of_borders = 0.4;
 
 /// The edges that bound sheets: those that are listed, and those where sheets of two numbers meet.
 std::vector<std::array<std::uint32_t, 2>> borders_of(const Complex& axis, const Context& context) {
@@ -73,6 +75,7 @@ class Decimator {
   struct Candidate {
     std::uint32_t to = none;
     double moved = 0;
+    double along = 0;  ///< how far the border through the vertex would be from where it was at first
   };
 
   [[nodiscard]] AxisPoint point(std::uint32_t v) const { return {axis_.positions[v], view_.radius[v]}; }
@@ -160,17 +163,18 @@ class Decimator {
     }
     std::sort(targets.begin(), targets.end());
     for (const auto& [order, to] : targets) {
-      const std::optional<double> moved = moved_to(v, to, limit);
-      if (moved && cells_.may_contract(v, to)) return Candidate{to, *moved};
+      const std::optional<Candidate> moved = moved_to(v, to, limit);
+      if (moved && cells_.may_contract(v, to)) return moved;
     }
     return std::nullopt;
   }
 
   /// How far all cells around a vertex would be from where they were at first; nullopt where that is too far.
-  [[nodiscard]] std::optional<double> moved_to(std::uint32_t v, std::uint32_t to, double limit) {
-    double before = 0;
+  [[nodiscard]] std::optional<Candidate> moved_to(std::uint32_t v, std::uint32_t to, double limit) {
+    double along = 0;
     double least_radius = std::min(view_.radius[v], view_.radius[to]);
-    for (const auto& [edge, other] : chain_) before = std::max(before, of_edge_[edge]);
+    for (const auto& [edge, other] : chain_) along = std::max(along, of_edge_[edge]);
+    double before = along;
     for (std::size_t f = 0; f < fan_count_; ++f) {
       for (const std::uint32_t t : fans_[f].triangles) before = std::max(before, of_triangle_[t]);
       for (const std::uint32_t r : fans_[f].ring) least_radius = std::min(least_radius, view_.radius[r]);
@@ -184,13 +188,15 @@ class Decimator {
       const Deviation own = deviation(point(v), point(to), point(other));
       if (fan_count_ == 0 && own.beyond > most_beyond) return std::nullopt;
       by = own.by;
+      along += own.by;
+      if (along > part_of_borders * limit) return std::nullopt;
     }
     for (std::size_t f = 0; f < fan_count_ && before + by <= limit; ++f) {
       const std::optional<Deviation> own = deviation_of(v, fans_[f], to);
       if (!own || own->beyond > most_beyond) return std::nullopt;
       by = std::max(by, own->by);
     }
-    return before + by <= limit ? std::optional(before + by) : std::nullopt;
+    return before + by <= limit ? std::optional(Candidate{to, before + by, along}) : std::nullopt;
   }
 
   [[nodiscard]] bool is_border(std::uint32_t a, std::uint32_t b) const {
@@ -221,7 +227,7 @@ class Decimator {
       for (const std::uint32_t r : fan.ring) touch(r);
     }
     for (const auto& [edge, other] : chain_) {
-      of_edge_[edge] = candidate.moved;
+      of_edge_[edge] = candidate.along;
       touch(other);
     }
     moved_ = std::max(moved_, candidate.moved);

@@ -20,9 +20,10 @@ struct DecimatedAxis {
 };
 
 /// Takes vertices out of sheets, seams, rims and curves where what is left stays within a tolerance. Vertices that stay
-/// keep their places and columns, and so their exact radii and footprints. Junctions, ends of curves, corners where
-/// seams meet rims, and the order of sheets stay, and no two sheets become one. The homotopy type is kept: vertices go
-/// by contracting edges under the link condition (see docs/theory/medial-axis.md).
+/// keep their places and columns, and so their exact radii and footprints. Sheets stay within 0.8 of the tolerance,
+/// rims, seams and curves within 0.4. Junctions, ends of curves, corners where seams meet rims, and the order of sheets
+/// stay, and no two sheets become one. The homotopy type is kept: vertices go by contracting edges under the link
+/// condition (see docs/theory/medial-axis.md).
 ///
 /// Sheets move by less than half of the least radius nearby, so that none leaves its solid where vertices tell how deep
 /// that is; certify() tells for sure.
