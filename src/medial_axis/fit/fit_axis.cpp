@@ -1,530 +1,23 @@
 #include "medial_axis/fit/fit_axis.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <functional>
+#include <cstddef>
 #include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
 
-#include "blum/complex/incidence.hpp"
-#include "blum/core/parallel.hpp"
-#include "medial_axis/fit/balance.hpp"
-#include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/contract_short.hpp"
-#include "medial_axis/fit/kind.hpp"
+#include "medial_axis/fit/fitter.hpp"
+#include "medial_axis/fit/merge_curves.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/unfold.hpp"
-#include "medial_axis/governors.hpp"
-#include "medial_axis/place_vertices.hpp"
-#include "medial_axis/solid_paths.hpp"
-#include "medial_axis/void_points.hpp"
-#include "medial_axis/walls.hpp"
 
 namespace blum {
 namespace {
 
-constexpr std::size_t vertices_per_range = 64;
-/// Voxels that a vertex of a seam may move.
-constexpr double most_moved = 1.5;
-constexpr double most_moved_to_curve = 2.5;
-/// Radius where sheets end that reach the surface, in voxels.
-constexpr double least_radius = 0.02;
-/// Separation angle, in degrees, between walls that do not meet near by.
-constexpr double parallel = 175;
-/// Where the angle is looked at on the way outwards and inwards, in voxels.
-constexpr std::array outwards{0.25, 0.5, 1.0, 1.5, 2.0, 2.5};
-constexpr std::array inwards{-0.25, -0.5, -1.0, -1.5, -2.0, -2.5};
-constexpr int halvings = 9;
-/// How far from a vertex what lies opposite of a footprint is looked for, and how much further than this it may be, in
-/// voxels.
-constexpr double opposite_step = 0.3;
-constexpr double facets = 0.02;
-
-class Fitter {
- public:
-  Fitter(AxisLists& lists, const FitTarget& target, const Context& context)
-      : lists_(lists),
-        target_(target),
-        surface_(target.surface),
-        paths_(target.surface),
-        voxel_(target.voxel),
-        context_(context),
-        incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
-        kinds_(kinds_of(incidence_, lists.vertices.size())) {}
-
-  /// Puts vertices of ribbons in the middle of what is round, before what does not show is taken for excess.
-  void find_centres() {
-    move([&](std::uint32_t v) -> Moved {
-      if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v], 3)) return std::nullopt;
-      Moved found = between(v, 3);
-      return found && is_shown(*found, 3) ? found : std::nullopt;
-    });
-  }
-  /// Puts vertices that know of one wall only between two.
-  void find_sheets() {
-    const auto is_asked = [&](std::uint32_t v) { return !(lists_.vertices[v].separation_angle > 0); };
-    find_elements_around(is_asked);
-    move([&](std::uint32_t v) { return is_asked(v) ? between(v, 2) : std::nullopt; });
-    elements_.clear();
-  }
-  /// Of the lists, as long as none of their edges goes.
-  [[nodiscard]] const Incidence& incidence() const { return incidence_; }
-  /// What each vertex sees, degrees.
-  [[nodiscard]] std::vector<double> angles() const {
-    std::vector<double> out(lists_.vertices.size());
-    parallel_for(context_, out.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
-      for (std::size_t v = range.begin; v < range.end; ++v) out[v] = angle_seen(lists_.vertices[v]);
-    });
-    return out;
-  }
-  void place_seams() {
-    move([&](std::uint32_t v) { return balanced(v); });
-  }
-  /// Vertices inside of a sheet that were put on another one beyond the seam go to this.
-  void straighten() {
-    find_elements_around([&](std::uint32_t v) { return is_bent(v); });
-    move([&](std::uint32_t v) { return straightened(v); });
-    elements_.clear();
-  }
-  /// Borders that leave what is round between two vertices that show go back there.
-  void take_back() {
-    move([&](std::uint32_t v) -> Moved {
-      if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v], 3)) return std::nullopt;
-      std::size_t shown = 0;
-      const AxisVertex* nearest = nullptr;
-      for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-        const AxisVertex& other = lists_.vertices[other_end(e, v)];
-        if (!is_shown(other, 3)) continue;
-        ++shown;
-        const Vec3d& at = lists_.vertices[v].position;
-        const bool is_nearer =
-            nearest == nullptr || squared_length(other.position - at) < squared_length(nearest->position - at);
-        if (is_nearer) nearest = &other;
-      }
-      return shown > 1 ? Moved(*nearest) : std::nullopt;
-    });
-  }
-  void cut_rims() {
-    move([&](std::uint32_t v) { return cut(v); });
-  }
-
- private:
-  using Moved = std::optional<AxisVertex>;
-
-  [[nodiscard]] std::uint32_t other_end(std::uint32_t edge, std::uint32_t v) const {
-    const auto& [a, b] = incidence_.edges()[edge];
-    return a == v ? b : a;
-  }
-  /// The corner of a triangle that is not on its side.
-  [[nodiscard]] std::uint32_t third_corner(std::uint32_t triangle, std::uint32_t side) const {
-    const auto& [a, b] = incidence_.edges()[side];
-    const auto& t = lists_.triangles[triangle];
-    return t[0] ^ t[1] ^ t[2] ^ a ^ b;
-  }
-
-  // ---- Where vertices go ----
-
-  /// Seams, junctions and curves: between as many walls as they should have.
-  [[nodiscard]] Moved balanced(std::uint32_t v) const {
-    const Kind& kind = kinds_[v];
-    if (kind.is_junction()) {
-      if (auto found = between(v, 4)) return found;
-      return between(v, 3);
-    }
-    const bool is_alone = kind.rims + kind.seams + kind.curves + kind.inner == 0;
-    return is_alone || kind.seams + kind.curves > 0 ? between(v, 3) : std::nullopt;
-  }
-
-  [[nodiscard]] Moved between(std::uint32_t v, std::size_t walls) const {
-    const AxisVertex& vertex = lists_.vertices[v];
-    // What does not show may lie beside what is round by more than a voxel.
-    const double reach = is_shown(vertex, 3) ? most_moved : most_moved_to_curve;
-    return balanced_at(vertex.position, feet_around(v), walls, {voxel_, reach * voxel_, true});
-  }
-
-  /// balance(), with sites of the input.
-  [[nodiscard]] Moved balanced_at(const Vec3d& start, const std::vector<Footprint>& feet, std::size_t walls,
-                                  const BalanceLimits& limits) const {
-    Moved found = balance(surface_, start, feet, walls, limits);
-    if (!found) return found;
-    if (walls > 2) widen(*found);
-    for (SiteId& site : found->sites) site = target_.input_site(site);
-    return found;
-  }
-
-  /// A vertex inside of a sheet where this bends: on the seam, if it bends less then.
-  [[nodiscard]] Moved straightened(std::uint32_t v) const {
-    constexpr double better = 0.5;  // of what is missing to 1
-    if (!is_bent(v)) return std::nullopt;
-    const double bend = least_cosine(v, lists_.vertices[v].position);
-    const Moved found = between(v, 3);
-    if (!found || 1 - least_cosine(v, found->position) > better * (1 - bend)) return std::nullopt;
-    return found;
-  }
-
-  /// Whether a vertex lies inside of a sheet that bends there.
-  [[nodiscard]] bool is_bent(std::uint32_t v) const {
-    constexpr double sharp = 0.9;  // cosine: 25 degrees
-    const Kind& kind = kinds_[v];
-    return kind.seams + kind.curves + kind.rims == 0 && least_cosine(v, lists_.vertices[v].position) <= sharp;
-  }
-
-  /// Of the angles by which the sheet bends at the edges of a vertex, were it elsewhere; 1 where it is flat.
-  [[nodiscard]] double least_cosine(std::uint32_t v, const Vec3d& position) const {
-    double least = 1;
-    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const auto at = incidence_.triangles_of_edge()[e];
-      least = std::min(least, cosine_of_bend(position, lists_.vertices[other_end(e, v)].position,
-                                             lists_.vertices[third_corner(at[0], e)].position,
-                                             lists_.vertices[third_corner(at[1], e)].position));
-    }
-    return least;
-  }
-
-  /// What is closest a little further away from the first footprint of a vertex that is not on the surface.
-  [[nodiscard]] NearestPoint opposite_of(const AxisVertex& vertex) const {
-    const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
-    return surface_.nearest(vertex.position + away * std::min(opposite_step * voxel_, 0.5 * vertex.radius), {});
-  }
-
-  /// Of round things, the footprint opposite of the first one, where that is as close.
-  void widen(AxisVertex& vertex) const {
-    const NearestPoint opposite = opposite_of(vertex);
-    const double limit = vertex.radius + 1e-6 * voxel_ + 1e-9 * vertex.radius;
-    if (length(opposite.point - vertex.position) > limit) return;
-    const double angle = angle_at(vertex.position, vertex.footprints[0], opposite.point);
-    if (angle <= vertex.separation_angle) return;
-    vertex.footprints[1] = opposite.point;
-    vertex.sites[1] = opposite.site;
-    vertex.separation_angle = angle;
-  }
-
-  /// Rims and ends: where the angle is theta, or the radius next to nothing.
-  [[nodiscard]] Moved cut(std::uint32_t v) const {
-    const Kind& kind = kinds_[v];
-    if (kind.is_rim()) {
-      if (auto found = slide(v, direction_of_rim(v), 2)) return found;
-      return slide(v, towards_surface(v), 2);
-    }
-    if (kind.is_seam_end()) return slide(v, direction_of_end(v, 3), 3);
-    if (kind.is_curve_end()) return slide(v, direction_of_end(v, 0), 3);
-    return kind.rims + kind.seams + kind.curves == 0 ? at_mouth(v) : std::nullopt;
-  }
-
-  /// Where a thin wall begins that a vertex lies next to: there the angle drops to next to nothing, also inside of a
-  /// sheet that goes on beyond for homotopy alone.
-  [[nodiscard]] Moved at_mouth(std::uint32_t v) const {
-    if (is_shown(lists_.vertices[v], 2) || incidence_.edges_of_vertex()[v].empty()) return std::nullopt;
-    const std::uint32_t inner = best_neighbour(v);
-    const AxisVertex& thin = lists_.vertices[inner];
-    constexpr double wider = 4;
-    const bool is_thin = thin.radius < least_radius * voxel_ && thin.separation_angle >= parallel &&
-                         wider * thin.radius < lists_.vertices[v].radius;
-    // Edges to what lies beyond come out of the wall: the mouth is met to well within the wall's thickness.
-    return is_thin && is_shown(thin, 2) ? towards(v, inner, 2, 3 * halvings) : std::nullopt;
-  }
-
-  /// @param walls  of what the vertex lies on: sheets have two footprints, which tell their angle.
-  [[nodiscard]] bool is_shown(const AxisVertex& vertex, std::size_t walls) const {
-    // Sheets end where their two walls meet; between parallel ones the radius may be as small anywhere.
-    if (vertex.radius < least_radius * voxel_ && vertex.separation_angle < parallel) return false;
-    return (walls > 2 ? angle_seen(vertex) : vertex.separation_angle) > target_.theta;
-  }
-
-  /// The largest angle between footprints of a vertex, or between the first one and what lies opposite and is as far
-  /// but for the facets of round things: few of these meet in any one point.
-  [[nodiscard]] double angle_seen(const AxisVertex& vertex) const {
-    const double own = vertex.separation_angle;
-    if (own > target_.theta || !(vertex.radius > 0)) return own;
-    const Vec3d opposite = opposite_of(vertex).point;
-    if (length(opposite - vertex.position) > vertex.radius + facets * voxel_) return own;
-    return std::max(own, angle_at(vertex.position, vertex.footprints[0], opposite));
-  }
-
-  /// The last vertex on the way from a vertex along its sheet or seam that shows.
-  [[nodiscard]] Moved slide(std::uint32_t v, const Vec3d& direction, std::size_t walls) const {
-    const AxisVertex& own = lists_.vertices[v];
-    const std::uint32_t inner = best_neighbour(v);
-    const std::vector<Footprint> feet = walls == 2 ? feet_of(is_shown(own, walls) ? v : inner) : feet_around(v);
-    const AxisVertex& start_of_sheet = is_shown(own, walls) ? own : lists_.vertices[inner];
-    Vec3d origin = own.position;
-    bool is_past = false;  // whether the last point is past the border, and not past something else
-    const auto at = [&](double t) -> Moved {
-      Moved found = balanced_at(origin + direction * (t * voxel_), feet, walls, {voxel_, most_moved * voxel_, true});
-      if (found && walls == 2 && !goes_on(start_of_sheet, *found)) found.reset();
-      is_past = found && !is_shown(*found, walls);
-      return found && is_shown(*found, walls) ? found : std::nullopt;
-    };
-    if (squared_length(direction) > 0) {
-      if (Moved start = at(0)) {
-        origin = start->position;
-        double good = 0;
-        for (const double t : outwards) {
-          if (Moved next = at(t)) {
-            start = next;
-            good = t;
-            continue;
-          }
-          // Where the ball does not reach, the surface may have been passed.
-          is_past = is_past || start->radius <= (t - good) * voxel_;
-          return is_past ? last_shown(at, good, t, start) : std::nullopt;
-        }
-        return std::nullopt;
-      }
-      double bad = 0;
-      for (const double t : inwards) {
-        if (const Moved found = at(t)) return last_shown(at, t, bad, found);
-        bad = t;
-      }
-    }
-    return is_shown(lists_.vertices[inner], walls) && !is_shown(own, walls) ? towards(v, inner, walls) : std::nullopt;
-  }
-
-  /// Whether two vertices lie on one smooth sheet, by the directions from one footprint to the other.
-  [[nodiscard]] static bool goes_on(const AxisVertex& a, const AxisVertex& b) {
-    constexpr double least = 0.9;  // cosine
-    const Vec3d p = a.footprints[1] - a.footprints[0];
-    const Vec3d q = b.footprints[1] - b.footprints[0];
-    return std::abs(dot(p, q)) >= least * length(p) * length(q);
-  }
-
-  /// Between a place that shows and one that does not.
-  template <class At>
-  [[nodiscard]] Moved last_shown(const At& at, double good, double bad, Moved best, int times = halvings) const {
-    for (int n = 0; n < times; ++n) {
-      const double t = 0.5 * (good + bad);
-      if (const Moved found = at(t)) {
-        best = found;
-        good = t;
-      } else {
-        bad = t;
-      }
-    }
-    return best;
-  }
-
-  /// The last vertex that shows on the way from a neighbour that does.
-  [[nodiscard]] Moved towards(std::uint32_t v, std::uint32_t neighbour, std::size_t walls, int times = halvings) const {
-    const AxisVertex& from = lists_.vertices[neighbour];
-    const Vec3d way = lists_.vertices[v].position - from.position;
-    const std::vector<Footprint> feet = feet_of(neighbour);
-    const auto at = [&](double t) -> Moved {
-      const Moved found =
-          balanced_at(from.position + way * t, feet, std::min<std::size_t>(walls, 2), {voxel_, voxel_, false});
-      return found && is_shown(*found, walls) ? found : std::nullopt;
-    };
-    return last_shown(at, 0, 1, from, times);
-  }
-
-  [[nodiscard]] std::uint32_t best_neighbour(std::uint32_t v) const {
-    std::uint32_t best = v;
-    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const std::uint32_t other = other_end(e, v);
-      if (lists_.vertices[other].separation_angle > lists_.vertices[best].separation_angle || best == v) best = other;
-    }
-    return best;
-  }
-
-  // ---- Directions ----
-
-  /// Away from the sheet, from edges of the rim near by.
-  [[nodiscard]] Vec3d direction_of_rim(std::uint32_t v) const {
-    constexpr int reach = 4;
-    Vec3d sum;
-    for (const std::uint32_t first : incidence_.edges_of_vertex()[v]) {
-      if (incidence_.triangles_of_edge()[first].size() != 1) continue;
-      std::uint32_t e = first;
-      std::uint32_t from = v;
-      for (int n = 0; n < reach; ++n) {
-        sum += outwards_of(e) / (1 + n);
-        const std::uint32_t next = other_end(e, from);
-        if (!kinds_[next].is_rim()) break;
-        const std::uint32_t at = e;
-        for (const std::uint32_t other : incidence_.edges_of_vertex()[next]) {
-          if (other != at && incidence_.triangles_of_edge()[other].size() == 1) e = other;
-        }
-        from = next;
-      }
-    }
-    const double size = length(sum);
-    return size > 0 ? sum / size : Vec3d{};
-  }
-
-  /// Along the sheet to where it is less deep: over convex edges that it ends at.
-  [[nodiscard]] Vec3d towards_surface(std::uint32_t v) const {
-    const AxisVertex& vertex = lists_.vertices[v];
-    const Vec3d way = vertex.footprints[0] + vertex.footprints[1] - 2 * vertex.position;
-    const double size = length(way);
-    constexpr double least = 0.1;  // of the radius: 174 degrees
-    return size > least * vertex.radius ? way / size : Vec3d{};
-  }
-
-  /// From a triangle outwards through its side, as long as the side.
-  [[nodiscard]] Vec3d outwards_of(std::uint32_t e) const {
-    const std::uint32_t third = third_corner(incidence_.triangles_of_edge()[e][0], e);
-    const auto& [a, b] = incidence_.edges()[e];
-    const Vec3d& at = lists_.vertices[a].position;
-    const Vec3d along = lists_.vertices[b].position - at;
-    const Vec3d in = lists_.vertices[third].position - at;
-    const double squared = squared_length(along);
-    if (!(squared > 0)) return {};
-    const Vec3d out = along * (dot(in, along) / squared) - in;
-    const double size = length(out);
-    return size > 0 ? out * (std::sqrt(squared) / size) : Vec3d{};
-  }
-
-  /// Away from the only neighbour along a seam (of at least so many triangles) or curve (of none).
-  [[nodiscard]] Vec3d direction_of_end(std::uint32_t v, std::size_t triangles) const {
-    const auto next_of = [&](std::uint32_t at, std::uint32_t before) {
-      for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
-        const std::size_t count = incidence_.triangles_of_edge()[e].size();
-        if (triangles == 0 ? count > 0 : count < triangles) continue;
-        const std::uint32_t other = other_end(e, at);
-        if (other != before) return other;
-      }
-      return at;
-    };
-    const std::uint32_t first = next_of(v, v);
-    const std::uint32_t second = kinds_[first].is_seam() || kinds_[first].is_curve() ? next_of(first, v) : first;
-    const Vec3d way = lists_.vertices[v].position - lists_.vertices[second].position;
-    const double size = length(way);
-    return size > 0 ? way / size : Vec3d{};
-  }
-
-  // ---- Walls ----
-
-  using Elements = std::array<std::uint32_t, 2>;
-
-  /// What the footprints of a vertex lie on.
-  [[nodiscard]] Elements elements_of(const AxisVertex& vertex) const {
-    const std::uint32_t first = surface_.nearest(vertex.footprints[0], {}).element;
-    return {first, vertex.separation_angle == 0 ? first : surface_.nearest(vertex.footprints[1], {}).element};
-  }
-  /// Finds these once for the vertices asked for and their neighbours, before vertices move; most of them are looked at
-  /// from several sides.
-  template <class IsAsked>
-  void find_elements_around(const IsAsked& is_asked) {
-    elements_.assign(lists_.vertices.size(), std::nullopt);
-    std::vector<std::uint8_t> is_near(lists_.vertices.size(), 0);
-    for (std::uint32_t v = 0; v < is_near.size(); ++v) {
-      if (!is_asked(v)) continue;
-      is_near[v] = 1;
-      for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) is_near[other_end(e, v)] = 1;
-    }
-    parallel_for(context_, is_near.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
-      for (std::size_t v = range.begin; v < range.end; ++v) {
-        if (is_near[v] != 0) elements_[v] = elements_of(lists_.vertices[v]);
-      }
-    });
-  }
-
-  void add_feet(std::uint32_t v, std::vector<Footprint>& feet) const {
-    const AxisVertex& vertex = lists_.vertices[v];
-    const bool is_known = v < elements_.size() && elements_[v];
-    const Elements elements = is_known ? *elements_[v] : elements_of(vertex);
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (k == 1 && vertex.separation_angle == 0) break;
-      const Footprint foot{vertex.footprints[k], elements[k], 7};
-      const auto is_same = [&](const Footprint& other) { return other.element == foot.element; };
-      if (std::none_of(feet.begin(), feet.end(), is_same)) feet.push_back(foot);
-    }
-  }
-  [[nodiscard]] std::vector<Footprint> feet_of(std::uint32_t v) const {
-    std::vector<Footprint> feet;
-    add_feet(v, feet);
-    return feet;
-  }
-  [[nodiscard]] std::vector<Footprint> feet_around(std::uint32_t v) const {
-    std::vector<Footprint> feet = feet_of(v);
-    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      add_feet(other_end(e, v), feet);
-    }
-    for (std::size_t k = 0; k < 6 && incidence_.edges_of_vertex()[v].empty(); ++k) {
-      Vec3d beside = lists_.vertices[v].position;
-      beside[k / 2] += k % 2 == 0 ? voxel_ : -voxel_;
-      const NearestPoint at = surface_.nearest(beside, {});
-      feet.push_back({at.point, at.element, 7});
-    }
-    if (feet.size() > most_walls) feet.resize(most_walls);
-    return feet;
-  }
-
-  // ---- Moving ----
-
-  /// Moves all vertices that `where` has a place for, but for those whose edges would leave the solid.
-  void move(const std::function<Moved(std::uint32_t)>& where) {
-    const std::vector<AxisVertex> before = lists_.vertices;
-    std::vector<AxisVertex> after = before;
-    std::vector<std::uint8_t> is_moved(before.size(), 0);
-    parallel_for(context_, before.size(), vertices_per_range, "borders", [&](const WorkRange& range) {
-      for (std::size_t v = range.begin; v < range.end; ++v) {
-        if (const Moved found = where(static_cast<std::uint32_t>(v))) {
-          after[v] = *found;
-          is_moved[v] = 1;
-        }
-      }
-    });
-    lists_.vertices = std::move(after);
-    for (bool is_changed = true; is_changed;) {
-      const std::vector<std::uint8_t> leaves = edges_that_leave(is_moved, before);
-      is_changed = false;
-      for (std::uint32_t e = 0; e < leaves.size(); ++e) {
-        if (leaves[e] == 0) continue;
-        for (const std::uint32_t v : incidence_.edges()[e]) {
-          if (is_moved[v] == 0) continue;
-          lists_.vertices[v] = before[v];
-          is_moved[v] = 0;
-          is_changed = true;
-        }
-      }
-    }
-  }
-
-  /// Edges that leave the solid, or that swept over a part of the surface on their way.
-  [[nodiscard]] std::vector<std::uint8_t> edges_that_leave(const std::vector<std::uint8_t>& is_moved,
-                                                           const std::vector<AxisVertex>& before) const {
-    std::vector<std::uint8_t> leaves(incidence_.edges().size(), 0);
-    parallel_for(context_, leaves.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
-      for (std::size_t e = range.begin; e < range.end; ++e) {
-        const auto& [a, b] = incidence_.edges()[e];
-        if (is_moved[a] == 0 && is_moved[b] == 0) continue;
-        const std::array<Stop, 2> now{stop_of(lists_.vertices[a]), stop_of(lists_.vertices[b])};
-        const bool stays = paths_.is_straight(now[0], now[1]) &&
-                           paths_.can_sweep({stop_of(before[a]), stop_of(before[b])}, now) &&
-                           !moves_over_void(static_cast<std::uint32_t>(e), before);
-        leaves[e] = stays ? 0 : 1;
-      }
-    });
-    return leaves;
-  }
-
-  /// Whether a triangle at an edge moved over a void as a whole, which edges do not see.
-  [[nodiscard]] bool moves_over_void(std::uint32_t e, const std::vector<AxisVertex>& before) const {
-    const auto around = incidence_.triangles_of_edge()[e];
-    return !surface_.voids().empty() && std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
-      auto corners = lists_.triangles[t];
-      std::sort(corners.begin(), corners.end());
-      const auto places = [&](const std::vector<AxisVertex>& vertices) {
-        return std::array{vertices[corners[0]].position, vertices[corners[1]].position, vertices[corners[2]].position};
-      };
-      return moves_over_any(surface_.voids(), places(before), places(lists_.vertices));
-    });
-  }
-
-  AxisLists& lists_;
-  const FitTarget& target_;
-  const Surface& surface_;
-  SolidPaths paths_;
-  double voxel_;
-  const Context& context_;
-  Incidence incidence_;
-  std::vector<Kind> kinds_;
-  std::vector<std::optional<Elements>> elements_;  ///< empty, or of some vertices
-};
+/// Triangles this high are two of their sides, and curves this close are one, in voxels.
+constexpr double thin = 0.02;
+constexpr double thin_if_round = 0.2;
+constexpr double beside = 0.1;
+/// Edges this long that stick out of a rim are a part of its sheet, in voxels.
+constexpr double whiskers = 1;
 
 /// The steps one after the other. What is told by the triangles alone is kept from step to step while these stay.
 class Fitting {
@@ -532,21 +25,34 @@ class Fitting {
   Fitting(AxisLists& lists, const FitTarget& target, const Context& context)
       : lists_(lists), target_(target), context_(context) {}
 
-  using Step = void (Fitter::*)();
+  using Step = double (Fitter::*)();
 
-  void take(Step step) { (fitter().*step)(); }
-  void take(Step step, const ShortLengths& lengths) {
-    take(step);
+  /// @return  how far the furthest vertex went, voxels.
+  double take(Step step) { return (fitter().*step)() / target_.voxel; }
+  double take(Step step, const ShortLengths& lengths) {
+    const double furthest = take(step);
     contract(lengths);
+    return furthest;
   }
   void contract(const ShortLengths& lengths) {
     if (contract_short(lists_, fitter().incidence(), target_.surface, target_.voxel, lengths, context_)) {
       fitter_.reset();
     }
   }
-  /// Takes away what lies beyond the angle and can go.
-  void trim_excess() {
-    trim(lists_, fitter().angles(), target_.theta, context_);
+  /// Takes away what lies beyond the angle and can go, or on other cells.
+  /// @return  whether there was anything.
+  bool trim_excess() {
+    const std::size_t before = lists_.triangles.size() + lists_.edges.size();
+    const double voxel = target_.voxel;
+    const TrimLimits limits{target_.theta, thin * voxel, thin_if_round * voxel, whiskers * voxel, beside * voxel};
+    trim(lists_, fitter().angles(), limits, context_);
+    merge_curves(lists_, target_.surface, beside * target_.voxel, context_);
+    fitter_.reset();
+    return lists_.triangles.size() + lists_.edges.size() != before;
+  }
+  void bend_curves() {
+    fitter().bend_curves();
+    merge_curves(lists_, target_.surface, beside * target_.voxel, context_);
     fitter_.reset();
   }
   void take_folds_away() {
@@ -556,13 +62,14 @@ class Fitting {
 
  private:
   Fitter& fitter() {
-    if (!fitter_) fitter_ = std::make_unique<Fitter>(lists_, target_, context_);
+    if (!fitter_) fitter_ = std::make_unique<Fitter>(lists_, target_, not_round_, context_);
     return *fitter_;
   }
 
   AxisLists& lists_;
   const FitTarget& target_;
   const Context& context_;
+  Fitter::Places not_round_;
   std::unique_ptr<Fitter> fitter_;
 };
 
@@ -584,10 +91,22 @@ void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context)
   fitting.take(&Fitter::straighten, with_seams);
   fitting.take(&Fitter::straighten, with_seams);
   fitting.take(&Fitter::cut_rims, with_seams);
-  fitting.take(&Fitter::cut_rims, with_rims);
-  fitting.trim_excess();
+  double furthest_cut = fitting.take(&Fitter::cut_rims, with_rims);
+  bool is_changed = fitting.trim_excess();
   fitting.take(&Fitter::place_seams, with_rims);
-  fitting.take(&Fitter::take_back, with_rims);
+  fitting.bend_curves();
+  // What one round changes may show what the next one is for, and ends of curves go far in several steps.
+  constexpr int most_rounds = 3;
+  constexpr double far = 0.5;
+  for (int round = 0; round < most_rounds; ++round) {
+    is_changed = fitting.take(&Fitter::take_back, with_rims) > 0 || is_changed;
+    is_changed = fitting.trim_excess() || is_changed;
+    if (!is_changed && furthest_cut < far) break;
+    furthest_cut = fitting.take(&Fitter::cut_rims, with_rims);
+    is_changed = false;
+  }
+  fitting.take(&Fitter::place_curves);
+  fitting.bend_curves();
   fitting.take_folds_away();
 }
 

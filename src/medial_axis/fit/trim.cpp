@@ -9,22 +9,32 @@
 #include <vector>
 
 #include "blum/complex/incidence.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/field/closest_points.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "medial_axis/solid_paths.hpp"
 
 namespace blum {
 namespace {
 
 class Trimmer {
  public:
-  Trimmer(AxisLists& lists, const std::vector<double>& angles, double theta, const Context& context)
+  Trimmer(AxisLists& lists, const std::vector<double>& angles, const TrimLimits& limits, const Context& context)
       : lists_(lists),
         angles_(angles),
-        theta_(theta),
+        theta_(limits.theta),
+        thin_(limits.thin),
+        thin_if_round_(limits.thin_if_round),
+        whiskers_(limits.whiskers),
+        beside_(limits.beside),
+        context_(context),
         incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
         triangles_left_(incidence_.edges().size()),
         edges_left_(lists.vertices.size()),
         has_triangle_(lists.triangles.size(), true),
         has_edge_(incidence_.edges().size(), true),
-        has_vertex_(lists.vertices.size(), true) {
+        has_vertex_(lists.vertices.size(), true),
+        is_on_sheet_(lists.vertices.size(), false) {
     for (std::uint32_t e = 0; e < has_edge_.size(); ++e) {
       triangles_left_[e] = static_cast<std::uint32_t>(incidence_.triangles_of_edge()[e].size());
     }
@@ -34,6 +44,7 @@ class Trimmer {
   }
 
   void run() {
+    find_what_is_on_sheets();
     for (std::uint32_t e = 0; e < has_edge_.size(); ++e) look_at_edge(e);
     for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) look_at_vertex(v);
     while (!queue_.empty()) {
@@ -62,6 +73,64 @@ class Trimmer {
     return std::max(angle(incidence_.edges()[e][0]), angle(incidence_.edges()[e][1]));
   }
 
+  // ---- What others lie on ----
+
+  [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
+  [[nodiscard]] double length_of(std::uint32_t e) const {
+    return length(position(incidence_.edges()[e][0]) - position(incidence_.edges()[e][1]));
+  }
+  /// Whether a triangle lies on its two other sides but for next to nothing.
+  [[nodiscard]] bool is_covered(std::uint32_t t, std::uint32_t side) const {
+    const auto& sides = incidence_.sides()[t];
+    const double longest = length_of(side);
+    if (std::any_of(sides.begin(), sides.end(), [&](std::uint32_t e) { return length_of(e) > longest; })) return false;
+    const auto& corners = lists_.triangles[t];
+    const auto& [a, b, c] = corners;
+    const bool is_round = std::all_of(corners.begin(), corners.end(),
+                                      [&](std::uint32_t v) { return angle(v) > lists_.vertices[v].separation_angle; });
+    const double thin = is_round ? thin_if_round_ : thin_;
+    return length(cross(position(b) - position(a), position(c) - position(a))) <= thin * longest;
+  }
+
+  /// Whether the end of a curve lies on a sheet, or sticks out of a rim, which goes out to it instead.
+  [[nodiscard]] bool is_whisker(std::uint32_t end, std::uint32_t own) const {
+    if (is_on_sheet_[end]) return true;
+    const auto& [a, b] = incidence_.edges()[own];
+    const auto at = incidence_.edges_of_vertex()[a == end ? b : a];
+    const bool is_at_rim = std::any_of(at.begin(), at.end(), [&](std::uint32_t e) { return triangles_left_[e] == 1; });
+    return is_at_rim && length_of(own) <= whiskers_;
+  }
+  /// Of vertices that lie on no triangle, those that are next to one.
+  void find_what_is_on_sheets() {
+    std::vector<std::pair<double, std::uint32_t>> alone;  // and where along x
+    for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) {
+      if (incidence_.triangles_of_vertex()[v].empty()) alone.emplace_back(position(v).x, v);
+    }
+    std::sort(alone.begin(), alone.end());
+    const TriangleMesh near = triangles_near(alone);
+    if (near.triangles.empty()) return;
+    std::vector<Vec3d> places;
+    for (const auto& [x, v] : alone) places.push_back(position(v));
+    const std::vector<ClosestPoint> closest = closest_points(near, places, {.sign = SignMode::none}, context_);
+    for (std::size_t k = 0; k < alone.size(); ++k) is_on_sheet_[alone[k].second] = closest[k].distance <= beside_;
+  }
+  /// Those whose boxes are next to any of some vertices, which are sorted along x.
+  [[nodiscard]] TriangleMesh triangles_near(const std::vector<std::pair<double, std::uint32_t>>& alone) const {
+    TriangleMesh near;
+    const Vec3d reach{beside_, beside_, beside_};
+    for (const auto& [a, b, c] : lists_.triangles) {
+      const Box3 box{min(min(position(a), position(b)), position(c)) - reach,
+                     max(max(position(a), position(b)), position(c)) + reach};
+      auto at = std::lower_bound(alone.begin(), alone.end(), std::pair(box.lower.x, 0U));
+      while (at != alone.end() && at->first <= box.upper.x && !holds(box, position(at->second))) ++at;
+      if (at == alone.end() || at->first > box.upper.x) continue;
+      const auto first = static_cast<std::uint32_t>(near.vertices.size());
+      near.vertices.insert(near.vertices.end(), {position(a), position(b), position(c)});
+      near.triangles.push_back({first, first + 1, first + 2});
+    }
+    return near;
+  }
+
   [[nodiscard]] std::uint32_t triangle_left_at(std::uint32_t e) const {
     const auto at = incidence_.triangles_of_edge()[e];
     return *std::find_if(at.begin(), at.end(), [&](std::uint32_t t) { return has_triangle_[t]; });
@@ -74,14 +143,16 @@ class Trimmer {
   /// Enters what is free and outside.
   void look_at_edge(std::uint32_t e) {
     if (!has_edge_[e] || triangles_left_[e] != 1) return;
-    const double largest = angle_of_triangle(triangle_left_at(e));
+    const std::uint32_t t = triangle_left_at(e);
+    const double largest = is_covered(t, e) ? 0 : angle_of_triangle(t);
     if (largest <= theta_) queue_.emplace(largest, 2, e);
   }
   void look_at_vertex(std::uint32_t v) {
     if (!has_vertex_[v] || edges_left_[v] != 1) return;
     const std::uint32_t e = edge_left_at(v);
     if (triangles_left_[e] > 0) return;
-    if (const double largest = angle_of_edge(e); largest <= theta_) queue_.emplace(largest, 1, v);
+    const double largest = is_whisker(v, e) ? 0 : angle_of_edge(e);
+    if (largest <= theta_) queue_.emplace(largest, 1, v);
   }
 
   void take_triangle_from(std::uint32_t e) {
@@ -137,18 +208,19 @@ class Trimmer {
 
   AxisLists& lists_;
   const std::vector<double>& angles_;
-  double theta_;
+  double theta_, thin_, thin_if_round_, whiskers_, beside_;
+  const Context& context_;
   Incidence incidence_;
   std::vector<std::uint32_t> triangles_left_, edges_left_;
-  std::vector<bool> has_triangle_, has_edge_, has_vertex_;
+  std::vector<bool> has_triangle_, has_edge_, has_vertex_, is_on_sheet_;
   using Entry = std::tuple<double, int, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 
 }  // namespace
 
-void trim(AxisLists& lists, const std::vector<double>& angles, double theta, const Context& context) {
-  Trimmer(lists, angles, theta, context).run();
+void trim(AxisLists& lists, const std::vector<double>& angles, const TrimLimits& limits, const Context& context) {
+  Trimmer(lists, angles, limits, context).run();
 }
 
 }  // namespace blum

@@ -8,11 +8,21 @@
 
 namespace blum {
 
+/// What trim() takes away.
+struct TrimLimits {
+  double theta = 0;  ///< degrees
+  double thin = 0;   ///< mesh units: triangles that are this close to their other sides all over go
+  /// The same where all corners are in the middle of what is round: more is seen there than between their footprints.
+  double thin_if_round = 0;
+  double whiskers = 0;  ///< mesh units: ends of curves up to this length that stick out of a rim go
+  double beside = 0;    ///< mesh units: ends of curves this close to a sheet go
+};
+
 /// Collapses triangles and edges none of whose vertices sees two footprints at more than theta apart, from the free
 /// borders inwards and as long as homotopy lets them go: the cells that an axis is made of reach up to a voxel beyond
-/// where the angle is theta.
-/// @param angles  that each vertex sees, degrees.  @param theta  degrees.
+/// where the angle is theta. So go flat triangles that lie on their other sides.
+/// @param angles  that each vertex sees, degrees.
 /// @throws Cancelled. Cost: near-linear.
-void trim(AxisLists& lists, const std::vector<double>& angles, double theta, const Context& context);
+void trim(AxisLists& lists, const std::vector<double>& angles, const TrimLimits& limits, const Context& context);
 
 }  // namespace blum

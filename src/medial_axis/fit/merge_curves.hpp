@@ -1,0 +1,17 @@
+// Blum: curves that run beside each other. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "blum/core/context.hpp"
+#include "medial_axis/axis_lists.hpp"
+#include "medial_axis/surface.hpp"
+
+namespace blum {
+
+/// Curves that leave a vertex beside each other become one: of two edges on no triangle the longer one is taken to
+/// begin where the shorter one ends, again and again. The homotopy type stays, since the triangle between both is in
+/// the solid.
+/// @param beside  mesh units: how far the end of the shorter edge may be from the longer one.
+/// @throws Cancelled. Cost: near-linear in the edges of curves.
+void merge_curves(AxisLists& lists, const Surface& surface, double beside, const Context& context);
+
+}  // namespace blum

@@ -1,0 +1,20 @@
+// Blum: more vertices for curves that bend. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
+#include "medial_axis/axis_lists.hpp"
+#include "medial_axis/surface.hpp"
+
+namespace blum {
+
+/// Puts vertices into edges of curves, those on no triangle, where these cut short what bends, again and again.
+/// @param middle  the vertex that a curve has near a point; nullopt where there is none. Called from many threads.
+/// @throws Cancelled.
+void split_curves(AxisLists& lists, const Surface& surface, double voxel,
+                  const std::function<std::optional<AxisVertex>(const Vec3d&)>& middle, const Context& context);
+
+}  // namespace blum
