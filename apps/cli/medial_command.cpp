@@ -435,14 +435,17 @@ void add_on_best_grid(MedialRun& run, const Request& r, const AskedSolid& solid,
   const bool model_passes = add_axes(*best, r, solid, options, context);
   const bool can_move = model_passes && solid.input.kind == InputKind::mesh;
   const std::string reason = best->mismatches.empty() ? "" : best->mismatches.front();
-  for (const double step : other_grids) {
+  for (const MovedGrid& grid : moved_grids(options.grid_shift)) {
     if (!can_move || best->mismatches.empty()) break;
     MedialAxisOptions moved = options;
-    moved.grid_shift = moved_grid(options.grid_shift, step);
-    MedialRun next;
-    next.warnings.push_back(moved_text(moved.grid_shift - options.grid_shift) + reason);
-    if (!add_axes(next, r, solid, moved, context) || next.mismatches.size() >= best->mismatches.size()) continue;
-    best.emplace(std::move(next));
+    moved.grid_shift = grid.shift;
+    std::optional<MedialRun> next = std::make_optional<MedialRun>();
+    next->warnings.push_back(grid.as_it_was + reason);
+    const bool is_better =
+        add_axes(*next, r, solid, moved, context) && next->mismatches.size() < best->mismatches.size();
+    if (is_better) best.swap(next);
+    // What was in vain took its time, too.
+    run.phases.insert(run.phases.end(), next->phases.begin(), next->phases.end());
   }
   run.add(std::move(*best));
 }

@@ -85,7 +85,14 @@ void bind_axis(nb::module_& m) {
 }  // namespace
 
 void bind_medial_axis(nb::module_& m) {
-  m.attr("other_grids") = nb::tuple(nb::cast(other_grids));
+  m.def(
+      "moved_grids",
+      [](double grid_shift) {
+        nb::list grids;
+        for (const MovedGrid& grid : moved_grids(grid_shift)) grids.append(nb::make_tuple(grid.shift, grid.as_it_was));
+        return grids;
+      },
+      nb::arg("grid_shift"));
   // Columns hold numbers, and blum.ROLES is indexed by them.
   static_assert([] {
     std::size_t number = 0;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Unpack
 
@@ -19,7 +19,13 @@ from ._options import default_of, takes
 from ._progress import Progress, reporting
 from ._structs import AxisGraph, AxisGraphOptions, MedialAxisOptions, MedialAxisReport
 
-Moved = Callable[[float, int, Progress], _core.MedialAxis]
+
+@dataclass(frozen=True)
+class OtherGrids:
+    """How an axis is made anew on another grid."""
+
+    grid_shift: float  # of the first one
+    on: Callable[[float, int, Progress], _core.MedialAxis]  # a shift, threads, progress
 
 
 class MedialAxis:
@@ -31,10 +37,10 @@ class MedialAxis:
     True
     """
 
-    def __init__(self, core: _core.MedialAxis, origin: Origin, moved: Moved | None = None) -> None:
+    def __init__(self, core: _core.MedialAxis, origin: Origin, grids: OtherGrids | None = None) -> None:
         self._core = core
         self._origin = origin
-        self._moved = moved  # the core on a grid that is moved by so many voxels
+        self._grids = grids
         #: The smallest angle that can be asked for, degrees.
         self.least_theta: float = core.least_theta
 
@@ -86,13 +92,13 @@ class MedialAxis:
         """
         most = optional_number(tolerance, "tolerance")
         found, failed = self._first_certified(theta, most, threads, progress)
-        if not found.certificate.holds and self._moved is not None and self.report.topology_matches:
-            for step in _core.other_grids:
-                moved = MedialAxis(self._moved(step, threads, progress), self._origin)
+        if not found.certificate.holds and self._grids is not None and self.report.topology_matches:
+            for shift, as_it_was in _core.moved_grids(self._grids.grid_shift):
+                moved = MedialAxis(self._grids.on(shift, threads, progress), self._origin)
                 again, failed_there = moved._first_certified(theta, most, threads, progress)
                 if again.certificate.holds:
-                    text = f"the grid was moved by {step:g} voxels: as it was, at theta {float(theta):g} "
-                    failed = [text + found.certificate.mismatches[0], *failed_there]
+                    text = f"{as_it_was}at theta {float(theta):g} {found.certificate.mismatches[0]}"
+                    failed = [text, *failed_there]
                     found = again
                     break
         if found.certificate.holds:
@@ -199,15 +205,15 @@ def medial_axis(
     mesh = as_mesh(shape, triangles, "shape", weld=weld)
     given = {**options, "spacing": spacing}
 
-    def moved(step: float, threads: int, progress: Progress) -> _core.MedialAxis:
-        before = float(options.get("grid_shift", default_of("MedialAxisOptions", "grid_shift")))
-        shift = before + step if abs(before + step) <= 1 else before - step
+    def on_grid(shift: float, threads: int, progress: Progress) -> _core.MedialAxis:
         with reporting(progress) as report:
             return _core.medial_axis_of_mesh(mesh._arrays, {**given, "grid_shift": shift}, threads, report)
 
+    grids = OtherGrids(float(options.get("grid_shift", default_of("MedialAxisOptions", "grid_shift"))), on_grid)
+
     with reporting(progress) as report:
         core = _core.medial_axis_of_mesh(mesh._arrays, given, count, report)
-    axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), moved)
+    axis = MedialAxis(core, Origin(mesh, lambda_=smallest, source=mesh.source, weld=mesh._weld), grids)
     turned = axis.report.reversed_shells
     if turned:
         text = (

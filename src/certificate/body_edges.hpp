@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,8 +16,11 @@
 namespace blum::verifier {
 
 inline constexpr double corner_of_diagonal = 1.0 / 64;
-/// How many points of an edge may be moved to push it in.
-inline constexpr int most_moves = 64;
+/// What it may cost to push an edge in. Edges along a hole of no width take for ever where little is allowed.
+struct PushBudget {
+  int moves = 64;                                               ///< points of it that may be moved
+  std::size_t looks = std::numeric_limits<std::size_t>::max();  ///< points of it whose depth is asked for
+};
 
 /// A point, and how deep it lies in a body.
 struct Stop {
@@ -26,13 +31,10 @@ struct Stop {
 /// What edges are asked about.
 class BodyEdges {
  public:
-  /// @param most_looks  points of edges whose depth is asked for, of all edges together; then none can be pushed in any
-  ///                    more. Without it, edges along a hole of no width take for ever where little is allowed.
-  BodyEdges(const SolidOracle& solid, std::uint32_t body, double allowed, std::size_t* most_looks = nullptr)
+  BodyEdges(const SolidOracle& solid, std::uint32_t body, double allowed)
       : solid_(solid),
         body_(body),
         allowed_(allowed),
-        looks_left_(most_looks),
         corner_(std::max(corner_of_diagonal * solid.diagonal(body), solid.grain() / 2)) {}
 
   [[nodiscard]] double allowed() const { return allowed_; }
@@ -41,8 +43,10 @@ class BodyEdges {
 
   /// The point of a segment that is furthest out, as far as that is more than is allowed. A ball as large as a point is
   /// deep lies in the body, so that only what is between such balls is left to ask about. In a thin wall these are
-  /// many: so first it is asked whether the segment meets the boundary at all. Infinitely far out after the last look.
-  [[nodiscard]] Stop furthest_out(const Stop& a, const Stop& b, double allowed) const {
+  /// many: so first it is asked whether the segment meets the boundary at all.
+  /// @param looks  how many points may be asked for yet; nullopt where these are not enough.
+  [[nodiscard]] std::optional<Stop> furthest_out(const Stop& a, const Stop& b, double allowed,
+                                                 std::size_t& looks) const {
     constexpr double nearly = 1.25;  // enough of what is too much anyway
     Stop worst = a.depth < b.depth ? a : b;
     if (a.depth > 0 && b.depth > 0) {
@@ -59,8 +63,8 @@ class BodyEdges {
       const double end = gap - std::max(q.depth, 0.0);
       Stop middle{p.at + (q.at - p.at) * ((begin + end) / (2 * gap)), 0};
       if (middle.at == p.at || middle.at == q.at) continue;
-      if (looks_left_ != nullptr && *looks_left_ == 0) return {middle.at, -HUGE_VAL};
-      if (looks_left_ != nullptr) --*looks_left_;
+      if (looks == 0) return std::nullopt;
+      --looks;
       const Stop& known = std::abs(p.depth) > std::abs(q.depth) ? p : q;
       middle.depth = solid_.depth_beside(middle.at, body_, known.at, known.depth, allowed / 2);
       if (middle.depth < worst.depth) worst = middle;
@@ -69,20 +73,26 @@ class BodyEdges {
     }
     return worst;
   }
+  /// The same however many it takes.
+  [[nodiscard]] Stop furthest_out(const Stop& a, const Stop& b, double allowed) const {
+    std::size_t looks = PushBudget().looks;
+    return *furthest_out(a, b, allowed, looks);
+  }
 
   /// Whether a segment that leaves the body can be pushed into it: the point that is furthest out goes through the
   /// closest point of the surface, and both parts are asked again. Past an edge of the solid that soon succeeds; across
   /// a gap it never does.
-  /// @param moves  how many points may be moved yet.
-  /// @param way  is given the moved points, from a to b.
-  [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, int& moves, std::vector<Vec3d>& way) const {
-    const Stop worst = furthest_out(a, b, allowed_);
-    if (-worst.depth <= allowed_) return true;
-    if (worst.depth == -HUGE_VAL || moves-- <= 0) return false;
-    const Stop moved = pushed_in(worst);
-    if (!can_be_pushed_in(a, moved, moves, way)) return false;
+  /// @param budget  is what is left of it afterwards.
+  /// @param way     is given the moved points, from a to b.
+  [[nodiscard]] bool can_be_pushed_in(const Stop& a, const Stop& b, PushBudget& budget, std::vector<Vec3d>& way) const {
+    const std::optional<Stop> worst = furthest_out(a, b, allowed_, budget.looks);
+    if (!worst) return false;
+    if (-worst->depth <= allowed_) return true;
+    if (budget.moves-- <= 0) return false;
+    const Stop moved = pushed_in(*worst);
+    if (!can_be_pushed_in(a, moved, budget, way)) return false;
     way.push_back(moved.at);
-    return can_be_pushed_in(moved, b, moves, way);
+    return can_be_pushed_in(moved, b, budget, way);
   }
 
  private:
@@ -99,7 +109,6 @@ class BodyEdges {
   const SolidOracle& solid_;
   std::uint32_t body_;
   double allowed_;
-  std::size_t* looks_left_;
   double corner_;
 };
 

@@ -33,13 +33,13 @@ struct Findings {
 
 /// Looks at one edge.
 Findings look_at(std::uint32_t edge, const Stop& a, const Stop& b, const BodyEdges& body, bool may_push) {
-  int moves = most_moves;
+  PushBudget budget;
   std::vector<Vec3d> way;
   Findings found;
   const Stop worst = body.furthest_out(a, b, body.allowed());
   if (-worst.depth <= body.allowed()) return found;
   may_push = may_push && -worst.depth <= body.corner() && std::min(a.depth, b.depth) >= -body.allowed();
-  if (may_push && body.can_be_pushed_in(a, b, moves, way)) {
+  if (may_push && body.can_be_pushed_in(a, b, budget, way)) {
     found.check.pushed = 1;
     found.check.pushed_by = -worst.depth;
     found.ways.push_back({edge, std::move(way)});

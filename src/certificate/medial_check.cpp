@@ -204,12 +204,15 @@ double angle_at(const MedialView& axis, std::uint32_t v) {
 /// What of an axis is seen at more than theta, by what it says of itself.
 class Claimed {
  public:
-  /// @param noise  degrees up to which one rough wall is seen.
-  Claimed(const MedialView& axis, double theta, double noise)
-      : is_claimed_(axis.positions.size(), false),
+  /// @param noise           degrees up to which one rough wall is seen.
+  /// @param has_footprints  whether footprints are known, without which no vertex sees anything.
+  Claimed(const MedialView& axis, double theta, double noise, bool has_footprints)
+      : angles_(axis.positions.size(), 0),
+        is_claimed_(axis.positions.size(), false),
         is_between_walls_(axis.positions.size(), false),
         least_radius_(axis.positions.size(), HUGE_VAL),
         two_walls_(std::max(theta, 2 * noise)) {
+    for (std::uint32_t v = 0; has_footprints && v < angles_.size(); ++v) angles_[v] = angle_at(axis, v);
     for (std::uint32_t t = 0; t < axis.triangles.size(); ++t) {
       const double size = area(axis, t);
       if (std::isfinite(size)) all_ += size;
@@ -229,6 +232,8 @@ class Claimed {
   [[nodiscard]] bool contains(std::size_t vertex) const { return is_claimed_[vertex]; }
   /// Whether a vertex should see two walls by what is beside it: by the angle of a cell and by its other corners.
   [[nodiscard]] bool is_between_walls(std::size_t vertex) const { return is_between_walls_[vertex]; }
+  /// Between a vertex's footprints, degrees.
+  [[nodiscard]] double angle(std::size_t vertex) const { return angles_[vertex]; }
   /// The smallest radius in the cells at a vertex.
   [[nodiscard]] double least_radius_around(std::size_t vertex) const { return least_radius_[vertex]; }
   /// Of the area of all triangles, what is only there for homotopy.
@@ -241,7 +246,7 @@ class Claimed {
     for (const std::uint32_t v : corners) {
       is_claimed_[v] = true;
       least = std::min<double>(least, axis.radius[v]);
-      between_walls += angle_at(axis, v) > two_walls_ ? 1 : 0;
+      between_walls += angles_[v] > two_walls_ ? 1 : 0;
     }
     for (const std::uint32_t v : corners) {
       least_radius_[v] = std::min(least_radius_[v], least);
@@ -249,6 +254,7 @@ class Claimed {
     }
   }
 
+  std::vector<double> angles_;
   std::vector<bool> is_claimed_, is_between_walls_;
   std::vector<double> least_radius_;
   double two_walls_ = 0;  ///< degrees from which two walls are seen, not one rough one
@@ -262,10 +268,9 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
   std::vector<std::uint32_t> single;
   for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
     if (!is_finite(axis.positions[v])) continue;
-    const double angle = angle_at(axis, v);
     const bool is_deep = claimed.contains(v) && axis.radius[v] > allowed.middle;
     check.deep_vertices += is_deep ? 1 : 0;
-    if (angle >= 0.5 * noise_of_meshes) continue;
+    if (claimed.angle(v) >= 0.5 * noise_of_meshes) continue;
     ++check.one_wall;
     check.deep_one_wall += is_deep ? 1 : 0;
     if (claimed.contains(v)) single.push_back(v);
@@ -420,7 +425,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
                          const CertificateOptions& options, double factor, std::vector<std::string>& mismatches,
                          const Context& context) {
   const Allowances allowed = allowances(*solid.solid, options, factor);
-  const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL, allowed.noise);
+  const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL, allowed.noise, options.footprints);
   const Middle middle(solid, allowed);
   const std::size_t before = mismatches.size();
   MedialCheck check;

@@ -1,9 +1,6 @@
 #include "blum/io/certified_axis.hpp"
 
-#include <cmath>
 #include <utility>
-
-#include "blum/core/exact_text.hpp"
 
 namespace blum {
 
@@ -51,23 +48,14 @@ CertifiedAxis certified_axis(const MeshView& mesh, double theta, const MedialAxi
 }
 
 CertifiedAxis certified_on_some_grid(CertifiedAxis first, double grid_shift, FunctionRef<CertifiedAxis(double)> make) {
-  for (const double step : other_grids) {
+  for (const MovedGrid& grid : moved_grids(grid_shift)) {
     if (first.certificate.holds()) break;
-    CertifiedAxis moved = make(moved_grid(grid_shift, step));
+    CertifiedAxis moved = make(grid.shift);
     if (!moved.certificate.holds()) continue;
-    moved.warnings.insert(moved.warnings.begin(), moved_text(step) + first.certificate.mismatches.front());
+    moved.warnings.insert(moved.warnings.begin(), grid.as_it_was + first.certificate.mismatches.front());
     return moved;
   }
   return first;
-}
-
-double moved_grid(double grid_shift, double step) {
-  const double moved = grid_shift + step;
-  return std::abs(moved) <= 1 ? moved : grid_shift - step;
-}
-
-std::string moved_text(double step) {
-  return "the grid was moved by " + rounded_text(step) + " voxels: as it was, ";
 }
 
 }  // namespace blum

@@ -1,9 +1,11 @@
 #include "blum/medial_axis/axis_forms.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 
 namespace blum {
 
@@ -23,6 +25,15 @@ std::vector<AxisForm> axis_forms(const MedialAxisReport& report, std::optional<d
   if (most > 0) forms.push_back({false, most, "the axis keeps all vertices: with fewer, "});
   forms.emplace_back();
   return forms;
+}
+
+std::vector<MovedGrid> moved_grids(double grid_shift) {
+  std::vector<MovedGrid> grids;
+  for (double step : {0.3, -0.3, 0.15}) {
+    if (std::abs(grid_shift + step) > 1) step = -step;
+    grids.push_back({grid_shift + step, "the grid was moved by " + rounded_text(step) + " voxels: as it was, "});
+  }
+  return grids;
 }
 
 Complex whole_axis(const MedialAxis& axis, double theta, const AxisForm& form, const Context& context) {

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "blum/complex/medial_columns.hpp"
-#include "blum/core/exact_text.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "medial_axis/axis_parts.hpp"
+#include "medial_axis/check_angle.hpp"
 #include "medial_axis/surface_patches.hpp"
 
 namespace blum {
@@ -22,14 +23,15 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Follows seams and curves from junction to junction.
 class LineWalker {
  public:
-  LineWalker(const AxisParts& parts, double homotopy_angle, AxisGraph& graph)
+  LineWalker(const AxisParts& parts, std::optional<double> homotopy_angle, AxisGraph& graph)
       : parts_(parts),
         graph_(graph),
         is_for_homotopy_(parts.incidence().edges().size(), false),
         junction_at_(parts.view().positions.size(), none),
         line_of_edge_(parts.incidence().edges().size(), none) {
     for (std::size_t e = 0; e < parts.view().edges.size(); ++e) {
-      is_for_homotopy_[parts.incidence().edge_of_listed()[e]] = parts.view().edge_angle[e] <= homotopy_angle;
+      is_for_homotopy_[parts.incidence().edge_of_listed()[e]] =
+          homotopy_angle && parts.view().edge_angle[e] <= *homotopy_angle;
     }
   }
 
@@ -207,16 +209,9 @@ class PatchPairs {
   std::vector<std::map<std::pair<std::uint32_t, std::uint32_t>, double>> areas_;  ///< of each sheet
 };
 
-void check_angle(std::string_view name, double angle) {
-  if (angle >= 0 && angle <= 180) return;
-  throw InvalidOption(std::string(name) + " is " + exact_text(angle) + " degrees, but must be 0 to 180");
-}
-
 AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const AxisGraphOptions& options,
                    const Context& context) {
   check_angle("homotopy_angle", options.homotopy_angle.value_or(0));
-  constexpr double nothing = -1;
-  const double homotopy_angle = options.homotopy_angle.value_or(nothing);
   check_needed(axis);
   const CompleteAxis all(axis);
   if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {
@@ -224,9 +219,9 @@ AxisGraph graph_of(const Complex& axis, const SurfacePatches* patches, const Axi
   }
   AxisGraph graph;
   const AxisParts parts(all.get(), context);
-  LineWalker walker(parts, homotopy_angle, graph);
+  LineWalker walker(parts, options.homotopy_angle, graph);
   walker.walk(context);
-  add_sheets(parts, walker.line_of_edge(), homotopy_angle, graph);
+  add_sheets(parts, walker.line_of_edge(), options.homotopy_angle, graph);
   if (patches == nullptr) return graph;
   graph.patches = patches->patches();
   PatchPairs(parts, *patches, graph).add();

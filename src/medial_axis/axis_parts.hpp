@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -60,10 +61,10 @@ class AxisParts {
 };
 
 /// Puts into `graph` its sheets, but for their patches, and the sums over them. `graph.seams` is there.
-/// @param homotopy_angle  triangles of at most this are there for homotopy alone.
+/// @param homotopy_angle  triangles of at most this are there for homotopy alone; without it, none is.
 /// @param seam_of_edge  of incidence().edges(): its place in the seams.
-void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, double homotopy_angle,
-                AxisGraph& graph);
+void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge,
+                std::optional<double> homotopy_angle, AxisGraph& graph);
 
 /// Values with weights: the one up to which half of the weight lies; of those without weight the middle one, the lower
 /// of two. @param values  (value, weight), not empty; sorted by it.

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,8 +22,8 @@ struct Measured {
 
 class SheetMeasurer {
  public:
-  SheetMeasurer(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, double homotopy_angle,
-                AxisGraph& graph)
+  SheetMeasurer(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge,
+                std::optional<double> homotopy_angle, AxisGraph& graph)
       : parts_(parts),
         seam_of_edge_(seam_of_edge),
         homotopy_angle_(homotopy_angle),
@@ -78,7 +79,7 @@ class SheetMeasurer {
                 sheet.separation_angle, measured.angle);
     ++sheet.triangles;
     sheet.area += area;
-    if (axis.triangle_angle[t] <= homotopy_angle_) {
+    if (homotopy_angle_ && axis.triangle_angle[t] <= *homotopy_angle_) {
       sheet.homotopy_area += area;
     } else {
       measured.is_shown = true;
@@ -124,15 +125,15 @@ class SheetMeasurer {
 
   const AxisParts& parts_;
   const std::vector<std::uint32_t>& seam_of_edge_;
-  double homotopy_angle_;
+  std::optional<double> homotopy_angle_;
   AxisGraph& graph_;
   std::vector<Measured> measured_;
 };
 
 }  // namespace
 
-void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge, double homotopy_angle,
-                AxisGraph& graph) {
+void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge,
+                std::optional<double> homotopy_angle, AxisGraph& graph) {
   SheetMeasurer(parts, seam_of_edge, homotopy_angle, graph).measure();
 }
 

@@ -10,6 +10,7 @@
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
 #include "medial_axis/axis_piece.hpp"
+#include "medial_axis/check_angle.hpp"
 #include "medial_axis/contract_points.hpp"
 #include "medial_axis/fit/fit_axis.hpp"
 #include "medial_axis/label_sheets.hpp"
@@ -42,9 +43,7 @@ void check(const MedialAxisOptions& options) {
   if (!(options.grid_shift >= -1 && options.grid_shift <= 1)) {
     throw InvalidOption("grid_shift is " + exact_text(options.grid_shift) + " voxels, but must be -1 to 1");
   }
-  if (!(options.least_theta >= 0 && options.least_theta <= 180)) {
-    throw InvalidOption("least_theta is " + exact_text(options.least_theta) + " degrees, but must be 0 to 180");
-  }
+  check_angle("least_theta", options.least_theta);
   if (!(options.lambda >= 0 && std::isfinite(options.lambda))) {
     throw InvalidOption("lambda is " + exact_text(options.lambda) + ", but must be at least 0");
   }
@@ -61,9 +60,8 @@ void add(BettiNumbers& sum, const BettiNumbers& part) {
 /// Whether a needle keeps the model from passing with smaller voxels, too.
 /// @param smaller  the least part of a voxel's side.
 bool stays_stuck(const BodyReport& report, double smaller) {
-  constexpr double most_cuts = 8192;  // as the model has it
   return std::any_of(report.failures.begin(), report.failures.end(),
-                     [&](const ModelFailure& failure) { return failure.cuts * smaller > most_cuts; });
+                     [&](const ModelFailure& failure) { return failure.cuts * smaller > ModelFailure::most_cuts; });
 }
 
 InvalidMesh without_interior(const Solid& solid, double spacing) {

@@ -11,7 +11,7 @@
 
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
-#include "blum/core/exact_text.hpp"
+#include "medial_axis/check_angle.hpp"
 #include "medial_axis/label_sheets.hpp"
 #include "medial_axis/order_sheets.hpp"
 
@@ -239,9 +239,7 @@ void check_needed(const Complex& axis) {
 }  // namespace
 
 Complex prune_sheets(const Complex& axis, double theta, const Context& context) {
-  if (!(theta >= 0 && theta <= 180)) {
-    throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be 0 to 180");
-  }
+  check_angle("theta", theta);
   check_needed(axis);
   const CompleteAxis all(axis);
   if (const std::string problem = problem_of_medial(all.get()); !problem.empty()) {

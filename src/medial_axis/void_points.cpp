@@ -21,19 +21,22 @@ std::vector<std::vector<std::uint32_t>> walls_of_voids(const MeshView& mesh) {
     shells.join(t[0], t[1]);
     shells.join(t[1], t[2]);
   }
+  const auto shell_of = [&](const Triangle& t) { return shells.find(t[0]); };
+  const auto is_of_first = [&](const Triangle& t) { return shell_of(t) == shell_of(mesh.triangles[0]); };
+  // A body without voids has one shell.
+  if (std::all_of(mesh.triangles.begin(), mesh.triangles.end(), is_of_first)) return {};
   struct Shell {
     double volume = 0;  // six times
     std::vector<std::uint32_t> triangles;
   };
   std::map<std::uint32_t, Shell> found;
   for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
-    const Triangle& t = mesh.triangles[k];
-    const std::uint32_t first = shells.find(t[0]);
+    const auto& [a, b, c] = mesh.triangles[k];
+    const std::uint32_t first = shell_of(mesh.triangles[k]);
     const Vec3d& origin = mesh.vertices[first];
     Shell& shell = found[first];
     shell.triangles.push_back(k);
-    shell.volume +=
-        dot(mesh.vertices[t[0]] - origin, cross(mesh.vertices[t[1]] - origin, mesh.vertices[t[2]] - origin));
+    shell.volume += dot(mesh.vertices[a] - origin, cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin));
   }
   std::vector<std::vector<std::uint32_t>> walls;
   for (auto& [first, shell] : found) {

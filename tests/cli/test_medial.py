@@ -380,6 +380,7 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(solids, tmp_pa
     assert "NOT certified" in err and "nothing was written" not in err
     summary = json.loads(out)
     assert summary["certified"] is False and summary["outputs"] == [str(tmp_path / "p.npz")]
+    assert len(summary["mismatches"]) == 3
     assert any(WHY_NOT in mismatch for mismatch in summary["mismatches"])
     assert names(tmp_path) == ["p.npz"]
     assert WHY_NOT in run("verify", block_with_needle(tmp_path.parent), tmp_path / "p.npz", status=3)[1]

@@ -43,7 +43,7 @@ struct CertifiedAxis {
                                            std::optional<double> tolerance = {}, const Context& context = {});
 
 /// The same from the mesh on. Where no form is certified although the model of the solid passes, the grid is moved by a
-/// part of a voxel (other_grids), and warnings say so.
+/// part of a voxel (moved_grids()), and warnings say so.
 /// @throws InvalidMesh, OutOfMemory, as medial_axis(), and as above. Cost: of medial_axis() and of the above for each
 /// grid that is tried, nearly always one.
 [[nodiscard]] CertifiedAxis certified_axis(const MeshView& mesh, double theta, const MedialAxisOptions& options = {},
@@ -53,11 +53,5 @@ struct CertifiedAxis {
 /// first. @param make  for a value of MedialAxisOptions::grid_shift. @throws what this throws.
 [[nodiscard]] CertifiedAxis certified_on_some_grid(CertifiedAxis first, double grid_shift,
                                                    FunctionRef<CertifiedAxis(double)> make);
-
-/// What MedialAxisOptions::grid_shift is to be for a step of other_grids, voxels.
-[[nodiscard]] double moved_grid(double grid_shift, double step);
-
-/// How a sentence begins that says that the grid was moved, and goes on with why. @param step  voxels.
-[[nodiscard]] std::string moved_text(double step);
 
 }  // namespace blum

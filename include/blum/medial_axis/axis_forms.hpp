@@ -1,7 +1,6 @@
 // Blum: the forms that a medial axis is written in. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,9 +18,16 @@ struct AxisForm {
   std::string without;  ///< what the next form lacks that this one has, for a sentence that goes on with why
 };
 
-/// Where an axis is not certified in any form, by how many voxels the grid may be moved (MedialAxisOptions::grid_shift)
-/// to try again: how parts thinner than a voxel lie in the cells is a matter of luck then.
-inline constexpr std::array other_grids{0.3, -0.3, 0.15};
+/// Another grid to try an axis on.
+struct MovedGrid {
+  double shift = 0;       ///< MedialAxisOptions::grid_shift, voxels
+  std::string as_it_was;  ///< how a sentence begins that says that the grid was moved, and goes on with why
+};
+
+/// Grids to try where an axis is not certified in any form, although the model of its solid passes: how parts thinner
+/// than a voxel lie in the cells is a matter of luck then.
+/// @param grid_shift  of the grid that it was not certified on, voxels, from -1 to 1.
+[[nodiscard]] std::vector<MovedGrid> moved_grids(double grid_shift);
 
 /// The forms of an axis, the best first: with its borders where they belong and few vertices; with few vertices; as the
 /// cells have it. The last one is as good as the cells; the others are for people, and where walls are thin one may

@@ -74,6 +74,10 @@ struct ModelFailure {
   Vec3d high{};  ///< the corner opposite
   ModelObstacle obstacle = ModelObstacle::handle;
   double cuts = 0;  ///< slanted_needle: splits that it takes to open it in this box; with cubes half as large, half
+
+  /// A split opens a hole where this stays in its plane: as far as it is wide, over how much it slants. Where it takes
+  /// more of them than this in one box, they are not begun.
+  static constexpr double most_cuts = 8192;
 };
 
 template <>

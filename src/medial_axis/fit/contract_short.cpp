@@ -50,7 +50,7 @@ class ShortEdges {
  public:
   ShortEdges(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
              const ShortLengths& lengths, const Context& context)
-      : lists_(lists, incidence, surface), voxel_(voxel), lengths_(lengths), context_(context) {
+      : lists_(lists, incidence, surface, 1), voxel_(voxel), lengths_(lengths), context_(context) {
     if (lengths.of_crumbs > 0) crumbs_ = edges_of_crumbs(lists_.incidence());
     if (lengths.of_slivers > 0) find_slivers(lists.triangles);
     for (const auto& [a, b] : lists_.incidence().edges()) {
@@ -126,12 +126,12 @@ class ShortEdges {
 
   /// @return  whether the edge is gone.
   bool take(const ShortEdge& edge) {
-    const auto [size, a, b, looked] = edge;
-    std::uint32_t from = lists_.now(a);
-    std::uint32_t to = lists_.now(b);
+    std::uint32_t from = lists_.now(edge.a);
+    std::uint32_t to = lists_.now(edge.b);
     if (from == to) return true;
-    if (looked > 0 && std::max(lists_.changed(from), lists_.changed(to)) <= looked) return false;
-    if (length(lists_.position(from) - lists_.position(to)) > 2 * limit(from, to, longest(a, b))) return false;
+    if (edge.looked > 0 && std::max(lists_.changed(from), lists_.changed(to)) <= edge.looked) return false;
+    const double size = length(lists_.position(from) - lists_.position(to));
+    if (size > 2 * limit(from, to, longest(edge.a, edge.b))) return false;
     // Seams and curves stay before rims, these before the insides of sheets, and there what knows its two walls.
     const auto worth = [&](std::uint32_t v) { return std::pair(lists_.rank(v), lists_.angle(v) > 0); };
     if (std::tuple(worth(from), to) > std::tuple(worth(to), from)) std::swap(from, to);

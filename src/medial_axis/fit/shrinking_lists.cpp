@@ -9,12 +9,13 @@
 
 namespace blum {
 
-ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface)
+ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface, int reach)
     : lists_(lists),
       paths_(surface),
       voids_(surface.voids()),
       cells_({lists.vertices.size(), lists.edges, lists.triangles}),
       incidence_(incidence),
+      reach_(reach),
       rank_(lists.vertices.size(), 0),
       into_(lists.vertices.size()),
       changed_(lists.vertices.size(), 0) {
@@ -64,13 +65,29 @@ void ShrinkingLists::contract(std::uint32_t from, std::uint32_t to) {
     cells_.add_edge({to, third});
     lists_.add_edge({to, third}, lists_.triangle_angles[triangle]);
   }
-  changed_[from] = changed_[to] = contractions_;
-  const auto note = [&](std::uint32_t v) { changed_[v] = contractions_; };
-  cells_.for_each_triangle(to, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
-    note(p);
-    note(q);
-  });
-  cells_.for_each_edge(to, [&](std::uint32_t, std::uint32_t other) { note(other); });
+  changed_[from] = contractions_;
+  note_change_at(to);
+}
+
+void ShrinkingLists::note_change_at(std::uint32_t v) {
+  std::vector<std::uint32_t> front{v};
+  changed_[v] = contractions_;
+  for (int step = 0; step < reach_; ++step) {
+    std::vector<std::uint32_t> next;
+    const auto note = [&](std::uint32_t w) {
+      if (changed_[w] == contractions_) return;
+      changed_[w] = contractions_;
+      next.push_back(w);
+    };
+    for (const std::uint32_t u : front) {
+      cells_.for_each_triangle(u, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+        note(p);
+        note(q);
+      });
+      cells_.for_each_edge(u, [&](std::uint32_t, std::uint32_t other) { note(other); });
+    }
+    front = std::move(next);
+  }
 }
 
 bool ShrinkingLists::is_joined(std::uint32_t a, std::uint32_t b) const {

@@ -21,7 +21,8 @@ class ShrinkingLists {
 
   /// @param lists      is to be left as it is until write().
   /// @param incidence  of the lists; outlives this.
-  ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface);
+  /// @param reach      changed() tells of contractions this many edges away.
+  ShrinkingLists(AxisLists& lists, const Incidence& incidence, const Surface& surface, int reach);
 
   [[nodiscard]] const ShrinkingComplex& cells() const { return cells_; }
   /// Of the lists at first.
@@ -35,19 +36,20 @@ class ShrinkingLists {
 
   /// Whether the edge between two vertices may be contracted to the second one.
   [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to);
-  /// The part of it that asks where the solid is: edges stay in it, and nothing is passed over. From many threads.
-  [[nodiscard]] bool stays_in_solid(std::uint32_t from, std::uint32_t to) const;
   void contract(std::uint32_t from, std::uint32_t to);
 
   /// 1, and one more for each contraction.
   [[nodiscard]] std::uint32_t contractions() const { return contractions_; }
-  /// contractions() after the last one that changed what is at a vertex; 0 for none.
+  /// contractions() after the last one within reach of a vertex; 0 for none.
   [[nodiscard]] std::uint32_t changed(std::uint32_t v) const { return changed_[v]; }
 
   /// Puts what is left into the lists.
   void write();
 
  private:
+  /// Whether edges stay in the solid, and nothing of the surface is passed over.
+  [[nodiscard]] bool stays_in_solid(std::uint32_t from, std::uint32_t to) const;
+  void note_change_at(std::uint32_t v);
   [[nodiscard]] bool is_joined(std::uint32_t a, std::uint32_t b) const;
 
   AxisLists& lists_;
@@ -55,6 +57,7 @@ class ShrinkingLists {
   std::span<const Vec3d> voids_;
   ShrinkingComplex cells_;
   const Incidence& incidence_;
+  int reach_;
   std::vector<int> rank_;
   std::vector<std::uint32_t> into_;
   std::vector<std::uint32_t> changed_;

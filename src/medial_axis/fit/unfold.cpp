@@ -22,14 +22,13 @@ using Triangle3 = std::array<std::uint32_t, 3>;
 constexpr double folded = 0.3;
 constexpr double most_moved = 2;  ///< voxels
 constexpr int most_rounds = 4;
+/// What is looked at around an edge are triangles with a corner up to three steps from its ends.
+constexpr int reach = 4;
 
 class Unfolder {
  public:
   Unfolder(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel, const Context& context)
-      : lists_(lists, incidence, surface),
-        most_moved_(most_moved * voxel),
-        context_(context),
-        changed_(lists.vertices.size(), 0) {}
+      : lists_(lists, incidence, surface, reach), most_moved_(most_moved * voxel), context_(context) {}
 
   void run() {
     looked_.assign(lists_.incidence().edges().size(), 0);
@@ -43,7 +42,7 @@ class Unfolder {
         if (p == q || stays_as_it_was(e, p, q)) continue;
         const bool is_unfolded = is_folded_at(p, q) && unfold_at(p, q);
         is_changed = is_changed || is_unfolded;
-        looked_[e] = is_unfolded ? 0 : contractions_;
+        looked_[e] = is_unfolded ? 0 : lists_.contractions();
       }
       if (!is_changed) break;
     }
@@ -55,10 +54,6 @@ class Unfolder {
     std::array<std::uint32_t, 2> ends;
     std::uint32_t third;
     bool operator<(const Side& other) const { return ends < other.ends; }
-  };
-  /// Kept, so that no new memory is needed each time.
-  struct Scratch {
-    std::vector<Side> moved, at_edge;
   };
   /// Triangles around a vertex, ready to tell how they fold wherever this one goes.
   struct Around {
@@ -112,24 +107,22 @@ class Unfolder {
     return out;
   }
   /// Folds between the triangles around a vertex, were it at another one.
-  [[nodiscard]] std::size_t folds(const Around& around, std::uint32_t to, Scratch& scratch) const {
-    std::vector<Side>& moved = scratch.moved;
-    std::vector<Side>& at_edge = scratch.at_edge;
-    moved.clear();
+  [[nodiscard]] std::size_t folds(const Around& around, std::uint32_t to) {
+    moved_.clear();
     for (const auto& [p, q] : around.corners) {
       if (p == to || q == to) continue;
-      moved.insert(moved.end(), {side_of(p, q, to), side_of(p, to, q), side_of(q, to, p)});
+      moved_.insert(moved_.end(), {side_of(p, q, to), side_of(p, to, q), side_of(q, to, p)});
     }
-    std::sort(moved.begin(), moved.end());
+    std::sort(moved_.begin(), moved_.end());
     std::size_t count = around.fixed_folds;
-    for_each_edge(moved, [&](std::span<const Side> at) {
+    for_each_edge(moved_, [&](std::span<const Side> at) {
       const auto [first, last] = std::equal_range(around.fixed.begin(), around.fixed.end(), at[0]);
       const std::span<const Side> beside(first, last);
       if (beside.size() > 2) return;  // folded neither before nor after
-      at_edge.assign(beside.begin(), beside.end());
-      count -= is_folded(at_edge) ? 1 : 0;
-      at_edge.insert(at_edge.end(), at.begin(), at.end());
-      count += is_folded(at_edge) ? 1 : 0;
+      at_edge_.assign(beside.begin(), beside.end());
+      count -= is_folded(at_edge_) ? 1 : 0;
+      at_edge_.insert(at_edge_.end(), at.begin(), at.end());
+      count += is_folded(at_edge_) ? 1 : 0;
     });
     return count;
   }
@@ -173,70 +166,35 @@ class Unfolder {
     return rank == 2 ? count == 1 : rank == 2 * ShrinkingLists::on_seam && count > 2;
   }
 
-  /// The ends of an edge, and the corners opposite of it.
-  [[nodiscard]] std::vector<std::uint32_t> corners_at(std::uint32_t a, std::uint32_t b) const {
+  /// Contracts what takes most folds away around a folded edge. @return  whether anything does.
+  bool unfold_at(std::uint32_t a, std::uint32_t b) {
+    // Less folds, then a shorter edge.
+    using Contraction = std::tuple<std::ptrdiff_t, double, std::uint32_t, std::uint32_t>;
+    std::optional<Contraction> best;
     std::vector<std::uint32_t> corners{a, b};
     lists_.cells().for_each_triangle(a, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
       if (p == b || q == b) corners.push_back(p == b ? q : p);
     });
-    return corners;
-  }
-  /// Less folds, then a shorter edge.
-  using Contraction = std::tuple<std::ptrdiff_t, double, std::uint32_t, std::uint32_t>;
-
-  /// Calls visit(contraction) for those that take folds away around an edge, whether they may be done or not.
-  template <class Visit>
-  void for_each_contraction(std::uint32_t a, std::uint32_t b, Scratch& scratch, const Visit& visit) const {
-    for (const std::uint32_t from : corners_at(a, b)) {
+    for (const std::uint32_t from : corners) {
       const Around triangles = around(from);
-      const auto before = static_cast<std::ptrdiff_t>(folds(triangles, from, scratch));
+      const auto before = static_cast<std::ptrdiff_t>(folds(triangles, from));
       for (const std::uint32_t to : neighbours(from)) {
         const double size = length(lists_.position(from) - lists_.position(to));
         if (size > most_moved_ || !keeps_borders(from, to)) continue;
-        const auto after = static_cast<std::ptrdiff_t>(folds(triangles, to, scratch));
-        if (after < before) visit(Contraction{after - before, size, from, to});
+        const auto after = static_cast<std::ptrdiff_t>(folds(triangles, to));
+        const Contraction found{after - before, size, from, to};
+        if (after >= before || (best && *best <= found)) continue;
+        if (lists_.may_contract(from, to)) best = found;
       }
     }
-  }
-
-  /// Contracts what takes most folds away around a folded edge. @return  whether anything does.
-  bool unfold_at(std::uint32_t a, std::uint32_t b) {
-    std::optional<Contraction> best;
-    for_each_contraction(a, b, scratch_, [&](const Contraction& found) {
-      const bool is_better = !best || found < *best;
-      if (is_better && lists_.may_contract(std::get<2>(found), std::get<3>(found))) best = found;
-    });
     if (!best) return false;
     lists_.contract(std::get<2>(*best), std::get<3>(*best));
-    note_change_at(std::get<3>(*best));
     return true;
   }
 
-  // ---- What need not be looked at again ----
-
   /// Whether nothing near an edge has changed since it was looked at in vain.
   [[nodiscard]] bool stays_as_it_was(std::uint32_t e, std::uint32_t p, std::uint32_t q) const {
-    return looked_[e] > 0 && std::max(changed_[p], changed_[q]) <= looked_[e];
-  }
-  /// What is looked at around an edge are triangles with a corner up to three steps from its ends.
-  void note_change_at(std::uint32_t v) {
-    constexpr int steps = 4;
-    ++contractions_;
-    std::vector<std::uint32_t> front{v};
-    changed_[v] = contractions_;
-    for (int step = 0; step < steps; ++step) {
-      std::vector<std::uint32_t> next;
-      for (const std::uint32_t u : front) {
-        lists_.cells().for_each_triangle(u, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
-          for (const std::uint32_t w : {p, q}) {
-            if (changed_[w] == contractions_) continue;
-            changed_[w] = contractions_;
-            next.push_back(w);
-          }
-        });
-      }
-      front = std::move(next);
-    }
+    return looked_[e] > 0 && std::max(lists_.changed(p), lists_.changed(q)) <= looked_[e];
   }
   [[nodiscard]] std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
     std::vector<std::uint32_t> all;
@@ -251,10 +209,8 @@ class Unfolder {
   ShrinkingLists lists_;
   double most_moved_;
   const Context& context_;
-  Scratch scratch_;
-  std::uint32_t contractions_ = 1;
-  std::vector<std::uint32_t> changed_;  ///< of each vertex: by the contraction of that number
-  std::vector<std::uint32_t> looked_;   ///< at each edge of the lists, in vain, after so many contractions; or 0
+  std::vector<Side> moved_, at_edge_;  ///< of folds(), kept so that no new memory is needed each time
+  std::vector<std::uint32_t> looked_;  ///< at each edge of the lists, in vain, after so many contractions; or 0
 };
 
 }  // namespace

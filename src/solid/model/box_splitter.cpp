@@ -14,9 +14,6 @@ namespace {
 /// Cubes beside each other are not split into more boxes: a tunnel at a slant takes about as many as it is longer than
 /// wide.
 constexpr std::size_t most_boxes = std::size_t{1} << 17U;
-/// A cut opens a hole where this stays in its plane: as far as it is wide, over how much it slants. Beyond so many cuts
-/// in one box they are not begun.
-constexpr double most_cuts_along_hole = 8192;
 /// Boxes are not cut to less than this part of the spacing.
 constexpr double least_part = 1e-12;
 
@@ -51,7 +48,7 @@ void BoxSplitter::split(SplitBox box, const Context& context, std::vector<SplitB
     SplitBox next_box = std::move(waiting.back());
     waiting.pop_back();
     const std::optional<Cut> cut = test(next_box);
-    const bool is_needle = cut && cut->along_hole > most_cuts_along_hole;
+    const bool is_needle = cut && cut->along_hole > ModelFailure::most_cuts;
     if (cut && !is_needle && out.size() + waiting.size() < most_boxes && can_cut(next_box, *cut)) {
       auto [lower, upper] = halves(std::move(next_box), *cut);
       waiting.push_back(std::move(upper));
