@@ -9,7 +9,7 @@
 
 namespace blum {
 
-/// A point in the middle of a round tube, or of a ball, near by.
+/// A point in the middle of a round tube near by; of a ball, if it is next to its middle.
 struct RoundCentre {
   Vec3d position;
   std::vector<Footprint> feet;  ///< on the surface all around, about as far from it
