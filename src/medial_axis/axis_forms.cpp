@@ -28,9 +28,11 @@ std::vector<AxisForm> axis_forms(const MedialAxisReport& report, std::optional<d
 }
 
 std::vector<MovedGrid> moved_grids(double grid_shift) {
+  constexpr std::size_t most = 3;
   std::vector<MovedGrid> grids;
-  for (double step : {0.3, -0.3, 0.15}) {
-    if (std::abs(grid_shift + step) > 1) step = -step;
+  for (const double step : {0.3, -0.3, 0.15, -0.15, 0.6, -0.6}) {
+    if (grids.size() == most) break;
+    if (std::abs(grid_shift + step) > 1) continue;
     grids.push_back({grid_shift + step, "the grid was moved by " + rounded_text(step) + " voxels: as it was, "});
   }
   return grids;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -106,6 +107,8 @@ TEST(CertifiedAxis, MovedGridsAreTriedInTurnWhereNothingElseHolds) {
   EXPECT_EQ(found_from(1, 0.9).warnings.front(), "the grid was moved by -0.3 voxels: as it was, something is wrong");
   static_cast<void>(found_from(9, 0.9));
   for (const double shift : shifts) EXPECT_LE(std::abs(shift), 1) << "what medial_axis() allows";
+  std::sort(shifts.begin(), shifts.end());
+  EXPECT_EQ(std::unique(shifts.begin(), shifts.end()), shifts.end()) << "each grid once";
 }
 
 }  // namespace
