@@ -73,8 +73,13 @@ class Fitter {
   double find_centres() {
     return move([&](std::uint32_t v) -> Moved {
       if (kinds_[v].rims + kinds_[v].curves == 0 || is_shown(lists_.vertices[v], 3)) return std::nullopt;
-      Moved found = between(v, 3);
-      return found && is_shown(*found, 3) ? found : centred(v);
+      const Moved found = between(v, 3);
+      if (!found || !is_shown(*found, 3)) return centred(v);
+      // Rims of sheets that know of one wall only are next to where they are between two.
+      const Moved on_sheet = between(v, 2);
+      const Vec3d& at = lists_.vertices[v].position;
+      const bool is_nearer = on_sheet && squared_length(on_sheet->position - at) < squared_length(found->position - at);
+      return is_nearer && is_shown(*on_sheet, 2) ? on_sheet : found;
     });
   }
   /// Puts vertices that know of one wall only between two.
