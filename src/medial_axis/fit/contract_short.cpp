@@ -121,7 +121,14 @@ class ShortEdges {
     const double voxels = least >= ShrinkingLists::on_seam ? lengths_.on_seams
                           : least > 0                      ? lengths_.on_rims
                                                            : lengths_.others;
-    return std::max(voxels, least_voxels) * voxel_;
+    return std::max({voxels, least_voxels, is_at_corner(a, b) ? lengths_.at_corners : 0}) * voxel_;
+  }
+
+  /// Whether an edge goes from the rim of a sheet to the end of a seam.
+  [[nodiscard]] bool is_at_corner(std::uint32_t a, std::uint32_t b) const {
+    const int rim = std::min(lists_.rank(a), lists_.rank(b));
+    const int end = std::max(lists_.rank(a), lists_.rank(b));
+    return rim > 0 && rim < ShrinkingLists::on_seam && end / ShrinkingLists::on_seam == ShrinkingLists::end_of_seam;
   }
 
   /// Whether the rim of a sheet would come to a seam that goes on: a notch in the sheet. Where a sheet has borders only
@@ -151,7 +158,7 @@ class ShortEdges {
     if (std::tuple(worth(from), to) > std::tuple(worth(to), from)) std::swap(from, to);
     if (!lists_.may_contract(from, to)) {
       std::swap(from, to);
-      if (!lists_.may_contract(from, to)) return false;
+      if (is_at_corner(from, to) || !lists_.may_contract(from, to)) return false;
     }
     lists_.contract(from, to);
     return true;

@@ -14,6 +14,7 @@ struct ShortLengths {
   double on_seams = 0.15;  ///< between two vertices of seams or curves
   double on_rims = 0.15;   ///< between two vertices of rims
   double of_crumbs = 0;    ///< of sheets of a few triangles
+  double at_corners = 0;   ///< from a vertex of a rim to where a seam ends: rims meet there, and cut no corner
   double of_slivers = 0;   ///< the shortest sides of triangles between borders whose corners lie on a line
 };
 

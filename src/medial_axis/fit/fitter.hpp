@@ -76,17 +76,18 @@ class Fitter {
       const Moved found = between(v, 3);
       if (!found || !is_shown(*found, 3)) return centred(v);
       // Rims of sheets that know of one wall only are next to where they are between two.
-      const Moved on_sheet = between(v, 2);
+      const Moved between_two = on_sheet(v);
       const Vec3d& at = lists_.vertices[v].position;
-      const bool is_nearer = on_sheet && squared_length(on_sheet->position - at) < squared_length(found->position - at);
-      return is_nearer && is_shown(*on_sheet, 2) ? on_sheet : found;
+      const bool is_nearer =
+          between_two && squared_length(between_two->position - at) < squared_length(found->position - at);
+      return is_nearer && is_shown(*between_two, 2) ? between_two : found;
     });
   }
   /// Puts vertices that know of one wall only between two.
   double find_sheets() {
     const auto is_asked = [&](std::uint32_t v) { return !(lists_.vertices[v].separation_angle > 0); };
     find_elements_around(is_asked);
-    const double furthest = move([&](std::uint32_t v) { return is_asked(v) ? between(v, 2) : std::nullopt; });
+    const double furthest = move([&](std::uint32_t v) { return is_asked(v) ? on_sheet(v) : std::nullopt; });
     elements_.clear();
     return furthest;
   }
@@ -179,6 +180,24 @@ class Fitter {
     // What does not show may lie beside what is round by more than a voxel.
     const double reach = is_shown(vertex, 3) ? most_moved : most_moved_to_curve;
     return balanced_at(vertex.position, feet_around(v), walls, {voxel_, reach * voxel_, true});
+  }
+
+  /// Between the two walls that the rest of its sheet next to a vertex is between; where that is not told, between any.
+  [[nodiscard]] Moved on_sheet(std::uint32_t v) const {
+    const AxisVertex& vertex = lists_.vertices[v];
+    std::uint32_t beside = v;
+    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
+      const std::uint32_t other = other_end(e, v);
+      const bool is_of_sheet = kinds_[other].seams + kinds_[other].curves == 0;
+      if (!is_of_sheet || !(lists_.vertices[other].separation_angle > 0)) continue;
+      const auto off = [&](std::uint32_t u) { return squared_length(lists_.vertices[u].position - vertex.position); };
+      if (beside == v || off(other) < off(beside)) beside = other;
+    }
+    if (beside != v) {
+      const BalanceLimits limits{voxel_, most_moved * voxel_, false};
+      if (auto found = balanced_at(vertex.position, feet_of(beside), 2, limits)) return found;
+    }
+    return between(v, 2);
   }
 
   /// In the middle of what is round around a vertex, if that shows.

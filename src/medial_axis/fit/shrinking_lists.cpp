@@ -26,7 +26,7 @@ ShrinkingLists::ShrinkingLists(AxisLists& lists, const Incidence& incidence, con
     for (const std::uint32_t v : incidence_.edges()[e]) rank_[v] += weight;
   }
   // Ends of seams and curves stay where they are, too, so that these do not become shorter.
-  for (int& rank : rank_) rank += rank / on_seam == 1 ? 8 * on_seam : 0;
+  for (int& rank : rank_) rank += rank / on_seam == 1 ? (end_of_seam - 1) * on_seam : 0;
 }
 
 std::uint32_t ShrinkingLists::now(std::uint32_t v) const {

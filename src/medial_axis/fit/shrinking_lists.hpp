@@ -18,6 +18,8 @@ class ShrinkingLists {
  public:
   /// Vertices of seams and curves rank from here on, those of rims from 1 to there.
   static constexpr int on_seam = 1024;
+  /// Those where one seam or curve ends rank from this many times that on.
+  static constexpr int end_of_seam = 9;
 
   /// @param lists      is to be left as it is until write().
   /// @param incidence  of the lists; outlives this.
