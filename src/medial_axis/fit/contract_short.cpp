@@ -51,6 +51,11 @@ class ShortEdges {
   ShortEdges(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
              const ShortLengths& lengths, const Context& context)
       : lists_(lists, incidence, surface, 1), voxel_(voxel), lengths_(lengths), context_(context) {
+    is_on_curve_.assign(lists.vertices.size(), false);
+    for (const std::uint32_t e : incidence.edge_of_listed()) {
+      if (!incidence.triangles_of_edge()[e].empty()) continue;
+      for (const std::uint32_t v : incidence.edges()[e]) is_on_curve_[v] = true;
+    }
     if (lengths.of_crumbs > 0) crumbs_ = edges_of_crumbs(lists_.incidence());
     if (lengths.of_slivers > 0) find_slivers(lists.triangles);
     for (const auto& [a, b] : lists_.incidence().edges()) {
@@ -124,11 +129,13 @@ class ShortEdges {
     return std::max({voxels, least_voxels, is_at_corner(a, b) ? lengths_.at_corners : 0}) * voxel_;
   }
 
-  /// Whether an edge goes from the rim of a sheet to the end of a seam.
+  /// Whether an edge goes from the rim of a sheet to the end of a seam next to the surface: in a corner of the solid.
   [[nodiscard]] bool is_at_corner(std::uint32_t a, std::uint32_t b) const {
-    const int rim = std::min(lists_.rank(a), lists_.rank(b));
-    const int end = std::max(lists_.rank(a), lists_.rank(b));
-    return rim > 0 && rim < ShrinkingLists::on_seam && end / ShrinkingLists::on_seam == ShrinkingLists::end_of_seam;
+    constexpr double next_to = 2;  // voxels
+    if (lists_.rank(a) > lists_.rank(b)) std::swap(a, b);
+    return lists_.rank(a) > 0 && lists_.rank(a) < ShrinkingLists::on_seam && !is_on_curve_[b] &&
+           lists_.rank(b) / ShrinkingLists::on_seam == ShrinkingLists::end_of_seam &&
+           lists_.radius(b) < next_to * voxel_;
   }
 
   /// Whether the rim of a sheet would come to a seam that goes on: a notch in the sheet. Where a sheet has borders only
@@ -167,6 +174,7 @@ class ShortEdges {
   ShrinkingLists lists_;
   double voxel_;
   ShortLengths lengths_;
+  std::vector<bool> is_on_curve_;
   std::vector<Edge> crumbs_, slivers_;  ///< sides of these, sorted
   const Context& context_;
   std::vector<ShortEdge> short_;

@@ -32,6 +32,7 @@ class ShrinkingLists {
   [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
   /// The separation angle at a vertex, 0 where that knows of one wall only.
   [[nodiscard]] double angle(std::uint32_t v) const { return lists_.vertices[v].separation_angle; }
+  [[nodiscard]] double radius(std::uint32_t v) const { return lists_.vertices[v].radius; }
   [[nodiscard]] int rank(std::uint32_t v) const { return rank_[v]; }
   /// The vertex that another one was contracted to, or itself.
   [[nodiscard]] std::uint32_t now(std::uint32_t v) const;
