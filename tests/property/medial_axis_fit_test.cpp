@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <span>
 #include <stop_token>
 #include <vector>
 
 #include "blum/complex/incidence.hpp"
+#include "blum/core/random.hpp"
 #include "blum/medial_axis/decimate.hpp"
 #include "support/known_axes.hpp"
 #include "support/medial_check.hpp"
@@ -110,6 +113,36 @@ TEST(FittedAxisOfABox, HasItsSheetsSeamsAndRimsHoweverItIsTurned) {
     EXPECT_LE(quantile(rims, 0.99), 0.1);
     EXPECT_LE(quantile(rims, 1), 0.5);
   }
+}
+
+// Few vertices of the cells lie next to a corner, and these know of walls by luck: a rim may cut it.
+TEST(FittedAxisOfABox, RimsCutFewCorners) {
+  constexpr int count_of_boxes = 24;
+  Random random(7);
+  int with_cut = 0;
+  int with_other_sheets = 0;
+  for (int n = 0; n < count_of_boxes; ++n) {
+    const Vec3d half{0.3 + 0.7 * random.uniform(), 0.3 + 0.7 * random.uniform(), 0.3 + 0.7 * random.uniform()};
+    const Mat3 turn = test::rotation({random.uniform(), 1, 0.5}, n % 3 == 0 ? 0 : 360 * random.uniform());
+    const MedialAxis axis = medial_axis(test::turned(make_box({.size = half * 2.0}), turn), {.resolution = 64});
+    const Complex fitted = axis.fitted(60);
+    const double voxel = axis.report().bodies.front().spacing;
+    const MedialView view(fitted);
+    double furthest = 0;
+    for (std::size_t e = 0; e < fitted.edges.size(); ++e) {
+      if (view.edge_role(e) != MedialRole::rim) continue;
+      const auto& [a, b] = fitted.edges[e];
+      const Vec3d own = turn.transposed_times(0.5 * (fitted.positions[a] + fitted.positions[b]));
+      std::array<double, 3> walls{half.x - std::abs(own.x), half.y - std::abs(own.y), half.z - std::abs(own.z)};
+      std::sort(walls.begin(), walls.end());
+      furthest = std::max(furthest, walls[1]);
+    }
+    with_cut += furthest > 0.1 * voxel ? 1 : 0;
+    with_other_sheets += count(fitted).sheets == 13 ? 0 : 1;
+    EXPECT_LE(furthest, 1.5 * voxel) << n;
+  }
+  EXPECT_LE(with_cut, 2);
+  EXPECT_LE(with_other_sheets, 2);
 }
 
 TEST(FittedAxisOfAnL, HasSixteenSheetsAtAllResolutions) {

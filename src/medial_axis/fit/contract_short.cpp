@@ -129,11 +129,13 @@ class ShortEdges {
     return std::max({voxels, least_voxels, is_at_corner(a, b) ? lengths_.at_corners : 0}) * voxel_;
   }
 
-  /// Whether an edge goes from the rim of a sheet to the end of a seam next to the surface: in a corner of the solid.
+  /// Whether an edge goes from the rim of a sheet, or from where one comes to a seam, to the end of a seam next to the
+  /// surface: in a corner of the solid.
   [[nodiscard]] bool is_at_corner(std::uint32_t a, std::uint32_t b) const {
     constexpr double next_to = 2;  // voxels
     if (lists_.rank(a) > lists_.rank(b)) std::swap(a, b);
-    return lists_.rank(a) > 0 && lists_.rank(a) < ShrinkingLists::on_seam && !is_on_curve_[b] &&
+    const bool is_on_rim = lists_.rank(a) % ShrinkingLists::on_seam > 0;
+    return is_on_rim && lists_.rank(a) < ShrinkingLists::end_of_seam * ShrinkingLists::on_seam && !is_on_curve_[b] &&
            lists_.rank(b) / ShrinkingLists::on_seam == ShrinkingLists::end_of_seam &&
            lists_.radius(b) < next_to * voxel_;
   }

@@ -78,9 +78,8 @@ class Fitting {
 void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context) {
   constexpr ShortLengths nothing{};
   constexpr ShortLengths inside{.on_seams = 0, .on_rims = 0};
-  constexpr ShortLengths with_seams{.on_seams = 0.6, .at_corners = 1.6};
-  constexpr ShortLengths with_rims{
-      .on_seams = 0.6, .on_rims = 0.3, .of_crumbs = 1.5, .at_corners = 1.6, .of_slivers = 4};
+  constexpr ShortLengths with_seams{.on_seams = 0.6, .at_corners = 2};
+  constexpr ShortLengths with_rims{.on_seams = 0.6, .on_rims = 0.3, .of_crumbs = 1.5, .at_corners = 2, .of_slivers = 4};
   Fitting fitting(lists, target, context);
   fitting.take(&Fitter::find_centres);
   fitting.trim_excess();
