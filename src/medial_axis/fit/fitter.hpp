@@ -14,6 +14,7 @@
 #include "blum/core/parallel.hpp"
 #include "medial_axis/fit/balance.hpp"
 #include "medial_axis/fit/bend.hpp"
+#include "medial_axis/fit/border_directions.hpp"
 #include "medial_axis/fit/fit_axis.hpp"
 #include "medial_axis/fit/kind.hpp"
 #include "medial_axis/fit/round_centre.hpp"
@@ -63,6 +64,7 @@ class Fitter {
         context_(context),
         incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
         kinds_(kinds_of(incidence_, lists.vertices.size())),
+        directions_(lists, incidence_, kinds_),
         not_round_(not_round),
         is_not_round_(lists.vertices.size(), 0),
         mover_(lists, incidence_, target.surface, context) {}
@@ -292,11 +294,11 @@ class Fitter {
   [[nodiscard]] Moved cut(std::uint32_t v) const {
     const Kind& kind = kinds_[v];
     if (kind.is_rim()) {
-      if (auto found = slide(v, direction_of_rim(v), 2)) return found;
-      return slide(v, towards_surface(v), 2);
+      if (auto found = slide(v, directions_.of_rim(v), 2)) return found;
+      return slide(v, directions_.towards_surface(v), 2);
     }
-    if (kind.is_seam_end()) return slide(v, direction_of_end(v, 3), 3);
-    if (kind.is_curve_end()) return lies_beside_curve(v) ? std::nullopt : slide(v, direction_of_end(v, 0), 3);
+    if (kind.is_seam_end()) return slide(v, directions_.of_end(v, 3), 3);
+    if (kind.is_curve_end()) return directions_.comes_back(v) ? std::nullopt : slide(v, directions_.of_end(v, 0), 3);
     return kind.rims + kind.seams + kind.curves == 0 ? at_mouth(v) : std::nullopt;
   }
 
@@ -439,89 +441,6 @@ class Fitter {
     return best;
   }
 
-  // ---- Directions ----
-
-  /// Away from the sheet, from edges of the rim near by.
-  [[nodiscard]] Vec3d direction_of_rim(std::uint32_t v) const {
-    constexpr int reach = 4;
-    Vec3d sum;
-    for (const std::uint32_t first : incidence_.edges_of_vertex()[v]) {
-      if (incidence_.triangles_of_edge()[first].size() != 1) continue;
-      std::uint32_t e = first;
-      std::uint32_t from = v;
-      for (int n = 0; n < reach; ++n) {
-        sum += outwards_of(e) / (1 + n);
-        const std::uint32_t next = other_end(e, from);
-        if (!kinds_[next].is_rim()) break;
-        const std::uint32_t at = e;
-        for (const std::uint32_t other : incidence_.edges_of_vertex()[next]) {
-          if (other != at && incidence_.triangles_of_edge()[other].size() == 1) e = other;
-        }
-        from = next;
-      }
-    }
-    const double size = length(sum);
-    return size > 0 ? sum / size : Vec3d{};
-  }
-
-  /// Along the sheet to where it is less deep: over convex edges that it ends at.
-  [[nodiscard]] Vec3d towards_surface(std::uint32_t v) const {
-    const AxisVertex& vertex = lists_.vertices[v];
-    const Vec3d way = vertex.footprints[0] + vertex.footprints[1] - 2 * vertex.position;
-    const double size = length(way);
-    constexpr double least = 0.1;  // of the radius: 174 degrees
-    return size > least * vertex.radius ? way / size : Vec3d{};
-  }
-
-  /// From a triangle outwards through its side, as long as the side.
-  [[nodiscard]] Vec3d outwards_of(std::uint32_t e) const {
-    const std::uint32_t third = third_corner(incidence_.triangles_of_edge()[e][0], e);
-    const auto& [a, b] = incidence_.edges()[e];
-    const Vec3d& at = lists_.vertices[a].position;
-    const Vec3d along = lists_.vertices[b].position - at;
-    const Vec3d in = lists_.vertices[third].position - at;
-    const double squared = squared_length(along);
-    if (!(squared > 0)) return {};
-    const Vec3d out = along * (dot(in, along) / squared) - in;
-    const double size = length(out);
-    return size > 0 ? out * (std::sqrt(squared) / size) : Vec3d{};
-  }
-
-  /// Away from the only neighbour along a seam (of at least so many triangles) or curve (of none).
-  [[nodiscard]] Vec3d direction_of_end(std::uint32_t v, std::size_t triangles) const {
-    const auto next_of = [&](std::uint32_t at, std::uint32_t before) {
-      for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
-        const std::size_t count = incidence_.triangles_of_edge()[e].size();
-        if (triangles == 0 ? count > 0 : count < triangles) continue;
-        const std::uint32_t other = other_end(e, at);
-        if (other != before) return other;
-      }
-      return at;
-    };
-    const std::uint32_t first = next_of(v, v);
-    const std::uint32_t second = kinds_[first].is_seam() || kinds_[first].is_curve() ? next_of(first, v) : first;
-    const Vec3d way = lists_.vertices[v].position - lists_.vertices[second].position;
-    const double size = length(way);
-    return size > 0 ? way / size : Vec3d{};
-  }
-
-  /// Whether a curve that ends at a vertex comes back there beside a longer edge: it is to be taken away, and not to
-  /// follow the other one.
-  [[nodiscard]] bool lies_beside_curve(std::uint32_t v) const {
-    constexpr double same_way = 0.95;  // cosine
-    const std::uint32_t own = incidence_.edges_of_vertex()[v][0];
-    const std::uint32_t at = other_end(own, v);
-    const Vec3d way = lists_.vertices[v].position - lists_.vertices[at].position;
-    for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
-      if (e == own || !incidence_.triangles_of_edge()[e].empty()) continue;
-      const Vec3d other = lists_.vertices[other_end(e, at)].position - lists_.vertices[at].position;
-      const bool is_longer =
-          squared_length(other) > squared_length(way) || (squared_length(other) == squared_length(way) && e < own);
-      if (is_longer && dot(way, other) >= same_way * length(way) * length(other)) return true;
-    }
-    return false;
-  }
-
   // ---- Walls ----
 
   using Elements = std::array<std::uint32_t, 2>;
@@ -601,6 +520,7 @@ class Fitter {
   const Context& context_;
   Incidence incidence_;
   std::vector<Kind> kinds_;
+  BorderDirections directions_;
   Places& not_round_;
   std::vector<std::uint8_t> is_not_round_;  ///< what threads find out, for not_round_
   VertexMover mover_;
