@@ -47,11 +47,13 @@ def test_a_slanted_rod_has_a_curve_and_hardly_a_sheet(rod, tmp_path):
     assert solid["asked_spacing"] == 1 and solid["smooth"]["iterations"] == 60
     assert 0 < solid["smooth"]["largest_move"] < 0.5 and solid["smooth"]["held_vertices"] == 0
     assert least["counts"]["triangles"] == 0 and least["counts"]["curve_edges"] > 0
-    # Where sections are not quite round there are ribbons, narrower than a voxel: 0.6 voxels in the mean.
+    # Where sections are not quite round there are ribbons, narrower than a voxel: 0.6 voxels in the mean. In the round
+    # end, what bumps show at 60 to 70 degrees reaches further.
     arrays = np.load(tmp_path / "a-theta60.npz")
     assert axis["counts"]["sheets"] <= 3 and areas(arrays).sum() < 0.65 * 20
     assert abs(arrays["radius"].mean() - 4) < 0.4
-    assert offsets(arrays["vertices"]).max() < 1
+    off = offsets(arrays["vertices"])
+    assert off.max() < 1.5 and off[arrays["separation_angle"] > 75].max() < 0.7
     curve = np.load(tmp_path / "a-theta120.npz")
     assert np.abs(curve["radius"] - 4).max() < 0.2 and offsets(curve["vertices"]).max() < 0.3
     assert json.loads(str(curve["metadata"]))["smooth"] == "60"
