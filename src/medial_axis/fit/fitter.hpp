@@ -332,60 +332,81 @@ class Fitter {
     return std::max(own, angle_at(vertex.position, vertex.footprints[0], opposite));
   }
 
+  /// The way of a vertex along its sheet, seam or curve, and what its last point told.
+  struct Way {
+    Vec3d origin;
+    Vec3d direction;  ///< of unit length, or zero
+    std::size_t walls = 0;
+    bool is_curve = false;  ///< that ends at the vertex
+    std::vector<Footprint> feet;
+    const AxisVertex* sheet = nullptr;  ///< a vertex of the sheet that shows
+    bool is_past = false;               ///< whether the last point is past the border, and not past something else
+    bool is_round = false;              ///< whether some point was in the middle of what is round
+  };
+  [[nodiscard]] bool is_shown_on(const Way& way, const AxisVertex& vertex) const {
+    // Where a curve ends, feet around it are seen at twice the angle that they make with the curve.
+    return is_shown(vertex, way.walls) && (!way.is_curve || angle_ahead(vertex, way.direction) > target_.theta);
+  }
+  /// The vertex that shows so many voxels on.
+  [[nodiscard]] Moved on(Way& way, double voxels) const {
+    const Vec3d place = way.origin + way.direction * (voxels * voxel_);
+    Moved found = balanced_at(place, way.feet, way.walls, {voxel_, most_moved * voxel_, true});
+    if (found && way.walls == 2 && !goes_on(*way.sheet, *found)) found.reset();
+    way.is_past = found && !is_shown_on(way, *found);
+    if (found && !way.is_past) return found;
+    if (!way.is_curve) return std::nullopt;
+    found = centred_at(place);
+    if (found && !is_shown_on(way, *found)) found.reset();
+    way.is_past = way.is_past || (way.is_round && !found);
+    way.is_round = way.is_round || found;
+    return found;
+  }
+
   /// The last vertex on the way from a vertex along its sheet or seam that shows.
   [[nodiscard]] Moved slide(std::uint32_t v, const Vec3d& direction, std::size_t walls) const {
     const AxisVertex& own = lists_.vertices[v];
     const std::uint32_t inner = best_neighbour(v);
-    const std::vector<Footprint> feet = walls == 2 ? feet_of(is_shown(own, walls) ? v : inner) : feet_around(v);
-    const AxisVertex& start_of_sheet = is_shown(own, walls) ? own : lists_.vertices[inner];
-    Vec3d origin = own.position;
-    bool is_past = false;  // whether the last point is past the border, and not past something else
-    bool is_round = false;
-    // Where a curve ends, feet around it are seen at twice the angle that they make with the curve.
-    const bool is_curve = kinds_[v].is_curve_end();
-    const auto is_shown_at = [&](const AxisVertex& vertex) {
-      return is_shown(vertex, walls) && (!is_curve || angle_ahead(vertex, direction) > target_.theta);
-    };
-    const auto at = [&](double t) -> Moved {
-      const Vec3d place = origin + direction * (t * voxel_);
-      Moved found = balanced_at(place, feet, walls, {voxel_, most_moved * voxel_, true});
-      if (found && walls == 2 && !goes_on(start_of_sheet, *found)) found.reset();
-      is_past = found && !is_shown_at(*found);
-      if (found && !is_past) return found;
-      if (!kinds_[v].is_curve_end()) return std::nullopt;
-      found = centred_at(place);
-      if (found && !is_shown_at(*found)) found.reset();
-      is_past = is_past || (is_round && !found);
-      is_round = is_round || found;
-      return found;
-    };
+    const bool shows = is_shown(own, walls);
     if (squared_length(direction) > 0) {
-      if (Moved start = at(0)) {
-        origin = start->position;
-        // Most were put where they belong already.
-        if (!at(settled) && is_past) return start;
-        double good = 0;
-        for (const double t : outwards) {
-          if (Moved next = at(t)) {
-            start = next;
-            good = t;
-            continue;
-          }
-          // Where the ball does not reach, the surface may have been passed.
-          const bool is_beyond = is_past || start->radius <= (t - good) * voxel_;
-          start = last_shown(at, good, t, start);
-          // Beyond the rim of a lens only one wall is near.
-          return is_beyond || start->separation_angle < target_.theta + nearly_theta ? start : std::nullopt;
-        }
-        return is_round ? start : std::nullopt;
-      }
-      double bad = 0;
-      for (const double t : inwards) {
-        if (const Moved found = at(t)) return last_shown(at, t, bad, found);
-        bad = t;
-      }
+      Way way{own.position,
+              direction,
+              walls,
+              kinds_[v].is_curve_end(),
+              walls == 2 ? feet_of(shows ? v : inner) : feet_around(v),
+              shows ? &own : &lists_.vertices[inner]};
+      if (const Moved start = on(way, 0)) return slide_outwards(way, *start);
+      if (const Moved found = slide_inwards(way)) return found;
     }
-    return is_shown(lists_.vertices[inner], walls) && !is_shown(own, walls) ? towards(v, inner, walls) : std::nullopt;
+    return is_shown(lists_.vertices[inner], walls) && !shows ? towards(v, inner, walls) : std::nullopt;
+  }
+  [[nodiscard]] Moved slide_outwards(Way& way, AxisVertex start) const {
+    const auto at = [&](double t) { return on(way, t); };
+    way.origin = start.position;
+    // Most were put where they belong already.
+    if (!at(settled) && way.is_past) return start;
+    double good = 0;
+    for (const double t : outwards) {
+      if (const Moved next = at(t)) {
+        start = *next;
+        good = t;
+        continue;
+      }
+      // Where the ball does not reach, the surface may have been passed.
+      const bool is_beyond = way.is_past || start.radius <= (t - good) * voxel_;
+      start = *last_shown(at, good, t, start);
+      // Beyond the rim of a lens only one wall is near.
+      return is_beyond || start.separation_angle < target_.theta + nearly_theta ? Moved(start) : std::nullopt;
+    }
+    return way.is_round ? Moved(start) : std::nullopt;
+  }
+  [[nodiscard]] Moved slide_inwards(Way& way) const {
+    const auto at = [&](double t) { return on(way, t); };
+    double bad = 0;
+    for (const double t : inwards) {
+      if (const Moved found = at(t)) return last_shown(at, t, bad, found);
+      bad = t;
+    }
+    return std::nullopt;
   }
 
   /// The angle at which feet all around a curve are seen, from the first one and the direction of the curve, degrees:

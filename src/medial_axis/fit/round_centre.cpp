@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "medial_axis/equidistant_point.hpp"
 #include "medial_axis/governors.hpp"
@@ -26,7 +27,7 @@ constexpr double most_apart = 30;
 std::array<Vec3d, 14> directions() {
   std::array<Vec3d, 14> out;
   for (std::size_t k = 0; k < 6; ++k) out[k][k / 2] = k % 2 == 0 ? 1 : -1;
-  const double part = 1 / std::sqrt(3.0);
+  constexpr double part = std::numbers::inv_sqrt3;
   for (std::size_t k = 0; k < 8; ++k) {
     out[6 + k] = {(k & 1) != 0 ? part : -part, (k & 2) != 0 ? part : -part, (k & 4) != 0 ? part : -part};
   }
