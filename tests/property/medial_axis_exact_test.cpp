@@ -68,9 +68,9 @@ void expect_tube_radius(const Complex& axis, double radius, double voxel) {
   EXPECT_LE(furthest, 0.1 * voxel);
 }
 
-class ExactAxes : public testing::TestWithParam<ExactCase> {};
+class SlowExactAxes : public testing::TestWithParam<ExactCase> {};
 
-TEST_P(ExactAxes, AreNextToWhatTheToolWrites) {
+TEST_P(SlowExactAxes, AreNextToWhatTheToolWrites) {
   const ExactCase& known = GetParam();
   const test::Fineness fineness{known.off * known.size / resolution};
   const MedialAxis axis = medial_axis(known.make(60, fineness).solid, {.resolution = resolution});
@@ -94,7 +94,7 @@ TEST_P(ExactAxes, AreNextToWhatTheToolWrites) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Solids, ExactAxes, testing::ValuesIn(test::exact_cases()),
+INSTANTIATE_TEST_SUITE_P(Solids, SlowExactAxes, testing::ValuesIn(test::exact_cases()),
                          [](const testing::TestParamInfo<ExactCase>& info) { return info.param.name; });
 
 }  // namespace
