@@ -431,23 +431,22 @@ bool add_axes(MedialRun& run, const Request& r, const AskedSolid& solid, const M
 /// the grid is moved, and what has the fewest failures is taken.
 void add_on_best_grid(MedialRun& run, const Request& r, const AskedSolid& solid, const MedialAxisOptions& options,
                       const Context& context) {
-  std::optional<MedialRun> best = std::make_optional<MedialRun>();
-  const bool model_passes = add_axes(*best, r, solid, options, context);
+  MedialRun best;
+  const bool model_passes = add_axes(best, r, solid, options, context);
   const bool can_move = model_passes && solid.input.kind == InputKind::mesh;
-  const std::string reason = best->mismatches.empty() ? "" : best->mismatches.front();
+  const std::string reason = best.mismatches.empty() ? "" : best.mismatches.front();
   for (const MovedGrid& grid : moved_grids(options.grid_shift)) {
-    if (!can_move || best->mismatches.empty()) break;
+    if (!can_move || best.mismatches.empty()) break;
     MedialAxisOptions moved = options;
     moved.grid_shift = grid.shift;
-    std::optional<MedialRun> next = std::make_optional<MedialRun>();
-    next->warnings.push_back(grid.as_it_was + reason);
-    const bool is_better =
-        add_axes(*next, r, solid, moved, context) && next->mismatches.size() < best->mismatches.size();
-    if (is_better) best.swap(next);
+    MedialRun next;
+    next.warnings.push_back(grid.as_it_was + reason);
+    const bool is_better = add_axes(next, r, solid, moved, context) && next.mismatches.size() < best.mismatches.size();
+    if (is_better) std::swap(best, next);
     // What was in vain took its time, too.
-    run.phases.insert(run.phases.end(), next->phases.begin(), next->phases.end());
+    run.phases.insert(run.phases.end(), next.phases.begin(), next.phases.end());
   }
-  run.add(std::move(*best));
+  run.add(std::move(best));
 }
 
 void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const LabelSelection& selection,

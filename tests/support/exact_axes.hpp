@@ -343,9 +343,6 @@ struct ExactCase {
   std::string name;
   double size = 0;  ///< of the longest side
   std::function<ExactAxis(double theta, const Fineness& fineness)> make;
-  double off = 0.001;  ///< of facets from what is round, voxels
-  double most = 1.1;   ///< of the axis, voxels
-  double most_of_rims = 1.1;
 };
 
 inline std::vector<ExactCase> exact_cases() {

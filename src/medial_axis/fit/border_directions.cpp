@@ -13,7 +13,7 @@ Vec3d BorderDirections::of_rim(std::uint32_t v) const {
     std::uint32_t from = v;
     for (int n = 0; n < reach; ++n) {
       sum += outwards_of(e) / (1 + n);
-      const std::uint32_t next = other_end(e, from);
+      const std::uint32_t next = other_end(incidence_.edges()[e], from);
       if (!kinds_[next].is_rim()) break;
       const std::uint32_t at = e;
       for (const std::uint32_t other : incidence_.edges_of_vertex()[next]) {
@@ -35,11 +35,10 @@ Vec3d BorderDirections::towards_surface(std::uint32_t v) const {
 }
 
 Vec3d BorderDirections::outwards_of(std::uint32_t e) const {
-  const auto& [a, b] = incidence_.edges()[e];
-  const auto& t = lists_.triangles[incidence_.triangles_of_edge()[e][0]];
-  const std::uint32_t third = t[0] ^ t[1] ^ t[2] ^ a ^ b;
-  const Vec3d& at = lists_.vertices[a].position;
-  const Vec3d along = lists_.vertices[b].position - at;
+  const auto& side = incidence_.edges()[e];
+  const std::uint32_t third = third_corner(lists_.triangles[incidence_.triangles_of_edge()[e][0]], side);
+  const Vec3d& at = lists_.vertices[side[0]].position;
+  const Vec3d along = lists_.vertices[side[1]].position - at;
   const Vec3d in = lists_.vertices[third].position - at;
   const double squared = squared_length(along);
   if (!(squared > 0)) return {};
@@ -53,7 +52,7 @@ Vec3d BorderDirections::of_end(std::uint32_t v, std::size_t triangles) const {
     for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
       const std::size_t count = incidence_.triangles_of_edge()[e].size();
       if (triangles == 0 ? count > 0 : count < triangles) continue;
-      const std::uint32_t other = other_end(e, at);
+      const std::uint32_t other = other_end(incidence_.edges()[e], at);
       if (other != before) return other;
     }
     return at;
@@ -68,11 +67,11 @@ Vec3d BorderDirections::of_end(std::uint32_t v, std::size_t triangles) const {
 bool BorderDirections::comes_back(std::uint32_t v) const {
   constexpr double same_way = 0.95;  // cosine
   const std::uint32_t own = incidence_.edges_of_vertex()[v][0];
-  const std::uint32_t at = other_end(own, v);
+  const std::uint32_t at = other_end(incidence_.edges()[own], v);
   const Vec3d way = lists_.vertices[v].position - lists_.vertices[at].position;
   for (const std::uint32_t e : incidence_.edges_of_vertex()[at]) {
     if (e == own || !incidence_.triangles_of_edge()[e].empty()) continue;
-    const Vec3d other = lists_.vertices[other_end(e, at)].position - lists_.vertices[at].position;
+    const Vec3d other = lists_.vertices[other_end(incidence_.edges()[e], at)].position - lists_.vertices[at].position;
     const bool is_longer =
         squared_length(other) > squared_length(way) || (squared_length(other) == squared_length(way) && e < own);
     if (is_longer && dot(way, other) >= same_way * length(way) * length(other)) return true;

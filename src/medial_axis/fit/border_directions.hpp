@@ -31,10 +31,6 @@ class BorderDirections {
   [[nodiscard]] bool comes_back(std::uint32_t v) const;
 
  private:
-  [[nodiscard]] std::uint32_t other_end(std::uint32_t edge, std::uint32_t v) const {
-    const auto& [a, b] = incidence_.edges()[edge];
-    return a == v ? b : a;
-  }
   /// From a triangle outwards through its side, as long as the side.
   [[nodiscard]] Vec3d outwards_of(std::uint32_t e) const;
 

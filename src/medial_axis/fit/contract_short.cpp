@@ -146,11 +146,12 @@ class ShortEdges {
     if (lists_.rank(a) > lists_.rank(b)) std::swap(a, b);
     const bool is_at_seam =
         lists_.rank(a) > 0 && lists_.rank(a) < ShrinkingLists::on_seam && lists_.rank(b) == 2 * ShrinkingLists::on_seam;
+    if (!is_at_seam) return false;
     bool has_inside = false;
     lists_.cells().for_each_triangle(a, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
       has_inside = has_inside || lists_.rank(p) == 0 || lists_.rank(q) == 0;
     });
-    return is_at_seam && has_inside;
+    return has_inside;
   }
 
   /// @return  whether the edge is gone.
@@ -160,8 +161,9 @@ class ShortEdges {
     if (from == to) return true;
     if (edge.looked > 0 && std::max(lists_.changed(from), lists_.changed(to)) <= edge.looked) return false;
     const double size = length(lists_.position(from) - lists_.position(to));
-    if (size > 2 * limit(from, to, longest(edge.a, edge.b))) return false;
-    if (would_notch(from, to) && longest(edge.a, edge.b) == 0) return false;
+    const double of_its_cells = longest(edge.a, edge.b);
+    if (size > 2 * limit(from, to, of_its_cells)) return false;
+    if (of_its_cells == 0 && would_notch(from, to)) return false;
     // Seams and curves stay before rims, these before the insides of sheets, and there what knows its two walls.
     const auto worth = [&](std::uint32_t v) { return std::pair(lists_.rank(v), lists_.angle(v) > 0); };
     if (std::tuple(worth(from), to) > std::tuple(worth(to), from)) std::swap(from, to);

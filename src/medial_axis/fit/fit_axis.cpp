@@ -46,14 +46,12 @@ class Fitting {
     const double voxel = target_.voxel;
     const TrimLimits limits{target_.theta, thin * voxel, thin_if_round * voxel, whiskers * voxel, beside * voxel};
     trim(lists_, fitter().angles(), limits, context_);
-    merge_curves(lists_, target_.surface, beside * target_.voxel, context_);
-    fitter_.reset();
+    merge();
     return lists_.triangles.size() + lists_.edges.size() != before;
   }
   void bend_curves() {
     fitter().bend_curves();
-    merge_curves(lists_, target_.surface, beside * target_.voxel, context_);
-    fitter_.reset();
+    merge();
   }
   void take_folds_away() {
     unfold(lists_, fitter().incidence(), target_.surface, target_.voxel, context_);
@@ -61,6 +59,10 @@ class Fitting {
   }
 
  private:
+  void merge() {
+    merge_curves(lists_, target_.surface, beside * target_.voxel, context_);
+    fitter_.reset();
+  }
   Fitter& fitter() {
     if (!fitter_) fitter_ = std::make_unique<Fitter>(lists_, target_, not_round_, context_);
     return *fitter_;

@@ -126,7 +126,7 @@ class Fitter {
       std::size_t shown = 0;
       const AxisVertex* nearest = nullptr;
       for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-        const AxisVertex& other = lists_.vertices[other_end(e, v)];
+        const AxisVertex& other = lists_.vertices[other_end(incidence_.edges()[e], v)];
         if (!is_shown(other, 3)) continue;
         ++shown;
         const Vec3d& at = lists_.vertices[v].position;
@@ -149,17 +149,6 @@ class Fitter {
 
  private:
   using Moved = std::optional<AxisVertex>;
-
-  [[nodiscard]] std::uint32_t other_end(std::uint32_t edge, std::uint32_t v) const {
-    const auto& [a, b] = incidence_.edges()[edge];
-    return a == v ? b : a;
-  }
-  /// The corner of a triangle that is not on its side.
-  [[nodiscard]] std::uint32_t third_corner(std::uint32_t triangle, std::uint32_t side) const {
-    const auto& [a, b] = incidence_.edges()[side];
-    const auto& t = lists_.triangles[triangle];
-    return t[0] ^ t[1] ^ t[2] ^ a ^ b;
-  }
 
   // ---- Where vertices go ----
 
@@ -189,7 +178,7 @@ class Fitter {
     const AxisVertex& vertex = lists_.vertices[v];
     std::uint32_t beside = v;
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const std::uint32_t other = other_end(e, v);
+      const std::uint32_t other = other_end(incidence_.edges()[e], v);
       const bool is_of_sheet = kinds_[other].seams + kinds_[other].curves == 0;
       if (!is_of_sheet || !(lists_.vertices[other].separation_angle > 0)) continue;
       const auto off = [&](std::uint32_t u) { return squared_length(lists_.vertices[u].position - vertex.position); };
@@ -264,10 +253,13 @@ class Fitter {
   [[nodiscard]] double least_cosine(std::uint32_t v, const Vec3d& position) const {
     double least = 1;
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
+      const auto& edge = incidence_.edges()[e];
       const auto at = incidence_.triangles_of_edge()[e];
-      least = std::min(least, cosine_of_bend(position, lists_.vertices[other_end(e, v)].position,
-                                             lists_.vertices[third_corner(at[0], e)].position,
-                                             lists_.vertices[third_corner(at[1], e)].position));
+      const auto beside = [&](std::uint32_t t) {
+        return lists_.vertices[third_corner(lists_.triangles[t], edge)].position;
+      };
+      const Vec3d& end = lists_.vertices[other_end(edge, v)].position;
+      least = std::min(least, cosine_of_bend(position, end, beside(at[0]), beside(at[1])));
     }
     return least;
   }
@@ -456,7 +448,7 @@ class Fitter {
   [[nodiscard]] std::uint32_t best_neighbour(std::uint32_t v) const {
     std::uint32_t best = v;
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const std::uint32_t other = other_end(e, v);
+      const std::uint32_t other = other_end(incidence_.edges()[e], v);
       if (lists_.vertices[other].separation_angle > lists_.vertices[best].separation_angle || best == v) best = other;
     }
     return best;
@@ -480,7 +472,7 @@ class Fitter {
     for (std::uint32_t v = 0; v < is_near.size(); ++v) {
       if (!is_asked(v)) continue;
       is_near[v] = 1;
-      for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) is_near[other_end(e, v)] = 1;
+      for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) is_near[other_end(incidence_.edges()[e], v)] = 1;
     }
     parallel_for(context_, is_near.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
       for (std::size_t v = range.begin; v < range.end; ++v) {
@@ -508,7 +500,7 @@ class Fitter {
   [[nodiscard]] std::vector<Footprint> feet_around(std::uint32_t v) const {
     std::vector<Footprint> feet = feet_of(v);
     for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      add_feet(other_end(e, v), feet);
+      add_feet(other_end(incidence_.edges()[e], v), feet);
     }
     for (std::size_t k = 0; k < 6 && incidence_.edges_of_vertex()[v].empty(); ++k) {
       Vec3d beside = lists_.vertices[v].position;

@@ -1,6 +1,7 @@
 // Blum: what vertices of an axis are by their edges. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -8,6 +9,16 @@
 #include "blum/complex/incidence.hpp"
 
 namespace blum {
+
+/// The end of an edge that is not this one.
+inline std::uint32_t other_end(const std::array<std::uint32_t, 2>& edge, std::uint32_t v) {
+  return edge[0] == v ? edge[1] : edge[0];
+}
+/// The corner of a triangle that is not on its side.
+inline std::uint32_t third_corner(const std::array<std::uint32_t, 3>& triangle,
+                                  const std::array<std::uint32_t, 2>& side) {
+  return triangle[0] ^ triangle[1] ^ triangle[2] ^ side[0] ^ side[1];
+}
 
 /// What the edges at a vertex are.
 struct Kind {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "medial_axis/fit/kind.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/solid_paths.hpp"
 
@@ -24,7 +25,6 @@ class CurveMerger {
     for (std::uint32_t e = 0; e < lists.edges.size(); ++e) {
       for (const std::uint32_t v : lists.edges[e]) curves_at_[v].push_back(e);
     }
-    find_sides();
   }
 
   void run() {
@@ -32,6 +32,7 @@ class CurveMerger {
     for (std::uint32_t v = 0; v < curves_at_.size(); ++v) {
       if (curves_at_[v].size() > 1) open.push_back(v);
     }
+    if (!open.empty()) find_sides();
     while (!open.empty()) {
       throw_if_cancelled(context_);
       const std::uint32_t v = open.back();
@@ -40,7 +41,7 @@ class CurveMerger {
         open.pop_back();
         continue;
       }
-      const std::uint32_t end = other_end(pair->shorter, v);
+      const std::uint32_t end = other_end(lists_.edges[pair->shorter], v);
       slide(pair->longer, v, end);
       open.push_back(end);
     }
@@ -64,11 +65,6 @@ class CurveMerger {
   }
 
   [[nodiscard]] const Vec3d& position(std::uint32_t v) const { return lists_.vertices[v].position; }
-  [[nodiscard]] std::uint32_t other_end(std::uint32_t e, std::uint32_t v) const {
-    const auto& [a, b] = lists_.edges[e];
-    return a == v ? b : a;
-  }
-
   [[nodiscard]] std::optional<Pair> pair_at(std::uint32_t v) const {
     for (const std::uint32_t shorter : curves_at_[v]) {
       for (const std::uint32_t longer : curves_at_[v]) {
@@ -80,8 +76,8 @@ class CurveMerger {
 
   [[nodiscard]] bool may_slide(std::uint32_t v, std::uint32_t shorter, std::uint32_t longer) const {
     if (shorter == longer) return false;
-    const std::uint32_t u = other_end(shorter, v);
-    const std::uint32_t w = other_end(longer, v);
+    const std::uint32_t u = other_end(lists_.edges[shorter], v);
+    const std::uint32_t w = other_end(lists_.edges[longer], v);
     const Vec3d way = position(u) - position(v);
     const Vec3d other = position(w) - position(v);
     const double own_length = length(way);
@@ -94,7 +90,7 @@ class CurveMerger {
   }
 
   [[nodiscard]] bool is_joined(std::uint32_t a, std::uint32_t b) const {
-    const auto is_to_b = [&](std::uint32_t e) { return other_end(e, a) == b; };
+    const auto is_to_b = [&](std::uint32_t e) { return other_end(lists_.edges[e], a) == b; };
     if (std::any_of(curves_at_[a].begin(), curves_at_[a].end(), is_to_b)) return true;
     return std::binary_search(sides_.begin(), sides_.end(), Edge{std::min(a, b), std::max(a, b)});
   }

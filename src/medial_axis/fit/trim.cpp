@@ -12,6 +12,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "medial_axis/fit/kind.hpp"
 #include "medial_axis/solid_paths.hpp"
 
 namespace blum {
@@ -22,11 +23,7 @@ class Trimmer {
   Trimmer(AxisLists& lists, const std::vector<double>& angles, const TrimLimits& limits, const Context& context)
       : lists_(lists),
         angles_(angles),
-        theta_(limits.theta),
-        thin_(limits.thin),
-        thin_if_round_(limits.thin_if_round),
-        whiskers_(limits.whiskers),
-        beside_(limits.beside),
+        limits_(limits),
         context_(context),
         incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
         triangles_left_(incidence_.edges().size()),
@@ -88,17 +85,16 @@ class Trimmer {
     const auto& [a, b, c] = corners;
     const bool is_round = std::all_of(corners.begin(), corners.end(),
                                       [&](std::uint32_t v) { return angle(v) > lists_.vertices[v].separation_angle; });
-    const double thin = is_round ? thin_if_round_ : thin_;
+    const double thin = is_round ? limits_.thin_if_round : limits_.thin;
     return length(cross(position(b) - position(a), position(c) - position(a))) <= thin * longest;
   }
 
   /// Whether the end of a curve lies on a sheet, or sticks out of a rim, which goes out to it instead.
   [[nodiscard]] bool is_whisker(std::uint32_t end, std::uint32_t own) const {
     if (is_on_sheet_[end]) return true;
-    const auto& [a, b] = incidence_.edges()[own];
-    const auto at = incidence_.edges_of_vertex()[a == end ? b : a];
+    const auto at = incidence_.edges_of_vertex()[other_end(incidence_.edges()[own], end)];
     const bool is_at_rim = std::any_of(at.begin(), at.end(), [&](std::uint32_t e) { return triangles_left_[e] == 1; });
-    return is_at_rim && length_of(own) <= whiskers_;
+    return is_at_rim && length_of(own) <= limits_.whiskers;
   }
   /// Of vertices that lie on no triangle, those that are next to one.
   void find_what_is_on_sheets() {
@@ -112,12 +108,13 @@ class Trimmer {
     std::vector<Vec3d> places;
     for (const auto& [x, v] : alone) places.push_back(position(v));
     const std::vector<ClosestPoint> closest = closest_points(near, places, {.sign = SignMode::none}, context_);
-    for (std::size_t k = 0; k < alone.size(); ++k) is_on_sheet_[alone[k].second] = closest[k].distance <= beside_;
+    for (std::size_t k = 0; k < alone.size(); ++k)
+      is_on_sheet_[alone[k].second] = closest[k].distance <= limits_.beside;
   }
   /// Those whose boxes are next to any of some vertices, which are sorted along x.
   [[nodiscard]] TriangleMesh triangles_near(const std::vector<std::pair<double, std::uint32_t>>& alone) const {
     TriangleMesh near;
-    const Vec3d reach{beside_, beside_, beside_};
+    const Vec3d reach{limits_.beside, limits_.beside, limits_.beside};
     for (const auto& [a, b, c] : lists_.triangles) {
       const Box3 box{min(min(position(a), position(b)), position(c)) - reach,
                      max(max(position(a), position(b)), position(c)) + reach};
@@ -145,14 +142,14 @@ class Trimmer {
     if (!has_edge_[e] || triangles_left_[e] != 1) return;
     const std::uint32_t t = triangle_left_at(e);
     const double largest = is_covered(t, e) ? 0 : angle_of_triangle(t);
-    if (largest <= theta_) queue_.emplace(largest, 2, e);
+    if (largest <= limits_.theta) queue_.emplace(largest, 2, e);
   }
   void look_at_vertex(std::uint32_t v) {
     if (!has_vertex_[v] || edges_left_[v] != 1) return;
     const std::uint32_t e = edge_left_at(v);
     if (triangles_left_[e] > 0) return;
     const double largest = is_whisker(v, e) ? 0 : angle_of_edge(e);
-    if (largest <= theta_) queue_.emplace(largest, 1, v);
+    if (largest <= limits_.theta) queue_.emplace(largest, 1, v);
   }
 
   void take_triangle_from(std::uint32_t e) {
@@ -208,7 +205,7 @@ class Trimmer {
 
   AxisLists& lists_;
   const std::vector<double>& angles_;
-  double theta_, thin_, thin_if_round_, whiskers_, beside_;
+  TrimLimits limits_;
   const Context& context_;
   Incidence incidence_;
   std::vector<std::uint32_t> triangles_left_, edges_left_;

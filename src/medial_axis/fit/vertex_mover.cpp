@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "blum/core/sort_unique.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/void_points.hpp"
 
@@ -42,8 +43,7 @@ std::vector<std::uint32_t> VertexMover::edges_of(const std::vector<VertexMove>& 
     const auto at = incidence_.edges_of_vertex()[move.vertex];
     edges.insert(edges.end(), at.begin(), at.end());
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  detail::sort_unique(edges);
   return edges;
 }
 

@@ -19,6 +19,7 @@
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/vertex_mover.hpp"
 #include "medial_axis/mesh_surface.hpp"
+#include "support/exact_axes.hpp"
 
 namespace blum {
 namespace {
@@ -78,20 +79,7 @@ TEST(RoundCentre, IsOnTheAxisOfATube) {
 }
 
 TEST(RoundCentre, IsOnTheAxisOfAWideCone) {
-  TriangleMesh cone;
-  constexpr std::uint32_t sides = 400;
-  for (std::uint32_t k = 0; k < sides; ++k) {
-    const double turn = 2 * std::numbers::pi * k / sides;
-    cone.vertices.push_back({std::cos(turn), std::sin(turn), 0});
-  }
-  cone.vertices.push_back({0, 0, 1.2});
-  cone.vertices.push_back({0, 0, 0});
-  for (std::uint32_t k = 0; k < sides; ++k) {
-    const std::uint32_t next = (k + 1) % sides;
-    cone.triangles.push_back({k, next, sides});
-    cone.triangles.push_back({next, k, sides + 1});
-  }
-  const Sample wide(cone);
+  const Sample wide(test::revolved({{0, 0}, {1, 0}, {0, 1.2}}, 400));
   const auto on_axis = round_centre(wide.surface, {0.06, 0.04, 0.8}, limits);
   ASSERT_TRUE(on_axis);
   EXPECT_LE(std::hypot(on_axis->position.x, on_axis->position.y), 0.02 * voxel);
