@@ -10,21 +10,24 @@
 namespace blum {
 
 double VertexMover::make(std::vector<VertexMove> moves) {
+  std::vector<std::uint32_t> changed;
   for (std::uint32_t k = 0; k < moves.size(); ++k) {
     std::swap(lists_.vertices[moves[k].vertex], moves[k].other);
     move_of_[moves[k].vertex] = k + 1;
+    changed.push_back(moves[k].vertex);
   }
-  const std::vector<std::uint32_t> edges = edges_of(moves);
-  for (bool is_changed = true; is_changed;) {
+  // What goes back may let edges beside it leave the solid.
+  while (!changed.empty()) {
+    const std::vector<std::uint32_t> edges = edges_of(changed);
     const std::vector<std::uint8_t> leaves = which_leave(edges, moves);
-    is_changed = false;
+    changed.clear();
     for (std::size_t k = 0; k < edges.size(); ++k) {
       if (leaves[k] == 0) continue;
       for (const std::uint32_t v : incidence_.edges()[edges[k]]) {
         if (move_of_[v] == 0) continue;
         lists_.vertices[v] = moves[move_of_[v] - 1].other;
         move_of_[v] = 0;
-        is_changed = true;
+        changed.push_back(v);
       }
     }
   }
@@ -37,11 +40,17 @@ double VertexMover::make(std::vector<VertexMove> moves) {
   return furthest;
 }
 
-std::vector<std::uint32_t> VertexMover::edges_of(const std::vector<VertexMove>& moves) const {
+/// The edges that which_leave() may answer otherwise for once some vertices are elsewhere.
+std::vector<std::uint32_t> VertexMover::edges_of(const std::vector<std::uint32_t>& vertices) const {
   std::vector<std::uint32_t> edges;
-  for (const VertexMove& move : moves) {
-    const auto at = incidence_.edges_of_vertex()[move.vertex];
+  for (const std::uint32_t v : vertices) {
+    const auto at = incidence_.edges_of_vertex()[v];
     edges.insert(edges.end(), at.begin(), at.end());
+    if (surface_.voids().empty()) continue;
+    for (const std::uint32_t t : incidence_.triangles_of_vertex()[v]) {
+      const auto& sides = incidence_.sides()[t];
+      edges.insert(edges.end(), sides.begin(), sides.end());
+    }
   }
   detail::sort_unique(edges);
   return edges;

@@ -59,7 +59,7 @@ class VertexMover {
   double make(std::vector<VertexMove> moves);
 
  private:
-  [[nodiscard]] std::vector<std::uint32_t> edges_of(const std::vector<VertexMove>& moves) const;
+  [[nodiscard]] std::vector<std::uint32_t> edges_of(const std::vector<std::uint32_t>& vertices) const;
   [[nodiscard]] const AxisVertex& before(std::uint32_t v, const std::vector<VertexMove>& moves) const;
   [[nodiscard]] std::vector<std::uint8_t> which_leave(const std::vector<std::uint32_t>& edges,
                                                       const std::vector<VertexMove>& moves) const;
