@@ -40,7 +40,7 @@ class Contractor {
       for (const Pair& point : points) {
         const Pair now = ordered(now_at(point[0]), now_at(point[1]));
         if (now[0] == now[1]) continue;
-        if (cells_.may_contract(now[1], now[0])) {
+        if (cells_.may_contract(now[1], now[0], scratch_)) {
           contract(now);
         } else {
           left.push_back(now);
@@ -90,6 +90,7 @@ class Contractor {
 
   Complex& axis_;
   ShrinkingComplex cells_;
+  LinkScratch scratch_;
   std::vector<std::uint32_t> merged_into_;
 };
 

@@ -164,7 +164,7 @@ class Decimator {
     std::sort(targets.begin(), targets.end());
     for (const auto& [order, to] : targets) {
       const std::optional<Candidate> moved = moved_to(v, to, limit);
-      if (moved && cells_.may_contract(v, to)) return moved;
+      if (moved && cells_.may_contract(v, to, scratch_)) return moved;
     }
     return std::nullopt;
   }
@@ -296,6 +296,7 @@ class Decimator {
   const Context& context_;
   std::vector<std::array<std::uint32_t, 2>> borders_;
   ShrinkingComplex cells_;
+  LinkScratch scratch_;
   std::vector<double> of_triangle_, of_edge_;  ///< how far they may be from where they were at first
   std::vector<float> angle_;
   std::vector<bool> is_waiting_;  ///< something around it changed since it was looked at

@@ -1,5 +1,7 @@
 #include "medial_axis/shrinking_complex.hpp"
 
+#include <algorithm>
+
 namespace blum {
 
 ShrinkingComplex::ShrinkingComplex(const ComplexView& complex)
@@ -11,10 +13,7 @@ ShrinkingComplex::ShrinkingComplex(const ComplexView& complex)
       first_corner_(complex.vertex_count, none),
       next_corner_(3 * triangles_.size(), none),
       first_end_(complex.vertex_count, none),
-      next_end_(2 * edges_.size(), none),
-      linked_(complex.vertex_count, 0),
-      linked_to_edge_(complex.vertex_count, 0),
-      seen_(complex.vertex_count, 0) {
+      next_end_(2 * edges_.size(), none) {
   for (std::uint32_t c = 0; c < next_corner_.size(); ++c) {
     std::uint32_t& first = first_corner_[triangles_[c / 3][c % 3]];
     next_corner_[c] = first;
@@ -35,25 +34,30 @@ bool ShrinkingComplex::has_triangle_of(std::uint32_t u, std::uint32_t x, std::ui
   return found;
 }
 
-bool ShrinkingComplex::may_contract(std::uint32_t from, std::uint32_t to) {
-  ++look_;
-  bool holds = true;
+bool ShrinkingComplex::may_contract(std::uint32_t from, std::uint32_t to, LinkScratch& scratch) const {
+  auto& [linked, linked_to_edge] = scratch;
+  linked.clear();
+  linked_to_edge.clear();
   for_each_triangle(from, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
-    linked_[p] = linked_[q] = look_;
-    if (p != to && q != to) return;
-    const std::uint32_t third = p == to ? q : p;
-    holds = holds && linked_to_edge_[third] != look_;  // twice the same triangle
-    linked_to_edge_[third] = look_;
+    linked.insert(linked.end(), {p, q});
+    if (p == to || q == to) linked_to_edge.push_back(p == to ? q : p);
   });
-  for_each_edge(from, [&](std::uint32_t, std::uint32_t other) { linked_[other] = look_; });
-  const auto is_of_edge = [&](std::uint32_t v) { return linked_to_edge_[v] == look_; };
+  for_each_edge(from, [&](std::uint32_t, std::uint32_t other) { linked.push_back(other); });
+  std::sort(linked.begin(), linked.end());
+  std::sort(linked_to_edge.begin(), linked_to_edge.end());
+  const bool is_twice =
+      std::adjacent_find(linked_to_edge.begin(), linked_to_edge.end()) != linked_to_edge.end();  // the same triangle
+  const auto is_of_edge = [&](std::uint32_t v) {
+    return std::binary_search(linked_to_edge.begin(), linked_to_edge.end(), v);
+  };
+  bool holds = !is_twice;
   const auto look_at = [&](std::uint32_t v) {
-    if (v != from && linked_[v] == look_ && !is_of_edge(v)) holds = false;
+    if (holds && v != from && !is_of_edge(v)) holds = !std::binary_search(linked.begin(), linked.end(), v);
   };
   for_each_triangle(to, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
     look_at(p);
     look_at(q);
-    if (holds && p != from && q != from && is_of_edge(p) && is_of_edge(q) && has_triangle_of(from, p, q)) holds = false;
+    if (holds && p != from && q != from && is_of_edge(p) && is_of_edge(q)) holds = !has_triangle_of(from, p, q);
   });
   for_each_edge(to, [&](std::uint32_t, std::uint32_t other) { look_at(other); });
   return holds;

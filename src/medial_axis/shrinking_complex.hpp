@@ -11,6 +11,12 @@
 
 namespace blum {
 
+/// What is linked to the ends of an edge that is looked at, kept so that no new memory is needed each time: one per
+/// thread.
+struct LinkScratch {
+  std::vector<std::uint32_t> linked, linked_to_edge;
+};
+
 /// Edges and triangles of which some are gone, and which of those left are at each vertex. Sides of triangles need not
 /// be listed as edges.
 class ShrinkingComplex {
@@ -41,7 +47,8 @@ class ShrinkingComplex {
   /// to the edge (the link condition; Dey, Edelsbrunner, Guha, Nekhayev, "Topology preserving edge contraction", 1999;
   /// Attali, Lieutier, Salinas, "Efficient data structure for representing and simplifying simplicial complexes in high
   /// dimensions", 2012).
-  [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to);
+  /// Cost: near-linear in the cells of both ends. Any number of threads may look while nothing is contracted.
+  [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to, LinkScratch& scratch) const;
 
   /// A triangle that went, and its corner that was no end of the edge.
   struct Gone {
@@ -70,9 +77,6 @@ class ShrinkingComplex {
   std::vector<bool> is_edge_gone_, is_triangle_gone_, is_vertex_gone_;
   std::vector<std::uint32_t> first_corner_, next_corner_;  ///< corners are 3 * triangle + 0, 1, 2
   std::vector<std::uint32_t> first_end_, next_end_;        ///< ends are 2 * edge + 0, 1
-  /// Which look found a vertex linked to an end, linked to the edge, and looked at.
-  std::vector<std::uint32_t> linked_, linked_to_edge_, seen_;
-  std::uint32_t look_ = 0;
   std::vector<Gone> gone_;
 };
 

@@ -11,6 +11,7 @@
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
+#include "medial_axis/fit/take_in_batches.hpp"
 
 namespace blum {
 namespace {
@@ -50,7 +51,11 @@ class ShortEdges {
  public:
   ShortEdges(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
              const ShortLengths& lengths, const Context& context)
-      : lists_(lists, incidence, surface, 1), voxel_(voxel), lengths_(lengths), context_(context) {
+      : lists_(lists, incidence, surface, 1),
+        scratch_(static_cast<std::size_t>(thread_count(context))),
+        voxel_(voxel),
+        lengths_(lengths),
+        context_(context) {
     is_on_curve_.assign(lists.vertices.size(), false);
     for (const std::uint32_t e : incidence.edge_of_listed()) {
       if (!incidence.triangles_of_edge()[e].empty()) continue;
@@ -58,11 +63,7 @@ class ShortEdges {
     }
     if (lengths.of_crumbs > 0) crumbs_ = edges_of_crumbs(lists_.incidence());
     if (lengths.of_slivers > 0) find_slivers(lists.triangles);
-    for (const auto& [a, b] : lists_.incidence().edges()) {
-      const double size = length(lists_.position(a) - lists_.position(b));
-      if (size <= limit(a, b, longest(a, b))) short_.push_back({size, a, b});
-    }
-    std::sort(short_.begin(), short_.end());
+    find_short();
   }
 
   /// @return  whether any edge was contracted.
@@ -70,14 +71,20 @@ class ShortEdges {
     const std::size_t all = short_.size();
     // What one contraction forbids another one may allow.
     for (bool is_changed = true; is_changed && !short_.empty();) {
-      throw_if_cancelled(context_);
       const std::size_t count = short_.size();
       std::vector<ShortEdge> left;
-      for (ShortEdge& edge : short_) {
-        if (take(edge)) continue;
-        edge.looked = lists_.contractions();
-        left.push_back(edge);
-      }
+      take_in_batches(
+          context_, short_.size(), lists_,
+          [&](std::size_t k, int worker) { return step_of(short_[k], scratch_[static_cast<std::size_t>(worker)]); },
+          [&](std::size_t k, const ContractionStep& step) {
+            if (step.is_gone) return;
+            if (step.contraction) {
+              lists_.contract(step.contraction->from, step.contraction->to);
+              return;
+            }
+            left.push_back(short_[k]);
+            left.back().looked = lists_.contractions();
+          });
       short_ = std::move(left);
       is_changed = short_.size() < count;
     }
@@ -96,6 +103,21 @@ class ShortEdges {
       return std::tie(length, a, b) < std::tie(other.length, other.a, other.b);
     }
   };
+
+  void find_short() {
+    constexpr std::size_t grain = 4096;
+    const auto& edges = lists_.incidence().edges();
+    std::vector<std::vector<ShortEdge>> found((edges.size() + grain - 1) / grain);
+    parallel_for(context_, edges.size(), grain, {}, [&](const WorkRange& range) {
+      for (std::size_t e = range.begin; e < range.end; ++e) {
+        const auto& [a, b] = edges[e];
+        const double size = length(lists_.position(a) - lists_.position(b));
+        if (size <= limit(a, b, longest(a, b))) found[range.begin / grain].push_back({size, a, b});
+      }
+    });
+    for (const std::vector<ShortEdge>& part : found) short_.insert(short_.end(), part.begin(), part.end());
+    std::sort(short_.begin(), short_.end());
+  }
 
   void find_slivers(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
     for (const auto& t : triangles) {
@@ -154,28 +176,30 @@ class ShortEdges {
     return has_inside;
   }
 
-  /// @return  whether the edge is gone.
-  bool take(const ShortEdge& edge) {
+  /// What is to be done with an edge.
+  [[nodiscard]] ContractionStep step_of(const ShortEdge& edge, LinkScratch& scratch) const {
     std::uint32_t from = lists_.now(edge.a);
     std::uint32_t to = lists_.now(edge.b);
-    if (from == to) return true;
-    if (edge.looked > 0 && std::max(lists_.changed(from), lists_.changed(to)) <= edge.looked) return false;
+    if (from == to) return {.is_gone = true};
+    ContractionStep step{.near = {from, to}};
+    if (edge.looked > 0 && std::max(lists_.changed(from), lists_.changed(to)) <= edge.looked) return step;
     const double size = length(lists_.position(from) - lists_.position(to));
     const double of_its_cells = longest(edge.a, edge.b);
-    if (size > 2 * limit(from, to, of_its_cells)) return false;
-    if (of_its_cells == 0 && would_notch(from, to)) return false;
+    if (size > 2 * limit(from, to, of_its_cells)) return step;
+    if (of_its_cells == 0 && would_notch(from, to)) return step;
     // Seams and curves stay before rims, these before the insides of sheets, and there what knows its two walls.
     const auto worth = [&](std::uint32_t v) { return std::pair(lists_.rank(v), lists_.angle(v) > 0); };
     if (std::tuple(worth(from), to) > std::tuple(worth(to), from)) std::swap(from, to);
-    if (!lists_.may_contract(from, to)) {
+    if (!lists_.may_contract(from, to, scratch)) {
       std::swap(from, to);
-      if (is_at_corner(from, to) || !lists_.may_contract(from, to)) return false;
+      if (is_at_corner(from, to) || !lists_.may_contract(from, to, scratch)) return step;
     }
-    lists_.contract(from, to);
-    return true;
+    step.contraction = {from, to};
+    return step;
   }
 
   ShrinkingLists lists_;
+  std::vector<LinkScratch> scratch_;  ///< of each thread
   double voxel_;
   ShortLengths lengths_;
   std::vector<bool> is_on_curve_;

@@ -34,8 +34,8 @@ std::uint32_t ShrinkingLists::now(std::uint32_t v) const {
   return v;
 }
 
-bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to) {
-  return cells_.may_contract(from, to) && stays_in_solid(from, to);
+bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to, LinkScratch& scratch) const {
+  return cells_.may_contract(from, to, scratch) && stays_in_solid(from, to);
 }
 
 bool ShrinkingLists::stays_in_solid(std::uint32_t from, std::uint32_t to) const {

@@ -37,8 +37,9 @@ class ShrinkingLists {
   /// The vertex that another one was contracted to, or itself.
   [[nodiscard]] std::uint32_t now(std::uint32_t v) const;
 
-  /// Whether the edge between two vertices may be contracted to the second one.
-  [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to);
+  /// Whether the edge between two vertices may be contracted to the second one. Any number of threads may look while
+  /// nothing is contracted.
+  [[nodiscard]] bool may_contract(std::uint32_t from, std::uint32_t to, LinkScratch& scratch) const;
   void contract(std::uint32_t from, std::uint32_t to);
 
   /// 1, and one more for each contraction.

@@ -12,6 +12,7 @@
 #include "blum/core/sort_unique.hpp"
 #include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
+#include "medial_axis/fit/take_in_batches.hpp"
 
 namespace blum {
 namespace {
@@ -28,22 +29,23 @@ constexpr int reach = 4;
 class Unfolder {
  public:
   Unfolder(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel, const Context& context)
-      : lists_(lists, incidence, surface, reach), most_moved_(most_moved * voxel), context_(context) {}
+      : lists_(lists, incidence, surface, reach),
+        most_moved_(most_moved * voxel),
+        context_(context),
+        scratch_(static_cast<std::size_t>(thread_count(context))) {}
 
   void run() {
     looked_.assign(lists_.incidence().edges().size(), 0);
     for (int round = 0; round < most_rounds; ++round) {
-      throw_if_cancelled(context_);
+      const std::vector<std::uint32_t> folded = folded_edges();
       bool is_changed = false;
-      const auto& edges = lists_.incidence().edges();
-      for (std::uint32_t e = 0; e < edges.size(); ++e) {
-        const std::uint32_t p = lists_.now(edges[e][0]);
-        const std::uint32_t q = lists_.now(edges[e][1]);
-        if (p == q || stays_as_it_was(e, p, q)) continue;
-        const bool is_unfolded = is_folded_at(p, q) && unfold_at(p, q);
-        is_changed = is_changed || is_unfolded;
-        looked_[e] = is_unfolded ? 0 : lists_.contractions();
-      }
+      take_in_batches(
+          context_, folded.size(), lists_, [&](std::size_t k, int worker) { return step_of(folded[k], worker); },
+          [&](std::size_t k, const ContractionStep& step) {
+            if (step.contraction) lists_.contract(step.contraction->from, step.contraction->to);
+            is_changed = is_changed || step.contraction;
+            looked_[folded[k]] = step.contraction ? 0 : lists_.contractions();
+          });
       if (!is_changed) break;
     }
     lists_.write();
@@ -61,6 +63,44 @@ class Unfolder {
     std::size_t fixed_folds = 0;                        ///< at these
     std::vector<std::array<std::uint32_t, 2>> corners;  ///< the other two, of the triangles that have it
   };
+
+  /// Of one thread, kept so that no new memory is needed each time.
+  struct Scratch {
+    LinkScratch links;
+    std::vector<Side> moved, at_edge;  ///< of folds()
+  };
+
+  /// The edges where a sheet is folded now, but for those around which nothing has changed since they were looked at in
+  /// vain: in an order in which few are next to those right before.
+  [[nodiscard]] std::vector<std::uint32_t> folded_edges() {
+    constexpr std::size_t grain = 4096;
+    const auto& edges = lists_.incidence().edges();
+    std::vector<std::vector<std::uint32_t>> found((edges.size() + grain - 1) / grain);
+    parallel_for(context_, edges.size(), grain, {}, [&](const WorkRange& range) {
+      for (std::size_t e = range.begin; e < range.end; ++e) {
+        const std::uint32_t p = lists_.now(edges[e][0]);
+        const std::uint32_t q = lists_.now(edges[e][1]);
+        if (p == q || stays_as_it_was(e, p, q)) continue;
+        looked_[e] = lists_.contractions();
+        if (is_folded_at(p, q)) found[range.begin / grain].push_back(static_cast<std::uint32_t>(e));
+      }
+    });
+    std::vector<std::uint32_t> all;
+    for (const std::vector<std::uint32_t>& part : found) all.insert(all.end(), part.begin(), part.end());
+    // Multiples of the golden ratio, of which consecutive ones are far apart.
+    const auto place = [](std::uint32_t e) { return e * 2654435769U; };
+    std::sort(all.begin(), all.end(), [&](std::uint32_t e, std::uint32_t f) { return place(e) < place(f); });
+    return all;
+  }
+
+  [[nodiscard]] ContractionStep step_of(std::uint32_t e, int worker) {
+    const std::uint32_t p = lists_.now(lists_.incidence().edges()[e][0]);
+    const std::uint32_t q = lists_.now(lists_.incidence().edges()[e][1]);
+    if (p == q) return {.is_gone = true};
+    ContractionStep step{.near = {p, q}};
+    if (is_folded_at(p, q)) step.contraction = unfolded_by(p, q, scratch_[static_cast<std::size_t>(worker)]);
+    return step;
+  }
 
   /// Whether two triangles at an edge lie one over the other; one without area bends nothing.
   [[nodiscard]] bool is_folded(const std::array<std::uint32_t, 2>& edge, std::uint32_t p, std::uint32_t q) const {
@@ -107,22 +147,23 @@ class Unfolder {
     return out;
   }
   /// Folds between the triangles around a vertex, were it at another one.
-  [[nodiscard]] std::size_t folds(const Around& around, std::uint32_t to) {
-    moved_.clear();
+  [[nodiscard]] std::size_t folds(const Around& around, std::uint32_t to, Scratch& scratch) const {
+    std::vector<Side>& moved = scratch.moved;
+    moved.clear();
     for (const auto& [p, q] : around.corners) {
       if (p == to || q == to) continue;
-      moved_.insert(moved_.end(), {side_of(p, q, to), side_of(p, to, q), side_of(q, to, p)});
+      moved.insert(moved.end(), {side_of(p, q, to), side_of(p, to, q), side_of(q, to, p)});
     }
-    std::sort(moved_.begin(), moved_.end());
+    std::sort(moved.begin(), moved.end());
     std::size_t count = around.fixed_folds;
-    for_each_edge(moved_, [&](std::span<const Side> at) {
+    for_each_edge(moved, [&](std::span<const Side> at) {
       const auto [first, last] = std::equal_range(around.fixed.begin(), around.fixed.end(), at[0]);
       const std::span<const Side> beside(first, last);
       if (beside.size() > 2) return;  // folded neither before nor after
-      at_edge_.assign(beside.begin(), beside.end());
-      count -= is_folded(at_edge_) ? 1 : 0;
-      at_edge_.insert(at_edge_.end(), at.begin(), at.end());
-      count += is_folded(at_edge_) ? 1 : 0;
+      scratch.at_edge.assign(beside.begin(), beside.end());
+      count -= is_folded(scratch.at_edge) ? 1 : 0;
+      scratch.at_edge.insert(scratch.at_edge.end(), at.begin(), at.end());
+      count += is_folded(scratch.at_edge) ? 1 : 0;
     });
     return count;
   }
@@ -166,34 +207,33 @@ class Unfolder {
     return rank == 2 ? count == 1 : rank == 2 * ShrinkingLists::on_seam && count > 2;
   }
 
-  /// Contracts what takes most folds away around a folded edge. @return  whether anything does.
-  bool unfold_at(std::uint32_t a, std::uint32_t b) {
+  /// The contraction that takes most folds away around a folded edge, if any does.
+  [[nodiscard]] std::optional<Contraction> unfolded_by(std::uint32_t a, std::uint32_t b, Scratch& scratch) const {
     // Less folds, then a shorter edge.
-    using Contraction = std::tuple<std::ptrdiff_t, double, std::uint32_t, std::uint32_t>;
-    std::optional<Contraction> best;
+    using Found = std::tuple<std::ptrdiff_t, double, std::uint32_t, std::uint32_t>;
+    std::optional<Found> best;
     std::vector<std::uint32_t> corners{a, b};
     lists_.cells().for_each_triangle(a, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
       if (p == b || q == b) corners.push_back(p == b ? q : p);
     });
     for (const std::uint32_t from : corners) {
       const Around triangles = around(from);
-      const auto before = static_cast<std::ptrdiff_t>(folds(triangles, from));
+      const auto before = static_cast<std::ptrdiff_t>(folds(triangles, from, scratch));
       for (const std::uint32_t to : neighbours(from)) {
         const double size = length(lists_.position(from) - lists_.position(to));
         if (size > most_moved_ || !keeps_borders(from, to)) continue;
-        const auto after = static_cast<std::ptrdiff_t>(folds(triangles, to));
-        const Contraction found{after - before, size, from, to};
+        const auto after = static_cast<std::ptrdiff_t>(folds(triangles, to, scratch));
+        const Found found{after - before, size, from, to};
         if (after >= before || (best && *best <= found)) continue;
-        if (lists_.may_contract(from, to)) best = found;
+        if (lists_.may_contract(from, to, scratch.links)) best = found;
       }
     }
-    if (!best) return false;
-    lists_.contract(std::get<2>(*best), std::get<3>(*best));
-    return true;
+    if (!best) return std::nullopt;
+    return Contraction{std::get<2>(*best), std::get<3>(*best)};
   }
 
   /// Whether nothing near an edge has changed since it was looked at in vain.
-  [[nodiscard]] bool stays_as_it_was(std::uint32_t e, std::uint32_t p, std::uint32_t q) const {
+  [[nodiscard]] bool stays_as_it_was(std::size_t e, std::uint32_t p, std::uint32_t q) const {
     return looked_[e] > 0 && std::max(lists_.changed(p), lists_.changed(q)) <= looked_[e];
   }
   [[nodiscard]] std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
@@ -209,7 +249,7 @@ class Unfolder {
   ShrinkingLists lists_;
   double most_moved_;
   const Context& context_;
-  std::vector<Side> moved_, at_edge_;  ///< of folds(), kept so that no new memory is needed each time
+  std::vector<Scratch> scratch_;       ///< of each thread
   std::vector<std::uint32_t> looked_;  ///< at each edge of the lists, in vain, after so many contractions; or 0
 };
 
