@@ -4,11 +4,14 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
+
+#include "blum/core/parallel.hpp"
 
 namespace blum {
 namespace {
 
-constexpr std::size_t steps_between_looks = 65536;
+constexpr std::size_t vertices_per_range = 4096;
 
 /// For each of `count` cells the indices of the things that name it, rising.
 template <std::size_t n>
@@ -39,6 +42,35 @@ void for_each_pair(const ComplexView& complex, const Use& use) {
   }
 }
 
+/// The pairs of vertices that listed edges and sides of triangles join, of each smaller vertex together.
+struct VertexPairs {
+  std::vector<std::size_t> first;    ///< of each vertex, and the end
+  std::vector<std::uint64_t> pairs;  ///< the larger vertex in the upper half, then the number: they sort by these
+  std::uint32_t listed = 0;          ///< so many numbers are of listed edges
+
+  explicit VertexPairs(const ComplexView& complex)
+      : first(complex.vertex_count + 1, 0), listed(static_cast<std::uint32_t>(complex.edges.size())) {
+    for_each_pair(complex, [&](std::uint32_t a, std::uint32_t /*b*/, std::uint32_t) { ++first[a + std::size_t{1}]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    pairs.resize(first.back());
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for_each_pair(complex, [&](std::uint32_t a, std::uint32_t b, std::uint32_t number) {
+      pairs[next[a]++] = std::uint64_t{b} << 32U | number;
+    });
+  }
+
+  void sort(std::size_t a) {
+    std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first[a]),
+              pairs.begin() + static_cast<std::ptrdiff_t>(first[a + 1]));
+  }
+  [[nodiscard]] std::uint32_t larger(std::size_t k) const { return static_cast<std::uint32_t>(pairs[k] >> 32U); }
+  [[nodiscard]] std::uint32_t number(std::size_t k) const { return static_cast<std::uint32_t>(pairs[k]); }
+  /// Of sorted ones, whether a pair is the first one of its two vertices. @param a  the smaller one.
+  [[nodiscard]] bool is_new_edge(std::size_t k, std::size_t a) const {
+    return k == first[a] || larger(k) != larger(k - 1);
+  }
+};
+
 }  // namespace
 
 Incidence::Incidence(const ComplexView& complex, const Context& context) {
@@ -50,51 +82,60 @@ Incidence::Incidence(const ComplexView& complex, const Context& context) {
   }
   throw_if_cancelled(context);
   find_edges(complex, context);
-  edges_of_vertex_ = rows_of<2>(edges_, complex.vertex_count);
-  triangles_of_vertex_ = rows_of<3>(complex.triangles, complex.vertex_count);
+  parallel_for(context, 2, 1, {}, [&](const WorkRange& range) {
+    if (range.begin == 0) edges_of_vertex_ = rows_of<2>(edges_, complex.vertex_count);
+    if (range.end == 2) triangles_of_vertex_ = rows_of<3>(complex.triangles, complex.vertex_count);
+  });
 }
 
-/// Sorts the pairs by their smaller vertex in one pass, and then those of each vertex.
+/// Ranges of vertices sort and count their pairs, and then write edges where those of the ranges before end.
 void Incidence::find_edges(const ComplexView& complex, const Context& context) {
-  std::vector<std::size_t> first(complex.vertex_count + 1, 0);
-  for_each_pair(complex, [&](std::uint32_t a, std::uint32_t /*b*/, std::uint32_t) { ++first[a + std::size_t{1}]; });
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  // The larger vertex in the upper half, so that pairs sort by it and then by number.
-  std::vector<std::uint64_t> pairs(first.back());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for_each_pair(complex, [&](std::uint32_t a, std::uint32_t b, std::uint32_t number) {
-    pairs[next[a]++] = std::uint64_t{b} << 32U | number;
-  });
-  throw_if_cancelled(context);
-  const auto listed = static_cast<std::uint32_t>(complex.edges.size());
-  edge_of_listed_.resize(listed);
-  sides_.resize(complex.triangles.size());
-  std::vector<std::size_t> first_triangle;
-  std::vector<std::uint32_t> triangles;
-  triangles.reserve(3 * sides_.size());
-  for (std::uint32_t a = 0; a < complex.vertex_count; ++a) {
-    if (a % steps_between_looks == 0) throw_if_cancelled(context);
-    const auto begin = pairs.begin() + static_cast<std::ptrdiff_t>(first[a]);
-    const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(first[a + std::size_t{1}]);
-    std::sort(begin, end);
-    for (auto pair = begin; pair != end; ++pair) {
-      const auto b = static_cast<std::uint32_t>(*pair >> 32U);
-      if (pair == begin || edges_.back()[1] != b) {
-        edges_.push_back({a, b});
-        first_triangle.push_back(triangles.size());
-      }
-      const auto edge = static_cast<std::uint32_t>(edges_.size() - 1);
-      const auto number = static_cast<std::uint32_t>(*pair);
-      if (number < listed) {
-        edge_of_listed_[number] = edge;
-      } else {
-        const std::uint32_t side = number - listed;
-        sides_[side / 3][side % 3] = edge;
-        triangles.push_back(side / 3);
+  VertexPairs pairs(complex);
+  const std::size_t ranges = (complex.vertex_count + vertices_per_range - 1) / vertices_per_range;
+  std::vector<std::size_t> first_edge(ranges + 1, 0);
+  std::vector<std::size_t> first_side(ranges + 1, 0);
+  parallel_for(context, complex.vertex_count, vertices_per_range, {}, [&](const WorkRange& range) {
+    std::size_t edges = 0;
+    std::size_t sides = 0;
+    for (std::size_t a = range.begin; a < range.end; ++a) {
+      pairs.sort(a);
+      for (std::size_t k = pairs.first[a]; k < pairs.first[a + 1]; ++k) {
+        edges += pairs.is_new_edge(k, a) ? 1 : 0;
+        sides += pairs.number(k) >= pairs.listed ? 1 : 0;
       }
     }
-  }
-  first_triangle.push_back(triangles.size());
+    first_edge[range.begin / vertices_per_range + 1] = edges;
+    first_side[range.begin / vertices_per_range + 1] = sides;
+  });
+  std::partial_sum(first_edge.begin(), first_edge.end(), first_edge.begin());
+  std::partial_sum(first_side.begin(), first_side.end(), first_side.begin());
+
+  edges_.resize(first_edge.back());
+  edge_of_listed_.resize(pairs.listed);
+  sides_.resize(complex.triangles.size());
+  std::vector<std::size_t> first_triangle(edges_.size() + 1, first_side.back());
+  std::vector<std::uint32_t> triangles(first_side.back());
+  parallel_for(context, complex.vertex_count, vertices_per_range, {}, [&](const WorkRange& range) {
+    std::size_t next_edge = first_edge[range.begin / vertices_per_range];
+    std::size_t next_side = first_side[range.begin / vertices_per_range];
+    for (std::size_t a = range.begin; a < range.end; ++a) {
+      for (std::size_t k = pairs.first[a]; k < pairs.first[a + 1]; ++k) {
+        if (pairs.is_new_edge(k, a)) {
+          edges_[next_edge] = {static_cast<std::uint32_t>(a), pairs.larger(k)};
+          first_triangle[next_edge++] = next_side;
+        }
+        const auto edge = static_cast<std::uint32_t>(next_edge - 1);
+        const std::uint32_t number = pairs.number(k);
+        if (number < pairs.listed) {
+          edge_of_listed_[number] = edge;
+        } else {
+          const std::uint32_t side = number - pairs.listed;
+          sides_[side / 3][side % 3] = edge;
+          triangles[next_side++] = side / 3;
+        }
+      }
+    }
+  });
   triangles_of_edge_ = {std::move(first_triangle), std::move(triangles)};
 }
 

@@ -14,6 +14,7 @@
 #include "blum/complex/incidence.hpp"
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
 #include "medial_axis/fan.hpp"
 #include "medial_axis/shrinking_complex.hpp"
 
@@ -21,7 +22,7 @@ namespace blum {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffU;
-constexpr std::size_t steps_between_looks = std::size_t{1} << 14U;
+constexpr std::size_t most_in_batch = 256;
 /// What goes first: vertices that move sheets by these parts of the tolerance.
 constexpr std::array levels{1.0 / 256, 1.0 / 16, 1.0 / 4, 0.8};
 /// At each step sheets may move by this part of the least radius nearby; by the second one of the tolerance anyway:
@@ -59,12 +60,13 @@ class Decimator {
         of_triangle_(axis.triangles.size(), 0),
         of_edge_(borders_.size(), 0),
         angle_(view_.triangle_angle.begin(), view_.triangle_angle.end()),
-        is_waiting_(axis.positions.size(), true),
-        round_of_(axis.positions.size(), 0) {}
+        is_waiting_(axis.positions.size(), 1),
+        touched_at_(axis.positions.size(), 0),
+        looks_(most_in_batch) {}
 
   DecimatedAxis run() {
     for (const double level : levels) {
-      std::fill(is_waiting_.begin(), is_waiting_.end(), true);
+      std::fill(is_waiting_.begin(), is_waiting_.end(), 1);
       while (sweep(level * tolerance_) > 0) {
       }
     }
@@ -77,42 +79,96 @@ class Decimator {
     double moved = 0;
     double along = 0;  ///< how far the border through the vertex would be from where it was at first
   };
+  struct Side {
+    std::uint32_t triangle;
+    std::array<std::uint32_t, 2> ends;
+    Side(std::uint32_t t, std::uint32_t p, std::uint32_t q) : triangle(t), ends{p, q} {}
+  };
+  /// What is around a vertex that is looked at. Kept, so that no new memory is needed each time.
+  struct Look {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> chain;  ///< borders, and their other ends
+    std::vector<Side> sides;                                     ///< triangles that no fan has yet
+    std::vector<Fan> fans;
+    std::size_t fan_count = 0;
+    std::vector<AxisPoint> ring;
+    std::vector<std::pair<double, std::uint32_t>> targets;
+    LinkScratch links;
+    std::optional<Candidate> candidate;
+  };
 
   [[nodiscard]] AxisPoint point(std::uint32_t v) const { return {axis_.positions[v], view_.radius[v]}; }
 
-  /// Takes out vertices that are not next to one taken out before, once over all. @return  how many went.
+  /// Takes out vertices that are not next to one taken out before, once over all. All threads look at those of a batch
+  /// as they are before any of it goes; what something goes next to is looked at again. The order, and so the result,
+  /// does not depend on the threads: those of a batch are far apart in memory, and next to those of the batch before.
+  /// @return  how many went.
   std::size_t sweep(double limit) {
-    std::size_t gone = 0;
-    ++round_;
-    for (std::uint32_t v = 0; v < is_waiting_.size(); ++v) {
-      if (++steps_ % steps_between_looks == 0) throw_if_cancelled(context_);
-      if (!is_waiting_[v] || !cells_.has_vertex(v) || round_of_[v] == round_) continue;
-      is_waiting_[v] = false;
-      if (!gather(v)) continue;
-      const std::optional<Candidate> candidate = best(v, limit);
-      if (!candidate) continue;
-      take(v, *candidate);
-      ++gone;
+    const std::vector<std::uint32_t> waiting = waiting_vertices();
+    const std::size_t batches = (waiting.size() + most_in_batch - 1) / most_in_batch;
+    const std::size_t at_first = taken_;
+    const auto is_touched = [&](std::uint32_t v) { return touched_at_[v] > at_first; };
+    for (std::size_t batch = 0; batch < batches; ++batch) {
+      batch_.clear();
+      for (std::size_t k = batch; k < waiting.size(); k += batches) {
+        if (!is_touched(waiting[k])) batch_.push_back(waiting[k]);
+      }
+      take_batch(limit);
     }
-    return gone;
+    return taken_ - at_first;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> waiting_vertices() const {
+    std::vector<std::uint32_t> waiting;
+    for (std::uint32_t v = 0; v < is_waiting_.size(); ++v) {
+      if (is_waiting_[v] != 0 && cells_.has_vertex(v)) waiting.push_back(v);
+    }
+    return waiting;
+  }
+  void take_batch(double limit) {
+    constexpr std::size_t grain = 16;
+    parallel_for(context_, batch_.size(), grain, {}, [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) look_at(batch_[k], limit, looks_[k]);
+    });
+    const std::size_t at_first = taken_;
+    const auto is_touched = [&](std::uint32_t v) { return touched_at_[v] > at_first; };
+    for (std::size_t k = 0; k < batch_.size(); ++k) {
+      const std::uint32_t v = batch_[k];
+      if (is_touched(v)) continue;
+      Look& look = looks_[k];
+      is_waiting_[v] = 0;
+      // What went on the other side of a neighbour may forbid to go there.
+      if (look.candidate && is_any_around(look, is_touched)) look_at(v, limit, look);
+      if (look.candidate) take(v, look);
+    }
+  }
+  template <class Is>
+  [[nodiscard]] static bool is_any_around(const Look& look, const Is& is) {
+    const auto has = [&](const Fan& fan) { return std::any_of(fan.ring.begin(), fan.ring.end(), is); };
+    return std::any_of(look.fans.begin(), look.fans.begin() + static_cast<std::ptrdiff_t>(look.fan_count), has) ||
+           std::any_of(look.chain.begin(), look.chain.end(), [&](const auto& border) { return is(border.second); });
+  }
+
+  void look_at(std::uint32_t v, double limit, Look& look) const {
+    look.candidate = gather(v, look) ? best(v, limit, look) : std::nullopt;
   }
 
   /// Finds the fans of a vertex and its neighbours along a chain, if it has two of these or none.
   /// @return  whether it may go at all.
-  bool gather(std::uint32_t v) {
-    chain_.clear();
-    cells_.for_each_edge(v, [&](std::uint32_t e, std::uint32_t other) { chain_.emplace_back(e, other); });
-    if (!chain_.empty() && (chain_.size() != 2 || chain_[0].second == chain_[1].second)) return false;
-    if (!chain_.empty() && kind_of(chain_[0].first) != kind_of(chain_[1].first)) return false;
-    sides_.clear();
+  bool gather(std::uint32_t v, Look& look) const {
+    auto& chain = look.chain;
+    auto& sides = look.sides;
+    chain.clear();
+    cells_.for_each_edge(v, [&](std::uint32_t e, std::uint32_t other) { chain.emplace_back(e, other); });
+    if (!chain.empty() && (chain.size() != 2 || chain[0].second == chain[1].second)) return false;
+    if (!chain.empty() && kind_of(chain[0].first) != kind_of(chain[1].first)) return false;
+    sides.clear();
     cells_.for_each_triangle(v,
-                             [&](std::uint32_t t, std::uint32_t p, std::uint32_t q) { sides_.emplace_back(t, p, q); });
-    fan_count_ = 0;
-    if (sides_.empty()) return !chain_.empty();
-    if (chain_.empty()) return add_fan(sides_.front().ends[0], none) && sides_.empty();
-    while (!sides_.empty()) {
-      const std::uint32_t from = chain_[0].second;
-      if (!add_fan(from, chain_[1].second)) return false;
+                             [&](std::uint32_t t, std::uint32_t p, std::uint32_t q) { sides.emplace_back(t, p, q); });
+    look.fan_count = 0;
+    if (sides.empty()) return !chain.empty();
+    if (chain.empty()) return add_fan(look, sides.front().ends[0], none) && sides.empty();
+    while (!sides.empty()) {
+      const std::uint32_t from = chain[0].second;
+      if (!add_fan(look, from, chain[1].second)) return false;
     }
     return true;
   }
@@ -122,20 +178,21 @@ class Decimator {
   }
 
   /// Follows triangles from a ring vertex to another one, or round to the same. They leave sides_.
-  bool add_fan(std::uint32_t from, std::uint32_t to) {
-    if (fan_count_ == fans_.size()) fans_.emplace_back();
-    Fan& fan = fans_[fan_count_++];
+  static bool add_fan(Look& look, std::uint32_t from, std::uint32_t to) {
+    auto& sides = look.sides;
+    if (look.fan_count == look.fans.size()) look.fans.emplace_back();
+    Fan& fan = look.fans[look.fan_count++];
     fan.ring.assign(1, from);
     fan.triangles.clear();
     fan.is_closed = to == none;
     const std::uint32_t last = fan.is_closed ? from : to;
     for (std::uint32_t at = from;;) {
       const auto next =
-          std::find_if(sides_.begin(), sides_.end(), [&](const Side& s) { return s.ends[0] == at || s.ends[1] == at; });
-      if (next == sides_.end()) return false;
+          std::find_if(sides.begin(), sides.end(), [&](const Side& s) { return s.ends[0] == at || s.ends[1] == at; });
+      if (next == sides.end()) return false;
       at = next->ends[0] == at ? next->ends[1] : next->ends[0];
       fan.triangles.push_back(next->triangle);
-      sides_.erase(next);
+      sides.erase(next);
       if (at == last) break;
       if (std::find(fan.ring.begin(), fan.ring.end(), at) != fan.ring.end()) return false;
       fan.ring.push_back(at);
@@ -145,54 +202,54 @@ class Decimator {
   }
 
   /// The neighbour that a vertex had best go to.
-  [[nodiscard]] std::optional<Candidate> best(std::uint32_t v, double limit) {
-    std::vector<std::pair<double, std::uint32_t>>& targets = targets_;
+  [[nodiscard]] std::optional<Candidate> best(std::uint32_t v, double limit, Look& look) const {
+    auto& targets = look.targets;
     targets.clear();
-    if (chain_.empty()) {
-      for (const std::uint32_t to : fans_[0].ring) {
+    if (look.chain.empty()) {
+      for (const std::uint32_t to : look.fans[0].ring) {
         double sum = 0;
-        for (const std::uint32_t other : fans_[0].ring) {
+        for (const std::uint32_t other : look.fans[0].ring) {
           sum += squared_length(axis_.positions[to] - axis_.positions[other]);
         }
         targets.emplace_back(sum, to);
       }
     } else {
-      for (const auto& [edge, to] : chain_) {
+      for (const auto& [edge, to] : look.chain) {
         targets.emplace_back(squared_length(axis_.positions[to] - axis_.positions[v]), to);
       }
     }
     std::sort(targets.begin(), targets.end());
     for (const auto& [order, to] : targets) {
-      const std::optional<Candidate> moved = moved_to(v, to, limit);
-      if (moved && cells_.may_contract(v, to, scratch_)) return moved;
+      const std::optional<Candidate> moved = moved_to(v, to, limit, look);
+      if (moved && cells_.may_contract(v, to, look.links)) return moved;
     }
     return std::nullopt;
   }
 
   /// How far all cells around a vertex would be from where they were at first; nullopt where that is too far.
-  [[nodiscard]] std::optional<Candidate> moved_to(std::uint32_t v, std::uint32_t to, double limit) {
+  [[nodiscard]] std::optional<Candidate> moved_to(std::uint32_t v, std::uint32_t to, double limit, Look& look) const {
     double along = 0;
     double least_radius = std::min(view_.radius[v], view_.radius[to]);
-    for (const auto& [edge, other] : chain_) along = std::max(along, of_edge_[edge]);
+    for (const auto& [edge, other] : look.chain) along = std::max(along, of_edge_[edge]);
     double before = along;
-    for (std::size_t f = 0; f < fan_count_; ++f) {
-      for (const std::uint32_t t : fans_[f].triangles) before = std::max(before, of_triangle_[t]);
-      for (const std::uint32_t r : fans_[f].ring) least_radius = std::min(least_radius, view_.radius[r]);
+    for (std::size_t f = 0; f < look.fan_count; ++f) {
+      for (const std::uint32_t t : look.fans[f].triangles) before = std::max(before, of_triangle_[t]);
+      for (const std::uint32_t r : look.fans[f].ring) least_radius = std::min(least_radius, view_.radius[r]);
     }
     if (before > limit) return std::nullopt;
     const double most_beyond = std::max(part_of_radius * least_radius, nothing * tolerance_);
     double by = 0;
-    if (!chain_.empty()) {
-      const std::uint32_t other = chain_[0].second == to ? chain_[1].second : chain_[0].second;
+    if (!look.chain.empty()) {
+      const std::uint32_t other = look.chain[0].second == to ? look.chain[1].second : look.chain[0].second;
       if (is_border(to, other)) return std::nullopt;
       const Deviation own = deviation(point(v), point(to), point(other));
-      if (fan_count_ == 0 && own.beyond > most_beyond) return std::nullopt;
+      if (look.fan_count == 0 && own.beyond > most_beyond) return std::nullopt;
       by = own.by;
       along += own.by;
       if (along > part_of_borders * limit) return std::nullopt;
     }
-    for (std::size_t f = 0; f < fan_count_ && before + by <= limit; ++f) {
-      const std::optional<Deviation> own = deviation_of(v, fans_[f], to);
+    for (std::size_t f = 0; f < look.fan_count && before + by <= limit; ++f) {
+      const std::optional<Deviation> own = deviation_of(v, look.fans[f], to, look.ring);
       if (!own || own->beyond > most_beyond) return std::nullopt;
       by = std::max(by, own->by);
     }
@@ -205,7 +262,8 @@ class Decimator {
     return found;
   }
 
-  [[nodiscard]] std::optional<Deviation> deviation_of(std::uint32_t v, Fan& fan, std::uint32_t to) {
+  [[nodiscard]] std::optional<Deviation> deviation_of(std::uint32_t v, Fan& fan, std::uint32_t to,
+                                                      std::vector<AxisPoint>& ring) const {
     if (fan.is_closed) {
       const auto at = std::find(fan.ring.begin(), fan.ring.end(), to) - fan.ring.begin();
       std::rotate(fan.ring.begin(), fan.ring.begin() + at, fan.ring.end());
@@ -214,19 +272,21 @@ class Decimator {
       std::reverse(fan.ring.begin(), fan.ring.end());
       std::reverse(fan.triangles.begin(), fan.triangles.end());
     }
-    ring_.clear();
-    for (const std::uint32_t r : fan.ring) ring_.push_back(point(r));
-    return deviation(point(v), ring_, fan.is_closed);
+    ring.clear();
+    for (const std::uint32_t r : fan.ring) ring.push_back(point(r));
+    return deviation(point(v), ring, fan.is_closed);
   }
 
-  void take(std::uint32_t v, const Candidate& candidate) {
-    for (std::size_t f = 0; f < fan_count_; ++f) {
-      const Fan& fan = fans_[f];
+  void take(std::uint32_t v, const Look& look) {
+    const Candidate& candidate = *look.candidate;
+    ++taken_;
+    for (std::size_t f = 0; f < look.fan_count; ++f) {
+      const Fan& fan = look.fans[f];
       pass_angle_on(fan);
       for (const std::uint32_t t : fan.triangles) of_triangle_[t] = candidate.moved;
       for (const std::uint32_t r : fan.ring) touch(r);
     }
-    for (const auto& [edge, other] : chain_) {
+    for (const auto& [edge, other] : look.chain) {
       of_edge_[edge] = candidate.along;
       touch(other);
     }
@@ -234,8 +294,8 @@ class Decimator {
     cells_.contract(v, candidate.to);
   }
   void touch(std::uint32_t v) {
-    round_of_[v] = round_;
-    is_waiting_[v] = true;
+    touched_at_[v] = taken_;
+    is_waiting_[v] = 1;
   }
 
   /// The angle of a sheet is the largest of its triangles': what goes leaves its own to the triangle beside it.
@@ -284,34 +344,20 @@ class Decimator {
     }
   }
 
-  struct Side {
-    std::uint32_t triangle;
-    std::array<std::uint32_t, 2> ends;
-    Side(std::uint32_t t, std::uint32_t p, std::uint32_t q) : triangle(t), ends{p, q} {}
-  };
-
   const Complex& axis_;
   MedialView view_;
   double tolerance_;
   const Context& context_;
   std::vector<std::array<std::uint32_t, 2>> borders_;
   ShrinkingComplex cells_;
-  LinkScratch scratch_;
   std::vector<double> of_triangle_, of_edge_;  ///< how far they may be from where they were at first
   std::vector<float> angle_;
-  std::vector<bool> is_waiting_;  ///< something around it changed since it was looked at
-  std::vector<std::uint32_t> round_of_;
-  std::uint32_t round_ = 0;
-  std::size_t steps_ = 0;
+  std::vector<std::uint8_t> is_waiting_;  ///< something around it changed since it was looked at
+  std::vector<std::size_t> touched_at_;   ///< taken_ when something around it went last
+  std::size_t taken_ = 0;                 ///< vertices
   double moved_ = 0;
-
-  // Of the vertex that is looked at.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> chain_;  ///< borders, and their other ends
-  std::vector<Side> sides_;                                     ///< triangles that no fan has yet
-  std::vector<Fan> fans_;
-  std::size_t fan_count_ = 0;
-  std::vector<AxisPoint> ring_;
-  std::vector<std::pair<double, std::uint32_t>> targets_;
+  std::vector<std::uint32_t> batch_;
+  std::vector<Look> looks_;  ///< of these
 };
 
 }  // namespace
