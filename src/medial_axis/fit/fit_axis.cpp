@@ -64,14 +64,14 @@ class Fitting {
     fitter_.reset();
   }
   Fitter& fitter() {
-    if (!fitter_) fitter_ = std::make_unique<Fitter>(lists_, target_, not_round_, context_);
+    if (!fitter_) fitter_ = std::make_unique<Fitter>(lists_, target_, known_, context_);
     return *fitter_;
   }
 
   AxisLists& lists_;
   const FitTarget& target_;
   const Context& context_;
-  Fitter::Places not_round_;
+  Fitter::Known known_;
   std::unique_ptr<Fitter> fitter_;
 };
 

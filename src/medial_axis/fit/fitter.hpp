@@ -18,6 +18,7 @@
 #include "medial_axis/fit/fit_axis.hpp"
 #include "medial_axis/fit/kind.hpp"
 #include "medial_axis/fit/round_centre.hpp"
+#include "medial_axis/fit/settled.hpp"
 #include "medial_axis/fit/split_curves.hpp"
 #include "medial_axis/fit/vertex_mover.hpp"
 #include "medial_axis/governors.hpp"
@@ -52,11 +53,13 @@ class Fitter {
   static constexpr double facets = 0.02;
 
  public:
-  /// Where centred() was asked in vain: nothing is found from there again.
-  using Places = std::set<std::array<double, 3>>;
+  /// What was found out, and is kept for the next Fitter.
+  struct Known {
+    std::set<std::array<double, 3>> not_round;  ///< where centred() was asked in vain: nothing is found there again
+    Settled seams, rims;                        ///< of place_seams() and cut_rims()
+  };
 
-  /// @param not_round  is kept by the caller for the next one.
-  Fitter(AxisLists& lists, const FitTarget& target, Places& not_round, const Context& context)
+  Fitter(AxisLists& lists, const FitTarget& target, Known& known, const Context& context)
       : lists_(lists),
         target_(target),
         surface_(target.surface),
@@ -65,8 +68,9 @@ class Fitter {
         incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
         kinds_(kinds_of(incidence_, lists.vertices.size())),
         directions_(lists, incidence_, kinds_),
-        not_round_(not_round),
+        known_(known),
         is_not_round_(lists.vertices.size(), 0),
+        sight_(lists.vertices.size(), 0),
         mover_(lists, incidence_, target.surface, context) {}
 
   // ---- Steps that move vertices, and say how far the furthest one went, mesh units ----
@@ -104,7 +108,7 @@ class Fitter {
     return out;
   }
   double place_seams() {
-    return move([&](std::uint32_t v) { return balanced(v); });
+    return move_unsettled(known_.seams, [&](std::uint32_t v) { return balanced(v); });
   }
   /// Only those of curves, where short edges beside them were contracted to others.
   double place_curves() {
@@ -144,7 +148,7 @@ class Fitter {
     split_curves(lists_, surface_, voxel_, [&](const Vec3d& at) { return centred_at(at); }, context_);
   }
   double cut_rims() {
-    return move([&](std::uint32_t v) { return cut(v); });
+    return move_unsettled(known_.rims, [&](std::uint32_t v) { return cut(v); });
   }
 
  private:
@@ -194,7 +198,7 @@ class Fitter {
   /// In the middle of what is round around a vertex, if that shows.
   [[nodiscard]] Moved centred(std::uint32_t v) {
     const Vec3d& at = lists_.vertices[v].position;
-    if (not_round_.contains({at.x, at.y, at.z})) return std::nullopt;
+    if (known_.not_round.contains({at.x, at.y, at.z})) return std::nullopt;
     Moved found = centred_at(at);
     is_not_round_[v] = found ? 0 : 1;
     return found;
@@ -520,10 +524,42 @@ class Fitter {
     for (std::size_t v = 0; v < is_not_round_.size(); ++v) {
       if (is_not_round_[v] == 0) continue;
       const Vec3d& at = lists_.vertices[v].position;
-      not_round_.insert({at.x, at.y, at.z});
+      known_.not_round.insert({at.x, at.y, at.z});
       is_not_round_[v] = 0;
     }
     return mover_.make(std::move(moves));
+  }
+
+  /// The same, but for vertices that stayed where they are when all that is around them was as it is now.
+  template <class Where>
+  double move_unsettled(Settled& settled, const Where& where) {
+    const double furthest = move([&](std::uint32_t v) -> Moved {
+      const Kind& kind = kinds_[v];
+      const bool is_inside = kind.rims + kind.seams + kind.curves == 0 && kind.inner > 0;
+      if (is_inside) return where(v);  // most are, and are told by what they are
+      const std::uint64_t sight = sight_of(v);
+      if (settled.contains(sight)) return std::nullopt;
+      Moved found = where(v);
+      if (found && !is_same_vertex(lists_.vertices[v], *found, voxel_)) return found;
+      sight_[v] = sight;
+      return std::nullopt;
+    });
+    for (std::uint64_t& sight : sight_) {
+      if (sight != 0) settled.insert(std::exchange(sight, 0));
+    }
+    return furthest;
+  }
+  /// Of what moves a vertex of a border.
+  [[nodiscard]] std::uint64_t sight_of(std::uint32_t v) const {
+    SightHash hash;
+    const Kind& kind = kinds_[v];
+    for (const std::uint32_t count : {kind.rims, kind.seams, kind.curves, kind.inner}) hash.add(count);
+    hash.add(lists_.vertices[v]);
+    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
+      hash.add(lists_.vertices[other_end(incidence_.edges()[e], v)]);
+    }
+    if (kind.is_rim()) hash.add(directions_.of_rim(v));
+    return hash.value();
   }
 
   AxisLists& lists_;
@@ -534,8 +570,10 @@ class Fitter {
   Incidence incidence_;
   std::vector<Kind> kinds_;
   BorderDirections directions_;
-  Places& not_round_;
-  std::vector<std::uint8_t> is_not_round_;  ///< what threads find out, for not_round_
+  Known& known_;
+  // What threads find out, for known_.
+  std::vector<std::uint8_t> is_not_round_;
+  std::vector<std::uint64_t> sight_;  ///< of vertices that stay; else 0
   VertexMover mover_;
   std::vector<std::optional<Elements>> elements_;  ///< empty, or of some vertices
 };
