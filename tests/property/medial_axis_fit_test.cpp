@@ -16,6 +16,7 @@
 #include "support/known_axes.hpp"
 #include "support/medial_check.hpp"
 #include "support/medial_rows.hpp"
+#include "support/model_solids.hpp"
 
 namespace blum {
 namespace {
@@ -181,15 +182,26 @@ TEST(FittedAxisOfALens, EndsWhereTheAngleIsTheta) {
   }
 }
 
+/// Contractions are chosen by many threads at a time, those of one thread one by one: crumpled sheets of thin parts have
+/// many, and next to each other.
 TEST(FittedAxisOfAnything, IsTheSameForAnyNumberOfThreads) {
-  const TriangleMesh mesh = make_bracket();
-  const MedialAxis axis = medial_axis(mesh, {.resolution = 48});
-  const Complex one = axis.fitted(60, {.threads = 1});
-  EXPECT_EQ(test::betti_of(one), axis.report().betti);
-  for (const int threads : {2, 7}) {
-    const Complex many = axis.fitted(60, {.threads = threads});
-    EXPECT_EQ(many.positions, one.positions);
-    EXPECT_EQ(many.triangles, one.triangles);
+  std::vector<test::NamedMesh> solids = test::thin_solids();
+  solids.resize(std::min<std::size_t>(solids.size(), 12));
+  solids.push_back({"bracket", make_bracket()});
+  for (const auto& [name, mesh] : solids) {
+    const MedialAxis axis = medial_axis(mesh, {.resolution = 32});
+    const double tolerance = 0.25 * axis.report().bodies[0].spacing;
+    const Complex one = axis.fitted(20, {.threads = 1});
+    const Complex few = decimate(one, tolerance, {.threads = 1}).axis;
+    EXPECT_EQ(test::betti_of(few), axis.report().betti) << name;
+    for (const int threads : {2, 7}) {
+      const Complex many = axis.fitted(20, {.threads = threads});
+      EXPECT_EQ(many.positions, one.positions) << name << ", " << threads;
+      EXPECT_EQ(many.triangles, one.triangles) << name << ", " << threads;
+      const Complex decimated = decimate(one, tolerance, {.threads = threads}).axis;
+      EXPECT_EQ(decimated.positions, few.positions) << name << ", " << threads;
+      EXPECT_EQ(decimated.triangles, few.triangles) << name << ", " << threads;
+    }
   }
 }
 
