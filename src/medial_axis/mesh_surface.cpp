@@ -67,6 +67,7 @@ MeshSurface::MeshSurface(const MeshView& mesh, const SiteTable& sites, bool boun
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::uint32_t v : mesh.triangles[t]) triangles_[next[v]++] = t;
   }
+  size_ = bounds(mesh).diagonal();
   if (bounds_solid) voids_ = points_of_voids(mesh, *this);
 }
 
@@ -85,7 +86,14 @@ Footprint MeshSurface::footprint(SiteId site, const Vec3d& centre, bool /*is_ins
 }
 
 NearestPoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) const {
-  const std::optional<NearestSite> found = bvh_.nearest(query);
+  // The point of an element near by bounds the search, with room for rounding.
+  constexpr double room = 1e-6;
+  std::optional<NearestSite> found;
+  if (near.element < mesh_.triangles.size()) {
+    const double within = length(query - closest_on(near.element, query).point);
+    found = bvh_.nearest(query, within + room * (within + size_));
+  }
+  if (!found) found = bvh_.nearest(query);
   if (found) return {found->point, found->distance, found->site, sites_.triangle(found->site).value};
   return {near.point, length(query - near.point), site_of(near), near.element};  // a query that is not finite
 }

@@ -46,6 +46,7 @@ class MeshSurface final : public Surface {
   const SiteTable& sites_;
   bool bounds_solid_;
   Bvh bvh_;
+  double size_ = 0;  ///< diagonal of the bounds
   Pseudonormals normals_;
   std::vector<std::uint32_t> first_;      ///< per vertex, into triangles_
   std::vector<std::uint32_t> triangles_;  ///< around each vertex

@@ -166,6 +166,7 @@ class Placer {
       if (angle <= vertex.separation_angle) continue;
       vertex.footprints[1] = foot.point;
       vertex.sites[1] = surface_.site_of(foot);
+      vertex.elements[1] = foot.element;
       vertex.separation_angle = angle;
     }
     return vertex.separation_angle > 0 ? std::optional(vertex) : std::nullopt;

@@ -28,7 +28,7 @@ namespace blum {
 
 /// The place of a vertex, as paths begin and end there.
 [[nodiscard]] inline Stop stop_of(const AxisVertex& vertex) {
-  return {vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], 0}};
+  return {vertex.position, {vertex.footprints[0], vertex.radius, vertex.sites[0], vertex.elements[0]}};
 }
 
 /// A vertex at the corner of the lattice itself, which must lie in the solid.

@@ -182,8 +182,8 @@ TEST(FittedAxisOfALens, EndsWhereTheAngleIsTheta) {
   }
 }
 
-/// Contractions are chosen by many threads at a time, those of one thread one by one: crumpled sheets of thin parts have
-/// many, and next to each other.
+/// Contractions are chosen by many threads at a time, those of one thread one by one: crumpled sheets of thin parts
+/// have many, and next to each other.
 TEST(FittedAxisOfAnything, IsTheSameForAnyNumberOfThreads) {
   std::vector<test::NamedMesh> solids = test::thin_solids();
   solids.resize(std::min<std::size_t>(solids.size(), 12));

@@ -80,17 +80,18 @@ Move shortest(std::span<const Equation> equations, std::size_t count) {
 AxisVertex vertex_at(const Surface& surface, const Vec3d& x, const NearestPoint& nearest,
                      std::span<const Footprint> feet) {
   AxisVertex vertex = vertex_of_one_wall(x, nearest);
-  const auto offer = [&](const Vec3d& p, SiteId p_site, const Vec3d& q, SiteId q_site) {
-    const double angle = angle_at(x, p, q);
+  const auto offer = [&](const Vec3d& p, SiteId p_site, std::uint32_t p_element, const Footprint& q) {
+    const double angle = angle_at(x, p, q.point);
     if (angle <= vertex.separation_angle) return;
-    vertex.footprints = {p, q};
-    vertex.sites = {p_site, q_site};
+    vertex.footprints = {p, q.point};
+    vertex.sites = {p_site, surface.site_of(q)};
+    vertex.elements = {p_element, q.element};
     vertex.separation_angle = angle;
   };
   for (std::size_t i = 0; i < feet.size(); ++i) {
-    offer(nearest.point, nearest.site, feet[i].point, surface.site_of(feet[i]));
+    offer(nearest.point, nearest.site, nearest.element, feet[i]);
     for (std::size_t j = i + 1; j < feet.size(); ++j) {
-      offer(feet[i].point, surface.site_of(feet[i]), feet[j].point, surface.site_of(feet[j]));
+      offer(feet[i].point, surface.site_of(feet[i]), feet[i].element, feet[j]);
     }
   }
   return vertex;

@@ -91,11 +91,7 @@ class Fitter {
   }
   /// Puts vertices that know of one wall only between two.
   double find_sheets() {
-    const auto is_asked = [&](std::uint32_t v) { return !(lists_.vertices[v].separation_angle > 0); };
-    find_elements_around(is_asked);
-    const double furthest = move([&](std::uint32_t v) { return is_asked(v) ? on_sheet(v) : std::nullopt; });
-    elements_.clear();
-    return furthest;
+    return move([&](std::uint32_t v) { return lists_.vertices[v].separation_angle > 0 ? std::nullopt : on_sheet(v); });
   }
   /// Of the lists, as long as none of their edges goes.
   [[nodiscard]] const Incidence& incidence() const { return incidence_; }
@@ -116,11 +112,7 @@ class Fitter {
   }
   /// Vertices inside of a sheet that were put on another one beyond the seam go to this.
   double straighten() {
-    const std::vector<std::uint8_t> bent = which_are_bent();
-    find_elements_around([&](std::uint32_t v) { return bent[v] != 0; });
-    const double furthest = move([&](std::uint32_t v) { return bent[v] != 0 ? straightened(v) : std::nullopt; });
-    elements_.clear();
-    return furthest;
+    return move([&](std::uint32_t v) { return is_bent(v) ? straightened(v) : std::nullopt; });
   }
   /// Borders that leave what is round between two vertices that show go back there, and so does all next to it that is
   /// in the middle of what is round but for its place.
@@ -245,14 +237,6 @@ class Fitter {
     return kind.seams + kind.curves + kind.rims == 0 && least_cosine(v, lists_.vertices[v].position) <= sharp;
   }
 
-  [[nodiscard]] std::vector<std::uint8_t> which_are_bent() const {
-    std::vector<std::uint8_t> bent(lists_.vertices.size(), 0);
-    parallel_for(context_, bent.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
-      for (std::size_t v = range.begin; v < range.end; ++v) bent[v] = is_bent(static_cast<std::uint32_t>(v)) ? 1 : 0;
-    });
-    return bent;
-  }
-
   /// Of the angles by which the sheet bends at the edges of a vertex, were it elsewhere; 1 where it is flat.
   [[nodiscard]] double least_cosine(std::uint32_t v, const Vec3d& position) const {
     double least = 1;
@@ -271,7 +255,8 @@ class Fitter {
   /// What is closest a little further away from the first footprint of a vertex that is not on the surface.
   [[nodiscard]] NearestPoint opposite_of(const AxisVertex& vertex) const {
     const Vec3d away = (vertex.position - vertex.footprints[0]) / vertex.radius;
-    return surface_.nearest(vertex.position + away * std::min(opposite_step * voxel_, 0.5 * vertex.radius), {});
+    return surface_.nearest(vertex.position + away * std::min(opposite_step * voxel_, 0.5 * vertex.radius),
+                            foot_of(vertex, 0));
   }
 
   /// Of round things, the footprint opposite of the first one, where that is as close.
@@ -283,6 +268,7 @@ class Fitter {
     if (angle <= vertex.separation_angle) return;
     vertex.footprints[1] = opposite.point;
     vertex.sites[1] = opposite.site;
+    vertex.elements[1] = opposite.element;
     vertex.separation_angle = angle;
   }
 
@@ -460,38 +446,14 @@ class Fitter {
 
   // ---- Walls ----
 
-  using Elements = std::array<std::uint32_t, 2>;
-
-  /// What the footprints of a vertex lie on.
-  [[nodiscard]] Elements elements_of(const AxisVertex& vertex) const {
-    const std::uint32_t first = surface_.nearest(vertex.footprints[0], {}).element;
-    return {first, vertex.separation_angle == 0 ? first : surface_.nearest(vertex.footprints[1], {}).element};
+  [[nodiscard]] static Footprint foot_of(const AxisVertex& vertex, std::size_t k) {
+    return {vertex.footprints[k], vertex.elements[k], 7};
   }
-  /// Finds these once for the vertices asked for and their neighbours, before vertices move; most of them are looked at
-  /// from several sides.
-  template <class IsAsked>
-  void find_elements_around(const IsAsked& is_asked) {
-    elements_.assign(lists_.vertices.size(), std::nullopt);
-    std::vector<std::uint8_t> is_near(lists_.vertices.size(), 0);
-    for (std::uint32_t v = 0; v < is_near.size(); ++v) {
-      if (!is_asked(v)) continue;
-      is_near[v] = 1;
-      for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) is_near[other_end(incidence_.edges()[e], v)] = 1;
-    }
-    parallel_for(context_, is_near.size(), 4 * vertices_per_range, "borders", [&](const WorkRange& range) {
-      for (std::size_t v = range.begin; v < range.end; ++v) {
-        if (is_near[v] != 0) elements_[v] = elements_of(lists_.vertices[v]);
-      }
-    });
-  }
-
   void add_feet(std::uint32_t v, std::vector<Footprint>& feet) const {
     const AxisVertex& vertex = lists_.vertices[v];
-    const bool is_known = v < elements_.size() && elements_[v];
-    const Elements elements = is_known ? *elements_[v] : elements_of(vertex);
     for (std::size_t k = 0; k < 2; ++k) {
       if (k == 1 && vertex.separation_angle == 0) break;
-      const Footprint foot{vertex.footprints[k], elements[k], 7};
+      const Footprint foot = foot_of(vertex, k);
       const auto is_same = [&](const Footprint& other) { return other.element == foot.element; };
       if (std::none_of(feet.begin(), feet.end(), is_same)) feet.push_back(foot);
     }
@@ -509,7 +471,7 @@ class Fitter {
     for (std::size_t k = 0; k < 6 && incidence_.edges_of_vertex()[v].empty(); ++k) {
       Vec3d beside = lists_.vertices[v].position;
       beside[k / 2] += k % 2 == 0 ? voxel_ : -voxel_;
-      const NearestPoint at = surface_.nearest(beside, {});
+      const NearestPoint at = surface_.nearest(beside, foot_of(lists_.vertices[v], 0));
       feet.push_back({at.point, at.element, 7});
     }
     if (feet.size() > most_walls) feet.resize(most_walls);
@@ -575,7 +537,6 @@ class Fitter {
   std::vector<std::uint8_t> is_not_round_;
   std::vector<std::uint64_t> sight_;  ///< of vertices that stay; else 0
   VertexMover mover_;
-  std::vector<std::optional<Elements>> elements_;  ///< empty, or of some vertices
 };
 
 }  // namespace blum
