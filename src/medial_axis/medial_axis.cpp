@@ -57,6 +57,16 @@ void add(BettiNumbers& sum, const BettiNumbers& part) {
   for (std::size_t k = 0; k < 3; ++k) sum[k] += part[k];
 }
 
+/// Throws where rounding of coordinates leaves a solid too few places to lie in.
+void check_place(const Box3& box) {
+  constexpr double least_size = 2e-9;  // of the largest coordinate: ten million steps of rounding
+  const Vec3d furthest = max(max(box.lower, box.upper), max(-1.0 * box.lower, -1.0 * box.upper));
+  const double coordinate = std::max({furthest.x, furthest.y, furthest.z});
+  if (!(longest_side(box) < least_size * coordinate)) return;
+  throw InvalidMesh("the mesh is " + exact_text(longest_side(box)) + " long, with coordinates of up to " +
+                    exact_text(coordinate) + ", which leave it too few digits: move it towards the origin");
+}
+
 /// Whether a needle keeps the model from passing with smaller voxels, too.
 /// @param smaller  the least part of a voxel's side.
 bool stays_stuck(const BodyReport& report, double smaller) {
@@ -123,6 +133,7 @@ class MedialAxisBuilder {
     report().rule = solid.rule();
     report().reason = solid.reason();
     report().reversed_shells = solid.reversed_shells();
+    check_place(solid.box());
     if (solid.rule() == SolidRule::voxels) {
       add_voxels(solid);
     } else {

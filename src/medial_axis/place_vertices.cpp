@@ -229,11 +229,15 @@ bool is_in_component(const Witnesses& witnesses, Cell cell, const AxisVertex& ve
 }
 
 /// In the middle of a thin part where there is one: the ball there holds the point that it was found from.
-AxisVertex place_extra(const Witnesses& witnesses, Cell cell) {
+AxisVertex place_in_component(const Witnesses& witnesses, Cell cell) {
   const GovernorField& governors = witnesses.governors();
   const Surface& surface = governors.surface();
+  const CellStructure& structure = witnesses.structure();
   const std::optional<Stop> home = witnesses.home_of(cell);
-  if (!home) return vertex_on_surface(surface.nearest(witnesses.structure().extra()->cell(cell).witness, {}));
+  if (!home && !structure.is_extra(cell)) {
+    return vertex_at_corner(governors, structure.lattice().place(node_of(cell)));
+  }
+  if (!home) return vertex_on_surface(surface.nearest(structure.extra()->cell(cell).witness, {}));
   const auto ball = ball_around(surface, home->nearest, home->at, 2 * governors.longest_voxel());
   if (!ball) return vertex_of_one_wall(home->at, home->nearest);
   const double reach = most_moved * governors.longest_voxel();
@@ -267,12 +271,12 @@ std::vector<AxisVertex> place_vertices(const Witnesses& witnesses, std::span<con
   parallel_for(context, cells.size(), nodes_per_range, "vertices", [&](const WorkRange& range) {
     for (std::size_t n = range.begin; n < range.end; ++n) {
       if (structure.is_extra(cells[n])) {
-        vertices[n] = place_extra(witnesses, cells[n]);
+        vertices[n] = place_in_component(witnesses, cells[n]);
         continue;
       }
       vertices[n] = placer.place(structure.lattice().place(node_of(cells[n])));
       if (structure.extra() != nullptr && !is_in_component(witnesses, cells[n], vertices[n])) {
-        vertices[n] = place_extra(witnesses, cells[n]);
+        vertices[n] = place_in_component(witnesses, cells[n]);
       }
     }
   });

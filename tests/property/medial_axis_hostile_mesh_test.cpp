@@ -56,6 +56,20 @@ TEST(MedialHostileMesh, TurningShellsMovesNothing) {
   EXPECT_EQ(test::positions(turned), test::positions(straight));
 }
 
+/// Coordinates of 1e10 have steps of 2e-6, a millionth of the box: search and placing then end on the surface, which
+/// once read beyond the end of a list.
+TEST(MedialHostileMesh, FarFromTheOriginItIsRightOrRefused) {
+  for (const double place : {1e8, 9e8}) {
+    const TriangleMesh mesh = test::box_between({place, place, 0}, {place + 2, place + 1, 0.5}, false);
+    const MedialAxis axis = medial_axis(mesh, coarse);
+    test::expect_certified(axis, mesh, {1, 0, 0});
+  }
+  for (const double place : {1e10, 1e14}) {
+    const TriangleMesh mesh = test::box_between({place, place, 0}, {place + 2, place + 1, 0.5}, false);
+    EXPECT_THROW((void)medial_axis(mesh, coarse), InvalidMesh);
+  }
+}
+
 /// No polyhedron: the axis has the topology of its voxels.
 void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& options) {
   const MedialAxis axis = medial_axis(mesh, options);
