@@ -118,6 +118,17 @@ bool MeshSurface::crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c) const 
   return is_found;
 }
 
+/// Calls visit(triangle) for those that have two vertices, rising. Thousands of triangles may have one of these.
+template <class Visit>
+void MeshSurface::for_each_triangle_at(std::uint32_t a, std::uint32_t b, const Visit& visit) const {
+  const auto count = [&](std::uint32_t v) { return first_[v + 1] - first_[v]; };
+  if (count(b) < count(a)) std::swap(a, b);
+  for (std::uint32_t at = first_[a]; at < first_[a + 1]; ++at) {
+    const Triangle& t = mesh_.triangles[triangles_[at]];
+    if (t[0] == b || t[1] == b || t[2] == b) visit(triangles_[at]);
+  }
+}
+
 /// Calls visit(other triangle, its ends) for each side of a triangle that another one shares.
 template <class Visit>
 void MeshSurface::for_each_neighbour(std::uint32_t triangle, const Visit& visit) const {
@@ -125,10 +136,9 @@ void MeshSurface::for_each_neighbour(std::uint32_t triangle, const Visit& visit)
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t a = own[k];
     const std::uint32_t b = own[(k + 1) % 3];
-    for (std::uint32_t at = first_[a]; at < first_[a + 1]; ++at) {
-      const Triangle& other = mesh_.triangles[triangles_[at]];
-      if (triangles_[at] != triangle && (other[0] == b || other[1] == b || other[2] == b)) visit(triangles_[at], a, b);
-    }
+    for_each_triangle_at(a, b, [&](std::uint32_t other) {
+      if (other != triangle) visit(other, a, b);
+    });
   }
 }
 
@@ -218,17 +228,15 @@ Footprint MeshSurface::follow(const Footprint& start, const Vec3d& query, double
     const auto first = static_cast<std::size_t>(std::countr_zero(best.corners));
     const unsigned others = best.corners & (best.corners - 1);
     const std::uint32_t far = others == 0 ? own[first] : own[static_cast<std::size_t>(std::countr_zero(others))];
-    const std::uint32_t v = own[first];
-    for (std::uint32_t at = first_[v]; best.corners != 7 && at < first_[v + 1]; ++at) {
-      const std::uint32_t t = triangles_[at];
-      const Triangle& corners = mesh_.triangles[t];
-      if (t == best.element || (corners[0] != far && corners[1] != far && corners[2] != far)) continue;
+    if (best.corners == 7) break;
+    for_each_triangle_at(own[first], far, [&](std::uint32_t t) {
+      if (t == best.element) return;
       const Footprint other = closest_on(t, query);
       const double other_squared = squared_length(query - other.point);
-      if (other_squared >= better_squared) continue;
+      if (other_squared >= better_squared) return;
       better = other;
       better_squared = other_squared;
-    }
+    });
     if (better.element == best.element) break;
     if (squared_length(better.point - start.point) > reach * reach) break;
     best = better;

@@ -39,6 +39,8 @@ class MeshSurface final : public Surface {
 
  private:
   template <class Visit>
+  void for_each_triangle_at(std::uint32_t a, std::uint32_t b, const Visit& visit) const;
+  template <class Visit>
   void for_each_neighbour(std::uint32_t triangle, const Visit& visit) const;
   [[nodiscard]] Footprint closest_on(std::uint32_t triangle, const Vec3d& query) const;
 
