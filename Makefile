@@ -1,7 +1,7 @@
 # Blum: the commands of everyday work. `make` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build test check demo format lint tidy bench docs asan tsan fuzz configurations install viewer clean
+.PHONY: help setup build python test check demo format lint tidy bench docs asan tsan fuzz configurations install viewer clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
@@ -26,6 +26,11 @@ test: ## Install what the tests need, build, and run every test
 demo: setup ## Build the tool and run the main job on a generated shape: a field, pictures, a medial axis and a page in out/demo
 	@tools/build.sh release $(configure_options) -- blum
 	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
+
+python: ## Build the Python package alone: build/release/python, for PYTHONPATH, with the Python of build/venv
+	@tools/setup.sh --tests
+	@tools/build.sh release $(configure_options) -DBLUM_PYTHON=ON "-DPython_EXECUTABLE=$(CURDIR)/build/venv/bin/python" -- blum_python
+	@echo "make python: PYTHONPATH=$(CURDIR)/build/release/python build/venv/bin/python"
 
 format: ## Bring the sources into the project's format (clang-format 19)
 	@tools/setup.sh --lint

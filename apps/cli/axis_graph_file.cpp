@@ -17,7 +17,7 @@ const AxisSheet* thinnest_wall(const AxisGraph& graph) {
   const AxisSheet* thinnest = nullptr;
   for (const AxisSheet& sheet : graph.sheets) {
     if (sheet.separation_angle.median < wall_angle || sheet.area < least_share * graph.area) continue;
-    if (thinnest == nullptr || sheet.thickness.median < thinnest->thickness.median) thinnest = &sheet;
+    if (thinnest == nullptr || sheet.thickness.low < thinnest->thickness.low) thinnest = &sheet;
   }
   return thinnest;
 }
@@ -39,8 +39,8 @@ std::string graph_text(const AxisGraph& graph) {
       plural(graph.sheets.size(), "sheet", "sheets") + ", " + plural(graph.seams.size(), "seam", "seams") + ", " +
       plural(graph.curves.size(), "curve", "curves") + ", " + plural(graph.junctions.size(), "junction", "junctions");
   if (const AxisSheet* const wall = thinnest_wall(graph)) {
-    text += "; thinnest wall: sheet " + std::to_string(wall->sheet) + ", " + rounded_text(wall->thickness.median) +
-            " thick";
+    text +=
+        "; thinnest wall: sheet " + std::to_string(wall->sheet) + ", " + rounded_text(wall->thickness.low) + " thick";
   }
   return text;
 }

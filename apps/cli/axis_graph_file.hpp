@@ -22,7 +22,8 @@ void add_graph_option(CLI::App& command, std::optional<std::string>& graph, cons
 [[nodiscard]] std::optional<std::filesystem::path> parse_graph(const std::optional<std::string>& text);
 
 /// "13 sheets, 24 seams, 0 curves, 8 junctions; thinnest wall: sheet 3, 0.5 thick". A wall is a sheet of 1 % of the
-/// area or more whose median separation angle is 150 degrees or more; its thickness is the median.
+/// area or more whose median separation angle is 150 degrees or more; its thickness is the low one
+/// of its spread: walls of different thickness may be one sheet.
 [[nodiscard]] std::string graph_text(const AxisGraph& graph);
 /// The same numbers. @param file  its name.
 [[nodiscard]] Json graph_json(const AxisGraph& graph, const std::filesystem::path& file);

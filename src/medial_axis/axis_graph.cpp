@@ -114,7 +114,8 @@ class LineWalker {
     for (std::size_t k = 1; k < line.radii.size(); ++k) {
       means.emplace_back((line.radii[k - 1] + line.radii[k]) / 2, line.arc_length[k] - line.arc_length[k - 1]);
     }
-    line.radius = {*least, weighted_median(means), *most};
+    line.radius = {*least, 0, 0, *most};
+    add_quantiles(means, line.radius);
     const std::uint32_t first = junction_at_[line.vertices.front()];
     const std::uint32_t last = junction_at_[line.vertices.back()];
     line.closed = first == none;

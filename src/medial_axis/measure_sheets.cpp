@@ -32,7 +32,7 @@ class SheetMeasurer {
     constexpr double infinite = std::numeric_limits<double>::infinity();
     for (const std::uint32_t sheet : parts.sheet_numbers()) {
       graph_.sheets.emplace_back().sheet = sheet;
-      graph_.sheets.back().thickness = graph_.sheets.back().separation_angle = {infinite, 0, -infinite};
+      graph_.sheets.back().thickness = graph_.sheets.back().separation_angle = {infinite, 0, 0, -infinite};
     }
   }
 
@@ -113,8 +113,8 @@ class SheetMeasurer {
 
   static void finish(AxisSheet& sheet, Measured& measured) {
     const auto triangles = static_cast<std::int64_t>(sheet.triangles);
-    sheet.thickness.median = weighted_median(measured.thickness);
-    sheet.separation_angle.median = weighted_median(measured.angle);
+    add_quantiles(measured.thickness, sheet.thickness);
+    add_quantiles(measured.angle, sheet.separation_angle);
     sheet.centroid =
         sheet.area > 0 ? sheet.centroid / sheet.area : measured.corners / static_cast<double>(3 * sheet.triangles);
     const std::int64_t edges = (3 * triangles + measured.border_sides) / 2;

@@ -39,19 +39,20 @@ struct Description<AxisGraphOptions> {
   };
 };
 
-/// How a number is spread. The median is that of shares of area or length, not of vertices: half of the sheet (or of
-/// the line) has at most this.
+/// How a number is spread. Low value and median are those of shares of area or length, not of vertices: 5 % and half of
+/// the sheet (or of the line) have at most this. The low value leaves out single vertices, which the minimum does not.
 struct AxisSpread {
-  double minimum = 0, median = 0, maximum = 0;
+  double minimum = 0, low = 0, median = 0, maximum = 0;
 };
 
 template <>
 struct Description<AxisSpread> {
   static constexpr std::string_view name = "AxisSpread";
   static constexpr std::string_view doc =
-      "The least, the middle and the largest value of a number over a part of an axis";
+      "The least, a low, the middle and the largest value of a number over a part of an axis";
   static constexpr std::tuple members{
       Member{"minimum", &AxisSpread::minimum, "", "at any of its vertices"},
+      Member{"low", &AxisSpread::low, "", "5 % of its area or length has at most this"},
       Member{"median", &AxisSpread::median, "", "half of its area or length has at most this"},
       Member{"maximum", &AxisSpread::maximum, "", "at any of its vertices"},
   };

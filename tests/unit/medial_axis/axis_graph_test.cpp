@@ -15,6 +15,7 @@
 #include "blum/medial_axis/axis_graph.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
+#include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
 #include "medial_axis/axis_parts.hpp"
 #include "medial_axis/label_sheets.hpp"
@@ -317,11 +318,31 @@ TEST(AxisGraph, WhatIsMissingIsNamed) {
   EXPECT_THROW(static_cast<void>(axis_graph(complex)), InvalidOption);
 }
 
-TEST(AxisGraph, MediansAreOfWeights) {
+TEST(AxisGraph, LowValuesAndMediansAreOfWeights) {
   std::vector<std::pair<double, double>> values{{5, 1}, {1, 1}, {3, 3}};
-  EXPECT_EQ(weighted_median(values), 3);
+  AxisSpread spread;
+  add_quantiles(values, spread);
+  EXPECT_EQ(spread.low, 1);
+  EXPECT_EQ(spread.median, 3);
   values = {{2, 0}, {1, 0}, {4, 0}, {3, 0}};
-  EXPECT_EQ(weighted_median(values), 2) << "without weights";
+  add_quantiles(values, spread);
+  EXPECT_EQ(spread.low, 1) << "without weights";
+  EXPECT_EQ(spread.median, 2) << "without weights";
+  values = {{1, 0.01}, {4, 0.98}, {5, 0.01}};
+  add_quantiles(values, spread);
+  EXPECT_EQ(spread.low, 4) << "one small triangle is no wall";
+}
+
+/// An L of a thick and a thin plate: above 90 degrees no sheet runs into the corner, and both are one.
+TEST(AxisGraph, TheLowThicknessIsThatOfTheThinnerOfTwoWalls) {
+  const std::vector<Point2> outline{{0, 0}, {4, 0}, {4, 0.6}, {0.5, 0.6}, {0.5, 3}, {0, 3}};
+  const TriangleMesh mesh = make_extrusion(outline, {}, {.thickness = 5});
+  const AxisGraph graph = axis_graph(medial_axis(mesh, {.resolution = 64}).fitted(120), mesh);
+  const auto wall = std::max_element(graph.sheets.begin(), graph.sheets.end(),
+                                     [](const auto& a, const auto& b) { return a.area < b.area; });
+  EXPECT_GT(wall->area, 0.9 * graph.area);
+  EXPECT_NEAR(wall->thickness.low, 0.5, 1e-6);
+  EXPECT_NEAR(wall->thickness.median, 0.6, 1e-6);
 }
 
 // ---- Axes of solids ----
