@@ -188,6 +188,10 @@ class WindingOracle : public VoxelOracle {
     return search_.nearest(p).distance;
   }
 
+  [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t /*body*/) const override {
+    return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p).triangle));
+  }
+
   [[nodiscard]] double slack() const override { return length(faces().grid().spacing); }
 
   [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {

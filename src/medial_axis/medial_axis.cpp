@@ -62,9 +62,10 @@ void check_place(const Box3& box) {
   constexpr double least_size = 2e-9;  // of the largest coordinate: ten million steps of rounding
   const Vec3d furthest = max(max(box.lower, box.upper), max(-1.0 * box.lower, -1.0 * box.upper));
   const double coordinate = std::max({furthest.x, furthest.y, furthest.z});
-  if (!(longest_side(box) < least_size * coordinate)) return;
-  throw InvalidMesh("the mesh is " + exact_text(longest_side(box)) + " long, with coordinates of up to " +
-                    exact_text(coordinate) + ", which leave it too few digits: move it towards the origin");
+  const double size = longest_side(box);
+  if (!(size > 0 && size < least_size * coordinate)) return;
+  throw InvalidMesh("the mesh is " + exact_text(size) + " long, with coordinates of up to " + exact_text(coordinate) +
+                    ", which leave it too few digits: move it towards the origin");
 }
 
 /// Whether a needle keeps the model from passing with smaller voxels, too.

@@ -70,6 +70,16 @@ TEST(MedialHostileMesh, FarFromTheOriginItIsRightOrRefused) {
   }
 }
 
+/// The voxels whose centres a mesh that is no polyhedron winds around.
+VoxelSet wound_voxels(const MeshView& mesh, const GridSpec& grid) {
+  const Field field = distance_field(mesh, grid, {.sign = SignMode::winding});
+  VoxelSet voxels(grid.size);
+  test::for_each_voxel(grid.size, 1, [&](auto i, auto j, auto k) {
+    if (field.distance[grid.index(i, j, k)] < 0) voxels.insert(i, j, k);
+  });
+  return voxels;
+}
+
 /// No polyhedron: the axis has the topology of its voxels.
 void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& options) {
   const MedialAxis axis = medial_axis(mesh, options);
@@ -79,12 +89,8 @@ void expect_axis_of_voxels(const MeshView& mesh, const MedialAxisOptions& option
   test::expect_betti(axis, axis.report().betti);
   const AxisRows complex = axis.simplify(60);
   test::expect_exact_balls(complex, mesh);
-  const Field field = distance_field(mesh, axis.report().grid, {.sign = SignMode::winding});
-  VoxelSet voxels(field.grid.size);
-  test::for_each_voxel(field.grid.size, 1, [&](auto i, auto j, auto k) {
-    if (field.distance[field.grid.index(i, j, k)] < 0) voxels.insert(i, j, k);
-  });
-  const Certificate certificate = certify(complex, voxels, field.grid, &mesh, {.balls = false});
+  const GridSpec& grid = axis.report().grid;
+  const Certificate certificate = certify(complex, wound_voxels(mesh, grid), grid, &mesh, {.balls = false});
   for (const std::string& mismatch : certificate.mismatches) ADD_FAILURE() << mismatch;
 }
 
@@ -106,6 +112,25 @@ TEST(MedialHostileMesh, ABoxWithoutALidIsABox) {
   EXPECT_GT(std::erase_if(mesh.triangles, is_in_lid), 4U);
   expect_axis_of_voxels(mesh, coarse);
   EXPECT_EQ(medial_axis(mesh, coarse).report().betti, (BettiNumbers{1, 0, 0}));
+}
+
+/// What is missing is asked of balls between the walls of the mesh: the faces of voxels that close the hole are none.
+TEST(MedialHostileMesh, ABoxWithoutALidIsJudgedByItsWalls) {
+  TriangleMesh mesh = make_box({});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) { return mesh.vertices[v].z > 0; });
+  });
+  ASSERT_EQ(mesh.triangles.size(), 10U);
+  const MedialAxis axis = medial_axis(mesh, {.resolution = 32});
+  const MeshView view(mesh);
+  const GridSpec& grid = axis.report().grid;
+  const VoxelSet voxels = wound_voxels(mesh, grid);
+  for (const double theta : {20.0, 60.0}) {
+    const Certificate certificate = certify(axis.fitted(theta), voxels, grid, &view, {.theta = theta, .lambda = 0});
+    for (const std::string& mismatch : certificate.mismatches) ADD_FAILURE() << theta << ": " << mismatch;
+    EXPECT_GT(certificate.medial.medial_share, 0.99) << theta;
+    EXPECT_GT(certificate.medial.balls, 500U) << theta;
+  }
 }
 
 TEST(MedialHostileMesh, SurfacesThatCrossThemselvesAreTheUnionOfWhatTheyBound) {
