@@ -455,8 +455,11 @@ void add_solid(MedialRun& run, const Request& r, const SolidInput& given, const 
   options.selection = selection;
   const SolidInput surface = r.smooth ? smooth_input(run, given, selection, context) : SolidInput{};
   if (r.smooth && !r.has_resolution) {
+    // As fine as the image, where the surface has room for that: it may be smaller than a voxel, or flat.
     const Vec3d& sides = given.image.grid.spacing;
-    options.spacing = std::min({sides.x, sides.y, sides.z});
+    const Vec3d size = bounds(surface.mesh.mesh).size();
+    const double longest = std::max({size.x, size.y, size.z});
+    options.spacing = std::clamp(std::min({sides.x, sides.y, sides.z}), longest / options.max_resolution, longest / 8);
   }
   add_on_best_grid(run, r, {r.smooth ? surface : given, selection, label, output, surface.json}, options, context);
 }

@@ -101,9 +101,10 @@ class MedialAxis:
                     failed = [text, *failed_there]
                     found = again
                     break
-        if found.certificate.holds:
-            for sentence in failed:
-                warnings.warn(sentence, InputWarning, stacklevel=2)
+        if not found.certificate.holds:
+            failed = [f"NOT certified: at theta {float(theta):g}: {found.certificate.mismatches[0]}"]
+        for sentence in failed:
+            warnings.warn(sentence, InputWarning, stacklevel=2)
         return found
 
     def _first_certified(

@@ -135,6 +135,7 @@ class MedialAxisBuilder {
     report().reason = solid.reason();
     report().reversed_shells = solid.reversed_shells();
     check_place(solid.box());
+    check_lengths(solid.box());
     if (solid.rule() == SolidRule::voxels) {
       add_voxels(solid);
     } else {
@@ -158,6 +159,18 @@ class MedialAxisBuilder {
 
  private:
   MedialAxisReport& report() { return data_->report; }
+
+  /// Throws where options are lengths that the solid does not have: nothing of its axis would be told.
+  void check_lengths(const Box3& box) const {
+    const double diagonal = box.diagonal();
+    const auto check_length = [&](const char* name, double length) {
+      if (length <= diagonal || !(diagonal > 0)) return;
+      throw InvalidOption(std::string(name) + " is " + exact_text(length) +
+                          ", but must be at most the diagonal of the solid, " + exact_text(diagonal));
+    };
+    check_length("lambda", options_.lambda);
+    check_length("spacing", options_.spacing.value_or(0));
+  }
 
   /// Voxels fine enough for the topology of a body, if any are that the options allow.
   [[nodiscard]] Voxelized voxelize(const SolidBody& body, double spacing) const {

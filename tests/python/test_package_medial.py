@@ -116,6 +116,14 @@ def test_a_simpler_form_takes_the_place_of_one_that_is_not_certified(axis, monke
     assert np.array_equal(found.vertices, axis.simplify(60).vertices)
 
 
+def test_what_no_form_of_is_certified_is_warned_of(axis, monkeypatch):
+    fails = SimpleNamespace(holds=False, mismatches=["something is wrong"])
+    monkeypatch.setattr(blum.MedialComplex, "certificate", property(lambda piece: fails))
+    monkeypatch.setattr(axis, "_grids", None)
+    with pytest.warns(blum.InputWarning, match="NOT certified: at theta 60: something is wrong"):
+        assert not axis.certified(60).certificate.holds
+
+
 def test_a_wrong_axis_is_not_certified(axis, plate):
     piece = axis.simplify(60)
     parts = {

@@ -29,7 +29,7 @@ namespace blum {
 struct MedialAxisOptions {
   /// Meshes: voxels along the longest side of the box around the mesh, 8 to 800.
   int resolution = 256;
-  /// Meshes: side of a voxel, > 0, mesh units; instead of `resolution`.
+  /// Meshes: side of a voxel, > 0 and at most the diagonal of the solid, mesh units; instead of `resolution`.
   std::optional<double> spacing = {};
   /// Meshes: a body whose model does not pass (see CellularModel), or of which no voxel shows, is done again with
   /// voxels of half the side, as long as at most this many lie along its own longest side. Less than `resolution` says:
@@ -39,7 +39,7 @@ struct MedialAxisOptions {
   /// goes where that goes; by this one sees what depends on where it lies.
   double grid_shift = 0;
   /// Pieces of the axis whose two footprints are closer than this count for nothing (the lambda-medial axis of Chazal
-  /// and Lieutier 2005), >= 0, mesh units.
+  /// and Lieutier 2005), >= 0 and at most the diagonal of the solid, mesh units.
   double lambda = 0;
   /// The smallest theta that will be asked for, 0 to 180 degrees: what is seen at less is not looked at closely, which
   /// saves time where much is. What joins the rest may then run elsewhere.
