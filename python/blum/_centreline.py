@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Unpack
@@ -11,7 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import FloatArray, Integer, integer, label_of
 from ._complex import Complex
-from ._errors import InvalidOption
+from ._errors import InputWarning, InvalidOption
 from ._image import as_image
 from ._mesh import Betti, betti_of
 from ._options import takes
@@ -155,7 +156,13 @@ def centreline(
         parts, edges, seconds = _core.centreline(
             source._arrays, wanted, dict(options), integer(threads, "threads"), report
         )
-    return Centrelines(tuple(_line(*each) for each in parts), Complex._from_core(edges), seconds)
+    lines = tuple(_line(*each) for each in parts)
+    absent = [line.label for line in lines if line.voxels == 0]
+    if absent or not lines:
+        text = f"no voxel has the label {absent[0]}" if absent and absent[0] is not None else "no voxel is selected"
+        more = f", nor {len(absent) - 1} more of those asked for" if len(absent) > 1 else ""
+        warnings.warn(text + more, InputWarning, stacklevel=2)
+    return Centrelines(lines, Complex._from_core(edges), seconds)
 
 
 def _line(
