@@ -145,7 +145,7 @@ class Solid:
 
     @property
     def reversed_shells(self) -> int:
-        """How many shells faced the solid and were reversed."""
+        """How many shells faced the wrong way and were reversed."""
         return self._core.reversed_shells
 
     @property

@@ -248,6 +248,12 @@ std::optional<MeshSolid> polyhedron(const MeshView& mesh, const SiteTable& sites
   for (const auto& own : triangles) out.bodies.push_back(copy_of(mesh, own, is_reversed));
   add_shells(topology.shells, *body, out);
   out.reason = "the mesh is closed, manifold and does not cross itself";
+  const auto reversed =
+      std::count_if(out.shells.begin(), out.shells.end(), [](const SolidShell& own) { return own.is_reversed; });
+  if (reversed > 0)
+    out.reason += "; " + counted(static_cast<std::size_t>(reversed), "shell faced the wrong way and was reversed",
+                                 "shells faced the wrong way and were reversed");
+  if (!out.touching.empty()) out.reason += "; some of its bodies touch";
   return out;
 }
 

@@ -334,7 +334,7 @@ def test_old_output_is_replaced(solids, axes, tmp_path):
 
 def test_an_inverted_mesh_is_turned_and_warned_of(solids, tmp_path):
     command = ["medial", solids / "inverted.obj", "-o", tmp_path / "i.npz", "--resolution", 16]
-    assert "1 shell faces the solid and was reversed" in run(*command, warns=True)[1]
+    assert "1 shell faces the wrong way and was reversed" in run(*command, warns=True)[1]
     summary = run_json(*command, warns=True)
     assert summary["solids"][0]["reversed_shells"] == 1 and summary["certified"]
     assert len(summary["warnings"]) == 1

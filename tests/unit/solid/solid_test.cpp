@@ -49,7 +49,8 @@ TEST(Solid, OuterShellsHaveTheVoidsInThem) {
   EXPECT_EQ(split.rule(), SolidRule::polyhedron);
   EXPECT_EQ(betti_of(split), (std::vector<BettiNumbers>{{1, 2, 1}, {1, 0, 0}, {1, 0, 1}, {1, 0, 0}}));
   EXPECT_EQ(split.reversed_shells(), 2U) << "the two voids were given as boxes and tori are";
-  EXPECT_EQ(split.reason(), "the mesh is closed, manifold and does not cross itself");
+  EXPECT_EQ(split.reason(),
+            "the mesh is closed, manifold and does not cross itself; 2 shells faced the wrong way and were reversed");
 }
 
 TEST(Solid, ShellsInEachOtherAreBodiesInTurn) {
