@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "blum/core/random.hpp"
 #include "blum/geometry/sites.hpp"
+#include "certificate/gap_search.hpp"
 #include "certificate/shells.hpp"
 #include "certificate/solid_oracle.hpp"
 #include "certificate/triangle_samples.hpp"
@@ -103,6 +105,11 @@ class ShellOracle : public SolidOracle {
     return is_clear(a, b, body) && is_clear(b, c, body) && is_clear(c, a, body) && search_.is_unpierced(triangle, body);
   }
 
+  [[nodiscard]] std::optional<bool> crosses_gap(const Vec3d& a, const Vec3d& b, std::uint32_t body,
+                                                double reach) const override {
+    return GapSearch(*this, search_, mesh_, body_of_, shells_.beside).crosses(a, b, body, reach);
+  }
+
   [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t body) const override {
     return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p, body).triangle));
   }
@@ -113,8 +120,8 @@ class ShellOracle : public SolidOracle {
       const std::uint32_t shell = shells_.of_triangle[t];
       if (shell != no_group && shells_.shells[shell].depth % 2 == 1) walls[shell].push_back(t);
     }
-    const auto point = [&](std::uint32_t shell) { return point_of_void(shell, walls[shell]); };
-    return std::make_unique<Complement>(complement_of_mesh(mesh_, shells_, point, context));
+    const auto points = [&](std::uint32_t shell) { return points_of_void(shell, walls[shell]); };
+    return std::make_unique<Complement>(complement_of_mesh(mesh_, shells_, points, context));
   }
 
   [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
@@ -139,10 +146,13 @@ class ShellOracle : public SolidOracle {
     return is_in_shell != is_void ? Side::inside : Side::outside;
   }
 
-  /// A point deep in a void: the deepest of the middles of some chords. Flat triangles of an axis in a bent wall reach
-  /// into what is beside the wall, so that a point near the wall may be on either side of them.
-  [[nodiscard]] Vec3d point_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
+  /// Points deep in a void: the deepest of the middles of some chords, and others on both sides of it, halfway to the
+  /// wall. Flat triangles of an axis in a bent wall reach into what is beside the wall, so that a point near the wall
+  /// may be on either side of them.
+  [[nodiscard]] std::vector<Vec3d> points_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
     constexpr std::size_t most_chords = 32;
+    constexpr std::size_t pairs = 4;
+    constexpr double share = 0.5;
     Vec3d best = mesh_.vertices[mesh_.triangles[walls.front()][0]];
     double depth_of_best = 0;
     const std::size_t every = (walls.size() + most_chords - 1) / most_chords;
@@ -156,7 +166,15 @@ class ShellOracle : public SolidOracle {
         best = *middle;
       }
     }
-    return best;
+    std::vector<Vec3d> points{best};
+    Random random(0x701dU);
+    for (std::size_t k = 0; k < pairs && depth_of_best > 0; ++k) {
+      const Vec3d aside = random.in_ball();
+      const Vec3d step = aside * (share * depth_of_best / length(aside));
+      points.push_back(best + step);
+      points.push_back(best - step);
+    }
+    return points;
   }
 
   /// Halfway from the centre of a triangle along its normal to what is met first; nullopt where that is nothing, or

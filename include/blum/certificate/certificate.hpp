@@ -117,8 +117,11 @@ struct EdgeCheck {
   std::size_t outside = 0;  ///< those that leave that body otherwise
   double outside_by = 0;    ///< how far the furthest of these is out, at least, mesh units
   Vec3d where;              ///< and there, mesh units
+  std::size_t across = 0;   ///< those that are out by no more than the tolerance, but cross a gap of the solid there
+  Vec3d across_at;          ///< the first of these, mesh units
+  std::size_t untold = 0;   ///< those of which that cannot be told: nothing more than Betti numbers is proven
   double tolerance = 0;     ///< ten times GeometryCheck::tolerance; the diagonal of a voxel more for SolidRule::winding
-  bool holds = false;       ///< none is outside
+  bool holds = false;       ///< none is outside or crosses a gap
 };
 
 template <>
@@ -132,8 +135,11 @@ struct Description<EdgeCheck> {
       Member{"outside", &EdgeCheck::outside, "", "those that leave the solid otherwise"},
       Member{"outside_by", &EdgeCheck::outside_by, "mesh units", "how far the furthest of these is out, at least"},
       Member{"where", &EdgeCheck::where, "mesh units", "and there"},
+      Member{"across", &EdgeCheck::across, "", "those out by no more than the tolerance that cross a gap there"},
+      Member{"across_at", &EdgeCheck::across_at, "mesh units", "the first of these"},
+      Member{"untold", &EdgeCheck::untold, "", "those of which that cannot be told: only Betti numbers are proven"},
       Member{"tolerance", &EdgeCheck::tolerance, "mesh units", "what is allowed"},
-      Member{"holds", &EdgeCheck::holds, "", "whether none is outside"},
+      Member{"holds", &EdgeCheck::holds, "", "whether none is outside or crosses a gap"},
   };
 };
 
