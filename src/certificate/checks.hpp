@@ -73,8 +73,7 @@ struct EdgeWays {
 /// The same for what lies between vertices. @param incidence  of the axis.  @param ways  is filled.
 [[nodiscard]] EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                                     const std::vector<Location>& locations, const AxisParts& parts, double factor,
-                                    EdgeWays& ways, std::vector<std::string>& mismatches,
-                                    const Context& context);
+                                    EdgeWays& ways, std::vector<std::string>& mismatches, const Context& context);
 
 /// The same for triangles between their edges.
 [[nodiscard]] TriangleCheck check_triangles(const MedialView& axis, const KnownSolid& solid,

@@ -103,8 +103,8 @@ std::string explained(const EdgeCheck& check, double allowed) {
 }  // namespace
 
 EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
-                      const std::vector<Location>& locations, const AxisParts& parts, double factor,
-                      EdgeWays& ways, std::vector<std::string>& mismatches, const Context& context) {
+                      const std::vector<Location>& locations, const AxisParts& parts, double factor, EdgeWays& ways,
+                      std::vector<std::string>& mismatches, const Context& context) {
   constexpr std::size_t grain = 256;
   const std::span<const std::array<std::uint32_t, 2>> edges = incidence.edges();
   std::vector<double> allowed = tolerances(solid);

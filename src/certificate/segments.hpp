@@ -18,8 +18,8 @@ struct Segment3 {
   }
 };
 
-/// How far along a segment the point is that is closest to another segment: 0 to 1; where they run along each other, the
-/// middle of that part.
+/// How far along a segment the point is that is closest to another segment: 0 to 1; where they run along each other,
+/// the middle of that part.
 [[nodiscard]] inline double closest_along(const Segment3& segment, const Segment3& other) {
   constexpr double parallel = 1e-12;  // squared, the sine of the angle between them
   const Vec3d along = segment.b - segment.a;
