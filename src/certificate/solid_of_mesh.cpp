@@ -146,35 +146,52 @@ class ShellOracle : public SolidOracle {
     return is_in_shell != is_void ? Side::inside : Side::outside;
   }
 
-  /// Points deep in a void: the deepest of the middles of some chords, and others on both sides of it, halfway to the
-  /// wall. Flat triangles of an axis in a bent wall reach into what is beside the wall, so that a point near the wall
-  /// may be on either side of them.
+  /// Points deep in a void: the deepest of the middles of some chords, others on both sides of it, halfway to the wall,
+  /// and middles of other chords that are at least half as deep. Flat triangles of an axis in a bent wall reach into
+  /// what is beside the wall, so that a point near the wall may be on either side of them.
   [[nodiscard]] std::vector<Vec3d> points_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
-    constexpr std::size_t most_chords = 32;
     constexpr std::size_t pairs = 4;
+    constexpr std::size_t most_middles = 16;
     constexpr double share = 0.5;
-    Vec3d best = mesh_.vertices[mesh_.triangles[walls.front()][0]];
-    double depth_of_best = 0;
+    const std::vector<DeepPoint> middles = middles_of_chords(shell, walls);
+    if (middles.empty()) return {mesh_.vertices[mesh_.triangles[walls.front()][0]]};
+    const DeepPoint best = *std::max_element(middles.begin(), middles.end(),
+                                             [](const DeepPoint& p, const DeepPoint& q) { return p.depth < q.depth; });
+    std::vector<Vec3d> points{best.at};
+    Random random(0x701dU);
+    for (std::size_t k = 0; k < pairs; ++k) {
+      const Vec3d aside = random.in_ball();
+      const Vec3d step = aside * (share * best.depth / length(aside));
+      points.push_back(best.at + step);
+      points.push_back(best.at - step);
+    }
+    const std::size_t every = (middles.size() + most_middles - 1) / most_middles;
+    for (std::size_t k = 0; k < middles.size(); k += every) {
+      if (middles[k].depth >= share * best.depth) points.push_back(middles[k].at);
+    }
+    return points;
+  }
+
+  struct DeepPoint {
+    Vec3d at;
+    double depth = 0;  ///< in a void, from its wall; above 0
+  };
+
+  /// The middles of chords of a void from some of its triangles.
+  [[nodiscard]] std::vector<DeepPoint> middles_of_chords(std::uint32_t shell,
+                                                         const std::vector<std::uint32_t>& walls) const {
+    constexpr std::size_t most_chords = 32;
+    std::vector<DeepPoint> middles;
     const std::size_t every = (walls.size() + most_chords - 1) / most_chords;
     for (std::size_t k = 0; k < walls.size(); k += every) {
       for (const double side : {1.0, -1.0}) {
         const std::optional<Vec3d> middle = middle_of_chord(walls[k], side);
         if (!middle || innermost_around(*middle) != shell) continue;
-        const double own_depth = search_.nearest(*middle).distance;
-        if (own_depth <= depth_of_best) continue;
-        depth_of_best = own_depth;
-        best = *middle;
+        const double depth = search_.nearest(*middle).distance;
+        if (depth > 0) middles.push_back({*middle, depth});
       }
     }
-    std::vector<Vec3d> points{best};
-    Random random(0x701dU);
-    for (std::size_t k = 0; k < pairs && depth_of_best > 0; ++k) {
-      const Vec3d aside = random.in_ball();
-      const Vec3d step = aside * (share * depth_of_best / length(aside));
-      points.push_back(best + step);
-      points.push_back(best - step);
-    }
-    return points;
+    return middles;
   }
 
   /// Halfway from the centre of a triangle along its normal to what is met first; nullopt where that is nothing, or

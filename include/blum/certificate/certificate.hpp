@@ -145,7 +145,7 @@ struct Description<EdgeCheck> {
 
 /// Whether the way of an axis into its solid is an isomorphism of homology, and not only the numbers agree: exact
 /// linking numbers of the axis's loops with closed paths along the surface that generate the homology of what is
-/// outside, and winding numbers of its closed surfaces around a point of each void (Alexander duality). A loop that
+/// outside, and winding numbers of its closed surfaces around points of each void (Alexander duality). A loop that
 /// runs round nothing, or twice round one tunnel and never round another, is found out and refused. A triangle across a
 /// hole is found out, too, and refused. Looked at where Betti numbers agree and
 /// edges lie in the solid; not for tunnels and voids of voxels, of which numbers alone are compared.

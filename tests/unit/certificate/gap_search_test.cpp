@@ -76,9 +76,9 @@ TEST(GapSearch, PastTheEndOfASlit) {
     const double y = slit_end + above;
     EXPECT_TRUE(of_path({{0.3, y, 0.4}, {0.7, y, 0.5}}, mesh).holds()) << above;
   }
-  EXPECT_FALSE(of_path({{0.3, slit_end + 3 * edges_are_checked_to, 0.4}, {0.7, slit_end + 3 * edges_are_checked_to, 0.5}},
-                       mesh)
-                   .holds());
+  EXPECT_FALSE(
+      of_path({{0.3, slit_end + 3 * edges_are_checked_to, 0.4}, {0.7, slit_end + 3 * edges_are_checked_to, 0.5}}, mesh)
+          .holds());
 }
 
 TEST(GapSearch, AlongTheSurface) {

@@ -417,6 +417,28 @@ TEST(HomologyCheck, ASurfaceThroughAVoidIsNotAroundIt) {
   }
 }
 
+/// A flat void as wide as the solid nearly, and a surface that cuts it in two away from its middle.
+TEST(HomologyCheck, ASurfaceAroundAPartOfAVoidIsNotAroundIt) {
+  TriangleMesh mesh = make_box();
+  const Vec3d middle = bounds(mesh).center();
+  TriangleMesh hole = make_box({.segments = {8, 8, 1}});
+  for (Vec3d& p : hole.vertices) {
+    const Vec3d from = p - middle;
+    p = middle + Vec3d{0.8 * from.x, 0.25 + 0.3 * from.y, 0.01 * from.z};  // beside the diagonals of the surface
+  }
+  append(mesh, hole);
+  for (const double cut : {-0.45, 0.25}) {  // beside the void, and through it
+    TriangleMesh around = make_box();
+    for (Vec3d& p : around.vertices) {
+      p = middle + 0.9 * (p - middle);
+      if (p.x < middle.x) p.x = middle.x + cut;
+    }
+    const Certificate found = certify_topology(surface_of(around), mesh);
+    EXPECT_TRUE(found.topology_holds && found.edges.holds) << cut;
+    EXPECT_EQ(found.homology.holds, cut < 0) << cut;
+  }
+}
+
 TEST(Windings, WhereNoPointTellsThatIsSaid) {
   const Complex complex = surface_of(make_box());
   const ComplexView view = complex.view();
