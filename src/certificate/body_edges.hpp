@@ -41,6 +41,12 @@ class BodyEdges {
   /// How far out an edge may be that can be pushed in.
   [[nodiscard]] double corner() const { return corner_; }
 
+  /// Whether a segment is known to meet no boundary.
+  [[nodiscard]] bool is_inside(const Stop& a, const Stop& b) const {
+    if (!(a.depth > 0 && b.depth > 0)) return false;
+    return a.depth + b.depth >= length(b.at - a.at) || solid_.is_clear(a.at, b.at, body_);
+  }
+
   /// The point of a segment that is furthest out, as far as that is more than is allowed. A ball as large as a point is
   /// deep lies in the body, so that only what is between such balls is left to ask about. In a thin wall these are
   /// many: so first it is asked whether the segment meets the boundary at all.
@@ -49,9 +55,7 @@ class BodyEdges {
                                                  std::size_t& looks) const {
     constexpr double nearly = 1.25;  // enough of what is too much anyway
     Stop worst = a.depth < b.depth ? a : b;
-    if (a.depth > 0 && b.depth > 0) {
-      if (a.depth + b.depth >= length(b.at - a.at) || solid_.is_clear(a.at, b.at, body_)) return worst;
-    }
+    if (is_inside(a, b)) return worst;
     std::vector<std::pair<Stop, Stop>> stack{{a, b}};
     while (!stack.empty()) {
       const auto [p, q] = stack.back();

@@ -95,12 +95,13 @@ Certificate certify_against(const Complex& complex, const verifier::KnownSolid& 
       verifier::check_vertices(axis, solid, locations, certificate.checked, factor, certificate.mismatches, context);
   verifier::check_claims(certificate.checked, solid.solid->diagonal() / factor, certificate.mismatches);
   const Incidence incidence(axis.cells(), context);
-  std::vector<verifier::PushedEdge> pushed;
+  verifier::EdgeWays ways;
   certificate.edges =
-      verifier::check_edges(axis, incidence, solid, locations, parts, factor, pushed, certificate.mismatches, context);
-  certificate.homology = verifier::check_homology({axis, incidence, solid, locations, parts, pushed, factor},
-                                                  certificate.edges.holds && certificate.geometry.not_finite == 0,
-                                                  certificate.bodies, name, certificate.mismatches, context);
+      verifier::check_edges(axis, incidence, solid, locations, parts, factor, ways, certificate.mismatches, context);
+  certificate.homology =
+      verifier::check_homology({axis, incidence, solid, locations, parts, ways, factor, certificate.edges.untold},
+                               certificate.edges.holds && certificate.geometry.not_finite == 0, certificate.bodies,
+                               name, certificate.mismatches, context);
   certificate.triangles = verifier::check_triangles(axis, solid, locations, parts, certificate.checked, factor,
                                                     certificate.mismatches, context);
   if (certificate.checked.labels) {

@@ -64,12 +64,16 @@ struct AxisParts {
                                            const std::vector<Location>& locations, const CertificateOptions& options,
                                            double factor, std::vector<std::string>& mismatches, const Context& context);
 
-/// The same for what lies between vertices. @param incidence  of the axis.  @param pushed  is given the edges that were
-/// pushed into the solid, rising.
+/// Edges that are not simply inside, rising.
+struct EdgeWays {
+  std::vector<PushedEdge> pushed;      ///< those that were pushed into the solid
+  std::vector<std::uint32_t> grazing;  ///< those that leave it by no more than the tolerance
+};
+
+/// The same for what lies between vertices. @param incidence  of the axis.  @param ways  is filled.
 [[nodiscard]] EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                                     const std::vector<Location>& locations, const AxisParts& parts, double factor,
-                                    std::vector<PushedEdge>& pushed, std::vector<std::string>& mismatches,
-                                    const Context& context);
+                                    EdgeWays& ways, std::vector<std::string>& mismatches, const Context& context);
 
 /// The same for triangles between their edges.
 [[nodiscard]] TriangleCheck check_triangles(const MedialView& axis, const KnownSolid& solid,

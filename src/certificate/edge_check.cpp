@@ -17,10 +17,14 @@ namespace {
 struct Findings {
   EdgeCheck check;
   double allowed = 0;  ///< for the worst
-  std::vector<PushedEdge> ways;
+  EdgeWays ways;
 
   void add(const Findings& other) {
-    ways.insert(ways.end(), other.ways.begin(), other.ways.end());
+    ways.pushed.insert(ways.pushed.end(), other.ways.pushed.begin(), other.ways.pushed.end());
+    ways.grazing.insert(ways.grazing.end(), other.ways.grazing.begin(), other.ways.grazing.end());
+    if (check.across == 0) check.across_at = other.check.across_at;
+    check.across += other.check.across;
+    check.untold += other.check.untold;
     check.pushed += other.check.pushed;
     check.pushed_by = std::max(check.pushed_by, other.check.pushed_by);
     check.outside += other.check.outside;
@@ -32,25 +36,63 @@ struct Findings {
 };
 
 /// Looks at one edge.
-Findings look_at(std::uint32_t edge, const Stop& a, const Stop& b, const BodyEdges& body, bool may_push) {
-  PushBudget budget;
-  std::vector<Vec3d> way;
-  Findings found;
-  const Stop worst = body.furthest_out(a, b, body.allowed());
-  if (-worst.depth <= body.allowed()) return found;
-  may_push = may_push && -worst.depth <= body.corner() && std::min(a.depth, b.depth) >= -body.allowed();
-  if (may_push && body.can_be_pushed_in(a, b, budget, way)) {
-    found.check.pushed = 1;
-    found.check.pushed_by = -worst.depth;
-    found.ways.push_back({edge, std::move(way)});
+class EdgeLook {
+ public:
+  EdgeLook(const SolidOracle& solid, std::uint32_t body, double allowed)
+      : solid_(solid), body_(body), edges_(solid, body, allowed) {}
+
+  [[nodiscard]] Findings look_at(std::uint32_t edge, const Stop& a, const Stop& b) const {
+    Findings found;
+    if (edges_.is_inside(a, b)) return found;
+    const bool may_push = solid_.slack() == 0;
+    const Stop worst = edges_.furthest_out(a, b, edges_.allowed());
+    if (-worst.depth <= edges_.allowed()) {
+      if (-worst.depth > grazes * edges_.allowed()) found.ways.grazing.push_back(edge);
+      look_for_gaps({a, b}, found);
+      return found;
+    }
+    PushBudget budget;
+    std::vector<Vec3d> way;
+    if (may_push && -worst.depth <= edges_.corner() && std::min(a.depth, b.depth) >= -edges_.allowed() &&
+        edges_.can_be_pushed_in(a, b, budget, way)) {
+      found.check.pushed = 1;
+      found.check.pushed_by = -worst.depth;
+      std::vector<Stop> stops{a};
+      for (const Vec3d& at : way) stops.push_back({at, solid_.depth(at, body_)});
+      stops.push_back(b);
+      look_for_gaps(stops, found);
+      found.ways.pushed.push_back({edge, std::move(way)});
+      return found;
+    }
+    found.check.outside = 1;
+    found.check.outside_by = -worst.depth;
+    found.check.where = worst.at;
+    found.allowed = edges_.allowed();
     return found;
   }
-  found.check.outside = 1;
-  found.check.outside_by = -worst.depth;
-  found.check.where = worst.at;
-  found.allowed = body.allowed();
-  return found;
-}
+
+ private:
+  static constexpr double grazes = 1e-4;  ///< of what is allowed: more than rounding
+
+  /// A way that is out by no more than is allowed may cross a gap as narrow.
+  void look_for_gaps(const std::vector<Stop>& way, Findings& found) const {
+    constexpr double beside = 2;  // from the middle of a gap both walls are half as far away as they are apart
+    for (std::size_t k = 0; k + 1 < way.size(); ++k) {
+      if (edges_.is_inside(way[k], way[k + 1])) continue;
+      const auto is_across = solid_.crosses_gap(way[k].at, way[k + 1].at, body_, beside * edges_.allowed());
+      if (is_across == true) {
+        found.check.across = 1;
+        found.check.across_at = 0.5 * (way[k].at + way[k + 1].at);
+        return;
+      }
+      if (!is_across) found.check.untold = 1;
+    }
+  }
+
+  const SolidOracle& solid_;
+  std::uint32_t body_;
+  BodyEdges edges_;
+};
 
 std::string explained(const EdgeCheck& check, double allowed) {
   return "of the " + count_text(check.edges) + " edges of the axis " + count_text(check.outside) +
@@ -61,8 +103,8 @@ std::string explained(const EdgeCheck& check, double allowed) {
 }  // namespace
 
 EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
-                      const std::vector<Location>& locations, const AxisParts& parts, double factor,
-                      std::vector<PushedEdge>& pushed, std::vector<std::string>& mismatches, const Context& context) {
+                      const std::vector<Location>& locations, const AxisParts& parts, double factor, EdgeWays& ways,
+                      std::vector<std::string>& mismatches, const Context& context) {
   constexpr std::size_t grain = 256;
   const std::span<const std::array<std::uint32_t, 2>> edges = incidence.edges();
   std::vector<double> allowed = tolerances(solid);
@@ -79,20 +121,26 @@ EdgeCheck check_edges(const MedialView& axis, const Incidence& incidence, const 
         return Stop{at, locations[v].body == body ? locations[v].depth : solid.solid->depth(at, body)};
       };
       found[range.begin / grain].add(
-          look_at(static_cast<std::uint32_t>(e), stop(a), stop(b), {*solid.solid, body, allowed[body]}, slack == 0));
+          EdgeLook(*solid.solid, body, allowed[body]).look_at(static_cast<std::uint32_t>(e), stop(a), stop(b)));
     }
   });
   Findings all;
   for (const Findings& part : found) all.add(part);
-  pushed = std::move(all.ways);
+  ways = std::move(all.ways);
   EdgeCheck check = all.check;
   check.edges = edges.size();
   check.pushed_by /= factor;
   check.outside_by /= factor;
   check.where = check.where / factor;
+  check.across_at = check.across_at / factor;
   check.tolerance = *std::max_element(allowed.begin(), allowed.end()) / factor;
-  check.holds = check.outside == 0;
-  if (!check.holds) mismatches.push_back(explained(check, all.allowed / factor));
+  check.holds = check.outside == 0 && check.across == 0;
+  if (check.outside > 0) mismatches.push_back(explained(check, all.allowed / factor));
+  if (check.across > 0) {
+    mismatches.push_back("of the " + count_text(check.edges) + " edges of the axis " + count_text(check.across) +
+                         " cross gaps of the solid that are narrower than edges are checked, the first one at " +
+                         verifier::place_text(check.across_at));
+  }
   return check;
 }
 

@@ -93,19 +93,26 @@ std::uint32_t after(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
 
-/// For each triangle 1 or -1, such that those with one sign, and the others turned, face one way. Shells begin with 1.
-/// @throws NoPolyhedron for a surface that has only one side.
-std::vector<std::int8_t> facings(const MeshView& mesh, const std::vector<Side>& sides, const Context& context) {
-  struct Neighbour {
-    std::uint32_t triangle = 0;
-    std::int8_t agrees = 0;
-  };
+/// The triangle on the other side of a side.
+struct Neighbour {
+  std::uint32_t triangle = 0;
+  std::int8_t agrees = 0;  ///< 1 where both face one way, else -1
+};
+
+/// Of each side, as 3 * triangle + k.
+std::vector<Neighbour> neighbours(const MeshView& mesh, const std::vector<Side>& sides) {
   std::vector<Neighbour> beside(3 * mesh.triangles.size());
   for_each_edge(sides, [&](const Side& a, const Side& b) {
     const auto agrees = static_cast<std::int8_t>(a.rises != b.rises ? 1 : -1);
     beside[a.corner] = {b.corner / 3, agrees};
     beside[b.corner] = {a.corner / 3, agrees};
   });
+  return beside;
+}
+
+/// For each triangle 1 or -1, such that those with one sign, and the others turned, face one way. Shells begin with 1.
+/// @throws NoPolyhedron for a surface that has only one side.
+std::vector<std::int8_t> facings(const MeshView& mesh, const std::vector<Neighbour>& beside, const Context& context) {
   throw_if_cancelled(context);
   std::vector<std::int8_t> facing(mesh.triangles.size(), 0);
   std::vector<std::uint32_t> line;
@@ -284,8 +291,11 @@ ClosedShells cut_into_shells(const MeshView& mesh, const Context& context) {
   });
   throw_if_cancelled(context);
   check_fans(mesh, corners);
-  const std::vector<std::int8_t> facing = facings(mesh, sides, context);
+  const std::vector<Neighbour> beside = neighbours(mesh, sides);
+  const std::vector<std::int8_t> facing = facings(mesh, beside, context);
   ClosedShells result;
+  result.beside.reserve(beside.size());
+  for (const Neighbour& one : beside) result.beside.push_back(one.triangle);
   result.of_triangle.assign(mesh.triangles.size(), no_group);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (names_a_vertex_twice(mesh.triangles[t])) continue;

@@ -25,6 +25,7 @@ struct ClosedShells {
   std::vector<ClosedShell> shells;
   std::vector<std::uint32_t> of_triangle;  ///< no_group for triangles that name a vertex twice: they bound nothing
   std::vector<std::int8_t> outwards;       ///< 1 where a triangle's normal leads out of its shell, -1 in, 0 unknown
+  std::vector<std::uint32_t> beside;       ///< of each side, as 3 * triangle + k: the triangle on the other side of it
   std::uint32_t bodies = 0;
 };
 

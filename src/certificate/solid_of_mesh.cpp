@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "blum/core/random.hpp"
 #include "blum/geometry/sites.hpp"
+#include "certificate/gap_search.hpp"
 #include "certificate/shells.hpp"
 #include "certificate/solid_oracle.hpp"
 #include "certificate/triangle_samples.hpp"
@@ -103,6 +105,11 @@ class ShellOracle : public SolidOracle {
     return is_clear(a, b, body) && is_clear(b, c, body) && is_clear(c, a, body) && search_.is_unpierced(triangle, body);
   }
 
+  [[nodiscard]] std::optional<bool> crosses_gap(const Vec3d& a, const Vec3d& b, std::uint32_t body,
+                                                double reach) const override {
+    return GapSearch(*this, search_, mesh_, body_of_, shells_.beside).crosses(a, b, body, reach);
+  }
+
   [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t body) const override {
     return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p, body).triangle));
   }
@@ -113,8 +120,8 @@ class ShellOracle : public SolidOracle {
       const std::uint32_t shell = shells_.of_triangle[t];
       if (shell != no_group && shells_.shells[shell].depth % 2 == 1) walls[shell].push_back(t);
     }
-    const auto point = [&](std::uint32_t shell) { return point_of_void(shell, walls[shell]); };
-    return std::make_unique<Complement>(complement_of_mesh(mesh_, shells_, point, context));
+    const auto points = [&](std::uint32_t shell) { return points_of_void(shell, walls[shell]); };
+    return std::make_unique<Complement>(complement_of_mesh(mesh_, shells_, points, context));
   }
 
   [[nodiscard]] double distance_from_site(const Vec3d& p, SiteId site) const override {
@@ -139,24 +146,52 @@ class ShellOracle : public SolidOracle {
     return is_in_shell != is_void ? Side::inside : Side::outside;
   }
 
-  /// A point deep in a void: the deepest of the middles of some chords. Flat triangles of an axis in a bent wall reach
-  /// into what is beside the wall, so that a point near the wall may be on either side of them.
-  [[nodiscard]] Vec3d point_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
+  /// Points deep in a void: the deepest of the middles of some chords, others on both sides of it, halfway to the wall,
+  /// and middles of other chords that are at least half as deep. Flat triangles of an axis in a bent wall reach into
+  /// what is beside the wall, so that a point near the wall may be on either side of them.
+  [[nodiscard]] std::vector<Vec3d> points_of_void(std::uint32_t shell, const std::vector<std::uint32_t>& walls) const {
+    constexpr std::size_t pairs = 4;
+    constexpr std::size_t most_middles = 16;
+    constexpr double share = 0.5;
+    const std::vector<DeepPoint> middles = middles_of_chords(shell, walls);
+    if (middles.empty()) return {mesh_.vertices[mesh_.triangles[walls.front()][0]]};
+    const DeepPoint best = *std::max_element(middles.begin(), middles.end(),
+                                             [](const DeepPoint& p, const DeepPoint& q) { return p.depth < q.depth; });
+    std::vector<Vec3d> points{best.at};
+    Random random(0x701dU);
+    for (std::size_t k = 0; k < pairs; ++k) {
+      const Vec3d aside = random.in_ball();
+      const Vec3d step = aside * (share * best.depth / length(aside));
+      points.push_back(best.at + step);
+      points.push_back(best.at - step);
+    }
+    const std::size_t every = (middles.size() + most_middles - 1) / most_middles;
+    for (std::size_t k = 0; k < middles.size(); k += every) {
+      if (middles[k].depth >= share * best.depth) points.push_back(middles[k].at);
+    }
+    return points;
+  }
+
+  struct DeepPoint {
+    Vec3d at;
+    double depth = 0;  ///< in a void, from its wall; above 0
+  };
+
+  /// The middles of chords of a void from some of its triangles.
+  [[nodiscard]] std::vector<DeepPoint> middles_of_chords(std::uint32_t shell,
+                                                         const std::vector<std::uint32_t>& walls) const {
     constexpr std::size_t most_chords = 32;
-    Vec3d best = mesh_.vertices[mesh_.triangles[walls.front()][0]];
-    double depth_of_best = 0;
+    std::vector<DeepPoint> middles;
     const std::size_t every = (walls.size() + most_chords - 1) / most_chords;
     for (std::size_t k = 0; k < walls.size(); k += every) {
       for (const double side : {1.0, -1.0}) {
         const std::optional<Vec3d> middle = middle_of_chord(walls[k], side);
         if (!middle || innermost_around(*middle) != shell) continue;
-        const double own_depth = search_.nearest(*middle).distance;
-        if (own_depth <= depth_of_best) continue;
-        depth_of_best = own_depth;
-        best = *middle;
+        const double depth = search_.nearest(*middle).distance;
+        if (depth > 0) middles.push_back({*middle, depth});
       }
     }
-    return best;
+    return middles;
   }
 
   /// Halfway from the centre of a triangle along its normal to what is met first; nullopt where that is nothing, or

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "blum/certificate/certificate.hpp"
@@ -67,6 +68,12 @@ class SolidOracle {
   }
   /// The same for a triangle, sides included.
   [[nodiscard]] virtual bool is_clear(const std::array<Vec3d, 3>& /*triangle*/, std::uint32_t /*body*/) const {
+    return false;
+  }
+  /// Whether a part of a segment between two points that is outside of a body crosses a gap: no way along the surface,
+  /// within `reach` of that part, leads from where it goes out to where it comes in; nullopt where that cannot be told.
+  [[nodiscard]] virtual std::optional<bool> crosses_gap(const Vec3d& /*a*/, const Vec3d& /*b*/, std::uint32_t /*body*/,
+                                                        double /*reach*/) const {
     return false;
   }
   /// The closest point of the surface of a body.

@@ -117,8 +117,11 @@ struct EdgeCheck {
   std::size_t outside = 0;  ///< those that leave that body otherwise
   double outside_by = 0;    ///< how far the furthest of these is out, at least, mesh units
   Vec3d where;              ///< and there, mesh units
+  std::size_t across = 0;   ///< those that are out by no more than the tolerance, but cross a gap of the solid there
+  Vec3d across_at;          ///< the first of these, mesh units
+  std::size_t untold = 0;   ///< those of which that cannot be told: nothing more than Betti numbers is proven
   double tolerance = 0;     ///< ten times GeometryCheck::tolerance; the diagonal of a voxel more for SolidRule::winding
-  bool holds = false;       ///< none is outside
+  bool holds = false;       ///< none is outside or crosses a gap
 };
 
 template <>
@@ -132,14 +135,17 @@ struct Description<EdgeCheck> {
       Member{"outside", &EdgeCheck::outside, "", "those that leave the solid otherwise"},
       Member{"outside_by", &EdgeCheck::outside_by, "mesh units", "how far the furthest of these is out, at least"},
       Member{"where", &EdgeCheck::where, "mesh units", "and there"},
+      Member{"across", &EdgeCheck::across, "", "those out by no more than the tolerance that cross a gap there"},
+      Member{"across_at", &EdgeCheck::across_at, "mesh units", "the first of these"},
+      Member{"untold", &EdgeCheck::untold, "", "those of which that cannot be told: only Betti numbers are proven"},
       Member{"tolerance", &EdgeCheck::tolerance, "mesh units", "what is allowed"},
-      Member{"holds", &EdgeCheck::holds, "", "whether none is outside"},
+      Member{"holds", &EdgeCheck::holds, "", "whether none is outside or crosses a gap"},
   };
 };
 
 /// Whether the way of an axis into its solid is an isomorphism of homology, and not only the numbers agree: exact
 /// linking numbers of the axis's loops with closed paths along the surface that generate the homology of what is
-/// outside, and winding numbers of its closed surfaces around a point of each void (Alexander duality). A loop that
+/// outside, and winding numbers of its closed surfaces around points of each void (Alexander duality). A loop that
 /// runs round nothing, or twice round one tunnel and never round another, is found out and refused. A triangle across a
 /// hole is found out, too, and refused. Looked at where Betti numbers agree and
 /// edges lie in the solid; not for tunnels and voids of voxels, of which numbers alone are compared.

@@ -5,8 +5,15 @@
 #include <unordered_set>
 
 #include "blum/core/parallel.hpp"
+#include "certificate/homology/inner_way.hpp"
 
 namespace blum::verifier {
+namespace {
+
+/// Of the tolerance of positions: far less than edges are allowed to be outside by, and far more than rounding.
+constexpr double of_tolerance = 1.0 / 16;
+
+}  // namespace
 
 AxisLabels::AxisLabels(const AxisInSolid& given, const Complement& complement, const std::vector<bool>& is_wanted,
                        const Context& context)
@@ -26,14 +33,13 @@ AxisLabels::AxisLabels(const AxisInSolid& given, const Complement& complement, c
     curtains_ = std::make_unique<Curtains>(complement, *apex_, context);
     edges_ =
         std::make_unique<EdgeLabels>(*curtains_, given.incidence.edges(), positions_, given.parts.body_of, context);
-    take_pushed(*curtains_);
-    if (doubtful_ == 0) return;
+    take_pushed();
+    lead_past_surface();
+    if (doubtful_.empty()) return;
   }
 }
 
 void AxisLabels::slide_from_surface() {
-  // Far less than edges are allowed to be outside by, and far more than rounding.
-  constexpr double of_tolerance = 1.0 / 16;
   constexpr double steepest = 32;
   const auto& edges = given_.incidence.edges();
   const auto& locations = given_.locations;
@@ -48,7 +54,11 @@ void AxisLabels::slide_from_surface() {
     }
     const Vec3d along = given_.axis.positions[deepest] - given_.axis.positions[v];
     const double far = length(along);
-    if (!(far > 0) || !(locations[deepest].depth > 2 * near)) continue;
+    if (!(far > 0) || !(locations[deepest].depth > 2 * near)) {
+      const auto inside = moved_inside(*given_.solid.solid, body, positions_[v], 2 * near);
+      if (inside && given_.solid.solid->depth(*inside, body) > locations[v].depth) positions_[v] = *inside;
+      continue;
+    }
     for (double step = 2; step <= steepest; step *= 2) {
       positions_[v] = given_.axis.positions[v] + along * std::min(0.5, step * near / far);
       if (given_.solid.solid->depth(positions_[v], body) >= near) break;
@@ -56,26 +66,46 @@ void AxisLabels::slide_from_surface() {
   }
 }
 
-void AxisLabels::take_pushed(const Curtains& curtains) {
+void AxisLabels::take_pushed() {
   replaced_.clear();
-  std::unordered_set<std::uint32_t> doubtful(edges_->doubtful().begin(), edges_->doubtful().end());
-  for (const PushedEdge& pushed : given_.pushed) {
-    const auto [a, b] = given_.incidence.edges()[pushed.edge];
-    const std::uint32_t body = given_.parts.body_of[a];
+  doubtful_ = {edges_->doubtful().begin(), edges_->doubtful().end()};
+  for (const PushedEdge& pushed : given_.ways.pushed) {
+    const std::uint32_t body = given_.parts.body_of[given_.incidence.edges()[pushed.edge][0]];
     if (!is_wanted_[body]) continue;
-    Way way{positions_[a]};
-    way.insert(way.end(), pushed.way.begin(), pushed.way.end());
-    way.push_back(positions_[b]);
-    doubtful.erase(pushed.edge);
-    if (!curtains.add(way, body, replaced_[pushed.edge])) doubtful.insert(pushed.edge);
+    doubtful_.erase(pushed.edge);
+    if (!curtains_->add(way_of(pushed.edge), body, replaced_[pushed.edge])) doubtful_.insert(pushed.edge);
   }
-  doubtful_ = doubtful.size();
+}
+
+Way AxisLabels::way_of(std::uint32_t edge) const {
+  const auto [a, b] = given_.incidence.edges()[edge];
+  Way way{positions_[a]};
+  const auto pushed = std::lower_bound(given_.ways.pushed.begin(), given_.ways.pushed.end(), edge,
+                                       [](const PushedEdge& one, std::uint32_t other) { return one.edge < other; });
+  if (pushed != given_.ways.pushed.end() && pushed->edge == edge) {
+    way.insert(way.end(), pushed->way.begin(), pushed->way.end());
+  }
+  way.push_back(positions_[b]);
+  return way;
+}
+
+void AxisLabels::lead_past_surface() {
+  std::erase_if(doubtful_, [&](std::uint32_t edge) {
+    const std::uint32_t body = given_.parts.body_of[given_.incidence.edges()[edge][0]];
+    Way way = way_of(edge);
+    std::vector<Label> labels;
+    if (!lead_inside(*given_.solid.solid, body, *curtains_, of_tolerance * allowed_[body], way)) return false;
+    if (!curtains_->add(way, body, labels)) return false;
+    replaced_[edge] = std::move(labels);
+    return true;
+  });
 }
 
 bool AxisLabels::is_across(std::size_t triangle, SparseRow& row) const {
   row.clear();
   const auto& corners = given_.axis.triangles[triangle];
   const auto& sides = given_.incidence.sides()[triangle];
+  if (std::any_of(sides.begin(), sides.end(), [&](std::uint32_t e) { return is_doubtful(e); })) return false;
   for (std::size_t k = 0; k < 3; ++k) add(sides[k], corners[k] < corners[(k + 1) % 3] ? 1 : -1, row);
   if (row.empty()) return false;
   tidy(row);
@@ -126,7 +156,7 @@ void AxisLabels::lead_over_triangles(std::vector<std::uint32_t>& across, const C
       for (std::size_t k = 0; k < 3 && is_across(t, row); ++k) {
         const std::uint32_t e = given_.incidence.sides()[t][k];
         const auto pushed = replaced_.find(e);
-        if (pushed == replaced_.end()) continue;
+        if (pushed == replaced_.end()) continue;  // none of its sides is doubtful, as it is across
         const auto before = count_at(e);
         std::vector<Label> other = over_other_sides(t, k);
         other.swap(pushed->second);
@@ -150,6 +180,13 @@ std::vector<Label> AxisLabels::over_other_sides(std::uint32_t triangle, std::siz
     }
   }
   return labels;
+}
+
+void AxisLabels::look_at_grazing(const Context& context) {
+  for (const std::uint32_t e : given_.ways.grazing) {
+    throw_if_cancelled(context);
+    if (is_wanted_[given_.parts.body_of[given_.incidence.edges()[e][0]]]) look_closely(e);
+  }
 }
 
 bool AxisLabels::look_at_thin_parts(const Context& context) {
@@ -190,6 +227,7 @@ bool AxisLabels::look_closely(std::uint32_t edge) {
   std::vector<Label> labels;
   if (!curtains_->add(way, body, labels)) return false;
   replaced_[edge] = std::move(labels);
+  doubtful_.erase(edge);
   return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -15,8 +16,8 @@
 namespace blum::verifier {
 
 /// The curtains that each edge of an axis crosses, on its way inside of the solid: pushed edges run over the points
-/// that they were pushed over. Vertices nearer to the surface than positions are exact begin a little way along the
-/// edge to their deepest neighbour.
+/// that they were pushed over, and edges that touch a path are led past it, inside. Vertices nearer to the surface than
+/// positions are exact begin a little way along the edge to their deepest neighbour, or further inside.
 class AxisLabels {
  public:
   /// Everything given must stay. @param is_wanted  whether edges of a body have labels.
@@ -28,12 +29,17 @@ class AxisLabels {
     const auto other = replaced_.find(edge);
     return other == replaced_.end() ? edges_->of(edge) : std::span<const Label>(other->second);
   }
-  /// How many edges there are of which it cannot be told.
-  [[nodiscard]] std::size_t doubtful() const { return doubtful_; }
+  /// The edges of which it cannot be told, rising: they touch the surface, and could not be led past it.
+  [[nodiscard]] const std::set<std::uint32_t>& doubtful() const { return doubtful_; }
+  [[nodiscard]] bool is_doubtful(std::uint32_t edge) const { return doubtful_.contains(edge); }
 
   /// The triangles whose borders are linked with a path, rising. Before one counts, its edges are looked at as closely
   /// as doubles allow: one that cuts a corner by less than what is allowed runs past it.
   [[nodiscard]] std::vector<std::uint32_t> triangles_across(const Context& context);
+
+  /// Looks as closely at edges that leave the solid by no more than the tolerance: the way beside them that is inside
+  /// may pass a path on the other side.
+  void look_at_grazing(const Context& context);
 
   /// Looks as closely at edges with an end that is less deep than edges may cut corners, those of curves first: in thin
   /// parts they may run past a path that lies within that. @return  whether that makes a difference.
@@ -50,7 +56,11 @@ class AxisLabels {
 
  private:
   void slide_from_surface();
-  void take_pushed(const Curtains& curtains);
+  void take_pushed();
+  /// Leads doubtful edges past what they touch.
+  void lead_past_surface();
+  /// An edge from end to end, by way of what it was pushed over.
+  [[nodiscard]] Way way_of(std::uint32_t edge) const;
   [[nodiscard]] bool is_across(std::size_t triangle, SparseRow& row) const;
   /// An edge that was pushed may go either way round what it cut. Leads those of triangles that are across over the
   /// other two sides, where that leaves fewer across; and takes those that are not any more from the list. Each step
@@ -71,7 +81,7 @@ class AxisLabels {
   std::unique_ptr<Curtains> curtains_;
   std::unique_ptr<EdgeLabels> edges_;
   std::unordered_map<std::uint32_t, std::vector<Label>> replaced_;
-  std::size_t doubtful_ = 0;
+  std::set<std::uint32_t> doubtful_;
   std::size_t looks_left_ = 1'000'000;  ///< for edges in thin parts: some 10 s at most
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -169,44 +170,64 @@ struct Borders {
   }
 };
 
-/// Adds to each sheet's row how often lines from the voids cross it; false where that cannot be told.
-bool add_crossings(const Core& core, const Sheets& sheets, const std::vector<Vec3d>& positions,
-                   const std::vector<std::uint32_t>& body_of, const Complement& complement, const Apex& apex,
-                   std::uint32_t first_column, std::vector<SparseRow>& rows, const Context& context) {
-  std::vector<Box3> boxes;
-  std::vector<std::uint32_t> triangles;
-  core.for_each([&](std::uint32_t t) {
-    Box3& box = boxes.emplace_back();
-    for (const std::uint32_t v : core.face(t)) box.extend(apex.seen(positions[v]));
-    triangles.push_back(t);
-  });
-  const BoxHierarchy tree(boxes, context);
-  bool is_certain = true;
-  for (std::uint32_t k = 0; k < complement.voids().size(); ++k) {
-    throw_if_cancelled(context);
-    const auto& [point, body] = complement.voids()[k];
-    const Vec3d seen = apex.seen(point);
-    const double room = apex.rounding();
-    const auto meets = [&](const Box3& box) {
-      return box.lower.x <= seen.x + room && seen.x - room <= box.upper.x && box.lower.y <= seen.y + room &&
-             seen.y - room <= box.upper.y && box.lower.z <= seen.z + room;
-    };
-    tree.search(
-        1, [&](std::uint32_t n) { return meets(tree.node(n).box) ? 0.0 : 2.0; },
-        [&](std::uint32_t place) {
-          const std::uint32_t item = tree.order()[place];
-          const std::uint32_t t = triangles[item];
-          const auto [a, b, c] = core.face(t);
-          if (!meets(boxes[item]) || body_of[a] != body) return 1.0;
-          const auto times = apex.crossing_above(point, positions[a], positions[b], positions[c]);
-          if (!times) is_certain = false;
-          if (times.value_or(0) != 0) rows[sheets.of(t)].emplace_back(first_column + k, sheets.facing(t) * *times);
-          return 1.0;
-        });
+/// Counts what lines from the voids to a far point cross.
+class VoidLines {
+ public:
+  VoidLines(const Core& core, const Sheets& sheets, const std::vector<Vec3d>& positions,
+            const std::vector<std::uint32_t>& body_of, const Complement& complement, const Apex& apex,
+            const Context& context)
+      : core_(core), sheets_(sheets), positions_(positions), body_of_(body_of), complement_(complement), apex_(apex) {
+    core_.for_each([&](std::uint32_t t) {
+      Box3& box = boxes_.emplace_back();
+      for (const std::uint32_t v : core_.face(t)) box.extend(apex.seen(positions_[v]));
+      triangles_.push_back(t);
+    });
+    tree_ = BoxHierarchy(boxes_, context);
   }
-  for (SparseRow& row : rows) tidy(row);
-  return is_certain;
-}
+
+  /// Adds to each sheet's row how often lines from a point of each void cross it.
+  /// @param choice  which of its points, or the last one.  @return  for each void whether that could not be told.
+  [[nodiscard]] std::vector<bool> add(std::size_t choice, std::uint32_t first_column, std::vector<SparseRow>& rows,
+                                      const Context& context) const {
+    std::vector<bool> is_doubtful(complement_.voids().size(), false);
+    for (std::uint32_t k = 0; k < complement_.voids().size(); ++k) {
+      throw_if_cancelled(context);
+      const Complement::Void& own = complement_.voids()[k];
+      const Vec3d point = own.points[std::min(choice, own.points.size() - 1)];
+      const Vec3d seen = apex_.seen(point);
+      const double room = apex_.rounding();
+      const auto meets = [&](const Box3& box) {
+        return box.lower.x <= seen.x + room && seen.x - room <= box.upper.x && box.lower.y <= seen.y + room &&
+               seen.y - room <= box.upper.y && box.lower.z <= seen.z + room;
+      };
+      tree_.search(
+          1, [&](std::uint32_t n) { return meets(tree_.node(n).box) ? 0.0 : 2.0; },
+          [&](std::uint32_t place) {
+            const std::uint32_t item = tree_.order()[place];
+            const std::uint32_t t = triangles_[item];
+            const auto [a, b, c] = core_.face(t);
+            if (!meets(boxes_[item]) || body_of_[a] != own.body) return 1.0;
+            const auto times = apex_.crossing_above(point, positions_[a], positions_[b], positions_[c]);
+            if (!times) is_doubtful[k] = true;
+            if (times.value_or(0) != 0) rows[sheets_.of(t)].emplace_back(first_column + k, sheets_.facing(t) * *times);
+            return 1.0;
+          });
+    }
+    for (SparseRow& row : rows) tidy(row);
+    return is_doubtful;
+  }
+
+ private:
+  const Core& core_;
+  const Sheets& sheets_;
+  const std::vector<Vec3d>& positions_;
+  const std::vector<std::uint32_t>& body_of_;
+  const Complement& complement_;
+  Apex apex_;
+  std::vector<Box3> boxes_;
+  std::vector<std::uint32_t> triangles_;
+  BoxHierarchy tree_;
+};
 
 constexpr std::size_t most_steps = 300'000'000;
 
@@ -221,47 +242,87 @@ std::optional<std::vector<SparseRow>> wound(Elimination::Over over, const std::v
   return seams.left();
 }
 
+/// What surfaces of one body wind around, by the rows of the sheets.
+struct Wound {
+  std::size_t rank = 0;
+  bool over_integers = false;
+};
+
+Wound wound_in(std::uint32_t body, std::size_t voids, const Core& core, const Sheets& sheets,
+               const std::vector<std::uint32_t>& body_of, const std::vector<SparseRow>& rows, std::uint32_t seams,
+               std::uint32_t columns) {
+  std::vector<bool> is_own(sheets.count());
+  std::vector<bool> is_own_and_two_sided(sheets.count());
+  for (std::uint32_t s = 0; s < sheets.count(); ++s) {
+    is_own[s] = body_of[core.face(sheets.first_triangle(s))[0]] == body;
+    is_own_and_two_sided[s] = is_own[s] && sheets.is_two_sided(s);
+  }
+  Wound result;
+  const auto around = wound(Elimination::Over::two, rows, is_own, seams);
+  if (around) result.rank = rank_modulo_2(*around, columns);
+  const auto exact = wound(Elimination::Over::integers, rows, is_own_and_two_sided, seams);
+  Elimination all(Elimination::Over::integers, columns, most_steps);
+  if (exact) {
+    for (const SparseRow& row : *exact) all.add(row);
+  }
+  result.over_integers = all.rank() == voids;
+  return result;
+}
+
 }  // namespace
 
 Windings windings(const ComplexView& axis, const Incidence& incidence, const std::vector<Vec3d>& positions,
                   const std::vector<std::uint32_t>& body_of, const Complement& complement, std::size_t body_count,
                   const Box3& box, const Context& context) {
   constexpr std::uint32_t most_attempts = 4;
-  Windings result{std::vector<std::size_t>(body_count, 0), true, true};
+  Windings result{std::vector<std::size_t>(body_count, 0), true, std::vector<std::optional<Vec3d>>(body_count)};
   if (complement.voids().empty()) return result;
   std::vector<std::size_t> voids(body_count, 0);
-  for (const Complement::Void& one : complement.voids()) ++voids[one.body];
+  std::size_t choices = 0;
+  for (const Complement::Void& one : complement.voids()) {
+    ++voids[one.body];
+    choices = std::max(choices, one.points.size());
+  }
   std::vector<bool> is_wanted(positions.size());
   for (std::size_t v = 0; v < is_wanted.size(); ++v) is_wanted[v] = voids[body_of[v]] > 0;
   const Core core(axis, incidence, is_wanted);
   const Sheets sheets(core);
   const Borders borders(core, sheets);
-  std::vector<SparseRow> rows;
-  result.is_certain = false;
-  for (std::uint32_t attempt = 0; attempt < most_attempts && !result.is_certain; ++attempt) {
-    rows = borders.rows;
-    const Apex apex(box, attempt);
-    result.is_certain =
-        add_crossings(core, sheets, positions, body_of, complement, apex, borders.columns, rows, context);
-  }
-  if (!result.is_certain) return result;
+  std::vector<std::unique_ptr<VoidLines>> lines;  // to some far points
   const auto void_count = static_cast<std::uint32_t>(complement.voids().size());
-  for (std::size_t body = 0; body < body_count; ++body) {
-    if (voids[body] == 0) continue;
-    std::vector<bool> is_own(sheets.count());
-    std::vector<bool> is_own_and_two_sided(sheets.count());
-    for (std::uint32_t s = 0; s < sheets.count(); ++s) {
-      is_own[s] = body_of[core.face(sheets.first_triangle(s))[0]] == body;
-      is_own_and_two_sided[s] = is_own[s] && sheets.is_two_sided(s);
+  std::vector<bool> is_told(body_count, false);
+  std::vector<bool> is_told_by_rows(body_count, false);  // those of the choice before
+  std::vector<SparseRow> rows;
+  for (std::size_t choice = 0; choice < choices; ++choice) {
+    const std::vector<SparseRow> rows_before = std::move(rows);
+    std::vector<bool> is_doubtful(void_count, true);
+    for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
+      if (std::find(is_doubtful.begin(), is_doubtful.end(), true) == is_doubtful.end()) break;
+      if (attempt == lines.size()) {
+        const Apex apex(box, attempt);
+        lines.push_back(std::make_unique<VoidLines>(core, sheets, positions, body_of, complement, apex, context));
+      }
+      rows = borders.rows;
+      is_doubtful = lines[attempt]->add(choice, borders.columns, rows, context);
     }
-    const auto around = wound(Elimination::Over::two, rows, is_own, borders.columns);
-    if (around) result.rank[body] = rank_modulo_2(*around, borders.columns + void_count);
-    const auto exact = wound(Elimination::Over::integers, rows, is_own_and_two_sided, borders.columns);
-    Elimination all(Elimination::Over::integers, borders.columns + void_count, most_steps);
-    if (exact) {
-      for (const SparseRow& row : *exact) all.add(row);
+    std::vector<bool> is_told_now(body_count, true);
+    for (std::uint32_t k = 0; k < void_count; ++k) {
+      const Complement::Void& one = complement.voids()[k];
+      if (!is_doubtful[k]) continue;
+      is_told_now[one.body] = false;
+      if (!is_told[one.body]) result.untold[one.body] = one.points.front();
     }
-    result.over_integers = result.over_integers && all.rank() == voids[body];
+    const bool is_same = rows == rows_before;
+    for (std::uint32_t body = 0; body < body_count; ++body) {
+      if (voids[body] == 0 || !is_told_now[body] || (is_same && is_told_by_rows[body])) continue;
+      const Wound own =
+          wound_in(body, voids[body], core, sheets, body_of, rows, borders.columns, borders.columns + void_count);
+      result.rank[body] = is_told[body] ? std::min(result.rank[body], own.rank) : own.rank;
+      result.over_integers = result.over_integers && own.over_integers;
+      is_told[body] = true;
+      result.untold[body].reset();
+    }
+    is_told_by_rows = std::move(is_told_now);
   }
   return result;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,14 +18,17 @@ namespace blum::verifier {
 
 /// What closed surfaces of an axis wind around.
 struct Windings {
-  std::vector<std::size_t> rank;  ///< in each body: of the winding numbers modulo 2 around its voids
+  std::vector<std::size_t> rank;  ///< in each body: of the winding numbers modulo 2 around its voids; the least
+                                  ///< that any choice of points in them gives
   bool over_integers = false;     ///< whether they span all integer ones, in every body
-  bool is_certain = false;        ///< whether all crossings could be told
+  /// In each body: a void of which nothing could be told, as triangles go through its points, by one of these.
+  std::vector<std::optional<Vec3d>> untold;
 };
 
 /// Takes away what has a free edge, over and over; groups what is left into sheets over edges of two triangles; and
 /// finds the cycles of sheets by elimination at the seams, and how often each winds around each void by counting what
-/// lines from the voids cross. Triangles that are named twice count once.
+/// lines from the voids cross. That is done for all points of the voids: a surface that goes through a void instead of
+/// around it is around some of them only. Triangles that are named twice count once.
 /// @param body_of  of each vertex.  @throws Cancelled. Cost: linear, but for the elimination: sheets are few.
 [[nodiscard]] Windings windings(const ComplexView& axis, const Incidence& incidence,
                                 const std::vector<Vec3d>& positions, const std::vector<std::uint32_t>& body_of,

@@ -60,11 +60,12 @@ Complement::Complement(std::vector<Vec3d> points, std::vector<Step> steps,
 }
 
 Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells,
-                              const std::function<Vec3d(std::uint32_t)>& point_of_void, const Context& context) {
+                              const std::function<std::vector<Vec3d>(std::uint32_t)>& points_of_void,
+                              const Context& context) {
   std::vector<Complement::Void> voids;
   for (std::uint32_t s = 0; s < shells.shells.size(); ++s) {
     const ClosedShell& shell = shells.shells[s];
-    if (shell.depth % 2 == 1) voids.push_back({point_of_void(s), shell.body});
+    if (shell.depth % 2 == 1) voids.push_back({points_of_void(s), shell.body});
   }
   const auto triangles = triangles_with_handles(mesh, shells);
   if (triangles.empty()) return {{}, {}, {}, std::move(voids)};

@@ -15,7 +15,7 @@
 
 namespace blum::verifier {
 
-/// For each body of a solid closed paths that generate the first homology of what is not in it, and a point in each of
+/// For each body of a solid closed paths that generate the first homology of what is not in it, and points in each of
 /// its voids. By Alexander duality, linking numbers with the paths tell every class of the body's first homology apart,
 /// and winding numbers around the points every class of the second one. Paths and points may lie on the boundary.
 class Complement {
@@ -31,7 +31,7 @@ class Complement {
     std::int32_t times = 0;  ///< below 0 where it runs the other way
   };
   struct Void {
-    Vec3d point;
+    std::vector<Vec3d> points;  ///< in it, the deepest one first; at least one
     std::uint32_t body = 0;
   };
 
@@ -64,11 +64,11 @@ class Complement {
   std::vector<Void> voids_;
 };
 
-/// Paths along the edges of the shells, which generate their homology and so that of the complement; a point in each
+/// Paths along the edges of the shells, which generate their homology and so that of the complement; points in each
 /// void. @throws Cancelled. Cost: nothing for shells without handles.
-/// @param point_of_void  by its shell: a point in the void, or on its boundary.
+/// @param points_of_void  by its shell: points in the void, or one on its boundary.
 [[nodiscard]] Complement complement_of_mesh(const MeshView& mesh, const ClosedShells& shells,
-                                            const std::function<Vec3d(std::uint32_t)>& point_of_void,
+                                            const std::function<std::vector<Vec3d>(std::uint32_t)>& points_of_void,
                                             const Context& context);
 
 }  // namespace blum::verifier

@@ -72,6 +72,19 @@ bool Curtains::add(std::span<const Vec3d> way, std::uint32_t body, std::vector<L
   return is_certain;
 }
 
+std::optional<Segment3> Curtains::first_touched(const Vec3d& a, const Vec3d& b, std::uint32_t body) const {
+  const Box3 seen = box_of(apex_.seen(a), apex_.seen(b));
+  std::vector<std::uint32_t> places;
+  near(seen, places);
+  for (const std::uint32_t place : places) {
+    const Complement::Segment& segment = complement_.segments()[tree_.order()[place]];
+    if (segment.body != body) continue;
+    const Segment3 own{complement_.point(segment.ends[0]), complement_.point(segment.ends[1])};
+    if (!apex_.crossing(own.a, own.b, a, b)) return own;
+  }
+  return std::nullopt;
+}
+
 EdgeLabels::EdgeLabels(const Curtains& curtains, std::span<const std::array<std::uint32_t, 2>> edges,
                        const std::vector<Vec3d>& positions, const std::vector<std::uint32_t>& body_of,
                        const Context& context)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "certificate/box_hierarchy.hpp"
 #include "certificate/homology/apex.hpp"
 #include "certificate/homology/complement.hpp"
+#include "certificate/segments.hpp"
 
 namespace blum::verifier {
 
@@ -32,6 +34,9 @@ class Curtains {
 
   /// Adds the crossings of a way with the curtains of a body's segments; false where one cannot be told.
   [[nodiscard]] bool add(std::span<const Vec3d> way, std::uint32_t body, std::vector<Label>& labels) const;
+
+  /// A segment of a body of which it cannot be told whether the way from a to b crosses its curtain.
+  [[nodiscard]] std::optional<Segment3> first_touched(const Vec3d& a, const Vec3d& b, std::uint32_t body) const;
 
   /// Places in the tree of what a box may cross.
   void near(const Box3& seen, std::vector<std::uint32_t>& places) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "blum/core/exact_text.hpp"
@@ -21,6 +22,8 @@ struct BodyProof {
   std::size_t generators = 0;       ///< of the fundamental group of the axis in it
   bool loops_over_integers = true;  ///< whether loops of the axis span all of its first homology
   std::size_t across = 0;           ///< triangles that span its tunnels
+  std::size_t doubtful = 0;         ///< edges that touch the surface so that linking cannot be told
+  bool are_triangles_told = true;   ///< whether none of these is the side of a triangle
 };
 
 std::string counted(std::size_t count, const char* one, const char* many) {
@@ -40,13 +43,18 @@ class Loops {
     if (std::find(is_wanted.begin(), is_wanted.end(), true) == is_wanted.end()) return;
     check.paths = complement_.path_count();
     AxisLabels labels(given_, complement_, is_wanted, context);
-    check.doubtful = labels.doubtful();
-    if (check.doubtful > 0) return;
+    labels.look_at_grazing(context);
     measure(labels, is_wanted, check, bodies, proofs, context);
     const auto is_short = [&](std::size_t b) { return is_wanted[b] && bodies[b].tunnels_met < bodies[b].solid[1]; };
     bool is_any_short = false;
     for (std::size_t b = 0; b < bodies.size(); ++b) is_any_short = is_any_short || is_short(b);
     if (is_any_short && labels.look_at_thin_parts(context)) measure(labels, is_wanted, check, bodies, proofs, context);
+    check.doubtful = labels.doubtful().size();
+    for (const std::uint32_t e : labels.doubtful()) {
+      BodyProof& proof = proofs[body_of(e)];
+      ++proof.doubtful;
+      if (!given_.incidence.triangles_of_edge()[e].empty()) proof.are_triangles_told = false;
+    }
   }
 
  private:
@@ -62,6 +70,7 @@ class Loops {
       throw_if_cancelled(context);
       const std::uint32_t body = body_of(closing);
       if (!is_wanted[body]) continue;
+      if (is_doubtful(labels, closing)) continue;
       SparseRow row = linked(labels, closing);
       if (!row.empty()) rows[body].push_back(std::move(row));
     }
@@ -73,6 +82,14 @@ class Loops {
       for (SparseRow& row : rows[b]) exact.add(std::move(row));
       proofs[b].loops_over_integers = exact.rank() == static_cast<std::size_t>(bodies[b].solid[1]);
     }
+  }
+
+  /// Whether a doubtful edge is on the cycle that an edge closes.
+  [[nodiscard]] bool is_doubtful(const AxisLabels& labels, std::uint32_t closing) const {
+    if (labels.doubtful().empty()) return false;
+    bool is_on = false;
+    cycles_.walk(closing, [&](std::uint32_t e, int) { is_on = is_on || labels.is_doubtful(e); });
+    return is_on;
   }
 
   /// How often each path is linked with the cycle that an edge closes.
@@ -109,19 +126,26 @@ class Loops {
   const Complement& complement_;
 };
 
-/// What follows for a body. @param surfaces  nullptr where voids could not be looked at.
-Proven proven_of(const BodyCheck& body, const BodyProof& proof, bool loops_are_known, const Windings* surfaces) {
+/// What was found of loops and closed surfaces.
+struct Found {
+  bool is_looked_at = false;  ///< not where a solid is made of voxels
+  std::vector<BodyProof> proofs;
+  Windings surfaces;
+};
+
+/// What follows for a body.
+Proven proven_of(const BodyCheck& body, const Found& found, std::size_t b) {
+  const BodyProof& proof = found.proofs[b];
   if (!proof.is_compared) return Proven::nothing;
   const bool has_tunnels = body.solid[1] > 0;
   const bool has_voids = body.solid[2] > 0;
-  if (has_tunnels && (!loops_are_known || proof.across > 0 || body.tunnels_met != body.solid[1])) {
+  if ((has_tunnels || has_voids) && !found.is_looked_at) return Proven::betti_numbers;
+  if (has_tunnels && (!proof.are_triangles_told || proof.across > 0 || body.tunnels_met != body.solid[1])) {
     return Proven::betti_numbers;
   }
-  if (has_voids && (surfaces == nullptr || !surfaces->is_certain || body.voids_met != body.solid[2])) {
-    return Proven::betti_numbers;
-  }
+  if (has_voids && (found.surfaces.untold[b] || body.voids_met != body.solid[2])) return Proven::betti_numbers;
   const bool is_exact = proof.generators == static_cast<std::size_t>(body.solid[1]) && proof.loops_over_integers &&
-                        (!has_voids || surfaces->over_integers);
+                        (!has_voids || found.surfaces.over_integers);
   if (!is_exact) return Proven::homology_modulo_2;
   return has_tunnels ? Proven::homology : Proven::homotopy_type;
 }
@@ -142,13 +166,82 @@ std::string sentence(Proven proven) {
   }
 }
 
+/// What speaks against the loops of a body, if anything.
+std::string wrong_loops(const BodyCheck& body, const BodyProof& proof, const std::string& name) {
+  const bool is_short = body.tunnels_met < body.solid[1];
+  if (proof.doubtful > 0 && (is_short || !proof.are_triangles_told)) {
+    return "whether loops of the axis run around the " +
+           counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " + name +
+           " cannot be told: " + counted(proof.doubtful, "edge of the axis touches", "edges of the axis touch") +
+           " the surface";
+  }
+  if (!is_short) return {};
+  return "loops of the axis run around " + count_text(static_cast<std::uint64_t>(body.tunnels_met)) + " of the " +
+         counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " + name +
+         ": others run around nothing, or around the same";
+}
+
+/// The same for its closed surfaces.
+std::string wrong_surfaces(const BodyCheck& body, const std::optional<Vec3d>& untold, double factor,
+                           const std::string& name) {
+  if (untold) {
+    return "whether closed surfaces of the axis are around the void at " + verifier::place_text(*untold / factor) +
+           " of " + name + " cannot be told: triangles of the axis go through it";
+  }
+  if (body.voids_met >= body.solid[2]) return {};
+  return "closed surfaces of the axis are around " + count_text(static_cast<std::uint64_t>(body.voids_met)) +
+         " of the " + counted(static_cast<std::size_t>(body.solid[2]), "void", "voids") + " of " + name;
+}
+
+/// What was shown, and what speaks against it.
+void conclude(HomologyCheck& check, const Found& found, const AxisInSolid& given, std::vector<BodyCheck>& bodies,
+              const std::function<std::string(std::size_t)>& name, std::vector<std::string>& mismatches) {
+  check.proven = Proven::homotopy_type;
+  check.holds = true;
+  const auto refuse = [&](std::string reason) {
+    if (reason.empty()) return;
+    check.holds = false;
+    mismatches.push_back(std::move(reason));
+  };
+  bool has_tunnels_or_voids = false;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    BodyCheck& body = bodies[b];
+    has_tunnels_or_voids = has_tunnels_or_voids || body.solid[1] > 0 || body.solid[2] > 0;
+    if (found.is_looked_at) {
+      body.voids_met = static_cast<std::int64_t>(found.surfaces.rank[b]);
+      refuse(wrong_loops(body, found.proofs[b], name(b)));
+      refuse(wrong_surfaces(body, found.surfaces.untold[b], given.factor, name(b)));
+    }
+    body.proven = proven_of(body, found, b);
+    check.proven = std::min(check.proven, body.proven);
+  }
+  if (check.across > 0) {
+    refuse(counted(check.across, "triangle of the axis spans", "triangles of the axis span") +
+           " a tunnel of the solid, the first one at " + verifier::place_text(check.where));
+  }
+  if (given.untold_edges > 0) {
+    check.proven = std::min(check.proven, Proven::betti_numbers);
+    for (BodyCheck& body : bodies) body.proven = std::min(body.proven, Proven::betti_numbers);
+  }
+  check.shown = sentence(check.proven);
+  if (given.untold_edges > 0) {
+    check.shown += ", and no more: whether " + counted(given.untold_edges, "edge crosses", "edges cross") +
+                   " a gap of the solid cannot be told";
+  }
+  if (!found.is_looked_at && has_tunnels_or_voids) check.shown += ", and no more: it is made of voxels";
+  if (check.across > 0) check.shown += ", and no more: triangles span a tunnel of the solid";
+  if (check.doubtful > 0) check.shown += "; " + counted(check.doubtful, "edge touches", "edges touch") + " the surface";
+}
+
 }  // namespace
 
 HomologyCheck check_homology(const AxisInSolid& given, bool edges_hold, std::vector<BodyCheck>& bodies,
                              const std::function<std::string(std::size_t)>& name, std::vector<std::string>& mismatches,
                              const Context& context) {
   HomologyCheck check;
-  std::vector<BodyProof> proofs(bodies.size());
+  Found found;
+  found.proofs.resize(bodies.size());
+  std::vector<BodyProof>& proofs = found.proofs;
   bool needs_complement = false;
   bool all_agree = true;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -174,47 +267,17 @@ HomologyCheck check_homology(const AxisInSolid& given, bool edges_hold, std::vec
   for (const std::uint32_t e : cycles.closing())
     ++proofs[given.parts.body_of[given.incidence.edges()[e][0]]].generators;
   std::unique_ptr<Complement> complement;
-  Windings surfaces;
   if (needs_complement) complement = given.solid.solid->complement(context);
   if (complement != nullptr) {
+    found.is_looked_at = true;
     Loops(given, cycles, *complement).look(check, bodies, proofs, context);
     Box3 box;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) box.extend(given.solid.solid->box(b));
-    surfaces = windings(given.axis.cells(), given.incidence, {given.axis.positions.begin(), given.axis.positions.end()},
-                        given.parts.body_of, *complement, bodies.size(), box, context);
+    found.surfaces =
+        windings(given.axis.cells(), given.incidence, {given.axis.positions.begin(), given.axis.positions.end()},
+                 given.parts.body_of, *complement, bodies.size(), box, context);
   }
-  check.proven = Proven::homotopy_type;
-  check.holds = true;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    BodyCheck& body = bodies[b];
-    if (complement != nullptr) body.voids_met = static_cast<std::int64_t>(surfaces.rank[b]);
-    const bool loops_are_known = complement != nullptr && check.doubtful == 0;
-    body.proven = proven_of(body, proofs[b], loops_are_known, complement == nullptr ? nullptr : &surfaces);
-    check.proven = std::min(check.proven, body.proven);
-    if (loops_are_known && body.tunnels_met < body.solid[1]) {
-      check.holds = false;
-      mismatches.push_back("loops of the axis run around " + count_text(static_cast<std::uint64_t>(body.tunnels_met)) +
-                           " of the " + counted(static_cast<std::size_t>(body.solid[1]), "tunnel", "tunnels") + " of " +
-                           name(b) + ": others run around nothing, or around the same");
-    }
-    if (complement != nullptr && surfaces.is_certain && body.voids_met < body.solid[2]) {
-      check.holds = false;
-      mismatches.push_back("closed surfaces of the axis are around " +
-                           count_text(static_cast<std::uint64_t>(body.voids_met)) + " of the " +
-                           counted(static_cast<std::size_t>(body.solid[2]), "void", "voids") + " of " + name(b));
-    }
-  }
-  if (check.across > 0) {
-    check.holds = false;
-    mismatches.push_back(counted(check.across, "triangle of the axis spans", "triangles of the axis span") +
-                         " a tunnel of the solid, the first one at " + verifier::place_text(check.where));
-  }
-  check.shown = sentence(check.proven);
-  if (complement == nullptr && needs_complement) check.shown += ", and no more: it is made of voxels";
-  if (check.across > 0) check.shown += ", and no more: triangles span a tunnel of the solid";
-  if (check.doubtful > 0) {
-    check.shown += ", and no more: " + counted(check.doubtful, "edge touches", "edges touch") + " the surface";
-  }
+  conclude(check, found, given, bodies, name, mismatches);
   return check;
 }
 

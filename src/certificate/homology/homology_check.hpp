@@ -19,8 +19,9 @@ struct AxisInSolid {
   const KnownSolid& solid;
   const std::vector<Location>& locations;
   const AxisParts& parts;
-  const std::vector<PushedEdge>& pushed;  ///< rising
-  double factor = 1;                      ///< lengths are this many times what the caller knows
+  const EdgeWays& ways;
+  double factor = 1;             ///< lengths are this many times what the caller knows
+  std::size_t untold_edges = 0;  ///< that may cross gaps of the solid
 };
 
 /// Fills what bodies are missing, and adds what is wrong. Bodies whose Betti numbers differ are left out.

@@ -15,6 +15,7 @@
 #include "blum/core/random.hpp"
 #include "blum/shapes/generators.hpp"
 #include "certificate/homology/apex.hpp"
+#include "certificate/homology/closed_surfaces.hpp"
 #include "certificate/homology/complement.hpp"
 #include "certificate/homology/edge_labels.hpp"
 #include "certificate/homology/elimination.hpp"
@@ -327,6 +328,36 @@ TEST(HomologyCheck, AFlapAcrossAHoleIsRefused) {
   EXPECT_EQ(found.homology.proven, Proven::betti_numbers) << "which way round the loop runs is not told";
 }
 
+/// An edge that touches a path exactly says nothing by itself: led past it on the inside, it is linked with nothing.
+TEST(HomologyCheck, AnEdgeThatTouchesAPathHidesNothing) {
+  const TriangleMesh plate = make_plate({.holes_x = 1, .holes_y = 1, .hole_radius = 0.25, .hole_segments = 4});
+  const Vec3d middle = bounds(plate).center();
+  const auto add_touching = [&](Complex& complex) {  // all four upright edges of the hole
+    for (const Vec3d& out : {along_x, along_y, -along_x, -along_y}) {
+      const Vec3d aside = 0.125 * cross(out, along_z);
+      const auto first = static_cast<std::uint32_t>(complex.positions.size());
+      complex.positions.insert(complex.positions.end(), {middle + 0.25 * out - aside, middle + 0.25 * out + aside});
+      complex.edges.push_back({first, first + 1});
+      complex.edges.push_back({first + 1, first > 16 ? first - 2 : 0});
+    }
+  };
+  Complex good;
+  add_loop(good, ring(16, middle, 0.375, along_x, along_y));
+  add_touching(good);
+  const Certificate around = certify_topology(good, plate);
+  EXPECT_TRUE(around.holds()) << (around.mismatches.empty() ? "" : around.mismatches.front());
+  EXPECT_EQ(around.homology.proven, Proven::homology);
+  EXPECT_EQ(around.homology.doubtful, 0U);
+
+  Complex small;  // around nothing
+  add_loop(small, ring(16, middle + Vec3d{0.375, 0, 0}, 0.05, along_x, along_z));
+  add_touching(small);
+  const Certificate nothing = certify_topology(small, plate);
+  EXPECT_TRUE(nothing.topology_holds);
+  EXPECT_FALSE(nothing.homology.holds);
+  EXPECT_LE(nothing.homology.proven, Proven::betti_numbers);
+}
+
 /// Of a mesh, moved and scaled, as an axis.
 Complex surface_of(const TriangleMesh& mesh) {
   Complex complex;
@@ -363,6 +394,67 @@ TEST(HomologyCheck, SurfacesAroundAVoid) {
   const Certificate punctured = certify_topology(around, cube);
   EXPECT_TRUE(punctured.topology_holds && punctured.edges.holds);
   EXPECT_TRUE(mentions(punctured, "closed surfaces of the axis are around 0 of the 1 void"));
+}
+
+/// A tetrahedron with a face through the middle of a void is around half of it.
+TEST(HomologyCheck, ASurfaceThroughAVoidIsNotAroundIt) {
+  TriangleMesh mesh = make_box();
+  const Vec3d middle = bounds(mesh).center();
+  TriangleMesh hole = make_box();
+  for (Vec3d& p : hole.vertices) p = (p - middle) / 64.0 + middle;
+  append(mesh, hole);
+  Complex complex;
+  complex.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+  for (const double z : {0.0, 0.05, -0.05}) {
+    complex.positions.clear();
+    for (const Vec3d& p : {Vec3d{0.4, 0.3, z}, Vec3d{-0.4, 0.3, z}, Vec3d{0, -0.4, z}, Vec3d{0, 0, z + 0.3}}) {
+      complex.positions.push_back(p + middle);
+    }
+    const Certificate found = certify_topology(complex, mesh);
+    EXPECT_TRUE(found.topology_holds && found.edges.holds) << z;
+    EXPECT_EQ(found.homology.holds, z < 0) << z;
+    EXPECT_EQ(mentions(found, "closed surfaces of the axis are around 0 of the 1 void"), z >= 0) << z;
+  }
+}
+
+/// A flat void as wide as the solid nearly, and a surface that cuts it in two away from its middle.
+TEST(HomologyCheck, ASurfaceAroundAPartOfAVoidIsNotAroundIt) {
+  TriangleMesh mesh = make_box();
+  const Vec3d middle = bounds(mesh).center();
+  TriangleMesh hole = make_box({.segments = {8, 8, 1}});
+  for (Vec3d& p : hole.vertices) {
+    const Vec3d from = p - middle;
+    p = middle + Vec3d{0.8 * from.x, 0.25 + 0.3 * from.y, 0.01 * from.z};  // beside the diagonals of the surface
+  }
+  append(mesh, hole);
+  for (const double cut : {-0.45, 0.25}) {  // beside the void, and through it
+    TriangleMesh around = make_box();
+    for (Vec3d& p : around.vertices) {
+      p = middle + 0.9 * (p - middle);
+      if (p.x < middle.x) p.x = middle.x + cut;
+    }
+    const Certificate found = certify_topology(surface_of(around), mesh);
+    EXPECT_TRUE(found.topology_holds && found.edges.holds) << cut;
+    EXPECT_EQ(found.homology.holds, cut < 0) << cut;
+  }
+}
+
+TEST(Windings, WhereNoPointTellsThatIsSaid) {
+  const Complex complex = surface_of(make_box());
+  const ComplexView view = complex.view();
+  const Incidence incidence(view);
+  const Box3 box = bounds(make_box());
+  const std::vector<std::uint32_t> body_of(complex.positions.size(), 0);
+  const Vec3d on_face{box.center().x, box.center().y, box.lower.z};
+  for (const bool has_other : {false, true}) {
+    std::vector<Vec3d> points{on_face};
+    if (has_other) points.push_back(box.center());
+    const Complement complement({}, {}, {}, {{points, 0}});
+    const verifier::Windings found =
+        verifier::windings(view, incidence, complex.positions, body_of, complement, 1, box, {});
+    EXPECT_EQ(found.untold[0].has_value(), !has_other);
+    EXPECT_EQ(found.rank[0], has_other ? 1U : 0U);
+  }
 }
 
 TEST(HomologyCheck, SheetsAcrossAClosedSurface) {

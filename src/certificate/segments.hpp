@@ -1,0 +1,49 @@
+// Blum: how close two segments are, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "blum/core/vec3.hpp"
+
+namespace blum::verifier {
+
+struct Segment3 {
+  Vec3d a, b;
+
+  [[nodiscard]] Vec3d at(double along) const { return a + (b - a) * along; }
+  /// How far along the point is that is closest to another one: 0 to 1.
+  [[nodiscard]] double closest(const Vec3d& p) const {
+    const double squared = squared_length(b - a);
+    return squared > 0 ? std::clamp(dot(p - a, b - a) / squared, 0.0, 1.0) : 0.0;
+  }
+};
+
+/// How far along a segment the point is that is closest to another segment: 0 to 1; where they run along each other,
+/// the middle of that part.
+[[nodiscard]] inline double closest_along(const Segment3& segment, const Segment3& other) {
+  constexpr double parallel = 1e-12;  // squared, the sine of the angle between them
+  const Vec3d along = segment.b - segment.a;
+  const Vec3d across = other.b - other.a;
+  const double product = squared_length(along) * squared_length(across);
+  const double both = dot(along, across);
+  const double room = product - both * both;
+  if (!(room > parallel * product)) return 0.5 * (segment.closest(other.a) + segment.closest(other.b));
+  const Vec3d between = segment.a - other.a;
+  const double s = (both * dot(across, between) - dot(along, between) * squared_length(across)) / room;
+  return segment.closest(other.at(other.closest(segment.at(std::clamp(s, 0.0, 1.0)))));
+}
+
+/// Squared distance of two segments.
+[[nodiscard]] inline double squared_distance(const Segment3& segment, const Segment3& other) {
+  const Vec3d p = segment.at(closest_along(segment, other));
+  double best = squared_length(p - other.at(other.closest(p)));
+  for (const Vec3d& end : {segment.a, segment.b}) {
+    best = std::min(best, squared_length(end - other.at(other.closest(end))));
+  }
+  for (const Vec3d& end : {other.a, other.b}) {
+    best = std::min(best, squared_length(end - segment.at(segment.closest(end))));
+  }
+  return best;
+}
+
+}  // namespace blum::verifier
