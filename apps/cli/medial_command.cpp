@@ -357,8 +357,8 @@ void add_axis(MedialRun& run, const Request& r, const SolidInput& input, const L
                   {"vertices_before", vertices_before},
                   {"graph", add_graph(run, r, input, made.axis.axis, metadata, name, context)},
                   {"extended", add_extended(run, r, input, made.axis.axis, metadata, name, context)},
-                  {"certificate", certificate_json(certificate)}});
-  add_certificate(run.table, certificate);
+                  {"certificate", certificate_json(certificate, r.nested)}});
+  add_certificate(run.table, certificate, r.nested);
   for (const std::string& mismatch : certificate.mismatches) {
     run.mismatches.push_back("at theta " + rounded_text(theta) + ": " + mismatch);
   }
@@ -539,6 +539,7 @@ void run(const Arguments& arguments) {
   MedialRun run;
   Stopwatch watch;
   const SolidInput input = load_solid(r.input, r.weld);
+  if (input.weld && input.weld->before != input.weld->after) run.warnings.push_back(weld_text(*input.weld));
   run.phases.push_back({"read", watch.lap()});
   const std::vector<LabelSelection> selections = r.selections.all();
   for (std::size_t s = 0; s < selections.size(); ++s) {

@@ -13,10 +13,22 @@
 namespace blum::cli {
 namespace {
 
-const char* against_text(SolidRule rule) {
-  return rule == SolidRule::polyhedron ? "the polyhedron"
-         : rule == SolidRule::winding  ? "voxels (of the winding number)"
-                                       : "the image's voxels";
+std::string against_text(const Certificate& c) {
+  if (c.against == SolidRule::polyhedron) return "the polyhedron";
+  const std::string voxels = c.against == SolidRule::winding ? "voxels (of the winding number)" : "the image's voxels";
+  return c.voxel ? voxels + " of side " + rounded_text(*c.voxel) : voxels;
+}
+
+/// Which axis a file says that it holds.
+std::string claims_text(const CertificateOptions& said) {
+  std::string text;
+  const auto add = [&](const std::optional<double>& value, const char* before, const char* after) {
+    if (value) text += (text.empty() ? "; at " : ", ") + std::string(before) + rounded_text(*value) + after;
+  };
+  add(said.theta, "theta ", " degrees");
+  add(said.lambda, "lambda ", "");
+  add(said.spacing, "voxels of ", "");
+  return text;
 }
 
 /// Where a mesh bounds no polyhedron, and the axis's file has no metadata.
@@ -26,6 +38,11 @@ constexpr const char* untold_rule =
 
 std::string percent(double share) {
   return rounded_text(std::round(share * 1000) / 10) + " %";
+}
+
+std::string nothing_seen(const MedialCheck& check) {
+  return "random points show " + std::string(check.balls == 0 ? "nothing" : "too little") + " above " +
+         rounded_text(check.sought_angle) + " degrees";
 }
 
 std::string medial_text(const MedialCheck& check) {
@@ -38,10 +55,10 @@ std::string medial_text(const MedialCheck& check) {
   }
   if (check.homotopy_share > 0) text += "; " + percent(check.homotopy_share) + " of its area is for homotopy alone";
   if (check.sought_angle == 0) return text + "; what it misses was not looked for: its theta is not known";
-  if (check.balls == 0)
-    return text + "; random points show nothing above " + rounded_text(check.sought_angle) + " degrees";
+  if (!check.judges_missing) return text + "; what it misses was not checked: " + nothing_seen(check);
   return text + "; it misses " + percent(check.missed_share) + " of what random points show above " +
-         rounded_text(check.sought_angle) + " degrees (" + count_text(check.balls) + " balls)";
+         rounded_text(check.sought_angle) + " degrees (" + count_text(check.balls) + " balls), in no body more than " +
+         percent(check.missed_share_of_body);
 }
 
 /// What is told of roles, sheets, and the angles of triangles and edges.
@@ -87,6 +104,22 @@ std::vector<std::pair<bool, const char*>> what_files_may_lack(const Certificate&
           {c.checked.labels, "roles and sheets"}};
 }
 
+/// What was not looked at though the file has it, or the solid.
+std::vector<std::string> not_looked_at(const Certificate& c, bool has_nested) {
+  std::vector<std::string> all;
+  const MedialCheck& medial = c.medial;
+  if (c.checked.medial && medial.sought_angle == 0) {
+    all.emplace_back("what is missing: its theta is not known");
+  } else if (c.checked.medial && !medial.judges_missing) {
+    all.push_back("what is missing: " + nothing_seen(medial));
+  } else if (c.checked.medial && c.bodies.size() > 1 && medial.bodies_unseen > 0) {
+    all.push_back("what is missing in " + count_text(medial.bodies_unseen) + " of " + count_text(c.bodies.size()) +
+                  " bodies: points beside the surface show too little there");
+  }
+  if (has_nested) all.emplace_back("nested columns: the axes of other angles");
+  return all;
+}
+
 /// What a file may say that no certificate judges.
 std::vector<std::string> taken_as_said(const Certificate& c) {
   std::vector<std::string> all;
@@ -95,11 +128,12 @@ std::vector<std::string> taken_as_said(const Certificate& c) {
   return all;
 }
 
-Json not_checked_json(const Certificate& c) {
+Json not_checked_json(const Certificate& c, bool has_nested) {
   Json all = Json::array();
   for (const auto& [is_checked, what] : what_files_may_lack(c)) {
     if (!is_checked) all.push_back(std::string(what) + ": not in the file");
   }
+  for (const std::string& what : not_looked_at(c, has_nested)) all.push_back(what);
   for (const std::string& what : taken_as_said(c)) all.push_back(what + ": taken as said");
   return all;
 }
@@ -113,7 +147,7 @@ NotCertified::NotCertified(const std::vector<std::string>& mismatches, const std
         return "NOT certified: " + all + rest;
       }()) {}
 
-Json certificate_json(const Certificate& c) {
+Json certificate_json(const Certificate& c, bool has_nested) {
   Json json = {{"certified", c.holds()}};
   json.update(to_json(c));
   json.erase("holds");
@@ -121,11 +155,16 @@ Json certificate_json(const Certificate& c) {
   for (const char* const what : {"radii", "footprints", "angles", "sites", "labels", "medial"}) {
     if (json["checked"][what]) checked.push_back(what);
   }
+  if (c.checked.medial && c.medial.judges_missing) checked.push_back("missing");
+  json["claims"] = Json::object();
+  for (const char* const what : {"theta", "lambda", "spacing", "deviation"}) {
+    json["claims"][what] = json["checked"][what];
+  }
   for (const char* const what : {"theta", "lambda", "spacing"}) {
     if (!json["checked"][what].is_null()) checked.push_back(what);
   }
   json["checked"] = checked;
-  json["not_checked"] = not_checked_json(c);
+  json["not_checked"] = not_checked_json(c, has_nested);
   const auto wrong =
       std::count_if(c.bodies.begin(), c.bodies.end(), [](const BodyCheck& body) { return body.solid != body.axis; });
   json["bodies"] = {{"count", c.bodies.size()}, {"wrong", wrong}};
@@ -174,14 +213,16 @@ std::string angles_text(double least_theta) {
   return "all from " + rounded_text(least_theta) + " degrees on";
 }
 
-void add_certificate(TextTable& table, const Certificate& c) {
+void add_certificate(TextTable& table, const Certificate& c, bool has_nested) {
   const std::string axis = "the axis has " + betti_text(c.axis);
   if (c.holds()) {
     table.add("certified",
-              "against " + std::string(against_text(c.against)) + ": " + axis + ", as many as the solid" +
-                  (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : ""));
+              "against " + std::string(against_text(c)) + ": " + axis + ", as many as the solid" +
+                  (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : "") +
+                  claims_text(c.checked));
   } else {
-    table.add("NOT certified", axis + "; the solid " + betti_text(c.solid));  // why is told by the error
+    table.add("NOT certified",
+              axis + "; the solid " + betti_text(c.solid) + claims_text(c.checked));  // why is told by the error
   }
   table.add("proven", c.homology.shown);
   std::string geometry = "vertices, edges and triangles in the solid";
@@ -207,7 +248,9 @@ void add_certificate(TextTable& table, const Certificate& c) {
     if (!is_checked) unknown += (unknown.empty() ? "" : ", ") + std::string(what);
   }
   table.add("labels", labels_text(c));
-  if (!unknown.empty()) table.add("not checked", "not in the file: " + unknown);
+  if (!unknown.empty()) unknown = "not in the file: " + unknown;
+  for (const std::string& what : not_looked_at(c, has_nested)) unknown += (unknown.empty() ? "" : "; ") + what;
+  if (!unknown.empty()) table.add("not checked", unknown);
   std::string said;
   for (const std::string& what : taken_as_said(c)) said += (said.empty() ? "" : ", ") + what;
   table.add("as said", said);

@@ -23,7 +23,8 @@ namespace blum::cli {
                                          const LabelSelection& selection, const Context& context);
 
 /// What was looked at, and of bodies only how many there are, and how many are wrong.
-[[nodiscard]] Json certificate_json(const Certificate& certificate);
+/// @param has_nested  whether the file holds axes of other angles, too, which nothing looks at.
+[[nodiscard]] Json certificate_json(const Certificate& certificate, bool has_nested);
 /// Where the file of an axis holds no labels, what they would say is null. Edges are then those of no triangle.
 [[nodiscard]] Json counts_json(const MedialCounts& counts, bool has_labels);
 /// "1 component, 5 tunnels, 0 voids".
@@ -33,6 +34,6 @@ namespace blum::cli {
 /// Which angles a file holds the axes of, where it holds those of all.
 [[nodiscard]] std::string angles_text(double least_theta);
 /// Whether it holds, against what, and how precisely. Why not is left to NotCertified.
-void add_certificate(TextTable& table, const Certificate& certificate);
+void add_certificate(TextTable& table, const Certificate& certificate, bool has_nested);
 
 }  // namespace blum::cli

@@ -23,6 +23,10 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
     const Orientation facts = orientation(mesh, sites);
     input.json = mesh_json(path, input.mesh, sites, facts);
     input.text = mesh_text(path, input.mesh, sites, facts);
+    if (weld && *weld > 0) {
+      input.weld = weld_facts(path, *weld, mesh);
+      input.json["weld"] = weld_json(*input.weld);
+    }
     return input;
   }
   input.image = read_image_of_any_name(path);

@@ -9,6 +9,7 @@
 #include "blum/field/distance_transform.hpp"
 #include "files.hpp"
 #include "summary.hpp"
+#include "weld_facts.hpp"
 
 namespace blum::cli {
 
@@ -17,6 +18,7 @@ struct SolidInput {
   InputKind kind = InputKind::mesh;
   MeshFile mesh;
   VoxelImage image;
+  std::optional<WeldFacts> weld;  ///< where vertices within a tolerance above 0 were joined
   Json json;
   std::string text;
 };

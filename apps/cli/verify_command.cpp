@@ -64,17 +64,20 @@ class Verifier {
     const LabelSelection voxels = LabelSelection::of(selection.label, selection.threshold);
     const Certificate certificate = certificate_of(file, solid, voxels, context_);
     Json warnings = Json::array();
-    if (!warning.empty()) {
-      warnings.push_back(warning);
-      warnings_.push_back(warning);
+    if (!warning.empty()) add_warning(warning, warnings);
+    if (solid.weld && solid.weld->lost > 0) {
+      // Nobody asked here for what the file says.
+      const std::string asked = given_.weld ? std::string() : "as '" + axis.string() + "' asks, ";
+      if (!given_.weld || solid.weld->before != solid.weld->after)
+        add_warning(asked + weld_text(*solid.weld), warnings);
     }
     const MedialCounts counts = count(file.complex);
     table_.add("axis", axis.string() + ": " + counts_text(counts, file.has_labels));
-    add_certificate(table_, certificate);
+    add_certificate(table_, certificate, file.nested.has_value());
     results_.push_back(
         answer_json("verify", {{"input", solid.json},
                                {"axis", {{"file", axis.string()}, {"counts", counts_json(counts, file.has_labels)}}},
-                               {"certificate", certificate_json(certificate)},
+                               {"certificate", certificate_json(certificate, file.nested.has_value())},
                                {"warnings", warnings}}));
     if (!certificate.holds()) {
       failures_.push_back(
@@ -104,6 +107,11 @@ class Verifier {
     std::vector<std::string> mismatches;
     std::string advice;
   };
+
+  void add_warning(const std::string& warning, Json& of_axis) {
+    of_axis.push_back(warning);
+    warnings_.push_back(warning);
+  }
 
   /// The mesh or image, read again only where another axis is of one that was welded otherwise.
   const SolidInput& load(const std::optional<double>& weld) {

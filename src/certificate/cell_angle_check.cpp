@@ -10,6 +10,7 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
+#include "certificate/allowances.hpp"
 #include "certificate/angle.hpp"
 #include "certificate/checks.hpp"
 
@@ -224,9 +225,7 @@ void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<
 AngleCheck check_angles(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                         const std::vector<std::uint32_t>& body_of, const CertificateOptions& options, double factor,
                         std::vector<std::string>& mismatches, const Context& context) {
-  const double diagonal = solid.solid->diagonal();
-  const double voxel = std::min(options.spacing ? *options.spacing * factor : diagonal / 32, diagonal / 8);
-  const Angles angles(axis, incidence, solid, body_of, std::max(voxel, solid.solid->grain() / 2));
+  const Angles angles(axis, incidence, solid, body_of, believed_voxel(axis, solid, options, factor));
   AngleCheck check;
   angles.compare_with_corners(check);
   angles.compare_with_triangles(check);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -210,6 +211,7 @@ Certificate certify(const Complex& axis, const VoxelSet& voxels, const GridSpec&
       verifier::solid_of_voxels(voxels, own_grid, surface == nullptr ? nullptr : &own.view, context);
   Certificate certificate =
       certify_against(factor == 1 ? axis : scaled(axis, factor), solid, factor, consistent(options), context);
+  certificate.voxel = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   certificate.against = surface == nullptr ? SolidRule::voxels : SolidRule::winding;
   return certificate;
 }

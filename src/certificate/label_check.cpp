@@ -134,11 +134,13 @@ class Labels {
       if (joined.find(t) == t) parts.push_back({static_cast<std::uint32_t>(axis_.sheet[t]), t});
     }
     std::sort(parts.begin(), parts.end());
+    const std::size_t numbers = parts.empty() ? 0 : std::size_t{parts.back()[0]} + 1;
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const bool is_first = k == 0 || parts[k - 1][0] != parts[k][0];
       check.sheets += is_first ? 1 : 0;
       check.torn += is_first && k + 1 < parts.size() && parts[k + 1][0] == parts[k][0] ? 1 : 0;
     }
+    check.gaps = numbers - check.sheets;
   }
 
   const MedialView& axis_;
@@ -154,6 +156,7 @@ void explain(const LabelCheck& check, std::vector<std::string>& mismatches) {
   add(check.unlisted, "rims and seams are not listed");
   add(check.edge_roles, "edges have a role that their triangles do not give them");
   add(check.vertex_roles, "vertices have a role that their edges and sheets do not give them");
+  add(check.gaps, "numbers of sheets below the largest are of no sheet");
   add(check.torn, "sheets do not hang together over edges of two triangles");
   add(check.parted, "edges away from seams part two sheets");
 }

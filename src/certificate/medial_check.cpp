@@ -11,88 +11,44 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
+#include "certificate/allowances.hpp"
 #include "certificate/angle.hpp"
 #include "certificate/checks.hpp"
 #include "certificate/maximal_ball.hpp"
-#include "certificate/triangle_search.hpp"
+#include "certificate/missing_check.hpp"
+#include "certificate/sampling.hpp"
 
 namespace blum::verifier {
 namespace {
 
 constexpr double least_share = 0.95;       ///< of samples that must be in the middle: true axes have 0.99
+constexpr double least_near_share = 0.9;   ///< of samples that must be near it for a wall so thick: true axes have 0.94
 constexpr double least_close_share = 0.5;  ///< of samples that must be close to the middle: true axes have 0.8
 constexpr double most_missed = 0.05;       ///< share of balls that may be far from the axis: of true axes 0.01 are
 constexpr double most_vertices_off = 0.1;  ///< share of vertices that see one wall away from the middle
 constexpr double most_deep_of_one_wall =
-    0.6;                                ///< of vertices deep inside: of true axes 0.4 have one footprint (a rod at 0)
-constexpr double enough_sheet = 256;    ///< square voxels from which that is asked
-constexpr double far_off = 1.5;         ///< allowances for what is missing, that such vertices may be off the middle
-constexpr double few_vertices = 16;     ///< that may do so at any rate
-constexpr double thin_part = 1;         ///< voxels: radius from which parts are not thin
-constexpr double noise_of_meshes = 10;  ///< degrees from which two walls are two
-constexpr double noise_of_images = 20;  ///< the same between steps of voxels
-constexpr double well_above = 30;       ///< degrees over theta from where the axis must have all
+    0.6;                              ///< of vertices deep inside: of true axes 0.4 have one footprint (a rod at 0)
+constexpr double enough_sheet = 256;  ///< square voxels from which that is asked
+constexpr double far_off = 1.5;       ///< allowances for what is missing, that such vertices may be off the middle
+constexpr double few_vertices = 16;   ///< that may do so at any rate
+constexpr double thin_part = 1;       ///< voxels: radius from which parts are not thin
+constexpr double one_footprint = 5;   ///< degrees between two that are one
+constexpr double well_above = 30;     ///< degrees over theta from where the axis must have all
+constexpr double most_missed_of_body = 0.1;    ///< the same of one body, by its surface: of true axes 0.06 are
 constexpr double most_missed_of_voxels = 0.1;  ///< the same where only voxels tell inside from outside
 constexpr double few_missed = 3;               ///< balls that may be missed at any rate
 constexpr std::size_t few_balls = 20;          ///< too few to tell anything
 constexpr std::size_t most_samples_of_sheets = 8'192;
 constexpr std::size_t most_samples_of_curves = 2'048;
 constexpr std::size_t most_samples_of_vertices = 4'096;
-constexpr std::size_t most_points_tried = 16'384;
 constexpr std::size_t grain = 64;
-
-/// Lengths within which an axis may be off, as the verifier sees the solid.
-struct Allowances {
-  double voxel = 0;
-  double middle = 0;   ///< of a point of the axis, from the middle
-  double close = 0;    ///< the same, for half of all
-  double missing = 0;  ///< of a point of the middle, from the axis
-  double apart = 0;    ///< footprints that are closer than this may count for nothing
-  double noise = 0;    ///< degrees
-};
-
-/// A file may not excuse everything by coarse voxels.
-Allowances allowances(const SolidOracle& solid, const CertificateOptions& options, double factor) {
-  const double diagonal = solid.diagonal();
-  const double voxel = std::min(options.spacing ? *options.spacing * factor : diagonal / 32, diagonal / 8);
-  const double moved = std::min(options.deviation ? *options.deviation * factor : 0, diagonal / 16);
-  const double longest = std::max(voxel, solid.grain() / 2);
-  Allowances all;
-  all.voxel = longest;
-  all.middle = 1.5 * longest + moved;
-  all.close = std::max(longest / 3, moved + longest / 12);
-  all.missing = 2 * longest + moved;
-  all.apart = 4 * longest + (options.lambda ? *options.lambda * factor : 0);
-  all.noise = solid.grain() > 0 && solid.slack() == 0 ? noise_of_images : noise_of_meshes;
-  return all;
-}
 
 /// A point of the axis to look at.
 struct AxisPoint {
   Vec3d at;
   std::uint32_t body = 0;
-};
-
-/// Points of triangles or edges, spread evenly over their size.
-class Spread {
- public:
-  void add(double size, std::uint32_t cell) {
-    if (!(size > 0) || !std::isfinite(size)) return;
-    total_ += size;
-    cells_.push_back(cell);
-    ends_.push_back(total_);
-  }
-  [[nodiscard]] double total() const { return total_; }
-  /// The cell at a share of all.
-  [[nodiscard]] std::uint32_t at(double share) const {
-    const auto end = std::upper_bound(ends_.begin(), ends_.end(), share * total_);
-    return cells_[std::min(static_cast<std::size_t>(end - ends_.begin()), cells_.size() - 1)];
-  }
-
- private:
-  double total_ = 0;
-  std::vector<std::uint32_t> cells_;
-  std::vector<double> ends_;
+  double size = 0;   ///< of the cell that it lies on
+  double depth = 0;  ///< of the deepest corner of this
 };
 
 /// As many as a size can hold at so many for each unit, few where it is small.
@@ -104,44 +60,24 @@ std::size_t sample_count(double units, std::size_t most) {
                                                        : std::max(least, static_cast<std::size_t>(units * per_unit));
 }
 
-/// What is told of samples.
-struct Offsets {
-  std::size_t count = 0, close = 0, off = 0;
-  double furthest = 0;
-  Vec3d where;
-
-  void add(double offset, double close_enough, double allowed, const Vec3d& at) {
-    ++count;
-    if (offset <= close_enough) ++close;
-    if (!(offset <= allowed)) ++off;
-    if (!(offset < HUGE_VAL) || offset <= furthest) return;
-    furthest = offset;
-    where = at;
-  }
-  void add(const Offsets& other) {
-    count += other.count;
-    close += other.close;
-    off += other.off;
-    if (other.furthest <= furthest) return;
-    furthest = other.furthest;
-    where = other.where;
-  }
-};
-
 class Middle {
  public:
   Middle(const KnownSolid& solid, const Allowances& allowed) : solid_(*solid.solid), allowed_(allowed) {}
 
-  /// How far a point is from the middle between two walls, about; HUGE_VAL where there is no second one.
-  [[nodiscard]] double offset(const AxisPoint& point) const {
+  /// How far a point is from the middle between two walls, about, and how large the ball between them is.
+  struct Found {
+    double off = HUGE_VAL;  ///< stays so where there is no second wall
+    double radius = 0;
+  };
+  [[nodiscard]] Found find(const AxisPoint& point) const {
     const Vec3d foot = solid_.closest_point(point.at, point.body);
     const double depth = length(point.at - foot);
     const double nothing = 1e-9 * solid_.diagonal(point.body);
-    if (!(depth > nothing)) return is_thin(point) ? 0 : HUGE_VAL;
+    if (!(depth > nothing)) return {is_thin(point) ? 0 : HUGE_VAL, 0};
     // Nearly always another wall is close behind.
     TouchingBall ball = grown_ball(solid_, point.body, point.at, allowed_.noise, allowed_.middle);
     if (!(ball.radius > 0)) ball = grown_ball(solid_, point.body, point.at, allowed_.noise);
-    return ball.radius > 0 ? distance_to_middle(point.at, ball) : HUGE_VAL;
+    return ball.radius > 0 ? Found{distance_to_middle(point.at, ball), ball.radius} : Found{};
   }
 
  private:
@@ -169,7 +105,11 @@ Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& al
   parallel_for(context, count, grain, "looking for the middle", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const AxisPoint p = point(k);
-      parts[range.begin / grain].add(middle.offset(p), allowed.close, allowed.middle, p.at);
+      const Middle::Found found = middle.find(p);
+      // Between the mouth of a thin part and the middle of a thick one only the edges of the mouth are close.
+      const double radius = std::max(found.radius, p.depth);
+      parts[range.begin / grain].add(found.off, allowed.close_at(radius, p.size), allowed.middle_at(radius, p.size),
+                                     allowed.middle, p.at);
     }
   });
   Offsets all;
@@ -177,22 +117,22 @@ Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& al
   return all;
 }
 
+std::array<Vec3d, 3> corners_of(const MedialView& axis, std::size_t t) {
+  const auto& [a, b, c] = axis.triangles[t];
+  return {axis.positions[a], axis.positions[b], axis.positions[c]};
+}
+
+double longest_side(const std::array<Vec3d, 3>& corners) {
+  return std::max({length(corners[0] - corners[1]), length(corners[1] - corners[2]), length(corners[2] - corners[0])});
+}
+
+double deepest(const MedialView& axis, const std::array<std::uint32_t, 3>& corners) {
+  return std::max({axis.radius[corners[0]], axis.radius[corners[1]], axis.radius[corners[2]]});
+}
+
 double area(const MedialView& axis, std::size_t t) {
   const auto& [a, b, c] = axis.triangles[t];
   return 0.5 * length(cross(axis.positions[b] - axis.positions[a], axis.positions[c] - axis.positions[a]));
-}
-
-/// A point of a triangle, all alike.
-Vec3d random_point(const MedialView& axis, std::uint32_t t, Random& random) {
-  double u = random.uniform();
-  double v = random.uniform();
-  if (u + v > 1) {
-    u = 1 - u;
-    v = 1 - v;
-  }
-  const auto& [a, b, c] = axis.triangles[t];
-  const Vec3d& p = axis.positions[a];
-  return p + (axis.positions[b] - p) * u + (axis.positions[c] - p) * v;
 }
 
 /// Between a vertex's footprints, degrees.
@@ -270,99 +210,28 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
     if (!is_finite(axis.positions[v])) continue;
     const bool is_deep = claimed.contains(v) && axis.radius[v] > allowed.middle;
     check.deep_vertices += is_deep ? 1 : 0;
-    if (claimed.angle(v) >= 0.5 * noise_of_meshes) continue;
+    if (claimed.angle(v) >= one_footprint) continue;
     ++check.one_wall;
     check.deep_one_wall += is_deep ? 1 : 0;
     if (claimed.contains(v)) single.push_back(v);
   }
   const std::size_t every = single.size() / most_samples_of_vertices + 1;
-  std::vector<double> offsets((single.size() + every - 1) / every);
-  parallel_for(context, offsets.size(), grain, "looking for the middle", [&](const WorkRange& range) {
+  std::vector<Middle::Found> found((single.size() + every - 1) / every);
+  parallel_for(context, found.size(), grain, "looking for the middle", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const std::uint32_t v = single[k * every];
-      offsets[k] = middle.offset({axis.positions[v], body_of[v]});
+      found[k] = middle.find({axis.positions[v], body_of[v]});
     }
   });
-  for (std::size_t k = 0; k < offsets.size(); ++k) {
+  for (std::size_t k = 0; k < found.size(); ++k) {
     const std::uint32_t v = single[k * every];
     // Between the mouth of a thin part and the middle of a thick one the edges of the mouth are all that is close.
-    if (!(offsets[k] > allowed.middle) || claimed.least_radius_around(v) < thin_part * allowed.voxel) continue;
+    const auto& [off, radius] = found[k];
+    if (!(off > allowed.middle_at(radius)) || claimed.least_radius_around(v) < thin_part * allowed.voxel) continue;
     ++check.one_wall_off;
-    if (!(offsets[k] > far_off * allowed.missing) || !claimed.is_between_walls(v)) continue;
+    if (!(off > far_off * allowed.missing_at(radius)) || !claimed.is_between_walls(v)) continue;
     if (check.one_wall_far++ == 0) check.far_at = axis.positions[v];
   }
-}
-
-// ---- What is missing ----
-
-/// The cells of an axis to look for the closest of.
-TriangleSearch search_of(const MedialView& axis, const Context& context) {
-  TriangleMesh cells;
-  cells.vertices.assign(axis.positions.begin(), axis.positions.end());
-  std::vector<bool> is_named(axis.positions.size(), false);
-  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    for (const std::uint32_t v : {a, b, c}) is_named[v] = true;
-    if (is_finite(cells.vertices[a]) && is_finite(cells.vertices[b]) && is_finite(cells.vertices[c])) {
-      cells.triangles.push_back({a, b, c});
-    }
-  };
-  for (const auto& [a, b, c] : axis.triangles) add(a, b, c);
-  for (std::size_t e = 0; e < axis.edges.size(); ++e) {
-    if (axis.edge_role(e) == MedialRole::curve) add(axis.edges[e][0], axis.edges[e][1], axis.edges[e][1]);
-  }
-  for (std::uint32_t v = 0; v < axis.positions.size(); ++v) {
-    if (!is_named[v]) add(v, v, v);
-  }
-  return {cells, {}, context};
-}
-
-/// A ball that is in the middle between two walls, from a random point of the solid; radius 0 where that gives none.
-///
-/// The surface may reach a little into the ball, because the facets of a round thing are all near at once. On a plane
-/// that reaches by d into a ball of radius r, the closest point is up to acos(1 - d/r) aside from where the ball was
-/// thought to touch it, and the angle is less by as much: d is no more than the step from theta to the sought angle
-/// gives. In a wedge of 164 degrees, 0.1 voxel alone would show 175.
-/// @param above_theta  degrees from the axis's theta to the sought angle.
-TouchingBall random_ball(const KnownSolid& solid, const Spread& boxes, const Allowances& allowed, double sought,
-                         double above_theta, std::uint64_t seed) {
-  constexpr double nearly_whole = 0.1;  // voxels: the facets of round things are all near at once
-  Random random(0xb1a5ULL + seed);
-  const std::uint32_t body = boxes.at(random.uniform());
-  const Box3 box = solid.solid->box(body);
-  const Vec3d share = random.in_cube();
-  const Vec3d size = box.upper - box.lower;
-  const Vec3d p = box.lower + Vec3d{share.x * size.x, share.y * size.y, share.z * size.z};
-  const Location location = solid.solid->locate(p);
-  if (location.outside_by > 0 || location.body != body) return {};
-  TouchingBall ball = grown_ball(*solid.solid, body, p, sought);
-  if (!(ball.radius > 0) || length(ball.first - ball.second) < allowed.apart) return {};
-  const double reaching_in =
-      std::min(nearly_whole * allowed.voxel, ball.radius * (1 - std::cos(above_theta / degrees_per_radian)));
-  const bool fits = ball.is_whole || ball.radius - solid.solid->distance(ball.centre, body) <= reaching_in;
-  return fits && solid.solid->depth(ball.centre, body) > 0 ? ball : TouchingBall{};
-}
-
-Offsets missing(const MedialView& axis, const KnownSolid& solid, const Allowances& allowed, double sought,
-                double above_theta, const Context& context) {
-  Spread boxes;
-  for (std::uint32_t b = 0; b < solid.bodies.size(); ++b) {
-    const Vec3d size = solid.solid->box(b).size();
-    boxes.add(size.x * size.y * size.z, b);
-  }
-  if (!(boxes.total() > 0)) return {};
-  const TriangleSearch search = search_of(axis, context);
-  std::vector<Offsets> parts(most_points_tried / grain + 1);
-  parallel_for(context, most_points_tried, grain, "looking for what is missing", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      const TouchingBall ball = random_ball(solid, boxes, allowed, sought, above_theta, k);
-      if (!(ball.radius > 0)) continue;
-      parts[range.begin / grain].add(search.nearest(ball.centre).distance, allowed.missing, allowed.missing,
-                                     ball.centre);
-    }
-  });
-  Offsets all;
-  for (const Offsets& part : parts) all.add(part);
-  return all;
 }
 
 // ---- What is said of it ----
@@ -380,6 +249,10 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
     mismatches.push_back("of the sheets and curves that two walls should see, only " + percent(check.medial_share) +
                          " are in the middle between two, the worst " + rounded_text(check.off_by) + " off it at " +
                          place_text(check.off_at) + allowed);
+  }
+  if (!by_voxels && check.near_share < least_near_share) {
+    mismatches.push_back("of the sheets and curves that two walls should see, only " + percent(check.near_share) +
+                         " are as near to the middle between two as a quarter of the way to these");
   }
   if (!by_voxels && check.close_share < least_close_share) {
     mismatches.push_back("of the sheets and curves that two walls should see, only " + percent(check.close_share) +
@@ -402,21 +275,53 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
                          " degrees, by up to " + rounded_text(check.missed_by) + " at " + place_text(check.missed_at) +
                          " (allowed: " + rounded_text(check.missing_allowance) + ")");
   }
+  if (check.bodies_missed > 0) {
+    mismatches.push_back("in " + count_text(check.bodies_missed) + " of the bodies the axis misses up to " +
+                         percent(check.missed_share_of_body) + " of what points beside the surface show at more than " +
+                         rounded_text(check.sought_angle) + " degrees, by up to " +
+                         rounded_text(check.missed_in_body_by) + " at " + place_text(check.missed_in_body_at));
+  }
+}
+
+double share_of(std::size_t some, std::size_t all) {
+  return all > 0 ? static_cast<double>(some) / static_cast<double>(all) : 1;
 }
 
 void note_share(MedialCheck& check, const Offsets& sheets, const Offsets& curves, double weight_of_sheets) {
   const auto mean = [&](std::size_t of_sheets, std::size_t of_curves) {
-    const auto share = [](std::size_t some, std::size_t all) {
-      return all > 0 ? static_cast<double>(some) / static_cast<double>(all) : 1;
-    };
-    return weight_of_sheets * share(of_sheets, sheets.count) + (1 - weight_of_sheets) * share(of_curves, curves.count);
+    return weight_of_sheets * share_of(of_sheets, sheets.count) +
+           (1 - weight_of_sheets) * share_of(of_curves, curves.count);
   };
   check.samples = sheets.count + curves.count;
   check.medial_share = mean(sheets.count - sheets.off, curves.count - curves.off);
+  check.near_share = mean(sheets.count - sheets.not_near, curves.count - curves.not_near);
   check.close_share = mean(sheets.close, curves.close);
   const Offsets& worst = curves.furthest > sheets.furthest ? curves : sheets;
   check.off_by = worst.furthest;
   check.off_at = worst.where;
+}
+
+void note_missing(MedialCheck& check, const FoundBalls& found, double factor) {
+  check.balls = found.all.count;
+  if (check.balls > 0) check.missed_share = share_of(found.all.off, check.balls);
+  check.missed_by = found.all.furthest / factor;
+  check.missed_at = found.all.where / factor;
+  check.judges_missing = check.balls >= few_balls;
+  for (const Offsets& body : found.bodies) {
+    if (body.count < few_balls) {
+      ++check.bodies_unseen;
+      continue;
+    }
+    check.judges_missing = true;
+    const double share = share_of(body.off, body.count);
+    if (static_cast<double>(body.off) > std::max(most_missed_of_body * static_cast<double>(body.count), few_missed)) {
+      ++check.bodies_missed;
+    }
+    if (!(share > check.missed_share_of_body)) continue;
+    check.missed_share_of_body = share;
+    check.missed_in_body_by = body.furthest / factor;
+    check.missed_in_body_at = body.where / factor;
+  }
 }
 
 }  // namespace
@@ -424,7 +329,7 @@ void note_share(MedialCheck& check, const Offsets& sheets, const Offsets& curves
 MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const std::vector<std::uint32_t>& body_of,
                          const CertificateOptions& options, double factor, std::vector<std::string>& mismatches,
                          const Context& context) {
-  const Allowances allowed = allowances(*solid.solid, options, factor);
+  const Allowances allowed = allowances(axis, solid, options, factor);
   const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL, allowed.noise, options.footprints);
   const Middle middle(solid, allowed);
   const std::size_t before = mismatches.size();
@@ -440,7 +345,9 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
       [&](std::size_t k) {
         Random random(0x5a3eULL + k);
         const std::uint32_t t = claimed.sheets().at(at(k, on_sheets, random));
-        return AxisPoint{random_point(axis, t, random), body_of[axis.triangles[t][0]]};
+        const std::array<Vec3d, 3> corners = corners_of(axis, t);
+        return AxisPoint{random_point(corners, random), body_of[axis.triangles[t][0]], longest_side(corners),
+                         deepest(axis, axis.triangles[t])};
       },
       context);
   const std::size_t on_curves = sample_count(claimed.curves().total() / allowed.voxel, most_samples_of_curves);
@@ -449,7 +356,9 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
       [&](std::size_t k) {
         Random random(0xc0deULL + k);
         const auto& [a, b] = axis.edges[claimed.curves().at(at(k, on_curves, random))];
-        return AxisPoint{axis.positions[a] + (axis.positions[b] - axis.positions[a]) * random.uniform(), body_of[a]};
+        const Vec3d along = axis.positions[b] - axis.positions[a];
+        return AxisPoint{axis.positions[a] + along * random.uniform(), body_of[a], length(along),
+                         std::max(axis.radius[a], axis.radius[b])};
       },
       context);
   // A curve counts as much as a strip of sheet a voxel wide.
@@ -470,11 +379,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   if (options.theta) {
     const double theta = std::max(*options.theta, allowed.noise);
     check.sought_angle = std::min(theta + well_above, 0.5 * (theta + 180));
-    const Offsets missed = missing(axis, solid, allowed, check.sought_angle, check.sought_angle - theta, context);
-    check.balls = missed.count;
-    if (missed.count > 0) check.missed_share = static_cast<double>(missed.off) / static_cast<double>(missed.count);
-    check.missed_by = missed.furthest / factor;
-    check.missed_at = missed.where / factor;
+    note_missing(check, find_balls(axis, solid, allowed, theta, check.sought_angle, context), factor);
   }
   check.allowance = allowed.middle / factor;
   check.missing_allowance = allowed.missing / factor;

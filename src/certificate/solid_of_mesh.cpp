@@ -8,6 +8,7 @@
 #include "blum/core/random.hpp"
 #include "blum/geometry/sites.hpp"
 #include "certificate/gap_search.hpp"
+#include "certificate/sampling.hpp"
 #include "certificate/shells.hpp"
 #include "certificate/solid_oracle.hpp"
 #include "certificate/triangle_samples.hpp"
@@ -25,11 +26,17 @@ class ShellOracle : public SolidOracle {
         shells_(shells),
         body_of_(shells.of_triangle),
         boxes_(shells.bodies),
+        surfaces_(shells.bodies),
         sites_(named, context) {
     for (std::size_t t = 0; t < body_of_.size(); ++t) {
       if (body_of_[t] == no_group) continue;
       body_of_[t] = shells_.shells[body_of_[t]].body;
       for (const std::uint32_t v : mesh.triangles[t]) boxes_[body_of_[t]].extend(mesh.vertices[v]);
+    }
+    for (std::uint32_t t = 0; t < body_of_.size(); ++t) {
+      if (body_of_[t] == no_group || shells_.outwards[t] == 0) continue;
+      const auto [a, b, c] = corners_of(mesh_, t);
+      surfaces_[body_of_[t]].add(length(cross(b - a, c - a)), t);
     }
     search_ = shells_.shells.size() == 1 ? shell_search : TriangleSearch(mesh, body_of_, context);
   }
@@ -59,6 +66,18 @@ class ShellOracle : public SolidOracle {
   }
 
   [[nodiscard]] Box3 box(std::uint32_t body) const override { return boxes_[body]; }
+
+  [[nodiscard]] bool has_triangles() const override { return true; }
+
+  [[nodiscard]] std::optional<Vec3d> beside_surface(std::uint32_t body, Random& random) const override {
+    if (!(surfaces_[body].total() > 0)) return std::nullopt;
+    const std::uint32_t t = surfaces_[body].at(random.uniform());
+    const std::array<Vec3d, 3> corners = corners_of(mesh_, t);
+    const bool is_void = shells_.shells[shells_.of_triangle[t]].depth % 2 == 1;
+    const double inwards = (shells_.outwards[t] > 0) == is_void ? 1 : -1;
+    const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    return random_point(corners, random) + normal * (inwards * 1e-7 * boxes_[body].diagonal() / length(normal));
+  }
 
   [[nodiscard]] double depth(const Vec3d& p, std::uint32_t body) const override {
     const TriangleSearch::Nearest closest = search_.nearest(p, body);
@@ -260,6 +279,7 @@ class ShellOracle : public SolidOracle {
   ClosedShells shells_;
   std::vector<std::uint32_t> body_of_;  ///< of each triangle
   std::vector<Box3> boxes_;             ///< of each body
+  std::vector<Spread> surfaces_;        ///< the triangles of each body
   SiteTable sites_;                     ///< of `named_`
   TriangleSearch search_;               ///< bodies are its groups
 };

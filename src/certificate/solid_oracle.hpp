@@ -11,6 +11,7 @@
 #include "blum/certificate/certificate.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/ids.hpp"
+#include "blum/core/random.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/grid/grid_spec.hpp"
@@ -78,6 +79,13 @@ class SolidOracle {
   }
   /// The closest point of the surface of a body.
   [[nodiscard]] virtual Vec3d closest_point(const Vec3d& p, std::uint32_t body) const = 0;
+  /// A random point of a body beside its surface, all parts of this alike; nullopt where there is none, or the surface
+  /// has no triangles.
+  [[nodiscard]] virtual std::optional<Vec3d> beside_surface(std::uint32_t /*body*/, Random& /*random*/) const {
+    return std::nullopt;
+  }
+  /// Whether the surface is that of the bodies, and has triangles.
+  [[nodiscard]] virtual bool has_triangles() const { return false; }
   /// The diagonal of a voxel, where the solid is made of voxels; else 0.
   [[nodiscard]] virtual double grain() const { return 0; }
   /// How far outside of the solid is not outside: 0, unless only voxels tell inside from outside.

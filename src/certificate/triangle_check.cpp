@@ -8,6 +8,7 @@
 
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
+#include "certificate/allowances.hpp"
 #include "certificate/body_edges.hpp"
 #include "certificate/checks.hpp"
 
@@ -158,7 +159,7 @@ TriangleCheck check_triangles(const MedialView& axis, const KnownSolid& solid, c
                               std::vector<std::string>& mismatches, const Context& context) {
   constexpr std::size_t grain = 256;
   const SolidOracle& oracle = *solid.solid;
-  const double moved = std::min(options.deviation ? *options.deviation * factor : 0, oracle.diagonal() / 16);
+  const double moved = believed_deviation(solid, options, factor);
   std::vector<double> allowed = tolerances(solid);
   std::vector<double> most(allowed.size());
   for (std::uint32_t b = 0; b < allowed.size(); ++b) {

@@ -1,5 +1,6 @@
 #include "blum/io/verify_medial.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -41,11 +42,47 @@ bool has_same_sides(const GridSpec& a, const GridSpec& b) {
   return true;
 }
 
+bool has_sides(const GridSpec& grid, double side) {
+  GridSpec cubes = grid;
+  cubes.spacing = {side, side, side};
+  return has_same_sides(grid, cubes);
+}
+
 std::string sides_text(const GridSpec& grid) {
   return rounded_text(grid.spacing.x) + " " + rounded_text(grid.spacing.y) + " " + rounded_text(grid.spacing.z);
 }
 
-Certificate with_claims(Certificate certificate, const MedialClaims& claims, const GridSpec* image_grid) {
+/// Of a file that Blum wrote: all vertices have both sites.
+std::vector<std::string> missing_sites(const MedialView& axis, const MedialClaims& claims) {
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < axis.positions.size(); ++v) {
+    count += axis.site(v, 0).has_value() && axis.site(v, 1).has_value() ? 0 : 1;
+  }
+  if (count == 0) return {};
+  return {"the file says that Blum " + claims.metadata.version + " wrote it, but " + count_text(count) +
+          (count == 1 ? " vertex has" : " vertices have") + " a footprint without a site"};
+}
+
+/// @throws InvalidGrid where fewer voxels than the coarsest grid has lie along the longest side of a mesh: another grid
+/// would have other tunnels, or parts of the mesh no voxel.
+void check_fine_enough(const GridSpec& grid, const MeshView& mesh) {
+  constexpr double least = 8;
+  constexpr double rounding = 1e-9;
+  const Vec3d size = bounds(mesh).size();
+  const double longest = std::max({size.x, size.y, size.z});
+  const double step = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
+  if (step * least <= longest * (1 + rounding)) return;
+  throw InvalidGrid("the grid that the axis names has steps of " + sides_text(grid) +
+                    ", fewer than 8 along the mesh, " + "whose longest side is " + rounded_text(longest));
+}
+
+Certificate with_claims(Certificate certificate, const Complex& axis, const MedialClaims& claims,
+                        const GridSpec* image_grid) {
+  if (!claims.metadata.version.empty() && certificate.checked.sites) {
+    for (std::string& claim : missing_sites(MedialView(axis), claims)) {
+      certificate.mismatches.push_back(std::move(claim));
+    }
+  }
   for (std::string& claim : false_claims(claims, certificate.against, image_grid)) {
     certificate.mismatches.push_back(std::move(claim));
   }
@@ -69,6 +106,11 @@ std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule foun
     out.push_back("the file says that its voxels have the sides " + sides_text(*metadata.grid) +
                   ", and the image's have " + sides_text(*image_grid));
   }
+  if (found == SolidRule::winding && metadata.grid && metadata.spacing &&
+      !has_sides(*metadata.grid, *metadata.spacing)) {
+    out.push_back("the file says that its spacing is " + rounded_text(*metadata.spacing) +
+                  ", and its grid has steps of " + sides_text(*metadata.grid));
+  }
   if (metadata.version.empty()) return out;  // of another program, which need not know all of it
   const SiteIds sites = found == SolidRule::voxels ? SiteIds::voxels : SiteIds::features;
   for (const auto& [is_there, what] :
@@ -87,11 +129,12 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshVi
   const MeshSolidRule found = solid_rule(mesh, context);
   const CompleteAxis all(axis);
   if (found.rule == SolidRule::polyhedron) {
-    return with_claims(certify(all.get(), mesh, checks, context), claims, nullptr);
+    return with_claims(certify(all.get(), mesh, checks, context), all.get(), claims, nullptr);
   }
   if (!claims.metadata.grid) throw UntoldVoxels(found.reason);
   const GridSpec& grid = *claims.metadata.grid;
   validate(grid);
+  check_fine_enough(grid, mesh);
   // Distances, winding numbers, and what the fields beside them take.
   const double bytes = 16.0 * static_cast<double>(grid.node_count());
   if (bytes > available_memory) {
@@ -100,7 +143,7 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshVi
                       "have made here");
   }
   const VoxelSet voxels = voxels_inside(mesh, grid, context);
-  return with_claims(certify(all.get(), voxels, grid, &mesh, checks, context), claims, nullptr);
+  return with_claims(certify(all.get(), voxels, grid, &mesh, checks, context), all.get(), claims, nullptr);
 }
 
 Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelImageView& image,
@@ -111,8 +154,8 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const VoxelI
   }
   const VoxelSet voxels = selected_voxels(image, selection, context);
   const CertificateOptions checks = checkable(claims, SiteIds::voxels, options);
-  return with_claims(certify(CompleteAxis(axis).get(), voxels, image.grid, nullptr, checks, context), claims,
-                     &image.grid);
+  const CompleteAxis all(axis);
+  return with_claims(certify(all.get(), voxels, image.grid, nullptr, checks, context), all.get(), claims, &image.grid);
 }
 
 }  // namespace blum

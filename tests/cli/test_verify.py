@@ -186,6 +186,35 @@ def test_the_file_tells_how_the_mesh_was_welded(solids, tmp_path):
     assert "was made with --weld 1e-06; --weld is used" in err
 
 
+def frame(path, window):
+    """A plate with a square window: a closed surface of genus 1."""
+    corners = [(x, y, z) for half in (0.5, window / 2) for z in (0, 0.2)
+               for x, y in ((-half, -half), (half, -half), (half, half), (-half, half))]
+    quads = []
+    for k in range(4):
+        j = (k + 1) % 4
+        quads += [(k, j, 4 + j, 4 + k), (8 + j, 8 + k, 12 + k, 12 + j), (4 + k, 4 + j, 12 + j, 12 + k),
+                  (j, k, 8 + k, 8 + j)]
+    faces = [f"f {a + 1} {b + 1} {c + 1}" for q in quads for a, b, c in (q[:3], (q[0], q[2], q[3]))]
+    path.write_text("\n".join([*(f"v {x} {y} {z}" for x, y, z in corners), *faces]) + "\n")
+
+
+def test_a_weld_tolerance_that_changes_the_solid_is_warned_of(tmp_path):
+    part = tmp_path / "part.obj"
+    frame(part, 0.02)
+    told = "welding within 0.03 removed 6 of 16 vertices: the surface has 1 component and the Euler number"
+    _, err = run("medial", part, "-o", tmp_path / "p.npz", "--resolution", 16, "--weld", 0.03, "--allow-uncertified",
+                 warns=True)
+    assert told in err and "in place of 1 component and the Euler number 0" in err
+    _, err = run("verify", part, tmp_path / "p.npz", warns=True)
+    assert f"as '{tmp_path / 'p.npz'}' asks, {told}" in err
+    summary = run_json("verify", part, tmp_path / "p.npz", "--weld", 0.03, warns=True)
+    assert len(summary["warnings"]) == 1 and summary["input"]["weld"]["lost"] == 6
+    assert summary["input"]["weld"]["before"]["euler_number"] == 0
+    run("medial", part, "-o", tmp_path / "q.npz", "--resolution", 16, "--weld", 1e-6)
+    assert run_json("verify", part, tmp_path / "q.npz")["warnings"] == []
+
+
 def test_files_of_before_that_tell_no_selection_are_read(solids, tmp_path):
     run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 2)
     arrays = dict(np.load(tmp_path / "b.npz"))
@@ -209,6 +238,41 @@ def test_files_of_other_programs_are_checked_as_far_as_they_go(solids, axes, tmp
     parts = ["topology", "positions", "edges", "triangles", "radii", "footprints", "angles", "labels", "medial"]
     assert certificate["checked"] == parts
     assert "sites: not in the file" in certificate["not_checked"]
+
+
+def test_what_the_file_claims_to_be_is_told(solids, axes):
+    out, _ = run("verify", solids / "box.obj", axes / "box.npz")
+    assert "as many as the solid; at theta 60 degrees, lambda 0, voxels of 0.0625" in out
+    certificate = run_json("verify", solids / "box.obj", axes / "box.npz")["certificate"]
+    assert certificate["claims"] == {"theta": 60, "lambda": 0, "spacing": 0.0625, "deviation": None}
+    assert "missing" in certificate["checked"] and certificate["voxel"] is None
+    assert "; at" not in run("verify", solids / "box.obj", axes / "box.obj")[0]
+
+
+def test_the_voxels_that_an_open_mesh_is_taken_as_are_told(solids, axes, tmp_path):
+    out, _ = run("verify", solids / "open.obj", axes / "open.npz")
+    assert "against voxels (of the winding number) of side 0.0625: " in out
+    false = falsified(axes, tmp_path, "open.npz", lambda arrays: change_metadata(arrays, spacing="0.03125"))
+    assert "its spacing is 0.03125, and its grid has steps of 0.0625" in run("verify", solids / "open.obj", false,
+                                                                            status=3)[1]
+
+
+def test_where_random_points_show_nothing_that_is_not_checked(solids, axes, tmp_path):
+    false = falsified(axes, tmp_path, "box.npz", lambda arrays: change_metadata(arrays, **{"lambda": "1.7"}))
+    out, _ = run("verify", solids / "box.obj", false)
+    assert "lambda 1.7" in out and "what is missing: random points show nothing above 90 degrees" in out
+    assert "what it misses was not checked" in out
+    certificate = run_json("verify", solids / "box.obj", false)["certificate"]
+    assert "missing" not in certificate["checked"]
+    assert "what is missing: random points show nothing above 90 degrees" in certificate["not_checked"]
+
+
+def test_nested_axes_are_not_checked_and_that_is_told(solids, tmp_path):
+    run("medial", solids / "box.obj", "-o", tmp_path / "nested.npz", "--resolution", 16, "--nested")
+    out, _ = run("verify", solids / "box.obj", tmp_path / "nested.npz")
+    assert "nested columns: the axes of other angles" in out
+    certificate = run_json("verify", solids / "box.obj", tmp_path / "nested.npz")["certificate"]
+    assert "nested columns: the axes of other angles" in certificate["not_checked"]
 
 
 def test_positions_of_obj_files_are_verified(solids, axes, tmp_path):

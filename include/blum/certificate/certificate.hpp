@@ -220,12 +220,18 @@ struct Description<BallUnionCheck> {
 /// is off the middle by how far it is from the bisector of both. Walls that this ball sees at less than 10 degrees
 /// (images: 20) are one. Only what says of itself that two walls see it at more than theta is asked: the rest is there
 /// for homotopy alone, and may lie anywhere in the solid. 95 % must be within the allowance: 1.5 voxels, and the
-/// deviation; voxels are taken to be 1/8 of the diagonal at most, and 1/32 of it where nothing is known. Half must be
-/// within a third of a voxel, or within the deviation where that is more.
+/// deviation. 90 % must be within a quarter of the radius of that ball, half within an eighth of it, and within a third
+/// of a voxel, or the deviation; or else within a tenth of the cell's longest side and a quarter of a voxel, by which
+/// flat cells cut off what is bent. Voxels are taken to be an eighth of the longest side of the solid at most, and no
+/// larger than the longest quarter of the axis's edges; 1/32 of the diagonal where nothing is known; those of images
+/// are known. A deviation is taken to be 1/64 of the diagonal at most.
 ///
-/// The other way, balls are grown from random points of the solid. Where two walls further apart than 4 voxels (and
-/// lambda) are seen at well more than theta (30 degrees, or half of the way to 180), the axis must have a point within
-/// 2 voxels and the deviation: for 95 % of the balls, if there are 20. Without a theta, this is not looked at.
+/// The other way, balls are grown from random points of the solid, and of each body: beside its surface, or in its box
+/// where it is made of voxels. Where two walls are seen at well more than theta (30 degrees, or half of the way to
+/// 180), further apart than lambda, and than 4 voxels or at 80 degrees or more (voxels: and than 4 voxels), the axis
+/// must have a point within 2 voxels and the deviation, and within half of the ball's radius, or 1.5 voxels where that
+/// is more: for 95 % of the balls, and 90 % of those of each body, if there are 20. Without a theta, this is not looked
+/// at.
 ///
 /// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
 /// too, other than beside parts of less than two voxels (a radius below one); a tenth of those vertices, or 16, need
@@ -239,24 +245,31 @@ struct MedialCheck {
   std::size_t claimed_vertices = 0;  ///< vertices of what should be seen at more than theta
   std::size_t one_wall_off =
       0;  ///< of those that both are (some, where many), not near the middle nor beside a thin part
-  std::size_t one_wall_far = 0;   ///< and of these, those that are far off
-  Vec3d far_at;                   ///< the first of these, mesh units
-  std::size_t deep_vertices = 0;  ///< vertices that should be seen at more than theta, deeper than the allowance
-  std::size_t deep_one_wall = 0;  ///< of these, those with one footprint
-  double homotopy_share = 0;      ///< of the area of all triangles: what only homotopy keeps, at theta or less
-  std::size_t samples = 0;        ///< points of sheets and curves that were looked at
-  double medial_share = 1;        ///< of these, what is in the middle, by area; a curve counts as a voxel wide
-  double close_share = 1;         ///< the same within a third of a voxel, or the deviation
-  double close_allowance = 0;     ///< that length, mesh units
-  double off_by = 0;              ///< how far the worst of these with two walls is from the middle, mesh units
-  Vec3d off_at;                   ///< and there, mesh units
-  double sought_angle = 0;        ///< degrees from which the axis must have all; 0 where that was not looked at
-  double missing_allowance = 0;   ///< how close the axis must come to the balls, mesh units
-  std::size_t balls = 0;          ///< from random points of the solid whose walls are seen at more than that
-  double missed_share = 0;        ///< of these, those that have no point of the axis near their centres
-  double missed_by = 0;           ///< how far the worst of all is from the axis, mesh units
-  Vec3d missed_at;                ///< and there, mesh units
-  bool holds = false;             ///< enough is in the middle, and little is missed
+  std::size_t one_wall_far = 0;     ///< and of these, those that are far off
+  Vec3d far_at;                     ///< the first of these, mesh units
+  std::size_t deep_vertices = 0;    ///< vertices that should be seen at more than theta, deeper than the allowance
+  std::size_t deep_one_wall = 0;    ///< of these, those with one footprint
+  double homotopy_share = 0;        ///< of the area of all triangles: what only homotopy keeps, at theta or less
+  std::size_t samples = 0;          ///< points of sheets and curves that were looked at
+  double medial_share = 1;          ///< of these, what is in the middle, by area; a curve counts as a voxel wide
+  double near_share = 1;            ///< the same within a quarter of the way to the walls
+  double close_share = 1;           ///< the same within a third of a voxel, or the deviation, or an eighth of that way
+  double close_allowance = 0;       ///< that length, mesh units
+  double off_by = 0;                ///< how far the worst of these with two walls is from the middle, mesh units
+  Vec3d off_at;                     ///< and there, mesh units
+  double sought_angle = 0;          ///< degrees from which the axis must have all; 0 where that was not looked at
+  double missing_allowance = 0;     ///< how close the axis must come to the balls, mesh units
+  std::size_t balls = 0;            ///< from random points of the solid whose walls are seen at more than that
+  double missed_share = 0;          ///< of these, those that have no point of the axis near their centres
+  double missed_by = 0;             ///< how far the worst of all is from the axis, mesh units
+  Vec3d missed_at;                  ///< and there, mesh units
+  std::size_t bodies_unseen = 0;    ///< bodies in which too few points beside the surface show such balls
+  std::size_t bodies_missed = 0;    ///< of the others, those of whose balls too many have no point of the axis near
+  double missed_share_of_body = 0;  ///< the same share as `missed_share`, of the worst body
+  double missed_in_body_by = 0;     ///< how far the worst ball of that body is from the axis, mesh units
+  Vec3d missed_in_body_at;          ///< and there, mesh units
+  bool judges_missing = false;      ///< whether there are balls enough, in the whole solid or a body, to tell
+  bool holds = false;               ///< enough is in the middle, and little is missed
 };
 
 template <>
@@ -277,7 +290,9 @@ struct Description<MedialCheck> {
       Member{"homotopy_share", &MedialCheck::homotopy_share, "", "of the area: what only homotopy keeps"},
       Member{"samples", &MedialCheck::samples, "", "points of sheets and curves that were looked at"},
       Member{"medial_share", &MedialCheck::medial_share, "", "of these, what is in the middle, by area"},
-      Member{"close_share", &MedialCheck::close_share, "", "the same within a third of a voxel, or the deviation"},
+      Member{"near_share", &MedialCheck::near_share, "", "the same within a quarter of the way to the walls"},
+      Member{"close_share", &MedialCheck::close_share, "",
+             "the same within a third of a voxel, or the deviation, or an eighth of that way"},
       Member{"close_allowance", &MedialCheck::close_allowance, "mesh units", "that length"},
       Member{"off_by", &MedialCheck::off_by, "mesh units", "how far the worst of these is from the middle"},
       Member{"off_at", &MedialCheck::off_at, "mesh units", "and there"},
@@ -289,6 +304,13 @@ struct Description<MedialCheck> {
       Member{"missed_share", &MedialCheck::missed_share, "", "of these, those that the axis has nothing near"},
       Member{"missed_by", &MedialCheck::missed_by, "mesh units", "how far the worst of all is from the axis"},
       Member{"missed_at", &MedialCheck::missed_at, "mesh units", "and there"},
+      Member{"bodies_unseen", &MedialCheck::bodies_unseen, "", "in which too few points beside the surface see more"},
+      Member{"bodies_missed", &MedialCheck::bodies_missed, "", "of the others, those in which too much is missed"},
+      Member{"missed_share_of_body", &MedialCheck::missed_share_of_body, "", "of the balls of the worst body"},
+      Member{"missed_in_body_by", &MedialCheck::missed_in_body_by, "mesh units",
+             "how far the worst ball of that body is from the axis"},
+      Member{"missed_in_body_at", &MedialCheck::missed_in_body_at, "mesh units", "and there"},
+      Member{"judges_missing", &MedialCheck::judges_missing, "", "whether there are balls enough to tell"},
       Member{"holds", &MedialCheck::holds, "", "whether enough is in the middle, and little is missed"},
   };
 };
@@ -328,8 +350,8 @@ struct Description<TriangleCheck> {
 
 /// Whether an axis lists what it should, and labels it as its triangles ask for: all edges of one triangle as rims,
 /// all of three or more as seams, those of none as curves, and no others; vertices by what ends at them (MedialRole).
-/// Each sheet hangs together over edges of two triangles, and two sheets share such edges only next to seams. Whether
-/// sheets go on past a seam there, the file decides. No exception is allowed.
+/// Sheets are numbered from 0, without gaps. Each hangs together over edges of two triangles, and two sheets share such
+/// edges only next to seams. Whether sheets go on past a seam there, the file decides. No exception is allowed.
 struct LabelCheck {
   std::size_t doubled = 0;       ///< cells that name the vertices of another one
   std::size_t inner_listed = 0;  ///< listed edges of two triangles
@@ -337,6 +359,7 @@ struct LabelCheck {
   std::size_t edge_roles = 0;    ///< edges of a false role
   std::size_t vertex_roles = 0;  ///< vertices of a false role
   std::size_t sheets = 0;        ///< labels of triangles
+  std::size_t gaps = 0;          ///< numbers below the largest that no triangle has
   std::size_t torn = 0;          ///< of them, those that do not hang together
   std::size_t parted = 0;        ///< edges of two sheets, away from seams
   bool holds = false;            ///< nothing is wrong
@@ -353,6 +376,7 @@ struct Description<LabelCheck> {
       Member{"edge_roles", &LabelCheck::edge_roles, "", "edges of a false role"},
       Member{"vertex_roles", &LabelCheck::vertex_roles, "", "vertices of a false role"},
       Member{"sheets", &LabelCheck::sheets, "", "labels of triangles"},
+      Member{"gaps", &LabelCheck::gaps, "", "numbers below the largest that no triangle has"},
       Member{"torn", &LabelCheck::torn, "", "of them, those that do not hang together"},
       Member{"parted", &LabelCheck::parted, "", "edges of two sheets, away from seams"},
       Member{"holds", &LabelCheck::holds, "", "whether nothing is wrong"},
@@ -445,6 +469,7 @@ struct Certificate {
   CertificateOptions checked;
   BettiNumbers solid{};           ///< from its boundary, or its voxels: the sum of its bodies'
   BettiNumbers axis{};            ///< of the complex, by homology()
+  std::optional<double> voxel;    ///< shortest side of those that the solid is made of, where it is, mesh units
   std::vector<BodyCheck> bodies;  ///< each must agree; one for the whole without CertificateOptions::positions
   bool topology_holds = false;
   GeometryCheck geometry;
@@ -469,6 +494,7 @@ struct Description<Certificate> {
       Member{"checked", &Certificate::checked, "", "what was looked at"},
       Member{"solid_betti", &Certificate::solid, "", "components, tunnels, voids of the solid: the sum of its bodies"},
       Member{"axis_betti", &Certificate::axis, "", "of the axis"},
+      Member{"voxel", &Certificate::voxel, "mesh units", "shortest side of those that the solid is made of"},
       Member{"bodies", &Certificate::bodies, "",
              "each must agree; one for the whole where positions were not looked at"},
       Member{"topology_holds", &Certificate::topology_holds, "", "whether they all do"},

@@ -41,16 +41,19 @@ class UntoldVoxels : public InvalidMesh {
 };
 
 /// What a file says that is not so, one sentence each: its solid has another rule than it says; its voxels are of other
-/// sides than the image's; it lacks what Blum writes into every file, or has sites of another kind of solid.
+/// sides than the image's, or of a mesh's voxels its grid has other steps than its spacing; it lacks what Blum writes
+/// into every file, or has sites of another kind of solid.
 /// @param found  what the solid is.  @param image_grid  where it is an image: of the voxels' centres; else nullptr.
 [[nodiscard]] std::vector<std::string> false_claims(const MedialClaims& claims, SolidRule found,
                                                     const GridSpec* image_grid);
 
 /// certify() against the solid of a mesh, with what is false of the claims among the mismatches: of the polyhedron, or,
 /// where the verifier finds none (solid_rule()), of the voxels inside on the grid that the claims name. What the file
-/// does not have is not checked, nor are sites that it does not have for this kind of solid.
+/// does not have is not checked, nor are sites that it does not have for this kind of solid. Where Blum wrote it, no
+/// vertex may lack a site.
 /// @param available_memory  bytes: a grid that takes more is refused.
-/// @throws UntoldVoxels where the claims name no grid and one is needed; OutOfMemory; as certify() and voxels_inside().
+/// @throws UntoldVoxels where the claims name no grid and one is needed; InvalidGrid where that has fewer than 8 steps
+/// along the longest side of the mesh; OutOfMemory; as certify() and voxels_inside().
 [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
                                  const CertificateOptions& options = {}, double available_memory = 1e300,
                                  const Context& context = {});

@@ -107,6 +107,14 @@ TEST(ColumnLies, ShuffledSheets) {
   expect_refused(lie, "sheets do not hang together");
 }
 
+TEST(ColumnLies, NumbersOfSheetsWithGaps) {
+  True lie = bracket();
+  ASSERT_GT(lie.axis.sheet_count, 10U);
+  for (TriangleRow& triangle : lie.axis.triangles) triangle.sheet += triangle.sheet > 3 ? 1 : 0;
+  ++lie.axis.sheet_count;
+  expect_refused(lie, "1 numbers of sheets below the largest are of no sheet");
+}
+
 TEST(ColumnLies, OneSheet) {
   True lie = bracket();
   for (TriangleRow& triangle : lie.axis.triangles) triangle.sheet = 0;

@@ -120,6 +120,19 @@ TEST(Lies, AllVerticesHalfwayToTheWallThatSayNothingOfAngles) {
   expect_refused(lie, "the axis misses");
 }
 
+TEST(Lies, AllVerticesHalfwayToTheWallOfACoarseGrid) {
+  for (const True* made : {&bracket(), &box()}) {
+    for (const double parts : {8.0, 16.0, 32.0}) {
+      True lie = *made;
+      move_honestly(lie, [](const VertexRow& v) { return (v.position + v.footprints[0]) * 0.5; });
+      lie.claims.metadata.spacing = bounds(lie.mesh).diagonal() / parts;
+      expect_refused(lie, "the middle between two");
+      lie.claims.metadata.deviation = bounds(lie.mesh).diagonal() / 16;
+      expect_refused(lie, "a quarter of the way");
+    }
+  }
+}
+
 TEST(Lies, AllVerticesHalfAVoxelOff) {
   True lie = bracket();
   move_honestly(lie, [&](const VertexRow& v) {
@@ -199,6 +212,16 @@ TEST(Lies, SitesThatThereAreNot) {
   expect_refused(lie, "on a site that the solid does not have");
 }
 
+TEST(Lies, ErasedSites) {
+  True lie = bracket();
+  lie.axis.vertices[3].sites[1] = SiteId();
+  expect_refused(lie, "1 vertex has a footprint without a site");
+  for (VertexRow& vertex : lie.axis.vertices) vertex.sites = {};
+  expect_refused(lie, "have a footprint without a site");
+  lie.claims.metadata.version.clear();
+  EXPECT_EQ(complaints(verdict(lie)), "") << "other programs need not name them";
+}
+
 TEST(Lies, ScaledRadii) {
   for (const double by : {0.5, 0.999, 1.001, 2.0}) {
     True lie = bracket();
@@ -262,6 +285,83 @@ TEST(Lies, ATreeInPlaceOfTheAxis) {
   tree.edges = {{{0, 1}}, {{1, 2}}};
   lie.axis = tree;
   expect_refused(lie, "the axis misses");
+}
+
+/// One vertex in place of an axis.
+void leave_one_vertex(True& lie, const Vec3d& at) {
+  const SiteTable sites(lie.mesh);
+  const NearestSite nearest = *Bvh(lie.mesh, sites).nearest(at);
+  lie.axis = {};
+  lie.axis.vertices = {{at, nearest.distance, {nearest.point, nearest.point}, {nearest.site, nearest.site}}};
+  lie.axis.vertices.front().role = MedialRole::curve;
+}
+
+TEST(Lies, OneVertexOfACoarseGrid) {
+  True lie = box();
+  leave_one_vertex(lie, {0.01, 0.02, 0});
+  lie.claims.metadata.spacing = bounds(lie.mesh).diagonal() / 8;
+  lie.claims.metadata.deviation = bounds(lie.mesh).diagonal() / 16;
+  expect_refused(lie, "the axis misses");
+}
+
+TEST(Lies, OneVertexInPlaceOfAThinPlate) {
+  // Less than 3 voxels thick.
+  True thin = axis_of(make_box({.size = {1, 0.7, 0.03}}), 64);
+  EXPECT_EQ(complaints(verdict(thin)), "");
+  leave_one_vertex(thin, {-0.49, -0.34, -0.005});
+  expect_refused(thin, "the axis misses");
+}
+
+/// A large box and a small one, less than 3 voxels thick.
+TriangleMesh box_and_bar() {
+  TriangleMesh both = make_box({});
+  const TriangleMesh bar = make_box({.size = {0.5, 0.05, 0.05}});
+  const auto first = static_cast<std::uint32_t>(both.vertices.size());
+  for (const Vec3d& v : bar.vertices) both.vertices.push_back(v + Vec3d{0, 1, 0});
+  for (const auto& [a, b, c] : bar.triangles) both.triangles.push_back({a + first, b + first, c + first});
+  return both;
+}
+
+TEST(Lies, OneVertexInASmallBody) {
+  True lie = axis_of(box_and_bar(), 64);
+  const Certificate found = verdict(lie);
+  EXPECT_EQ(complaints(found), "");
+  EXPECT_EQ(found.medial.bodies_unseen, 0U);
+  AxisRows own;  // of the box alone
+  std::vector<std::uint32_t> number(lie.axis.vertices.size(), 0);
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (lie.axis.vertices[v].position.y > 0.75) continue;
+    number[v] = static_cast<std::uint32_t>(own.vertices.size());
+    own.vertices.push_back(lie.axis.vertices[v]);
+  }
+  const auto is_of_bar = [&](std::uint32_t v) { return lie.axis.vertices[v].position.y > 0.75; };
+  for (test::TriangleRow t : lie.axis.triangles) {
+    if (is_of_bar(t.vertices[0])) continue;
+    for (std::uint32_t& v : t.vertices) v = number[v];
+    own.triangles.push_back(t);
+  }
+  for (test::EdgeRow e : lie.axis.edges) {
+    if (is_of_bar(e.vertices[0])) continue;
+    for (std::uint32_t& v : e.vertices) v = number[v];
+    own.edges.push_back(e);
+  }
+  leave_one_vertex(lie, {-0.23, 0.99, -0.01});
+  own.vertices.push_back(lie.axis.vertices.front());
+  own.sheet_count = 1;
+  for (const test::TriangleRow& t : own.triangles) own.sheet_count = std::max(own.sheet_count, t.sheet + 1);
+  lie.axis = own;
+  expect_refused(lie, "in 1 of the bodies the axis misses");
+}
+
+TEST(Lies, WithALambdaAsLargeAsTheSolidNothingIsMissingAndThatIsSaid) {
+  True point = box();
+  leave_one_vertex(point, {0.01, 0.02, 0});
+  EXPECT_FALSE(verdict(point).holds());
+  point.claims.metadata.lambda = bounds(point.mesh).diagonal();
+  const Certificate found = verdict(point);
+  EXPECT_TRUE(found.holds()) << complaints(found);
+  EXPECT_FALSE(found.medial.judges_missing);
+  EXPECT_EQ(found.checked.lambda, point.claims.metadata.lambda);
 }
 
 TEST(Lies, TheAxisOfALargerAngle) {

@@ -59,6 +59,27 @@ TEST(VerifyMedial, VoxelsOfAnOpenMeshMustBeNamed) {
   EXPECT_THROW((void)verify(axis.simplify(60), claims, mesh), UntoldVoxels);
 }
 
+TEST(VerifyMedial, TheGridOfAnOpenMeshIsFineEnoughAndHasTheSpacing) {
+  TriangleMesh mesh = make_box({});
+  mesh.triangles.pop_back();
+  const MedialAxis axis = medial_axis(mesh, {.resolution = 16});
+  const auto piece = axis.simplify(60);
+  MedialClaims claims = claims_for(axis);
+  claims.metadata.spacing = claims.metadata.grid->spacing.x;
+  const Certificate certificate = verify(piece, claims, mesh);
+  EXPECT_TRUE(certificate.holds());
+  EXPECT_EQ(certificate.voxel, claims.metadata.spacing);
+  claims.metadata.spacing = 0.5 * claims.metadata.grid->spacing.x;
+  const Certificate other = verify(piece, claims, mesh);
+  ASSERT_EQ(other.mismatches.size(), 1U);
+  EXPECT_NE(other.mismatches.front().find("and its grid has steps of"), std::string::npos) << other.mismatches.front();
+  // Steps of 1/4 along one side, which the grid covers nonetheless.
+  GridSpec& grid = *claims.metadata.grid;
+  grid.spacing.x = 0.25;
+  claims.metadata.spacing.reset();
+  EXPECT_THROW((void)verify(piece, claims, mesh), InvalidGrid);
+}
+
 TEST(VerifyMedial, SidesOfVoxelsAreThoseOfTheImage) {
   VoxelImage image;
   image.grid = {{0, 0, 0}, {1, 1, 1}, {8, 8, 8}, {}};

@@ -1,0 +1,76 @@
+// Blum: samples of sheets, curves and bodies, for the verifier. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/random.hpp"
+#include "blum/core/vec3.hpp"
+
+namespace blum::verifier {
+
+/// Points of triangles or edges, spread evenly over their size.
+class Spread {
+ public:
+  void add(double size, std::uint32_t cell) {
+    if (!(size > 0) || !std::isfinite(size)) return;
+    total_ += size;
+    cells_.push_back(cell);
+    ends_.push_back(total_);
+  }
+  [[nodiscard]] double total() const { return total_; }
+  /// The cell at a share of all.
+  [[nodiscard]] std::uint32_t at(double share) const {
+    const auto end = std::upper_bound(ends_.begin(), ends_.end(), share * total_);
+    return cells_[std::min(static_cast<std::size_t>(end - ends_.begin()), cells_.size() - 1)];
+  }
+
+ private:
+  double total_ = 0;
+  std::vector<std::uint32_t> cells_;
+  std::vector<double> ends_;
+};
+
+/// A point of a triangle, all alike.
+[[nodiscard]] inline Vec3d random_point(const std::array<Vec3d, 3>& corners, Random& random) {
+  double u = random.uniform();
+  double v = random.uniform();
+  if (u + v > 1) {
+    u = 1 - u;
+    v = 1 - v;
+  }
+  return corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
+}
+
+/// What is told of samples.
+struct Offsets {
+  std::size_t count = 0, close = 0, not_near = 0, off = 0;
+  double furthest = 0;
+  Vec3d where;
+
+  /// @param allowed  what the file says of itself allows.  @param near  no more than that: what the solid shows there.
+  void add(double offset, double close_enough, double near, double allowed, const Vec3d& at) {
+    ++count;
+    if (offset <= close_enough) ++close;
+    if (!(offset <= near)) ++not_near;
+    if (!(offset <= allowed)) ++off;
+    if (!(offset < HUGE_VAL) || offset <= furthest) return;
+    furthest = offset;
+    where = at;
+  }
+  void add(const Offsets& other) {
+    count += other.count;
+    close += other.close;
+    not_near += other.not_near;
+    off += other.off;
+    if (other.furthest <= furthest) return;
+    furthest = other.furthest;
+    where = other.where;
+  }
+};
+
+}  // namespace blum::verifier
