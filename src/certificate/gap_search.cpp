@@ -38,17 +38,14 @@ std::optional<std::vector<GapSearch::Meeting>> GapSearch::meetings(const Vec3d& 
   if (!(whole > nothing)) return met;
   Random random(0x9a9U);
   std::vector<Crossing> crossings;
-  Vec3d from = a;
-  Vec3d to = b;
-  // Lines through edges of the mesh cannot be told: others next to them can.
-  double aside = nothing;
-  bool is_certain = false;
+  bool is_certain = search_.crossings(line_between(a, b), crossings, whole);
+  // What runs through edges of the mesh cannot be told: others next to it can.
+  double aside = 0;
   for (std::uint32_t k = 0; k < most_attempts && !is_certain; ++k) {
-    is_certain = search_.crossings(line_between(from, to), crossings, whole);
-    if (is_certain) break;
-    from = a + random.in_ball() * aside;
-    to = b + random.in_ball() * aside;
-    aside *= 4;
+    const Vec3d from = a + random.in_ball() * aside;
+    const Vec3d to = b + random.in_ball() * aside;
+    is_certain = search_.exact_crossings(from, to, body, crossings);
+    aside = std::max(4 * aside, nothing);
   }
   if (!is_certain) return std::nullopt;
   std::erase_if(crossings, [&](const Crossing& one) {

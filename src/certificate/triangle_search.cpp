@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "blum/core/random.hpp"
+#include "certificate/exact_crossing.hpp"
 
 namespace blum::verifier {
 namespace {
@@ -310,6 +311,31 @@ bool TriangleSearch::crossings(const ProbeLine& line, std::vector<Crossing>& fou
         const Meeting meeting = meet(line, corners_[place], at);
         if (meeting == Meeting::crossing) found.push_back({at, triangles_[place]});
         if (meeting == Meeting::doubtful) is_certain = false;
+        return is_certain ? 1.0 : -1.0;
+      });
+  return is_certain;
+}
+
+bool TriangleSearch::exact_crossings(const Vec3d& from, const Vec3d& to, std::uint32_t group,
+                                     std::vector<Crossing>& found) const {
+  found.clear();
+  bool is_certain = true;
+  const ProbeLine line = line_between(from, to);
+  const double reach = length(to - from);
+  const double slack = 1e-9 * (bounds_.diagonal() + length(from - bounds_.center()));
+  tree_.search(
+      1, [&](std::uint32_t n) { return may_meet(line, tree_.node(n).box, -slack, reach, slack) ? 0.0 : 2.0; },
+      [&](std::uint32_t place) {
+        if (groups_[place] != group) return 1.0;
+        const auto& [a, b, c] = corners_[place];
+        const std::optional<int> times = exact_crossing(a, b, c, from, to);
+        if (!times) is_certain = false;
+        if (times.value_or(0) != 0) {
+          const Vec3d normal = cross(b - a, c - a);
+          const double above = std::abs(dot(from - a, normal));
+          const double below = std::abs(dot(to - a, normal));
+          found.push_back({above + below > 0 ? reach * above / (above + below) : 0.0, triangles_[place]});
+        }
         return is_certain ? 1.0 : -1.0;
       });
   return is_certain;

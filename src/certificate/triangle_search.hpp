@@ -55,6 +55,11 @@ class TriangleSearch {
   /// to an edge to tell.
   [[nodiscard]] bool crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach = HUGE_VAL) const;
 
+  /// The same for a segment, triangles of a group and without rounding, but for the places: also where the segment runs
+  /// beside edges, closer than rounding. False where it touches one.
+  [[nodiscard]] bool exact_crossings(const Vec3d& from, const Vec3d& to, std::uint32_t group,
+                                     std::vector<Crossing>& found) const;
+
   /// Whether no side of the triangles of a group comes through a triangle; false also where rounding leaves doubt.
   [[nodiscard]] bool is_unpierced(const std::array<Vec3d, 3>& triangle, std::uint32_t group) const;
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "blum/certificate/certificate.hpp"
+#include "blum/shapes/generators.hpp"
 #include "certificate/segments.hpp"
 
 namespace blum {
@@ -87,6 +88,19 @@ TEST(GapSearch, AlongTheSurface) {
   EXPECT_TRUE(of_path({{left, slit_end, 0}, {left, slit_end, 1}, {left, 1, 1}, {0, 1, 1}, {0, 1, 0}}, mesh).holds());
   EXPECT_TRUE(of_path({{left, 0.5, 0.2}, {left, 0.9, 0.7}}, mesh).holds()) << "on a wall of the slit";
   EXPECT_TRUE(of_path({{0.2, 0, 0.2}, {0.7, 0, 0.7}}, mesh).holds()) << "along the side of a triangle";
+}
+
+/// Beside an edge of the mesh that runs along it, closer than rounding can tell.
+TEST(GapSearch, InAThinWall) {
+  const TriangleMesh wall = make_box({.size = {1, 1, 1e-10}});
+  const Vec3d middle = bounds(wall).center();
+  for (const double turn : {1.0, -1.0}) {
+    const Vec3d along{0.4, 0.4 * turn, 0};
+    const Certificate found = of_path({middle - along, middle + along}, wall);
+    EXPECT_TRUE(found.holds());
+    EXPECT_EQ(found.edges.untold, 0U);
+    EXPECT_EQ(found.homology.proven, Proven::homotopy_type);
+  }
 }
 
 TEST(Segments, Distances) {
