@@ -35,10 +35,11 @@ struct Allowances {
   double noise = 0;     ///< degrees
   bool of_voxels = false;
 
+  static constexpr double steep = 80;  ///< degrees
+
   /// Whether an axis must have what two footprints so far apart are seen from at an angle. Between walls that are close
   /// only steep ones are more than roughness; between voxels that are close there is none.
   [[nodiscard]] bool counts(double between, double angle) const {
-    constexpr double steep = 80;
     return between >= lambda && (between >= apart || (angle >= steep && !of_voxels));
   }
   /// How far from the middle a point of a cell so large may be next to a ball of a radius: flat cells cut off what is
@@ -48,7 +49,7 @@ struct Allowances {
   [[nodiscard]] double close_at(double radius, double size = 0) const { return limited(close, radius / 8, size); }
   /// How far from the axis a ball of a radius may be: sheets end within a voxel, about.
   [[nodiscard]] double missing_at(double radius) const {
-    return of_voxels ? missing : std::min(missing, std::max(radius / 2, 1.5 * voxel));
+    return of_voxels ? missing : std::min(missing, std::max(radius / 2, 2 * voxel));
   }
 
  private:

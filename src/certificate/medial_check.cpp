@@ -34,10 +34,11 @@ constexpr double few_vertices = 16;   ///< that may do so at any rate
 constexpr double thin_part = 1;       ///< voxels: radius from which parts are not thin
 constexpr double one_footprint = 5;   ///< degrees between two that are one
 constexpr double well_above = 30;     ///< degrees over theta from where the axis must have all
-constexpr double most_missed_of_body = 0.1;    ///< the same of one body, by its surface: of true axes 0.06 are
-constexpr double most_missed_of_voxels = 0.1;  ///< the same where only voxels tell inside from outside
-constexpr double few_missed = 3;               ///< balls that may be missed at any rate
-constexpr std::size_t few_balls = 20;          ///< too few to tell anything
+constexpr double most_missed_of_surface = 0.1;  ///< the same by the surface of bodies: of true axes 0.06 are
+constexpr double most_missed_of_body = 0.5;     ///< and of one of several, where a coarse grid may miss a sheet
+constexpr double most_missed_of_voxels = 0.1;   ///< the same where only voxels tell inside from outside
+constexpr double few_missed = 3;                ///< balls that may be missed at any rate
+constexpr std::size_t few_balls = 20;           ///< too few to tell anything
 constexpr std::size_t most_samples_of_sheets = 8'192;
 constexpr std::size_t most_samples_of_curves = 2'048;
 constexpr std::size_t most_samples_of_vertices = 4'096;
@@ -307,6 +308,12 @@ void note_missing(MedialCheck& check, const FoundBalls& found, double factor) {
   check.missed_by = found.all.furthest / factor;
   check.missed_at = found.all.where / factor;
   check.judges_missing = check.balls >= few_balls;
+  Offsets all;
+  for (const Offsets& body : found.bodies) all.add(body);
+  const auto misses = [](const Offsets& some, double most) {
+    return static_cast<double>(some.off) > std::max(most * static_cast<double>(some.count), few_missed);
+  };
+  const double most = misses(all, most_missed_of_surface) ? most_missed_of_surface : most_missed_of_body;
   for (const Offsets& body : found.bodies) {
     if (body.count < few_balls) {
       ++check.bodies_unseen;
@@ -314,9 +321,7 @@ void note_missing(MedialCheck& check, const FoundBalls& found, double factor) {
     }
     check.judges_missing = true;
     const double share = share_of(body.off, body.count);
-    if (static_cast<double>(body.off) > std::max(most_missed_of_body * static_cast<double>(body.count), few_missed)) {
-      ++check.bodies_missed;
-    }
+    if (misses(body, most)) ++check.bodies_missed;
     if (!(share > check.missed_share_of_body)) continue;
     check.missed_share_of_body = share;
     check.missed_in_body_by = body.furthest / factor;

@@ -120,12 +120,14 @@ FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const All
     return finder.in_box(boxes.at(random.uniform()), random);
   };
   found.all = draw_balls(most_points_tried, search, allowed, in_solid, context);
+  // Of a small body that is all that a coarse grid has for certain.
+  const BallFinder steep_finder(*solid.solid, allowed, theta, std::max(sought, Allowances::steep));
   const std::size_t each = std::clamp(most_points_of_bodies / body_count, least_points_of_body, most_points_of_body);
   const std::size_t every = (each * body_count + most_points_of_bodies - 1) / most_points_of_bodies;
   for (std::uint32_t b = 0; b < body_count; b += static_cast<std::uint32_t>(every)) {
     const auto in_body = [&](std::size_t k) {
       Random random(0xb0d1ULL + k);
-      return finder.in_body(b, random);
+      return steep_finder.in_body(b, random);
     };
     found.bodies[b] = draw_balls(each, search, allowed, in_body, context);
   }

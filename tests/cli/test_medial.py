@@ -79,7 +79,7 @@ def test_every_format_holds_the_axis_and_verifies(solids, axes, tmp_path, end):
     assert ("radius_error" in geometry) == ("balls" in certificate) == (end != "obj")
     assert ("footprint_error" in geometry) == (end in ("vtp", "ply", "npz")) == ("not checked" not in out)
     checked = ["topology", "positions", "edges", "triangles"] + ["radii"] * (end != "obj")
-    columns = ["footprints", "angles", "sites", "labels", "medial", "theta", "lambda", "spacing"]
+    columns = ["footprints", "angles", "sites", "labels", "medial", "missing", "theta", "lambda", "spacing"]
     checked += columns * (end in ("vtp", "ply", "npz"))
     assert certificate["checked"] == checked
     lacking = ["radii"] * (end == "obj") + ["footprints", "separation angles", "sites", "roles and sheets"]

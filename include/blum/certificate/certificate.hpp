@@ -229,8 +229,9 @@ struct Description<BallUnionCheck> {
 /// The other way, balls are grown from random points of the solid, and of each body: beside its surface, or in its box
 /// where it is made of voxels. Where two walls are seen at well more than theta (30 degrees, or half of the way to
 /// 180), further apart than lambda, and than 4 voxels or at 80 degrees or more (voxels: and than 4 voxels), the axis
-/// must have a point within 2 voxels and the deviation, and within half of the ball's radius, or 1.5 voxels where that
-/// is more: for 95 % of the balls, and 90 % of those of each body, if there are 20. Without a theta, this is not looked
+/// must have a point within 2 voxels and the deviation, and within half of the ball's radius, or 2 voxels where that
+/// is more: for 95 % of the balls (voxels of a mesh: 90 %), for 90 % of those of the surfaces of all bodies that are
+/// seen at 80 degrees or more, and for half of those of each body, if there are 20. Without a theta, this is not looked
 /// at.
 ///
 /// A vertex with one footprint where two walls should be seen (ends of sheets, thin walls) must be near the middle,
