@@ -10,11 +10,10 @@
 namespace blum::verifier {
 
 /// The side of a voxel that an axis says, as far as it can be so: an eighth of the longest side of the solid at most,
-/// as the coarsest grid has it; and no more than the longest quarter of the axis's own edges have, since what comes
-/// from a grid has edges as long as its voxels, or longer ones. 1/32 of the diagonal where nothing is said. Where the
-/// solid is made of voxels, these are known.
-[[nodiscard]] double believed_voxel(const MedialView& axis, const KnownSolid& solid, const CertificateOptions& options,
-                                    double factor);
+/// as the coarsest grid has it. 1/32 of the diagonal where nothing is said. Where the solid is made of voxels, these
+/// are known. Edges of the axis tell nothing: those in the middle of what is round are as short as its facets make
+/// them.
+[[nodiscard]] double believed_voxel(const KnownSolid& solid, const CertificateOptions& options, double factor);
 
 /// The same for how far vertices were moved: 1/64 of the diagonal at most, what an edge may cut off a corner.
 [[nodiscard]] double believed_deviation(const KnownSolid& solid, const CertificateOptions& options, double factor);
@@ -60,7 +59,6 @@ struct Allowances {
 };
 
 /// @param factor  lengths are this many times what the caller knows; those of the options are the caller's.
-[[nodiscard]] Allowances allowances(const MedialView& axis, const KnownSolid& solid, const CertificateOptions& options,
-                                    double factor);
+[[nodiscard]] Allowances allowances(const KnownSolid& solid, const CertificateOptions& options, double factor);
 
 }  // namespace blum::verifier

@@ -225,7 +225,7 @@ void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<
 AngleCheck check_angles(const MedialView& axis, const Incidence& incidence, const KnownSolid& solid,
                         const std::vector<std::uint32_t>& body_of, const CertificateOptions& options, double factor,
                         std::vector<std::string>& mismatches, const Context& context) {
-  const Angles angles(axis, incidence, solid, body_of, believed_voxel(axis, solid, options, factor));
+  const Angles angles(axis, incidence, solid, body_of, believed_voxel(solid, options, factor));
   AngleCheck check;
   angles.compare_with_corners(check);
   angles.compare_with_triangles(check);

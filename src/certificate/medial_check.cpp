@@ -334,7 +334,7 @@ void note_missing(MedialCheck& check, const FoundBalls& found, double factor) {
 MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const std::vector<std::uint32_t>& body_of,
                          const CertificateOptions& options, double factor, std::vector<std::string>& mismatches,
                          const Context& context) {
-  const Allowances allowed = allowances(axis, solid, options, factor);
+  const Allowances allowed = allowances(solid, options, factor);
   const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL, allowed.noise, options.footprints);
   const Middle middle(solid, allowed);
   const std::size_t before = mismatches.size();

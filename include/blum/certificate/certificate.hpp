@@ -222,9 +222,9 @@ struct Description<BallUnionCheck> {
 /// for homotopy alone, and may lie anywhere in the solid. 95 % must be within the allowance: 1.5 voxels, and the
 /// deviation. 90 % must be within a quarter of the radius of that ball, half within an eighth of it, and within a third
 /// of a voxel, or the deviation; or else within a tenth of the cell's longest side and a quarter of a voxel, by which
-/// flat cells cut off what is bent. Voxels are taken to be an eighth of the longest side of the solid at most, and no
-/// larger than the longest quarter of the axis's edges; 1/32 of the diagonal where nothing is known; those of images
-/// are known. A deviation is taken to be 1/64 of the diagonal at most.
+/// flat cells cut off what is bent. Voxels are taken to be an eighth of the longest side of the solid at most; 1/32 of
+/// the diagonal where nothing is known; those of images are known. A deviation is taken to be 1/64 of the diagonal at
+/// most.
 ///
 /// The other way, balls are grown from random points of the solid, and of each body: beside its surface, or in its box
 /// where it is made of voxels. Where two walls are seen at well more than theta (30 degrees, or half of the way to

@@ -33,7 +33,7 @@ AxisGraph example() {
   AxisSheet sheet;
   sheet.sheet = 4;
   sheet.area = 0.1;
-  sheet.thickness = {1, 2, 3};
+  sheet.thickness = {1, 1.5, 2, 3};
   sheet.euler_characteristic = -1;
   sheet.seams = {0};
   sheet.patch_pairs = {{{0}, {1}, 0.75}, {{0, 1}, {1}, 0.25}};
