@@ -25,6 +25,22 @@ struct ContractionStep {
   std::optional<Contraction> contraction{};
 };
 
+/// So many edges are chosen at a time.
+inline constexpr std::size_t edges_in_batch = 1024;
+
+/// A list cut into as many strands as a batch has edges, of which each batch gets one each: edges that are next to each
+/// other in the list stay in order, as good contractions want, but are not in one batch, as they would be in each
+/// other's way.
+inline std::vector<std::uint32_t> in_strands(const std::vector<std::uint32_t>& list) {
+  const std::size_t batches = (list.size() + edges_in_batch - 1) / edges_in_batch;
+  std::vector<std::uint32_t> out;
+  out.reserve(list.size());
+  for (std::size_t first = 0; first < batches; ++first) {
+    for (std::size_t k = first; k < list.size(); k += batches) out.push_back(list[k]);
+  }
+  return out;
+}
+
 /// Makes the steps of `count` edges in their order, as if each were chosen right before it is made. All threads choose
 /// those of some hundred edges at a time; one around which something has changed since is chosen again.
 /// @param lists    that steps are chosen in.
@@ -34,9 +50,8 @@ struct ContractionStep {
 template <class StepOf, class Make>
 void take_in_batches(const Context& context, std::size_t count, const ShrinkingLists& lists, const StepOf& step_of,
                      const Make& make) {
-  constexpr std::size_t most = 1024;
   constexpr std::size_t grain = 32;
-  const std::size_t batch = thread_count(context) > 1 ? most : 1;
+  const std::size_t batch = thread_count(context) > 1 ? edges_in_batch : 1;
   std::vector<ContractionStep> steps(std::min(batch, count));
   for (std::size_t first = 0; first < count; first += batch) {
     const std::size_t size = std::min(batch, count - first);

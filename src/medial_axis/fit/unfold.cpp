@@ -71,7 +71,7 @@ class Unfolder {
   };
 
   /// The edges where a sheet is folded now, but for those around which nothing has changed since they were looked at in
-  /// vain: in an order in which few are next to those right before.
+  /// vain: each next to the one a batch before, and far from those right before it.
   [[nodiscard]] std::vector<std::uint32_t> folded_edges() {
     constexpr std::size_t grain = 4096;
     const auto& edges = lists_.incidence().edges();
@@ -87,10 +87,7 @@ class Unfolder {
     });
     std::vector<std::uint32_t> all;
     for (const std::vector<std::uint32_t>& part : found) all.insert(all.end(), part.begin(), part.end());
-    // Multiples of the golden ratio, of which consecutive ones are far apart.
-    const auto place = [](std::uint32_t e) { return e * 2654435769U; };
-    std::sort(all.begin(), all.end(), [&](std::uint32_t e, std::uint32_t f) { return place(e) < place(f); });
-    return all;
+    return in_strands(all);
   }
 
   [[nodiscard]] ContractionStep step_of(std::uint32_t e, int worker) {
