@@ -294,7 +294,7 @@ Windings windings(const ComplexView& axis, const Incidence& incidence, const std
   std::vector<bool> is_told_by_rows(body_count, false);  // those of the choice before
   std::vector<SparseRow> rows;
   for (std::size_t choice = 0; choice < choices; ++choice) {
-    const std::vector<SparseRow> rows_before = std::move(rows);
+    const std::vector<SparseRow> rows_before = std::exchange(rows, {});
     std::vector<bool> is_doubtful(void_count, true);
     for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
       if (std::find(is_doubtful.begin(), is_doubtful.end(), true) == is_doubtful.end()) break;
