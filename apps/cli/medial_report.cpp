@@ -217,7 +217,7 @@ void add_certificate(TextTable& table, const Certificate& c, bool has_nested) {
   const std::string axis = "the axis has " + betti_text(c.axis);
   if (c.holds()) {
     table.add("certified",
-              "against " + std::string(against_text(c)) + ": " + axis + ", as many as the solid" +
+              "against " + against_text(c) + ": " + axis + ", as many as the solid" +
                   (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : "") +
                   claims_text(c.checked));
   } else {

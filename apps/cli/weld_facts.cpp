@@ -1,8 +1,5 @@
 #include "weld_facts.hpp"
 
-#include <vector>
-
-#include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "files.hpp"
 
@@ -21,18 +18,8 @@ std::string surface_text(const SurfaceFacts& facts) {
 }  // namespace
 
 SurfaceFacts surface_facts(const MeshView& mesh) {
-  const MeshView triangles{mesh.vertices, mesh.triangles, {}, {}};
-  const SiteTable sites(triangles);
-  std::vector<bool> is_corner(mesh.vertices.size(), false);
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) is_corner[v] = true;
-  }
-  SurfaceFacts facts;
-  facts.components = orientation(triangles, sites).components;
-  for (const bool is_used : is_corner) facts.euler_number += is_used ? 1 : 0;
-  facts.euler_number -= static_cast<std::int64_t>(sites.edge_count());
-  facts.euler_number += static_cast<std::int64_t>(mesh.triangles.size());
-  return facts;
+  const Topology facts = topology({mesh.vertices, mesh.triangles, {}, {}});
+  return {facts.components, facts.euler_characteristic};
 }
 
 WeldFacts weld_facts(const std::filesystem::path& path, double tolerance, const MeshView& welded) {

@@ -102,20 +102,14 @@ class Middle {
 template <class Point>
 Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& allowed, const Point& point,
                    const Context& context) {
-  std::vector<Offsets> parts(count / grain + 1);
-  parallel_for(context, count, grain, "looking for the middle", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      const AxisPoint p = point(k);
-      const Middle::Found found = middle.find(p);
-      // Between the mouth of a thin part and the middle of a thick one only the edges of the mouth are close.
-      const double radius = std::max(found.radius, p.depth);
-      parts[range.begin / grain].add(found.off, allowed.close_at(radius, p.size), allowed.middle_at(radius, p.size),
-                                     allowed.middle, p.at);
-    }
-  });
-  Offsets all;
-  for (const Offsets& part : parts) all.add(part);
-  return all;
+  const auto add = [&](Offsets& offsets, std::size_t k) {
+    const AxisPoint p = point(k);
+    const Middle::Found found = middle.find(p);
+    // Between the mouth of a thin part and the middle of a thick one only the edges of the mouth are close.
+    const double radius = std::max(found.radius, p.depth);
+    offsets.add(found.off, allowed.close_at(radius, p.size), allowed.middle_at(radius, p.size), allowed.middle, p.at);
+  };
+  return gathered_offsets(count, "looking for the middle", add, context);
 }
 
 std::array<Vec3d, 3> corners_of(const MedialView& axis, std::size_t t) {

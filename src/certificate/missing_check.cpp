@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
 #include "certificate/angle.hpp"
 #include "certificate/maximal_ball.hpp"
@@ -17,7 +16,6 @@ constexpr std::size_t most_points_tried = 16'384;
 constexpr std::size_t most_points_of_bodies = 32'768;
 constexpr std::size_t most_points_of_body = 2'048;
 constexpr std::size_t least_points_of_body = 64;
-constexpr std::size_t grain = 64;
 
 /// The cells of an axis to look for the closest of.
 TriangleSearch search_of(const MedialView& axis, const Context& context) {
@@ -83,22 +81,17 @@ class BallFinder {
   double sought_, above_theta_;
 };
 
-/// Adds what `draw(k)` gives for some k to the result of its part.
+/// How far the axis is from the balls that draw(k) gives for each k below `count`.
 template <class Draw>
 Offsets draw_balls(std::size_t count, const TriangleSearch& search, const Allowances& allowed, const Draw& draw,
                    const Context& context) {
-  std::vector<Offsets> parts(count / grain + 1);
-  parallel_for(context, count, grain, "looking for what is missing", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      const TouchingBall ball = draw(k);
-      if (!(ball.radius > 0)) continue;
-      const double near = allowed.missing_at(ball.radius);
-      parts[range.begin / grain].add(search.nearest(ball.centre).distance, near, near, near, ball.centre);
-    }
-  });
-  Offsets all;
-  for (const Offsets& part : parts) all.add(part);
-  return all;
+  const auto add = [&](Offsets& offsets, std::size_t k) {
+    const TouchingBall ball = draw(k);
+    if (!(ball.radius > 0)) return;
+    const double near = allowed.missing_at(ball.radius);
+    offsets.add(search.nearest(ball.centre).distance, near, near, near, ball.centre);
+  };
+  return gathered_offsets(count, "looking for what is missing", add, context);
 }
 
 }  // namespace

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
+#include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
 #include "blum/core/vec3.hpp"
 
@@ -72,5 +74,19 @@ struct Offsets {
     where = other.where;
   }
 };
+
+/// All that add(offsets, k) adds for each k below `count`. @param phase  as parallel_for() takes it. @throws Cancelled.
+template <class Add>
+[[nodiscard]] Offsets gathered_offsets(std::size_t count, std::string_view phase, const Add& add,
+                                       const Context& context) {
+  constexpr std::size_t grain = 64;
+  std::vector<Offsets> parts(count / grain + 1);
+  parallel_for(context, count, grain, phase, [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) add(parts[range.begin / grain], k);
+  });
+  Offsets all;
+  for (const Offsets& part : parts) all.add(part);
+  return all;
+}
 
 }  // namespace blum::verifier

@@ -16,6 +16,7 @@ struct Segment3 {
     const double squared = squared_length(b - a);
     return squared > 0 ? std::clamp(dot(p - a, b - a) / squared, 0.0, 1.0) : 0.0;
   }
+  [[nodiscard]] Vec3d closest_point(const Vec3d& p) const { return at(closest(p)); }
 };
 
 /// How far along a segment the point is that is closest to another segment: 0 to 1; where they run along each other,
@@ -36,12 +37,12 @@ struct Segment3 {
 /// Squared distance of two segments.
 [[nodiscard]] inline double squared_distance(const Segment3& segment, const Segment3& other) {
   const Vec3d p = segment.at(closest_along(segment, other));
-  double best = squared_length(p - other.at(other.closest(p)));
+  double best = squared_length(p - other.closest_point(p));
   for (const Vec3d& end : {segment.a, segment.b}) {
-    best = std::min(best, squared_length(end - other.at(other.closest(end))));
+    best = std::min(best, squared_length(end - other.closest_point(end)));
   }
   for (const Vec3d& end : {other.a, other.b}) {
-    best = std::min(best, squared_length(end - segment.at(segment.closest(end))));
+    best = std::min(best, squared_length(end - segment.closest_point(end)));
   }
   return best;
 }

@@ -6,16 +6,10 @@
 
 #include "blum/core/random.hpp"
 #include "certificate/exact_crossing.hpp"
+#include "certificate/segments.hpp"
 
 namespace blum::verifier {
 namespace {
-
-Vec3d closest_of_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
-  const Vec3d along = b - a;
-  const double squared = squared_length(along);
-  const double t = squared > 0 ? std::clamp(dot(p - a, along) / squared, 0.0, 1.0) : 0.0;
-  return a + along * t;
-}
 
 enum class Meeting : std::uint8_t { none, crossing, doubtful };
 
@@ -140,9 +134,9 @@ Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
   const auto look_at = [&](const Vec3d& other) {
     if (squared_length(p - other) < squared_length(p - best)) best = other;
   };
-  look_at(closest_of_segment(p, a, b));
-  look_at(closest_of_segment(p, b, c));
-  look_at(closest_of_segment(p, c, a));
+  look_at(Segment3{a, b}.closest_point(p));
+  look_at(Segment3{b, c}.closest_point(p));
+  look_at(Segment3{c, a}.closest_point(p));
   // The foot on the plane, if it is in the triangle: whatever the rounding, a mean of the corners is a point of it.
   const Vec3d normal = cross(b - a, c - a);
   const double squared = squared_length(normal);

@@ -177,7 +177,7 @@ class Decimator {
     return edge < axis_.edges.size() ? static_cast<int>(view_.edge_role(edge)) : -1;
   }
 
-  /// Follows triangles from a ring vertex to another one, or round to the same. They leave sides_.
+  /// Follows triangles from a ring vertex to another one, or round to the same. They leave `sides`.
   static bool add_fan(Look& look, std::uint32_t from, std::uint32_t to) {
     auto& sides = look.sides;
     if (look.fan_count == look.fans.size()) look.fans.emplace_back();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "blum/complex/incidence.hpp"
+#include "blum/core/gather.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
@@ -107,15 +108,11 @@ class ShortEdges {
   void find_short() {
     constexpr std::size_t grain = 4096;
     const auto& edges = lists_.incidence().edges();
-    std::vector<std::vector<ShortEdge>> found((edges.size() + grain - 1) / grain);
-    parallel_for(context_, edges.size(), grain, {}, [&](const WorkRange& range) {
-      for (std::size_t e = range.begin; e < range.end; ++e) {
-        const auto& [a, b] = edges[e];
-        const double size = length(lists_.position(a) - lists_.position(b));
-        if (size <= limit(a, b, longest(a, b))) found[range.begin / grain].push_back({size, a, b});
-      }
+    short_ = detail::gather<ShortEdge>(context_, edges.size(), grain, {}, [&](std::size_t e, auto& found) {
+      const auto& [a, b] = edges[e];
+      const double size = length(lists_.position(a) - lists_.position(b));
+      if (size <= limit(a, b, longest(a, b))) found.push_back({size, a, b});
     });
-    for (const std::vector<ShortEdge>& part : found) short_.insert(short_.end(), part.begin(), part.end());
     std::sort(short_.begin(), short_.end());
   }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "blum/core/gather.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "medial_axis/fit/bend.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
@@ -75,19 +76,13 @@ class Unfolder {
   [[nodiscard]] std::vector<std::uint32_t> folded_edges() {
     constexpr std::size_t grain = 4096;
     const auto& edges = lists_.incidence().edges();
-    std::vector<std::vector<std::uint32_t>> found((edges.size() + grain - 1) / grain);
-    parallel_for(context_, edges.size(), grain, {}, [&](const WorkRange& range) {
-      for (std::size_t e = range.begin; e < range.end; ++e) {
-        const std::uint32_t p = lists_.now(edges[e][0]);
-        const std::uint32_t q = lists_.now(edges[e][1]);
-        if (p == q || stays_as_it_was(e, p, q)) continue;
-        looked_[e] = lists_.contractions();
-        if (is_folded_at(p, q)) found[range.begin / grain].push_back(static_cast<std::uint32_t>(e));
-      }
-    });
-    std::vector<std::uint32_t> all;
-    for (const std::vector<std::uint32_t>& part : found) all.insert(all.end(), part.begin(), part.end());
-    return in_strands(all);
+    return in_strands(detail::gather<std::uint32_t>(context_, edges.size(), grain, {}, [&](std::size_t e, auto& found) {
+      const std::uint32_t p = lists_.now(edges[e][0]);
+      const std::uint32_t q = lists_.now(edges[e][1]);
+      if (p == q || stays_as_it_was(e, p, q)) return;
+      looked_[e] = lists_.contractions();
+      if (is_folded_at(p, q)) found.push_back(static_cast<std::uint32_t>(e));
+    }));
   }
 
   [[nodiscard]] ContractionStep step_of(std::uint32_t e, int worker) {

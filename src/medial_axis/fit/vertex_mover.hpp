@@ -9,7 +9,7 @@
 
 #include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
-#include "blum/core/parallel.hpp"
+#include "blum/core/gather.hpp"
 #include "medial_axis/axis_lists.hpp"
 #include "medial_axis/solid_paths.hpp"
 #include "medial_axis/surface.hpp"
@@ -39,18 +39,11 @@ class VertexMover {
   template <class Where>
   [[nodiscard]] std::vector<VertexMove> moves_to(const Where& where) const {
     constexpr std::size_t grain = 64;
-    const std::size_t count = lists_.vertices.size();
-    std::vector<std::vector<VertexMove>> found((count + grain - 1) / grain);
-    parallel_for(context_, count, grain, "borders", [&](const WorkRange& range) {
-      for (std::size_t v = range.begin; v < range.end; ++v) {
-        if (const std::optional<AxisVertex> place = where(static_cast<std::uint32_t>(v))) {
-          found[range.begin / grain].push_back({static_cast<std::uint32_t>(v), *place});
-        }
-      }
-    });
-    std::vector<VertexMove> moves;
-    for (const std::vector<VertexMove>& part : found) moves.insert(moves.end(), part.begin(), part.end());
-    return moves;
+    return detail::gather<VertexMove>(context_, lists_.vertices.size(), grain, "borders",
+                                      [&](std::size_t v, std::vector<VertexMove>& found) {
+                                        const std::optional<AxisVertex> place = where(static_cast<std::uint32_t>(v));
+                                        if (place) found.push_back({static_cast<std::uint32_t>(v), *place});
+                                      });
   }
 
   /// Makes all moves but those whose edges would leave the solid, or sweep over a part of the surface.
