@@ -324,13 +324,11 @@ void add_axis(MedialRun& run, const Request& r, const SolidInput& input, const L
   const MedialAxisReport& report = axis.report();
   MedialMetadata metadata = metadata_of(r, input, selection, report, theta);
   run.drafts.emplace_back(name);
-  std::size_t vertices_before = 0;
   const auto make = [&](const AxisForm& form) {
     Stopwatch watch;
-    Complex complex = pruned != nullptr ? *pruned : whole_axis(axis, theta, form, context);
-    vertices_before = complex.positions.size();
-    DecimatedAxis lean = decimate(std::move(complex), form, context);
-    const bool is_lean = lean.axis.positions.size() < vertices_before;
+    DecimatedAxis lean =
+        pruned != nullptr ? decimate(*pruned, form, context) : axis_in_form(axis, theta, form, context);
+    const bool is_lean = lean.axis.positions.size() < lean.vertices_before;
     metadata.deviation = is_lean ? std::optional(lean.deviation) : std::nullopt;
     run.phases.push_back({"simplify", watch.lap()});
     return lean;
@@ -347,14 +345,14 @@ void add_axis(MedialRun& run, const Request& r, const SolidInput& input, const L
   const MedialCounts counts = count(made.axis.axis);
   run.table.add("theta " + rounded_text(theta), counts_text(counts, true));
   if (metadata.deviation) {
-    run.table.add("simplified", "from " + count_text(vertices_before) + " vertices; moved by at most " +
+    run.table.add("simplified", "from " + count_text(made.axis.vertices_before) + " vertices; moved by at most " +
                                     rounded_text(made.axis.deviation));
   }
   axes.push_back({{"theta", theta},
                   {"file", name.string()},
                   {"counts", counts_json(counts, true)},
                   {"deviation", made.axis.deviation},
-                  {"vertices_before", vertices_before},
+                  {"vertices_before", made.axis.vertices_before},
                   {"graph", add_graph(run, r, input, made.axis.axis, metadata, name, context)},
                   {"extended", add_extended(run, r, input, made.axis.axis, metadata, name, context)},
                   {"certificate", certificate_json(certificate, r.nested)}});

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blum/core/parallel.hpp"
+
 namespace blum::verifier {
 namespace {
 
 constexpr std::uint32_t most_per_leaf = 4;
-/// Sorting fewer things than this takes no time that a caller who wants to stop would notice.
-constexpr std::uint32_t few = 4096;
+/// Nodes of a level are shared out in so many ranges.
+constexpr std::size_t most_ranges = 64;
 
 }  // namespace
 
@@ -18,30 +20,39 @@ BoxHierarchy::BoxHierarchy(const std::vector<Box3>& boxes, const Context& contex
   for (std::uint32_t k = 0; k < count; ++k) order_[k] = k;
   if (count == 0) return;
   nodes_.push_back({{}, 0, count});
-  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
-    const std::uint32_t first = nodes_[n].first;
-    const std::uint32_t size = nodes_[n].count;
-    if (size > few || n % few == 0) throw_if_cancelled(context);
-    Box3 middles;
-    for (std::uint32_t k = first; k < first + size; ++k) {
-      nodes_[n].box.extend(boxes[order_[k]]);
-      middles.extend(boxes[order_[k]].center());
-    }
-    if (size <= most_per_leaf) continue;
-    const Vec3d extent = middles.size();
-    const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const std::uint32_t half = size / 2;
-    const auto begin = order_.begin() + first;
-    std::nth_element(begin, begin + half, begin + size, [&](std::uint32_t a, std::uint32_t b) {
-      const double at_a = boxes[a].lower[axis] + boxes[a].upper[axis];
-      const double at_b = boxes[b].lower[axis] + boxes[b].upper[axis];
-      return at_a != at_b ? at_a < at_b : a < b;
+  for (std::size_t begin = 0; begin < nodes_.size();) {
+    const std::size_t end = nodes_.size();
+    parallel_for(context, end - begin, (end - begin) / most_ranges + 1, {}, [&](const WorkRange& range) {
+      for (std::size_t n = begin + range.begin; n < begin + range.end; ++n) sort_halves(nodes_[n], boxes);
     });
-    nodes_[n].first = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[n].count = 0;
-    nodes_.push_back({{}, first, half});
-    nodes_.push_back({{}, first + half, size - half});
+    for (std::size_t n = begin; n < end; ++n) {
+      const auto [box, first, size] = nodes_[n];
+      if (size <= most_per_leaf) continue;
+      nodes_[n].first = static_cast<std::uint32_t>(nodes_.size());
+      nodes_[n].count = 0;
+      nodes_.push_back({{}, first, size / 2});
+      nodes_.push_back({{}, first + size / 2, size - size / 2});
+    }
+    begin = end;
   }
+}
+
+/// Finds the box of a node, and puts things of the lower half of its longest side first.
+void BoxHierarchy::sort_halves(Node& node, const std::vector<Box3>& boxes) {
+  Box3 middles;
+  for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+    node.box.extend(boxes[order_[k]]);
+    middles.extend(boxes[order_[k]].center());
+  }
+  if (node.count <= most_per_leaf) return;
+  const Vec3d extent = middles.size();
+  const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const auto begin = order_.begin() + node.first;
+  std::nth_element(begin, begin + node.count / 2, begin + node.count, [&](std::uint32_t a, std::uint32_t b) {
+    const double at_a = boxes[a].lower[axis] + boxes[a].upper[axis];
+    const double at_b = boxes[b].lower[axis] + boxes[b].upper[axis];
+    return at_a != at_b ? at_a < at_b : a < b;
+  });
 }
 
 std::vector<double> BoxHierarchy::node_maxima(std::span<const double> values) const {

@@ -63,6 +63,8 @@ class BoxHierarchy {
   }
 
  private:
+  void sort_halves(Node& node, const std::vector<Box3>& boxes);
+
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
 };

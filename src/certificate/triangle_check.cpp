@@ -17,8 +17,10 @@ namespace {
 
 using Piece = std::array<Stop, 3>;
 
-/// Points of one triangle that are asked about: in walls that are as thin as nothing they would be endless.
+/// Points of one triangle that are asked about: in walls that are as thin as nothing they would be endless. After a few
+/// it is seen whether the others would do.
 constexpr std::size_t most_points = 512;
+constexpr std::size_t few_points = 64;
 
 /// What is found of some of the triangles.
 struct Findings {
@@ -71,19 +73,26 @@ class TriangleInBody {
     const std::size_t most = points_for(triangle);
     std::vector<Piece> stack{triangle};
     std::size_t points = 0;
+    double covered = 0;  // area
     while (!stack.empty()) {
       const Piece piece = stack.back();
       stack.pop_back();
       const double enough = std::max(allowed_, -nearly * worst.depth);
-      if (covers(piece, enough)) continue;
-      if (points >= most) {
+      if (covers(piece, enough)) {
+        covered += area(piece);
+        continue;
+      }
+      if (points >= most || (points >= few_points && is_too_slow(covered / area(triangle), points))) {
         is_undecided = true;
         return worst;
       }
       points += 2;
       const Stop centre = stop((piece[0].at + piece[1].at + piece[2].at) / 3.0);
       if (centre.depth < worst.depth) worst = centre;
-      if (covers(centre, piece, std::max(allowed_, -nearly * worst.depth))) continue;
+      if (covers(centre, piece, std::max(allowed_, -nearly * worst.depth))) {
+        covered += area(piece);
+        continue;
+      }
       halve(piece, worst, stack);
     }
     return worst;
@@ -101,11 +110,16 @@ class TriangleInBody {
     return 2 * area(triangle) <= thin * allowed_ * longest;
   }
 
+  /// Whether balls at all the points would cover a quarter of a triangle only, to go by what they cover by now.
+  /// @param covered  share of the area.
+  [[nodiscard]] static bool is_too_slow(double covered, std::size_t points) {
+    return 4 * covered * static_cast<double>(most_points) < static_cast<double>(points);
+  }
+
   /// Few where balls as large as those of the corners would have to be far too many to cover a triangle: these only
   /// find what lies well outside. Each part that is halved no more is at most as large as the square of a ball's
   /// radius.
   [[nodiscard]] std::size_t points_for(const Piece& triangle) const {
-    constexpr std::size_t few_points = 64;
     const double deepest = std::max({triangle[0].depth, triangle[1].depth, triangle[2].depth}) + allowed_;
     const bool is_hopeless = area(triangle) > 0.5 * static_cast<double>(most_points) * deepest * deepest;
     return is_hopeless ? few_points : most_points;

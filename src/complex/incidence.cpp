@@ -1,8 +1,10 @@
 #include "blum/complex/incidence.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -48,14 +50,28 @@ struct VertexPairs {
   std::vector<std::uint64_t> pairs;  ///< the larger vertex in the upper half, then the number: they sort by these
   std::uint32_t listed = 0;          ///< so many numbers are of listed edges
 
-  explicit VertexPairs(const ComplexView& complex)
+  VertexPairs(const ComplexView& complex, const Context& context)
       : first(complex.vertex_count + 1, 0), listed(static_cast<std::uint32_t>(complex.edges.size())) {
-    for_each_pair(complex, [&](std::uint32_t a, std::uint32_t /*b*/, std::uint32_t) { ++first[a + std::size_t{1}]; });
-    std::partial_sum(first.begin(), first.end(), first.begin());
+    for_each_of_own(complex, context, [&](std::uint32_t a, std::uint32_t /*b*/, std::uint32_t) { ++first[a]; });
+    std::exclusive_scan(first.begin(), first.end(), first.begin(), std::size_t{0});
     pairs.resize(first.back());
     std::vector<std::size_t> next(first.begin(), first.end() - 1);
-    for_each_pair(complex, [&](std::uint32_t a, std::uint32_t b, std::uint32_t number) {
+    for_each_of_own(complex, context, [&](std::uint32_t a, std::uint32_t b, std::uint32_t number) {
       pairs[next[a]++] = std::uint64_t{b} << 32U | number;
+    });
+  }
+
+  /// The same as for_each_pair(), but by threads that go over all pairs, each for a range of smaller vertices: reading
+  /// them one after the other costs less than writing all over the lists.
+  template <class Use>
+  static void for_each_of_own(const ComplexView& complex, const Context& context, const Use& use) {
+    constexpr std::size_t most_ranges = 8;
+    const std::size_t count = complex.vertex_count;
+    const std::size_t ranges = std::min(static_cast<std::size_t>(thread_count(context)), most_ranges);
+    parallel_for(context, count, (count + ranges - 1) / ranges, {}, [&](const WorkRange& range) {
+      for_each_pair(complex, [&](std::uint32_t a, std::uint32_t b, std::uint32_t number) {
+        if (a >= range.begin && a < range.end) use(a, b, number);
+      });
     });
   }
 
@@ -71,11 +87,27 @@ struct VertexPairs {
   }
 };
 
+/// Whether cells name vertices that there are, none twice.
+template <std::size_t n>
+bool are_good(std::span<const std::array<std::uint32_t, n>> cells, std::size_t vertex_count, const Context& context) {
+  constexpr std::size_t cells_per_range = 65536;
+  std::atomic<bool> is_any_bad{false};
+  parallel_for(context, cells.size(), cells_per_range, {}, [&](const WorkRange& range) {
+    bool is_bad = false;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      for (std::size_t k = 0; k < n; ++k) is_bad |= cells[i][k] >= vertex_count || cells[i][k] == cells[i][(k + 1) % n];
+    }
+    if (is_bad) is_any_bad = true;
+  });
+  return !is_any_bad;
+}
+
 }  // namespace
 
 Incidence::Incidence(const ComplexView& complex, const Context& context) {
-  if (const std::string problem = problem_of(complex); !problem.empty()) {
-    throw InvalidOption("not a complex: " + problem);
+  if (!are_good(complex.edges, complex.vertex_count, context) ||
+      !are_good(complex.triangles, complex.vertex_count, context)) {
+    throw InvalidOption("not a complex: " + problem_of(complex));
   }
   if (complex.edges.size() + 3 * complex.triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw InvalidOption("a complex with 2^32 or more edges and sides of triangles is too large");
@@ -90,7 +122,7 @@ Incidence::Incidence(const ComplexView& complex, const Context& context) {
 
 /// Ranges of vertices sort and count their pairs, and then write edges where those of the ranges before end.
 void Incidence::find_edges(const ComplexView& complex, const Context& context) {
-  VertexPairs pairs(complex);
+  VertexPairs pairs(complex, context);
   const std::size_t ranges = (complex.vertex_count + vertices_per_range - 1) / vertices_per_range;
   std::vector<std::size_t> first_edge(ranges + 1, 0);
   std::vector<std::size_t> first_side(ranges + 1, 0);

@@ -38,16 +38,15 @@ std::vector<MovedGrid> moved_grids(double grid_shift) {
   return grids;
 }
 
-Complex whole_axis(const MedialAxis& axis, double theta, const AxisForm& form, const Context& context) {
-  return form.is_fitted ? axis.fitted(theta, context) : axis.simplify(theta, context);
-}
-
 DecimatedAxis decimate(Complex whole, const AxisForm& form, const Context& context) {
-  return form.tolerance ? decimate(whole, *form.tolerance, context) : DecimatedAxis{std::move(whole), 0};
+  if (form.tolerance) return decimate(whole, *form.tolerance, context);
+  const std::size_t vertices = whole.positions.size();
+  return {std::move(whole), 0, vertices};
 }
 
 DecimatedAxis axis_in_form(const MedialAxis& axis, double theta, const AxisForm& form, const Context& context) {
-  return decimate(whole_axis(axis, theta, form, context), form, context);
+  if (form.is_fitted && form.tolerance) return axis.lean(theta, *form.tolerance, context);
+  return decimate(form.is_fitted ? axis.fitted(theta, context) : axis.simplify(theta, context), form, context);
 }
 
 }  // namespace blum

@@ -1,12 +1,15 @@
 #include "blum/medial_axis/medial_axis.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
 #include "blum/complex/incidence.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/parts.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
 #include "medial_axis/axis_piece.hpp"
@@ -108,6 +111,35 @@ struct MedialAxis::Data {
   double least_theta = 0;
   double lambda = 0;
 
+  /// An axis at an angle, fitted to the surfaces of a polyhedron.
+  struct Fitted {
+    AxisLists lists;
+    std::size_t vertices_before = 0;
+    double moved = 0;  ///< insides of sheets, at most, mesh units
+  };
+  /// @param tolerance  FitTarget::tolerance
+  [[nodiscard]] Fitted fitted(double theta, double tolerance, const Context& context) const {
+    std::vector<AxisLists> parts(pieces.size());
+    std::vector<std::size_t> sizes(parts.size());
+    std::vector<double> moved(parts.size(), 0);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      append_at(pieces[p], theta, parts[p], context);
+      sizes[p] = parts[p].vertices.size();
+    }
+    detail::for_each_part(context, sizes, "borders", [&](std::size_t p, const Context& own) {
+      const BodySurface& known = *surfaces[p];
+      const auto input_site = [&](SiteId site) { return known.input_site(site); };
+      const FitTarget target{known.surface, input_site, report.bodies[p].spacing, std::max(theta, NoiseFloor{}.angle),
+                             tolerance};
+      moved[p] = fit_axis(parts[p], target, own);
+    });
+    Fitted out;
+    for (AxisLists& part : parts) append(std::move(part), out.lists);
+    out.vertices_before = std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
+    out.moved = *std::max_element(moved.begin(), moved.end());
+    return out;
+  }
+
   /// The complex of lists, with sheets and roles.
   [[nodiscard]] Complex labelled(AxisLists lists, const Context& context) const {
     Complex complex = complex_of(std::move(lists));
@@ -142,7 +174,7 @@ class MedialAxisBuilder {
       const double spacing = options_.spacing.value_or(longest_side(solid.box()) / options_.resolution);
       if (!(spacing > 0)) throw InvalidMesh("the mesh is a single point, so it has no interior");
       data_->patches = PatchNumbers(solid.sites());
-      for (const SolidBody& body : solid.bodies()) add_body(solid, body, spacing);
+      add_bodies(solid, spacing);
       data_->patches.choose_anchors();
     }
     return finish();
@@ -173,12 +205,12 @@ class MedialAxisBuilder {
   }
 
   /// Voxels fine enough for the topology of a body, if any are that the options allow.
-  [[nodiscard]] Voxelized voxelize(const SolidBody& body, double spacing) const {
+  [[nodiscard]] Voxelized voxelize(const SolidBody& body, double spacing, const Context& context) const {
     const bool is_polyhedron = data_->report.rule == SolidRule::polyhedron;
     const double finest = longest_side(bounds(body.mesh)) / options_.max_resolution;
     while (true) {
-      Voxelized out = is_polyhedron ? voxelize_body(body, spacing, context_, options_.grid_shift)
-                                    : voxelize_by_winding(body.mesh, spacing, context_, options_.grid_shift);
+      Voxelized out = is_polyhedron ? voxelize_body(body, spacing, context, options_.grid_shift)
+                                    : voxelize_by_winding(body.mesh, spacing, context, options_.grid_shift);
       const bool is_done = out.report.topology_matches && out.report.voxels + out.report.extra_cells > 0;
       if (is_done || !(spacing > finest * (1 + 1e-9)) || stays_stuck(out.report, finest / spacing)) return out;
       spacing = std::max(0.5 * spacing, finest);
@@ -191,7 +223,7 @@ class MedialAxisBuilder {
     Voxelized voxelized = voxelize_image(solid.voxels(), solid.grid(), first, context_);
     timer.lap("voxels");
     const VoxelSurface surface(voxelized.solid.voxels, voxelized.solid.grid);
-    AxisPiece& piece = add_piece(voxelized, surface, stairs);
+    AxisPiece piece = make_piece(voxelized, surface, stairs, report().phases, context_);
     const GridSpec& grid = solid.grid();
     const auto input_site = [&](SiteId own) {
       std::array<std::int64_t, 3> at = voxelized.solid.voxels.place(own.value);
@@ -203,33 +235,89 @@ class MedialAxisBuilder {
     for (AxisVertex& vertex : piece.vertices) {
       for (SiteId& site : vertex.sites) site = input_site(site);
     }
+    add_piece(voxelized, std::move(piece));
   }
 
-  void add_body(const Solid& solid, const SolidBody& body, double spacing) {
-    PhaseTimer timer(report().phases);
-    Voxelized voxelized = voxelize(body, spacing);
+  /// What is made of one body.
+  struct BodyPart {
+    Voxelized voxelized;  ///< without voxels nothing else was made
+    std::unique_ptr<BodySurface> surface;
+    AxisPiece piece;
+    std::vector<PhaseTime> phases;
+
+    [[nodiscard]] bool is_empty() const { return voxelized.report.voxels + voxelized.report.extra_cells == 0; }
+  };
+
+  void add_bodies(const Solid& solid, double spacing) {
+    const auto& bodies = solid.bodies();
+    std::vector<std::size_t> sizes;
+    for (const SolidBody& body : bodies) sizes.push_back(voxels_around(body, spacing));
+    std::vector<BodyPart> parts(bodies.size());
+    const auto start = std::chrono::steady_clock::now();
+    detail::for_each_part(context_, sizes, "bodies", [&](std::size_t b, const Context& context) {
+      parts[b] = make_part(solid, bodies[b], spacing, context);
+    });
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    add_phases(parts, seconds.count());
+    for (std::size_t b = 0; b < parts.size(); ++b) add_part(solid, bodies[b], std::move(parts[b]));
+  }
+
+  /// About how many voxels the box of a body holds.
+  [[nodiscard]] static std::size_t voxels_around(const SolidBody& body, double spacing) {
+    constexpr double most = 1e15;
+    const Vec3d size = bounds(body.mesh).size() / spacing;
+    return static_cast<std::size_t>(std::min((size.x + 1) * (size.y + 1) * (size.z + 1), most));
+  }
+
+  [[nodiscard]] BodyPart make_part(const Solid& solid, const SolidBody& body, double spacing,
+                                   const Context& context) const {
+    BodyPart part;
+    PhaseTimer timer(part.phases);
+    part.voxelized = voxelize(body, spacing, context);
     timer.lap("field and voxels");
-    if (voxelized.report.voxels + voxelized.report.extra_cells == 0)
-      throw without_interior(solid, voxelized.report.spacing);
-    const bool is_polyhedron = report().rule == SolidRule::polyhedron;
-    auto known = std::make_unique<BodySurface>(solid, body, is_polyhedron, context_);
-    data_->patches.add(body, known->sites, solid.sites(), context_);
+    if (part.is_empty()) return part;
+    part.surface = std::make_unique<BodySurface>(solid, body, data_->report.rule == SolidRule::polyhedron, context);
     timer.lap("surface");
-    AxisPiece& piece = add_piece(voxelized, known->surface, NoiseFloor{});
-    for (AxisVertex& vertex : piece.vertices) {
-      for (SiteId& site : vertex.sites) site = known->input_site(site);
+    part.piece = make_piece(part.voxelized, part.surface->surface, NoiseFloor{}, part.phases, context);
+    for (AxisVertex& vertex : part.piece.vertices) {
+      for (SiteId& site : vertex.sites) site = part.surface->input_site(site);
     }
-    if (is_polyhedron) data_->surfaces.push_back(std::move(known));
+    return part;
   }
 
-  AxisPiece& add_piece(const Voxelized& voxelized, const Surface& surface, NoiseFloor floor) {
+  /// Bodies that were made side by side tell more seconds together than went by.
+  void add_phases(const std::vector<BodyPart>& parts, double seconds) {
+    double all = 0;
+    for (const BodyPart& part : parts) {
+      for (const PhaseTime& phase : part.phases) all += phase.seconds;
+    }
+    for (const BodyPart& part : parts) {
+      for (const PhaseTime& phase : part.phases) {
+        report().phases.push_back({phase.phase, all > seconds ? phase.seconds * seconds / all : phase.seconds});
+      }
+    }
+  }
+
+  void add_part(const Solid& solid, const SolidBody& body, BodyPart part) {
+    if (part.is_empty()) throw without_interior(solid, part.voxelized.report.spacing);
+    PhaseTimer timer(report().phases);
+    data_->patches.add(body, part.surface->sites, solid.sites(), context_);
+    timer.lap("surface");
+    add_piece(part.voxelized, std::move(part.piece));
+    if (report().rule == SolidRule::polyhedron) data_->surfaces.push_back(std::move(part.surface));
+  }
+
+  [[nodiscard]] AxisPiece make_piece(const Voxelized& voxelized, const Surface& surface, NoiseFloor floor,
+                                     std::vector<PhaseTime>& phases, const Context& context) const {
     floor.lambda = options_.lambda;
     floor.angle = std::max(floor.angle, options_.least_theta);
-    const GovernorField governors(voxelized.solid, surface);
-    data_->pieces.push_back(make_axis_piece(governors, floor, report().phases, context_));
+    return make_axis_piece(GovernorField(voxelized.solid, surface), floor, phases, context);
+  }
+
+  void add_piece(const Voxelized& voxelized, AxisPiece piece) {
+    data_->pieces.push_back(std::move(piece));
     if (report().bodies.empty()) report().grid = voxelized.solid.grid;
     report().bodies.push_back(voxelized.report);
-    return data_->pieces.back();
   }
 
   MedialAxis finish() {
@@ -269,18 +357,18 @@ Complex MedialAxis::simplify(double theta, const Context& context) const {
 Complex MedialAxis::fitted(double theta, const Context& context) const {
   check_theta(theta);
   if (data_->surfaces.empty()) return simplify(theta, context);
-  AxisLists lists;
-  for (std::size_t p = 0; p < data_->pieces.size(); ++p) {
-    const BodySurface& known = *data_->surfaces[p];
-    AxisLists own;
-    append_at(data_->pieces[p], theta, own, context);
-    fit_axis(own,
-             {known.surface, [&](SiteId site) { return known.input_site(site); }, data_->report.bodies[p].spacing,
-              std::max(theta, NoiseFloor{}.angle)},
-             context);
-    append(std::move(own), lists);
-  }
-  return data_->labelled(std::move(lists), context);
+  return data_->labelled(data_->fitted(theta, 0, context).lists, context);
+}
+
+DecimatedAxis MedialAxis::lean(double theta, double tolerance, const Context& context) const {
+  check_theta(theta);
+  if (data_->surfaces.empty() || !(tolerance > 0)) return decimate(simplify(theta, context), tolerance, context);
+  Data::Fitted fitted = data_->fitted(theta, tolerance, context);
+  const Complex whole = data_->labelled(std::move(fitted.lists), context);
+  DecimatedAxis lean = decimate(whole, tolerance - fitted.moved, context);
+  lean.deviation += fitted.moved;
+  lean.vertices_before = fitted.vertices_before;
+  return lean;
 }
 
 double MedialAxis::lambda() const {

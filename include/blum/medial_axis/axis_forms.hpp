@@ -36,16 +36,12 @@ struct MovedGrid {
 ///                   smallest side of a voxel.
 [[nodiscard]] std::vector<AxisForm> axis_forms(const MedialAxisReport& report, std::optional<double> tolerance = {});
 
-/// The axis at an angle before vertices are taken out of it. @throws as fitted().
-[[nodiscard]] Complex whole_axis(const MedialAxis& axis, double theta, const AxisForm& form,
-                                 const Context& context = {});
-
-/// What a form leaves of a whole axis. @throws as decimate().
-[[nodiscard]] DecimatedAxis decimate(Complex whole, const AxisForm& form, const Context& context = {});
-
-/// Both: the axis at an angle in a form. @throws as these.
+/// The axis at an angle in a form. @throws as MedialAxis::fitted() and decimate().
 [[nodiscard]] DecimatedAxis axis_in_form(const MedialAxis& axis, double theta, const AxisForm& form,
                                          const Context& context = {});
+
+/// What a form leaves of an axis that is given, whether it was fitted or not. @throws as decimate().
+[[nodiscard]] DecimatedAxis decimate(Complex whole, const AxisForm& form, const Context& context = {});
 
 /// The smallest side of a voxel of any body, mesh units.
 [[nodiscard]] double least_spacing(const MedialAxisReport& report);

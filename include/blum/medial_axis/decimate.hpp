@@ -17,6 +17,7 @@ struct DecimatedAxis {
   /// Each point of either axis has one of the other that is no further away than this, mesh units; and radii that are
   /// interpolated linearly over triangles and edges differ by no more there. At most the tolerance.
   double deviation = 0;
+  std::size_t vertices_before = 0;  ///< of the axis that vertices were taken out of
 };
 
 /// Takes vertices out of sheets, seams, rims and curves where what is left stays within a tolerance. Vertices that stay

@@ -21,6 +21,7 @@
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/label_selection.hpp"
 #include "blum/grid/voxel_image.hpp"
+#include "blum/medial_axis/decimate.hpp"
 #include "blum/solid/cellular_model.hpp"
 #include "blum/solid/solid.hpp"
 
@@ -147,6 +148,13 @@ class MedialAxis {
   /// no longer a part of what a smaller one gives. Of other solids, simplify(theta).
   /// @throws as simplify(). Cost: besides, about 0.1 ms for each vertex of seams, rims and curves.
   [[nodiscard]] Complex fitted(double theta, const Context& context = {}) const;
+
+  /// What decimate() leaves of fitted() within a tolerance, but in less time and memory: what lies far inside of sheets
+  /// is thinned out first, by up to a sixteenth of the tolerance, and not fitted. Of solids that are no polyhedra,
+  /// decimate() of simplify().
+  /// @param tolerance  mesh units, > 0.
+  /// @throws as fitted() and decimate().
+  [[nodiscard]] DecimatedAxis lean(double theta, double tolerance, const Context& context = {}) const;
 
   /// The axes of all angles from least_theta() to 180 as sets of points, in one complex: to show, and to simplify
   /// without computing anything again. It has the columns of MedialView and MedialLevels; at an angle, the triangles,

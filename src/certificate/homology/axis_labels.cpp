@@ -131,7 +131,7 @@ std::vector<std::uint32_t> AxisLabels::triangles_across(const Context& context) 
   for (std::size_t k = 0; k < across.size(); ++k) {  // grows
     throw_if_cancelled(context);
     for (const std::uint32_t e : given_.incidence.sides()[across[k]]) {
-      if (looked_at.size() >= most_looked_at || !looked_at.insert(e).second || !look_closely(e)) continue;
+      if (looked_at.size() >= most_looked_at || !looked_at.insert(e).second || !take(e, closer_look(e))) continue;
       for (const std::uint32_t t : given_.incidence.triangles_of_edge()[e]) {
         if (is_across(t, row) && found.insert(t).second) across.push_back(t);
       }
@@ -183,10 +183,11 @@ std::vector<Label> AxisLabels::over_other_sides(std::uint32_t triangle, std::siz
 }
 
 void AxisLabels::look_at_grazing(const Context& context) {
+  std::vector<std::uint32_t> wanted;
   for (const std::uint32_t e : given_.ways.grazing) {
-    throw_if_cancelled(context);
-    if (is_wanted_[given_.parts.body_of[given_.incidence.edges()[e][0]]]) look_closely(e);
+    if (is_wanted_[given_.parts.body_of[given_.incidence.edges()[e][0]]]) wanted.push_back(e);
   }
+  look_closely(wanted, context);
 }
 
 bool AxisLabels::look_at_thin_parts(const Context& context) {
@@ -201,15 +202,24 @@ bool AxisLabels::look_at_thin_parts(const Context& context) {
       if (depth < more_for_edges * allowed_[body] && !replaced_.contains(e)) thin.push_back(e);
     }
   }
+  return look_closely(thin, context);
+}
+
+bool AxisLabels::look_closely(std::span<const std::uint32_t> edges, const Context& context) {
+  // Few at a time: together they may take more looks than are left.
+  constexpr std::size_t most_at_a_time = 32;
   bool is_changed = false;
-  for (std::size_t k = 0; k < thin.size(); ++k) {
-    if (k % 256 == 0) throw_if_cancelled(context);
-    is_changed = look_closely(thin[k]) || is_changed;
+  std::vector<CloserLook> found;
+  for (std::size_t first = 0; first < edges.size(); first += most_at_a_time) {
+    found.assign(std::min(most_at_a_time, edges.size() - first), {});
+    parallel_for(context, found.size(), 1, {},
+                 [&](const WorkRange& range) { found[range.begin] = closer_look(edges[first + range.begin]); });
+    for (std::size_t k = 0; k < found.size(); ++k) is_changed = take(edges[first + k], found[k]) || is_changed;
   }
   return is_changed;
 }
 
-bool AxisLabels::look_closely(std::uint32_t edge) {
+AxisLabels::CloserLook AxisLabels::closer_look(std::uint32_t edge) const {
   constexpr double fine = 1e-3;
   constexpr std::size_t most_looks_at_edge = 32'768;
   const auto [a, b] = given_.incidence.edges()[edge];
@@ -219,13 +229,19 @@ bool AxisLabels::look_closely(std::uint32_t edge) {
   const auto stop = [&](std::uint32_t v) { return Stop{positions_[v], solid.depth(positions_[v], body)}; };
   const std::size_t most_looks = std::min(most_looks_at_edge, looks_left_);
   PushBudget budget{.looks = most_looks};
-  Way way{positions_[a]};
-  const bool is_found = edges.can_be_pushed_in(stop(a), stop(b), budget, way);
-  looks_left_ -= most_looks - budget.looks;
-  if (!is_found || way.size() == 1) return false;
-  way.push_back(positions_[b]);
+  CloserLook look{.way = {positions_[a]}};
+  const bool is_found = edges.can_be_pushed_in(stop(a), stop(b), budget, look.way);
+  look.looks = most_looks - budget.looks;
+  if (!is_found || look.way.size() == 1) return {{}, look.looks};
+  look.way.push_back(positions_[b]);
+  return look;
+}
+
+bool AxisLabels::take(std::uint32_t edge, const CloserLook& look) {
+  looks_left_ -= std::min(looks_left_, look.looks);
+  if (look.way.empty()) return false;
   std::vector<Label> labels;
-  if (!curtains_->add(way, body, labels)) return false;
+  if (!curtains_->add(look.way, given_.parts.body_of[given_.incidence.edges()[edge][0]], labels)) return false;
   replaced_[edge] = std::move(labels);
   doubtful_.erase(edge);
   return true;

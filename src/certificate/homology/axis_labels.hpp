@@ -68,8 +68,16 @@ class AxisLabels {
   void lead_over_triangles(std::vector<std::uint32_t>& across, const Context& context);
   /// The labels of a way over two sides of a triangle, from the first end of the third one to the second.
   [[nodiscard]] std::vector<Label> over_other_sides(std::uint32_t triangle, std::size_t side) const;
-  /// Looks closely at an edge; false if that makes no difference.
-  bool look_closely(std::uint32_t edge);
+  /// What is found where it is looked as closely at an edge as doubles allow.
+  struct CloserLook {
+    Way way{};  ///< inside, beside the edge; empty if there is none, or the edge is inside
+    std::size_t looks = 0;
+  };
+  [[nodiscard]] CloserLook closer_look(std::uint32_t edge) const;
+  /// Leads an edge over what was found; false if that makes no difference.
+  bool take(std::uint32_t edge, const CloserLook& look);
+  /// Looks closely at edges, by all threads; false if that makes no difference.
+  bool look_closely(std::span<const std::uint32_t> edges, const Context& context);
 
   const AxisInSolid& given_;
   const Complement& complement_;

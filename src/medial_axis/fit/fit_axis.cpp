@@ -6,6 +6,7 @@
 #include "medial_axis/fit/contract_short.hpp"
 #include "medial_axis/fit/fitter.hpp"
 #include "medial_axis/fit/merge_curves.hpp"
+#include "medial_axis/fit/thin_insides.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/unfold.hpp"
 
@@ -45,13 +46,20 @@ class Fitting {
     const std::size_t before = lists_.triangles.size() + lists_.edges.size();
     const double voxel = target_.voxel;
     const TrimLimits limits{target_.theta, thin * voxel, thin_if_round * voxel, whiskers * voxel, beside * voxel};
-    trim(lists_, fitter().angles(), limits, context_);
+    if (trim(lists_, fitter().incidence(), fitter().angles(), limits, context_)) fitter_.reset();
     merge();
     return lists_.triangles.size() + lists_.edges.size() != before;
   }
   void bend_curves() {
-    fitter().bend_curves();
+    if (fitter().bend_curves()) fitter_.reset();
     merge();
+  }
+  /// @return  how far sheets moved, mesh units.
+  double thin_out() {
+    if (!(target_.tolerance > 0)) return 0;
+    const double moved = thin_insides(lists_, fitter().incidence(), target_, context_);
+    fitter_.reset();
+    return moved;
   }
   void take_folds_away() {
     unfold(lists_, fitter().incidence(), target_.surface, target_.voxel, context_);
@@ -60,8 +68,7 @@ class Fitting {
 
  private:
   void merge() {
-    merge_curves(lists_, target_.surface, beside * target_.voxel, context_);
-    fitter_.reset();
+    if (merge_curves(lists_, target_.surface, beside * target_.voxel, context_)) fitter_.reset();
   }
   Fitter& fitter() {
     if (!fitter_) fitter_ = std::make_unique<Fitter>(lists_, target_, known_, context_);
@@ -77,7 +84,7 @@ class Fitting {
 
 }  // namespace
 
-void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context) {
+double fit_axis(AxisLists& lists, const FitTarget& target, const Context& context) {
   constexpr ShortLengths nothing{};
   constexpr ShortLengths inside{.on_seams = 0, .on_rims = 0};
   constexpr ShortLengths with_seams{.on_seams = 0.6, .at_corners = 2};
@@ -88,6 +95,7 @@ void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context)
   // Of vertices close beside each other one is put on its sheet, not all.
   fitting.contract(inside);
   fitting.take(&Fitter::find_sheets, nothing);
+  const double moved = fitting.thin_out();
   fitting.take(&Fitter::place_seams, with_seams);
   fitting.take(&Fitter::place_seams, with_seams);
   fitting.take(&Fitter::straighten, with_seams);
@@ -110,6 +118,7 @@ void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context)
   fitting.take(&Fitter::place_curves);
   fitting.bend_curves();
   fitting.take_folds_away();
+  return moved;
 }
 
 }  // namespace blum

@@ -16,6 +16,7 @@ struct FitTarget {
   std::function<SiteId(SiteId)> input_site;  ///< what vertices name for a site of the surface
   double voxel = 0;                          ///< mesh units: nothing moves by more than about 2.5 of them
   double theta = 0;                          ///< degrees
+  double tolerance = 0;                      ///< mesh units: of thin_insides(), before all else; 0: nothing goes there
 };
 
 /// Moves what bounds the sheets of an axis from near the cells of a lattice to its place: seams and junctions to where
@@ -23,7 +24,8 @@ struct FitTarget {
 /// of a voxel. What lies beyond goes first (trim()), and edges between vertices that come to the same place are
 /// contracted, so that ribbons without width become curves. All of it keeps the homotopy type, and edges in the solid.
 /// @param lists  of one body.
+/// @return       how far insides of sheets moved at most, mesh units.
 /// @throws Cancelled. Cost: linear in the vertices that move, about 0.1 ms for each.
-void fit_axis(AxisLists& lists, const FitTarget& target, const Context& context);
+double fit_axis(AxisLists& lists, const FitTarget& target, const Context& context);
 
 }  // namespace blum

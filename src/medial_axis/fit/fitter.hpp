@@ -136,8 +136,10 @@ class Fitter {
     });
   }
   /// Puts vertices into edges of curves that leave the middle of what is round and bends.
-  void bend_curves() {
-    split_curves(lists_, surface_, voxel_, [&](const Vec3d& at) { return centred_at(at); }, context_);
+  /// @return  whether any was. The lists have other cells then: this is of no more use.
+  bool bend_curves() {
+    return split_curves(
+        lists_, incidence_, surface_, voxel_, [&](const Vec3d& at) { return centred_at(at); }, context_);
   }
   double cut_rims() {
     return move_unsettled(known_.rims, [&](std::uint32_t v) { return cut(v); });

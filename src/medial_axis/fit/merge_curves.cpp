@@ -27,7 +27,9 @@ class CurveMerger {
     }
   }
 
-  void run() {
+  /// @return  whether any edge begins elsewhere now.
+  bool run() {
+    bool is_changed = false;
     std::vector<std::uint32_t> open;
     for (std::uint32_t v = 0; v < curves_at_.size(); ++v) {
       if (curves_at_[v].size() > 1) open.push_back(v);
@@ -44,7 +46,9 @@ class CurveMerger {
       const std::uint32_t end = other_end(lists_.edges[pair->shorter], v);
       slide(pair->longer, v, end);
       open.push_back(end);
+      is_changed = true;
     }
+    return is_changed;
   }
 
  private:
@@ -118,8 +122,8 @@ class CurveMerger {
 
 }  // namespace
 
-void merge_curves(AxisLists& lists, const Surface& surface, double beside, const Context& context) {
-  CurveMerger(lists, surface, beside, context).run();
+bool merge_curves(AxisLists& lists, const Surface& surface, double beside, const Context& context) {
+  return CurveMerger(lists, surface, beside, context).run();
 }
 
 }  // namespace blum

@@ -11,7 +11,7 @@ namespace blum {
 /// begin where the shorter one ends, again and again. The homotopy type stays, since the triangle between both is in
 /// the solid.
 /// @param beside  mesh units: how far the end of the shorter edge may be from the longer one.
-/// @throws Cancelled. Cost: near-linear in the edges of curves.
-void merge_curves(AxisLists& lists, const Surface& surface, double beside, const Context& context);
+/// @return  whether any did.  @throws Cancelled. Cost: near-linear in the edges of curves.
+bool merge_curves(AxisLists& lists, const Surface& surface, double beside, const Context& context);
 
 }  // namespace blum

@@ -70,23 +70,22 @@ void ShrinkingLists::contract(std::uint32_t from, std::uint32_t to) {
 }
 
 void ShrinkingLists::note_change_at(std::uint32_t v) {
-  std::vector<std::uint32_t> front{v};
   changed_[v] = contractions_;
+  noted_.assign(1, v);
+  std::size_t begin = 0;
+  const auto note = [&](std::uint32_t w) {
+    if (changed_[w] == contractions_) return;
+    changed_[w] = contractions_;
+    noted_.push_back(w);
+  };
   for (int step = 0; step < reach_; ++step) {
-    std::vector<std::uint32_t> next;
-    const auto note = [&](std::uint32_t w) {
-      if (changed_[w] == contractions_) return;
-      changed_[w] = contractions_;
-      next.push_back(w);
-    };
-    for (const std::uint32_t u : front) {
-      cells_.for_each_triangle(u, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+    for (const std::size_t end = noted_.size(); begin < end; ++begin) {
+      cells_.for_each_triangle(noted_[begin], [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
         note(p);
         note(q);
       });
-      cells_.for_each_edge(u, [&](std::uint32_t, std::uint32_t other) { note(other); });
+      cells_.for_each_edge(noted_[begin], [&](std::uint32_t, std::uint32_t other) { note(other); });
     }
-    front = std::move(next);
   }
 }
 

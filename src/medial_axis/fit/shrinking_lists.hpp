@@ -66,6 +66,7 @@ class ShrinkingLists {
   std::vector<std::uint32_t> into_;
   std::vector<std::uint32_t> changed_;
   std::uint32_t contractions_ = 1;
+  std::vector<std::uint32_t> noted_;  ///< of note_change_at(), kept so that no new memory is needed each time
 };
 
 }  // namespace blum

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "blum/complex/incidence.hpp"
 #include "blum/core/parallel.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/solid_paths.hpp"
@@ -43,10 +42,10 @@ std::optional<AxisVertex> split_of(const AxisVertex& a, const AxisVertex& b, con
 
 }  // namespace
 
-void split_curves(AxisLists& lists, const Surface& surface, double voxel,
+bool split_curves(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
                   const std::function<std::optional<AxisVertex>(const Vec3d&)>& middle, const Context& context) {
   const SolidPaths paths(surface);
-  const Incidence incidence({lists.vertices.size(), lists.edges, lists.triangles}, context);
+  const std::size_t vertices = lists.vertices.size();
   std::vector<std::uint32_t> curves;
   for (std::uint32_t e = 0; e < lists.edges.size(); ++e) {
     if (incidence.triangles_of_edge()[incidence.edge_of_listed()[e]].empty()) curves.push_back(e);
@@ -72,6 +71,7 @@ void split_curves(AxisLists& lists, const Surface& surface, double voxel,
     }
     curves = std::move(halves);
   }
+  return lists.vertices.size() > vertices;
 }
 
 }  // namespace blum

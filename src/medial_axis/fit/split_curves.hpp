@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
 #include "medial_axis/axis_lists.hpp"
@@ -12,9 +13,10 @@
 namespace blum {
 
 /// Puts vertices into edges of curves, those on no triangle, where these cut short what bends, again and again.
+/// @param incidence  of the lists.
 /// @param middle  the vertex that a curve has near a point; nullopt where there is none. Called from many threads.
-/// @throws Cancelled.
-void split_curves(AxisLists& lists, const Surface& surface, double voxel,
+/// @return  whether any was split.  @throws Cancelled.
+bool split_curves(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
                   const std::function<std::optional<AxisVertex>(const Vec3d&)>& middle, const Context& context);
 
 }  // namespace blum

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "blum/complex/incidence.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -20,12 +19,13 @@ namespace {
 
 class Trimmer {
  public:
-  Trimmer(AxisLists& lists, const std::vector<double>& angles, const TrimLimits& limits, const Context& context)
+  Trimmer(AxisLists& lists, const Incidence& incidence, const std::vector<double>& angles, const TrimLimits& limits,
+          const Context& context)
       : lists_(lists),
         angles_(angles),
         limits_(limits),
         context_(context),
-        incidence_({lists.vertices.size(), lists.edges, lists.triangles}, context),
+        incidence_(incidence),
         triangles_left_(incidence_.edges().size()),
         edges_left_(lists.vertices.size()),
         has_triangle_(lists.triangles.size(), true),
@@ -40,7 +40,7 @@ class Trimmer {
     }
   }
 
-  void run() {
+  bool run() {
     find_what_is_on_sheets();
     for (std::uint32_t e = 0; e < has_edge_.size(); ++e) look_at_edge(e);
     for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) look_at_vertex(v);
@@ -53,7 +53,9 @@ class Trimmer {
         take_edge_from(cell);
       }
     }
+    if (stays_as_it_is()) return false;
     write();
+    return true;
   }
 
  private:
@@ -102,6 +104,7 @@ class Trimmer {
     for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) {
       if (incidence_.triangles_of_vertex()[v].empty()) alone.emplace_back(position(v).x, v);
     }
+    if (alone.empty()) return;
     std::sort(alone.begin(), alone.end());
     const TriangleMesh near = triangles_near(alone);
     if (near.triangles.empty()) return;
@@ -174,6 +177,20 @@ class Trimmer {
     for (const std::uint32_t v : incidence_.edges()[e]) --edges_left_[v];
   }
 
+  /// Whether nothing was taken, and edges are listed as write() would list them.
+  [[nodiscard]] bool stays_as_it_is() const {
+    const auto& listed = incidence_.edge_of_listed();
+    const auto is_all = [](const std::vector<bool>& flags) {
+      return std::find(flags.begin(), flags.end(), false) == flags.end();
+    };
+    return is_all(has_triangle_) && is_all(has_edge_) && is_all(has_vertex_) &&
+           std::none_of(listed.begin(), listed.end(), [&](std::uint32_t e) { return triangles_left_[e] > 0; }) &&
+           std::adjacent_find(listed.begin(), listed.end(), std::greater_equal<>()) == listed.end() &&
+           std::all_of(listed.begin(), listed.end(), [&](const std::uint32_t& e) {
+             return incidence_.edges()[e] == lists_.edges[static_cast<std::size_t>(&e - listed.data())];
+           });
+  }
+
   /// What is left, in the same order.
   void write() {
     AxisLists out;
@@ -207,7 +224,7 @@ class Trimmer {
   const std::vector<double>& angles_;
   TrimLimits limits_;
   const Context& context_;
-  Incidence incidence_;
+  const Incidence& incidence_;
   std::vector<std::uint32_t> triangles_left_, edges_left_;
   std::vector<bool> has_triangle_, has_edge_, has_vertex_, is_on_sheet_;
   using Entry = std::tuple<double, int, std::uint32_t>;
@@ -216,8 +233,9 @@ class Trimmer {
 
 }  // namespace
 
-void trim(AxisLists& lists, const std::vector<double>& angles, const TrimLimits& limits, const Context& context) {
-  Trimmer(lists, angles, limits, context).run();
+bool trim(AxisLists& lists, const Incidence& incidence, const std::vector<double>& angles, const TrimLimits& limits,
+          const Context& context) {
+  return Trimmer(lists, incidence, angles, limits, context).run();
 }
 
 }  // namespace blum

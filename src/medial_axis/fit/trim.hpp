@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "blum/complex/incidence.hpp"
 #include "blum/core/context.hpp"
 #include "medial_axis/axis_lists.hpp"
 
@@ -21,8 +22,10 @@ struct TrimLimits {
 /// Collapses triangles and edges none of whose vertices sees two footprints at more than theta apart, from the free
 /// borders inwards and as long as homotopy lets them go: the cells that an axis is made of reach up to a voxel beyond
 /// where the angle is theta. So go flat triangles that lie on their other sides.
-/// @param angles  that each vertex sees, degrees.
-/// @throws Cancelled. Cost: near-linear.
-void trim(AxisLists& lists, const std::vector<double>& angles, const TrimLimits& limits, const Context& context);
+/// @param incidence  of the lists.
+/// @param angles     that each vertex sees, degrees.
+/// @return  whether lists are others than before, be it in their order only.  @throws Cancelled. Cost: near-linear.
+bool trim(AxisLists& lists, const Incidence& incidence, const std::vector<double>& angles, const TrimLimits& limits,
+          const Context& context);
 
 }  // namespace blum

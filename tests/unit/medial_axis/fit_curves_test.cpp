@@ -45,8 +45,14 @@ TriangleMesh make_fork() {
   return make_extrusion(outline, {}, {.thickness = 1});
 }
 
+ComplexView view_of(const AxisLists& lists) {
+  return {lists.vertices.size(), lists.edges, lists.triangles};
+}
 BettiNumbers betti_of(const AxisLists& lists) {
-  return homology({lists.vertices.size(), lists.edges, lists.triangles});
+  return homology(view_of(lists));
+}
+Incidence incidence_of(const AxisLists& lists) {
+  return Incidence(view_of(lists));
 }
 
 std::vector<std::uint32_t> degrees(const AxisLists& lists) {
@@ -172,11 +178,11 @@ TEST(SplitCurves, ChordsOfARingFollowItAndSidesOfTrianglesStay) {
     return torus.vertex({at.x / size, at.y / size, 0});
   };
   AxisLists as_side = lists;
-  split_curves(as_side, torus.surface, voxel, middle, {});
+  EXPECT_FALSE(split_curves(as_side, incidence_of(as_side), torus.surface, voxel, middle, {}));
   EXPECT_EQ(as_side.vertices.size(), 3U) << "the edge is a side";
   lists.triangles.clear();
   lists.triangle_angles.clear();
-  split_curves(lists, torus.surface, voxel, middle, {});
+  EXPECT_TRUE(split_curves(lists, incidence_of(lists), torus.surface, voxel, middle, {}));
   EXPECT_EQ(lists.edges.size() + 2, lists.vertices.size());
   for (const auto& [a, b] : lists.edges) {
     const Vec3d half = 0.5 * (lists.vertices[a].position + lists.vertices[b].position);
@@ -197,16 +203,16 @@ AxisLists square_with(const std::vector<Vec3d>& more) {
   lists.add_triangle({0, 2, 3}, 90);
   return lists;
 }
-void trim_all_seen(AxisLists& lists) {
+bool trim_all_seen(AxisLists& lists) {
   std::vector<double> angles;
   for (const AxisVertex& vertex : lists.vertices) angles.push_back(vertex.separation_angle);
-  trim(lists, angles, trim_limits, {});
+  return trim(lists, incidence_of(lists), angles, trim_limits, {});
 }
 
 TEST(Trim, FlatTrianglesWhoseLongestSideIsNotFreeStay) {
   AxisLists flat = square_with({{1, -0.009, 0}});
   flat.add_triangle({0, 1, 4}, 90);
-  trim_all_seen(flat);
+  EXPECT_FALSE(trim_all_seen(flat));
   EXPECT_EQ(flat.triangles.size(), 3U);
 }
 
@@ -229,7 +235,7 @@ TEST(Trim, TriangleThatIsHighStays) {
   trim_all_seen(ribbon);
   EXPECT_EQ(ribbon.triangles.size(), 1U);
   for (AxisVertex& vertex : round.vertices) vertex.separation_angle = 0;
-  trim(round, {90, 90, 90}, trim_limits, {});
+  EXPECT_TRUE(trim(round, incidence_of(round), {90, 90, 90}, trim_limits, {}));
   EXPECT_TRUE(round.triangles.empty()) << "in the middle of what is round more is seen than by two footprints";
 }
 
