@@ -97,15 +97,11 @@ class ShortEdges {
  private:
   using Edge = std::array<std::uint32_t, 2>;
   struct ShortEdge {
-    std::uint32_t length;  ///< in steps
+    double length;
     std::uint32_t a, b;
     std::uint32_t looked = 0;  ///< ShrinkingLists::contractions() when it was looked at in vain
-
-    static constexpr double step = 0.02;  ///< voxels
-    /// By length, and those of about the same one in no order, so that edges of one batch are far apart.
     bool operator<(const ShortEdge& other) const {
-      constexpr std::uint32_t odd = 0x9e3779b1U;  // of the golden ratio
-      return std::tuple(length, a * odd, b) < std::tuple(other.length, other.a * odd, other.b);
+      return std::tie(length, a, b) < std::tie(other.length, other.a, other.b);
     }
   };
 
@@ -115,8 +111,7 @@ class ShortEdges {
     short_ = detail::gather<ShortEdge>(context_, edges.size(), grain, {}, [&](std::size_t e, auto& found) {
       const auto& [a, b] = edges[e];
       const double size = length(lists_.position(a) - lists_.position(b));
-      if (size > limit(a, b, longest(a, b))) return;
-      found.push_back({static_cast<std::uint32_t>(size / (ShortEdge::step * voxel_)), a, b});
+      if (size <= limit(a, b, longest(a, b))) found.push_back({size, a, b});
     });
     std::sort(short_.begin(), short_.end());
   }
