@@ -47,6 +47,14 @@ void bind_axis(nb::module_& m) {
             return run({0, nb::none()}, [&](const Context& context) { return axis.fitted(theta, context); });
           },
           nb::arg("theta"))
+      .def(
+          "lean",
+          [](const MedialAxis& axis, double theta, double tolerance, int threads, nb::object progress) {
+            DecimatedAxis out = run({threads, std::move(progress)},
+                                    [&](const Context& context) { return axis.lean(theta, tolerance, context); });
+            return nb::make_tuple(std::move(out.axis), out.deviation, out.vertices_before);
+          },
+          nb::arg("theta"), nb::arg("tolerance"), nb::arg("threads"), nb::arg("progress").none())
       .def("nested",
            [](const MedialAxis& axis) {
              return run({0, nb::none()}, [&](const Context& context) { return axis.nested(context); });

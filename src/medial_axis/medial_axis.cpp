@@ -362,7 +362,7 @@ Complex MedialAxis::fitted(double theta, const Context& context) const {
 
 DecimatedAxis MedialAxis::lean(double theta, double tolerance, const Context& context) const {
   check_theta(theta);
-  if (data_->surfaces.empty() || !(tolerance > 0)) return decimate(simplify(theta, context), tolerance, context);
+  if (data_->surfaces.empty() || !(tolerance > 0)) return decimate(fitted(theta, context), tolerance, context);
   Data::Fitted fitted = data_->fitted(theta, tolerance, context);
   const Complex whole = data_->labelled(std::move(fitted.lists), context);
   DecimatedAxis lean = decimate(whole, tolerance - fitted.moved, context);

@@ -1,4 +1,4 @@
-"""Certifies medial axes of made solids by the command-line tool: python -m made.certify SOLIDS OUT.jsonl [options]
+"""Certifies axes of made solids: python -m made.certify SOLIDS OUT.jsonl [-- OPTIONS of blum medial]
 
 SOLIDS is a folder that `python -m made` wrote. A line of JSON for each solid is added to OUT.jsonl; those that it has
 already are left out, so that a run can be cut off and go on. Says at the end how many were certified, what the others
@@ -10,6 +10,7 @@ import argparse
 import json
 import os
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -56,8 +57,10 @@ def main() -> None:
     parser.add_argument("out", type=Path, metavar="OUT.jsonl")
     parser.add_argument("--limit", type=float, default=300, help="seconds for one solid; default: %(default)g")
     parser.add_argument("--names", nargs="+", metavar="NAME", help="only these")
-    parser.add_argument("options", nargs="*", help="after --: options of blum medial; default: its own defaults")
-    chosen = parser.parse_args()
+    arguments = sys.argv[1:]
+    split = arguments.index("--") if "--" in arguments else len(arguments)
+    chosen = parser.parse_args(arguments[:split])
+    options = arguments[split + 1 :]
     entries = json.loads((chosen.solids / "manifest.json").read_text(encoding="utf-8"))
     names = [entry["name"] for entry in entries if not chosen.names or entry["name"] in chosen.names]
     lines = chosen.out.read_text(encoding="utf-8").splitlines() if chosen.out.exists() else []
@@ -65,7 +68,7 @@ def main() -> None:
     with chosen.out.open("a", encoding="utf-8") as out:
         for name in names:
             if name not in results:
-                found = run(chosen.solids / f"{name}.ply", chosen.options, chosen.limit)
+                found = run(chosen.solids / f"{name}.ply", options, chosen.limit)
                 results[name] = {"name": name, **found}
                 out.write(json.dumps(results[name]) + "\n")
                 out.flush()

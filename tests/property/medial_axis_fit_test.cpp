@@ -205,6 +205,36 @@ TEST(FittedAxisOfAnything, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+/// What is thinned out before fitting changes neither the topology nor the sheets, nor what is said of both; and it is
+/// the same for any number of threads.
+TEST(FittedAxisOfAnything, LeanIsAsDecimatedAfterwards) {
+  for (const TriangleMesh& mesh : {make_bracket(), make_void_cube(), make_box({.size = {1.5, 1, 0.6}})}) {
+    const MedialAxis axis = medial_axis(mesh, {.resolution = 64});
+    const double tolerance = 0.25 * axis.report().bodies[0].spacing;
+    const Complex whole = axis.fitted(60);
+    const DecimatedAxis afterwards = decimate(whole, tolerance);
+    const DecimatedAxis lean = axis.lean(60, tolerance, {.threads = 1});
+    EXPECT_LE(lean.deviation, tolerance);
+    EXPECT_LE(lean.axis.triangles.size(), 1.2 * static_cast<double>(afterwards.axis.triangles.size()) + 10);
+    EXPECT_EQ(count(lean.axis).sheets, count(afterwards.axis).sheets);
+    EXPECT_GT(lean.vertices_before, lean.axis.positions.size());
+    CertificateOptions options{.theta = 60, .spacing = axis.report().bodies[0].spacing, .deviation = lean.deviation};
+    const Certificate certificate = certify(lean.axis, mesh, options);
+    EXPECT_TRUE(certificate.holds()) << (certificate.holds() ? std::string() : certificate.mismatches.front());
+    for (const int threads : {2, 7}) {
+      const Complex other = axis.lean(60, tolerance, {.threads = threads}).axis;
+      EXPECT_EQ(other.positions, lean.axis.positions) << threads;
+      EXPECT_EQ(other.triangles, lean.axis.triangles) << threads;
+    }
+  }
+}
+
+TEST(FittedAxisOfAnything, LeanWithoutToleranceKeepsAllVertices) {
+  const MedialAxis axis = medial_axis(make_box({}), {.resolution = 24});
+  EXPECT_EQ(axis.lean(60, 0).axis.positions, axis.fitted(60).positions);
+  EXPECT_THROW((void)axis.lean(60, -1), InvalidOption);
+}
+
 TEST(FittedAxisOfAnything, IsCertifiedForAllAngles) {
   for (const TriangleMesh& mesh : {make_bracket(), make_void_cube(), make_star(), make_wedge()}) {
     const MedialAxis axis = medial_axis(mesh, {.resolution = 48});

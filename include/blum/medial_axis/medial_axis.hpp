@@ -152,7 +152,7 @@ class MedialAxis {
   /// What decimate() leaves of fitted() within a tolerance, but in less time and memory: what lies far inside of sheets
   /// is thinned out first, by up to a sixteenth of the tolerance, and not fitted. Of solids that are no polyhedra,
   /// decimate() of simplify().
-  /// @param tolerance  mesh units, > 0.
+  /// @param tolerance  mesh units, >= 0; 0 keeps all vertices.
   /// @throws as fitted() and decimate().
   [[nodiscard]] DecimatedAxis lean(double theta, double tolerance, const Context& context = {}) const;
 
