@@ -132,10 +132,11 @@ class MedialAxis:
         angle = number(theta, "theta")
         with reporting(progress) as report:
             core, deviation, before = self._core.lean(angle, tolerance, integer(threads, "threads"), report)
-        found = MedialComplex._of(core, EVERYTHING, self._origin_at(angle))
+        origin = self._origin_at(angle)
+        found = MedialComplex._of(core, EVERYTHING, origin)
         if len(found.vertices) == before:
             return found
-        return MedialComplex._of(core, EVERYTHING, replace(self._origin_at(angle), deviation=deviation))
+        return MedialComplex._of(core, EVERYTHING, replace(origin, deviation=deviation))
 
     @takes("AxisGraphOptions")
     def graph(self, theta: Real = 60.0, **options: Unpack[AxisGraphOptions]) -> AxisGraph:

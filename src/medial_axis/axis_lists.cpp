@@ -46,6 +46,26 @@ Columns columns_of(std::vector<float> angles) {
 
 }  // namespace
 
+AxisLists rest_of(const ShrinkingComplex& cells, const AxisLists& whole) {
+  AxisLists out;
+  std::vector<std::uint32_t> number(whole.vertices.size(), 0);
+  for (std::uint32_t v = 0; v < number.size(); ++v) {
+    number[v] = static_cast<std::uint32_t>(out.vertices.size());
+    if (cells.has_vertex(v)) out.vertices.push_back(whole.vertices[v]);
+  }
+  for (std::uint32_t e = 0; e < whole.edges.size(); ++e) {
+    if (!cells.has_edge(e)) continue;
+    const auto& [a, b] = cells.edge(e);
+    out.add_edge({number[a], number[b]}, whole.edge_angles[e]);
+  }
+  for (std::uint32_t t = 0; t < whole.triangles.size(); ++t) {
+    if (!cells.has_triangle(t)) continue;
+    const auto& [a, b, c] = cells.triangle(t);
+    out.add_triangle({number[a], number[b], number[c]}, whole.triangle_angles[t]);
+  }
+  return out;
+}
+
 void append(AxisLists more, AxisLists& lists) {
   const auto first = static_cast<std::uint32_t>(lists.vertices.size());
   lists.vertices.insert(lists.vertices.end(), more.vertices.begin(), more.vertices.end());

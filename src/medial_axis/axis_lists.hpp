@@ -7,6 +7,7 @@
 
 #include "blum/complex/complex.hpp"
 #include "medial_axis/axis_vertex.hpp"
+#include "medial_axis/shrinking_complex.hpp"
 
 namespace blum {
 
@@ -30,6 +31,9 @@ struct AxisLists {
 
 /// Adds lists at the end of others.
 void append(AxisLists more, AxisLists& lists);
+
+/// What is left of lists that a complex was made of: its edges are those of the lists, in their order, and maybe more.
+[[nodiscard]] AxisLists rest_of(const ShrinkingComplex& cells, const AxisLists& whole);
 
 /// A complex with the columns of a medial axis, one sheet, and edges that are curves: to be labelled by label_sheets().
 [[nodiscard]] Complex complex_of(AxisLists lists);

@@ -33,7 +33,7 @@ struct DecimatedAxis {
 /// @param tolerance  >= 0, mesh units; a quarter of a voxel leaves what a voxel grid can tell. 0 takes away nothing.
 /// @return           part of the vertices, in their order; edges and triangles in theirs.
 /// @throws InvalidOption, also saying problem_of_medial() of what it has; Cancelled.
-/// Cost: near-linear, about 3 us for each vertex; 120 bytes for each triangle. Not threaded: the result is one.
+/// Cost: near-linear, about 3 us for each vertex; 120 bytes for each triangle. Threads do not change the result.
 /// Method: edge contraction within strata, with a bound for the distance of the two surfaces over their common
 /// refinement, summed over contractions (after Cohen, Manocha, Olano, "Simplifying polygonal models using successive
 /// mappings", 1997).

@@ -241,17 +241,7 @@ class Fitter {
 
   /// Of the angles by which the sheet bends at the edges of a vertex, were it elsewhere; 1 where it is flat.
   [[nodiscard]] double least_cosine(std::uint32_t v, const Vec3d& position) const {
-    double least = 1;
-    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const auto& edge = incidence_.edges()[e];
-      const auto at = incidence_.triangles_of_edge()[e];
-      const auto beside = [&](std::uint32_t t) {
-        return lists_.vertices[third_corner(lists_.triangles[t], edge)].position;
-      };
-      const Vec3d& end = lists_.vertices[other_end(edge, v)].position;
-      least = std::min(least, cosine_of_bend(position, end, beside(at[0]), beside(at[1])));
-    }
-    return least;
+    return least_cosine_at(lists_, incidence_, v, position);
   }
 
   /// What is closest a little further away from the first footprint of a vertex that is not on the surface.

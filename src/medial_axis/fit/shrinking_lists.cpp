@@ -98,23 +98,7 @@ bool ShrinkingLists::is_joined(std::uint32_t a, std::uint32_t b) const {
 }
 
 void ShrinkingLists::write() {
-  AxisLists out;
-  std::vector<std::uint32_t> number(lists_.vertices.size(), 0);
-  for (std::uint32_t v = 0; v < number.size(); ++v) {
-    number[v] = static_cast<std::uint32_t>(out.vertices.size());
-    if (cells_.has_vertex(v)) out.vertices.push_back(lists_.vertices[v]);
-  }
-  for (std::uint32_t e = 0; e < lists_.edges.size(); ++e) {
-    if (!cells_.has_edge(e)) continue;
-    const auto& [a, b] = cells_.edge(e);
-    out.add_edge({number[a], number[b]}, lists_.edge_angles[e]);
-  }
-  for (std::uint32_t t = 0; t < lists_.triangles.size(); ++t) {
-    if (!cells_.has_triangle(t)) continue;
-    const auto& [a, b, c] = cells_.triangle(t);
-    out.add_triangle({number[a], number[b], number[c]}, lists_.triangle_angles[t]);
-  }
-  lists_ = std::move(out);
+  lists_ = rest_of(cells_, lists_);
 }
 
 }  // namespace blum

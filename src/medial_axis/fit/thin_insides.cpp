@@ -35,17 +35,20 @@ class InsideThinner {
   double run() {
     SheetDecimator decimator(input(), target_.tolerance, context_);
     decimator.run(levels);
-    write(decimator);
+    lists_.triangle_angles.assign(decimator.triangle_angle().begin(), decimator.triangle_angle().end());
+    lists_ = rest_of(decimator.cells(), lists_);
     return decimator.moved();
   }
 
  private:
   [[nodiscard]] DecimatorInput input() const {
-    DecimatorInput input{.triangles = lists_.triangles, .triangle_angle = lists_.triangle_angles};
+    DecimatorInput input{
+        .triangles = lists_.triangles, .triangle_angle = lists_.triangle_angles, .borders = lists_.edges};
     input.points.reserve(lists_.vertices.size());
     for (const AxisVertex& vertex : lists_.vertices) input.points.push_back({vertex.position, vertex.radius});
     for (std::size_t e = 0; e < incidence_.edges().size(); ++e) {
-      if (incidence_.triangles_of_edge()[e].size() != 2) input.borders.push_back(incidence_.edges()[e]);
+      const std::size_t triangles = incidence_.triangles_of_edge()[e].size();
+      if (triangles != 0 && triangles != 2) input.borders.push_back(incidence_.edges()[e]);  // the others are listed
     }
     input.border_kind.assign(input.borders.size(), 0);
     input.stays = next_to(movable());
@@ -64,25 +67,14 @@ class InsideThinner {
         const bool is_inside = kinds[v].rims + kinds[v].seams + kinds[v].curves == 0 && kinds[v].inner > 0;
         const bool is_shown = angle > target_.theta + nearly_theta &&
                               (vertex.radius >= least_radius * target_.voxel || angle >= parallel);
-        out[v] = is_inside && is_shown && !bends_at(static_cast<std::uint32_t>(v)) ? 0 : 1;
+        const auto flatness = [&] {
+          return least_cosine_at(lists_, incidence_, static_cast<std::uint32_t>(v), vertex.position);
+        };
+        out[v] = is_inside && is_shown && flatness() >= least_cosine ? 0 : 1;
       }
     });
     return out;
   }
-  [[nodiscard]] bool bends_at(std::uint32_t v) const {
-    for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
-      const auto& edge = incidence_.edges()[e];
-      const auto at = incidence_.triangles_of_edge()[e];
-      const auto beside = [&](std::uint32_t t) {
-        return lists_.vertices[third_corner(lists_.triangles[t], edge)].position;
-      };
-      const double cosine = cosine_of_bend(lists_.vertices[edge[0]].position, lists_.vertices[edge[1]].position,
-                                           beside(at[0]), beside(at[1]));
-      if (cosine < least_cosine) return true;
-    }
-    return false;
-  }
-
   /// Some vertices and all next to them. Short edges are gone over first, so that each vertex is reached by the fewest
   /// steps.
   [[nodiscard]] std::vector<std::uint8_t> next_to(std::vector<std::uint8_t> chosen) const {
@@ -114,27 +106,6 @@ class InsideThinner {
       }
     }
     return chosen;
-  }
-
-  /// Puts what is left into the lists.
-  void write(const SheetDecimator& decimator) {
-    const ShrinkingComplex& cells = decimator.cells();
-    AxisLists out;
-    std::vector<std::uint32_t> number(lists_.vertices.size(), 0);
-    for (std::uint32_t v = 0; v < number.size(); ++v) {
-      number[v] = static_cast<std::uint32_t>(out.vertices.size());
-      if (cells.has_vertex(v)) out.vertices.push_back(lists_.vertices[v]);
-    }
-    for (std::size_t e = 0; e < lists_.edges.size(); ++e) {
-      const auto& [a, b] = lists_.edges[e];
-      out.add_edge({number[a], number[b]}, lists_.edge_angles[e]);
-    }
-    for (std::uint32_t t = 0; t < lists_.triangles.size(); ++t) {
-      if (!cells.has_triangle(t)) continue;
-      const auto& [a, b, c] = cells.triangle(t);
-      out.add_triangle({number[a], number[b], number[c]}, decimator.triangle_angle()[t]);
-    }
-    lists_ = std::move(out);
   }
 
   AxisLists& lists_;

@@ -173,22 +173,21 @@ class Trimmer {
     for (const std::uint32_t end : incidence_.edges()[e]) look_at_vertex(end);
   }
   void take_edge(std::uint32_t e) {
+    has_taken_ = true;
     has_edge_[e] = false;
     for (const std::uint32_t v : incidence_.edges()[e]) --edges_left_[v];
   }
 
-  /// Whether nothing was taken, and edges are listed as write() would list them.
+  /// Whether nothing was taken, and edges are listed as write() would list them: curves only, rising, the smaller end
+  /// first.
   [[nodiscard]] bool stays_as_it_is() const {
     const auto& listed = incidence_.edge_of_listed();
-    const auto is_all = [](const std::vector<bool>& flags) {
-      return std::find(flags.begin(), flags.end(), false) == flags.end();
-    };
-    return is_all(has_triangle_) && is_all(has_edge_) && is_all(has_vertex_) &&
-           std::none_of(listed.begin(), listed.end(), [&](std::uint32_t e) { return triangles_left_[e] > 0; }) &&
-           std::adjacent_find(listed.begin(), listed.end(), std::greater_equal<>()) == listed.end() &&
-           std::all_of(listed.begin(), listed.end(), [&](const std::uint32_t& e) {
-             return incidence_.edges()[e] == lists_.edges[static_cast<std::size_t>(&e - listed.data())];
-           });
+    for (std::size_t n = 0; n < listed.size(); ++n) {
+      const bool is_rising = n == 0 || listed[n - 1] < listed[n];
+      const bool is_same = lists_.edges[n] == incidence_.edges()[listed[n]];
+      if (!is_rising || !is_same || triangles_left_[listed[n]] > 0) return false;
+    }
+    return !has_taken_;
   }
 
   /// What is left, in the same order.
@@ -227,6 +226,7 @@ class Trimmer {
   const Incidence& incidence_;
   std::vector<std::uint32_t> triangles_left_, edges_left_;
   std::vector<bool> has_triangle_, has_edge_, has_vertex_, is_on_sheet_;
+  bool has_taken_ = false;  ///< anything
   using Entry = std::tuple<double, int, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
