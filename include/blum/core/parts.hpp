@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -21,7 +22,8 @@ template <class Run>
 void for_each_part(const Context& context, std::span<const std::size_t> sizes, std::string_view phase, const Run& run) {
   std::vector<std::size_t> order(sizes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return std::pair(sizes[b], a) < std::pair(sizes[a], b); });
   const std::size_t all = std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
   const auto threads = static_cast<std::size_t>(thread_count(context));
   std::size_t large = 0;
