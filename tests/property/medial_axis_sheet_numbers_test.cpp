@@ -245,6 +245,28 @@ TEST(SlowSheetNumbersAtTheCells, AreTheSameButForCrumbs) {
   }
 }
 
+/// A ball of facets without the smaller one inside of it.
+TriangleMesh thin_shell(double thickness, int longitudes) {
+  TriangleMesh mesh = make_uv_sphere({.longitudes = longitudes, .latitudes = longitudes / 2});
+  const auto count = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (std::uint32_t v = 0; v < count; ++v) mesh.vertices.push_back((1 - thickness) * mesh.vertices[v]);
+  for (std::size_t t = 0, all = mesh.triangles.size(); t < all; ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    mesh.triangles.push_back({c + count, b + count, a + count});
+  }
+  return mesh;
+}
+
+TEST(SheetNumbersOfAnything, AreOneForAShellHoweverThin) {
+  for (const double thickness : {0.05, 0.01, 0.002, 0.0002}) {
+    for (const int longitudes : {12, 32}) {
+      SCOPED_TRACE(testing::Message() << thickness << " thick, " << longitudes << " longitudes");
+      const MedialAxis axis = medial_axis(thin_shell(thickness, longitudes), {.resolution = 40});
+      EXPECT_EQ(sheets_of(axis.fitted(theta)).size(), 1U);
+    }
+  }
+}
+
 TEST(SheetNumbersOfAnything, AreThoseOfTheLeastAngleInNestedAxes) {
   const TriangleMesh mesh = make_bracket();
   const MedialAxis axis = medial_axis(mesh, {.resolution = 64, .least_theta = theta});

@@ -1,11 +1,13 @@
 #include "medial_axis/fit/fit_axis.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <memory>
 
 #include "medial_axis/fit/contract_short.hpp"
 #include "medial_axis/fit/fitter.hpp"
 #include "medial_axis/fit/merge_curves.hpp"
+#include "medial_axis/fit/take_crumbs.hpp"
 #include "medial_axis/fit/thin_insides.hpp"
 #include "medial_axis/fit/trim.hpp"
 #include "medial_axis/fit/unfold.hpp"
@@ -17,6 +19,11 @@ namespace {
 constexpr double thin = 0.02;
 constexpr double thin_if_round = 0.2;
 constexpr double beside = 0.1;
+/// Radius in walls much thinner than cells, in voxels.
+constexpr double far_below_a_voxel = 0.05;
+/// Sheets up to this size, in square voxels, that lie this close to others, in voxels, go.
+constexpr double crumb = 16;
+constexpr double on_others = 0.2;
 /// Edges this long that stick out of a rim are a part of its sheet, in voxels.
 constexpr double whiskers = 1;
 
@@ -61,8 +68,14 @@ class Fitting {
     fitter_.reset();
     return moved;
   }
-  void take_folds_away() {
-    unfold(lists_, fitter().incidence(), target_.surface, target_.voxel, context_);
+  /// @param most_radius  voxels: only where radii are this small.
+  void take_folds_away(double most_radius) {
+    unfold(lists_, fitter().incidence(), target_.surface, {target_.voxel, most_radius * target_.voxel}, context_);
+    fitter_.reset();
+  }
+  void take_crumbs_away() {
+    const double voxel = target_.voxel;
+    take_crumbs(lists_, fitter().incidence(), {crumb * voxel * voxel, on_others * voxel}, context_);
     fitter_.reset();
   }
 
@@ -95,6 +108,8 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
   // Of vertices close beside each other one is put on its sheet, not all.
   fitting.contract(inside);
   fitting.take(&Fitter::find_sheets, nothing);
+  // Where walls are much closer than the cells, these tell nothing of the order of vertices along the walls.
+  fitting.take_folds_away(far_below_a_voxel);
   const double moved = fitting.thin_out();
   fitting.take(&Fitter::place_seams, with_seams);
   fitting.take(&Fitter::place_seams, with_seams);
@@ -117,7 +132,8 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
   }
   fitting.take(&Fitter::place_curves);
   fitting.bend_curves();
-  fitting.take_folds_away();
+  fitting.take_folds_away(HUGE_VAL);
+  fitting.take_crumbs_away();
   return moved;
 }
 

@@ -70,7 +70,9 @@ class InsideThinner {
         const auto flatness = [&] {
           return least_cosine_at(lists_, incidence_, static_cast<std::uint32_t>(v), vertex.position);
         };
-        out[v] = is_inside && is_shown && flatness() >= least_cosine ? 0 : 1;
+        // Between such walls nothing goes far, however these bend.
+        const bool is_thin = vertex.radius < least_radius * target_.voxel;
+        out[v] = is_inside && is_shown && (is_thin || flatness() >= least_cosine) ? 0 : 1;
       }
     });
     return out;

@@ -29,9 +29,11 @@ constexpr int reach = 4;
 
 class Unfolder {
  public:
-  Unfolder(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel, const Context& context)
+  Unfolder(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
+           const Context& context)
       : lists_(lists, incidence, surface, reach),
-        most_moved_(most_moved * voxel),
+        most_moved_(most_moved * limits.voxel),
+        most_radius_(limits.most_radius),
         context_(context),
         scratch_(static_cast<std::size_t>(thread_count(context))) {}
 
@@ -79,7 +81,7 @@ class Unfolder {
     return in_strands(detail::gather<std::uint32_t>(context_, edges.size(), grain, {}, [&](std::size_t e, auto& found) {
       const std::uint32_t p = lists_.now(edges[e][0]);
       const std::uint32_t q = lists_.now(edges[e][1]);
-      if (p == q || stays_as_it_was(e, p, q)) return;
+      if (p == q || std::max(lists_.radius(p), lists_.radius(q)) > most_radius_ || stays_as_it_was(e, p, q)) return;
       looked_[e] = lists_.contractions();
       if (is_folded_at(p, q)) found.push_back(static_cast<std::uint32_t>(e));
     }));
@@ -209,6 +211,7 @@ class Unfolder {
       if (p == b || q == b) corners.push_back(p == b ? q : p);
     });
     for (const std::uint32_t from : corners) {
+      if (lists_.radius(from) > most_radius_) continue;
       const Around triangles = around(from);
       const auto before = static_cast<std::ptrdiff_t>(folds(triangles, from, scratch));
       for (const std::uint32_t to : neighbours(from)) {
@@ -240,6 +243,7 @@ class Unfolder {
 
   ShrinkingLists lists_;
   double most_moved_;
+  double most_radius_;
   const Context& context_;
   std::vector<Scratch> scratch_;       ///< of each thread
   std::vector<std::uint32_t> looked_;  ///< at each edge of the lists, in vain, after so many contractions; or 0
@@ -247,9 +251,9 @@ class Unfolder {
 
 }  // namespace
 
-void unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, double voxel,
+void unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
             const Context& context) {
-  Unfolder(lists, incidence, surface, voxel, context).run();
+  Unfolder(lists, incidence, surface, limits, context).run();
 }
 
 }  // namespace blum
