@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "blum/core/describe.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/grid/label_selection.hpp"
@@ -157,8 +158,10 @@ class OptionTexts {
   static std::string default_text(const Entry& member, const Value& value) {
     if constexpr (DescribedEnum<Value>) {
       return join_words(names_of<Value>(member.choices), "or") + "; default " + std::string(to_string(value));
-    } else if constexpr (std::is_arithmetic_v<Value>) {
-      return "default " + Json(value).dump();
+    } else if constexpr (std::floating_point<Value>) {
+      return "default " + rounded_text(static_cast<double>(value));
+    } else if constexpr (std::integral<Value>) {
+      return "default " + std::to_string(value);
     } else {
       return {};
     }

@@ -221,8 +221,10 @@ void add_certificate(TextTable& table, const Certificate& c, bool has_nested) {
                   (c.bodies.size() > 1 ? " in each of its " + count_text(c.bodies.size()) + " bodies" : "") +
                   claims_text(c.checked));
   } else {
-    table.add("NOT certified",
-              axis + "; the solid " + betti_text(c.solid) + claims_text(c.checked));  // why is told by the error
+    // Why is told by the error.
+    table.add("NOT certified", (c.topology_holds ? axis + ", as the solid, but is wrong otherwise"
+                                                 : axis + "; the solid " + betti_text(c.solid)) +
+                                   claims_text(c.checked));
   }
   table.add("proven", c.homology.shown);
   std::string geometry = "vertices, edges and triangles in the solid";

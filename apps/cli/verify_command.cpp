@@ -50,6 +50,14 @@ SolidSelection solid_of_options(const Arguments& a, InputKind kind) {
   return given;
 }
 
+/// What is said first of an axis that is not certified: that its file names another solid, where it does. The name is
+/// no proof: files are renamed.
+std::vector<std::string> other_source(const fs::path& input, const MedialMetadata& metadata) {
+  const fs::path source = fs::path(metadata.source).filename();
+  if (source.empty() || source == input.filename()) return {};
+  return {"the file says that it is the axis of '" + source.string() + "'"};
+}
+
 /// Certifies one axis after the other.
 class Verifier {
  public:
@@ -80,8 +88,10 @@ class Verifier {
                                {"certificate", certificate_json(certificate, file.nested.has_value())},
                                {"warnings", warnings}}));
     if (!certificate.holds()) {
+      std::vector<std::string> mismatches = other_source(path_, file.metadata);
+      mismatches.insert(mismatches.end(), certificate.mismatches.begin(), certificate.mismatches.end());
       failures_.push_back(
-          {axis, certificate.mismatches, missing_options(given_, kind_, file.metadata, certificate.topology_holds)});
+          {axis, std::move(mismatches), missing_options(given_, kind_, file.metadata, certificate.topology_holds)});
     }
   }
 

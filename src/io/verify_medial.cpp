@@ -143,6 +143,10 @@ Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshVi
                       "have made here");
   }
   const VoxelSet voxels = voxels_inside(mesh, grid, context);
+  if (voxels.count() == 0) {
+    throw InvalidMesh("the mesh bounds no polyhedron (" + found.reason +
+                      "), and no voxel of the grid that the axis names lies inside of it, so there is no solid");
+  }
   return with_claims(certify(all.get(), voxels, grid, &mesh, checks, context), all.get(), claims, nullptr);
 }
 

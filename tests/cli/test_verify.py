@@ -138,6 +138,19 @@ def test_the_axis_of_another_solid_is_found_out(solids, axes):
     assert "1 tunnel" in run("verify", solids / "torus.obj", axes / "box.npz", status=3)[1]
 
 
+def test_the_solid_that_a_file_names_is_said_first_where_another_one_is_given(solids, axes, tmp_path):
+    said = "blum: error: NOT certified: the file says that it is the axis of 'box.obj'; "
+    assert run("verify", solids / "torus.obj", axes / "box.npz", status=3)[1].startswith(said)
+    false = falsified(axes, tmp_path, "box.npz", scale_radii)
+    assert "the axis of" not in run("verify", solids / "box.obj", false, status=3)[1]
+
+
+def test_a_mesh_that_encloses_nothing_has_no_solid(axes, tmp_path):
+    triangle = tmp_path / "triangle.obj"
+    triangle.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert "so there is no solid" in run("verify", triangle, axes / "box.npz", status=1)[1]
+
+
 def test_the_axis_of_another_label_is_found_out(solids, tmp_path):
     run("medial", solids / "balls.npy", "-o", tmp_path / "b.npz", "--label", 1)
     run("verify", solids / "balls.npy", tmp_path / "b.npz", "--label", 1)

@@ -53,7 +53,8 @@ class UntoldVoxels : public InvalidMesh {
 /// vertex may lack a site.
 /// @param available_memory  bytes: a grid that takes more is refused.
 /// @throws UntoldVoxels where the claims name no grid and one is needed; InvalidGrid where that has fewer than 8 steps
-/// along the longest side of the mesh; OutOfMemory; as certify() and voxels_inside().
+/// along the longest side of the mesh; InvalidMesh where no voxel of it lies inside; OutOfMemory; as certify() and
+/// voxels_inside().
 [[nodiscard]] Certificate verify(const Complex& axis, const MedialClaims& claims, const MeshView& mesh,
                                  const CertificateOptions& options = {}, double available_memory = 1e300,
                                  const Context& context = {});
