@@ -21,7 +21,7 @@ TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3
   bool reaches_over = false;
   double radius = more > 0 ? depth + more : 2 * depth;
   for (;; radius *= 2) {
-    other = solid.closest_point(ball.first + along * radius, body);
+    other = solid.closest_point_within(ball.first + along * radius, radius, body);
     reaches_over = length(ball.first + along * radius - other) < radius - nothing;
     if (reaches_over || radius > 2 * diagonal) break;
   }
@@ -36,7 +36,7 @@ TouchingBall grown_ball(const SolidOracle& solid, std::uint32_t body, const Vec3
     ball.radius = radius = next;
     ball.second = other;
     ball.angle = angle;
-    other = solid.closest_point(centre, body);
+    other = solid.closest_point_within(centre, radius, body);
     if (length(centre - other) >= radius - nothing) {
       ball.is_whole = true;
       break;

@@ -133,6 +133,10 @@ class ShellOracle : public SolidOracle {
     return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p, body).triangle));
   }
 
+  [[nodiscard]] Vec3d closest_point_within(const Vec3d& p, double within, std::uint32_t body) const override {
+    return verifier::closest_point(p, corners_of(mesh_, search_.nearest_within(p, within, body).triangle));
+  }
+
   [[nodiscard]] std::unique_ptr<Complement> complement(const Context& context) const override {
     std::vector<std::vector<std::uint32_t>> walls(shells_.shells.size());  // the triangles of voids
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {

@@ -79,6 +79,10 @@ class SolidOracle {
   }
   /// The closest point of the surface of a body.
   [[nodiscard]] virtual Vec3d closest_point(const Vec3d& p, std::uint32_t body) const = 0;
+  /// The same, and maybe faster, where some point of it is known to be within a distance.
+  [[nodiscard]] virtual Vec3d closest_point_within(const Vec3d& p, double /*within*/, std::uint32_t body) const {
+    return closest_point(p, body);
+  }
   /// A random point of a body beside its surface, all parts of this alike; nullopt where there is none, or the surface
   /// has no triangles.
   [[nodiscard]] virtual std::optional<Vec3d> beside_surface(std::uint32_t /*body*/, Random& /*random*/) const {

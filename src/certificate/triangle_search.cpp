@@ -130,20 +130,34 @@ ProbeLine line_through(const Vec3d& point, std::uint32_t attempt) {
 
 Vec3d closest_point(const Vec3d& p, const std::array<Vec3d, 3>& corners) {
   const auto& [a, b, c] = corners;
-  Vec3d best = a;
-  const auto look_at = [&](const Vec3d& other) {
-    if (squared_length(p - other) < squared_length(p - best)) best = other;
-  };
-  look_at(Segment3{a, b}.closest_point(p));
-  look_at(Segment3{b, c}.closest_point(p));
-  look_at(Segment3{c, a}.closest_point(p));
-  // The foot on the plane, if it is in the triangle: whatever the rounding, a mean of the corners is a point of it.
-  const Vec3d normal = cross(b - a, c - a);
+  const Vec3d to_p = p - a;
+  const Vec3d ab = b - a;
+  const Vec3d ac = c - a;
+  const Vec3d normal = cross(ab, ac);
+  // The weights of the corners at the foot on the plane, times this. Next to an edge, and where rounding leaves doubt
+  // whether the foot is beyond it, the edge is looked at too.
   const double squared = squared_length(normal);
+  const double to_b = dot(cross(to_p, ac), normal);
+  const double to_c = dot(cross(ab, to_p), normal);
+  const double largest = std::max({squared_length(to_p), squared_length(ab), squared_length(ac)});
+  const double doubt = 1e-13 * largest * largest;
+  Vec3d best = a;
+  double best_squared = squared_length(to_p);
+  const auto look_at = [&](const Vec3d& other) {
+    const double own = squared_length(p - other);
+    if (own < best_squared) {
+      best = other;
+      best_squared = own;
+    }
+  };
+  if (!(squared - to_b - to_c > doubt)) look_at(Segment3{b, c}.closest_point(p));
+  if (!(to_b > doubt)) look_at(Segment3{c, a}.closest_point(p));
+  if (!(to_c > doubt)) look_at(Segment3{a, b}.closest_point(p));
+  // Whatever the rounding, a mean of the corners is a point of the triangle.
   if (!(squared > 0)) return best;
-  const double to_b = dot(cross(p - a, c - a), normal) / squared;
-  const double to_c = dot(cross(b - a, p - a), normal) / squared;
-  if (to_b >= 0 && to_c >= 0 && to_b + to_c <= 1) look_at(a + (b - a) * to_b + (c - a) * to_c);
+  const double share_b = to_b / squared;
+  const double share_c = to_c / squared;
+  if (share_b >= 0 && share_c >= 0 && share_b + share_c <= 1) look_at(a + ab * share_b + ac * share_c);
   return best;
 }
 
@@ -274,7 +288,12 @@ double TriangleSearch::bound(const Vec3d& p, std::uint32_t node) const {
 }
 
 TriangleSearch::Nearest TriangleSearch::nearest(const Vec3d& p, std::uint32_t group) const {
-  double best = HUGE_VAL;
+  return nearest_within(p, HUGE_VAL, group);
+}
+
+TriangleSearch::Nearest TriangleSearch::nearest_within(const Vec3d& p, double within, std::uint32_t group) const {
+  double best = within * within * as_close;
+  const double unknown = best;
   std::uint32_t triangle = 0;
   ClosePoints close;
   tree_.search(
@@ -290,6 +309,7 @@ TriangleSearch::Nearest TriangleSearch::nearest(const Vec3d& p, std::uint32_t gr
         }
         return best * as_close;
       });
+  if (best == unknown && within < HUGE_VAL) return nearest(p, group);  // nothing is that close after all
   return {std::sqrt(best), triangle, close.is_alone(best)};
 }
 

@@ -50,6 +50,8 @@ class TriangleSearch {
 
   /// The closest triangle of a group, or for no_group of all. Exact up to rounding. HUGE_VAL where there is none.
   [[nodiscard]] Nearest nearest(const Vec3d& p, std::uint32_t group = no_group) const;
+  /// The same, and faster, where a triangle is known to be within a distance.
+  [[nodiscard]] Nearest nearest_within(const Vec3d& p, double within, std::uint32_t group) const;
 
   /// Finds all crossings of a line, those with triangles near its first `reach` at least; false if it comes too close
   /// to an edge to tell.

@@ -123,7 +123,7 @@ TEST(MedialImage, NoEdgeCrossesTheGapOfAU) {
 TEST(MedialImage, OfRandomVoxelsIsCertifiedForAnySpacing) {
   Random random(20261122);
   const auto side = [&] { return static_cast<std::int64_t>(2 + random.below(3)); };
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < 16; ++round) {
     const Size size{side(), side(), side()};
     VoxelImage image = empty_image(size);
     const double share = random.uniform(0.3, 0.9);

@@ -150,7 +150,7 @@ inline KnownAxis known_l_beam(double thickness, double step) {
 // ---- Round solids ----
 
 inline KnownAxis known_ball(double step) {
-  return {make_sphere({.frequency = 48}), {{{0, 0, 0}, 1, 180}}, step};
+  return {make_sphere({.frequency = 24}), {{{0, 0, 0}, 1, 180}}, step};
 }
 
 /// A point of the axis of an ellipse with half axes 1 and b, and how the ellipse is seen from there: normals at (s, t)
