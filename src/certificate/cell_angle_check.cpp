@@ -24,7 +24,7 @@ constexpr double same = 1e-3;              ///< degrees: rounding of float32
 constexpr double most_below = 0.8;         ///< share of the area: see docs/theory/medial-axis.md
 constexpr double most_above = 0.2;         ///< share of samples
 constexpr double most_curves_above = 0.6;  ///< the same of curves: those of true axes wind within a voxel
-constexpr double most_low_rims = 0.25;     ///< share of their length
+constexpr double most_low_rims = 0.25;     ///< share of their length and that of curves
 constexpr std::size_t few = 64;            ///< cells, or samples, from which shares tell something
 constexpr std::size_t most_samples = 1'024;
 constexpr std::size_t grain = 32;
@@ -117,12 +117,13 @@ class Angles {
     double low = 0;
     for (std::uint32_t e = 0; e < incidence_.edges().size(); ++e) {
       const auto triangles = incidence_.triangles_of_edge()[e];
-      if (triangles.size() != 1) continue;
+      if (triangles.size() > 1) continue;
       const auto& [a, b] = incidence_.edges()[e];
       const double size = length(axis_.positions[a] - axis_.positions[b]);
       if (!std::isfinite(size)) continue;
-      ++check.rims;
       all += size;
+      if (triangles.empty()) continue;
+      ++check.rims;
       if (of_sheet[static_cast<std::size_t>(axis_.sheet[triangles[0]])] <= theta) low += size;
     }
     if (all > 0) check.low_rims_share = low / all;
@@ -214,8 +215,8 @@ void explain(const AngleCheck& check, double theta, bool by_voxels, std::vector<
                          " have a separation angle below that of their triangles");
   }
   if (check.rims >= few && check.low_rims_share > most_low_rims) {
-    mismatches.push_back("of the rims, " + percent(check.low_rims_share) +
-                         " are of sheets that nothing sees at more than " + rounded_text(theta) +
+    mismatches.push_back("of the rims and curves, " + percent(check.low_rims_share) +
+                         " are rims of sheets that nothing sees at more than " + rounded_text(theta) +
                          " degrees, which the axis at that theta does not have");
   }
 }

@@ -329,7 +329,10 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
                          const CertificateOptions& options, double factor, std::vector<std::string>& mismatches,
                          const Context& context) {
   const Allowances allowed = allowances(solid, options, factor);
-  const Claimed claimed(axis, options.angles ? options.theta.value_or(0) : HUGE_VAL, allowed.noise, options.footprints);
+  // Steps of voxels see each other at smaller angles everywhere: what a theta below that keeps lies between these.
+  const double least = allowed.of_voxels ? 2 * allowed.noise : 0;
+  const Claimed claimed(axis, options.angles ? std::max(options.theta.value_or(0), least) : HUGE_VAL, allowed.noise,
+                        options.footprints);
   const Middle middle(solid, allowed);
   const std::size_t before = mismatches.size();
   MedialCheck check;

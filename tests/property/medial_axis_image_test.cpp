@@ -145,6 +145,18 @@ TEST(MedialImage, OfAHollowBallIsAClosedSurface) {
   expect_axis(make_ball_image({.size = 40, .inner_radius = 0.5}), {1, 0, 1});
 }
 
+TEST(MedialImage, IsCertifiedAtEveryAngleOfOneRun) {
+  for (const VoxelImage& image : {make_ball_image({}), make_tube_image({}), make_balls_image({})}) {
+    const MedialAxis axis = medial_axis(image);
+    const VoxelSet voxels = selected_voxels(image, {});
+    for (const double theta : {0.0, 20.0, 60.0, 90.0, 120.0, 170.0}) {
+      const Certificate certificate =
+          certify(axis.simplify(theta), voxels, image.grid, nullptr, {.theta = theta, .lambda = 0, .spacing = 1});
+      EXPECT_TRUE(certificate.holds()) << "theta " << theta << ": " << certificate.mismatches.front();
+    }
+  }
+}
+
 TEST(MedialImage, OfTubesIsTheirNetwork) {
   expect_axis(make_tube_image({.nodes = 2, .pitch = 14, .radius = 3}), {1, 5, 0});
   expect_axis(make_tube_image({.nodes = 3, .pitch = 12, .radius = 2.5}), {1, 28, 0});

@@ -398,8 +398,8 @@ struct AngleCheck {
   std::size_t borders_above = 0;  ///< of them, those that say more than all their triangles
   std::size_t borders_below = 0;  ///< those that say 20 degrees less
   std::size_t rims = 0;           ///< looked at; none where theta is not known
-  double low_rims_share = 0;      ///< of their length: rims of sheets that nothing sees at more than theta
-  bool holds = false;             ///< shares are small
+  double low_rims_share = 0;  ///< of rims and curves, by length: rims of sheets that nothing sees at more than theta
+  bool holds = false;         ///< shares are small
 };
 
 template <>
@@ -418,7 +418,7 @@ struct Description<AngleCheck> {
       Member{"borders_below", &AngleCheck::borders_below, "", "those that say 20 degrees less"},
       Member{"rims", &AngleCheck::rims, "", "looked at; none where theta is not known"},
       Member{"low_rims_share", &AngleCheck::low_rims_share, "",
-             "of their length: rims of sheets that nothing sees at more than theta"},
+             "of rims and curves, by length: rims of sheets that nothing sees at more than theta"},
       Member{"holds", &AngleCheck::holds, "", "whether shares are small"},
   };
 };

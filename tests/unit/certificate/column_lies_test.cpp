@@ -196,7 +196,7 @@ TEST(ColumnLies, FalseAnglesOfEdges) {
 TEST(ColumnLies, TheAxisOfASmallerAngle) {
   True lie = bracket();
   lie.claims.metadata.theta = 120;
-  expect_refused(lie, "are of sheets that nothing sees at more than 120 degrees");
+  expect_refused(lie, "are rims of sheets that nothing sees at more than 120 degrees");
 }
 
 TEST(ColumnLies, FiguresThatCannotBe) {
