@@ -1,5 +1,6 @@
 #include "medial_axis/axis_lists.hpp"
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -46,24 +47,44 @@ Columns columns_of(std::vector<float> angles) {
 
 }  // namespace
 
-AxisLists rest_of(const ShrinkingComplex& cells, const AxisLists& whole) {
+namespace {
+
+/// @param edge, triangle  give the vertices of those that are left; nullopt for the others.
+template <class HasVertex, class Edge, class Triangle>
+AxisLists rest(const AxisLists& whole, const HasVertex& has_vertex, const Edge& edge, const Triangle& triangle) {
   AxisLists out;
   std::vector<std::uint32_t> number(whole.vertices.size(), 0);
   for (std::uint32_t v = 0; v < number.size(); ++v) {
     number[v] = static_cast<std::uint32_t>(out.vertices.size());
-    if (cells.has_vertex(v)) out.vertices.push_back(whole.vertices[v]);
+    if (has_vertex(v)) out.vertices.push_back(whole.vertices[v]);
   }
   for (std::uint32_t e = 0; e < whole.edges.size(); ++e) {
-    if (!cells.has_edge(e)) continue;
-    const auto& [a, b] = cells.edge(e);
-    out.add_edge({number[a], number[b]}, whole.edge_angles[e]);
+    const std::optional<std::array<std::uint32_t, 2>> ends = edge(e);
+    if (ends) out.add_edge({number[(*ends)[0]], number[(*ends)[1]]}, whole.edge_angles[e]);
   }
   for (std::uint32_t t = 0; t < whole.triangles.size(); ++t) {
-    if (!cells.has_triangle(t)) continue;
-    const auto& [a, b, c] = cells.triangle(t);
+    const std::optional<std::array<std::uint32_t, 3>> corners = triangle(t);
+    if (!corners) continue;
+    const auto& [a, b, c] = *corners;
     out.add_triangle({number[a], number[b], number[c]}, whole.triangle_angles[t]);
   }
   return out;
+}
+
+}  // namespace
+
+AxisLists rest_of(const ShrinkingComplex& cells, const AxisLists& whole) {
+  return rest(
+      whole, [&](std::uint32_t v) { return cells.has_vertex(v); },
+      [&](std::uint32_t e) { return cells.has_edge(e) ? std::optional(cells.edge(e)) : std::nullopt; },
+      [&](std::uint32_t t) { return cells.has_triangle(t) ? std::optional(cells.triangle(t)) : std::nullopt; });
+}
+
+AxisLists rest_of(const AxisLists& whole, const std::vector<bool>& has_vertex, const std::vector<bool>& has_triangle) {
+  return rest(
+      whole, [&](std::uint32_t v) { return bool(has_vertex[v]); },
+      [&](std::uint32_t e) { return std::optional(whole.edges[e]); },
+      [&](std::uint32_t t) { return has_triangle[t] ? std::optional(whole.triangles[t]) : std::nullopt; });
 }
 
 void append(AxisLists more, AxisLists& lists) {

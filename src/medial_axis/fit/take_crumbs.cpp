@@ -1,7 +1,6 @@
 #include "medial_axis/fit/take_crumbs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -38,7 +37,7 @@ class CrumbTaker {
     const std::vector<bool> lies_on_others = which_lie_on_others();
     for (std::size_t s = 0; s < small_.size(); ++s)
       is_changed = (lies_on_others[s] && collapse(small_[s])) || is_changed;
-    if (is_changed) write();
+    if (is_changed) lists_ = rest_of(lists_, has_vertex_, has_triangle_);
     return is_changed;
   }
 
@@ -180,26 +179,6 @@ class CrumbTaker {
     for (const std::uint32_t e : edges) has_edge_[e] = true;
     for (const std::uint32_t v : vertices) has_vertex_[v] = true;
     return false;
-  }
-
-  /// What is left, in the same order.
-  void write() {
-    AxisLists out;
-    std::vector<std::uint32_t> number(lists_.vertices.size(), 0);
-    for (std::uint32_t v = 0; v < number.size(); ++v) {
-      number[v] = static_cast<std::uint32_t>(out.vertices.size());
-      if (has_vertex_[v]) out.vertices.push_back(lists_.vertices[v]);
-    }
-    for (std::size_t e = 0; e < lists_.edges.size(); ++e) {
-      const auto& [a, b] = lists_.edges[e];
-      out.add_edge({number[a], number[b]}, lists_.edge_angles[e]);
-    }
-    for (std::size_t t = 0; t < has_triangle_.size(); ++t) {
-      if (!has_triangle_[t]) continue;
-      const auto& [a, b, c] = lists_.triangles[t];
-      out.add_triangle({number[a], number[b], number[c]}, lists_.triangle_angles[t]);
-    }
-    lists_ = std::move(out);
   }
 
   AxisLists& lists_;
