@@ -130,7 +130,7 @@ class ShellOracle : public SolidOracle {
   }
 
   [[nodiscard]] Vec3d closest_point(const Vec3d& p, std::uint32_t body) const override {
-    return verifier::closest_point(p, corners_of(mesh_, search_.nearest(p, body).triangle));
+    return closest_point_within(p, HUGE_VAL, body);
   }
 
   [[nodiscard]] Vec3d closest_point_within(const Vec3d& p, double within, std::uint32_t body) const override {

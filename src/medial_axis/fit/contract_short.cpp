@@ -11,6 +11,7 @@
 #include "blum/core/gather.hpp"
 #include "blum/core/sort_unique.hpp"
 #include "blum/core/union_find.hpp"
+#include "medial_axis/fit/kind.hpp"
 #include "medial_axis/fit/shrinking_lists.hpp"
 #include "medial_axis/fit/take_in_batches.hpp"
 
@@ -22,13 +23,8 @@ constexpr std::uint32_t most_of_crumb = 8;
 
 /// The edges of sheets of a few triangles, and of curves that end next to a sheet.
 std::vector<std::array<std::uint32_t, 2>> edges_of_crumbs(const Incidence& incidence) {
-  const std::size_t triangles = incidence.sides().size();
-  detail::UnionFind sheets(triangles);
-  for (std::size_t e = 0; e < incidence.edges().size(); ++e) {
-    const auto at = incidence.triangles_of_edge()[e];
-    if (at.size() == 2) sheets.join(at[0], at[1]);
-  }
-  std::vector<std::uint32_t> size(triangles, 0);
+  detail::UnionFind sheets = sheets_of(incidence);
+  std::vector<std::uint32_t> size(incidence.sides().size(), 0);
   for (std::uint32_t t = 0; t < size.size(); ++t) ++size[sheets.find(t)];
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (std::uint32_t t = 0; t < size.size(); ++t) {

@@ -70,13 +70,13 @@ class Fitting {
   }
   /// @param most_radius  voxels: only where radii are this small.
   void take_folds_away(double most_radius) {
-    unfold(lists_, fitter().incidence(), target_.surface, {target_.voxel, most_radius * target_.voxel}, context_);
-    fitter_.reset();
+    const UnfoldLimits limits{target_.voxel, most_radius * target_.voxel};
+    if (unfold(lists_, fitter().incidence(), target_.surface, limits, context_)) fitter_.reset();
   }
   void take_crumbs_away() {
     const double voxel = target_.voxel;
-    take_crumbs(lists_, fitter().incidence(), {crumb * voxel * voxel, on_others * voxel}, context_);
-    fitter_.reset();
+    const CrumbLimits limits{crumb * voxel * voxel, on_others * voxel};
+    if (take_crumbs(lists_, fitter().incidence(), limits, context_)) fitter_.reset();
   }
 
  private:

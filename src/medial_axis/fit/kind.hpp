@@ -1,4 +1,4 @@
-// Blum: what vertices of an axis are by their edges. SPDX-License-Identifier: Apache-2.0
+// Blum: what vertices and triangles of an axis are by its edges. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "blum/complex/incidence.hpp"
+#include "blum/core/union_find.hpp"
 
 namespace blum {
 
@@ -31,6 +32,16 @@ struct Kind {
   [[nodiscard]] bool is_curve_end() const { return curves == 1 && rims + seams + inner == 0; }
   [[nodiscard]] bool is_junction() const { return seams > 2 || (seams > 0 && curves > 0); }
 };
+
+/// Which triangles are of one sheet: those that edges of exactly two triangles join.
+inline detail::UnionFind sheets_of(const Incidence& incidence) {
+  detail::UnionFind sheets(incidence.sides().size());
+  for (std::size_t e = 0; e < incidence.edges().size(); ++e) {
+    const auto at = incidence.triangles_of_edge()[e];
+    if (at.size() == 2) sheets.join(at[0], at[1]);
+  }
+  return sheets;
+}
 
 /// @param incidence  of a complex of so many vertices.
 inline std::vector<Kind> kinds_of(const Incidence& incidence, std::size_t vertices) {

@@ -12,6 +12,7 @@
 #include "blum/core/vec3.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "medial_axis/fit/kind.hpp"
 
 namespace blum {
 namespace {
@@ -52,11 +53,7 @@ class CrumbTaker {
 
   void find_small_sheets() {
     const std::size_t count = lists_.triangles.size();
-    detail::UnionFind sheets(count);
-    for (std::size_t e = 0; e < has_edge_.size(); ++e) {
-      const auto at = incidence_.triangles_of_edge()[e];
-      if (at.size() == 2 && !is_listed_[e]) sheets.join(at[0], at[1]);
-    }
+    detail::UnionFind sheets = sheets_of(incidence_);
     std::vector<double> size(count, 0);
     for (std::uint32_t t = 0; t < count; ++t) size[sheets.find(t)] += area(t);
     constexpr std::uint32_t none = 0xffffffffU;

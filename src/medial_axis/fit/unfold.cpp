@@ -37,7 +37,9 @@ class Unfolder {
         context_(context),
         scratch_(static_cast<std::size_t>(thread_count(context))) {}
 
-  void run() {
+  /// @return  whether anything was contracted.
+  bool run() {
+    const std::uint32_t before = lists_.contractions();
     looked_.assign(lists_.incidence().edges().size(), 0);
     for (int round = 0; round < most_rounds; ++round) {
       const std::vector<std::uint32_t> folded = folded_edges();
@@ -51,7 +53,9 @@ class Unfolder {
           });
       if (!is_changed) break;
     }
+    if (lists_.contractions() == before) return false;
     lists_.write();
+    return true;
   }
 
  private:
@@ -251,9 +255,9 @@ class Unfolder {
 
 }  // namespace
 
-void unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
+bool unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
             const Context& context) {
-  Unfolder(lists, incidence, surface, limits, context).run();
+  return Unfolder(lists, incidence, surface, limits, context).run();
 }
 
 }  // namespace blum

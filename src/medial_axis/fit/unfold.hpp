@@ -19,8 +19,8 @@ struct UnfoldLimits {
 /// Where two triangles of a sheet lie one over the other, as vertices that were moved leave them, contracts the edge
 /// next to them that takes most of such folds away. Seams stay on seams and rims on rims; homotopy type and solid as in
 /// contract_short(). @param incidence  of the lists as they are.
-/// @throws Cancelled. Cost: near-linear.
-void unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
+/// @return  whether any was contracted.  @throws Cancelled. Cost: near-linear.
+bool unfold(AxisLists& lists, const Incidence& incidence, const Surface& surface, const UnfoldLimits& limits,
             const Context& context);
 
 }  // namespace blum

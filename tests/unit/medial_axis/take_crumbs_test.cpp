@@ -47,6 +47,13 @@ std::uint32_t add_vertex(AxisLists& lists, const Vec3d& position) {
   return static_cast<std::uint32_t>(lists.vertices.size() - 1);
 }
 
+/// A triangle on the edge from (2, 2) to (3, 2), with a vertex of its own, which is returned.
+std::uint32_t add_flap(AxisLists& lists, const Vec3d& own, float angle = 180) {
+  const std::uint32_t v = add_vertex(lists, own);
+  lists.add_triangle({at(2, 2), at(3, 2), v}, angle);
+  return v;
+}
+
 bool take(AxisLists& lists, const CrumbLimits& with = limits) {
   return take_crumbs(lists, Incidence({lists.vertices.size(), lists.edges, lists.triangles}), with, {});
 }
@@ -68,16 +75,14 @@ void expect_square(const AxisLists& lists) {
 
 TEST(TakeCrumbs, TakesATriangleBetweenVerticesOfASheetThatItLiesOn) {
   AxisLists lists = square();
-  lists.add_triangle({at(2, 2), at(3, 2), at(4, 3)},
-                     180);  // on the edge from (2, 2) to (3, 2), free at one side at least
+  lists.add_triangle({at(2, 2), at(3, 2), at(4, 3)}, 180);  // free from (2, 2) to (4, 3)
   ASSERT_TRUE(take(lists));
   expect_square(lists);
 }
 
 TEST(TakeCrumbs, TakesOneWithAVertexOfItsOwn) {
   AxisLists lists = square();
-  const std::uint32_t own = add_vertex(lists, {2.5, 2.6, 0.05});
-  lists.add_triangle({at(2, 2), at(3, 2), own}, 180);
+  add_flap(lists, {2.5, 2.6, 0.05});
   ASSERT_TRUE(take(lists));
   expect_square(lists);
 }
@@ -96,26 +101,22 @@ TEST(TakeCrumbs, TakesAStripOfSeveral) {
 
 TEST(TakeCrumbs, TakesThoseOnCrumbsToo) {
   AxisLists lists = square();
-  const std::uint32_t first = add_vertex(lists, {2.5, 2.6, 0.03});
-  const std::uint32_t second = add_vertex(lists, {2.5, 2.4, -0.03});
-  lists.add_triangle({at(2, 2), at(3, 2), first}, 180);
-  lists.add_triangle({at(2, 2), at(3, 2), second}, 180);
+  add_flap(lists, {2.5, 2.6, 0.03});
+  add_flap(lists, {2.5, 2.4, -0.03});
   ASSERT_TRUE(take(lists));
   expect_square(lists);
 }
 
 TEST(TakeCrumbs, LeavesWhatStandsOut) {
   AxisLists lists = square();
-  const std::uint32_t own = add_vertex(lists, {2.5, 2, 0.5});
-  lists.add_triangle({at(2, 2), at(3, 2), own}, 90);
+  add_flap(lists, {2.5, 2, 0.5}, 90);
   EXPECT_FALSE(take(lists));
   EXPECT_EQ(lists.triangles.size(), square().triangles.size() + 1);
 }
 
 TEST(TakeCrumbs, LeavesWhatIsLarge) {
   AxisLists lists = square();
-  const std::uint32_t own = add_vertex(lists, {2.5, 2.6, 0.05});
-  lists.add_triangle({at(2, 2), at(3, 2), own}, 180);
+  add_flap(lists, {2.5, 2.6, 0.05});
   EXPECT_FALSE(take(lists, {0.2, 0.1}));
   EXPECT_TRUE(take(lists, {0.4, 0.1}));
 }
@@ -147,9 +148,8 @@ TEST(TakeCrumbs, LeavesWholeWhatWouldLeaveACurve) {
 
 TEST(TakeCrumbs, LeavesCurvesAsTheyAre) {
   AxisLists lists = square();
-  const std::uint32_t own = add_vertex(lists, {2.5, 2.6, 0.05});
+  const std::uint32_t own = add_flap(lists, {2.5, 2.6, 0.05});
   const std::uint32_t end = add_vertex(lists, {2.5, 2.6, 5});
-  lists.add_triangle({at(2, 2), at(3, 2), own}, 180);
   lists.add_edge({own, end}, 120);
   const BettiNumbers betti = betti_of(lists);
   (void)take(lists);
