@@ -149,8 +149,9 @@ inline KnownAxis known_l_beam(double thickness, double step) {
 
 // ---- Round solids ----
 
+/// Facets lie less than 0.0001 inside of the ball: what is measured is the axis, not they.
 inline KnownAxis known_ball(double step) {
-  return {make_sphere({.frequency = 24}), {{{0, 0, 0}, 1, 180}}, step};
+  return {make_sphere({.frequency = 48}), {{{0, 0, 0}, 1, 180}}, step};
 }
 
 /// A point of the axis of an ellipse with half axes 1 and b, and how the ellipse is seen from there: normals at (s, t)
