@@ -34,6 +34,8 @@ struct AxisPiece {
   /// triangles, three by three.
   IndexRows shapes;
   IndexRows sides;  ///< of each polygon: its edges, as places of cells; empty for others
+  /// Of a polyhedron, boxes of the model in which parts of cells leave the solid, as no better ones were found.
+  std::vector<Box3> leaving;
 };
 
 /// Collapses the cells of a solid to its medial axis.

@@ -279,10 +279,26 @@ class MedialAxisBuilder {
     part.surface = std::make_unique<BodySurface>(solid, body, data_->report.rule == SolidRule::polyhedron, context);
     timer.lap("surface");
     part.piece = make_piece(part.voxelized, part.surface->surface, NoiseFloor{}, part.phases, context);
+    split_where_left(part, body, context);
     for (AxisVertex& vertex : part.piece.vertices) {
       for (SiteId& site : vertex.sites) site = part.surface->input_site(site);
     }
     return part;
+  }
+
+  /// Makes the model of a body finer where cells of its axis leave the solid, and the axis anew: in smaller boxes there
+  /// is less for them to run around.
+  void split_where_left(BodyPart& part, const SolidBody& body, const Context& context) const {
+    constexpr int most_rounds = 6;
+    if (!part.voxelized.report.topology_matches) return;
+    std::vector<Box3> finer;
+    for (int round = 0; round < most_rounds && !part.piece.leaving.empty(); ++round) {
+      finer.insert(finer.end(), part.piece.leaving.begin(), part.piece.leaving.end());
+      PhaseTimer timer(part.phases);
+      split_further(part.voxelized, body, finer, context);
+      timer.lap("field and voxels");
+      part.piece = make_piece(part.voxelized, part.surface->surface, NoiseFloor{}, part.phases, context);
+    }
   }
 
   /// Bodies that were made side by side tell more seconds together than went by.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "blum/core/parallel.hpp"
 #include "medial_axis/fill_polygon.hpp"
+#include "medial_axis/near_extra.hpp"
 #include "medial_axis/place_vertices.hpp"
 #include "medial_axis/solid_paths.hpp"
 
@@ -22,6 +24,8 @@ constexpr std::size_t cells_per_range = 512;
 struct Shape {
   std::vector<std::uint32_t> items;
   std::vector<AxisVertex> own;
+  bool leaves = false;      ///< the solid, somewhere
+  bool needs_more = false;  ///< with more effort, it may not
 };
 
 AxisVertex vertex_at(const Stop& stop) {
@@ -32,33 +36,35 @@ class Shaper {
  public:
   static constexpr std::uint32_t first_own = 0xf0000000U;
 
-  Shaper(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context)
+  /// @param needs_more  null: with full effort; else with little, see SolidPaths.
+  Shaper(const AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const NearExtra& near,
+         bool* needs_more)
       : piece_(piece),
         corners_(corners),
         governors_(witnesses.governors()),
         witnesses_(witnesses),
-        paths_(governors_.surface()) {
-    find_twins();
-    find_homes(context);
-  }
+        near_(near),
+        needs_more_(needs_more),
+        paths_(governors_.surface(), needs_more) {}
 
   /// The chain of an edge that would leave the solid, or that has a twin; nullopt where it is a segment.
   [[nodiscard]] std::optional<Shape> bent(std::uint32_t c) const {
     const auto ends = corners_.of_cells()[c];
     const Stop a = stop_at(ends[0]);
     const Stop b = stop_at(ends[1]);
-    const bool has_twin = std::binary_search(twins_.begin(), twins_.end(), c);
+    const bool has_twin = near_.has_twin(c);
     std::optional<std::vector<Stop>> between;
-    if (is_near_extra_[ends[0]] != 0 || is_near_extra_[ends[1]] != 0) between = through_component(c, has_twin);
+    if (near_.is_near(ends[0]) || near_.is_near(ends[1])) between = through_component(c, has_twin);
     if (between && between->empty() && !has_twin) return std::nullopt;
     if (!between && !has_twin) {
-      if (paths_.is_straight(a, b)) return std::nullopt;
+      if (paths_.is_straight(a, b) && !has_given_up()) return std::nullopt;
       between = paths_.pushed(a, b);
     }
     if (!between) between = through_middle(c, a, b);
     if (has_twin && (!between || between->empty())) between = {middle_of(a, b)};
-    if (!between) return std::nullopt;
     Shape shape;
+    shape.leaves = !between || has_given_up();
+    if (!between) between.emplace();
     shape.items.push_back(ends[0]);
     add_own(shape, *between);
     shape.items.push_back(ends[1]);
@@ -71,9 +77,8 @@ class Shaper {
                                             std::span<const AxisVertex> vertices) const {
     if (touches_extra(c)) return fan(c, outline, vertices);
     const auto stop = [&](std::uint32_t v) { return stop_of(vertices[v]); };
-    const bool is_near_extra = std::any_of(outline.begin(), outline.end(), [&](std::uint32_t v) {
-      return v >= is_near_extra_.size() || is_near_extra_[v] != 0;
-    });
+    const bool is_near_extra =
+        std::any_of(outline.begin(), outline.end(), [&](std::uint32_t v) { return near_.is_near(v); });
     if (outline.size() == 4) {
       const auto halves = triangles_of(outline, vertices);
       const auto& [p, q, r] = halves[0];
@@ -92,46 +97,8 @@ class Shaper {
   }
 
  private:
-  /// Edges with the same ends as another one: all but the first of them. Files name edges by their ends.
-  void find_twins() {
-    const CellStructure& structure = piece_.structure;
-    if (structure.extra() == nullptr) return;
-    const auto is_special = [&](Cell cell) { return structure.is_extra(cell) || structure.extra()->is_mixed(cell); };
-    std::vector<std::array<std::uint32_t, 3>> edges;
-    for (std::uint32_t c = 0; c < piece_.cells.size(); ++c) {
-      if (piece_.cells[c].dimension != 1) continue;
-      const auto ends = corners_.of_cells()[c];
-      const auto cells = corners_.vertex_cells();
-      if (!is_special(cells[ends[0]]) || !is_special(cells[ends[1]])) continue;
-      edges.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1]), c});
-    }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t e = 1; e < edges.size(); ++e) {
-      if (edges[e][0] == edges[e - 1][0] && edges[e][1] == edges[e - 1][1]) twins_.push_back(edges[e][2]);
-    }
-    std::sort(twins_.begin(), twins_.end());
-  }
-
-  /// Finds a point of the component of each vertex that is extra, or next to such cells: there the solid may have
-  /// holes narrower than a voxel, and a vertex may lie beyond one of them.
-  void find_homes(const Context& context) {
-    const CellStructure& structure = piece_.structure;
-    const auto cells = corners_.vertex_cells();
-    is_near_extra_.assign(cells.size(), 0);
-    homes_.resize(cells.size());
-    if (structure.extra() == nullptr) return;
-    parallel_for(context, cells.size(), cells_per_range, "", [&](const WorkRange& range) {
-      for (std::size_t v = range.begin; v < range.end; ++v) {
-        const auto is_special = [&](Cell cell) {
-          return structure.is_extra(cell) || structure.extra()->is_mixed(cell);
-        };
-        bool is_near = is_special(cells[v]);
-        structure.for_each_coface(cells[v], [&](Cell edge) { is_near = is_near || is_special(edge); });
-        is_near_extra_[v] = is_near ? 1 : 0;
-        if (is_near) homes_[v] = home_of(cells[v]);
-      }
-    });
-  }
+  /// Whether more effort might have found a way that was looked for.
+  [[nodiscard]] bool has_given_up() const { return needs_more_ != nullptr && *needs_more_; }
 
   /// Whether a polygon is extra, or has such a corner: then others may have the same corners.
   [[nodiscard]] bool touches_extra(std::uint32_t c) const {
@@ -194,7 +161,7 @@ class Shaper {
   [[nodiscard]] std::optional<std::vector<Stop>> from_component(const Stop& start, std::uint32_t vertex) const {
     const Stop end = stop_at(vertex);
     std::vector<Stop> way{start};
-    if (const std::optional<Stop>& home = is_near_extra_[vertex] != 0 ? homes_[vertex] : std::nullopt) {
+    if (const std::optional<Stop>& home = near_.is_near(vertex) ? near_.home(vertex) : std::nullopt) {
       if (!add_way(way, *home, vertex)) return std::nullopt;
     }
     if (!add_way(way, end, vertex)) return std::nullopt;
@@ -207,7 +174,7 @@ class Shaper {
     if (!paths_.is_straight(way.back(), to)) {
       const Box3 box = box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
       const bool is_in_box = holds(box, way.back().at) && holds(box, to.at);
-      const SolidPaths there = is_in_box ? SolidPaths(governors_.surface(), box) : paths_;
+      const SolidPaths there = is_in_box ? SolidPaths(governors_.surface(), box, needs_more_) : paths_;
       const std::optional<std::vector<Stop>> between = there.path(way.back(), to, landmarks(vertex));
       if (!between) return false;
       way.insert(way.end(), between->begin(), between->end());
@@ -228,6 +195,7 @@ class Shaper {
                           std::span<const AxisVertex> vertices) const {
     std::vector<Stop> corners;
     Vec3d sum;
+    bool leaves = false;
     for (const std::uint32_t v : outline) {
       corners.push_back(stop_of(vertices[v]));
       sum += corners.back().at;
@@ -236,6 +204,7 @@ class Shaper {
     if (const auto home = home_of(piece_.cells[c].cell)) {
       if (const auto chains = chains_from(*home, c, outline, corners))
         return wheel(c, outline, corners, *home, *chains);
+      leaves = has_given_up();
       middles.push_back(*home);
     }
     const Vec3d mean = sum / static_cast<double>(outline.size());
@@ -262,7 +231,10 @@ class Shaper {
       for (std::size_t m = first; m < std::min(middles.size(), first + most_tries) && !is_good(); ++m) look_from(m);
     }
     if (middles.empty()) middles.push_back(paths_.inside_near(mean, corners[0]));
-    return wheel(c, outline, corners, middles[best], any_chains(c, middles[best], corners));
+    const Chains chains = any_chains(c, middles[best], corners, leaves);
+    Shape shape = wheel(c, outline, corners, middles[best], chains);
+    shape.leaves = shape.leaves || leaves;
+    return shape;
   }
 
   /// The stops between a middle and places of an outline, by place.
@@ -312,7 +284,9 @@ class Shaper {
   }
 
   /// Those to places of an outline that a middle can be joined to, whatever the solid has between them.
-  [[nodiscard]] Chains any_chains(std::uint32_t c, const Stop& middle, std::span<const Stop> corners) const {
+  /// @param leaves  set where one of them leaves the solid.
+  [[nodiscard]] Chains any_chains(std::uint32_t c, const Stop& middle, std::span<const Stop> corners,
+                                  bool& leaves) const {
     Chains chains;
     for (std::size_t k = 0; k < corners.size(); ++k) {
       if (auto between = paths_.pushed(middle, corners[k])) chains.emplace_back(k, std::move(*between));
@@ -321,7 +295,9 @@ class Shaper {
       const std::vector<Stop> landmarks = around(c);
       chains.clear();
       for (std::size_t k = 0; k < corners.size(); ++k) {
-        chains.emplace_back(k, paths_.path(middle, corners[k], landmarks).value_or(std::vector<Stop>{}));
+        auto between = paths_.path(middle, corners[k], landmarks);
+        leaves = leaves || !between;
+        chains.emplace_back(k, between ? std::move(*between) : std::vector<Stop>{});
       }
     }
     return chains;
@@ -365,7 +341,8 @@ class Shaper {
       sides[0].push_back(border.front());
       sides[1].push_back(border.back());
       // Beyond these boxes, triangles may be on the other side of a void: it is second choice.
-      const SolidPaths there(governors_.surface(), box_around(c, outline, chains[n].first, chains[next].first));
+      const SolidPaths there(governors_.surface(), box_around(c, outline, chains[n].first, chains[next].first),
+                             needs_more_);
       const std::size_t own = shape.own.size();
       PolygonFiller filler(there, stop, add, budget);
       const bool stays = filler.fill(sector, sides);
@@ -383,6 +360,7 @@ class Shaper {
       shape.own.resize(own);
       shape.own.insert(shape.own.end(), first.begin(), first.end());
       append(filler.triangles(), shape.items);
+      shape.leaves = shape.leaves || !stays;
     }
     return shape;
   }
@@ -422,35 +400,69 @@ class Shaper {
   const AxisCorners& corners_;
   const GovernorField& governors_;
   const Witnesses& witnesses_;
+  const NearExtra& near_;
+  bool* needs_more_;
   SolidPaths paths_;
-  std::vector<std::uint32_t> twins_;
-  std::vector<std::uint8_t> is_near_extra_;  ///< of each vertex place
-  std::vector<std::optional<Stop>> homes_;   ///< of those
 };
 
 /// Shapes of cells, where they are more than their corners.
 using Shapes = std::vector<std::pair<std::uint32_t, Shape>>;
 
-/// Those of the cells of a dimension that `make` gives any, by rising cell.
-template <class Make>
-Shapes shapes_of(const AxisPiece& piece, int dimension, const Context& context, const Make& make) {
-  std::vector<Shapes> found(piece.cells.size() / cells_per_range + 1);
-  parallel_for(context, piece.cells.size(), cells_per_range, dimension == 1 ? "edges" : "triangles",
-               [&](const WorkRange& range) {
-                 for (std::size_t c = range.begin; c < range.end; ++c) {
-                   if (piece.cells[c].dimension != dimension) continue;
-                   if (auto shape = make(static_cast<std::uint32_t>(c))) {
-                     found[range.begin / cells_per_range].emplace_back(static_cast<std::uint32_t>(c),
-                                                                       std::move(*shape));
-                   }
-                 }
-               });
-  Shapes all;
-  for (Shapes& part : found) {
-    for (auto& entry : part) all.push_back(std::move(entry));
+/// Makes the shapes of the cells of a dimension.
+/// @param make  of an edge or polygon, with little effort; or, where the second argument is null, with full.
+class ShapeMaker {
+ public:
+  using Make = std::function<std::optional<Shape>(std::uint32_t, bool*)>;
+
+  ShapeMaker(const AxisPiece& piece, const Context& context) : piece_(piece), context_(context) {}
+
+  /// By rising cell: with full effort where little does not do. Not where parts leave the solid in many places: there
+  /// the model is to be finer.
+  [[nodiscard]] Shapes of(int dimension, const Make& make) const {
+    constexpr std::ptrdiff_t most_leaving = 16;
+    Shapes shapes = quick(dimension, make);
+    const auto leaves = [](const auto& entry) { return entry.second.leaves; };
+    std::vector<std::size_t> poor;
+    if (std::count_if(shapes.begin(), shapes.end(), leaves) <= most_leaving) {
+      for (std::size_t k = 0; k < shapes.size(); ++k) {
+        if (shapes[k].second.needs_more) poor.push_back(k);
+      }
+    }
+    parallel_for(context_, poor.size(), 1, "", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        auto& [cell, shape] = shapes[poor[k]];
+        shape = make(cell, nullptr).value_or(Shape{});
+      }
+    });
+    std::erase_if(shapes, [](const auto& entry) { return entry.second.items.empty(); });
+    return shapes;
   }
-  return all;
-}
+
+ private:
+  [[nodiscard]] Shapes quick(int dimension, const Make& make) const {
+    std::vector<Shapes> found(piece_.cells.size() / cells_per_range + 1);
+    const char* phase = dimension == 1 ? "edges" : "triangles";
+    parallel_for(context_, piece_.cells.size(), cells_per_range, phase, [&](const WorkRange& range) {
+      for (std::size_t c = range.begin; c < range.end; ++c) {
+        if (piece_.cells[c].dimension != dimension) continue;
+        bool needs_more = false;
+        std::optional<Shape> shape = make(static_cast<std::uint32_t>(c), &needs_more);
+        if (!shape && needs_more) shape.emplace();
+        if (!shape) continue;
+        shape->needs_more = needs_more;
+        found[range.begin / cells_per_range].emplace_back(static_cast<std::uint32_t>(c), std::move(*shape));
+      }
+    });
+    Shapes all;
+    for (Shapes& part : found) {
+      for (auto& entry : part) all.push_back(std::move(entry));
+    }
+    return all;
+  }
+
+  const AxisPiece& piece_;
+  const Context& context_;
+};
 
 /// Makes the vertices of shapes those of the piece.
 void take_vertices(AxisPiece& piece, Shapes& shapes) {
@@ -495,6 +507,29 @@ class Outlines {
   const Shapes& bent_;
 };
 
+/// Boxes of the vertices of the cells whose shapes leave the solid, each once; less than their sides, so that boxes
+/// beside them have no inner points of them.
+std::vector<Box3> boxes_where_left(const AxisPiece& piece, const AxisCorners& corners, const GovernorField& governors,
+                                   const std::array<const Shapes*, 2>& shapes) {
+  constexpr double less = 0.05;
+  std::vector<std::uint32_t> vertices;
+  for (const Shapes* some : shapes) {
+    for (const auto& [cell, shape] : *some) {
+      if (!shape.leaves) continue;
+      const auto own = corners.of_cells()[cell];
+      vertices.insert(vertices.end(), own.begin(), own.end());
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<Box3> boxes;
+  for (const std::uint32_t v : vertices) {
+    const Box3 box = box_of_vertex(governors, piece.structure, corners.vertex_cells()[v]);
+    boxes.push_back({box.lower + box.size() * less, box.upper - box.size() * less});
+  }
+  return boxes;
+}
+
 }  // namespace
 
 void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& witnesses, const Context& context) {
@@ -503,13 +538,17 @@ void shape_cells(AxisPiece& piece, const AxisCorners& corners, const Witnesses& 
   Shapes filled;
   const Outlines outlines(corners, bent);
   if (governors.solid().extra != nullptr) {
-    const Shaper shaper(piece, corners, witnesses, context);
-    bent = shapes_of(piece, 1, context, [&](std::uint32_t c) { return shaper.bent(c); });
+    const NearExtra near(piece, corners, witnesses, context);
+    const ShapeMaker maker(piece, context);
+    const auto shaper = [&](bool* needs_more) { return Shaper(piece, corners, witnesses, near, needs_more); };
+    bent = maker.of(1, [&](std::uint32_t c, bool* needs_more) { return shaper(needs_more).bent(c); });
     take_vertices(piece, bent);
-    filled =
-        shapes_of(piece, 2, context, [&](std::uint32_t c) { return shaper.filled(c, outlines.of(c), piece.vertices); });
+    filled = maker.of(2, [&](std::uint32_t c, bool* needs_more) {
+      return shaper(needs_more).filled(c, outlines.of(c), piece.vertices);
+    });
     take_vertices(piece, filled);
   }
+  piece.leaving = boxes_where_left(piece, corners, governors, {&bent, &filled});
   std::vector<std::size_t> first{0};
   std::vector<std::uint32_t> items;
   auto next = filled.begin();

@@ -202,8 +202,15 @@ std::optional<std::vector<Stop>> SolidPaths::path(const Stop& a, const Stop& b, 
     walk(landmark, b, more);
   }
   if (auto found = shortest(a, b, more, {any_length, most_looks})) return found;
+  if (gives_up()) return std::nullopt;
   if (auto found = over_strewn(a, b, landmarks)) return found;
   return over_border(a, b);
+}
+
+bool SolidPaths::gives_up() const {
+  if (needs_more_ == nullptr) return false;
+  *needs_more_ = true;
+  return true;
 }
 
 /// The wall closest to a stop, and the one on the opposite side of a thin part.
@@ -436,6 +443,7 @@ std::optional<Hub> SolidPaths::seeing_all(std::span<const Stop> corners, std::si
   const double size = box.diagonal();
   const Vec3d reach{0.25 * size, 0.25 * size, 0.25 * size};
   if (look_at(where_walls_meet(corners, box))) return best;
+  if (gives_up()) return best;
   const std::vector<Stop> around = strewn(box.center(), size, 6);
   if (look_at(around) || look_at(where_walls_meet(on_different_planes(around, 1e-3 * size), box))) return best;
   // Thin plates turn and meet at creases of the surface: there more of them is seen.

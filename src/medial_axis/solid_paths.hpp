@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,11 +31,15 @@ struct Hub {
 /// Finds chains of segments that do not leave a solid.
 class SolidPaths {
  public:
-  /// @param surface  that bounds the solid. It must stay.
-  explicit SolidPaths(const Surface& surface) : surface_(surface) {}
+  /// @param surface     that bounds the solid. It must stay.
+  /// @param needs_more  null: with full effort. Else with little, that is, without points strewn around, which take
+  ///                    about ten times as long; and it is set where these might have helped.
+  explicit SolidPaths(const Surface& surface, bool* needs_more = nullptr)
+      : surface_(surface), needs_more_(needs_more) {}
 
   /// @param within  where all stops must lie that are found: so do the paths between them.
-  SolidPaths(const Surface& surface, const Box3& within) : surface_(surface), within_(within) {}
+  SolidPaths(const Surface& surface, const Box3& within, bool* needs_more = nullptr)
+      : surface_(surface), within_(within), needs_more_(needs_more) {}
 
   /// A point, if it lies in the solid and not on its surface.
   [[nodiscard]] std::optional<Stop> stop_at(const Vec3d& at, const Footprint& near) const;
@@ -61,14 +66,15 @@ class SolidPaths {
 
   /// The stops between two such that segments from one to the next stay in the solid; nullopt where none were found.
   /// Tried in turn: none; those of pushing; some of the landmarks; along the walls next to the two; landmarks and what
-  /// is met when walking along thin parts; points strewn around the two, finer and finer; along the border of what the
-  /// solid has in the box that bounds the search.
+  /// is met when walking along thin parts; with full effort, points strewn around the two, finer and finer, and along
+  /// the border of what the solid has in the box that bounds the search.
   /// @param landmarks  points in the same part of the solid.
   [[nodiscard]] std::optional<std::vector<Stop>> path(const Stop& a, const Stop& b,
                                                       std::span<const Stop> landmarks) const;
 
   /// A point that segments in the solid join to all of some others, of those found among points strewn around these the
-  /// one with the most triangles from each to the next that none of the surface comes through.
+  /// one with the most triangles from each to the next that none of the surface comes through. With little effort,
+  /// where the walls next to them meet only.
   /// @param least_open  how many there must be of these triangles.
   [[nodiscard]] std::optional<Hub> seeing_all(std::span<const Stop> corners, std::size_t least_open) const;
 
@@ -93,6 +99,8 @@ class SolidPaths {
     std::uint32_t element;
   };
   [[nodiscard]] std::vector<Wall> walls_of(const Stop& stop) const;
+  /// Whether little effort is to be made; it is told that more might have helped.
+  [[nodiscard]] bool gives_up() const;
   void walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const;
   /// What a search may do: no step is longer than `longest`, and so many segments are looked at.
   struct SearchLimits {
@@ -111,6 +119,7 @@ class SolidPaths {
 
   const Surface& surface_;
   std::optional<Box3> within_;
+  bool* needs_more_ = nullptr;
 };
 
 }  // namespace blum

@@ -132,6 +132,14 @@ BodyReport report_of(const VoxelSolid& solid, const Context& context) {
   return report;
 }
 
+/// What a model has beside its voxels.
+void take_extra(BodyCells cells, Voxelized& voxelized) {
+  voxelized.report.topology_matches = cells.failures.empty();
+  voxelized.report.extra_cells = cells.extra.size();
+  voxelized.report.failures = std::move(cells.failures);
+  voxelized.solid.extra = std::make_shared<const ExtraIncidence>(std::move(cells));
+}
+
 }  // namespace
 
 Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context, double shift) {
@@ -139,18 +147,19 @@ Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& co
   FieldOptions options;
   options.sign = SignMode::normals;
   out.solid = solid_of(distance_field(body.mesh, voxels_around(bounds(body.mesh), spacing, shift), options, context));
-  BodyCells cells = body_cells(body.mesh, out.solid.grid, context);
+  BodyCells cells = body_cells(body.mesh, out.solid.grid, {}, context);
   out.solid.voxels = std::move(cells.inside);
   agree_with(out.solid.voxels, out.solid.depth, context);
   BodyReport& report = out.report;
   report.betti = body.betti;
-  report.topology_matches = cells.failures.empty();
   report.spacing = spacing;
   report.voxels = out.solid.voxels.count();
-  report.extra_cells = cells.extra.size();
-  report.failures = std::move(cells.failures);
-  out.solid.extra = std::make_shared<const ExtraIncidence>(std::move(cells));
+  take_extra(std::move(cells), out);
   return out;
+}
+
+void split_further(Voxelized& voxelized, const SolidBody& body, std::span<const Box3> finer, const Context& context) {
+  take_extra(body_cells(body.mesh, voxelized.solid.grid, finer, context), voxelized);
 }
 
 Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context, double shift) {

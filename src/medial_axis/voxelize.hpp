@@ -1,7 +1,10 @@
 // Blum: bodies and images as voxels. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "blum/core/context.hpp"
+#include "blum/core/vec3.hpp"
 #include "blum/grid/grid_spec.hpp"
 #include "blum/grid/voxel_set.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
@@ -19,6 +22,9 @@ struct Voxelized {
 /// Voxels of a body with its Betti numbers, as choose_voxels finds them.
 /// @param spacing  mesh units. @param shift  how far the grid is moved along each axis, voxels.
 [[nodiscard]] Voxelized voxelize_body(const SolidBody& body, double spacing, const Context& context, double shift = 0);
+
+/// Splits the model of a body further than it had to be: see body_cells(). Voxels, depths and sites stay.
+void split_further(Voxelized& voxelized, const SolidBody& body, std::span<const Box3> finer, const Context& context);
 
 /// The voxels whose centre has a winding number above 1/2.
 [[nodiscard]] Voxelized voxelize_by_winding(const MeshView& mesh, double spacing, const Context& context,

@@ -50,13 +50,16 @@ ExtraCell extra_cell(const detail::ModelCells& cells, std::size_t k, int exponen
 
 }  // namespace
 
-BodyCells body_cells(const TriangleMesh& body, const GridSpec& grid, const Context& context) {
+BodyCells body_cells(const TriangleMesh& body, const GridSpec& grid, std::span<const Box3> finer,
+                     const Context& context) {
   const int exponent = detail::scale_of(bounds(body));
   const TriangleMesh mesh = scaled(body, exponent);
   const detail::SurfaceMesh surface(mesh, context);
   const detail::CutGrid cut(surface, planes_of(grid, exponent), context);
+  std::vector<Box3> finer_there;
+  for (const Box3& box : finer) finer_there.push_back({scaled(box.lower, exponent), scaled(box.upper, exponent)});
   const std::vector<detail::RefinedRegion> regions =
-      detail::refine_regions(surface, cut, CellularModelOptions{}.most_splits, context);
+      detail::refine_regions(surface, cut, CellularModelOptions{}.most_splits, finer_there, context);
   BodyCells out;
   out.lattice = CellLattice(grid.size);
   out.inside = nodes_inside(cut, grid, context);

@@ -136,7 +136,7 @@ CellularModel CellularModel::of(const Solid& solid, const std::vector<std::uint3
   }
   for (BodyGroup& group : grouped(solid.bodies(), groups)) {
     auto model = std::make_unique<GroupModel>(std::move(group), data->exponent, origin, spacing, context);
-    model->regions = detail::refine_regions(model->surface, model->grid, options.most_splits, context);
+    model->regions = detail::refine_regions(model->surface, model->grid, options.most_splits, {}, context);
     for (const Cell cell : model->grid.cut_cells()) report.cut_cubes += dimension_of(cell) == 3 ? 1U : 0U;
     report.failing_cubes += model->grid.failing_cubes().size();
     for (const detail::RefinedRegion& region : model->regions) {

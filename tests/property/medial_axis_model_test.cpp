@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/medial_axis/medial_axis.hpp"
+#include "blum/shapes/generators.hpp"
 #include "blum/solid/solid.hpp"
 #include "medial_axis/attached_voxels.hpp"
 #include "medial_axis/collapse.hpp"
@@ -91,6 +93,30 @@ TEST(MedialModel, AxesOfThinSolidsHaveTheirBettiNumbersAtEveryAngle) {
     }
   }
   EXPECT_GT(seen, 20U);
+}
+
+/// A ring of which nothing is there but a thin wall.
+TriangleMesh hollow_ring(double tube_radius, double wall, int ring_segments, int tube_segments) {
+  const auto ring = [&](double radius) { return make_torus({1, radius, ring_segments, tube_segments}); };
+  TriangleMesh mesh = ring(tube_radius);
+  TriangleMesh inner = ring(tube_radius - wall);
+  reverse_triangles(inner);
+  append(mesh, inner);
+  return mesh;
+}
+
+TEST(MedialModel, AxesOfThinTubesNarrowerThanVoxelsStayInThem) {
+  // In a voxel the wall of a tube runs back and forth: triangles between its ends crossed what is hollow, until the
+  // model is made finer there.
+  for (const auto& [resolution, wall] : {std::pair{8, 1e-5}, std::pair{16, 1e-4}}) {
+    SCOPED_TRACE(testing::Message() << "a wall of " << wall << " at " << resolution);
+    const TriangleMesh mesh = hollow_ring(0.05, wall, 24, 8);
+    const MedialAxis axis = medial_axis(mesh, {.resolution = resolution});
+    test::expect_certified(axis, mesh, {1, 2, 1});
+    const Certificate certificate = certify(axis.simplify(0), mesh);
+    EXPECT_EQ(certificate.edges.pushed, 0U);
+    EXPECT_EQ(certificate.edges.outside, 0U);
+  }
 }
 
 TEST(MedialModel, TheSameForAnyNumberOfThreads) {

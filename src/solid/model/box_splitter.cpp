@@ -35,6 +35,14 @@ bool is_inside(const SplitBox& box, std::size_t corner) {
   return (box.inside >> corner & 1U) != 0;
 }
 
+/// Whether two boxes share points inside of both.
+bool overlap(const BoxCell& box, const Box3& other) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(box.low[a] < other.upper[a] && other.lower[a] < box.high[a])) return false;
+  }
+  return true;
+}
+
 std::size_t longest(const Vec3d& size) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
@@ -47,14 +55,16 @@ void BoxSplitter::split(SplitBox box, const Context& context, std::vector<SplitB
   while (!waiting.empty() && !context.cancel.stop_requested()) {
     SplitBox next_box = std::move(waiting.back());
     waiting.pop_back();
-    const std::optional<Cut> cut = test(next_box);
+    std::optional<Cut> cut = test(next_box);
+    const bool passes = !cut;
+    if (passes) cut = further_cut(next_box);
     const bool is_needle = cut && cut->along_hole > ModelFailure::most_cuts;
     if (cut && !is_needle && out.size() + waiting.size() < most_boxes && can_cut(next_box, *cut)) {
       auto [lower, upper] = halves(std::move(next_box), *cut);
       waiting.push_back(std::move(upper));
       waiting.push_back(std::move(lower));
     } else {
-      if (cut) next_box.obstacle = is_needle ? ModelObstacle::slanted_needle : cut->obstacle;
+      if (cut && !passes) next_box.obstacle = is_needle ? ModelObstacle::slanted_needle : cut->obstacle;
       if (is_needle) next_box.cuts_left = cut->along_hole;
       out.push_back(std::move(next_box));
     }
@@ -81,6 +91,18 @@ std::optional<BoxSplitter::Cut> BoxSplitter::test(SplitBox& box) {
   if (pieces_.holds_void()) return cut_through_middle(box, ModelObstacle::void_in_cube);
   if (!passes) return cut_through_middle(box, ModelObstacle::handle);
   return std::nullopt;
+}
+
+std::optional<BoxSplitter::Cut> BoxSplitter::further_cut(const SplitBox& box) const {
+  constexpr double part = 0.3;  // a quarter, with room for rounding
+  const Vec3d size = box.box.high - box.box.low;
+  const std::size_t axis = longest(size);
+  const bool is_wanted = std::any_of(finer_.begin(), finer_.end(), [&](const Box3& finer) {
+    const Vec3d wanted = finer.size();
+    return size[axis] > part * wanted[longest(wanted)] && overlap(box.box, finer);
+  });
+  if (!is_wanted || box.triangles.empty()) return std::nullopt;
+  return Cut{axis, 0.5 * (box.box.low[axis] + box.box.high[axis]), ModelObstacle::handle};
 }
 
 void BoxSplitter::find_crossings(const SplitBox& box) {

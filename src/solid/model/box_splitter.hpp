@@ -32,8 +32,9 @@ struct SplitBox {
 /// are cut into these.
 class BoxSplitter {
  public:
-  BoxSplitter(const SurfaceMesh& mesh, double spacing, int most_splits)
-      : mesh_(mesh), spacing_(spacing), most_splits_(most_splits) {}
+  /// @param finer  boxes that pass are split, too, where these are: see body_cells(). It must stay.
+  BoxSplitter(const SurfaceMesh& mesh, double spacing, int most_splits, std::span<const Box3> finer)
+      : mesh_(mesh), spacing_(spacing), most_splits_(most_splits), finer_(finer) {}
 
   /// Adds the parts of a box, which pass or name their obstacle. Stops where the caller asks to.
   void split(SplitBox box, const Context& context, std::vector<SplitBox>& out);
@@ -60,6 +61,8 @@ class BoxSplitter {
   };
 
   [[nodiscard]] std::optional<Cut> test(SplitBox& box);
+  /// A cut of a box that passes, where it shall be finer.
+  [[nodiscard]] std::optional<Cut> further_cut(const SplitBox& box) const;
   void find_crossings(const SplitBox& box);
   void find_passes(const SplitBox& box);
   /// Joins what belongs together in a face. @return  the first hole in it.
@@ -75,6 +78,7 @@ class BoxSplitter {
   const SurfaceMesh& mesh_;
   double spacing_;
   int most_splits_;
+  std::span<const Box3> finer_;
   std::array<Side, 12> sides_;
   std::vector<std::uint32_t> edges_;    ///< of the mesh, rising
   std::vector<std::uint8_t> passes_;    ///< bit f: whether an edge passes face f

@@ -94,13 +94,30 @@ std::vector<std::vector<std::uint32_t>> triangles_near(const SurfaceMesh& mesh, 
   return out;
 }
 
+/// The cubes that share inner points with boxes.
+std::vector<Cell> cubes_in(const CutGrid& grid, std::span<const Box3> boxes) {
+  std::vector<Cell> cubes;
+  for (const Box3& box : boxes) {
+    const Place low = grid.planes().cube(box.lower);
+    const Place high = grid.planes().cube(box.upper);
+    for (std::int64_t k = low[2]; k <= high[2]; ++k) {
+      for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+        for (std::int64_t i = low[0]; i <= high[0]; ++i) cubes.push_back(cell_at(grid.lattice().node(i, j, k), 7));
+      }
+    }
+  }
+  return cubes;
+}
+
 }  // namespace
 
 std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid& grid, int most_splits,
-                                          const Context& context) {
-  if (grid.failing_cubes().empty()) return {};
+                                          std::span<const Box3> finer, const Context& context) {
+  std::vector<Cell> split = cubes_in(grid, finer);
+  split.insert(split.end(), grid.failing_cubes().begin(), grid.failing_cubes().end());
+  if (split.empty()) return {};
   const CellLattice& lattice = grid.lattice();
-  const std::vector<Cell> cubes = spread(lattice, grid.failing_cubes());
+  const std::vector<Cell> cubes = spread(lattice, split);
   std::vector<std::vector<std::uint32_t>> triangles = triangles_near(mesh, grid, cubes, context);
   UnionFind joined(cubes.size());
   for (std::uint32_t c = 0; c < cubes.size(); ++c) {
@@ -127,7 +144,7 @@ std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid
         own.push_back(cubes[c]);
         near.push_back(std::move(triangles[c]));
       }
-      found[g].emplace(mesh, grid, own, std::move(near), most_splits, context);
+      found[g].emplace(mesh, grid, own, std::move(near), most_splits, finer, context);
     }
   });
   throw_if_cancelled(context);

@@ -13,9 +13,10 @@
 namespace blum::detail {
 
 /// Splits the cubes of a grid that fail, in regions of neighbouring ones that do not touch each other.
-/// @param most_splits  of a cube. @throws Cancelled.
+/// @param most_splits  of a cube. @param finer  where boxes are split though they pass: see body_cells(). @throws
+/// Cancelled.
 [[nodiscard]] std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid& grid, int most_splits,
-                                                        const Context& context);
+                                                        std::span<const Box3> finer, const Context& context);
 
 /// The boxes in which splitting ended. @param exponent  coordinates were multiplied by two to its power: see
 /// scale_of().

@@ -18,10 +18,11 @@ struct RefinedRegion::Scratch {
 };
 
 RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const Cell> cubes,
-                             std::vector<std::vector<std::uint32_t>> triangles, int most_splits, const Context& context)
+                             std::vector<std::vector<std::uint32_t>> triangles, int most_splits,
+                             std::span<const Box3> finer, const Context& context)
     : mesh_(mesh), grid_(grid), cubes_(cubes.begin(), cubes.end()) {
   const Vec3d& spacing = grid.planes().spacing();
-  BoxSplitter splitter(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits);
+  BoxSplitter splitter(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits, finer);
   std::vector<SplitBox> parts;
   for (std::size_t c = 0; c < cubes.size(); ++c) {
     const std::size_t first = node_of(cubes[c]);

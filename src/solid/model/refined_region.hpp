@@ -32,9 +32,11 @@ class RefinedRegion {
  public:
   /// @param cubes  those that fail, and all around them, rising.
   /// @param triangles  for each of the cubes, all that may meet it.
-  /// @param most_splits  of a cube.  @param context  when it asks to stop, the region is left as it is.
+  /// @param most_splits  of a cube.  @param finer  see BoxSplitter.  @param context  when it asks to stop, the region
+  /// is left as it is.
   RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const Cell> cubes,
-                std::vector<std::vector<std::uint32_t>> triangles, int most_splits, const Context& context);
+                std::vector<std::vector<std::uint32_t>> triangles, int most_splits, std::span<const Box3> finer,
+                const Context& context);
 
   [[nodiscard]] std::span<const Cell> cubes() const { return cubes_; }
   [[nodiscard]] std::span<const BoxCell> boxes() const { return boxes_; }

@@ -59,7 +59,7 @@ class Comparison {
     }
     std::vector<std::uint32_t> all(mesh_.triangles().size());
     std::iota(all.begin(), all.end(), 0U);
-    return {mesh_, grid_, cubes, std::vector(cubes.size(), all), 0, {}};
+    return {mesh_, grid_, cubes, std::vector(cubes.size(), all), 0, {}, {}};
   }
 
   [[nodiscard]] std::size_t node_at(const Vec3d& p) const {

@@ -29,6 +29,7 @@ struct Found {
   std::size_t in_parts = 0;  ///< sides of boxes with several rectangles
   std::size_t several = 0;   ///< boxes with several components
   std::size_t unsure = 0;
+  std::size_t finer = 0;  ///< boxes that were asked to be small, with vertices in them
 };
 
 test::SolidPart cut_to(test::SolidPart part, const Vec3d& low, const Vec3d& high, std::size_t axis) {
@@ -104,7 +105,28 @@ class RegionCheck {
   Found& found_;
 };
 
-void check(const test::NamedMesh& named, const std::vector<int>& resolutions, Found& found) {
+/// Where regions are to be finer than they must be: a part of the box around a body.
+Box3 wanted_finer(const Box3& box) {
+  return {box.lower + 0.2 * box.size(), box.lower + 0.5 * box.size()};
+}
+
+/// Whether boxes that share inner points with another one, and have a vertex of the mesh in them, are as small as
+/// asked.
+void expect_finer(const TriangleMesh& mesh, const RefinedRegion& region, const Box3& finer, Found& found) {
+  const Vec3d size = finer.size();
+  for (std::size_t b = 0; b < region.boxes().size(); ++b) {
+    const BoxCell& box = region.boxes()[b];
+    const Vec3d apart = min(box.high, finer.upper) - max(box.low, finer.lower);
+    const bool has_vertex = std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
+                                        [&](const Vec3d& v) { return max(box.low, min(box.high, v)) == v; });
+    if (!(apart.x > 0 && apart.y > 0 && apart.z > 0) || !has_vertex) continue;
+    ++found.finer;
+    const Vec3d own = box.high - box.low;
+    EXPECT_LE(std::max({own.x, own.y, own.z}), 0.3 * std::max({size.x, size.y, size.z}));
+  }
+}
+
+void check(const test::NamedMesh& named, const std::vector<int>& resolutions, bool is_finer, Found& found) {
   const Solid solid = Solid::of(named.mesh);
   if (solid.rule() != SolidRule::polyhedron) return;
   const Vec3d size = solid.box().size();
@@ -114,8 +136,11 @@ void check(const test::NamedMesh& named, const std::vector<int>& resolutions, Fo
     for (const SolidBody& body : solid.bodies()) {
       const SurfaceMesh surface(body.mesh, {});
       const CutGrid grid(surface, test::planes_around(body.mesh, origin, spacing, 2), {});
-      for (const RefinedRegion& region : refine_regions(surface, grid, 60, {})) {
+      std::vector<Box3> finer;
+      if (is_finer) finer.push_back(wanted_finer(bounds(body.mesh)));
+      for (const RefinedRegion& region : refine_regions(surface, grid, 60, finer, {})) {
         RegionCheck(body.mesh, region, named.name + " at " + std::to_string(resolution), found);
+        if (is_finer) expect_finer(body.mesh, region, finer.front(), found);
       }
     }
   }
@@ -123,11 +148,11 @@ void check(const test::NamedMesh& named, const std::vector<int>& resolutions, Fo
 
 TEST(RefinedRegion, BoxesPassAndHaveTheComponentsOfASlowClipping) {
   Found found;
-  for (const test::NamedMesh& named : test::thin_solids()) check(named, {1, 2, 5}, found);
+  for (const test::NamedMesh& named : test::thin_solids()) check(named, {1, 2, 5}, false, found);
   for (const char* name : {"plate", "menger", "torus", "void_cube", "gear", "nested_shells", "bracket"}) {
     const ShapeInfo& shape = find_shape(name);
     const TriangleMesh mesh = shape.make(complete_parameters(shape, {}));
-    if (mesh.triangles.size() < 7000) check({name, test::turned(mesh, 5)}, {1, 2}, found);
+    if (mesh.triangles.size() < 7000) check({name, test::turned(mesh, 5)}, {1, 2}, false, found);
   }
   EXPECT_EQ(found.unsure, 0U);
   EXPECT_GT(found.boxes, 1000U);
@@ -135,6 +160,13 @@ TEST(RefinedRegion, BoxesPassAndHaveTheComponentsOfASlowClipping) {
   EXPECT_GT(found.rectangles, 5000U);
   EXPECT_GT(found.in_parts, 300U);
   EXPECT_GT(found.several, 30U);
+}
+
+TEST(RefinedRegion, IsAsFineAsAskedForAndStillPasses) {
+  Found found;
+  for (const test::NamedMesh& named : test::thin_solids()) check(named, {2, 5}, true, found);
+  EXPECT_EQ(found.unsure, 0U);
+  EXPECT_GT(found.finer, 100U);
 }
 
 }  // namespace
