@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -42,6 +43,10 @@ constexpr std::size_t few_balls = 20;           ///< too few to tell anything
 constexpr std::size_t most_samples_of_sheets = 8'192;
 constexpr std::size_t most_samples_of_curves = 2'048;
 constexpr std::size_t most_samples_of_vertices = 4'096;
+constexpr std::size_t enough_samples = 12;  ///< of a sheet, to judge it by itself
+constexpr double most_off_of_sheet = 0.5;   ///< share of these off the middle: of true axes 0.25 are
+constexpr double small_sheet = 4;           ///< square voxels from which it is judged
+constexpr std::size_t most_samples_of_small = 4'096;
 constexpr std::size_t grain = 64;
 
 /// A point of the axis to look at.
@@ -98,13 +103,14 @@ class Middle {
   const Allowances& allowed_;
 };
 
-/// @param point  gives the k-th of some points.
-template <class Point>
+/// @param point  gives the k-th of some points.  @param note  is told of each whether it is off the middle.
+template <class Point, class Note>
 Offsets offsets_of(std::size_t count, const Middle& middle, const Allowances& allowed, const Point& point,
-                   const Context& context) {
+                   const Note& note, const Context& context) {
   const auto add = [&](Offsets& offsets, std::size_t k) {
     const AxisPoint p = point(k);
     const Middle::Found found = middle.find(p);
+    note(k, !(found.off <= allowed.middle));
     // Between the mouth of a thin part and the middle of a thick one only the edges of the mouth are close.
     const double radius = std::max(found.radius, p.depth);
     offsets.add(found.off, allowed.close_at(radius, p.size), allowed.middle_at(radius, p.size), allowed.middle, p.at);
@@ -229,6 +235,92 @@ void look_at_vertices(const MedialView& axis, const Claimed& claimed, const Midd
   }
 }
 
+/// Points of the sheets that two walls should see.
+class SheetPoints {
+ public:
+  SheetPoints(const MedialView& axis, const Spread& triangles, const std::vector<std::uint32_t>& body_of,
+              std::size_t count)
+      : axis_(axis), triangles_(triangles), body_of_(body_of), count_(count) {}
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] AxisPoint at(std::size_t k) const {
+    Random random(0x5a3eULL + k);
+    const std::uint32_t t = triangle(k, random);
+    const std::array<Vec3d, 3> corners = corners_of(axis_, t);
+    return {random_point(corners, random), body_of_[axis_.triangles[t][0]], longest_side(corners),
+            deepest(axis_, axis_.triangles[t])};
+  }
+  [[nodiscard]] std::int32_t sheet(std::size_t k) const {
+    Random random(0x5a3eULL + k);
+    return axis_.sheet[triangle(k, random)];
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t triangle(std::size_t k, Random& random) const {
+    return triangles_.at((static_cast<double>(k) + random.uniform()) / static_cast<double>(count_));
+  }
+
+  const MedialView& axis_;
+  const Spread& triangles_;
+  const std::vector<std::uint32_t>& body_of_;
+  std::size_t count_;
+};
+
+/// Judges sheets one by one, so that none can hide among others that are in the middle.
+class SheetJudge {
+ public:
+  void add(std::int32_t sheet, bool is_off, const Vec3d& at) {
+    Sheet& own = sheets_[sheet];
+    ++own.samples;
+    if (is_off && own.off++ == 0) own.where = at;
+  }
+  [[nodiscard]] std::size_t samples(std::int32_t sheet) const {
+    const auto at = sheets_.find(sheet);
+    return at == sheets_.end() ? 0 : at->second.samples;
+  }
+  void note(MedialCheck& check) const {
+    for (const auto& [number, sheet] : sheets_) {
+      if (sheet.samples < enough_samples) continue;
+      ++check.sheets_judged;
+      if (!(static_cast<double>(sheet.off) > most_off_of_sheet * static_cast<double>(sheet.samples))) continue;
+      if (check.sheets_off++ == 0) check.sheet_off_at = sheet.where;
+    }
+  }
+
+ private:
+  struct Sheet {
+    std::size_t samples = 0, off = 0;
+    Vec3d where;
+  };
+  std::map<std::int32_t, Sheet> sheets_;
+};
+
+/// Looks at sheets that too few samples fell on to judge them, the largest first.
+void look_at_small_sheets(const MedialView& axis, const Claimed& claimed, const Middle& middle,
+                          const Allowances& allowed, const std::vector<std::uint32_t>& body_of, SheetJudge& judge,
+                          const Context& context) {
+  std::map<std::int32_t, Spread> small;
+  for (const std::uint32_t t : claimed.sheets().cells()) {
+    if (judge.samples(axis.sheet[t]) < enough_samples) small[axis.sheet[t]].add(area(axis, t), t);
+  }
+  std::vector<const Spread*> chosen;
+  for (const auto& [sheet, spread] : small) {
+    if (spread.total() >= small_sheet * allowed.voxel * allowed.voxel) chosen.push_back(&spread);
+  }
+  const std::size_t most = std::min(chosen.size(), most_samples_of_small / enough_samples);
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [](const Spread* a, const Spread* b) { return a->total() > b->total(); });
+  std::vector<std::uint8_t> is_off(most * enough_samples);
+  const auto point = [&](std::size_t k) {
+    return SheetPoints(axis, *chosen[k / enough_samples], body_of, enough_samples).at(k % enough_samples);
+  };
+  static_cast<void>(offsets_of(
+      is_off.size(), middle, allowed, point, [&](std::size_t k, bool off) { is_off[k] = off ? 1 : 0; }, context));
+  for (std::size_t k = 0; k < is_off.size(); ++k) {
+    judge.add(axis.sheet[chosen[k / enough_samples]->cells().front()], is_off[k] != 0, point(k).at);
+  }
+}
+
 // ---- What is said of it ----
 
 std::string percent(double share) {
@@ -262,6 +354,11 @@ void explain(const MedialCheck& check, bool by_voxels, std::vector<std::string>&
     mismatches.push_back(
         count_text(check.one_wall_far) + " vertices that two walls should see have one and are more than " +
         rounded_text(far_off * check.missing_allowance) + " off the middle, the first at " + place_text(check.far_at));
+  }
+  if (!by_voxels && check.sheets_off > 0) {
+    mismatches.push_back("of the " + count_text(check.sheets_judged) + " sheets that two walls should see, " +
+                         count_text(check.sheets_off) + " are for the most part not in the middle, the first at " +
+                         place_text(check.sheet_off_at) + allowed);
   }
   const auto balls = static_cast<double>(check.balls);
   if (check.balls >= few_balls && check.missed_share * balls > std::max(most_missed_here * balls, few_missed + 0.5)) {
@@ -342,16 +439,15 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   };
   const std::size_t on_sheets =
       sample_count(claimed.sheets().total() / (allowed.voxel * allowed.voxel), most_samples_of_sheets);
+  const SheetPoints points(axis, claimed.sheets(), body_of, on_sheets);
+  std::vector<std::uint8_t> is_off(on_sheets);
   const Offsets sheets = offsets_of(
-      on_sheets, middle, allowed,
-      [&](std::size_t k) {
-        Random random(0x5a3eULL + k);
-        const std::uint32_t t = claimed.sheets().at(at(k, on_sheets, random));
-        const std::array<Vec3d, 3> corners = corners_of(axis, t);
-        return AxisPoint{random_point(corners, random), body_of[axis.triangles[t][0]], longest_side(corners),
-                         deepest(axis, axis.triangles[t])};
-      },
-      context);
+      on_sheets, middle, allowed, [&](std::size_t k) { return points.at(k); },
+      [&](std::size_t k, bool off) { is_off[k] = off ? 1 : 0; }, context);
+  SheetJudge judge;
+  for (std::size_t k = 0; k < on_sheets; ++k) judge.add(points.sheet(k), is_off[k] != 0, points.at(k).at);
+  look_at_small_sheets(axis, claimed, middle, allowed, body_of, judge, context);
+  judge.note(check);
   const std::size_t on_curves = sample_count(claimed.curves().total() / allowed.voxel, most_samples_of_curves);
   const Offsets curves = offsets_of(
       on_curves, middle, allowed,
@@ -362,7 +458,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
         return AxisPoint{axis.positions[a] + along * random.uniform(), body_of[a], length(along),
                          std::max(axis.radius[a], axis.radius[b])};
       },
-      context);
+      [](std::size_t, bool) {}, context);
   // A curve counts as much as a strip of sheet a voxel wide.
   const double size_of_curves = claimed.curves().total() * allowed.voxel;
   const double size = claimed.sheets().total() + size_of_curves;
@@ -389,6 +485,7 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   check.off_by /= factor;
   check.off_at = check.off_at / factor;
   check.far_at = check.far_at / factor;
+  check.sheet_off_at = check.sheet_off_at / factor;
   explain(check, solid.solid->slack() > 0, mismatches);
   check.holds = mismatches.size() == before;
   return check;

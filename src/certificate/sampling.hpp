@@ -25,6 +25,7 @@ class Spread {
     ends_.push_back(total_);
   }
   [[nodiscard]] double total() const { return total_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& cells() const { return cells_; }
   /// The cell at a share of all.
   [[nodiscard]] std::uint32_t at(double share) const {
     const auto end = std::upper_bound(ends_.begin(), ends_.end(), share * total_);

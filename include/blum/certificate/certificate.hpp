@@ -258,6 +258,9 @@ struct MedialCheck {
   double close_allowance = 0;       ///< that length, mesh units
   double off_by = 0;                ///< how far the worst of these with two walls is from the middle, mesh units
   Vec3d off_at;                     ///< and there, mesh units
+  std::size_t sheets_judged = 0;    ///< sheets with samples enough to judge them one by one
+  std::size_t sheets_off = 0;       ///< of these, those that are for the most part not in the middle
+  Vec3d sheet_off_at;               ///< a point of the first of these, mesh units
   double sought_angle = 0;          ///< degrees from which the axis must have all; 0 where that was not looked at
   double missing_allowance = 0;     ///< how close the axis must come to the balls, mesh units
   std::size_t balls = 0;            ///< from random points of the solid whose walls are seen at more than that
@@ -297,6 +300,9 @@ struct Description<MedialCheck> {
       Member{"close_allowance", &MedialCheck::close_allowance, "mesh units", "that length"},
       Member{"off_by", &MedialCheck::off_by, "mesh units", "how far the worst of these is from the middle"},
       Member{"off_at", &MedialCheck::off_at, "mesh units", "and there"},
+      Member{"sheets_judged", &MedialCheck::sheets_judged, "", "sheets with samples enough to judge them one by one"},
+      Member{"sheets_off", &MedialCheck::sheets_off, "", "of these, those for the most part not in the middle"},
+      Member{"sheet_off_at", &MedialCheck::sheet_off_at, "mesh units", "a point of the first of these"},
       Member{"sought_angle", &MedialCheck::sought_angle, "degrees",
              "from where the axis must have all; 0 where that was not looked at"},
       Member{"missing_allowance", &MedialCheck::missing_allowance, "mesh units",
