@@ -155,6 +155,11 @@ struct Bvh::Data {
     return out;
   }
 
+  template <class Go, class Visit>
+  void cross(const Ray& ray, double limit, const Go& go, const Visit& visit) const;
+  template <class Visit>
+  bool visit_near_in(std::size_t leaf, const ProbeTriangle& probe, const Visit& visit) const;
+
   void fill_tree(const Context& context) {
     std::vector<Box3> boxes(leaves.size());
     for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
@@ -324,28 +329,61 @@ std::vector<NearestPrimitive> Bvh::within(const Vec3d& query, double distance) c
   return out;
 }
 
-void Bvh::for_each_crossing(const Ray& ray, double limit, FunctionRef<double(const RayCrossing&)> visit) const {
-  const Data& data = *data_;
+/// @param go  calls its last argument for leaves that may be crossed, as visit_along() does.
+template <class Go, class Visit>
+void Bvh::Data::cross(const Ray& ray, double limit, const Go& go, const Visit& visit) const {
   if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == Vec3d{}) return;
-  const auto [scaled, factor] = detail::scaled_direction({ray.origin * data.scale, ray.direction});
-  if (!data.prepare(ray.origin)) return;
+  const auto [scaled_ray, factor] = detail::scaled_direction({ray.origin * scale, ray.direction});
+  const Ray& scaled = scaled_ray;
+  if (!prepare(ray.origin)) return;
   // t in the units of blocks: lengths are `scale` times, directions 1 / factor times those of the caller.
-  const double t_factor = factor * data.scale;
+  const double t_factor = factor * scale;
   double furthest = limit;
-  visit_along(data.tree, scaled, furthest * t_factor, [&](std::size_t leaf) {
-    const PrimitiveBlock& block = data.leaves[leaf];
+  go(scaled, furthest * t_factor, [&](std::size_t leaf) {
+    const PrimitiveBlock& block = leaves[leaf];
     // A little further, as what is crossed at the limit itself is found as far as rounding allows.
     const double end = std::min(furthest * t_factor * (1 + 1e-9), 1e300);
     for (unsigned bits = may_cross(block, scaled, end); bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-      if (!data.is_triangle(leaf, lane)) continue;
+      if (!is_triangle(leaf, lane)) continue;
       const std::optional<detail::TriangleCrossing> found =
           detail::crossing(scaled, {block.position(0, lane), block.position(1, lane), block.position(2, lane)});
       if (!found || !(found->t / t_factor <= furthest)) continue;
-      furthest = visit(data.as_given(*found, leaf, lane, found->t / t_factor));
+      furthest = visit(as_given(*found, leaf, lane, found->t / t_factor));
     }
     return furthest * t_factor;
   });
+}
+
+void Bvh::for_each_crossing(const Ray& ray, double limit, FunctionRef<double(const RayCrossing&)> visit) const {
+  const auto go = [&](const auto& scaled, double end, const auto& look_at) {
+    visit_along(data_->tree, scaled, end, look_at);
+  };
+  data_->cross(ray, limit, go, visit);
+}
+
+std::optional<RayCrossing> Bvh::first_crossing(const Ray& ray, const BvhPart& part) const {
+  std::optional<RayCrossing> first;
+  const auto go = [&](const auto&, double, const auto& look_at) {
+    for (const std::uint32_t leaf : part.leaves_) look_at(leaf);
+  };
+  data_->cross(ray, 1, go, [&](const RayCrossing& found) {
+    if (!first || is_earlier(found, *first)) first = found;
+    return first->t;
+  });
+  return first;
+}
+
+std::optional<BvhPart> Bvh::part_in(const Box3& box) const {
+  constexpr std::size_t most_leaves = 64;
+  BvhPart part;
+  const Box3 scaled{box.lower * data_->scale, box.upper * data_->scale};
+  for_each_touching(data_->tree, scaled, 0, [&](std::size_t leaf) {
+    part.leaves_.push_back(static_cast<std::uint32_t>(leaf));
+    return part.leaves_.size() <= most_leaves;
+  });
+  if (part.leaves_.size() > most_leaves) return std::nullopt;
+  return part;
 }
 
 std::vector<RayCrossing> Bvh::crossings(const Ray& ray, double limit) const {
@@ -376,16 +414,29 @@ std::vector<std::optional<RayCrossing>> Bvh::first_crossings(std::span<const Ray
   return out;
 }
 
+/// @return  false where `visit` did.
+template <class Visit>
+bool Bvh::Data::visit_near_in(std::size_t leaf, const ProbeTriangle& probe, const Visit& visit) const {
+  for (unsigned bits = may_meet(leaves[leaf], probe); bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+    if (is_triangle(leaf, lane) && !visit(TriangleId(order[leaf * lanes + lane]))) return false;
+  }
+  return true;
+}
+
 void Bvh::for_each_near(const std::array<Vec3d, 3>& triangle, FunctionRef<bool(TriangleId)> visit) const {
   const Data& data = *data_;
   const ProbeTriangle probe({triangle[0] * data.scale, triangle[1] * data.scale, triangle[2] * data.scale});
-  for_each_touching(data.tree, probe.box, 0, [&](std::size_t leaf) {
-    for (unsigned bits = may_meet(data.leaves[leaf], probe); bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-      if (data.is_triangle(leaf, lane) && !visit(TriangleId(data.order[leaf * lanes + lane]))) return false;
-    }
-    return true;
-  });
+  for_each_touching(data.tree, probe.box, 0, [&](std::size_t leaf) { return data.visit_near_in(leaf, probe, visit); });
+}
+
+void Bvh::for_each_near(const std::array<Vec3d, 3>& triangle, const BvhPart& part,
+                        FunctionRef<bool(TriangleId)> visit) const {
+  const Data& data = *data_;
+  const ProbeTriangle probe({triangle[0] * data.scale, triangle[1] * data.scale, triangle[2] * data.scale});
+  for (const std::uint32_t leaf : part.leaves_) {
+    if (!data.visit_near_in(leaf, probe, visit)) return;
+  }
 }
 
 bool Bvh::may_touch(const Box3& box) const {

@@ -98,23 +98,36 @@ NearestPoint MeshSurface::nearest(const Vec3d& query, const Footprint& near) con
   return {near.point, length(query - near.point), site_of(near), near.element};  // a query that is not finite
 }
 
-std::optional<double> MeshSurface::first_crossing(const Vec3d& from, const Vec3d& to) const {
-  const std::optional<RayCrossing> found = bvh_.first_crossing({from, to - from}, 1);
+std::optional<SurfacePart> MeshSurface::part_in(const Box3& box) const {
+  std::optional<BvhPart> found = bvh_.part_in(box);
+  if (!found) return std::nullopt;
+  return SurfacePart{box, std::move(*found)};
+}
+
+std::optional<double> MeshSurface::first_crossing(const Vec3d& from, const Vec3d& to, const SurfacePart* part) const {
+  const Ray ray{from, to - from};
+  const std::optional<RayCrossing> found =
+      part != nullptr ? bvh_.first_crossing(ray, part->found) : bvh_.first_crossing(ray, 1);
   if (!found) return std::nullopt;
   return found->t;
 }
 
-bool MeshSurface::crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
+bool MeshSurface::crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c, const SurfacePart* part) const {
   constexpr std::array<std::uint32_t, 3> other_corners{~0U, ~0U - 1, ~0U - 2};  // none that the mesh has
   const detail::ContactTriangle own{{a, b, c}, other_corners};
   if (detail::has_no_area(own.points)) return false;
   bool is_found = false;
-  bvh_.for_each_near(own.points, [&](TriangleId near) {
+  const auto visit = [&](TriangleId near) {
     const Triangle& t = mesh_.triangles[near.value];
     const detail::ContactTriangle wall{{mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]}, t};
     is_found = !detail::has_no_area(wall.points) && detail::contact(own, wall) == detail::Contact::crossing;
     return !is_found;
-  });
+  };
+  if (part != nullptr) {
+    bvh_.for_each_near(own.points, part->found, visit);
+  } else {
+    bvh_.for_each_near(own.points, visit);
+  }
   return is_found;
 }
 

@@ -28,8 +28,10 @@ class MeshSurface final : public Surface {
   [[nodiscard]] bool is_inside(const Vec3d& query, const NearestPoint& nearest) const override {
     return bounds_solid_ && nearest.distance > 0 && normals_.is_inside(query, nearest.point, nearest.site);
   }
-  [[nodiscard]] std::optional<double> first_crossing(const Vec3d& from, const Vec3d& to) const override;
-  [[nodiscard]] bool crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c) const override;
+  [[nodiscard]] std::optional<SurfacePart> part_in(const Box3& box) const override;
+  [[nodiscard]] std::optional<double> first_crossing(const Vec3d& from, const Vec3d& to,
+                                                     const SurfacePart* part) const override;
+  [[nodiscard]] bool crosses(const Vec3d& a, const Vec3d& b, const Vec3d& c, const SurfacePart* part) const override;
   [[nodiscard]] std::optional<std::vector<SurfacePoint>> way_over(std::uint32_t from, std::uint32_t to,
                                                                   const Box3& within) const override;
   [[nodiscard]] std::vector<SurfacePoint> points_in(const Box3& box) const override;

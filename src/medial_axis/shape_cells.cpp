@@ -48,13 +48,16 @@ class Shaper {
         paths_(governors_.surface(), needs_more) {}
 
   /// The chain of an edge that would leave the solid, or that has a twin; nullopt where it is a segment.
-  [[nodiscard]] std::optional<Shape> bent(std::uint32_t c) const {
+  [[nodiscard]] std::optional<Shape> bent(std::uint32_t c) {
     const auto ends = corners_.of_cells()[c];
     const Stop a = stop_at(ends[0]);
     const Stop b = stop_at(ends[1]);
     const bool has_twin = near_.has_twin(c);
     std::optional<std::vector<Stop>> between;
-    if (near_.is_near(ends[0]) || near_.is_near(ends[1])) between = through_component(c, has_twin);
+    if (near_.is_near(ends[0]) || near_.is_near(ends[1])) {
+      prepare(ends, piece_.vertices);
+      between = through_component(c, has_twin);
+    }
     if (between && between->empty() && !has_twin) return std::nullopt;
     if (!between && !has_twin) {
       if (paths_.is_straight(a, b) && !has_given_up()) return std::nullopt;
@@ -74,8 +77,11 @@ class Shaper {
   /// The triangles of a polygon; nullopt where those of its corners alone, as triangles_of() has them, will do.
   /// @param outline  its border, in a circle.
   [[nodiscard]] std::optional<Shape> filled(std::uint32_t c, const std::vector<std::uint32_t>& outline,
-                                            std::span<const AxisVertex> vertices) const {
-    if (touches_extra(c)) return fan(c, outline, vertices);
+                                            std::span<const AxisVertex> vertices) {
+    if (touches_extra(c)) {
+      prepare(outline, vertices);
+      return fan(c, outline, vertices);
+    }
     const auto stop = [&](std::uint32_t v) { return stop_of(vertices[v]); };
     const bool is_near_extra =
         std::any_of(outline.begin(), outline.end(), [&](std::uint32_t v) { return near_.is_near(v); });
@@ -99,6 +105,17 @@ class Shaper {
  private:
   /// Whether more effort might have found a way that was looked for.
   [[nodiscard]] bool has_given_up() const { return needs_more_ != nullptr && *needs_more_; }
+
+  /// Prepares for questions about the components of vertices, and what is between them.
+  void prepare(std::span<const std::uint32_t> places, std::span<const AxisVertex> vertices) {
+    Box3 box;
+    for (const std::uint32_t place : places) {
+      box.extend(vertices[place].position);
+      const auto cells = corners_.vertex_cells();
+      if (place < cells.size()) box.extend(box_of_vertex(governors_, piece_.structure, cells[place]));
+    }
+    paths_.prepare(box);
+  }
 
   /// Whether a polygon is extra, or has such a corner: then others may have the same corners.
   [[nodiscard]] bool touches_extra(std::uint32_t c) const {
@@ -174,7 +191,7 @@ class Shaper {
     if (!paths_.is_straight(way.back(), to)) {
       const Box3 box = box_of_vertex(governors_, piece_.structure, corners_.vertex_cells()[vertex]);
       const bool is_in_box = holds(box, way.back().at) && holds(box, to.at);
-      const SolidPaths there = is_in_box ? SolidPaths(governors_.surface(), box, needs_more_) : paths_;
+      const SolidPaths there = is_in_box ? paths_.in(box) : paths_;
       const std::optional<std::vector<Stop>> between = there.path(way.back(), to, landmarks(vertex));
       if (!between) return false;
       way.insert(way.end(), between->begin(), between->end());

@@ -58,11 +58,17 @@ Stop SolidPaths::inside_near(const Vec3d& at, const Stop& near) const {
   return {foot.point, surface_.nearest(foot.point, foot_of(foot))};
 }
 
+const SurfacePart* SolidPaths::part_at(std::initializer_list<const Stop*> stops) const {
+  if (part_ == nullptr) return nullptr;
+  const auto is_there = [&](const Stop* stop) { return holds(part_->box, stop->at); };
+  return std::all_of(stops.begin(), stops.end(), is_there) ? part_.get() : nullptr;
+}
+
 bool SolidPaths::is_straight(const Stop& a, const Stop& b) const {
   const double size = length(b.at - a.at);
   // A ball as large as a point is deep lies in the solid.
   if (a.nearest.distance + b.nearest.distance >= size * (1 + overlap)) return true;
-  return !surface_.first_crossing(a.at, b.at);
+  return !surface_.first_crossing(a.at, b.at, part_at({&a, &b}));
 }
 
 bool SolidPaths::is_open(const Stop& a, const Stop& b, const Stop& c) const {
@@ -71,7 +77,7 @@ bool SolidPaths::is_open(const Stop& a, const Stop& b, const Stop& c) const {
     return length(p.at - ball.at) <= reach && length(q.at - ball.at) <= reach;
   };
   if (holds_others(a, b, c) || holds_others(b, c, a) || holds_others(c, a, b)) return true;
-  return !surface_.crosses(a.at, b.at, c.at);
+  return !surface_.crosses(a.at, b.at, c.at, part_at({&a, &b, &c}));
 }
 
 bool SolidPaths::can_sweep(const std::array<Stop, 2>& from, const std::array<Stop, 2>& to) const {
@@ -147,8 +153,8 @@ std::optional<Stop> SolidPaths::detour(const Stop& a, const Stop& b) const {
 
 /// The middle of what is outside of a segment, pushed in.
 std::optional<Stop> SolidPaths::outermost_pushed_in(const Stop& a, const Stop& b) const {
-  const std::optional<double> leaves = surface_.first_crossing(a.at, b.at);
-  const std::optional<double> returns = surface_.first_crossing(b.at, a.at);
+  const std::optional<double> leaves = surface_.first_crossing(a.at, b.at, nullptr);
+  const std::optional<double> returns = surface_.first_crossing(b.at, a.at, nullptr);
   if (!leaves || !returns) return std::nullopt;
   const Vec3d middle = a.at + (b.at - a.at) * (0.5 * (*leaves + 1 - *returns));
   std::optional<Stop> stop = stop_at(middle, foot_of(a.nearest));
@@ -223,7 +229,7 @@ std::vector<SolidPaths::Wall> SolidPaths::walls_of(const Stop& stop) const {
   add(stop.nearest.point);
   constexpr double thick = 64;
   const Vec3d away = stop.at - stop.nearest.point;
-  if (const auto opposite = surface_.first_crossing(stop.at, stop.at + away * thick)) {
+  if (const auto opposite = surface_.first_crossing(stop.at, stop.at + away * thick, nullptr)) {
     add(stop.at + away * (thick * *opposite));
   }
   return walls;
@@ -488,7 +494,7 @@ Stop SolidPaths::centred(const Stop& stop, double reach) const {
   const double depth = length(away);
   if (!(depth > 0)) return stop;
   const Vec3d direction = away / depth;
-  const std::optional<double> opposite = surface_.first_crossing(stop.at, stop.at + direction * reach);
+  const std::optional<double> opposite = surface_.first_crossing(stop.at, stop.at + direction * reach, nullptr);
   if (!opposite || !(*opposite * reach > depth)) return stop;
   const auto middle = stop_at(stop.at + direction * (0.5 * (*opposite * reach - depth)), foot_of(stop.nearest));
   return middle && middle->nearest.distance > stop.nearest.distance ? *middle : stop;
@@ -504,7 +510,7 @@ void SolidPaths::walk(const Stop& from, const Stop& towards, std::vector<Stop>& 
     const Vec3d wish = towards.at - at.at;
     const Vec3d move = wish - away * dot(wish, away);
     if (!(squared_length(move) > 1e-6 * squared_length(wish))) return;
-    const std::optional<double> wall = surface_.first_crossing(at.at, at.at + move);
+    const std::optional<double> wall = surface_.first_crossing(at.at, at.at + move, nullptr);
     const auto next = stop_at(at.at + move * (wall ? before_wall * *wall : 1), foot_of(at.nearest));
     if (!next) return;
     landmarks.push_back(*next);

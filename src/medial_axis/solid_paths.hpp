@@ -3,8 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "medial_axis/surface.hpp"
@@ -40,6 +43,18 @@ class SolidPaths {
   /// @param within  where all stops must lie that are found: so do the paths between them.
   SolidPaths(const Surface& surface, const Box3& within, bool* needs_more = nullptr)
       : surface_(surface), within_(within), needs_more_(needs_more) {}
+
+  /// The same, but with such a box.
+  [[nodiscard]] SolidPaths in(const Box3& box) const {
+    SolidPaths other = *this;
+    other.within_ = box;
+    return other;
+  }
+  /// Prepares for many questions about points in a box.
+  void prepare(const Box3& box) {
+    auto part = surface_.part_in(box);
+    part_ = part ? std::make_shared<const SurfacePart>(std::move(*part)) : nullptr;
+  }
 
   /// A point, if it lies in the solid and not on its surface.
   [[nodiscard]] std::optional<Stop> stop_at(const Vec3d& at, const Footprint& near) const;
@@ -101,6 +116,8 @@ class SolidPaths {
   [[nodiscard]] std::vector<Wall> walls_of(const Stop& stop) const;
   /// Whether little effort is to be made; it is told that more might have helped.
   [[nodiscard]] bool gives_up() const;
+  /// What was prepared, if all of some stops lie there.
+  [[nodiscard]] const SurfacePart* part_at(std::initializer_list<const Stop*> stops) const;
   void walk(const Stop& from, const Stop& towards, std::vector<Stop>& landmarks) const;
   /// What a search may do: no step is longer than `longest`, and so many segments are looked at.
   struct SearchLimits {
@@ -120,6 +137,7 @@ class SolidPaths {
   const Surface& surface_;
   std::optional<Box3> within_;
   bool* needs_more_ = nullptr;
+  std::shared_ptr<const SurfacePart> part_ = nullptr;
 };
 
 }  // namespace blum

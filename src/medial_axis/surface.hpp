@@ -8,6 +8,7 @@
 
 #include "blum/core/ids.hpp"
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/bvh.hpp"
 
 namespace blum {
 
@@ -30,6 +31,12 @@ struct NearestPoint {
 struct SurfacePoint {
   Vec3d at;
   Vec3d inwards;  ///< unit length: between the directions of the elements there
+};
+
+/// What of a surface may be in a box.
+struct SurfacePart {
+  Box3 box;
+  BvhPart found;
 };
 
 /// What the construction of a medial axis asks of the boundary of a solid. Functions may be called from many threads.
@@ -58,14 +65,23 @@ class Surface {
   /// Whether a point is in the solid. @param nearest  its closest point of the surface.
   [[nodiscard]] virtual bool is_inside(const Vec3d& query, const NearestPoint& nearest) const = 0;
 
+  /// What of the surface may be in a box: with it, first_crossing() and crosses() are answered quicker for points in
+  /// the box. nullopt where that is of no use.
+  [[nodiscard]] virtual std::optional<SurfacePart> part_in(const Box3& /*box*/) const { return std::nullopt; }
+
   /// Where a segment first meets the surface, as a part of its length; nullopt where it does not, and where that is not
-  /// known.
-  [[nodiscard]] virtual std::optional<double> first_crossing(const Vec3d& /*from*/, const Vec3d& /*to*/) const {
+  /// known. @param part  of a box that holds the segment, or null.
+  [[nodiscard]] virtual std::optional<double> first_crossing(const Vec3d& /*from*/, const Vec3d& /*to*/,
+                                                             const SurfacePart* /*part*/) const {
     return std::nullopt;
   }
 
   /// Whether a triangle, which need not be one of the surface, and the surface cross; false where that is not known.
-  [[nodiscard]] virtual bool crosses(const Vec3d& /*a*/, const Vec3d& /*b*/, const Vec3d& /*c*/) const { return false; }
+  /// @param part  of a box that holds the triangle, or null.
+  [[nodiscard]] virtual bool crosses(const Vec3d& /*a*/, const Vec3d& /*b*/, const Vec3d& /*c*/,
+                                     const SurfacePart* /*part*/) const {
+    return false;
+  }
 
   /// Points on a short way over the surface from one element to another, each on an edge between two elements; nullopt
   /// where there is none within a box, where it is long, and where elements have no edges.

@@ -53,7 +53,7 @@ std::optional<Vec3d> middle_of_chord(const MeshView& mesh, const Surface& surfac
   const Vec3d outwards = surface.outwards(triangle);
   const Vec3d start = centre + outwards * (1e-9 * reach);
   const Vec3d way = outwards * reach;
-  const std::optional<double> end = surface.first_crossing(start, start + way);
+  const std::optional<double> end = surface.first_crossing(start, start + way, nullptr);
   if (!end) return std::nullopt;
   return start + way * (0.5 * *end);
 }

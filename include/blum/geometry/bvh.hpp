@@ -37,6 +37,13 @@ struct NearestPrimitive {
   std::uint32_t primitive = 0;  ///< index
 };
 
+/// Leaves of a hierarchy: see Bvh::part_in().
+class BvhPart {
+ private:
+  friend class Bvh;
+  std::vector<std::uint32_t> leaves_;
+};
+
 /// Where a ray crosses a triangle. Whether it does, `side` and `on_border` are exact.
 struct RayCrossing {
   double t = 0;  ///< the point is origin + t * direction; >= 0
@@ -108,6 +115,15 @@ class Bvh {
   [[nodiscard]] std::vector<std::optional<RayCrossing>> first_crossings(
       std::span<const Ray> rays, double limit = std::numeric_limits<double>::infinity(),
       const Context& context = {}) const;
+
+  /// The leaves of the hierarchy that touch a box: many short questions about the same small place are answered quicker
+  /// with it. It must not be used after refit(). @return  nullopt where that is too much to be of use.
+  [[nodiscard]] std::optional<BvhPart> part_in(const Box3& box) const;
+  /// The same as first_crossing() up to t = 1, for a ray whose points up to there lie in the box of a part.
+  [[nodiscard]] std::optional<RayCrossing> first_crossing(const Ray& ray, const BvhPart& part) const;
+  /// The same as for_each_near(), for a triangle in the box of a part.
+  void for_each_near(const std::array<Vec3d, 3>& triangle, const BvhPart& part,
+                     FunctionRef<bool(TriangleId)> visit) const;
 
   /// Calls visit(triangle) for the triangles of the mesh that may have a point in common with a triangle that need not
   /// be one of them, in no stated order, until it returns false. None is left out that has one; most others are: those

@@ -38,14 +38,34 @@ bool ShrinkingLists::may_contract(std::uint32_t from, std::uint32_t to, LinkScra
   return cells_.may_contract(from, to, scratch) && stays_in_solid(from, to);
 }
 
+SolidPaths ShrinkingLists::paths_around(std::uint32_t from, const Stop& target) const {
+  Box3 box;
+  box.extend(target.at);
+  bool are_in_ball = true;  // of the target, which lies in the solid: nothing is to be asked of the surface
+  const auto include = [&](std::uint32_t v) {
+    box.extend(position(v));
+    are_in_ball = are_in_ball && length(position(v) - target.at) < target.nearest.distance;
+  };
+  include(from);
+  cells_.for_each_edge(from, [&](std::uint32_t, std::uint32_t other) { include(other); });
+  cells_.for_each_triangle(from, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
+    include(p);
+    include(q);
+  });
+  SolidPaths paths = paths_;
+  if (!are_in_ball) paths.prepare(box);
+  return paths;
+}
+
 bool ShrinkingLists::stays_in_solid(std::uint32_t from, std::uint32_t to) const {
   const Stop source = stop_of(lists_.vertices[from]);
   const Stop target = stop_of(lists_.vertices[to]);
+  const SolidPaths paths = paths_around(from, target);
   bool stays = true;
   const auto look = [&](std::uint32_t v) {
     if (!stays || v == to) return;
     const Stop other = stop_of(lists_.vertices[v]);
-    stays = paths_.is_straight(target, other) && paths_.is_open(source, target, other);
+    stays = paths.is_straight(target, other) && paths.is_open(source, target, other);
   };
   cells_.for_each_triangle(from, [&](std::uint32_t, std::uint32_t p, std::uint32_t q) {
     look(p);

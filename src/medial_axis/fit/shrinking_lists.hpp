@@ -53,6 +53,8 @@ class ShrinkingLists {
  private:
   /// Whether edges stay in the solid, and nothing of the surface is passed over.
   [[nodiscard]] bool stays_in_solid(std::uint32_t from, std::uint32_t to) const;
+  /// Prepared for questions about what is around a vertex that goes.
+  [[nodiscard]] SolidPaths paths_around(std::uint32_t from, const Stop& target) const;
   void note_change_at(std::uint32_t v);
   [[nodiscard]] bool is_joined(std::uint32_t a, std::uint32_t b) const;
 

@@ -248,6 +248,53 @@ TEST(Bvh, RaysCrossWhatEveryTriangleAloneSays) {
   EXPECT_TRUE(bvh.crossings({{0, 0, NAN}, {0, 0, 1}}).empty());
 }
 
+TEST(Bvh, APartAnswersInItsBoxAsTheWhole) {
+  for (const double scale : {1.0, 1e-40, 1e40}) {
+    const TriangleMesh mesh = test::moved(test::awkward_soup(300, 51), scale);
+    const Bvh bvh(mesh, SiteTable(mesh));
+    const std::vector<Vec3d> places = test::places_around(mesh, 600, 52);
+    std::size_t parts = 0;
+    std::size_t crossed = 0;
+    std::size_t met = 0;
+    for (std::size_t i = 0; i + 2 < places.size(); ++i) {
+      const double size = i % 2 == 0 ? 0.01 : 0.3;
+      const std::array<Vec3d, 3> own{places[i], places[i] + (places[i + 1] - places[i]) * size,
+                                     places[i] + (places[i + 2] - places[i]) * size};
+      Box3 box;
+      for (const Vec3d& corner : own) box.extend(corner);
+      const std::optional<BvhPart> part = bvh.part_in(box);
+      if (!part) continue;
+      ++parts;
+      const Ray ray{own[0], own[1] - own[0]};
+      const std::optional<RayCrossing> first = bvh.first_crossing(ray, 1);
+      const std::optional<RayCrossing> in_part = bvh.first_crossing(ray, *part);
+      ASSERT_EQ(in_part.has_value(), first.has_value()) << i;
+      if (first) {
+        ++crossed;
+        EXPECT_EQ(in_part->t, first->t);
+        EXPECT_EQ(in_part->triangle, first->triangle);
+      }
+      std::vector<std::uint32_t> near;
+      std::vector<std::uint32_t> near_in_part;
+      const auto adder = [](std::vector<std::uint32_t>& out) {
+        return [&out](TriangleId t) {
+          out.push_back(t.value);
+          return true;
+        };
+      };
+      bvh.for_each_near(own, adder(near));
+      bvh.for_each_near(own, *part, adder(near_in_part));
+      std::sort(near.begin(), near.end());
+      std::sort(near_in_part.begin(), near_in_part.end());
+      EXPECT_EQ(near_in_part, near);
+      met += near.size();
+    }
+    EXPECT_GT(parts, 300U);
+    EXPECT_GT(crossed, 20U);
+    EXPECT_GT(met, 50U);
+  }
+}
+
 TEST(Bvh, AnswersAfterARefitAreThoseOfANewOne) {
   const TriangleMesh before = test::awkward_soup(150, 41);
   TriangleMesh after = before;

@@ -188,7 +188,7 @@ TEST(MeshSurface, TrianglesCrossTheSurfaceWhereOneOfItsTrianglesDoes) {
       const detail::ContactTriangle wall{{s.mesh.vertices[t[0]], s.mesh.vertices[t[1]], s.mesh.vertices[t[2]]}, t};
       wanted = wanted || detail::contact(own, wall) == detail::Contact::crossing;
     }
-    EXPECT_EQ(s.surface.crosses(a, b, c), wanted) << k;
+    EXPECT_EQ(s.surface.crosses(a, b, c, nullptr), wanted) << k;
     crossing += wanted ? 1 : 0;
   }
   EXPECT_GT(crossing, 50U);

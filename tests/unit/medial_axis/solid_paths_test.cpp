@@ -201,7 +201,7 @@ TEST(SolidPaths, ThinWallsThatTurnAreFollowedFromTriangleToTriangle) {
   const auto in_wall = [&](double degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     const Vec3d out{std::cos(angle), std::sin(angle), 0.1};
-    const double t = *s.surface.first_crossing({0, 0, 0}, out * 2.0);
+    const double t = *s.surface.first_crossing({0, 0, 0}, out * 2.0, nullptr);
     return s.at(out * (2 * t + 0.4 * thickness));
   };
   const Stop a = in_wall(10);
