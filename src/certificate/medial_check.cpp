@@ -308,8 +308,9 @@ void look_at_small_sheets(const MedialView& axis, const Claimed& claimed, const 
     if (spread.total() >= small_sheet * allowed.voxel * allowed.voxel) chosen.push_back(&spread);
   }
   const std::size_t most = std::min(chosen.size(), most_samples_of_small / enough_samples);
-  std::stable_sort(chosen.begin(), chosen.end(),
-                   [](const Spread* a, const Spread* b) { return a->total() > b->total(); });
+  std::sort(chosen.begin(), chosen.end(), [](const Spread* a, const Spread* b) {
+    return a->total() != b->total() ? a->total() > b->total() : a->cells().front() < b->cells().front();
+  });
   std::vector<std::uint8_t> is_off(most * enough_samples);
   const auto point = [&](std::size_t k) {
     return SheetPoints(axis, *chosen[k / enough_samples], body_of, enough_samples).at(k % enough_samples);
