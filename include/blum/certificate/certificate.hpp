@@ -258,7 +258,7 @@ struct MedialCheck {
   double close_allowance = 0;       ///< that length, mesh units
   double off_by = 0;                ///< how far the worst of these with two walls is from the middle, mesh units
   Vec3d off_at;                     ///< and there, mesh units
-  std::size_t sheets_judged = 0;    ///< sheets with samples enough to judge them one by one
+  std::size_t sheets_judged = 0;    ///< sheets with samples enough to judge them one by one; 0 of images
   std::size_t sheets_off = 0;       ///< of these, those that are for the most part not in the middle
   Vec3d sheet_off_at;               ///< a point of the first of these, mesh units
   double sought_angle = 0;          ///< degrees from which the axis must have all; 0 where that was not looked at
