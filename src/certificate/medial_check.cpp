@@ -242,7 +242,6 @@ class SheetPoints {
               std::size_t count)
       : axis_(axis), triangles_(triangles), body_of_(body_of), count_(count) {}
 
-  [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] AxisPoint at(std::size_t k) const {
     Random random(0x5a3eULL + k);
     const std::uint32_t t = triangle(k, random);
@@ -445,11 +444,13 @@ MedialCheck check_medial(const MedialView& axis, const KnownSolid& solid, const 
   const Offsets sheets = offsets_of(
       on_sheets, middle, allowed, [&](std::size_t k) { return points.at(k); },
       [&](std::size_t k, bool off) { is_off[k] = off ? 1 : 0; }, context);
-  SheetJudge judge;
-  for (std::size_t k = 0; k < on_sheets; ++k) judge.add(points.sheet(k), is_off[k] != 0, points.at(k).at);
-  if (!allowed.of_voxels) look_at_small_sheets(axis, claimed, middle, allowed, body_of, judge, context);
   // In images of noise, steps of voxels see each other from most of a small sheet.
-  if (!allowed.of_voxels) judge.note(check);
+  if (!allowed.of_voxels) {
+    SheetJudge judge;
+    for (std::size_t k = 0; k < on_sheets; ++k) judge.add(points.sheet(k), is_off[k] != 0, points.at(k).at);
+    look_at_small_sheets(axis, claimed, middle, allowed, body_of, judge, context);
+    judge.note(check);
+  }
   const std::size_t on_curves = sample_count(claimed.curves().total() / allowed.voxel, most_samples_of_curves);
   const Offsets curves = offsets_of(
       on_curves, middle, allowed,

@@ -358,8 +358,7 @@ class Shaper {
       sides[0].push_back(border.front());
       sides[1].push_back(border.back());
       // Beyond these boxes, triangles may be on the other side of a void: it is second choice.
-      const SolidPaths there(governors_.surface(), box_around(c, outline, chains[n].first, chains[next].first),
-                             needs_more_);
+      const SolidPaths there = paths_.in(box_around(c, outline, chains[n].first, chains[next].first));
       const std::size_t own = shape.own.size();
       PolygonFiller filler(there, stop, add, budget);
       const bool stays = filler.fill(sector, sides);

@@ -41,8 +41,7 @@ class SolidPaths {
       : surface_(surface), needs_more_(needs_more) {}
 
   /// @param within  where all stops must lie that are found: so do the paths between them.
-  SolidPaths(const Surface& surface, const Box3& within, bool* needs_more = nullptr)
-      : surface_(surface), within_(within), needs_more_(needs_more) {}
+  SolidPaths(const Surface& surface, const Box3& within) : surface_(surface), within_(within) {}
 
   /// The same, but with such a box.
   [[nodiscard]] SolidPaths in(const Box3& box) const {

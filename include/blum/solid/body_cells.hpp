@@ -56,9 +56,8 @@ struct BodyCells {
 
 /// @param body  closed, manifold, without self-intersections, facing outwards.
 /// @param grid  its axes are those of space; all of the body lies more than one step inside of its outermost nodes.
-/// @param finer  where the model shall be finer than it must be, mesh units: boxes with some of the surface in them
-/// that
-///               share inner points with one of these are split until none of their sides is longer than about a
+/// @param finer  where the model shall be finer than it must be, mesh units: boxes that hold some of the surface, and
+///               share inner points with one of these, are split until none of their sides is longer than about a
 ///               quarter of its longest one.
 /// @throws InvalidMesh, InvalidGrid, OutOfMemory, Cancelled as Solid::model(). Cost: as that.
 [[nodiscard]] BodyCells body_cells(const TriangleMesh& body, const GridSpec& grid, std::span<const Box3> finer,

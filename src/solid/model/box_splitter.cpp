@@ -95,13 +95,14 @@ std::optional<BoxSplitter::Cut> BoxSplitter::test(SplitBox& box) {
 
 std::optional<BoxSplitter::Cut> BoxSplitter::further_cut(const SplitBox& box) const {
   constexpr double part = 0.3;  // a quarter, with room for rounding
+  if (box.triangles.empty()) return std::nullopt;
   const Vec3d size = box.box.high - box.box.low;
   const std::size_t axis = longest(size);
   const bool is_wanted = std::any_of(finer_.begin(), finer_.end(), [&](const Box3& finer) {
     const Vec3d wanted = finer.size();
     return size[axis] > part * wanted[longest(wanted)] && overlap(box.box, finer);
   });
-  if (!is_wanted || box.triangles.empty()) return std::nullopt;
+  if (!is_wanted) return std::nullopt;
   return Cut{axis, 0.5 * (box.box.low[axis] + box.box.high[axis]), ModelObstacle::handle};
 }
 

@@ -166,6 +166,23 @@ TEST(Bvh, FindsTheKClosestPrimitivesAndThoseWithinADistance) {
   EXPECT_EQ(calls, 5);
 }
 
+/// A triangle from a place towards the next two, as long as a part of the ways there.
+std::array<Vec3d, 3> triangle_at(const std::vector<Vec3d>& places, std::size_t i, double part) {
+  return {places[i], places[i] + (places[i + 1] - places[i]) * part, places[i] + (places[i + 2] - places[i]) * part};
+}
+
+/// What is visited, rising. @param go  calls its argument for triangles.
+template <class Go>
+std::vector<std::uint32_t> visited(const Go& go) {
+  std::vector<std::uint32_t> found;
+  go([&](TriangleId t) {
+    found.push_back(t.value);
+    return true;
+  });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 TEST(Bvh, TrianglesNearAnotherAreAllThatItMeetsAndFewMore) {
   for (const double scale : {1.0, 1e-40, 1e40}) {
     const TriangleMesh mesh = test::moved(test::awkward_soup(300, 33), scale);
@@ -175,14 +192,8 @@ TEST(Bvh, TrianglesNearAnotherAreAllThatItMeetsAndFewMore) {
     std::size_t told = 0;
     for (std::size_t i = 0; i + 2 < places.size(); ++i) {
       const double size = i % 3 == 0 ? 0.01 : 1;
-      const std::array<Vec3d, 3> own{places[i], places[i] + (places[i + 1] - places[i]) * size,
-                                     places[i] + (places[i + 2] - places[i]) * size};
-      std::vector<std::uint32_t> near;
-      bvh.for_each_near(own, [&](TriangleId t) {
-        near.push_back(t.value);
-        return true;
-      });
-      std::sort(near.begin(), near.end());
+      const std::array<Vec3d, 3> own = triangle_at(places, i, size);
+      const auto near = visited([&](const auto& visit) { bvh.for_each_near(own, visit); });
       EXPECT_EQ(std::adjacent_find(near.begin(), near.end()), near.end());
       told += near.size();
       constexpr std::array<std::uint32_t, 3> others{~0U, ~0U - 1, ~0U - 2};
@@ -258,8 +269,7 @@ TEST(Bvh, APartAnswersInItsBoxAsTheWhole) {
     std::size_t met = 0;
     for (std::size_t i = 0; i + 2 < places.size(); ++i) {
       const double size = i % 2 == 0 ? 0.01 : 0.3;
-      const std::array<Vec3d, 3> own{places[i], places[i] + (places[i + 1] - places[i]) * size,
-                                     places[i] + (places[i + 2] - places[i]) * size};
+      const std::array<Vec3d, 3> own = triangle_at(places, i, size);
       Box3 box;
       for (const Vec3d& corner : own) box.extend(corner);
       const std::optional<BvhPart> part = bvh.part_in(box);
@@ -274,18 +284,8 @@ TEST(Bvh, APartAnswersInItsBoxAsTheWhole) {
         EXPECT_EQ(in_part->t, first->t);
         EXPECT_EQ(in_part->triangle, first->triangle);
       }
-      std::vector<std::uint32_t> near;
-      std::vector<std::uint32_t> near_in_part;
-      const auto adder = [](std::vector<std::uint32_t>& out) {
-        return [&out](TriangleId t) {
-          out.push_back(t.value);
-          return true;
-        };
-      };
-      bvh.for_each_near(own, adder(near));
-      bvh.for_each_near(own, *part, adder(near_in_part));
-      std::sort(near.begin(), near.end());
-      std::sort(near_in_part.begin(), near_in_part.end());
+      const auto near = visited([&](const auto& visit) { bvh.for_each_near(own, visit); });
+      const auto near_in_part = visited([&](const auto& visit) { bvh.for_each_near(own, *part, visit); });
       EXPECT_EQ(near_in_part, near);
       met += near.size();
     }
