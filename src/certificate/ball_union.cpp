@@ -14,7 +14,15 @@ BallUnion::BallUnion(const std::vector<Ball>& balls, const Context& context) {
     balls_.push_back(balls[place]);
     radii.push_back(balls[place].radius);
   }
-  largest_ = tree_.node_maxima(radii);
+  const std::vector<double> largest = tree_.node_maxima(radii);
+  largest_.resize(largest.size() / 2);
+  for (std::size_t n = 1; n < largest.size(); ++n) largest_[(n - 1) / 2][(n - 1) % 2] = largest[n];
+}
+
+Two BallUnion::gaps(const Vec3d& p, std::uint32_t first_child) const {
+  const Two squared = squared_distances(p, tree_.two_boxes(first_child));
+  const Two& largest = largest_[BoxHierarchy::pair_of(first_child)];
+  return {std::sqrt(squared[0]) - largest[0], std::sqrt(squared[1]) - largest[1]};
 }
 
 double BallUnion::gap(const Vec3d& p, std::uint32_t& first) const {
@@ -22,7 +30,7 @@ double BallUnion::gap(const Vec3d& p, std::uint32_t& first) const {
   double best = gap_to(p, first);
   if (best <= 0) return best;
   tree_.search(
-      best, [&](std::uint32_t n) { return std::sqrt(squared_distance(p, tree_.node(n).box)) - largest_[n]; },
+      best, [&](std::uint32_t first_child) { return gaps(p, first_child); },
       [&](std::uint32_t place) {
         const double own = gap_to(p, place);
         if (own < best) {
@@ -37,7 +45,7 @@ double BallUnion::gap(const Vec3d& p, std::uint32_t& first) const {
 bool BallUnion::holds(const Vec3d& p, double margin) const {
   double wanted = -margin;  // nothing is below -infinity: the search ends
   tree_.search(
-      wanted, [&](std::uint32_t n) { return std::sqrt(squared_distance(p, tree_.node(n).box)) - largest_[n]; },
+      wanted, [&](std::uint32_t first_child) { return gaps(p, first_child); },
       [&](std::uint32_t place) {
         if (gap_to(p, place) < wanted) wanted = -HUGE_VAL;
         return wanted;

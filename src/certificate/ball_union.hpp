@@ -33,10 +33,12 @@ class BallUnion {
   [[nodiscard]] double gap_to(const Vec3d& p, std::uint32_t place) const {
     return length(p - balls_[place].centre) - balls_[place].radius;
   }
+  /// No more than the gaps to the balls below two siblings.
+  [[nodiscard]] Two gaps(const Vec3d& p, std::uint32_t first_child) const;
 
   std::vector<Ball> balls_;  ///< in the tree's order
   BoxHierarchy tree_;
-  std::vector<double> largest_;  ///< radius below each node
+  std::vector<Two> largest_;  ///< radii below siblings
 };
 
 }  // namespace blum::verifier

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,6 +18,39 @@ namespace blum::verifier {
 [[nodiscard]] inline double squared_distance(const Vec3d& p, const Box3& box) {
   const Vec3d outside = max(max(box.lower - p, p - box.upper), Vec3d{0, 0, 0});
   return squared_length(outside);
+}
+
+/// A number for each of two siblings in a tree.
+using Two = std::array<double, 2>;
+
+/// Two boxes, one beside the other, from which compilers make one operation for both.
+struct TwoBoxes {
+  std::array<Two, 3> lower{}, upper{};
+
+  void set(std::size_t k, const Box3& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower[axis][k] = box.lower[axis];
+      upper[axis][k] = box.upper[axis];
+    }
+  }
+};
+
+/// Squared distances of a point from two boxes, or of two points from a box each; 0 inside.
+[[nodiscard]] inline Two squared_distances(const std::array<Two, 3>& p, const TwoBoxes& boxes) {
+  Two sum{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double below = boxes.lower[axis][k] - p[axis][k];
+      const double above = p[axis][k] - boxes.upper[axis][k];
+      const double outside = below < above ? above : below;
+      const double least = outside < 0 ? 0 : outside;
+      sum[k] += least * least;
+    }
+  }
+  return sum;
+}
+[[nodiscard]] inline Two squared_distances(const Vec3d& p, const TwoBoxes& boxes) {
+  return squared_distances({{{p.x, p.x}, {p.y, p.y}, {p.z, p.z}}}, boxes);
 }
 
 /// A binary tree over the boxes of things, halved at the median until few are left. It knows nothing of the things.
@@ -36,30 +70,46 @@ class BoxHierarchy {
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
   [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes_.size()); }
   [[nodiscard]] const Node& node(std::uint32_t index) const { return nodes_[index]; }
+  /// Siblings, from the first one, are in one pair: pairs are numbered from 0, as the root has no sibling.
+  [[nodiscard]] static std::uint32_t pair_of(std::uint32_t first_child) { return first_child / 2; }
+  /// The boxes of a first child and its sibling.
+  [[nodiscard]] const TwoBoxes& two_boxes(std::uint32_t first_child) const { return pairs_[pair_of(first_child)]; }
 
   /// For each node the largest of the values of its things, given in the order of order().
   [[nodiscard]] std::vector<double> node_maxima(std::span<const double> values) const;
 
-  /// Goes down into the nodes whose bound(node) is below the best value so far, the lower one first, and calls
-  /// best = visit(place in order()) for their things.
-  template <class Bound, class Visit>
-  void search(double best, const Bound& bound, const Visit& visit) const {
+  /// Goes down into the nodes whose bound is below the best value so far, the lower one first, and calls
+  /// best = visit(place in order()) for their things. bounds(first child) gives those of it and of its sibling; the
+  /// root is gone into at any rate.
+  template <class Bounds, class Visit>
+  void search(double best, const Bounds& bounds, const Visit& visit) const {
     if (nodes_.empty()) return;
     std::array<std::pair<double, std::uint32_t>, 64> stack;  // one more for each level, and levels halve
     std::size_t size = 0;
-    stack[size++] = {bound(0), 0};
+    stack[size++] = {-HUGE_VAL, 0};
     while (size > 0) {
       const auto [least, index] = stack[--size];
       if (!(least < best)) continue;
       const Node& node = nodes_[index];
       for (std::uint32_t k = 0; k < node.count; ++k) best = visit(node.first + k);
       if (node.count > 0) continue;
-      std::pair<double, std::uint32_t> near{bound(node.first), node.first};
-      std::pair<double, std::uint32_t> far{bound(node.first + 1), node.first + 1};
+      const Two both = bounds(node.first);
+      std::pair<double, std::uint32_t> near{both[0], node.first};
+      std::pair<double, std::uint32_t> far{both[1], node.first + 1};
       if (far.first < near.first) std::swap(near, far);
       if (far.first < best) stack[size++] = far;
       if (near.first < best) stack[size++] = near;
     }
+  }
+
+  /// Calls visit(place in order()) for the things of all leaves that may_meet(box) is true of, and of the root, until
+  /// it returns false.
+  template <class MayMeet, class Visit>
+  void visit_where(const MayMeet& may_meet, const Visit& visit) const {
+    const auto distance_to = [&](std::uint32_t n) { return may_meet(nodes_[n].box) ? 0.0 : 2.0; };
+    search(
+        1, [&](std::uint32_t first_child) { return Two{distance_to(first_child), distance_to(first_child + 1)}; },
+        [&](std::uint32_t place) { return visit(place) ? 1.0 : -1.0; });
   }
 
  private:
@@ -67,6 +117,7 @@ class BoxHierarchy {
 
   std::vector<std::uint32_t> order_;
   std::vector<Node> nodes_;
+  std::vector<TwoBoxes> pairs_;  ///< of siblings
 };
 
 }  // namespace blum::verifier

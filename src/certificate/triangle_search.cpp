@@ -252,15 +252,19 @@ TriangleSearch::TriangleSearch(const MeshView& mesh, std::span<const std::uint32
 
 void TriangleSearch::make_flat_boxes(const Context& context) {
   constexpr std::size_t most_triangles = 64;
-  flat_boxes_.resize(tree_.node_count());
+  flat_boxes_.resize(tree_.node_count() / 2);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> range(tree_.node_count());  // of places; those below a node
   for (std::uint32_t n = tree_.node_count(); n-- > 0;) {                           // children come after their parents
     if (n % 16384 == 0) throw_if_cancelled(context);
     const BoxHierarchy::Node& node = tree_.node(n);
     range[n] = node.count > 0 ? std::pair(node.first, node.first + node.count)
                               : std::pair(range[node.first].first, range[node.first + 1].second);
+    if (n == 0) break;
     const auto [begin, end] = range[n];
-    if (end - begin <= most_triangles) flat_boxes_[n] = flat_box({corners_.data() + begin, end - begin});
+    FlatBox flat;
+    flat.box = node.box;
+    if (end - begin <= most_triangles) flat = flat_box({corners_.data() + begin, end - begin});
+    flat_boxes_[(n - 1) / 2].set((n - 1) % 2, flat);
   }
 }
 
@@ -281,10 +285,24 @@ TriangleSearch::FlatBox TriangleSearch::flat_box(std::span<const Corners> triang
   return flat;
 }
 
-double TriangleSearch::bound(const Vec3d& p, std::uint32_t node) const {
-  const FlatBox& flat = flat_boxes_[node];
-  if (flat.box.is_empty()) return squared_distance(p, tree_.node(node).box);
-  return squared_distance(flat.axes.transposed_times(p - flat.origin), flat.box);
+void TriangleSearch::TwoFlatBoxes::set(std::size_t k, const FlatBox& flat) {
+  boxes.set(k, flat.box);
+  for (std::size_t c = 0; c < 3; ++c) {
+    origin[c][k] = flat.origin[c];
+    for (std::size_t axis = 0; axis < 3; ++axis) axes[axis][c][k] = flat.axes.columns[axis][c];
+  }
+}
+
+Two TriangleSearch::squared_bounds(const Vec3d& p, std::uint32_t first_child) const {
+  const TwoFlatBoxes& both = flat_boxes_[BoxHierarchy::pair_of(first_child)];
+  std::array<Two, 3> local{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vec3d q{p.x - both.origin[0][k], p.y - both.origin[1][k], p.z - both.origin[2][k]};
+      local[axis][k] = both.axes[axis][0][k] * q.x + both.axes[axis][1][k] * q.y + both.axes[axis][2][k] * q.z;
+    }
+  }
+  return squared_distances(local, both.boxes);
 }
 
 TriangleSearch::Nearest TriangleSearch::nearest(const Vec3d& p, std::uint32_t group) const {
@@ -297,7 +315,7 @@ TriangleSearch::Nearest TriangleSearch::nearest_within(const Vec3d& p, double wi
   std::uint32_t triangle = 0;
   ClosePoints close;
   tree_.search(
-      best, [&](std::uint32_t n) { return bound(p, n); },
+      best, [&](std::uint32_t first_child) { return squared_bounds(p, first_child); },
       [&](std::uint32_t place) {
         if (group != no_group && groups_[place] != group) return best * as_close;
         const Vec3d closest = closest_point(p, corners_[place]);
@@ -318,15 +336,14 @@ bool TriangleSearch::crossings(const ProbeLine& line, std::vector<Crossing>& fou
   bool is_certain = true;
   const double slack = 1e-9 * (bounds_.diagonal() + length(line.point - bounds_.center()));
   const double begin = reach < HUGE_VAL ? -slack : -HUGE_VAL;
-  tree_.search(
-      1, [&](std::uint32_t n) { return may_meet(line, tree_.node(n).box, begin, reach, slack) ? 0.0 : 2.0; },
-      [&](std::uint32_t place) {
-        double at = 0;
-        const Meeting meeting = meet(line, corners_[place], at);
-        if (meeting == Meeting::crossing) found.push_back({at, triangles_[place]});
-        if (meeting == Meeting::doubtful) is_certain = false;
-        return is_certain ? 1.0 : -1.0;
-      });
+  tree_.visit_where([&](const Box3& box) { return may_meet(line, box, begin, reach, slack); },
+                    [&](std::uint32_t place) {
+                      double at = 0;
+                      const Meeting meeting = meet(line, corners_[place], at);
+                      if (meeting == Meeting::crossing) found.push_back({at, triangles_[place]});
+                      if (meeting == Meeting::doubtful) is_certain = false;
+                      return is_certain;
+                    });
   return is_certain;
 }
 
@@ -337,21 +354,20 @@ bool TriangleSearch::exact_crossings(const Vec3d& from, const Vec3d& to, std::ui
   const ProbeLine line = line_between(from, to);
   const double reach = length(to - from);
   const double slack = 1e-9 * (bounds_.diagonal() + length(from - bounds_.center()));
-  tree_.search(
-      1, [&](std::uint32_t n) { return may_meet(line, tree_.node(n).box, -slack, reach, slack) ? 0.0 : 2.0; },
-      [&](std::uint32_t place) {
-        if (groups_[place] != group) return 1.0;
-        const auto& [a, b, c] = corners_[place];
-        const std::optional<int> times = exact_crossing(a, b, c, from, to);
-        if (!times) is_certain = false;
-        if (times.value_or(0) != 0) {
-          const Vec3d normal = cross(b - a, c - a);
-          const double above = std::abs(dot(from - a, normal));
-          const double below = std::abs(dot(to - a, normal));
-          found.push_back({above + below > 0 ? reach * above / (above + below) : 0.0, triangles_[place]});
-        }
-        return is_certain ? 1.0 : -1.0;
-      });
+  tree_.visit_where([&](const Box3& box) { return may_meet(line, box, -slack, reach, slack); },
+                    [&](std::uint32_t place) {
+                      if (groups_[place] != group) return true;
+                      const auto& [a, b, c] = corners_[place];
+                      const std::optional<int> times = exact_crossing(a, b, c, from, to);
+                      if (!times) is_certain = false;
+                      if (times.value_or(0) != 0) {
+                        const Vec3d normal = cross(b - a, c - a);
+                        const double above = std::abs(dot(from - a, normal));
+                        const double below = std::abs(dot(to - a, normal));
+                        found.push_back({above + below > 0 ? reach * above / (above + below) : 0.0, triangles_[place]});
+                      }
+                      return is_certain;
+                    });
   return is_certain;
 }
 
@@ -361,16 +377,15 @@ bool TriangleSearch::is_unpierced(const std::array<Vec3d, 3>& triangle, std::uin
   if (!(size > 0)) return false;
   const PiercedTriangle target(triangle, normal / size, 1e-12 * (bounds_.diagonal() + length(bounds_.center())));
   bool is_unpierced = true;
-  tree_.search(
-      1, [&](std::uint32_t n) { return target.may_meet(tree_.node(n).box) ? 0.0 : 2.0; },
-      [&](std::uint32_t place) {
-        if (groups_[place] != group) return 1.0;
-        const Corners& corners = corners_[place];
-        for (std::size_t k = 0; k < 3 && is_unpierced; ++k) {
-          is_unpierced = !target.may_be_pierced(corners[k], corners[(k + 1) % 3]);
-        }
-        return is_unpierced ? 1.0 : -1.0;
-      });
+  tree_.visit_where([&](const Box3& box) { return target.may_meet(box); },
+                    [&](std::uint32_t place) {
+                      if (groups_[place] != group) return true;
+                      const Corners& corners = corners_[place];
+                      for (std::size_t k = 0; k < 3 && is_unpierced; ++k) {
+                        is_unpierced = !target.may_be_pierced(corners[k], corners[(k + 1) % 3]);
+                      }
+                      return is_unpierced;
+                    });
   return is_unpierced;
 }
 

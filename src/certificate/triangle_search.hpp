@@ -74,14 +74,21 @@ class TriangleSearch {
   struct FlatBox {
     Vec3d origin;
     Mat3 axes;
-    Box3 box;  ///< from the origin, along the axes; empty where there are too many triangles for it
+    Box3 box;  ///< from the origin, along the axes
+  };
+  /// Those of siblings, or their boxes where one of them has too many triangles for it.
+  struct TwoFlatBoxes {
+    std::array<Two, 3> origin{};
+    std::array<std::array<Two, 3>, 3> axes{};
+    TwoBoxes boxes;
+
+    void set(std::size_t k, const FlatBox& flat);
   };
   void make_flat_boxes(const Context& context);
   [[nodiscard]] static FlatBox flat_box(std::span<const Corners> triangles);
-  [[nodiscard]] double bound(const Vec3d& p, std::uint32_t node) const;
-
+  [[nodiscard]] Two squared_bounds(const Vec3d& p, std::uint32_t first_child) const;
   BoxHierarchy tree_;
-  std::vector<FlatBox> flat_boxes_;       ///< of each node of the tree
+  std::vector<TwoFlatBoxes> flat_boxes_;  ///< of siblings in the tree
   std::vector<Corners> corners_;          ///< in the tree's order
   std::vector<std::uint32_t> triangles_;  ///< of the mesh, in the tree's order
   std::vector<std::uint32_t> groups_;     ///< in the tree's order

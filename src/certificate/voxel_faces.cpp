@@ -89,7 +89,7 @@ VoxelFaces::Nearest VoxelFaces::nearest(const Vec3d& p) const {
   Nearest found;
   double best = HUGE_VAL;
   tree_.search(
-      best, [&](std::uint32_t n) { return squared_distance(q, tree_.node(n).box); },
+      best, [&](std::uint32_t first_child) { return squared_distances(q, tree_.two_boxes(first_child)); },
       [&](std::uint32_t brick) {
         if (!(squared_distance(q, boxes_[brick]) < best)) return best;
         for_each_face(brick, [&](const Face& face) {

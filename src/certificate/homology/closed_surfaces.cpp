@@ -200,18 +200,16 @@ class VoidLines {
         return box.lower.x <= seen.x + room && seen.x - room <= box.upper.x && box.lower.y <= seen.y + room &&
                seen.y - room <= box.upper.y && box.lower.z <= seen.z + room;
       };
-      tree_.search(
-          1, [&](std::uint32_t n) { return meets(tree_.node(n).box) ? 0.0 : 2.0; },
-          [&](std::uint32_t place) {
-            const std::uint32_t item = tree_.order()[place];
-            const std::uint32_t t = triangles_[item];
-            const auto [a, b, c] = core_.face(t);
-            if (!meets(boxes_[item]) || body_of_[a] != own.body) return 1.0;
-            const auto times = apex_.crossing_above(point, positions_[a], positions_[b], positions_[c]);
-            if (!times) is_doubtful[k] = true;
-            if (times.value_or(0) != 0) rows[sheets_.of(t)].emplace_back(first_column + k, sheets_.facing(t) * *times);
-            return 1.0;
-          });
+      tree_.visit_where(meets, [&](std::uint32_t place) {
+        const std::uint32_t item = tree_.order()[place];
+        const std::uint32_t t = triangles_[item];
+        const auto [a, b, c] = core_.face(t);
+        if (!meets(boxes_[item]) || body_of_[a] != own.body) return true;
+        const auto times = apex_.crossing_above(point, positions_[a], positions_[b], positions_[c]);
+        if (!times) is_doubtful[k] = true;
+        if (times.value_or(0) != 0) rows[sheets_.of(t)].emplace_back(first_column + k, sheets_.facing(t) * *times);
+        return true;
+      });
     }
     for (SparseRow& row : rows) tidy(row);
     return is_doubtful;

@@ -38,12 +38,11 @@ Curtains::Curtains(const Complement& complement, const Apex& apex, const Context
 
 void Curtains::near(const Box3& seen, std::vector<std::uint32_t>& places) const {
   places.clear();
-  tree_.search(
-      1, [&](std::uint32_t n) { return meet(tree_.node(n).box, seen) ? 0.0 : 2.0; },
-      [&](std::uint32_t place) {
-        if (meet(boxes_[place], seen)) places.push_back(place);
-        return 1.0;
-      });
+  tree_.visit_where([&](const Box3& box) { return meet(box, seen); },
+                    [&](std::uint32_t place) {
+                      if (meet(boxes_[place], seen)) places.push_back(place);
+                      return true;
+                    });
 }
 
 bool Curtains::add(const Vec3d& a, const Vec3d& b, const Box3& seen, std::uint32_t body,
