@@ -51,40 +51,45 @@ namespace {
 
 /// @param edge, triangle  give the vertices of those that are left; nullopt for the others.
 template <class HasVertex, class Edge, class Triangle>
-AxisLists rest(const AxisLists& whole, const HasVertex& has_vertex, const Edge& edge, const Triangle& triangle) {
-  AxisLists out;
-  std::vector<std::uint32_t> number(whole.vertices.size(), 0);
+void keep_in_place(AxisLists& lists, const HasVertex& has_vertex, const Edge& edge, const Triangle& triangle) {
+  std::vector<std::uint32_t> number(lists.vertices.size(), 0);
+  std::uint32_t left = 0;
   for (std::uint32_t v = 0; v < number.size(); ++v) {
-    number[v] = static_cast<std::uint32_t>(out.vertices.size());
-    if (has_vertex(v)) out.vertices.push_back(whole.vertices[v]);
+    number[v] = left;
+    if (!has_vertex(v)) continue;
+    if (left != v) lists.vertices[left] = lists.vertices[v];
+    ++left;
   }
-  for (std::uint32_t e = 0; e < whole.edges.size(); ++e) {
-    const std::optional<std::array<std::uint32_t, 2>> ends = edge(e);
-    if (ends) out.add_edge({number[(*ends)[0]], number[(*ends)[1]]}, whole.edge_angles[e]);
-  }
-  for (std::uint32_t t = 0; t < whole.triangles.size(); ++t) {
-    const std::optional<std::array<std::uint32_t, 3>> corners = triangle(t);
-    if (!corners) continue;
-    const auto& [a, b, c] = *corners;
-    out.add_triangle({number[a], number[b], number[c]}, whole.triangle_angles[t]);
-  }
-  return out;
+  lists.vertices.resize(left);
+  const auto keep_cells = [&](auto& cells, std::vector<float>& angles, const auto& cell_left) {
+    std::size_t kept = 0;
+    for (std::uint32_t c = 0; c < cells.size(); ++c) {
+      const auto corners = cell_left(c);
+      if (!corners) continue;
+      for (std::size_t k = 0; k < corners->size(); ++k) cells[kept][k] = number[(*corners)[k]];
+      angles[kept++] = angles[c];
+    }
+    cells.resize(kept);
+    angles.resize(kept);
+  };
+  keep_cells(lists.edges, lists.edge_angles, edge);
+  keep_cells(lists.triangles, lists.triangle_angles, triangle);
 }
 
 }  // namespace
 
-AxisLists rest_of(const ShrinkingComplex& cells, const AxisLists& whole) {
-  return rest(
-      whole, [&](std::uint32_t v) { return cells.has_vertex(v); },
+void keep(const ShrinkingComplex& cells, AxisLists& lists) {
+  keep_in_place(
+      lists, [&](std::uint32_t v) { return cells.has_vertex(v); },
       [&](std::uint32_t e) { return cells.has_edge(e) ? std::optional(cells.edge(e)) : std::nullopt; },
       [&](std::uint32_t t) { return cells.has_triangle(t) ? std::optional(cells.triangle(t)) : std::nullopt; });
 }
 
-AxisLists rest_of(const AxisLists& whole, const std::vector<bool>& has_vertex, const std::vector<bool>& has_triangle) {
-  return rest(
-      whole, [&](std::uint32_t v) { return bool(has_vertex[v]); },
-      [&](std::uint32_t e) { return std::optional(whole.edges[e]); },
-      [&](std::uint32_t t) { return has_triangle[t] ? std::optional(whole.triangles[t]) : std::nullopt; });
+void keep(const std::vector<bool>& has_vertex, const std::vector<bool>& has_triangle, AxisLists& lists) {
+  keep_in_place(
+      lists, [&](std::uint32_t v) { return bool(has_vertex[v]); },
+      [&](std::uint32_t e) { return std::optional(lists.edges[e]); },
+      [&](std::uint32_t t) { return has_triangle[t] ? std::optional(lists.triangles[t]) : std::nullopt; });
 }
 
 void append(AxisLists more, AxisLists& lists) {

@@ -32,11 +32,11 @@ struct AxisLists {
 /// Adds lists at the end of others.
 void append(AxisLists more, AxisLists& lists);
 
-/// What is left of lists that a complex was made of: its edges are those of the lists, in their order, and maybe more.
-[[nodiscard]] AxisLists rest_of(const ShrinkingComplex& cells, const AxisLists& whole);
-/// What is left of lists with some of their vertices and triangles, and all their edges, which have only such vertices.
-[[nodiscard]] AxisLists rest_of(const AxisLists& whole, const std::vector<bool>& has_vertex,
-                                const std::vector<bool>& has_triangle);
+/// Keeps what is left of a complex that was made of lists: its edges are those of the lists, in their order, and maybe
+/// more.
+void keep(const ShrinkingComplex& cells, AxisLists& lists);
+/// Keeps some vertices and triangles, and all edges, which have only such vertices.
+void keep(const std::vector<bool>& has_vertex, const std::vector<bool>& has_triangle, AxisLists& lists);
 
 /// A complex with the columns of a medial axis, one sheet, and edges that are curves: to be labelled by label_sheets().
 [[nodiscard]] Complex complex_of(AxisLists lists);

@@ -1,8 +1,11 @@
 #include "medial_axis/collapse.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <queue>
+
+#include "blum/core/gather.hpp"
 
 namespace blum {
 namespace {
@@ -64,18 +67,14 @@ class Collapser {
         context_(context) {}
 
   void remove_cubes() {
-    complex_.for_each_cell([&](Cell cell) {
-      if (structure_.dimension(cell) == 2) offer(cell);
-    });
+    offer_all(2, 2);
     run([](Cell, Cell, float) {}, [&](Cell cube, Cell) { offer_faces(cube); });
   }
 
   /// Removes squares, edges and vertices of importance zero; what is left after that, in order.
   void remove_unimportant() {
     level_ = 0;
-    complex_.for_each_cell([&](Cell cell) {
-      if (structure_.dimension(cell) <= 1) offer(cell);
-    });
+    offer_all(0, 1);
     run_unimportant([](Cell, Cell, float) {}, next_);
   }
   std::vector<Removal> remove_rest() {
@@ -105,15 +104,41 @@ class Collapser {
     return sum / count;
   }
 
+  [[nodiscard]] bool is_free(Cell face) const { return complex_.contains(face) && complex_.only_coface(face) != face; }
   /// Puts a face in line if it is free.
   void offer(Cell face) {
-    if (!complex_.contains(face) || complex_.only_coface(face) == face) return;
+    if (is_free(face)) enter(face);
+  }
+  void enter(Cell face) {
     const float importance = importance_.of(face);
     const double depth = depth_of(face);
     if (importance > 0) {
       important_.push({importance, static_cast<float>(depth), face});
     } else {
       unimportant_.push(face, depth * per_step_ + 1);
+    }
+  }
+  /// All cells of some dimensions, those of the lattice first, rising.
+  void offer_all(int least_dimension, int most_dimension) {
+    constexpr std::size_t grain = std::size_t{1} << 16U;
+    unsigned wanted = 0;  // bit a: the cells that span `a` from a node
+    for (CellAxes axes = 0; axes < 8; ++axes) {
+      const int dimension = dimension_of(cell_at(0, axes));
+      if (least_dimension <= dimension && dimension <= most_dimension) wanted |= 1U << axes;
+    }
+    const std::span<const std::uint8_t> bytes = complex_.bytes();
+    const std::vector<Cell> free =
+        detail::gather<Cell>(context_, bytes.size(), grain, {}, [&](std::size_t node, std::vector<Cell>& found) {
+          for (unsigned rest = bytes[node] & wanted; rest != 0; rest &= rest - 1) {
+            const Cell cell = cell_at(node, static_cast<CellAxes>(std::countr_zero(rest)));
+            if (complex_.only_coface(cell) != cell) found.push_back(cell);
+          }
+        });
+    for (const Cell cell : free) enter(cell);
+    for (std::size_t k = 0; k < structure_.extra_count(); ++k) {
+      const Cell cell = structure_.first_extra() + static_cast<Cell>(k);
+      const int dimension = structure_.dimension(cell);
+      if (least_dimension <= dimension && dimension <= most_dimension) offer(cell);
     }
   }
   void offer_faces(Cell cell) {

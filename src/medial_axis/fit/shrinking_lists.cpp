@@ -118,7 +118,7 @@ bool ShrinkingLists::is_joined(std::uint32_t a, std::uint32_t b) const {
 }
 
 void ShrinkingLists::write() {
-  lists_ = rest_of(cells_, lists_);
+  keep(cells_, lists_);
 }
 
 }  // namespace blum

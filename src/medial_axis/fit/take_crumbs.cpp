@@ -38,7 +38,7 @@ class CrumbTaker {
     const std::vector<bool> lies_on_others = which_lie_on_others();
     for (std::size_t s = 0; s < small_.size(); ++s)
       is_changed = (lies_on_others[s] && collapse(small_[s])) || is_changed;
-    if (is_changed) lists_ = rest_of(lists_, has_vertex_, has_triangle_);
+    if (is_changed) keep(has_vertex_, has_triangle_, lists_);
     return is_changed;
   }
 

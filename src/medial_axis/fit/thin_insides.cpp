@@ -36,7 +36,7 @@ class InsideThinner {
     SheetDecimator decimator(input(), target_.tolerance, context_);
     decimator.run(levels);
     lists_.triangle_angles.assign(decimator.triangle_angle().begin(), decimator.triangle_angle().end());
-    lists_ = rest_of(decimator.cells(), lists_);
+    keep(decimator.cells(), lists_);
     return decimator.moved();
   }
 

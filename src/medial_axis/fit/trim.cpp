@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "blum/core/gather.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -116,16 +117,21 @@ class Trimmer {
   }
   /// Those whose boxes are next to any of some vertices, which are sorted along x.
   [[nodiscard]] TriangleMesh triangles_near(const std::vector<std::pair<double, std::uint32_t>>& alone) const {
-    TriangleMesh near;
+    constexpr std::size_t grain = 4096;
     const Vec3d reach{limits_.beside, limits_.beside, limits_.beside};
-    for (const auto& [a, b, c] : lists_.triangles) {
-      const Box3 box{min(min(position(a), position(b)), position(c)) - reach,
-                     max(max(position(a), position(b)), position(c)) + reach};
-      auto at = std::lower_bound(alone.begin(), alone.end(), std::pair(box.lower.x, 0U));
-      while (at != alone.end() && at->first <= box.upper.x && !holds(box, position(at->second))) ++at;
-      if (at == alone.end() || at->first > box.upper.x) continue;
+    const auto found =
+        detail::gather<std::uint32_t>(context_, lists_.triangles.size(), grain, {}, [&](std::size_t t, auto& list) {
+          const auto& [a, b, c] = lists_.triangles[t];
+          const Box3 box{min(min(position(a), position(b)), position(c)) - reach,
+                         max(max(position(a), position(b)), position(c)) + reach};
+          auto at = std::lower_bound(alone.begin(), alone.end(), std::pair(box.lower.x, 0U));
+          while (at != alone.end() && at->first <= box.upper.x && !holds(box, position(at->second))) ++at;
+          if (at != alone.end() && at->first <= box.upper.x) list.push_back(static_cast<std::uint32_t>(t));
+        });
+    TriangleMesh near;
+    for (const std::uint32_t t : found) {
       const auto first = static_cast<std::uint32_t>(near.vertices.size());
-      near.vertices.insert(near.vertices.end(), {position(a), position(b), position(c)});
+      for (const std::uint32_t v : lists_.triangles[t]) near.vertices.push_back(position(v));
       near.triangles.push_back({first, first + 1, first + 2});
     }
     return near;
@@ -190,14 +196,8 @@ class Trimmer {
     return !has_taken_;
   }
 
-  /// What is left, in the same order.
+  /// What is left, in the same order; edges in that of the incidence.
   void write() {
-    AxisLists out;
-    std::vector<std::uint32_t> number(has_vertex_.size(), 0);
-    for (std::uint32_t v = 0; v < has_vertex_.size(); ++v) {
-      number[v] = static_cast<std::uint32_t>(out.vertices.size());
-      if (has_vertex_[v]) out.vertices.push_back(lists_.vertices[v]);
-    }
     std::vector<float> angle_of_edge(has_edge_.size(), 0);
     for (std::size_t n = 0; n < lists_.edges.size(); ++n) {
       angle_of_edge[incidence_.edge_of_listed()[n]] = lists_.edge_angles[n];
@@ -206,17 +206,13 @@ class Trimmer {
       for (const std::uint32_t side : incidence_.sides()[t]) {
         angle_of_edge[side] = std::max(angle_of_edge[side], lists_.triangle_angles[t]);
       }
-      if (!has_triangle_[t]) continue;
-      auto corners = lists_.triangles[t];
-      for (std::uint32_t& v : corners) v = number[v];
-      out.add_triangle(corners, lists_.triangle_angles[t]);
     }
+    lists_.edges.clear();
+    lists_.edge_angles.clear();
     for (std::uint32_t e = 0; e < has_edge_.size(); ++e) {
-      if (!has_edge_[e] || triangles_left_[e] > 0) continue;
-      const auto& [a, b] = incidence_.edges()[e];
-      out.add_edge({number[a], number[b]}, angle_of_edge[e]);
+      if (has_edge_[e] && triangles_left_[e] == 0) lists_.add_edge(incidence_.edges()[e], angle_of_edge[e]);
     }
-    lists_ = std::move(out);
+    keep(has_vertex_, has_triangle_, lists_);
   }
 
   AxisLists& lists_;
