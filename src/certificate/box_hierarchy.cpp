@@ -57,6 +57,16 @@ void BoxHierarchy::sort_halves(Node& node, const std::vector<Box3>& boxes) {
   });
 }
 
+std::vector<BoxHierarchy::Places> BoxHierarchy::places() const {
+  std::vector<Places> all(nodes_.size());
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children come after their parents
+    const Node& node = nodes_[n];
+    all[n] = node.count > 0 ? Places(node.first, node.first + node.count)
+                            : Places(all[node.first].first, all[node.first + 1].second);
+  }
+  return all;
+}
+
 std::vector<double> BoxHierarchy::node_maxima(std::span<const double> values) const {
   std::vector<double> largest(nodes_.size(), -HUGE_VAL);
   for (std::size_t n = nodes_.size(); n-- > 0;) {  // children come after their parents

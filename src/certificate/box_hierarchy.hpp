@@ -75,6 +75,10 @@ class BoxHierarchy {
   /// The boxes of a first child and its sibling.
   [[nodiscard]] const TwoBoxes& two_boxes(std::uint32_t first_child) const { return pairs_[pair_of(first_child)]; }
 
+  /// For each node, the places in order() of all things below it: from the first to before the second.
+  using Places = std::pair<std::uint32_t, std::uint32_t>;
+  [[nodiscard]] std::vector<Places> places() const;
+
   /// For each node the largest of the values of its things, given in the order of order().
   [[nodiscard]] std::vector<double> node_maxima(std::span<const double> values) const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
 #include "certificate/exact_crossing.hpp"
 #include "certificate/segments.hpp"
@@ -252,20 +253,21 @@ TriangleSearch::TriangleSearch(const MeshView& mesh, std::span<const std::uint32
 
 void TriangleSearch::make_flat_boxes(const Context& context) {
   constexpr std::size_t most_triangles = 64;
+  constexpr std::size_t grain = 1024;
+  const std::vector<BoxHierarchy::Places> places = tree_.places();
   flat_boxes_.resize(tree_.node_count() / 2);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> range(tree_.node_count());  // of places; those below a node
-  for (std::uint32_t n = tree_.node_count(); n-- > 0;) {                           // children come after their parents
-    if (n % 16384 == 0) throw_if_cancelled(context);
-    const BoxHierarchy::Node& node = tree_.node(n);
-    range[n] = node.count > 0 ? std::pair(node.first, node.first + node.count)
-                              : std::pair(range[node.first].first, range[node.first + 1].second);
-    if (n == 0) break;
-    const auto [begin, end] = range[n];
-    FlatBox flat;
-    flat.box = node.box;
-    if (end - begin <= most_triangles) flat = flat_box({corners_.data() + begin, end - begin});
-    flat_boxes_[(n - 1) / 2].set((n - 1) % 2, flat);
-  }
+  parallel_for(context, flat_boxes_.size(), grain, {}, [&](const WorkRange& range) {
+    for (std::size_t pair = range.begin; pair < range.end; ++pair) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const std::size_t n = 2 * pair + 1 + k;
+        const auto [begin, end] = places[n];
+        FlatBox flat;
+        flat.box = tree_.node(static_cast<std::uint32_t>(n)).box;
+        if (end - begin <= most_triangles) flat = flat_box({corners_.data() + begin, end - begin});
+        flat_boxes_[pair].set(k, flat);
+      }
+    }
+  });
 }
 
 TriangleSearch::FlatBox TriangleSearch::flat_box(std::span<const Corners> triangles) {
