@@ -130,6 +130,7 @@ Request parse(const Arguments& a) {
   if (r.prunes_sheets) std::sort(r.thetas.begin(), r.thetas.end());
   // Sheets are pruned whole, so they must be whole first.
   r.options.least_theta = r.prunes_sheets ? 0 : *std::min_element(r.thetas.begin(), r.thetas.end());
+  if (!r.prunes_sheets && !r.nested) r.options.greatest_theta = *std::max_element(r.thetas.begin(), r.thetas.end());
   r.selections = parse_selections(a.labels, a.threshold);
   r.weld = parse_weld(a.weld);
   r.allow_uncertified = a.allow_uncertified;
@@ -577,7 +578,7 @@ void add_medial_command(const CommandLine& line) {
   text("--simplify", a->simplify, "TOL",
        "Fewer triangles, at most TOL mesh units away (default: a quarter of a voxel); 0 keeps all");
   text("--prune", a->prune, "sheets", "Drop whole sheets of at most --theta instead of cutting them there");
-  a->options.add_to(*command, "", {"least_theta"});
+  a->options.add_to(*command, "", {"least_theta", "greatest_theta"});
   add_label_option(*command, a->labels, "Image: the voxels of value L; several (1,3 or repeated) give an axis each");
   text("--threshold", a->threshold, "T", "Image: the voxels of value T or more (default: all that are not 0)");
   command->add_flag(

@@ -70,6 +70,7 @@ void bind_axis(nb::module_& m) {
           },
           nb::arg("tolerance").none())
       .def_prop_ro("least_theta", &MedialAxis::least_theta)
+      .def_prop_ro("greatest_theta", &MedialAxis::greatest_theta)
       .def_prop_ro("report", [](const MedialAxis& axis) { return result_of(axis.report()); });
   m.def(
       "medial_axis_of_mesh",

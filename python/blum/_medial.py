@@ -43,6 +43,8 @@ class MedialAxis:
         self._grids = grids
         #: The smallest angle that can be asked for, degrees.
         self.least_theta: float = core.least_theta
+        #: The largest angle that can be asked for, degrees.
+        self.greatest_theta: float = core.greatest_theta
 
     @cached_property
     def report(self) -> MedialAxisReport:

@@ -120,8 +120,8 @@ class Remainder {
 
 }  // namespace
 
-AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor, std::vector<PhaseTime>& phases,
-                          const Context& context) {
+AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor, double greatest_theta,
+                          std::vector<PhaseTime>& phases, const Context& context) {
   PhaseTimer timer(phases);
   const VoxelSolid& solid = governors.solid();
   CellComplex complex(solid.voxels, solid.extra, context);
@@ -137,8 +137,8 @@ AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floo
   }
   timer.lap("thinning");
   const std::vector<float> depths = depths_of_extra(piece.structure);
-  const CollapseOrder order =
-      collapse(std::move(complex), {solid.depth.span(), depths}, 0.25 * governors.voxel(), importance, context);
+  const CollapseOrder order = collapse(std::move(complex), {solid.depth.span(), depths}, 0.25 * governors.voxel(),
+                                       importance, greatest_theta, context);
   piece.cells = cells_of(order.base, importance);
   const AxisCorners corners(piece, context);
   for (const Removal& removal : order.removals) {

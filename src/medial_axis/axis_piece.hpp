@@ -39,11 +39,12 @@ struct AxisPiece {
 };
 
 /// Collapses the cells of a solid to its medial axis.
+/// @param greatest_theta  degrees: of cells that are still there at that angle, nothing more is found out.
 /// @throws Cancelled, OutOfMemory.
-[[nodiscard]] AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor,
+[[nodiscard]] AxisPiece make_axis_piece(const GovernorField& governors, const NoiseFloor& floor, double greatest_theta,
                                         std::vector<PhaseTime>& phases, const Context& context);
 
-/// Adds what is left of a piece at theta; edges are those of curves only.
+/// Adds what is left of a piece at theta, which is no more than the greatest; edges are those of curves only.
 /// @throws Cancelled.
 void append_at(const AxisPiece& piece, double theta, AxisLists& lists, const Context& context);
 

@@ -77,7 +77,8 @@ class Collapser {
     offer_all(0, 1);
     run_unimportant([](Cell, Cell, float) {}, next_);
   }
-  std::vector<Removal> remove_rest() {
+  std::vector<Removal> remove_rest(double most_level) {
+    most_level_ = most_level;
     std::vector<Removal> removals;
     run([&](Cell cell, Cell face, float level) { removals.push_back({cell, face, level}); }, next_);
     return removals;
@@ -166,6 +167,7 @@ class Collapser {
     run_unimportant(record, next);
     while (!important_.empty()) {
       const ImportantFace first = important_.top();
+      if (first.importance > most_level_) return;
       important_.pop();
       level_ = std::max(level_, first.importance);
       remove(first.face, record, next);
@@ -183,6 +185,7 @@ class Collapser {
   DepthQueue unimportant_;
   std::priority_queue<ImportantFace, std::vector<ImportantFace>, std::greater<>> important_;
   float level_ = 0;
+  double most_level_ = HUGE_VAL;
   std::size_t removals_ = 0;
   /// After a removal, what its cells held may have become free.
   struct Next {
@@ -219,13 +222,13 @@ void collapse_extra(CellComplex& complex, const Importance& importance) {
 }
 
 CollapseOrder collapse(CellComplex complex, const CellDepths& depths, double depth_step, const Importance& importance,
-                       const Context& context) {
+                       double most_level, const Context& context) {
   Collapser collapser(complex, depths, depth_step, importance, context);
   collapser.remove_cubes();
   collapser.remove_unimportant();
   CollapseOrder order;
   order.base = complex.clone();
-  order.removals = collapser.remove_rest();
+  order.removals = collapser.remove_rest(most_level);
   return order;
 }
 

@@ -22,7 +22,8 @@ struct Removal {
 struct CollapseOrder {
   /// The cells of importance zero that homotopy does not need are gone, and all cubes.
   CellComplex base;
-  /// What follows, by level: after those of level <= theta, what is left of the base is the complex at theta.
+  /// What follows, by level, up to the largest one asked for: after those of level <= theta, what is left of the base
+  /// is the complex at theta.
   std::vector<Removal> removals;
 };
 
@@ -41,8 +42,9 @@ void collapse_extra(CellComplex& complex, const Importance& importance);
 /// homotopy type of the first (Liu, Chambers, Letscher, Ju 2010; Chaussard, Couprie 2009), whatever the numbers are.
 /// What is shallow goes first.
 /// @param importance  of cells, in degrees; at least that of their cofaces.
+/// @param most_level  degrees: of what is more important, no order is told.
 /// @throws Cancelled. Cost: about linear in the cells, n log n in the important ones.
 [[nodiscard]] CollapseOrder collapse(CellComplex complex, const CellDepths& depths, double depth_step,
-                                     const Importance& importance, const Context& context);
+                                     const Importance& importance, double most_level, const Context& context);
 
 }  // namespace blum

@@ -47,6 +47,11 @@ void check(const MedialAxisOptions& options) {
     throw InvalidOption("grid_shift is " + exact_text(options.grid_shift) + " voxels, but must be -1 to 1");
   }
   check_angle("least_theta", options.least_theta);
+  check_angle("greatest_theta", options.greatest_theta);
+  if (options.greatest_theta < options.least_theta) {
+    throw InvalidOption("greatest_theta is " + exact_text(options.greatest_theta) +
+                        " degrees, but must be at least least_theta, " + exact_text(options.least_theta));
+  }
   if (!(options.lambda >= 0 && std::isfinite(options.lambda))) {
     throw InvalidOption("lambda is " + exact_text(options.lambda) + ", but must be at least 0");
   }
@@ -109,6 +114,7 @@ struct MedialAxis::Data {
   std::vector<std::unique_ptr<BodySurface>> surfaces;  ///< of the pieces of a polyhedron
   PatchNumbers patches;
   double least_theta = 0;
+  double greatest_theta = 180;
   double lambda = 0;
 
   /// An axis at an angle, fitted to the surfaces of a polyhedron.
@@ -159,6 +165,7 @@ class MedialAxisBuilder {
       : options_(options), context_(context), data_(std::make_unique<MedialAxis::Data>()) {
     check(options);
     data_->least_theta = options.least_theta;
+    data_->greatest_theta = options.greatest_theta;
     data_->lambda = options.lambda;
   }
 
@@ -327,7 +334,7 @@ class MedialAxisBuilder {
                                      std::vector<PhaseTime>& phases, const Context& context) const {
     floor.lambda = options_.lambda;
     floor.angle = std::max(floor.angle, options_.least_theta);
-    return make_axis_piece(GovernorField(voxelized.solid, surface), floor, phases, context);
+    return make_axis_piece(GovernorField(voxelized.solid, surface), floor, options_.greatest_theta, phases, context);
   }
 
   void add_piece(const Voxelized& voxelized, AxisPiece piece) {
@@ -358,9 +365,9 @@ const MedialAxisReport& MedialAxis::report() const {
 }
 
 void MedialAxis::check_theta(double theta) const {
-  if (theta >= data_->least_theta && theta <= 180) return;
+  if (theta >= data_->least_theta && theta <= data_->greatest_theta) return;
   throw InvalidOption("theta is " + exact_text(theta) + " degrees, but must be " + exact_text(data_->least_theta) +
-                      " to 180");
+                      " to " + exact_text(data_->greatest_theta));
 }
 
 Complex MedialAxis::simplify(double theta, const Context& context) const {
@@ -395,7 +402,12 @@ double MedialAxis::least_theta() const {
   return data_->least_theta;
 }
 
+double MedialAxis::greatest_theta() const {
+  return data_->greatest_theta;
+}
+
 Complex MedialAxis::nested(const Context& context) const {
+  check_theta(180);
   Complex nested = nest_pieces(data_->pieces, data_->least_theta, context);
   order_sheets(nested, data_->patches);
   return nested;

@@ -36,6 +36,8 @@ TEST(MedialCall, OptionsOutOfRangeAreRefusedByName) {
   }
   for (const double value : {-1e-9, nan, infinite, 1e300}) expect_refused({.lambda = value}, "lambda");
   for (const double value : {-1e-9, 180.1, nan}) expect_refused({.least_theta = value}, "least_theta");
+  for (const double value : {-1e-9, 180.1, nan}) expect_refused({.greatest_theta = value}, "greatest_theta");
+  expect_refused({.least_theta = 60, .greatest_theta = 59}, "greatest_theta");
   expect_refused({.spacing = 1e-9}, "too small");
 }
 
@@ -53,6 +55,23 @@ TEST(MedialCall, AnglesOutOfRangeAreRefused) {
     EXPECT_THROW((void)axis.simplify(theta), InvalidOption) << theta;
   }
   EXPECT_FALSE(axis.simplify(180).positions.empty());
+}
+
+TEST(MedialCall, TheGreatestAngleChangesNoAxis) {
+  const TriangleMesh mesh = make_organic({.frequency = 24});
+  const MedialAxis all = medial_axis(mesh, {.resolution = 48});
+  const MedialAxis some = medial_axis(mesh, {.resolution = 48, .greatest_theta = 60});
+  for (const double theta : {0.0, 20.0, 60.0}) {
+    const Complex a = all.simplify(theta);
+    const Complex b = some.simplify(theta);
+    EXPECT_EQ(a.positions, b.positions);
+    EXPECT_EQ(a.triangles, b.triangles);
+    EXPECT_EQ(a.vertex_columns, b.vertex_columns);
+    EXPECT_EQ(a.triangle_columns, b.triangle_columns);
+  }
+  EXPECT_EQ(some.greatest_theta(), 60);
+  EXPECT_THROW((void)some.simplify(60.1), InvalidOption);
+  EXPECT_THROW((void)some.nested(), InvalidOption);
 }
 
 TEST(MedialCall, TheLeastAndTheMostResolutionWork) {

@@ -60,7 +60,8 @@ void expect_same_euler_numbers(const SolidBody& body, double spacing) {
   expect_closed(thin);
   EXPECT_EQ(euler_of(thin), wanted) << "after thinning";
   const std::vector<float> depths(complex.structure().extra_count(), 0);
-  const CollapseOrder order = collapse(std::move(thin), {made.solid.depth.span(), depths}, spacing / 4, importance, {});
+  const CollapseOrder order =
+      collapse(std::move(thin), {made.solid.depth.span(), depths}, spacing / 4, importance, HUGE_VAL, {});
   expect_closed(order.base);
   EXPECT_EQ(euler_of(order.base), wanted) << "after collapse";
 }

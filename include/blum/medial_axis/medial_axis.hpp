@@ -45,6 +45,9 @@ struct MedialAxisOptions {
   /// The smallest theta that will be asked for, 0 to 180 degrees: what is seen at less is not looked at closely, which
   /// saves time where much is. What joins the rest may then run elsewhere.
   double least_theta = 0;
+  /// The largest theta that will be asked for, least_theta to 180 degrees: in which order the rest could go on is not
+  /// found out. Axes are the same. MedialAxis::nested() needs 180.
+  double greatest_theta = 180;
   /// medial_axis() of an image: which voxels are the solid. Not looked at where a Solid is given.
   LabelSelection selection = {};
 };
@@ -68,6 +71,8 @@ struct Description<MedialAxisOptions> {
              "pieces whose two footprints are closer than this count for nothing", Range::at_least(0)},
       Member{"least_theta", &MedialAxisOptions::least_theta, "degrees",
              "the smallest theta that will be asked for: more is faster", Range::between(0, 180)},
+      Member{"greatest_theta", &MedialAxisOptions::greatest_theta, "degrees",
+             "the largest theta that will be asked for, at least least_theta: less is faster", Range::between(0, 180)},
       Member{"selection", &MedialAxisOptions::selection, "", "images: which voxels are the solid"},
   };
 };
@@ -138,7 +143,7 @@ class MedialAxis {
   /// The part where two footprints are seen at more than theta apart, and what homotopy needs to join it: a complex
   /// with the columns of MedialView and the Betti numbers report().betti. What a larger theta gives is part of what a
   /// smaller one gives.
-  /// @param theta  degrees, MedialAxisOptions::least_theta to 180.
+  /// @param theta  degrees, MedialAxisOptions::least_theta to greatest_theta.
   /// @throws InvalidOption, Cancelled. Cost: linear in the result; about 0.5 s for a million triangles.
   [[nodiscard]] Complex simplify(double theta, const Context& context = {}) const;
 
@@ -166,6 +171,8 @@ class MedialAxis {
 
   /// MedialAxisOptions::least_theta.
   [[nodiscard]] double least_theta() const;
+  /// MedialAxisOptions::greatest_theta.
+  [[nodiscard]] double greatest_theta() const;
 
   /// MedialAxisOptions::lambda, mesh units.
   [[nodiscard]] double lambda() const;

@@ -84,7 +84,7 @@ Sample random_sample(Random& random, double density, std::size_t important) {
 }
 
 CollapseOrder collapse_of(const Sample& s) {
-  return collapse(s.complex.clone(), {s.depth}, 0.25, s.importance, {});
+  return collapse(s.complex.clone(), {s.depth}, 0.25, s.importance, HUGE_VAL, {});
 }
 
 std::vector<Sample> random_samples() {
@@ -140,6 +140,25 @@ TEST(Collapse, LevelsAreTheLargestImportanceSoFar) {
   }
 }
 
+/// What is asked for up to a level is what all removals begin with.
+TEST(Collapse, UpToALevelTheOrderIsTheSame) {
+  std::size_t fewer = 0;
+  for (const Sample& s : random_samples()) {
+    const CollapseOrder all = collapse_of(s);
+    const CollapseOrder some = collapse(s.complex.clone(), {s.depth}, 0.25, s.importance, 80, {});
+    EXPECT_EQ(cells_of(some.base), cells_of(all.base));
+    std::size_t count = 0;
+    while (count < all.removals.size() && all.removals[count].level <= 80) ++count;
+    ASSERT_EQ(some.removals.size(), count);
+    for (std::size_t n = 0; n < count; ++n) {
+      EXPECT_EQ(some.removals[n].cell, all.removals[n].cell);
+      EXPECT_EQ(some.removals[n].face, all.removals[n].face);
+    }
+    fewer += count < all.removals.size() ? 1 : 0;
+  }
+  EXPECT_GT(fewer, 10U);
+}
+
 /// Cubes go first, each with a square, important or not where nothing else frees it; what goes then has no importance.
 TEST(Collapse, NothingOfImportanceGoesBeforeItsLevel) {
   for (const Sample& s : random_samples()) {
@@ -188,7 +207,8 @@ TEST(Collapse, CancelStopsIt) {
   source.request_stop();
   const VoxelSet voxels = test::voxels_where({60, 60, 60}, [](auto...) { return true; });
   const std::vector<float> depth(60 * 60 * 60, 1);
-  EXPECT_THROW((void)collapse(CellComplex(voxels, {}), {depth}, 1, {}, {.cancel = source.get_token()}), Cancelled);
+  EXPECT_THROW((void)collapse(CellComplex(voxels, {}), {depth}, 1, {}, HUGE_VAL, {.cancel = source.get_token()}),
+               Cancelled);
 }
 
 }  // namespace

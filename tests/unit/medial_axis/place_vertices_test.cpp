@@ -35,7 +35,7 @@ struct Sample {
         sites(mesh.mesh),
         surface(mesh.mesh, sites, true, {}),
         solid(voxelize_body(mesh, spacing, {}).solid),
-        piece(make_axis_piece(GovernorField(solid, surface), {}, phases, {})) {
+        piece(make_axis_piece(GovernorField(solid, surface), {}, 180, phases, {})) {
     for (const AxisCell& cell : piece.cells) {
       if (cell.dimension == 0) cells.push_back(cell.cell);
     }
@@ -143,7 +143,7 @@ TEST(PlaceVertices, RadiiOfImagesAreDistancesToVoxelFaces) {
   const VoxelSolid solid = voxelize_image(selected_voxels(image, {}), image.grid, first, {}).solid;
   const VoxelSurface surface(solid.voxels, solid.grid);
   std::vector<PhaseTime> phases;
-  const AxisPiece piece = make_axis_piece(GovernorField(solid, surface), {20, 120, 3, 0}, phases, {});
+  const AxisPiece piece = make_axis_piece(GovernorField(solid, surface), {20, 120, 3, 0}, 180, phases, {});
   ASSERT_GT(piece.vertices.size(), 50U);
   for (const AxisVertex& v : piece.vertices) {
     double least = 1e9;
