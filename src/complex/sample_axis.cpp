@@ -32,19 +32,21 @@ class Sampler {
     }
   }
 
-  /// The middles of the parts that a triangle is cut into, all of its shape.
-  void add_triangle(const std::array<std::uint32_t, 3>& corners) {
-    const auto [a, b, c] = corners;
-    const std::size_t parts = parts_of(std::max({length(a, b), length(b, c), length(c, a)}), step_);
-    if (parts == 1) return;
-    const double third = 1.0 / (3.0 * static_cast<double>(parts));
-    for (std::size_t i = 0; i < parts; ++i) {
-      for (std::size_t j = 0; i + j < parts; ++j) {
-        const std::array<double, 2> at{3.0 * static_cast<double>(i), 3.0 * static_cast<double>(j)};
-        add_middle(corners, {(at[0] + 1) * third, (at[1] + 1) * third});
-        if (i + j + 1 < parts) add_middle(corners, {(at[0] + 2) * third, (at[1] + 2) * third});
-      }
-    }
+  /// Cuts a triangle that is longer than a step into rows along its longest side, and these into columns, so that no
+  /// point of a part is further than a step from the sample in the middle of its column: sqrt(0.5^2 + 0.86^2) < 1.
+  void add_triangle(std::array<std::uint32_t, 3> corners) {
+    const auto side = [&](std::size_t k) { return length(corners[k], corners[(k + 1) % 3]); };
+    const std::size_t first = side(0) >= side(1) && side(0) >= side(2) ? 0 : side(1) >= side(2) ? 1 : 2;
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
+    const double longest = side(0);
+    if (!(longest > step_)) return;
+    const Vec3d along = axis_.positions[corners[1]] - axis_.positions[corners[0]];
+    const Vec3d up = axis_.positions[corners[2]] - axis_.positions[corners[0]];
+    // Of the longest side, what lies before the foot of the height: the angles beside it are acute.
+    const double foot = std::clamp(dot(along, up) / (longest * longest), 0.0, 1.0);
+    const double height = blum::length(cross(along, up)) / longest;
+    const std::size_t rows = parts_of(height, 0.86 * step_);
+    for (std::size_t row = 0; row < rows; ++row) add_row(corners, longest, foot, row, rows);
   }
 
   std::vector<AxisSample> take() { return std::move(samples_); }
@@ -54,8 +56,21 @@ class Sampler {
     return blum::length(axis_.positions[a] - axis_.positions[b]);
   }
   void add(std::uint32_t v) { samples_.push_back({axis_.positions[v], axis_.radius[v], v}); }
-  void add_middle(const std::array<std::uint32_t, 3>& corners, const std::array<double, 2>& weights) {
-    add(corners, {1 - weights[0] - weights[1], weights[0], weights[1]});
+  /// @param foot  part of the longest side, between the first two corners, that lies before the foot of the height.
+  void add_row(const std::array<std::uint32_t, 3>& corners, double longest, double foot, std::size_t row,
+               std::size_t rows) {
+    const double low = static_cast<double>(row) / static_cast<double>(rows);  // of the height
+    const double high = static_cast<double>(row + 1) / static_cast<double>(rows);
+    const double begin = foot * low;  // of the longest side
+    const double end = 1 - (1 - foot) * low;
+    const std::size_t columns = parts_of((end - begin) * longest, step_);
+    for (std::size_t column = 0; column < columns; ++column) {
+      const double at = begin + (end - begin) * (static_cast<double>(column) + 0.5) / static_cast<double>(columns);
+      const double highest = at < foot ? at / foot : foot < 1 ? (1 - at) / (1 - foot) : 1;
+      const double of_top = 0.5 * (low + std::max(low, std::min(high, highest)));
+      const double of_second = at - of_top * foot;
+      add(corners, {1 - of_top - of_second, of_second, of_top});
+    }
   }
   void add(const std::array<std::uint32_t, 3>& corners, const std::array<double, 3>& weights) {
     AxisSample sample{{}, 0, corners[0]};
