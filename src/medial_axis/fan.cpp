@@ -11,6 +11,7 @@ namespace {
 /// The cosine that a triangle may turn by at most: 75 degrees.
 constexpr double least_cosine = 0.25;
 constexpr std::size_t most_ring = 64;
+constexpr std::size_t few_in_ring = 12;  ///< nearly all have
 
 /// A point seen along the normal of a fan, from its centre.
 struct Seen {
@@ -33,7 +34,8 @@ struct Difference {
   }
 };
 
-/// What the ring looks like along a normal.
+/// What the ring looks like along a normal. @tparam most  vertices that there is room for.
+template <std::size_t most>
 class View {
  public:
   View(const AxisPoint& centre, std::span<const AxisPoint> ring, const Vec3d& normal) : size_(ring.size()) {
@@ -85,12 +87,14 @@ class View {
       const Seen& from = seen_[0];
       const Seen& to = seen_[j];
       const Seen along{to.x - from.x, to.y - from.y, to.height - from.height, to.radius - from.radius};
+      const double start = cross(from, along);
       for (std::size_t i = 1; i < size_; ++i) {
         if (i == j) continue;
         const Seen& spoke = seen_[i];
         const double turn = cross(spoke, along);
-        if (turn == 0) continue;
-        const double s = cross(from, along) / turn;
+        // Signs tell mostly that there is no crossing, without dividing.
+        if (turn == 0 || (turn > 0 ? !(start > 0 && start <= turn) : !(start < 0 && start >= turn))) continue;
+        const double s = start / turn;
         const double t = cross(from, spoke) / turn;
         if (!(s > 0 && s < 1 && t > 0 && t < 1)) continue;
         difference.include(s * spoke.height - (from.height + t * along.height),
@@ -101,13 +105,34 @@ class View {
 
  private:
   std::size_t size_;
-  std::array<Seen, most_ring> seen_;
+  std::array<Seen, most> seen_;
 };
 
 /// Whether a triangle faces to where a normal does, roughly.
 bool faces(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& normal) {
   const Vec3d own = blum::cross(b - a, c - a);
   return dot(own, normal) > least_cosine * length(own);
+}
+
+/// deviation(), from a view along the mean normal.
+template <class View>
+std::optional<Deviation> deviation_in(const View& view, const AxisPoint& centre, std::span<const AxisPoint> ring,
+                                      bool is_closed) {
+  if (!view.is_unfolded()) return std::nullopt;
+  // Each point of a triangle moves with its corner, and so no further than that.
+  const double moved = length(ring[0].position - centre.position);
+  const Deviation bound{std::max(moved, std::abs(ring[0].radius - centre.radius)), moved};
+  if (!view.is_above_plane(is_closed)) return bound;
+  Difference difference;
+  view.include_centre(difference);
+  view.include_crossings(difference);
+  Deviation out{std::max(difference.height, difference.radius), difference.height};
+  if (!is_closed) {
+    const Deviation border = deviation(centre, ring.front(), ring.back());
+    out.by = std::max(out.by, border.by);
+    if (!view.is_tip()) out.beyond = std::max(out.beyond, border.beyond);
+  }
+  return out.by < bound.by ? out : bound;
 }
 
 }  // namespace
@@ -132,22 +157,8 @@ std::optional<Deviation> deviation(const AxisPoint& centre, std::span<const Axis
   for (std::size_t k = 1; k + 1 < ring.size(); ++k) {
     if (!faces(ring[0].position, ring[k].position, ring[k + 1].position, normal)) return std::nullopt;
   }
-  const View view(centre, ring, normal);
-  if (!view.is_unfolded()) return std::nullopt;
-  // Each point of a triangle moves with its corner, and so no further than that.
-  const double moved = length(ring[0].position - centre.position);
-  const Deviation bound{std::max(moved, std::abs(ring[0].radius - centre.radius)), moved};
-  if (!view.is_above_plane(is_closed)) return bound;
-  Difference difference;
-  view.include_centre(difference);
-  view.include_crossings(difference);
-  Deviation out{std::max(difference.height, difference.radius), difference.height};
-  if (!is_closed) {
-    const Deviation border = deviation(centre, ring.front(), ring.back());
-    out.by = std::max(out.by, border.by);
-    if (!view.is_tip()) out.beyond = std::max(out.beyond, border.beyond);
-  }
-  return out.by < bound.by ? out : bound;
+  return ring.size() <= few_in_ring ? deviation_in(View<few_in_ring>(centre, ring, normal), centre, ring, is_closed)
+                                    : deviation_in(View<most_ring>(centre, ring, normal), centre, ring, is_closed);
 }
 
 }  // namespace blum
