@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/inline_list.hpp"
 #include "blum/core/vec3.hpp"
 
 namespace blum::verifier {
@@ -88,21 +89,24 @@ class BoxHierarchy {
   template <class Bounds, class Visit>
   void search(double best, const Bounds& bounds, const Visit& visit) const {
     if (nodes_.empty()) return;
-    std::array<std::pair<double, std::uint32_t>, 64> stack;  // one more for each level, and levels halve
-    std::size_t size = 0;
-    stack[size++] = {-HUGE_VAL, 0};
-    while (size > 0) {
-      const auto [least, index] = stack[--size];
+    struct Item {
+      double least;
+      std::uint32_t node;
+    };
+    InlineList<Item, 64> stack;  // one more for each level, and levels halve
+    stack.push_back({-HUGE_VAL, 0});
+    while (!stack.empty()) {
+      const auto [least, index] = stack.pop_back();
       if (!(least < best)) continue;
       const Node& node = nodes_[index];
       for (std::uint32_t k = 0; k < node.count; ++k) best = visit(node.first + k);
       if (node.count > 0) continue;
       const Two both = bounds(node.first);
-      std::pair<double, std::uint32_t> near{both[0], node.first};
-      std::pair<double, std::uint32_t> far{both[1], node.first + 1};
-      if (far.first < near.first) std::swap(near, far);
-      if (far.first < best) stack[size++] = far;
-      if (near.first < best) stack[size++] = near;
+      Item near{both[0], node.first};
+      Item far{both[1], node.first + 1};
+      if (far.least < near.least) std::swap(near, far);
+      if (far.least < best) stack.push_back(far);
+      if (near.least < best) stack.push_back(near);
     }
   }
 

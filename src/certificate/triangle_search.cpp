@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/random.hpp"
 #include "certificate/exact_crossing.hpp"
@@ -198,21 +199,19 @@ class ClosePoints {
   /// @param best  the least squared distance so far, this one included.
   void add(const Vec3d& point, double squared, double best) {
     const auto is_far = [&](const Found& found) { return found.squared > best * as_close; };
-    if (count_ == found_.size()) {
-      count_ = static_cast<std::size_t>(std::remove_if(found_.begin(), found_.end(), is_far) - found_.begin());
+    if (found_.is_full()) {
+      found_.shrink(static_cast<std::size_t>(std::remove_if(found_.begin(), found_.end(), is_far) - found_.begin()));
     }
-    is_full_ = is_full_ || count_ == found_.size();
-    if (!is_full_) found_[count_++] = {point, squared};
+    is_full_ = is_full_ || found_.is_full();
+    if (!is_full_) found_.push_back({point, squared});
   }
   /// Whether there is just one at the place of the closest one.
   [[nodiscard]] bool is_alone(double best) const {
     constexpr double as_near = 1e-12;  // squared, of the squared distance
-    if (is_full_ || count_ == 0) return false;
-    const Found* closest = found_.data();
-    for (std::size_t k = 1; k < count_; ++k) {
-      if (found_[k].squared < closest->squared) closest = &found_[k];
-    }
-    return std::none_of(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const Found& found) {
+    if (is_full_ || found_.empty()) return false;
+    const Found* closest = std::min_element(found_.begin(), found_.end(),
+                                            [](const Found& a, const Found& b) { return a.squared < b.squared; });
+    return std::none_of(found_.begin(), found_.end(), [&](const Found& found) {
       return &found != closest && squared_length(found.point - closest->point) <= as_near * best;
     });
   }
@@ -222,8 +221,7 @@ class ClosePoints {
     Vec3d point;
     double squared = 0;
   };
-  std::array<Found, 16> found_{};
-  std::size_t count_ = 0;
+  InlineList<Found, 16> found_;
   bool is_full_ = false;
 };
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/inline_list.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/ray.hpp"
 #include "geometry/lanes.hpp"
@@ -83,20 +84,18 @@ struct PendingBox {
 
 /// Depth-first work list: at most seven siblings wait on each of at most eleven levels.
 struct PendingBoxes {
-  std::array<PendingBox, 128> items;
-  std::size_t size = 0;
-
-  void push(const PendingBox& item) { items[size++] = item; }
-  PendingBox pop() { return items[--size]; }
+  InlineList<PendingBox, 128> items;
 
   /// Children of a node whose keys are at most `limit`, so that the one with the smallest is popped first.
   void push_children(const PendingBox& parent, const double (&keys)[lanes], double limit) {
-    const std::size_t bottom = size;
+    const std::size_t bottom = items.size();
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (!(keys[lane] <= limit)) continue;
-      std::size_t place = size++;
-      for (; place > bottom && items[place - 1].key < keys[lane]; --place) items[place] = items[place - 1];
-      items[place] = {keys[lane], static_cast<std::uint32_t>(parent.block * lanes + lane), parent.level - 1};
+      const PendingBox child{keys[lane], static_cast<std::uint32_t>(parent.block * lanes + lane), parent.level - 1};
+      std::size_t place = items.size();
+      items.push_back(child);
+      for (; place > bottom && items[place - 1].key < child.key; --place) items[place] = items[place - 1];
+      items[place] = child;
     }
   }
 };
@@ -111,10 +110,10 @@ void visit_near(const BoxTree& tree, const Vec3d& point, double limit, const Vis
   };
   if (tree.is_empty()) return;
   PendingBoxes pending;
-  pending.push({0.0, 0, tree.top()});
+  pending.items.push_back({0.0, 0, tree.top()});
   double squared[lanes];
-  while (pending.size > 0) {
-    const PendingBox item = pending.pop();
+  while (!pending.items.empty()) {
+    const PendingBox item = pending.items.pop_back();
     if (!(item.key <= squared_limit())) continue;
     if (item.level < 0) {
       limit = visit(static_cast<std::size_t>(item.block));
@@ -137,10 +136,10 @@ void visit_along(const BoxTree& tree, const Ray& ray, double limit, const Visit&
   Vec3d inverse;
   for (std::size_t axis = 0; axis < 3; ++axis) inverse[axis] = ray.direction[axis] == 0 ? 0 : 1 / ray.direction[axis];
   PendingBoxes pending;
-  pending.push({0.0, 0, tree.top()});
+  pending.items.push_back({0.0, 0, tree.top()});
   double keys[lanes];
-  while (pending.size > 0) {
-    const PendingBox item = pending.pop();
+  while (!pending.items.empty()) {
+    const PendingBox item = pending.items.pop_back();
     if (!(item.key <= limit)) continue;
     if (item.level < 0) {
       limit = visit(static_cast<std::size_t>(item.block));

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <span>
 
+#include "blum/core/inline_list.hpp"
 #include "medial_axis/surface.hpp"
 
 namespace blum {
@@ -28,14 +28,14 @@ class Walls {
   /// @param reach  how far a footprint may move from its start, mesh units.
   Walls(const Surface& surface, double reach) : surface_(&surface), reach_(reach) {}
 
-  [[nodiscard]] bool is_full() const { return count_ == most_walls; }
-  void add(const Footprint& start, const Vec3d& outwards) { walls_[count_++] = {start, outwards, start, 0}; }
+  [[nodiscard]] bool is_full() const { return walls_.is_full(); }
+  void add(const Footprint& start, const Vec3d& outwards) { walls_.push_back({start, outwards, start, 0}); }
 
   /// Two walls whose footprints meet are one from then on.
   void follow_to(const Vec3d& x) {
     std::size_t kept = 0;
     closest_ = 0;
-    for (std::size_t w = 0; w < count_; ++w) {
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
       Wall wall = walls_[w];
       wall.foot = surface_->follow(wall.start, x, reach_);
       const Vec3d away = x - wall.foot.point;
@@ -47,11 +47,11 @@ class Walls {
       if (wall.distance < walls_[closest_].distance || kept == 0) closest_ = kept;
       walls_[kept++] = wall;
     }
-    count_ = kept;
+    walls_.shrink(kept);
   }
 
   /// What follow_to() found.
-  [[nodiscard]] std::span<const Wall> all() const { return {walls_.data(), count_}; }
+  [[nodiscard]] std::span<const Wall> all() const { return walls_.span(); }
   [[nodiscard]] const Wall& closest() const { return walls_[closest_]; }
   /// Whether the point is on one of them.
   [[nodiscard]] bool touch() const {
@@ -61,8 +61,7 @@ class Walls {
  private:
   const Surface* surface_;
   double reach_;
-  std::array<Wall, most_walls> walls_;
-  std::size_t count_ = 0;
+  InlineList<Wall, most_walls> walls_;
   std::size_t closest_ = 0;
 };
 

@@ -1,0 +1,53 @@
+// Blum: short lists in place. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <span>
+#include <type_traits>
+
+namespace blum {
+
+/// Up to `most` values in the list itself. Unlike those of an array, places without a value are not touched, which
+/// counts in loops that make a list each time.
+template <class T, std::size_t most>
+class InlineList {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+ public:
+  InlineList() = default;
+  InlineList(const InlineList& other) : size_(other.size_) { std::uninitialized_copy_n(other.data(), size_, data()); }
+  InlineList& operator=(const InlineList& other) {
+    size_ = other.size_;
+    std::uninitialized_copy_n(other.data(), size_, data());
+    return *this;
+  }
+  ~InlineList() = default;
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] bool is_full() const { return size_ == most; }
+  /// @param value  the list must not be full.
+  void push_back(const T& value) { std::construct_at(data() + size_++, value); }
+  /// Takes the last value out; there must be one.
+  T pop_back() { return data()[--size_]; }
+  /// Leaves the first values. @param size  at most as many as there are.
+  void shrink(std::size_t size) { size_ = size; }
+
+  [[nodiscard]] T* data() { return std::launder(reinterpret_cast<T*>(storage_)); }
+  [[nodiscard]] const T* data() const { return std::launder(reinterpret_cast<const T*>(storage_)); }
+  [[nodiscard]] T& operator[](std::size_t k) { return data()[k]; }
+  [[nodiscard]] const T& operator[](std::size_t k) const { return data()[k]; }
+  [[nodiscard]] T* begin() { return data(); }
+  [[nodiscard]] T* end() { return data() + size_; }
+  [[nodiscard]] const T* begin() const { return data(); }
+  [[nodiscard]] const T* end() const { return data() + size_; }
+  [[nodiscard]] std::span<const T> span() const { return {data(), size_}; }
+
+ private:
+  alignas(T) std::byte storage_[most * sizeof(T)];
+  std::size_t size_ = 0;
+};
+
+}  // namespace blum
