@@ -89,6 +89,21 @@ class PrimitiveReader {
 
 }  // namespace
 
+/// The box of a ray from its origin to t = end, a little larger for rounding.
+Box3 box_around(const Ray& ray, double end) {
+  constexpr double rounding = 1e-14;
+  const Vec3d way = ray.direction * (end * (1 + 1e-9));
+  Box3 box;
+  box.extend(ray.origin);
+  box.extend(ray.origin + way);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double slack = rounding * (std::abs(ray.origin[axis]) + std::abs(way[axis]));
+    box.lower[axis] -= slack;
+    box.upper[axis] += slack;
+  }
+  return box;
+}
+
 struct Bvh::Data {
   Box3 bounds;
   double scale = 1;  ///< coordinates in blocks are those of the mesh times this
@@ -157,6 +172,8 @@ struct Bvh::Data {
 
   template <class Go, class Visit>
   void cross(const Ray& ray, double limit, const Go& go, const Visit& visit) const;
+  template <class Visit>
+  void for_each_leaf(const BvhPart& part, const Box3& box, const Visit& visit) const;
   template <class Visit>
   bool visit_near_in(std::size_t leaf, const ProbeTriangle& probe, const Visit& visit) const;
 
@@ -329,6 +346,16 @@ std::vector<NearestPrimitive> Bvh::within(const Vec3d& query, double distance) c
   return out;
 }
 
+/// Calls visit(leaf) for the leaves of a part whose boxes touch a box, until it returns false.
+template <class Visit>
+void Bvh::Data::for_each_leaf(const BvhPart& part, const Box3& box, const Visit& visit) const {
+  for (const BvhPart::Leaves& leaves : part.leaves_) {
+    for (unsigned bits = leaves.bits & touching(tree.levels[0][leaves.block], box); bits != 0; bits &= bits - 1) {
+      if (!visit(leaves.block * lanes + static_cast<std::size_t>(std::countr_zero(bits)))) return;
+    }
+  }
+}
+
 /// @param go  calls its last argument for leaves that may be crossed, as visit_along() does.
 template <class Go, class Visit>
 void Bvh::Data::cross(const Ray& ray, double limit, const Go& go, const Visit& visit) const {
@@ -364,8 +391,11 @@ void Bvh::for_each_crossing(const Ray& ray, double limit, FunctionRef<double(con
 
 std::optional<RayCrossing> Bvh::first_crossing(const Ray& ray, const BvhPart& part) const {
   std::optional<RayCrossing> first;
-  const auto go = [&](const auto&, double, const auto& look_at) {
-    for (const std::uint32_t leaf : part.leaves_) look_at(leaf);
+  const auto go = [&](const Ray& scaled, double end, const auto& look_at) {
+    data_->for_each_leaf(part, box_around(scaled, end), [&](std::size_t leaf) {
+      look_at(leaf);
+      return true;
+    });
   };
   data_->cross(ray, 1, go, [&](const RayCrossing& found) {
     if (!first || is_earlier(found, *first)) first = found;
@@ -377,12 +407,16 @@ std::optional<RayCrossing> Bvh::first_crossing(const Ray& ray, const BvhPart& pa
 std::optional<BvhPart> Bvh::part_in(const Box3& box) const {
   constexpr std::size_t most_leaves = 64;
   BvhPart part;
+  std::size_t count = 0;
   const Box3 scaled{box.lower * data_->scale, box.upper * data_->scale};
   for_each_touching(data_->tree, scaled, 0, [&](std::size_t leaf) {
-    part.leaves_.push_back(static_cast<std::uint32_t>(leaf));
-    return part.leaves_.size() <= most_leaves;
+    if (may_reach(data_->leaves[leaf], scaled) == 0) return true;
+    const auto block = static_cast<std::uint32_t>(leaf / lanes);
+    if (part.leaves_.empty() || part.leaves_.back().block != block) part.leaves_.push_back({block, 0});
+    part.leaves_.back().bits |= 1U << (leaf % lanes);
+    return ++count <= most_leaves;
   });
-  if (part.leaves_.size() > most_leaves) return std::nullopt;
+  if (count > most_leaves) return std::nullopt;
   return part;
 }
 
@@ -434,9 +468,7 @@ void Bvh::for_each_near(const std::array<Vec3d, 3>& triangle, const BvhPart& par
                         FunctionRef<bool(TriangleId)> visit) const {
   const Data& data = *data_;
   const ProbeTriangle probe({triangle[0] * data.scale, triangle[1] * data.scale, triangle[2] * data.scale});
-  for (const std::uint32_t leaf : part.leaves_) {
-    if (!data.visit_near_in(leaf, probe, visit)) return;
-  }
+  data.for_each_leaf(part, probe.box, [&](std::size_t leaf) { return data.visit_near_in(leaf, probe, visit); });
 }
 
 bool Bvh::may_touch(const Box3& box) const {

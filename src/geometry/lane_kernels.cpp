@@ -177,6 +177,35 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
   return bits_of(meet);
 }
 
+unsigned may_reach(const PrimitiveBlock& block, const Box3& box) {
+  const Vec3d centre = (box.lower + box.upper) * 0.5;
+  const Vec3d half = max(box.upper - centre, centre - box.lower);
+  alignas(64) double meet[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const Vec3d u = corner_at(block, 0, i);
+    const Vec3d v = corner_at(block, 1, i);
+    const Vec3d w = corner_at(block, 2, i);
+    double touch = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      touch *= std::min(std::min(u[axis], v[axis]), w[axis]) <= box.upper[axis] ? 1.0 : 0.0;
+      touch *= std::max(std::max(u[axis], v[axis]), w[axis]) >= box.lower[axis] ? 1.0 : 0.0;
+    }
+    // No corner of the box is further from its centre, along the normal of the triangle, than this.
+    const Vec3d ab = v - u;
+    const Vec3d ac = w - u;
+    const double x = std::abs(ab.y * ac.z) + std::abs(ab.z * ac.y);
+    const double y = std::abs(ab.z * ac.x) + std::abs(ab.x * ac.z);
+    const double z = std::abs(ab.x * ac.y) + std::abs(ab.y * ac.x);
+    const double reach = std::abs(ab.y * ac.z - ab.z * ac.y) * half.x + std::abs(ab.z * ac.x - ab.x * ac.z) * half.y +
+                         std::abs(ab.x * ac.y - ab.y * ac.x) * half.z;
+    const Rounded height = triple(centre - u, ab, ac);
+    const double beside =
+        is_above(std::abs(height.value) - reach, height.magnitude + x * half.x + y * half.y + z * half.z);
+    meet[i] = touch * (1 - beside);
+  }
+  return bits_of(meet);
+}
+
 unsigned may_meet_block(const PrimitiveBlock& block, const ProbeTriangle& other) {
   const auto& [a, b, c] = other.corners;
   alignas(64) double meet[lanes];
@@ -368,6 +397,7 @@ std::size_t best_index() {
 HWY_EXPORT(squared_distances);
 HWY_EXPORT(entries);
 HWY_EXPORT(may_cross);
+HWY_EXPORT(may_reach);
 HWY_EXPORT(may_meet_block);
 HWY_EXPORT(touching);
 HWY_EXPORT(may_meet);
@@ -384,6 +414,7 @@ HWY_EXPORT(add_triangles);
 const auto best_squared_distances = BLUM_BEST(squared_distances);
 const auto best_entries = BLUM_BEST(entries);
 const auto best_may_cross = BLUM_BEST(may_cross);
+const auto best_may_reach = BLUM_BEST(may_reach);
 const auto best_may_meet_block = BLUM_BEST(may_meet_block);
 const auto best_touching = BLUM_BEST(touching);
 const auto best_may_meet = BLUM_BEST(may_meet);
@@ -404,6 +435,10 @@ void entries(const BoxBlock& block, const Ray& ray, const Vec3d& inverse, double
 
 unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
   return best_may_cross(block, ray, end);
+}
+
+unsigned may_reach(const PrimitiveBlock& block, const Box3& box) {
+  return best_may_reach(block, box);
 }
 
 unsigned may_meet(const PrimitiveBlock& block, const ProbeTriangle& other) {

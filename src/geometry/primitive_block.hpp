@@ -51,6 +51,10 @@ void approximate_distances(const PrimitiveBlock& block, const Vec3d& query, doub
 /// certain goes by, nor those in whose plane it neither begins nor arrives. @param end  may be infinite.
 [[nodiscard]] unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end);
 
+/// A bit for each triangle of a block that may have a point in common with a box: not those whose boxes do not touch
+/// it, nor those that it lies for certain on one side of the plane of.
+[[nodiscard]] unsigned may_reach(const PrimitiveBlock& block, const Box3& box);
+
 /// A triangle that others are compared with.
 struct ProbeTriangle {
   std::array<Vec3d, 3> corners;

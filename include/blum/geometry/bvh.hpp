@@ -41,7 +41,11 @@ struct NearestPrimitive {
 class BvhPart {
  private:
   friend class Bvh;
-  std::vector<std::uint32_t> leaves_;
+  struct Leaves {
+    std::uint32_t block = 0;  ///< of eight leaves in a row
+    std::uint32_t bits = 0;   ///< those of them that are in the part
+  };
+  std::vector<Leaves> leaves_;
 };
 
 /// Where a ray crosses a triangle. Whether it does, `side` and `on_border` are exact.
