@@ -8,7 +8,7 @@
 namespace blum::verifier {
 namespace {
 
-constexpr std::uint32_t most_per_leaf = 4;
+constexpr std::uint32_t most_per_leaf = 2;
 /// Nodes of a level are shared out in so many ranges.
 constexpr std::size_t most_ranges = 64;
 
