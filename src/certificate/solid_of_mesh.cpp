@@ -154,19 +154,41 @@ class ShellOracle : public SolidOracle {
  private:
   enum class Side { inside, outside, unknown };
 
-  /// On which side of its closest triangle a point lies, seen from the solid: where this point of the triangle is no
-  /// point of others, nothing of the boundary is in between.
+  /// On which side of its closest triangle a point lies, seen from the solid. Nothing of the boundary is in between: so
+  /// where that point of the triangle is no point of others, its height tells; and where it is one of the edge to just
+  /// one other triangle, the sum of both heights does (Baerentzen and Aanaes 2005).
   [[nodiscard]] Side side_of(const Vec3d& p, const TriangleSearch::Nearest& closest) const {
     constexpr double nearly = 1 - 1e-6;
-    if (!closest.is_alone || !(closest.distance > 1e-9 * diagonal())) return Side::unknown;
-    const std::int8_t outwards = shells_.outwards[closest.triangle];
-    const auto [a, b, c] = corners_of(mesh_, closest.triangle);
-    const Vec3d normal = cross(b - a, c - a);
-    const double height = dot(p - a, normal) / length(normal);
-    if (outwards == 0 || !(std::abs(height) >= nearly * closest.distance)) return Side::unknown;
-    const bool is_in_shell = (height > 0) != (outwards > 0);
+    constexpr double clearly = 0.1;  // of the distance: not at an edge as sharp as a knife
+    if (!closest.others || *closest.others > 1 || !(closest.distance > 1e-9 * diagonal())) return Side::unknown;
+    const std::optional<double> own = height_above(closest.triangle, p);
+    if (!own) return Side::unknown;
+    double height = *own;
+    double least = nearly * closest.distance;
+    if (*closest.others == 1) {
+      const std::optional<double> beside = height_above(closest.other, p);
+      if (!beside || !are_beside(closest.triangle, closest.other)) return Side::unknown;
+      height += *beside;
+      least = clearly * closest.distance;
+    }
+    if (!(std::abs(height) >= least)) return Side::unknown;
     const bool is_void = shells_.shells[shells_.of_triangle[closest.triangle]].depth % 2 == 1;
-    return is_in_shell != is_void ? Side::inside : Side::outside;
+    return (height < 0) != is_void ? Side::inside : Side::outside;
+  }
+  /// How far a point is above the plane of a triangle, out of its shell; nullopt where that is not known, as of
+  /// triangles so thin that rounding would turn them.
+  [[nodiscard]] std::optional<double> height_above(std::uint32_t triangle, const Vec3d& p) const {
+    const auto [a, b, c] = corners_of(mesh_, triangle);
+    constexpr double thin = 1e-9;
+    const Vec3d normal = cross(b - a, c - a);
+    const double size = length(normal);
+    const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
+    if (shells_.outwards[triangle] == 0 || !(size > thin * longest)) return std::nullopt;
+    return shells_.outwards[triangle] * dot(p - a, normal) / size;
+  }
+  [[nodiscard]] bool are_beside(std::uint32_t triangle, std::uint32_t other) const {
+    const auto first = shells_.beside.begin() + 3 * static_cast<std::ptrdiff_t>(triangle);
+    return std::find(first, first + 3, other) != first + 3;
   }
 
   /// Points deep in a void: the deepest of the middles of some chords, others on both sides of it, halfway to the wall,

@@ -197,29 +197,33 @@ constexpr double as_close = 1 + 1e-8;  ///< of squared distances: about the same
 class ClosePoints {
  public:
   /// @param best  the least squared distance so far, this one included.
-  void add(const Vec3d& point, double squared, double best) {
+  void add(const Vec3d& point, double squared, std::uint32_t triangle, double best) {
     const auto is_far = [&](const Found& found) { return found.squared > best * as_close; };
     if (found_.is_full()) {
       found_.shrink(static_cast<std::size_t>(std::remove_if(found_.begin(), found_.end(), is_far) - found_.begin()));
     }
     is_full_ = is_full_ || found_.is_full();
-    if (!is_full_) found_.push_back({point, squared});
+    if (!is_full_) found_.push_back({point, squared, triangle});
   }
-  /// Whether there is just one at the place of the closest one.
-  [[nodiscard]] bool is_alone(double best) const {
+  /// Adds to a result what is at the place of the closest one.
+  void count(double best, TriangleSearch::Nearest& nearest) const {
     constexpr double as_near = 1e-12;  // squared, of the squared distance
-    if (is_full_ || found_.empty()) return false;
+    if (is_full_ || found_.empty()) return;
     const Found* closest = std::min_element(found_.begin(), found_.end(),
                                             [](const Found& a, const Found& b) { return a.squared < b.squared; });
-    return std::none_of(found_.begin(), found_.end(), [&](const Found& found) {
-      return &found != closest && squared_length(found.point - closest->point) <= as_near * best;
-    });
+    nearest.others = 0;
+    for (const Found& found : found_) {
+      if (&found == closest || squared_length(found.point - closest->point) > as_near * best) continue;
+      ++*nearest.others;
+      nearest.other = found.triangle;
+    }
   }
 
  private:
   struct Found {
     Vec3d point;
     double squared = 0;
+    std::uint32_t triangle = 0;
   };
   InlineList<Found, 16> found_;
   bool is_full_ = false;
@@ -320,7 +324,7 @@ TriangleSearch::Nearest TriangleSearch::nearest_within(const Vec3d& p, double wi
         if (group != no_group && groups_[place] != group) return best * as_close;
         const Vec3d closest = closest_point(p, corners_[place]);
         const double squared = squared_length(p - closest);
-        if (squared <= best * as_close) close.add(closest, squared, std::min(best, squared));
+        if (squared <= best * as_close) close.add(closest, squared, triangles_[place], std::min(best, squared));
         if (squared < best) {
           best = squared;
           triangle = triangles_[place];
@@ -328,7 +332,9 @@ TriangleSearch::Nearest TriangleSearch::nearest_within(const Vec3d& p, double wi
         return best * as_close;
       });
   if (best == unknown && within < HUGE_VAL) return nearest(p, group);  // nothing is that close after all
-  return {std::sqrt(best), triangle, close.is_alone(best)};
+  Nearest found{std::sqrt(best), triangle, std::nullopt};
+  close.count(best, found);
+  return found;
 }
 
 bool TriangleSearch::crossings(const ProbeLine& line, std::vector<Crossing>& found, double reach) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,7 +41,10 @@ class TriangleSearch {
   struct Nearest {
     double distance = 0;
     std::uint32_t triangle = 0;
-    bool is_alone = false;  ///< its closest point is none of another triangle asked of, up to rounding
+    /// Of those asked of, how many more have their closest points at the same place, up to rounding; nullopt where
+    /// these are too many to tell.
+    std::optional<std::size_t> others;
+    std::uint32_t other = 0;  ///< one of them, where there are any
   };
 
   TriangleSearch() = default;
