@@ -11,9 +11,6 @@
 namespace blum::detail {
 namespace {
 
-/// Cubes beside each other are not split into more boxes: a tunnel at a slant takes about as many as it is longer than
-/// wide.
-constexpr std::size_t most_boxes = std::size_t{1} << 17U;
 /// Boxes are not cut to less than this part of the spacing.
 constexpr double least_part = 1e-12;
 
@@ -49,7 +46,8 @@ std::size_t longest(const Vec3d& size) {
 
 }  // namespace
 
-void BoxSplitter::split(SplitBox box, const Context& context, std::vector<SplitBox>& out) {
+std::vector<SplitBox> BoxSplitter::split(SplitBox box, std::size_t most_boxes, const Context& context) {
+  std::vector<SplitBox> out;
   std::vector<SplitBox> waiting;
   waiting.push_back(std::move(box));
   while (!waiting.empty() && !context.cancel.stop_requested()) {
@@ -69,6 +67,7 @@ void BoxSplitter::split(SplitBox box, const Context& context, std::vector<SplitB
       out.push_back(std::move(next_box));
     }
   }
+  return out;
 }
 
 std::optional<BoxSplitter::Cut> BoxSplitter::test(SplitBox& box) {

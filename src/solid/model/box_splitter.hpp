@@ -36,8 +36,9 @@ class BoxSplitter {
   BoxSplitter(const SurfaceMesh& mesh, double spacing, int most_splits, std::span<const Box3> finer)
       : mesh_(mesh), spacing_(spacing), most_splits_(most_splits), finer_(finer) {}
 
-  /// Adds the parts of a box, which pass or name their obstacle. Stops where the caller asks to.
-  void split(SplitBox box, const Context& context, std::vector<SplitBox>& out);
+  /// The parts of a box, which pass or name their obstacle. Stops where the caller asks to.
+  /// @param most_boxes  that it is split into.
+  [[nodiscard]] std::vector<SplitBox> split(SplitBox box, std::size_t most_boxes, const Context& context);
 
  private:
   /// Where a box is to be cut.

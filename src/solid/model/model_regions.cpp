@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "blum/core/parallel.hpp"
+#include "blum/core/parts.hpp"
 #include "blum/core/union_find.hpp"
 #include "solid/model/scaling.hpp"
 
@@ -136,16 +136,16 @@ std::vector<RefinedRegion> refine_regions(const SurfaceMesh& mesh, const CutGrid
     groups[group_of[first]].push_back(c);
   }
   std::vector<std::optional<RefinedRegion>> found(groups.size());
-  parallel_for(context, groups.size(), 1, "splits", [&](const WorkRange& range) {
-    for (std::size_t g = range.begin; g < range.end; ++g) {
-      std::vector<Cell> own;
-      std::vector<std::vector<std::uint32_t>> near;
-      for (const std::uint32_t c : groups[g]) {
-        own.push_back(cubes[c]);
-        near.push_back(std::move(triangles[c]));
-      }
-      found[g].emplace(mesh, grid, own, std::move(near), most_splits, finer, context);
+  std::vector<std::size_t> sizes;
+  for (const auto& group : groups) sizes.push_back(group.size());
+  for_each_part(context, sizes, "splits", [&](std::size_t g, const Context& context_of_part) {
+    std::vector<Cell> own;
+    std::vector<std::vector<std::uint32_t>> near;
+    for (const std::uint32_t c : groups[g]) {
+      own.push_back(cubes[c]);
+      near.push_back(std::move(triangles[c]));
     }
+    found[g].emplace(mesh, grid, own, std::move(near), most_splits, finer, context_of_part);
   });
   throw_if_cancelled(context);
   std::vector<RefinedRegion> regions;

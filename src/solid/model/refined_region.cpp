@@ -5,11 +5,30 @@
 #include <optional>
 #include <utility>
 
+#include "blum/core/parallel.hpp"
 #include "solid/model/box_splitter.hpp"
 #include "solid/model/box_surface.hpp"
 #include "solid/model/components.hpp"
 
 namespace blum::detail {
+
+namespace {
+
+/// Cubes beside each other are not split into more boxes, about: a tunnel at a slant takes as many as it is longer than
+/// wide.
+constexpr std::size_t most_boxes = std::size_t{1} << 17U;
+constexpr std::size_t cubes_in_batch = 32;
+
+/// Calls visit(k, worker) for each k below a count, from all threads.
+template <class Visit>
+void for_each(const Context& context, std::size_t count, const Visit& visit) {
+  constexpr std::size_t grain = 256;
+  parallel_for(context, count, grain, {}, [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) visit(static_cast<std::uint32_t>(k), range.worker);
+  });
+}
+
+}  // namespace
 
 struct RefinedRegion::Scratch {
   SquareComponents square;
@@ -22,32 +41,51 @@ RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::
                              std::span<const Box3> finer, const Context& context)
     : mesh_(mesh), grid_(grid), cubes_(cubes.begin(), cubes.end()) {
   const Vec3d& spacing = grid.planes().spacing();
-  BoxSplitter splitter(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits, finer);
-  std::vector<SplitBox> parts;
-  for (std::size_t c = 0; c < cubes.size(); ++c) {
-    const std::size_t first = node_of(cubes[c]);
-    SplitBox whole;
-    const CellLattice& lattice = grid.lattice();
-    whole.box = {grid.planes().node(lattice.place(first)),
-                 grid.planes().node(lattice.place(first + lattice.node(1, 1, 1))), cubes[c]};
-    whole.triangles = std::move(triangles[c]);
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-      const std::size_t step = lattice.node(corner & 1U, corner >> 1U & 1U, corner >> 2U);
-      if (grid.is_inside(first + step)) whole.inside |= static_cast<std::uint8_t>(1U << corner);
+  std::vector<BoxSplitter> splitters;  // of each thread
+  for (int k = 0; k < thread_count(context); ++k) {
+    splitters.emplace_back(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits, finer);
+  }
+  // What one batch of cubes is split into counts for the next one, for any number of threads.
+  std::vector<std::vector<SplitBox>> parts(cubes_in_batch);
+  for (std::size_t first = 0; first < cubes.size(); first += cubes_in_batch) {
+    const std::size_t room = most_boxes - std::min(most_boxes, boxes_.size());
+    const std::size_t count = std::min(cubes_in_batch, cubes.size() - first);
+    parallel_for(context, count, 1, {}, [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        parts[k] = splitters[static_cast<std::size_t>(range.worker)].split(
+            whole_box(cubes[first + k], std::move(triangles[first + k])), room, context);
+      }
+    });
+    for (std::size_t k = 0; k < count; ++k) {
+      for (SplitBox& part : parts[k]) take(std::move(part));
     }
-    splitter.split(std::move(whole), context, parts);
   }
-  for (SplitBox& part : parts) {
-    boxes_.push_back(part.box);
-    depth_ = std::max(depth_, part.splits);
-    split_boxes_ += part.splits > 0 ? 1U : 0U;
-    if (part.obstacle) stuck_.push_back({part.box, *part.obstacle, part.cuts_left});
-    triangles_.push_back(std::move(part.triangles));
-  }
-  if (!context.cancel.stop_requested()) connect();
+  connect(context);
 }
 
-void RefinedRegion::connect() {
+SplitBox RefinedRegion::whole_box(Cell cube, std::vector<std::uint32_t> triangles) const {
+  const CellLattice& lattice = grid_.lattice();
+  const std::size_t first = node_of(cube);
+  SplitBox whole;
+  whole.box = {grid_.planes().node(lattice.place(first)),
+               grid_.planes().node(lattice.place(first + lattice.node(1, 1, 1))), cube};
+  whole.triangles = std::move(triangles);
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const std::size_t step = lattice.node(corner & 1U, corner >> 1U & 1U, corner >> 2U);
+    if (grid_.is_inside(first + step)) whole.inside |= static_cast<std::uint8_t>(1U << corner);
+  }
+  return whole;
+}
+
+void RefinedRegion::take(SplitBox part) {
+  boxes_.push_back(part.box);
+  depth_ = std::max(depth_, part.splits);
+  split_boxes_ += part.splits > 0 ? 1U : 0U;
+  if (part.obstacle) stuck_.push_back({part.box, *part.obstacle, part.cuts_left});
+  triangles_.push_back(std::move(part.triangles));
+}
+
+void RefinedRegion::connect(const Context& context) {
   cells_ = std::make_unique<BoxCells>(boxes_, grid_.planes(), grid_.lattice());
   segments_.resize(cells_->segments().size());
   rectangles_.resize(cells_->rectangles().size());
@@ -56,23 +94,26 @@ void RefinedRegion::connect() {
   part_component_.resize(boxes_.size());
   box_components_.assign(boxes_.size(), 0);
   bodies_of_box_.resize(boxes_.size());
+  for_each(context, segments_.size(), [&](std::uint32_t s, int) { find_crossings(s); });
   for (std::uint32_t s = 0; s < segments_.size(); ++s) {
-    find_crossings(s);
     for (const BoxRef& box : cells_->segments()[s].around) {
       if (box.is_box) segments_of_box_[box.id].push_back(s);
     }
   }
   for (auto& own : segments_of_box_) own.erase(std::unique(own.begin(), own.end()), own.end());
   find_inside();
-  Scratch scratch;
-  for (std::uint32_t r = 0; r < rectangles_.size(); ++r) {
+  std::vector<Scratch> scratch(static_cast<std::size_t>(thread_count(context)));
+  for_each(context, rectangles_.size(), [&](std::uint32_t r, int worker) {
     find_arcs(r);
-    connect_rectangle(r, scratch);
+    connect_rectangle(r, scratch[static_cast<std::size_t>(worker)]);
+  });
+  for (std::uint32_t r = 0; r < rectangles_.size(); ++r) {
     for (const BoxRef& box : cells_->rectangles()[r].boxes) {
       if (box.is_box) rectangles_of_box_[box.id].push_back(r);
     }
   }
-  for (std::uint32_t b = 0; b < boxes_.size(); ++b) connect_box(b, scratch);
+  for_each(context, boxes_.size(),
+           [&](std::uint32_t b, int worker) { connect_box(b, scratch[static_cast<std::size_t>(worker)]); });
 }
 
 const std::vector<std::uint32_t>& RefinedRegion::candidates(std::span<const BoxRef> boxes) const {

@@ -32,8 +32,8 @@ class RefinedRegion {
  public:
   /// @param cubes  those that fail, and all around them, rising.
   /// @param triangles  for each of the cubes, all that may meet it.
-  /// @param most_splits  of a cube.  @param finer  see BoxSplitter.  @param context  when it asks to stop, the region
-  /// is left as it is.
+  /// @param most_splits  of a cube.  @param finer  see BoxSplitter.
+  /// @throws Cancelled.
   RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::span<const Cell> cubes,
                 std::vector<std::vector<std::uint32_t>> triangles, int most_splits, std::span<const Box3> finer,
                 const Context& context);
@@ -89,7 +89,9 @@ class RefinedRegion {
   };
   struct Scratch;
 
-  void connect();
+  [[nodiscard]] SplitBox whole_box(Cell cube, std::vector<std::uint32_t> triangles) const;
+  void take(SplitBox part);
+  void connect(const Context& context);
   void find_crossings(std::uint32_t segment);
   void find_inside();
   void find_arcs(std::uint32_t rectangle);
