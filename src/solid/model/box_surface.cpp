@@ -23,6 +23,28 @@ bool may_meet(const TriangleCorners& t, const Vec3d& low, const Vec3d& high) {
   return true;
 }
 
+bool may_reach(const TriangleCorners& t, const Vec3d& low, const Vec3d& high) {
+  constexpr double rounding = 1e-12;  // of the lengths involved: far more than there is
+  if (!may_meet(t, low, high)) return false;
+  const Vec3d centre = 0.5 * (low + high);
+  const Vec3d half = max(high - centre, centre - low);
+  const std::array<Vec3d, 3> corners{t[0] - centre, t[1] - centre, t[2] - centre};
+  double furthest = length(half);
+  for (const Vec3d& corner : corners) furthest = std::max(furthest, length(corner));
+  const auto parts = [&](const Vec3d& normal) {
+    const Vec3d size = max(normal, -1.0 * normal);
+    const double reach = dot(size, half) + rounding * (size.x + size.y + size.z) * furthest;
+    const std::array<double, 3> at{dot(normal, corners[0]), dot(normal, corners[1]), dot(normal, corners[2])};
+    return std::min({at[0], at[1], at[2]}) > reach || std::max({at[0], at[1], at[2]}) < -reach;
+  };
+  const std::array<Vec3d, 3> edges{t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+  if (parts(cross(edges[0], edges[1]))) return false;
+  for (const Vec3d& e : edges) {
+    if (parts({0, e.z, -e.y}) || parts({-e.z, 0, e.x}) || parts({e.y, -e.x, 0})) return false;
+  }
+  return true;
+}
+
 bool crosses(const TriangleCorners& t, std::size_t axis, const Vec3d& low, const Vec3d& high) {
   if (!may_meet(t, low, high)) return false;
   const double u = low[next_axis(axis)];

@@ -19,6 +19,9 @@ namespace blum::detail {
 
 /// Whether the box around a triangle meets a box, both closed.
 [[nodiscard]] bool may_meet(const TriangleCorners& triangle, const Vec3d& low, const Vec3d& high);
+/// The same, and false also where planes along the triangle, or along an edge of it and an axis, part the two for
+/// certain: the box around a needle that lies at a slant meets much that the needle does not.
+[[nodiscard]] bool may_reach(const TriangleCorners& t, const Vec3d& low, const Vec3d& high);
 
 /// Whether a triangle crosses the part of a line along an axis between two points. Exact.
 [[nodiscard]] bool crosses(const TriangleCorners& triangle, std::size_t axis, const Vec3d& low, const Vec3d& high);

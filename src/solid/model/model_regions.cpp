@@ -7,8 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "blum/core/parallel.hpp"
 #include "blum/core/parts.hpp"
 #include "blum/core/union_find.hpp"
+#include "solid/model/box_surface.hpp"
 #include "solid/model/scaling.hpp"
 
 namespace blum::detail {
@@ -67,7 +69,7 @@ CubeRange cubes_around(const SurfaceMesh& mesh, const GridPlanes& planes, std::u
   return range;
 }
 
-/// For each of some cubes, the triangles whose box meets it.
+/// For each of some cubes, the triangles that meet it, and perhaps others.
 std::vector<std::vector<std::uint32_t>> triangles_near(const SurfaceMesh& mesh, const CutGrid& grid,
                                                        std::span<const Cell> cubes, const Context& context) {
   std::vector<std::vector<std::uint32_t>> out(cubes.size());
@@ -91,6 +93,15 @@ std::vector<std::vector<std::uint32_t>> triangles_near(const SurfaceMesh& mesh, 
       }
     }
   }
+  constexpr std::size_t grain = 64;
+  parallel_for(context, cubes.size(), grain, {}, [&](const WorkRange& range) {
+    for (std::size_t c = range.begin; c < range.end; ++c) {
+      const std::size_t first = node_of(cubes[c]);
+      const Vec3d low = grid.planes().node(lattice.place(first));
+      const Vec3d high = grid.planes().node(lattice.place(first + lattice.node(1, 1, 1)));
+      std::erase_if(out[c], [&](std::uint32_t t) { return !may_reach(mesh.corners(t), low, high); });
+    }
+  });
   return out;
 }
 
