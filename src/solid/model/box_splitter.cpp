@@ -143,6 +143,14 @@ void BoxSplitter::find_passes(const SplitBox& box) {
       if (passes_through(ends, face / 2, low, high)) passes_[e] |= static_cast<std::uint8_t>(1U << face);
     }
   }
+  passes_of_triangle_.clear();
+  for (const std::uint32_t t : box.triangles) {
+    auto& passes = passes_of_triangle_.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto at = std::lower_bound(edges_.begin(), edges_.end(), mesh_.edges_of(t)[k].value);
+      passes[k] = passes_[static_cast<std::size_t>(at - edges_.begin())];
+    }
+  }
 }
 
 std::optional<BoxSplitter::Hole> BoxSplitter::connect_face(const SplitBox& box, std::size_t face) {
@@ -162,16 +170,17 @@ std::optional<BoxSplitter::Hole> BoxSplitter::connect_face(const SplitBox& box, 
   if (is_inside(box, along_u)) square_.join(first[1] - 1, first[3]);
   if (is_inside(box, along_v)) square_.join(first[1], first[3] - 1);
   if (is_inside(box, along_u | along_v)) square_.join(first[2] - 1, first[4] - 1);
-  std::vector<std::uint32_t> triangles;
-  std::vector<std::array<std::uint32_t, 2>> ends_of_loops;  // edges of the mesh, of arcs with both ends on some
+  triangles_.clear();
+  ends_of_loops_.clear();
   for (std::size_t t = 0; t < box.triangles.size(); ++t) {
+    const auto& passes = passes_of_triangle_[t];
+    if (((passes[0] | passes[1] | passes[2]) >> face & 1U) == 0 && (crossed_[t] & border) == 0) continue;
     std::array<SquareComponents::End, 2> ends{};
     std::size_t count = 0;
     std::array<std::uint32_t, 2> edges_here{};
-    for (const EdgeId edge : mesh_.edges_of(box.triangles[t])) {
-      const auto e =
-          static_cast<std::size_t>(std::lower_bound(edges_.begin(), edges_.end(), edge.value) - edges_.begin());
-      if ((passes_[e] >> face & 1U) == 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((passes[k] >> face & 1U) == 0) continue;
+      const EdgeId edge = mesh_.edges_of(box.triangles[t])[k];
       if (count < 2) {
         ends[count] = {false, edge.value};
         edges_here[count] = edge.value;
@@ -192,20 +201,21 @@ std::optional<BoxSplitter::Hole> BoxSplitter::connect_face(const SplitBox& box, 
     }
     if (count != 2) continue;
     square_.add_arc(ends[0], ends[1]);
-    triangles.push_back(box.triangles[t]);
-    ends_of_loops.push_back(edges_here);
+    triangles_.push_back(box.triangles[t]);
+    ends_of_loops_.push_back(edges_here);
   }
   const double plane = face % 2 == 0 ? box.box.low[axis] : box.box.high[axis];
-  std::vector<std::uint32_t> loop_edges;
+  std::vector<std::uint32_t>& loop_edges = loop_edges_;
+  loop_edges.clear();
   const bool passes = square_.finish([&](std::span<const std::uint32_t> loop) {
     loop_edges.clear();
     for (const std::uint32_t arc : loop) {
-      loop_edges.insert(loop_edges.end(), ends_of_loops[arc].begin(), ends_of_loops[arc].end());
+      loop_edges.insert(loop_edges.end(), ends_of_loops_[arc].begin(), ends_of_loops_[arc].end());
     }
     return is_around_hole(mesh_, loop_edges, axis, plane);
   });
-  for (std::size_t a = 0; a < triangles.size(); ++a) {
-    arcs_.push_back({triangles[a], first_part_[face] + square_.of_arc(a)});
+  for (std::size_t a = 0; a < triangles_.size(); ++a) {
+    arcs_.push_back({triangles_[a], first_part_[face] + square_.of_arc(a)});
   }
   interval_part_[face].clear();
   for (std::uint32_t k = 0; k < first[4]; ++k)

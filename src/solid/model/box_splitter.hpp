@@ -81,9 +81,14 @@ class BoxSplitter {
   int most_splits_;
   std::span<const Box3> finer_;
   std::array<Side, 12> sides_;
-  std::vector<std::uint32_t> edges_;    ///< of the mesh, rising
-  std::vector<std::uint8_t> passes_;    ///< bit f: whether an edge passes face f
-  std::vector<std::uint16_t> crossed_;  ///< bit s: whether a triangle crosses side s
+  std::vector<std::uint32_t> edges_;                             ///< of the mesh, rising
+  std::vector<std::uint8_t> passes_;                             ///< bit f: whether an edge passes face f
+  std::vector<std::uint16_t> crossed_;                           ///< bit s: whether a triangle crosses side s
+  std::vector<std::array<std::uint8_t, 3>> passes_of_triangle_;  ///< passes_ of the edges of each
+  // Of the face that is looked at:
+  std::vector<std::uint32_t> triangles_;                     ///< with an arc in it
+  std::vector<std::array<std::uint32_t, 2>> ends_of_loops_;  ///< edges of the mesh, of arcs with both ends on some
+  std::vector<std::uint32_t> loop_edges_;
   std::array<std::uint32_t, 7> first_part_{};
   std::array<std::vector<std::uint32_t>, 6> interval_part_;
   std::vector<BoxPieces::ArcPart> arcs_;
