@@ -167,8 +167,27 @@ bool is_crossed_before(const TriangleCorners& first, const TriangleCorners& seco
   return order * turned < 0;
 }
 
+namespace {
+
+/// What passes_before() divides, and by what, in double.
+std::array<Rounded, 2> rounded_place(const EdgeEnds& edge, std::size_t across, double plane, std::size_t along) {
+  const auto& [a, b] = edge;
+  const double below = a[along] * (b[across] - plane);
+  const double above = b[along] * (plane - a[across]);
+  const double under = b[across] - a[across];
+  return {Rounded{below + above, 5 * unit * (std::abs(below) + std::abs(above))},
+          Rounded{under, unit * std::abs(under)}};
+}
+
+}  // namespace
+
 bool passes_before(const EdgeEnds& first, const EdgeEnds& second, std::size_t across, double plane, std::size_t along) {
   // An edge passes at (a' (b - plane) + b' (plane - a)) / (b - a), with a', b' the coordinates along the other axis.
+  const auto [x, x_under] = rounded_place(first, across, plane, along);
+  const auto [y, y_under] = rounded_place(second, across, plane, along);
+  if (const int certain = certain_order(x * y_under, y * x_under); certain != 0) {
+    return certain * sign(x_under.value) * sign(y_under.value) < 0;
+  }
   const auto parts = [&](const EdgeEnds& edge, Exact& over, Exact& under, Exact& slope) {
     const auto& [a, b] = edge;
     over.add_product(a[along], b[across]);
