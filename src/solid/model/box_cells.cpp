@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <tuple>
 #include <utility>
 
+#include "blum/core/parallel.hpp"
 #include "blum/geometry/grid_predicates.hpp"
 
 namespace blum::detail {
@@ -26,13 +28,14 @@ OnLine on_line(std::size_t axis, const Vec3d& p) {
 
 }  // namespace
 
-BoxCells::BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, const CellLattice& lattice)
+BoxCells::BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, const CellLattice& lattice,
+                   const Context& context)
     : boxes_(boxes), planes_(planes), lattice_(lattice) {
   std::map<Cell, std::vector<std::uint32_t>> own;
   for (std::uint32_t b = 0; b < boxes.size(); ++b) own[boxes[b].cube].push_back(b);
   for (auto& [cube, list] : own) boxes_of_cube_.try_emplace(cube, boxes, std::move(list));
   find_corners();
-  find_segments();
+  find_segments(context);
   find_rectangles();
   order_sides();
 }
@@ -83,7 +86,7 @@ std::uint32_t BoxCells::corner(const Vec3d& p) const {
                                     corners_.begin());
 }
 
-void BoxCells::find_segments() {
+void BoxCells::find_segments(const Context& context) {
   std::vector<OnLine> lines;
   for (const Vec3d& p : corners_) {
     for (std::size_t axis = 0; axis < 3; ++axis) lines.push_back(on_line(axis, p));
@@ -101,8 +104,8 @@ void BoxCells::find_segments() {
   }
   std::sort(pieces.begin(), pieces.end());
   pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
-  for (const auto& [begin, end] : pieces) {
-    const auto& [axis, u, v, low] = begin;
+  const auto segment_of = [&](const std::pair<OnLine, double>& piece) {
+    const auto& [axis, u, v, low] = piece.first;
     Vec3d p;
     p[next_axis(axis)] = u;
     p[next_axis(next_axis(axis))] = v;
@@ -110,7 +113,7 @@ void BoxCells::find_segments() {
     segment.axis = axis;
     p[axis] = low;
     segment.ends[0] = corner(p);
-    p[axis] = end;
+    p[axis] = piece.second;
     segment.ends[1] = corner(p);
     p[axis] = low;
     for (std::size_t q = 0; q < 4; ++q) {
@@ -120,8 +123,13 @@ void BoxCells::find_segments() {
       up[next_axis(next_axis(axis))] = (q & 2U) != 0;
       segment.around[q] = locate(p, up);
     }
-    segments_.push_back(segment);
-  }
+    return segment;
+  };
+  constexpr std::size_t grain = 1024;
+  segments_.resize(pieces.size());
+  parallel_for(context, pieces.size(), grain, {}, [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) segments_[k] = segment_of(pieces[k]);
+  });
 }
 
 BoxRef BoxCells::locate(const Vec3d& p, const std::array<bool, 3>& up) const {
@@ -136,24 +144,52 @@ BoxRef BoxCells::locate(const Vec3d& p, const std::array<bool, 3>& up) const {
   return {found->second.find(p, up), true};
 }
 
+/// Rectangles are numbered by their first segment.
 void BoxCells::find_rectangles() {
+  struct Piece {
+    BoxPair key;
+    std::uint32_t segment = 0;
+    std::uint8_t side = 0, quarter = 0;
+    [[nodiscard]] std::tuple<std::uint32_t, std::uint8_t, std::uint8_t> place() const {
+      return {segment, side, quarter};
+    }
+    [[nodiscard]] bool operator<(const Piece& other) const {
+      return key != other.key ? key < other.key : place() < other.place();
+    }
+  };
+  std::vector<Piece> pieces;
   for (std::uint32_t s = 0; s < segments_.size(); ++s) {
-    const BoxSegment& segment = segments_[s];
-    for (std::size_t side = 0; side < 2; ++side) {
-      for (std::size_t q = 0; q < 4; ++q) {
+    for (std::uint8_t side = 0; side < 2; ++side) {
+      for (std::uint8_t q = 0; q < 4; ++q) {
         if ((q >> side & 1U) != 0) continue;
-        const BoxRef& below = segment.around[q];
-        const BoxRef& above = segment.around[q | 1U << side];
+        const BoxRef& below = segments_[s].around[q];
+        const BoxRef& above = segments_[s].around[q | 1U << side];
         if (below == above || !below.exists() || !above.exists() || (!below.is_box && !above.is_box)) continue;
-        std::array<BoxRef, 2> key{below, above};
-        if (above < below) std::swap(key[0], key[1]);
-        const auto [at, is_new] = rectangle_of_.try_emplace(key, static_cast<std::uint32_t>(rectangles_.size()));
-        if (is_new) rectangles_.push_back({(segment.axis + 1 + side) % 3, {below, above}, {}});
-        // Sides are told apart later: first all segments are listed.
-        rectangles_[at->second].sides[0].push_back(s);
+        pieces.push_back({above < below ? BoxPair{above, below} : BoxPair{below, above}, s, side, q});
       }
     }
   }
+  std::sort(pieces.begin(), pieces.end());
+  std::vector<std::size_t> order;  // the first of each pair, soon by place
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (k == 0 || pieces[k].key != pieces[k - 1].key) order.push_back(k);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return pieces[a].place() < pieces[b].place(); });
+  rectangle_of_.reserve(order.size());
+  for (const std::size_t begin : order) {
+    const Piece& one = pieces[begin];
+    const BoxSegment& segment = segments_[one.segment];
+    rectangle_of_.emplace_back(one.key, static_cast<std::uint32_t>(rectangles_.size()));
+    BoxRectangle& rectangle = rectangles_.emplace_back();
+    rectangle.axis = (segment.axis + 1 + one.side) % 3;
+    rectangle.boxes = {segment.around[one.quarter], segment.around[one.quarter | 1U << one.side]};
+    // Sides are told apart later: first all segments are listed.
+    for (std::size_t k = begin; k < pieces.size() && pieces[k].key == one.key; ++k) {
+      rectangle.sides[0].push_back(pieces[k].segment);
+    }
+  }
+  std::sort(rectangle_of_.begin(), rectangle_of_.end());
 }
 
 void BoxCells::order_sides() {
@@ -182,7 +218,8 @@ void BoxCells::order_sides() {
 }
 
 std::uint32_t BoxCells::rectangle(const BoxRef& one, const BoxRef& other) const {
-  return rectangle_of_.at(one < other ? std::array{one, other} : std::array{other, one});
+  const BoxPair key = one < other ? BoxPair{one, other} : BoxPair{other, one};
+  return std::lower_bound(rectangle_of_.begin(), rectangle_of_.end(), std::pair(key, std::uint32_t{0}))->second;
 }
 
 std::array<std::uint32_t, 2> BoxCells::rectangles_at(const BoxSegment& segment, const BoxRef& box) const {

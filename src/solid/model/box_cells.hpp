@@ -4,10 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <span>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/grid/cell_lattice.hpp"
 #include "solid/model/grid_planes.hpp"
@@ -60,7 +62,9 @@ struct BoxRectangle {
 class BoxCells {
  public:
   /// @param boxes  that fill the cubes that they are parts of. The span must stay.
-  BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, const CellLattice& lattice);
+  /// @throws Cancelled.
+  BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, const CellLattice& lattice,
+           const Context& context = {});
 
   [[nodiscard]] std::span<const Vec3d> corners() const { return corners_; }
   [[nodiscard]] std::span<const BoxSegment> segments() const { return segments_; }
@@ -73,7 +77,7 @@ class BoxCells {
  private:
   void find_corners();
   void find_crossings(std::size_t across);
-  void find_segments();
+  void find_segments(const Context& context);
   void find_rectangles();
   void order_sides();
   [[nodiscard]] std::uint32_t corner(const Vec3d& p) const;
@@ -83,11 +87,12 @@ class BoxCells {
   std::span<const BoxCell> boxes_;
   const GridPlanes& planes_;
   const CellLattice& lattice_;
-  std::map<Cell, SplitTree> boxes_of_cube_;
+  std::unordered_map<Cell, SplitTree> boxes_of_cube_;
   std::vector<Vec3d> corners_;  ///< by x, y, z
   std::vector<BoxSegment> segments_;
   std::vector<BoxRectangle> rectangles_;
-  std::map<std::array<BoxRef, 2>, std::uint32_t> rectangle_of_;  ///< lesser box first
+  using BoxPair = std::array<BoxRef, 2>;
+  std::vector<std::pair<BoxPair, std::uint32_t>> rectangle_of_;  ///< lesser box first; rising
 };
 
 }  // namespace blum::detail

@@ -86,7 +86,7 @@ void RefinedRegion::take(SplitBox part) {
 }
 
 void RefinedRegion::connect(const Context& context) {
-  cells_ = std::make_unique<BoxCells>(boxes_, grid_.planes(), grid_.lattice());
+  cells_ = std::make_unique<BoxCells>(boxes_, grid_.planes(), grid_.lattice(), context);
   segments_.resize(cells_->segments().size());
   rectangles_.resize(cells_->rectangles().size());
   rectangles_of_box_.resize(boxes_.size());
@@ -203,18 +203,18 @@ void RefinedRegion::find_arcs(std::uint32_t rectangle) {
 void RefinedRegion::connect_rectangle(std::uint32_t rectangle, Scratch& scratch) {
   const BoxRectangle& cell = cells_->rectangles()[rectangle];
   RectangleSurface& own = rectangles_[rectangle];
-  std::map<std::uint32_t, std::uint32_t> first;  // interval of each segment
   std::vector<std::pair<std::uint32_t, std::uint32_t>> at_corners;
   std::uint32_t count = 0;
   for (const auto& side : cell.sides) {
     for (const std::uint32_t s : side) {
-      first[s] = count;
+      own.first_interval.emplace_back(s, count);
       const auto& ends = cells_->segments()[s].ends;
       if (is_inside(ends[0])) at_corners.emplace_back(ends[0], count);
       count += segments_[s].components;
       if (is_inside(ends[1])) at_corners.emplace_back(ends[1], count - 1);
     }
   }
+  std::sort(own.first_interval.begin(), own.first_interval.end());
   SquareComponents& components = scratch.square;
   components.start(count);
   std::sort(at_corners.begin(), at_corners.end());
@@ -225,7 +225,7 @@ void RefinedRegion::connect_rectangle(std::uint32_t rectangle, Scratch& scratch)
     if (!end.on_border) return {false, end.id};
     const SegmentSurface& s = segments_[end.id];
     const auto at = std::find(s.crossings.begin(), s.crossings.end(), triangle) - s.crossings.begin();
-    return {true, first[end.id] + interval_at(static_cast<std::uint32_t>(at), s.begins_inside)};
+    return {true, first_interval(own, end.id) + interval_at(static_cast<std::uint32_t>(at), s.begins_inside)};
   };
   for (const BoxArc& arc : own.arcs) {
     components.add_arc(end_of(arc.ends[0], arc.triangle), end_of(arc.ends[1], arc.triangle));
@@ -248,14 +248,14 @@ std::size_t RefinedRegion::part_offset(std::uint32_t box, std::uint32_t rectangl
 
 std::uint32_t RefinedRegion::component_of_interval(std::uint32_t rectangle, std::uint32_t segment,
                                                    std::uint32_t interval) const {
-  std::size_t at = interval;
-  for (const auto& side : cells_->rectangles()[rectangle].sides) {
-    for (const std::uint32_t s : side) {
-      if (s == segment) return rectangles_[rectangle].interval_component[at];
-      at += segments_[s].components;
-    }
-  }
-  return 0;
+  const RectangleSurface& own = rectangles_[rectangle];
+  return own.interval_component[first_interval(own, segment) + interval];
+}
+
+std::uint32_t RefinedRegion::first_interval(const RectangleSurface& rectangle, std::uint32_t segment) {
+  return std::lower_bound(rectangle.first_interval.begin(), rectangle.first_interval.end(),
+                          std::pair(segment, std::uint32_t{0}))
+      ->second;
 }
 
 std::uint32_t RefinedRegion::component_of_part(std::uint32_t box, std::uint32_t rectangle, std::uint32_t part) const {

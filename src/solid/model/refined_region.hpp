@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -85,10 +86,14 @@ class RefinedRegion {
   struct RectangleSurface {
     std::vector<BoxArc> arcs;
     std::vector<std::uint32_t> interval_component;  ///< of the intervals of all sides, one after the other
+    /// Where the intervals of each segment begin among these; by segment.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> first_interval;
     std::uint32_t components = 0;
   };
   struct Scratch;
 
+  /// Of a segment at the border of a rectangle.
+  [[nodiscard]] static std::uint32_t first_interval(const RectangleSurface& rectangle, std::uint32_t segment);
   [[nodiscard]] SplitBox whole_box(Cell cube, std::vector<std::uint32_t> triangles) const;
   void take(SplitBox part);
   void connect(const Context& context);
