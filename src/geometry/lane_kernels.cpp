@@ -155,6 +155,21 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
   const Vec3d d = ray.direction;
   alignas(64) double meet[lanes];
   for (std::size_t i = 0; i < lanes; ++i) {
+    // Heights above the plane of the triangle, times twice its area, at the origin and at the end.
+    const Vec3d u = corner_at(block, 0, i) - o;
+    const Vec3d ab = (corner_at(block, 1, i) - o) - u;
+    const Vec3d ac = (corner_at(block, 2, i) - o) - u;
+    const Rounded start = triple(u, ab, ac);
+    const Rounded slope = triple(d, ab, ac);
+    const double last = end * slope.value - start.value;
+    const double bound = end * slope.magnitude + start.magnitude;
+    const double above = is_above(-start.value, start.magnitude) * is_above(last, bound);
+    const double below = is_above(start.value, start.magnitude) * is_above(-last, bound);
+    meet[i] = above + below > 0 ? 0.0 : 1.0;
+  }
+  // Short rays mostly come through no plane.
+  if (bits_of(meet) == 0) return 0;
+  for (std::size_t i = 0; i < lanes; ++i) {
     const Vec3d u = corner_at(block, 0, i) - o;
     const Vec3d v = corner_at(block, 1, i) - o;
     const Vec3d w = corner_at(block, 2, i) - o;
@@ -163,16 +178,7 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
         is_above(uv.value, uv.magnitude) + is_above(vw.value, vw.magnitude) + is_above(wu.value, wu.magnitude);
     const double right =
         is_above(-uv.value, uv.magnitude) + is_above(-vw.value, vw.magnitude) + is_above(-wu.value, wu.magnitude);
-    // Heights above the plane of the triangle, times twice its area, at the origin and at the end.
-    const Vec3d ab = v - u;
-    const Vec3d ac = w - u;
-    const Rounded start = triple(u, ab, ac);
-    const Rounded slope = triple(d, ab, ac);
-    const double last = end * slope.value - start.value;
-    const double bound = end * slope.magnitude + start.magnitude;
-    const double above = is_above(-start.value, start.magnitude) * is_above(last, bound);
-    const double below = is_above(start.value, start.magnitude) * is_above(-last, bound);
-    meet[i] = left * right + above + below > 0 ? 0.0 : 1.0;
+    meet[i] *= left * right > 0 ? 0.0 : 1.0;
   }
   return bits_of(meet);
 }
