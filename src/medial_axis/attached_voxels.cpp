@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "blum/core/bits.hpp"
 #include "medial_axis/voxel_border.hpp"
 
 namespace blum {
@@ -47,7 +48,7 @@ constexpr BorderTables tables = make_tables();
 /// Whether a part of the border of a voxel, with all its faces, is contractible: connected, of Euler number 1.
 bool is_contractible(std::uint32_t cells) {
   if (cells == 0) return false;
-  if (std::popcount(cells & tables.even) - std::popcount(cells & ~tables.even) != 1) return false;
+  if (bit_count(cells & tables.even) != bit_count(cells & ~tables.even) + 1) return false;
   std::uint32_t reached = cells & (0U - cells);
   for (std::uint32_t next = reached; next != 0;) {
     std::uint32_t touched = 0;

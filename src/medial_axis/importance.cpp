@@ -30,7 +30,7 @@ Importance::Importance(const CellStructure& structure, std::span<const Entry> en
   std::uint32_t before = 0;
   for (std::size_t w = 0; w < words_.size(); ++w) {
     first_[w] = before;
-    if (words_[w] != 0) before += static_cast<std::uint32_t>(std::popcount(words_[w]));
+    before += bit_count(words_[w]);
   }
   values_.assign(before, 0);
   for (const Entry& entry : entries) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "blum/core/bits.hpp"
 #include "medial_axis/cell_complex.hpp"
 
 namespace blum {
@@ -38,7 +39,7 @@ class Importance {
   /// The number of cells with a value before this one.
   [[nodiscard]] std::size_t rank(Cell cell) const {
     const std::uint64_t below = words_[cell >> 6U] & ((std::uint64_t{1} << (cell & 63U)) - 1);
-    return first_[cell >> 6U] + static_cast<std::size_t>(std::popcount(below));
+    return first_[cell >> 6U] + bit_count(below);
   }
 
   std::vector<std::uint64_t> words_;
