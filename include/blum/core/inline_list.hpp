@@ -19,6 +19,7 @@ class InlineList {
   InlineList() = default;
   InlineList(const InlineList& other) : size_(other.size_) { std::uninitialized_copy_n(other.data(), size_, data()); }
   InlineList& operator=(const InlineList& other) {
+    if (this == &other) return *this;
     size_ = other.size_;
     std::uninitialized_copy_n(other.data(), size_, data());
     return *this;

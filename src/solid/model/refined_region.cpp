@@ -123,7 +123,8 @@ const std::vector<std::uint32_t>& RefinedRegion::candidates(std::span<const BoxR
     const auto& own = triangles_[box.id];
     if (fewest == nullptr || own.size() < fewest->size()) fewest = &own;
   }
-  return *fewest;
+  static const std::vector<std::uint32_t> nothing;  // of no box, which segments and rectangles do not lie beside
+  return fewest != nullptr ? *fewest : nothing;
 }
 
 void RefinedRegion::find_crossings(std::uint32_t segment) {
