@@ -160,13 +160,16 @@ class ShellOracle : public SolidOracle {
   [[nodiscard]] Side side_of(const Vec3d& p, const TriangleSearch::Nearest& closest) const {
     constexpr double nearly = 1 - 1e-6;
     constexpr double clearly = 0.1;  // of the distance: not at an edge as sharp as a knife
-    if (!closest.others || *closest.others > 1 || !(closest.distance > 1e-9 * diagonal())) return Side::unknown;
-    const std::optional<double> own = height_above(closest.triangle, p);
+    constexpr double next_to =
+        1e-7;  // of the diagonal: closer than this, others at a corner may be missed for rounding
+    if (!closest.others || *closest.others > 1) return Side::unknown;
+    if (!(closest.distance > (*closest.others == 1 ? next_to : 1e-9) * diagonal())) return Side::unknown;
+    const std::optional<double> own = height_above(closest.triangle, p, closest.distance);
     if (!own) return Side::unknown;
     double height = *own;
     double least = nearly * closest.distance;
     if (*closest.others == 1) {
-      const std::optional<double> beside = height_above(closest.other, p);
+      const std::optional<double> beside = height_above(closest.other, p, closest.distance);
       if (!beside || !are_beside(closest.triangle, closest.other)) return Side::unknown;
       height += *beside;
       least = clearly * closest.distance;
@@ -175,15 +178,17 @@ class ShellOracle : public SolidOracle {
     const bool is_void = shells_.shells[shells_.of_triangle[closest.triangle]].depth % 2 == 1;
     return (height < 0) != is_void ? Side::inside : Side::outside;
   }
-  /// How far a point is above the plane of a triangle, out of its shell; nullopt where that is not known, as of
-  /// triangles so thin that rounding would turn them.
-  [[nodiscard]] std::optional<double> height_above(std::uint32_t triangle, const Vec3d& p) const {
+  /// How far a point is above the plane of a triangle, out of its shell; nullopt where that is not known to a small
+  /// part of the point's distance from the triangle, as rounding turns the normals of thin ones.
+  [[nodiscard]] std::optional<double> height_above(std::uint32_t triangle, const Vec3d& p, double distance) const {
     const auto [a, b, c] = corners_of(mesh_, triangle);
-    constexpr double thin = 1e-9;
+    // A normal may be off by the rounding of longest^2 / size, and a height by as much of `longest`.
+    constexpr double rounding = 1e-13;
     const Vec3d normal = cross(b - a, c - a);
     const double size = length(normal);
     const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
-    if (shells_.outwards[triangle] == 0 || !(size > thin * longest)) return std::nullopt;
+    const double cubed = longest * std::sqrt(longest);
+    if (shells_.outwards[triangle] == 0 || !(size * distance > rounding * cubed)) return std::nullopt;
     return shells_.outwards[triangle] * dot(p - a, normal) / size;
   }
   [[nodiscard]] bool are_beside(std::uint32_t triangle, std::uint32_t other) const {

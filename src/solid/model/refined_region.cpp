@@ -14,10 +14,12 @@ namespace blum::detail {
 
 namespace {
 
-/// Cubes beside each other are not split into more boxes, about: a tunnel at a slant takes as many as it is longer than
+/// Cubes beside each other are not split into more boxes: a tunnel at a slant takes about as many as it is longer than
 /// wide.
 constexpr std::size_t most_boxes = std::size_t{1} << 17U;
 constexpr std::size_t cubes_in_batch = 32;
+/// Of one cube, while others are split beside it.
+constexpr std::size_t most_at_first = most_boxes / cubes_in_batch;
 
 /// Calls visit(k, worker) for each k below a count, from all threads.
 template <class Visit>
@@ -45,19 +47,24 @@ RefinedRegion::RefinedRegion(const SurfaceMesh& mesh, const CutGrid& grid, std::
   for (int k = 0; k < thread_count(context); ++k) {
     splitters.emplace_back(mesh, std::max({spacing.x, spacing.y, spacing.z}), most_splits, finer);
   }
-  // What one batch of cubes is split into counts for the next one, for any number of threads.
+  // As if one cube were split after the other, each into as many boxes as those before leave room for.
   std::vector<std::vector<SplitBox>> parts(cubes_in_batch);
   for (std::size_t first = 0; first < cubes.size(); first += cubes_in_batch) {
-    const std::size_t room = most_boxes - std::min(most_boxes, boxes_.size());
     const std::size_t count = std::min(cubes_in_batch, cubes.size() - first);
     parallel_for(context, count, 1, {}, [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
         parts[k] = splitters[static_cast<std::size_t>(range.worker)].split(
-            whole_box(cubes[first + k], std::move(triangles[first + k])), room, context);
+            whole_box(cubes[first + k], triangles[first + k]), most_at_first, context);
       }
     });
     for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t room = most_boxes - std::min(most_boxes, boxes_.size());
+      if (parts[k].size() >= most_at_first || parts[k].size() > room) {
+        parts[k] = splitters[0].split(whole_box(cubes[first + k], triangles[first + k]), room, context);
+        throw_if_cancelled(context);
+      }
       for (SplitBox& part : parts[k]) take(std::move(part));
+      triangles[first + k] = {};
     }
   }
   connect(context);

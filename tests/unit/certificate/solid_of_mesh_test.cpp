@@ -2,6 +2,7 @@
 // also in thin walls: as the solid angles of all triangles do, added up.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -74,6 +75,42 @@ TEST(SolidOfMesh, DepthsHaveTheSignOfTheWindingNumber) {
   EXPECT_GT(inside, 2000U);
   EXPECT_GT(outside, 2000U);
   EXPECT_GT(at_edges, 1000U) << "points whose closest one lies on an edge";
+}
+
+/// Beside a corner, as close as rounding, not all faces there are found: two of them that overhang would tell that what
+/// is beyond the corner is inside.
+TEST(SolidOfMesh, BeyondAnObliqueApexIsOutside) {
+  Random random(4);
+  std::size_t looked_at = 0;
+  for (int k = 0; k < 100; ++k) {
+    TriangleMesh pyramid;
+    pyramid.vertices.push_back({0, 0, 0});
+    for (std::uint32_t corner = 0; corner < 6; ++corner) {
+      const double angle = std::numbers::pi * (corner + 0.5) / 3;
+      pyramid.vertices.push_back({1.2 + 0.5 * std::cos(angle), 0.5 * std::sin(angle), -1});
+      std::array<std::uint32_t, 3> side{0, 1 + corner, 1 + (corner + 1) % 6};
+      std::rotate(side.begin(), side.begin() + static_cast<std::ptrdiff_t>(random.below(3)), side.end());
+      pyramid.triangles.push_back(side);
+      if (corner > 0 && corner < 5) pyramid.triangles.push_back({1, 2 + corner, 1 + corner});
+    }
+    TriangleMesh mesh = test::turned(pyramid, random.bits());
+    const Vec3d move = random.in_cube() * 3e3;  // more rounding
+    for (Vec3d& v : mesh.vertices) v += move;
+    const verifier::KnownSolid known = verifier::solid_of_mesh(mesh, mesh, {});
+    const Vec3d apex = mesh.vertices[0];
+    for (int n = 0; n < 1500; ++n) {
+      Vec3d way = random.in_ball();
+      way = way / length(way);
+      const bool is_beyond = std::all_of(mesh.vertices.begin() + 1, mesh.vertices.end(),
+                                         [&](const Vec3d& corner) { return dot(corner - apex, way) < -0.05; });
+      if (!is_beyond) continue;
+      const Vec3d p = apex + way * (known.solid->diagonal() * std::pow(10.0, random.uniform(-8.9, -1)));
+      ++looked_at;
+      EXPECT_LT(known.solid->depth(p, 0), 0) << length(p - apex);
+      EXPECT_GT(known.solid->locate(p).outside_by, 0) << length(p - apex);
+    }
+  }
+  EXPECT_GT(looked_at, 1000U);
 }
 
 }  // namespace
