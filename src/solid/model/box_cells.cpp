@@ -34,23 +34,26 @@ BoxCells::BoxCells(std::span<const BoxCell> boxes, const GridPlanes& planes, con
   std::map<Cell, std::vector<std::uint32_t>> own;
   for (std::uint32_t b = 0; b < boxes.size(); ++b) own[boxes[b].cube].push_back(b);
   for (auto& [cube, list] : own) boxes_of_cube_.try_emplace(cube, boxes, std::move(list));
-  find_corners();
+  find_corners(context);
   find_segments(context);
   find_rectangles();
   order_sides();
 }
 
-void BoxCells::find_corners() {
+void BoxCells::find_corners(const Context& context) {
   for (const BoxCell& box : boxes_) {
     for (std::size_t k = 0; k < 8; ++k) corners_.push_back(corner_of(box, k));
   }
-  for (std::size_t across = 0; across < 3; ++across) find_crossings(across);
+  std::array<std::vector<Vec3d>, 3> crossed;
+  parallel_for(context, 3, 1, {}, [&](const WorkRange& range) { crossed[range.begin] = crossings(range.begin); });
+  for (const std::vector<Vec3d>& more : crossed) corners_.insert(corners_.end(), more.begin(), more.end());
   std::sort(corners_.begin(), corners_.end(), is_before);
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
 }
 
 /// Edges of boxes below and above a plane may cross within it.
-void BoxCells::find_crossings(std::size_t across) {
+std::vector<Vec3d> BoxCells::crossings(std::size_t across) const {
+  std::vector<Vec3d> found;
   const std::size_t u = next_axis(across);
   const std::size_t v = next_axis(u);
   // Edges along u: plane, v, and where they begin and end. Edges along v: plane, u, begin, end.
@@ -76,9 +79,10 @@ void BoxCells::find_crossings(std::size_t across) {
       p[across] = plane;
       p[u] = (*other)[1];
       p[v] = at_v;
-      corners_.push_back(p);
+      found.push_back(p);
     }
   }
+  return found;
 }
 
 std::uint32_t BoxCells::corner(const Vec3d& p) const {

@@ -75,8 +75,8 @@ class BoxCells {
   [[nodiscard]] std::array<std::uint32_t, 2> rectangles_at(const BoxSegment& segment, const BoxRef& box) const;
 
  private:
-  void find_corners();
-  void find_crossings(std::size_t across);
+  void find_corners(const Context& context);
+  [[nodiscard]] std::vector<Vec3d> crossings(std::size_t across) const;
   void find_segments(const Context& context);
   void find_rectangles();
   void order_sides();
