@@ -16,7 +16,9 @@ BallUnion::BallUnion(const std::vector<Ball>& balls, const Context& context) {
   }
   const std::vector<double> largest = tree_.node_maxima(radii);
   largest_.resize(largest.size() / 2);
-  for (std::size_t n = 1; n < largest.size(); ++n) largest_[(n - 1) / 2][(n - 1) % 2] = largest[n];
+  for (std::size_t n = 1; n < largest.size(); ++n) {
+    largest_[BoxHierarchy::pair_of(n)][BoxHierarchy::place_in_pair(n)] = largest[n];
+  }
 }
 
 Two BallUnion::gaps(const Vec3d& p, std::uint32_t first_child) const {

@@ -36,7 +36,7 @@ BoxHierarchy::BoxHierarchy(const std::vector<Box3>& boxes, const Context& contex
     begin = end;
   }
   pairs_.resize(nodes_.size() / 2);
-  for (std::uint32_t n = 1; n < nodes_.size(); ++n) pairs_[(n - 1) / 2].set((n - 1) % 2, nodes_[n].box);
+  for (std::uint32_t n = 1; n < nodes_.size(); ++n) pairs_[pair_of(n)].set(place_in_pair(n), nodes_[n].box);
 }
 
 /// Finds the box of a node, and puts things of the lower half of its longest side first.

@@ -71,8 +71,10 @@ class BoxHierarchy {
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
   [[nodiscard]] std::uint32_t node_count() const { return static_cast<std::uint32_t>(nodes_.size()); }
   [[nodiscard]] const Node& node(std::uint32_t index) const { return nodes_[index]; }
-  /// Siblings, from the first one, are in one pair: pairs are numbered from 0, as the root has no sibling.
-  [[nodiscard]] static std::uint32_t pair_of(std::uint32_t first_child) { return first_child / 2; }
+  /// The pair of siblings that a node other than the root is in, numbered from 0.
+  [[nodiscard]] static constexpr std::size_t pair_of(std::size_t node) { return (node - 1) / 2; }
+  /// Its place in this: 0 or 1.
+  [[nodiscard]] static constexpr std::size_t place_in_pair(std::size_t node) { return (node - 1) % 2; }
   /// The boxes of a first child and its sibling.
   [[nodiscard]] const TwoBoxes& two_boxes(std::uint32_t first_child) const { return pairs_[pair_of(first_child)]; }
 

@@ -183,6 +183,16 @@ unsigned may_cross(const PrimitiveBlock& block, const Ray& ray, double end) {
   return bits_of(meet);
 }
 
+/// 1 where the box around a triangle touches a box, else 0.
+inline double touch_around(const Vec3d& u, const Vec3d& v, const Vec3d& w, const Box3& box) {
+  double all = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    all *= std::min(std::min(u[axis], v[axis]), w[axis]) <= box.upper[axis] ? 1.0 : 0.0;
+    all *= std::max(std::max(u[axis], v[axis]), w[axis]) >= box.lower[axis] ? 1.0 : 0.0;
+  }
+  return all;
+}
+
 unsigned may_reach(const PrimitiveBlock& block, const Box3& box) {
   const Vec3d centre = (box.lower + box.upper) * 0.5;
   const Vec3d half = max(box.upper - centre, centre - box.lower);
@@ -191,11 +201,7 @@ unsigned may_reach(const PrimitiveBlock& block, const Box3& box) {
     const Vec3d u = corner_at(block, 0, i);
     const Vec3d v = corner_at(block, 1, i);
     const Vec3d w = corner_at(block, 2, i);
-    double touch = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      touch *= std::min(std::min(u[axis], v[axis]), w[axis]) <= box.upper[axis] ? 1.0 : 0.0;
-      touch *= std::max(std::max(u[axis], v[axis]), w[axis]) >= box.lower[axis] ? 1.0 : 0.0;
-    }
+    const double touch = touch_around(u, v, w, box);
     // No corner of the box is further from its centre, along the normal of the triangle, than this.
     const Vec3d ab = v - u;
     const Vec3d ac = w - u;
@@ -219,11 +225,7 @@ unsigned may_meet_block(const PrimitiveBlock& block, const ProbeTriangle& other)
     const Vec3d u = corner_at(block, 0, i);
     const Vec3d v = corner_at(block, 1, i);
     const Vec3d w = corner_at(block, 2, i);
-    double touch = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      touch *= std::min(std::min(u[axis], v[axis]), w[axis]) <= other.box.upper[axis] ? 1.0 : 0.0;
-      touch *= std::max(std::max(u[axis], v[axis]), w[axis]) >= other.box.lower[axis] ? 1.0 : 0.0;
-    }
+    const double touch = touch_around(u, v, w, other.box);
     double above = 1;
     double below = 1;
     const auto look = [&](double height, double magnitude) {

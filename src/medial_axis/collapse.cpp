@@ -105,10 +105,9 @@ class Collapser {
     return sum / count;
   }
 
-  [[nodiscard]] bool is_free(Cell face) const { return complex_.contains(face) && complex_.only_coface(face) != face; }
   /// Puts a face in line if it is free.
   void offer(Cell face) {
-    if (is_free(face)) enter(face);
+    if (complex_.contains(face) && complex_.only_coface(face) != face) enter(face);
   }
   void enter(Cell face) {
     const float importance = importance_.of(face);

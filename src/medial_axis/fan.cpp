@@ -1,9 +1,10 @@
 #include "medial_axis/fan.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+
+#include "blum/core/inline_list.hpp"
 
 namespace blum {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 /// The cosine that a triangle may turn by at most: 75 degrees.
 constexpr double least_cosine = 0.25;
 constexpr std::size_t most_ring = 64;
-constexpr std::size_t few_in_ring = 12;  ///< nearly all have
 
 /// A point seen along the normal of a fan, from its centre.
 struct Seen {
@@ -34,42 +34,41 @@ struct Difference {
   }
 };
 
-/// What the ring looks like along a normal. @tparam most  vertices that there is room for.
-template <std::size_t most>
+/// What the ring looks like along a normal.
 class View {
  public:
-  View(const AxisPoint& centre, std::span<const AxisPoint> ring, const Vec3d& normal) : size_(ring.size()) {
+  View(const AxisPoint& centre, std::span<const AxisPoint> ring, const Vec3d& normal) {
     const Vec3d side = std::abs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
     Vec3d u = blum::cross(normal, side);
     u = u / length(u);
     const Vec3d v = blum::cross(normal, u);
-    for (std::size_t k = 0; k < size_; ++k) {
-      const Vec3d at = ring[k].position - centre.position;
-      seen_[k] = {dot(at, u), dot(at, v), dot(at, normal), ring[k].radius - centre.radius};
+    for (const AxisPoint& point : ring) {
+      const Vec3d at = point.position - centre.position;
+      seen_.push_back({dot(at, u), dot(at, v), dot(at, normal), point.radius - centre.radius});
     }
   }
 
   /// Whether the fan lies above the plane once, before the centre goes.
   [[nodiscard]] bool is_above_plane(bool is_closed) const {
-    for (std::size_t k = 0; k + 1 < size_ + (is_closed ? 1 : 0); ++k) {
-      if (!(cross(seen_[k], seen_[(k + 1) % size_]) > 0)) return false;
+    for (std::size_t k = 0; k + 1 < seen_.size() + (is_closed ? 1 : 0); ++k) {
+      if (!(cross(seen_[k], seen_[(k + 1) % seen_.size()]) > 0)) return false;
     }
     return true;
   }
   /// The same afterwards.
   [[nodiscard]] bool is_unfolded() const {
-    for (std::size_t k = 1; k + 1 < size_; ++k) {
+    for (std::size_t k = 1; k + 1 < seen_.size(); ++k) {
       if (!(cross(seen_[0], seen_[k], seen_[k + 1]) > 0)) return false;
     }
     return true;
   }
 
   /// Whether the centre of an open fan lies beyond the line between the ends of its ring.
-  [[nodiscard]] bool is_tip() const { return cross(seen_[0], seen_[size_ - 1]) > 0; }
+  [[nodiscard]] bool is_tip() const { return cross(seen_[0], seen_[seen_.size() - 1]) > 0; }
 
   /// At the centre, where the fan covers it afterwards.
   void include_centre(Difference& difference) const {
-    for (std::size_t k = 1; k + 1 < size_; ++k) {
+    for (std::size_t k = 1; k + 1 < seen_.size(); ++k) {
       const double a = cross(seen_[k], seen_[k + 1]);
       const double b = cross(seen_[k + 1], seen_[0]);
       const double c = cross(seen_[0], seen_[k]);
@@ -83,12 +82,12 @@ class View {
 
   /// Where edges from the centre cross those afterwards: between these places both are linear.
   void include_crossings(Difference& difference) const {
-    for (std::size_t j = 2; j < size_; ++j) {
+    for (std::size_t j = 2; j < seen_.size(); ++j) {
       const Seen& from = seen_[0];
       const Seen& to = seen_[j];
       const Seen along{to.x - from.x, to.y - from.y, to.height - from.height, to.radius - from.radius};
       const double start = cross(from, along);
-      for (std::size_t i = 1; i < size_; ++i) {
+      for (std::size_t i = 1; i < seen_.size(); ++i) {
         if (i == j) continue;
         const Seen& spoke = seen_[i];
         const double turn = cross(spoke, along);
@@ -104,35 +103,13 @@ class View {
   }
 
  private:
-  std::size_t size_;
-  std::array<Seen, most> seen_;
+  InlineList<Seen, most_ring> seen_;
 };
 
 /// Whether a triangle faces to where a normal does, roughly.
 bool faces(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& normal) {
   const Vec3d own = blum::cross(b - a, c - a);
   return dot(own, normal) > least_cosine * length(own);
-}
-
-/// deviation(), from a view along the mean normal.
-template <class View>
-std::optional<Deviation> deviation_in(const View& view, const AxisPoint& centre, std::span<const AxisPoint> ring,
-                                      bool is_closed) {
-  if (!view.is_unfolded()) return std::nullopt;
-  // Each point of a triangle moves with its corner, and so no further than that.
-  const double moved = length(ring[0].position - centre.position);
-  const Deviation bound{std::max(moved, std::abs(ring[0].radius - centre.radius)), moved};
-  if (!view.is_above_plane(is_closed)) return bound;
-  Difference difference;
-  view.include_centre(difference);
-  view.include_crossings(difference);
-  Deviation out{std::max(difference.height, difference.radius), difference.height};
-  if (!is_closed) {
-    const Deviation border = deviation(centre, ring.front(), ring.back());
-    out.by = std::max(out.by, border.by);
-    if (!view.is_tip()) out.beyond = std::max(out.beyond, border.beyond);
-  }
-  return out.by < bound.by ? out : bound;
 }
 
 }  // namespace
@@ -157,8 +134,22 @@ std::optional<Deviation> deviation(const AxisPoint& centre, std::span<const Axis
   for (std::size_t k = 1; k + 1 < ring.size(); ++k) {
     if (!faces(ring[0].position, ring[k].position, ring[k + 1].position, normal)) return std::nullopt;
   }
-  return ring.size() <= few_in_ring ? deviation_in(View<few_in_ring>(centre, ring, normal), centre, ring, is_closed)
-                                    : deviation_in(View<most_ring>(centre, ring, normal), centre, ring, is_closed);
+  const View view(centre, ring, normal);
+  if (!view.is_unfolded()) return std::nullopt;
+  // Each point of a triangle moves with its corner, and so no further than that.
+  const double moved = length(ring[0].position - centre.position);
+  const Deviation bound{std::max(moved, std::abs(ring[0].radius - centre.radius)), moved};
+  if (!view.is_above_plane(is_closed)) return bound;
+  Difference difference;
+  view.include_centre(difference);
+  view.include_crossings(difference);
+  Deviation out{std::max(difference.height, difference.radius), difference.height};
+  if (!is_closed) {
+    const Deviation border = deviation(centre, ring.front(), ring.back());
+    out.by = std::max(out.by, border.by);
+    if (!view.is_tip()) out.beyond = std::max(out.beyond, border.beyond);
+  }
+  return out.by < bound.by ? out : bound;
 }
 
 }  // namespace blum
