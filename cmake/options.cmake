@@ -1,6 +1,6 @@
 # Build options and the third-party packages that they need. A part that is off looks for nothing.
 include(CMakeDependentOption)
-option(BLUM_FIELD_CPU "Build the fast CPU fields (needs Highway)" ON)
+option(BLUM_FIELD_CPU "Build the fast CPU fields and what stands on them (needs Highway, headers of Boost)" ON)
 cmake_dependent_option(BLUM_IO "Build readers and writers (needs zlib, nlohmann-json)" ON BLUM_FIELD_CPU OFF)
 cmake_dependent_option(BLUM_CLI "Build the command-line tool (needs CLI11, libpng)" ${PROJECT_IS_TOP_LEVEL}
                        BLUM_IO OFF)
@@ -56,6 +56,7 @@ endif()
 # Highway: fields need it; geometry compiles its loops for several instruction sets where it is there.
 if(BLUM_FIELD_CPU)
   find_package(hwy REQUIRED)
+  find_package(Boost 1.70 REQUIRED)  # headers only, and in no public one of Blum's
 elseif(BLUM_SIMD)
   find_package(hwy QUIET)
 endif()

@@ -17,7 +17,7 @@ configuration() {
 # The core, geometry, grid and reference layers: configuring fails when they look for any package of a third party.
 compiler_alone() {
   local forbidden=() package
-  for package in TBB hwy ZLIB PNG CLI11 nlohmann_json GTest benchmark; do
+  for package in TBB hwy Boost ZLIB PNG CLI11 nlohmann_json GTest benchmark; do
     forbidden+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
   done
   configuration "$1" -DBLUM_FIELD_CPU=OFF -DBLUM_TESTS=OFF "-DBLUM_THREADS=$2" "${forbidden[@]}" || return

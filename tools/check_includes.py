@@ -25,6 +25,7 @@ LOWER = {
     "solid": {"core", "geometry", "grid", "complex"},
     "field": {"core", "geometry", "grid"},
     "medial_axis": {"core", "geometry", "grid", "complex", "solid", "field"},
+    "proximity": {"core", "geometry"},
     "certificate": {"core", "complex"},
 }
 LOWER["io"] = set(LOWER)
@@ -69,6 +70,8 @@ def third_party_rule(source: str, name: str) -> str | None:
         return None if source.startswith("src/field/cuda/") else "CUDA belongs in src/field/cuda"
     if name in ("zlib.h", "png.h", "nlohmann/json.hpp"):
         return None if source.startswith("src/io/") else "only src/io reads and writes compressed files"
+    if name.startswith("boost/multiprecision/"):
+        return None if source.startswith("src/proximity/exact/") else "large integers belong in src/proximity/exact"
     if STANDARD.fullmatch(name) or SYSTEM.fullmatch(name):
         return None
     return "not a dependency of this layer"

@@ -1,0 +1,78 @@
+#include "blum/proximity/impact.hpp"
+
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "proximity/exact/exact_impact.hpp"
+#include "proximity/impact_filter.hpp"
+
+namespace blum {
+namespace {
+
+using detail::FeatureKinds;
+using detail::FilteredImpact;
+
+constexpr std::size_t grain = 256;
+constexpr double least_tolerance = 0x1p-40;
+
+void check(const ImpactOptions& options) {
+  if (options.tolerance >= least_tolerance && options.tolerance <= 1) return;
+  throw InvalidOption("tolerance is " + exact_text(options.tolerance) + ", but must be 2^-40 (about 1e-12) to 1");
+}
+
+void check(const FourMovingPoints& points, std::size_t number) {
+  for (const auto* ends : {&points.start, &points.end}) {
+    for (const Vec3d& p : *ends) {
+      if (!is_finite(p)) throw InvalidMesh("points " + std::to_string(number) + ": a coordinate is not finite");
+    }
+  }
+}
+
+std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance) {
+  const FilteredImpact filtered = detail::filtered_impact(points, kinds, tolerance);
+  if (filtered.answer == FilteredImpact::Answer::never) return std::nullopt;
+  if (filtered.answer == FilteredImpact::Answer::meets) return filtered.time;
+  return kinds == FeatureKinds::vertex_face ? detail::exact_vertex_face_impact(points, tolerance)
+                                            : detail::exact_edge_edge_impact(points, tolerance);
+}
+
+std::optional<double> checked_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
+  check(options);
+  check(points, 0);
+  return impact(points, kinds, options.tolerance);
+}
+
+std::vector<std::optional<double>> impacts(std::span<const FourMovingPoints> points, FeatureKinds kinds,
+                                           const ImpactOptions& options, const Context& context) {
+  check(options);
+  for (std::size_t k = 0; k < points.size(); ++k) check(points[k], k);
+  std::vector<std::optional<double>> times(points.size());
+  parallel_for(context, points.size(), grain, "impacts", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) times[k] = impact(points[k], kinds, options.tolerance);
+  });
+  return times;
+}
+
+}  // namespace
+
+std::optional<double> vertex_face_impact(const FourMovingPoints& points, const ImpactOptions& options) {
+  return checked_impact(points, FeatureKinds::vertex_face, options);
+}
+
+std::optional<double> edge_edge_impact(const FourMovingPoints& points, const ImpactOptions& options) {
+  return checked_impact(points, FeatureKinds::edge_edge, options);
+}
+
+std::vector<std::optional<double>> vertex_face_impacts(std::span<const FourMovingPoints> points,
+                                                       const ImpactOptions& options, const Context& context) {
+  return impacts(points, FeatureKinds::vertex_face, options, context);
+}
+
+std::vector<std::optional<double>> edge_edge_impacts(std::span<const FourMovingPoints> points,
+                                                     const ImpactOptions& options, const Context& context) {
+  return impacts(points, FeatureKinds::edge_edge, options, context);
+}
+
+}  // namespace blum

@@ -1,0 +1,196 @@
+#include "proximity/impact_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "blum/core/inline_list.hpp"
+
+namespace blum::detail {
+namespace {
+
+constexpr double unit_roundoff = 0x1p-53;
+
+/// A polynomial by its Bernstein coefficients over [0, 1]: it is between their least and largest there.
+template <std::size_t size>
+using Bernstein = std::array<double, size>;
+
+/// The coefficients over a part of [0, 1].
+Bernstein<3> part(const Bernstein<3>& c, double low, double high) {
+  const auto mix = [](double a, double b, double t) { return (1 - t) * a + t * b; };
+  const double low0 = mix(c[0], c[1], low);
+  const double low1 = mix(c[1], c[2], low);
+  const double high0 = mix(c[0], c[1], high);
+  const double high1 = mix(c[1], c[2], high);
+  return {mix(low0, low1, low), mix(low0, low1, high), mix(high0, high1, high)};
+}
+
+Bernstein<4> part(const Bernstein<4>& c, double low, double high) {
+  const auto mix = [](double a, double b, double t) { return (1 - t) * a + t * b; };
+  const double l0 = mix(c[0], c[1], low);
+  const double l1 = mix(c[1], c[2], low);
+  const double l2 = mix(c[2], c[3], low);
+  const double h0 = mix(c[0], c[1], high);
+  const double h1 = mix(c[1], c[2], high);
+  const double h2 = mix(c[2], c[3], high);
+  const double ll0 = mix(l0, l1, low);
+  const double ll1 = mix(l1, l2, low);
+  const double hh0 = mix(h0, h1, high);
+  const double hh1 = mix(h1, h2, high);
+  return {mix(ll0, ll1, low), mix(ll0, ll1, high), mix(hh0, hh1, low), mix(hh0, hh1, high)};
+}
+
+template <std::size_t size>
+double least(const Bernstein<size>& c) {
+  return *std::min_element(c.begin(), c.end());
+}
+
+template <std::size_t size>
+double most(const Bernstein<size>& c) {
+  return *std::max_element(c.begin(), c.end());
+}
+
+/// A vector that moves along a straight line.
+struct MovingVector {
+  Vec3d start;
+  Vec3d end;
+
+  [[nodiscard]] double magnitude() const {
+    double most = 0;
+    for (const Vec3d& v : {start, end}) most = std::max({most, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return most;
+  }
+};
+
+/// The Bernstein coefficients of a vector in time.
+using QuadraticVector = std::array<Vec3d, 3>;
+
+QuadraticVector product(const MovingVector& a, const MovingVector& b) {
+  return {cross(a.start, b.start), (cross(a.start, b.end) + cross(a.end, b.start)) * 0.5, cross(a.end, b.end)};
+}
+
+Bernstein<3> along(const QuadraticVector& v, std::size_t axis) {
+  return {v[0][axis], v[1][axis], v[2][axis]};
+}
+
+/// Two features by vectors between their points: a + s * u = b + r * v, where they meet. With w = b - a and n = u x v,
+/// that is s * n = w x v, and r * n is w x u or, for a face, u x w.
+class Filter {
+ public:
+  Filter(const FourMovingPoints& points, FeatureKinds kinds, double tolerance)
+      : is_face_(kinds == FeatureKinds::vertex_face), tolerance_(tolerance) {
+    const auto vector = [&](std::size_t from, std::size_t to) {
+      return MovingVector{points.start[to] - points.start[from], points.end[to] - points.end[from]};
+    };
+    const MovingVector u = is_face_ ? vector(1, 2) : vector(0, 1);
+    const MovingVector v = is_face_ ? vector(1, 3) : vector(2, 3);
+    const MovingVector w = is_face_ ? vector(1, 0) : vector(0, 2);
+    const double u_most = u.magnitude();
+    const double v_most = v.magnitude();
+    const double w_most = w.magnitude();
+    in_range_ = is_in_range(u_most) && is_in_range(v_most) && is_in_range(w_most);
+    if (!in_range_) return;
+    normal_ = product(u, v);
+    volume_ = {dot(normal_[0], w.start), (dot(normal_[0], w.end) + 2 * dot(normal_[1], w.start)) / 3,
+               (2 * dot(normal_[1], w.end) + dot(normal_[2], w.start)) / 3, dot(normal_[2], w.end)};
+    volume_error_ = volume_rounding * u_most * v_most * w_most;
+    normal_error_ = area_rounding * u_most * v_most;
+    u_ = u;
+    v_ = v;
+    w_ = w;
+    weight_error_ = area_rounding * w_most * std::max(u_most, v_most);
+  }
+
+  [[nodiscard]] FilteredImpact answer() {
+    if (!in_range_) return {};
+    if (may_be_zero(volume_, volume_error_)) {
+      first_ = product(w_, v_);
+      second_ = is_face_ ? product(u_, w_) : product(w_, u_);
+    } else {
+      return {FilteredImpact::Answer::never, 0};
+    }
+    left_.push_back({0, 1});
+    for (int looks = 0; !left_.empty(); ++looks) {
+      if (looks > most_looks) return {};
+      const Interval interval = left_.pop_back();
+      const FilteredImpact::Answer answer = look_at(interval);
+      if (answer == FilteredImpact::Answer::never) continue;
+      if (answer == FilteredImpact::Answer::meets) return {answer, interval.low};
+      if (interval.high - interval.low < least_width) return {};
+      const double cut = 0.5 * (interval.low + interval.high);
+      left_.push_back({cut, interval.high});
+      left_.push_back({interval.low, cut});
+    }
+    return {FilteredImpact::Answer::never, 0};
+  }
+
+ private:
+  struct Interval {
+    double low;
+    double high;
+  };
+
+  // Bounds on rounding, proven in docs/theory/proximity.md, with room.
+  static constexpr double volume_rounding = 256 * unit_roundoff;
+  static constexpr double area_rounding = 64 * unit_roundoff;
+  static constexpr int most_looks = 96;
+  static constexpr double least_width = 0x1p-44;
+
+  /// Whether products of three neither overflow nor lose more to underflow than to rounding.
+  static bool is_in_range(double magnitude) { return magnitude > 1e-80 && magnitude < 1e90; }
+
+  template <std::size_t size>
+  static bool may_be_zero(const Bernstein<size>& c, double error) {
+    return least(c) <= error && most(c) >= -error;
+  }
+
+  /// Whether the features meet for certain at a time in an interval no longer than the tolerance, or never do in it.
+  [[nodiscard]] FilteredImpact::Answer look_at(const Interval& interval) const {
+    using Answer = FilteredImpact::Answer;
+    const Bernstein<4> volume = part(volume_, interval.low, interval.high);
+    if (!may_be_zero(volume, volume_error_)) return Answer::never;
+    const bool crosses = std::abs(volume[0]) > volume_error_ && std::abs(volume[3]) > volume_error_ &&
+                         (volume[0] > 0) != (volume[3] > 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Bernstein<3> normal = part(along(normal_, axis), interval.low, interval.high);
+      if (may_be_zero(normal, normal_error_)) continue;
+      const double sign = normal[0] > 0 ? 1 : -1;
+      bool is_inside = true;
+      Bernstein<3> rest = normal;  // 1 - s (- r for a face), times the normal
+      for (const QuadraticVector* weight : {&first_, &second_}) {
+        const Bernstein<3> c = part(along(*weight, axis), interval.low, interval.high);
+        if (sign * (sign > 0 ? most(c) : least(c)) < -weight_error_) return Answer::never;
+        is_inside = is_inside && sign * (sign > 0 ? least(c) : most(c)) > weight_error_;
+        for (std::size_t k = 0; k < 3; ++k) rest[k] = (is_face_ ? rest[k] : normal[k]) - c[k];
+        if (is_face_ && weight == &first_) continue;
+        const double error = 2 * (normal_error_ + 2 * weight_error_);
+        if (sign * (sign > 0 ? most(rest) : least(rest)) < -error) return Answer::never;
+        is_inside = is_inside && sign * (sign > 0 ? least(rest) : most(rest)) > error;
+      }
+      if (is_inside && crosses && interval.high - interval.low <= tolerance_) return Answer::meets;
+    }
+    return Answer::unknown;
+  }
+
+  bool is_face_;
+  bool in_range_ = false;
+  double tolerance_;
+  MovingVector u_, v_, w_;
+  QuadraticVector normal_;
+  QuadraticVector first_;   ///< s times the normal
+  QuadraticVector second_;  ///< r times the normal
+  Bernstein<4> volume_{};
+  double volume_error_ = 0;
+  double normal_error_ = 0;
+  double weight_error_ = 0;
+  InlineList<Interval, 64> left_;
+};
+
+}  // namespace
+
+FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance) {
+  return Filter(points, kinds, tolerance).answer();
+}
+
+}  // namespace blum::detail

@@ -1,0 +1,257 @@
+#include "support/slow_impact.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace blum::test {
+namespace {
+
+using Number = boost::multiprecision::cpp_rational;
+
+/// Coefficients from the constant on, the last not zero.
+using Polynomial = std::vector<Number>;
+using Vector = std::array<Polynomial, 3>;
+
+Polynomial trimmed(Polynomial p) {
+  while (!p.empty() && p.back() == 0) p.pop_back();
+  return p;
+}
+
+Polynomial sum(const Polynomial& a, const Polynomial& b, int sign) {
+  Polynomial out(std::max(a.size(), b.size()));
+  for (std::size_t k = 0; k < a.size(); ++k) out[k] += a[k];
+  for (std::size_t k = 0; k < b.size(); ++k) out[k] += sign * b[k];
+  return trimmed(std::move(out));
+}
+
+Polynomial product(const Polynomial& a, const Polynomial& b) {
+  if (a.empty() || b.empty()) return {};
+  Polynomial out(a.size() + b.size() - 1);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t k = 0; k < b.size(); ++k) out[i + k] += a[i] * b[k];
+  }
+  return out;
+}
+
+struct Division {
+  Polynomial quotient;
+  Polynomial rest;
+};
+
+Division divided(Polynomial a, const Polynomial& b) {
+  Division out;
+  if (a.size() >= b.size()) out.quotient.resize(a.size() - b.size() + 1);
+  while (a.size() >= b.size()) {
+    const Number factor = a.back() / b.back();
+    const std::size_t shift = a.size() - b.size();
+    out.quotient[shift] = factor;
+    for (std::size_t k = 0; k < b.size(); ++k) a[k + shift] -= factor * b[k];
+    a.pop_back();
+    a = trimmed(std::move(a));
+  }
+  out.rest = std::move(a);
+  return out;
+}
+
+Polynomial scaled_to_one(Polynomial p) {
+  const Number leading = p.back();
+  for (Number& c : p) c /= leading;
+  return p;
+}
+
+Polynomial greatest_common_divisor(Polynomial a, Polynomial b) {
+  while (!b.empty()) {
+    Polynomial rest = divided(a, b).rest;
+    a = std::move(b);
+    b = std::move(rest);
+    if (!b.empty()) b = scaled_to_one(std::move(b));
+  }
+  return scaled_to_one(std::move(a));
+}
+
+Polynomial derivative(const Polynomial& p) {
+  Polynomial out;
+  for (std::size_t k = 1; k < p.size(); ++k) out.push_back(p[k] * static_cast<int>(k));
+  return out;
+}
+
+Number value(const Polynomial& p, const Number& t) {
+  Number out = 0;
+  for (std::size_t k = p.size(); k-- > 0;) out = out * t + p[k];
+  return out;
+}
+
+int sign(const Number& x) {
+  return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
+
+/// Counts the roots of a polynomial that has no multiple ones.
+class Roots {
+ public:
+  explicit Roots(const Polynomial& p) : sequence_{p, derivative(p)} {
+    while (!sequence_.back().empty()) {
+      Polynomial next = divided(sequence_[sequence_.size() - 2], sequence_.back()).rest;
+      const Number size = next.empty() ? Number(1) : Number(abs(next.back()));
+      for (Number& c : next) c /= -size;
+      sequence_.push_back(std::move(next));
+    }
+  }
+  /// In (low, high].
+  [[nodiscard]] int in(const Number& low, const Number& high) const { return variations(low) - variations(high); }
+  [[nodiscard]] bool are_at(const Number& t) const { return value(sequence_[0], t) == 0; }
+  [[nodiscard]] const Polynomial& polynomial() const { return sequence_[0]; }
+
+ private:
+  [[nodiscard]] int variations(const Number& t) const {
+    int changes = 0;
+    int last = 0;
+    for (const Polynomial& one : sequence_) {
+      const int here = sign(value(one, t));
+      if (here != 0 && last != 0 && here != last) ++changes;
+      if (here != 0) last = here;
+    }
+    return changes;
+  }
+
+  std::vector<Polynomial> sequence_;
+};
+
+Polynomial square_free(const Polynomial& p) {
+  return p.size() < 2 ? p : divided(p, greatest_common_divisor(p, derivative(p))).quotient;
+}
+
+/// A root of a polynomial in [0, 1], alone in (low, high]; or `high` itself, where both are equal.
+class Time {
+ public:
+  Time(Roots roots, Number low, Number high) : roots_(std::move(roots)), low_(std::move(low)), high_(std::move(high)) {}
+
+  /// Narrows it as far as is needed.
+  [[nodiscard]] int sign_of(const Polynomial& other) {
+    if (other.empty()) return 0;
+    if (low_ == high_ || other.size() == 1) return sign(value(other, high_));
+    const Polynomial common = greatest_common_divisor(roots_.polynomial(), other);
+    if (common.size() > 1 && Roots(common).in(low_, high_) > 0) return 0;
+    const Roots others(square_free(other));
+    while (others.in(low_, high_) > 0) halve();
+    return sign(value(other, high_));
+  }
+
+  [[nodiscard]] ContactTime narrowed() {
+    const Number width = Number(1) / (boost::multiprecision::cpp_int(1) << 60);
+    while (high_ - low_ > width) halve();
+    return {low_.convert_to<double>(), high_.convert_to<double>()};
+  }
+
+ private:
+  void halve() {
+    const Number middle = (low_ + high_) / 2;
+    (roots_.in(low_, middle) > 0 ? high_ : low_) = middle;
+    if (roots_.are_at(high_)) low_ = high_;
+  }
+
+  Roots roots_;
+  Number low_;
+  Number high_;
+};
+
+void add_roots(const Roots& roots, const Number& low, const Number& high, std::vector<Time>& times) {
+  const int count = roots.in(low, high);
+  if (count == 1) times.emplace_back(roots, roots.are_at(high) ? high : low, high);
+  if (count < 2) return;
+  const Number middle = (low + high) / 2;
+  add_roots(roots, low, middle, times);
+  add_roots(roots, middle, high, times);
+}
+
+Vector position(const FourMovingPoints& points, std::size_t k) {
+  Vector out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Number start = points.start[k][axis];
+    out[axis] = trimmed({start, Number(points.end[k][axis]) - start});
+  }
+  return out;
+}
+
+Vector operator-(const Vector& a, const Vector& b) {
+  return {sum(a[0], b[0], -1), sum(a[1], b[1], -1), sum(a[2], b[2], -1)};
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+  const auto minor = [&](std::size_t i, std::size_t k) { return sum(product(a[i], b[k]), product(a[k], b[i]), -1); };
+  return {minor(1, 2), minor(2, 0), minor(0, 1)};
+}
+
+Polynomial dot(const Vector& a, const Vector& b) {
+  return sum(sum(product(a[0], b[0]), product(a[1], b[1]), 1), product(a[2], b[2]), 1);
+}
+
+/// What says whether a point is on a segment.
+struct OnSegment {
+  OnSegment(const Vector& p, const Vector& a, const Vector& b) : area(cross(b - a, p - a)), beyond(dot(p - a, p - b)) {}
+  Vector area;
+  Polynomial beyond;
+};
+
+/// Features meet where all of `inside` are at least zero, `volume` is zero, and `normal` is not; or where a point is on
+/// a segment.
+std::optional<ContactTime> first_contact(const Polynomial& volume, const Vector& normal,
+                                         const std::vector<Polynomial>& inside, const std::vector<OnSegment>& touches) {
+  std::vector<Polynomial> all{volume, dot(normal, normal)};
+  all.insert(all.end(), inside.begin(), inside.end());
+  for (const OnSegment& touch : touches) {
+    all.insert(all.end(), touch.area.begin(), touch.area.end());
+    all.push_back(touch.beyond);
+  }
+  std::vector<Time> times{Time(Roots({0, 1}), 0, 0)};
+  for (const Polynomial& one : all) {
+    if (one.size() > 1) add_roots(Roots(square_free(one)), 0, 1, times);
+  }
+  std::optional<ContactTime> first;
+  for (Time& time : times) {
+    const auto sign = [&](const Polynomial& p) { return time.sign_of(p); };
+    const auto is_zero = [&](const Polynomial& p) { return sign(p) == 0; };
+    const bool meets = is_zero(volume) && sign(dot(normal, normal)) > 0 &&
+                       std::all_of(inside.begin(), inside.end(), [&](const Polynomial& p) { return sign(p) >= 0; });
+    const bool touch = std::any_of(touches.begin(), touches.end(), [&](const OnSegment& one) {
+      return std::all_of(one.area.begin(), one.area.end(), is_zero) && sign(one.beyond) <= 0;
+    });
+    if (!meets && !touch) continue;
+    const ContactTime found = time.narrowed();
+    if (!first || found.high < first->high) first = found;
+  }
+  return first;
+}
+
+}  // namespace
+
+std::optional<ContactTime> slow_vertex_face_impact(const FourMovingPoints& points) {
+  const Vector p = position(points, 0);
+  const Vector a = position(points, 1);
+  const Vector b = position(points, 2);
+  const Vector c = position(points, 3);
+  const Vector normal = cross(b - a, c - a);
+  return first_contact(
+      dot(normal, p - a), normal,
+      {dot(normal, cross(b - a, p - a)), dot(normal, cross(c - b, p - b)), dot(normal, cross(a - c, p - c))},
+      {{p, a, b}, {p, b, c}, {p, c, a}});
+}
+
+std::optional<ContactTime> slow_edge_edge_impact(const FourMovingPoints& points) {
+  const Vector a = position(points, 0);
+  const Vector b = position(points, 1);
+  const Vector c = position(points, 2);
+  const Vector d = position(points, 3);
+  const Vector normal = cross(b - a, d - c);
+  // a + s (b - a) = c + r (d - c), with s and r times the squared length of the normal.
+  const Polynomial whole = dot(normal, normal);
+  const Polynomial s = dot(normal, cross(c - a, d - c));
+  const Polynomial r = dot(normal, cross(c - a, b - a));
+  return first_contact(dot(normal, c - a), normal, {s, sum(whole, s, -1), r, sum(whole, r, -1)},
+                       {{c, a, b}, {d, a, b}, {a, c, d}, {b, c, d}});
+}
+
+}  // namespace blum::test

@@ -1,0 +1,282 @@
+// Whether and when moving features meet: by the library and by slow rational arithmetic, which must agree always.
+#include "blum/proximity/impact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <sstream>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/core/random.hpp"
+#include "proximity/exact/exact_impact.hpp"
+#include "proximity/impact_filter.hpp"
+#include "support/slow_impact.hpp"
+
+namespace blum {
+namespace {
+
+using detail::FeatureKinds;
+using detail::FilteredImpact;
+using test::ContactTime;
+
+std::string text(const FourMovingPoints& points) {
+  std::ostringstream out;
+  out.precision(17);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3d& a = points.start[k];
+    const Vec3d& b = points.end[k];
+    out << "(" << a.x << ", " << a.y << ", " << a.z << ") to (" << b.x << ", " << b.y << ", " << b.z << ")\n";
+  }
+  return out.str();
+}
+
+FourMovingPoints with_each(const FourMovingPoints& points, const std::function<Vec3d(const Vec3d&)>& move) {
+  FourMovingPoints out = points;
+  for (auto* ends : {&out.start, &out.end}) {
+    for (Vec3d& p : *ends) p = move(p);
+  }
+  return out;
+}
+
+void expect_time(const std::optional<double>& found, const std::optional<ContactTime>& right, double tolerance) {
+  ASSERT_EQ(found.has_value(), right.has_value());
+  if (!found) return;
+  EXPECT_LE(*found, right->high);
+  EXPECT_GE(*found, right->low - tolerance);
+}
+
+/// That the answers, those of doubles alone and those of integers alone are right. @return whether they meet.
+bool expect_right(const FourMovingPoints& points, double tolerance = 1e-6) {
+  SCOPED_TRACE(text(points));
+  bool any = false;
+  for (const FeatureKinds kinds : {FeatureKinds::vertex_face, FeatureKinds::edge_edge}) {
+    const bool is_face = kinds == FeatureKinds::vertex_face;
+    SCOPED_TRACE(is_face ? "vertex and face" : "edge and edge");
+    const auto right = is_face ? test::slow_vertex_face_impact(points) : test::slow_edge_edge_impact(points);
+    const ImpactOptions options{.tolerance = tolerance};
+    expect_time(is_face ? vertex_face_impact(points, options) : edge_edge_impact(points, options), right, tolerance);
+    expect_time(is_face ? detail::exact_vertex_face_impact(points, tolerance)
+                        : detail::exact_edge_edge_impact(points, tolerance),
+                right, tolerance);
+    const FilteredImpact filtered = detail::filtered_impact(points, kinds, tolerance);
+    if (filtered.answer == FilteredImpact::Answer::never) {
+      EXPECT_FALSE(right);
+    } else if (filtered.answer == FilteredImpact::Answer::meets) {
+      expect_time(filtered.time, right, tolerance);
+    }
+    any = any || right;
+  }
+  return any;
+}
+
+FourMovingPoints random_points(const std::function<Vec3d()>& next) {
+  FourMovingPoints out;
+  for (auto* ends : {&out.start, &out.end}) {
+    for (Vec3d& p : *ends) p = next();
+  }
+  return out;
+}
+
+/// Coordinates are integers from -most to most: nearly all contacts are degenerate.
+FourMovingPoints on_lattice(Random& random, std::uint64_t most) {
+  const auto next = [&] { return static_cast<double>(random.below(2 * most + 1)) - static_cast<double>(most); };
+  return random_points([&] {
+    const double x = next();
+    const double y = next();
+    return Vec3d{x, y, next()};
+  });
+}
+
+TEST(Impact, OfRandomPointsIsThatOfRationalNumbers) {
+  Random random(1);
+  int meet = 0;
+  for (int k = 0; k < 60; ++k) meet += expect_right(random_points([&] { return random.in_cube(); })) ? 1 : 0;
+  EXPECT_GT(meet, 6);
+  EXPECT_LT(meet, 54);
+}
+
+TEST(Impact, OfSmallIntegersIsThatOfRationalNumbers) {
+  Random random(2);
+  for (const std::uint64_t most : {1, 2, 4}) {
+    int meet = 0;
+    for (int k = 0; k < 200; ++k) meet += expect_right(on_lattice(random, most)) ? 1 : 0;
+    EXPECT_GT(meet, 20);
+    EXPECT_LT(meet, 180);
+  }
+}
+
+/// All in a plane that keeps its direction and may travel along it.
+TEST(Impact, InAPlaneIsThatOfRationalNumbers) {
+  Random random(3);
+  int meet = 0;
+  for (int k = 0; k < 200; ++k) {
+    FourMovingPoints points = on_lattice(random, k % 2 == 0 ? 2 : 20);
+    const double heights[2] = {static_cast<double>(random.below(3)), static_cast<double>(random.below(3))};
+    for (std::size_t n = 0; n < 4; ++n) {
+      points.start[n].z = heights[0];
+      points.end[n].z = heights[1];
+    }
+    // Turned by an integer matrix of determinant 1, so that no axis is special.
+    meet += expect_right(with_each(points,
+                                   [](const Vec3d& p) {
+                                     return Vec3d{p.x + p.y + p.z, p.x + 2 * p.y + 2 * p.z, p.x + 2 * p.y + 3 * p.z};
+                                   }))
+                ? 1
+                : 0;
+  }
+  EXPECT_GT(meet, 20);
+  EXPECT_LT(meet, 420);
+}
+
+/// On one line, which may travel: triangles without area, edges along each other.
+TEST(Impact, OnALineIsThatOfRationalNumbers) {
+  Random random(4);
+  int meet = 0;
+  for (int k = 0; k < 300; ++k) {
+    const FourMovingPoints points = on_lattice(random, 5);
+    const Vec3d by{0, static_cast<double>(random.below(3)), 1};
+    FourMovingPoints line = with_each(points, [](const Vec3d& p) { return Vec3d{p.x, 2 * p.x, -3 * p.x}; });
+    for (Vec3d& p : line.end) p += by;
+    meet += expect_right(line) ? 1 : 0;
+  }
+  EXPECT_GT(meet, 50);
+}
+
+/// Points that coincide, stay at their place, or are the same: segments and points in place of triangles and edges.
+TEST(Impact, OfPointsThatAreTheSameIsThatOfRationalNumbers) {
+  Random random(5);
+  int meet = 0;
+  for (int k = 0; k < 500; ++k) {
+    FourMovingPoints points = on_lattice(random, 2);
+    const std::size_t from = random.below(4);
+    const std::size_t to = random.below(4);
+    points.start[to] = points.start[from];
+    if (k % 2 == 0) points.end[to] = points.end[from];
+    if (k % 3 == 0) points.end = points.start;
+    if (k % 5 == 0) points.end[from] = points.start[from];
+    meet += expect_right(points) ? 1 : 0;
+  }
+  EXPECT_GT(meet, 50);
+}
+
+/// Contact at the instant at which a motion turns back, and at the border of features: by construction, then spoilt by
+/// single roundings.
+TEST(Impact, GrazingIsThatOfRationalNumbers) {
+  Random random(6);
+  const auto nudged = [&](const Vec3d& p) {
+    Vec3d out = p;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::uint64_t which = random.below(4);
+      if (which == 0) out[axis] = std::nextafter(out[axis], 1e9);
+      if (which == 1) out[axis] = std::nextafter(out[axis], -1e9);
+    }
+    return out;
+  };
+  int meet = 0;
+  for (int k = 0; k < 40; ++k) {
+    FourMovingPoints points = random_points([&] { return random.in_cube(); });
+    // At half time the first point is on the border of the triangle, or the second edge.
+    const double s = random.uniform();
+    const Vec3d a = (points.start[1] + points.end[1]) * 0.5;
+    const Vec3d b = (points.start[2] + points.end[2]) * 0.5;
+    points.end[0] = (a * (1 - s) + b * s) * 2 - points.start[0];
+    meet += expect_right(with_each(points, nudged)) ? 1 : 0;
+  }
+  EXPECT_GT(meet, 6);
+  EXPECT_LT(meet, 39);
+}
+
+/// Sliding along a face or an edge, a rounding above, in or below it.
+TEST(Impact, SlidingIsThatOfRationalNumbers) {
+  Random random(7);
+  for (int k = 0; k < 60; ++k) {
+    const double height = (static_cast<double>(random.below(5)) - 2) * 0x1p-53;
+    FourMovingPoints points = random_points([&] {
+      const Vec3d p = random.in_cube();
+      return Vec3d{p.x, p.y, 1};
+    });
+    points.start[0].z += height;
+    points.end[0].z += (static_cast<double>(random.below(5)) - 2) * 0x1p-53;
+    expect_right(points);
+  }
+}
+
+TEST(Impact, ScaleAndPlaceChangeNothing) {
+  Random random(8);
+  for (int k = 0; k < 12; ++k) {
+    const FourMovingPoints points = on_lattice(random, 3);
+    for (const double scale : {0x1p-1000, 0x1p-400, 0x1p-100, 0x1p100, 0x1p400, 0x1p1000}) {
+      expect_right(with_each(points, [&](const Vec3d& p) { return p * scale; }));
+    }
+    expect_right(with_each(points, [](const Vec3d& p) { return p + Vec3d{0x1p20, -0x1p30, 0x1p50}; }));
+    expect_right(with_each(points, [](const Vec3d& p) { return Vec3d{p.x, p.y * 0x1p-40, p.z * 0x1p40}; }));
+  }
+}
+
+TEST(Impact, ToleranceBoundsHowEarlyTimesAre) {
+  Random random(9);
+  for (int k = 0; k < 10; ++k) {
+    const FourMovingPoints points = random_points([&] { return random.in_cube(); });
+    for (const double tolerance : {1.0, 0.25, 1e-3, 1e-9, 0x1p-40}) expect_right(points, tolerance);
+  }
+}
+
+TEST(Impact, AtTheStartIsTimeZero) {
+  const FourMovingPoints points{{{{0.25, 0.25, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
+                                {{{9, 9, 9}, {0, 0, 1}, {1, 0, 2}, {0, 1, 3}}}};
+  EXPECT_EQ(vertex_face_impact(points), 0.0);
+}
+
+TEST(Impact, OfAPointThatFallsOntoATriangle) {
+  const FourMovingPoints points{{{{0.25, 0.25, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
+                                {{{0.25, 0.25, -2}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}};
+  const auto time = vertex_face_impact(points);
+  ASSERT_TRUE(time);
+  EXPECT_LE(*time, 1.0 / 3);
+  EXPECT_NEAR(*time, 1.0 / 3, 1e-6);
+}
+
+/// A small answer of doubles would do where integers are not needed: most queries of a simulation.
+TEST(Impact, DoublesDecideNearlyAllRandomQueries) {
+  Random random(10);
+  int unknown = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const FourMovingPoints points = random_points([&] { return random.in_cube(); });
+    for (const FeatureKinds kinds : {FeatureKinds::vertex_face, FeatureKinds::edge_edge}) {
+      if (detail::filtered_impact(points, kinds, 1e-6).answer == FilteredImpact::Answer::unknown) ++unknown;
+    }
+  }
+  EXPECT_LE(unknown, 4);
+}
+
+TEST(Impact, ManyAreThoseOfEach) {
+  Random random(11);
+  std::vector<FourMovingPoints> points;
+  for (int k = 0; k < 2000; ++k) points.push_back(on_lattice(random, 3));
+  for (const int threads : {1, 2, 7}) {
+    const auto faces = vertex_face_impacts(points, {}, {.threads = threads});
+    const auto edges = edge_edge_impacts(points, {}, {.threads = threads});
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      ASSERT_EQ(faces[k], vertex_face_impact(points[k]));
+      ASSERT_EQ(edges[k], edge_edge_impact(points[k]));
+    }
+  }
+}
+
+TEST(Impact, RefusesWhatIsNoMotion) {
+  FourMovingPoints points{};
+  EXPECT_THROW(static_cast<void>(vertex_face_impact(points, {.tolerance = 0})), InvalidOption);
+  EXPECT_THROW(static_cast<void>(vertex_face_impact(points, {.tolerance = 2})), InvalidOption);
+  EXPECT_THROW(static_cast<void>(edge_edge_impact(points, {.tolerance = std::nan("")})), InvalidOption);
+  points.end[2].y = std::nan("");
+  EXPECT_THROW(static_cast<void>(vertex_face_impact(points)), InvalidMesh);
+  points.end[2].y = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(static_cast<void>(edge_edge_impact(points)), InvalidMesh);
+}
+
+}  // namespace
+}  // namespace blum
