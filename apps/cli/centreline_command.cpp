@@ -54,9 +54,13 @@ void add_labels(std::string_view text, std::set<std::int64_t>& known, Labels& la
   const std::size_t dash = text.find('-', 1);
   constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  const std::int64_t first = parse_integer("--label", text.substr(0, dash), least, most);
   const bool is_range = dash != std::string_view::npos;
-  const std::int64_t last = is_range ? parse_integer("--label", text.substr(dash + 1), first, most) : first;
+  if (is_range && dash + 1 == text.size()) {
+    throw UsageError("--label " + std::string(text) + ": a range has a first and a last label, such as 7-9");
+  }
+  const std::int64_t first = parse_integer("--label", text.substr(0, dash), least, most);
+  const std::int64_t last = is_range ? parse_integer("--label", text.substr(dash + 1), least, most) : first;
+  if (last < first) throw UsageError("--label " + std::string(text) + ": the range ends before it begins");
   if (static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first) >= most_labels) {
     throw UsageError("--label " + std::string(text) + " names more than a million labels");
   }
@@ -111,8 +115,13 @@ Json brief_json(const Centreline& line) {
           {"homotopy", line.homotopy}};
 }
 
-std::vector<std::string> warnings_of(const Centrelines& lines) {
+std::vector<std::string> warnings_of(const Centrelines& lines, const GridSpec& grid) {
   std::vector<std::string> warnings;
+  if (std::count(grid.size.begin(), grid.size.end(), 1) > 0) {
+    warnings.emplace_back(
+        "the image has a single layer, which is a plate as thick as a voxel: lengths and radii are not those of a "
+        "picture in the plane");
+  }
   std::size_t left_out = 0;
   for (const Centreline& line : lines.labels) {
     if (line.voxels > 0 && line.homotopy_kept) continue;
@@ -188,7 +197,7 @@ void run(const Arguments& a) {
   phases.push_back({"write", watch.lap()});
   progress.clear();
 
-  const std::vector<std::string> warnings = warnings_of(lines);
+  const std::vector<std::string> warnings = warnings_of(lines, image.grid);
   const PhaseSummary spent = summarize(phases);
   Json briefs = Json::array();
   for (const Centreline& line : lines.labels) briefs.push_back(brief_json(line));

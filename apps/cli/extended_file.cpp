@@ -51,8 +51,8 @@ std::string extended_text(const ExtendReport& report) {
 
 std::vector<std::string> extended_warnings(const ExtendReport& report) {
   if (!(report.open_length > 0)) return {};
-  return {rounded_text(report.open_length) + " of " + rounded_text(report.rim_length) +
-          " of the rims are not extended: nothing is near, or triangles would fold back or leave the solid"};
+  return {"of rims " + rounded_text(report.rim_length) + " long, " + rounded_text(report.open_length) +
+          " are not extended: nothing is near, or triangles would fold back or leave the solid"};
 }
 
 Json extended_json(const ExtendReport& report, const fs::path& file) {

@@ -102,7 +102,12 @@ class Centrelines(Sequence[Centreline]):
         return self._complex
 
     def __repr__(self) -> str:
-        return f"Centrelines({len(self)} labels, {sum(len(line.branches) for line in self)} branches)"
+        branches = sum(len(line.branches) for line in self)
+        counts = [
+            f"{count} {one if count == 1 else many}"
+            for count, one, many in ((len(self), "label", "labels"), (branches, "branch", "branches"))
+        ]
+        return f"Centrelines({', '.join(counts)})"
 
 
 @takes("CentrelineOptions")

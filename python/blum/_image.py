@@ -42,6 +42,8 @@ class Image:
         self, values: Any, spacing: Any = 1.0, origin: Any = 0.0, direction: Any = None, *, space: str = ""
     ) -> None:
         array = as_array(values, "image")
+        if array.dtype.kind == "O":
+            raise TypeError(f"image is a {type(values).__name__}, but must be an array of numbers or booleans")
         if array.dtype.kind not in "biuf" or array.dtype == np.float16:
             if array.dtype != np.float16:
                 raise TypeError(f"image must hold numbers or booleans, not {array.dtype}")

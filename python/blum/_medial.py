@@ -199,7 +199,8 @@ def medial_axis(
     Returns
     -------
     MedialAxis
-        `.simplify(theta)` gives the complex at an angle, `.simplify(theta).certificate` what is certain of it.
+        `.certified(theta)` gives the best complex at an angle that is certified, with few triangles; `.simplify(theta)`
+        that of the cells, and `.simplify(theta).certificate` what is certain of it.
 
     Raises
     ------

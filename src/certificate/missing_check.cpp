@@ -100,6 +100,7 @@ FoundBalls find_balls(const MedialView& axis, const KnownSolid& solid, const All
                       double sought, const Context& context) {
   const auto body_count = static_cast<std::uint32_t>(solid.bodies.size());
   FoundBalls found{{}, std::vector<Offsets>(body_count)};
+  if (!(sought > theta)) return found;  // at 180 degrees there is nothing more to see
   Spread boxes;
   for (std::uint32_t b = 0; b < body_count; ++b) {
     const Vec3d size = solid.solid->box(b).size();

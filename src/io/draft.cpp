@@ -30,7 +30,7 @@ fs::path make_draft(const fs::path& path) {
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     std::ostringstream name;
     name << "." << target.stem().string().substr(0, most_of_name) << "." << std::hex << random() << random() << ".draft"
-         << target.extension().string();
+         << path.extension().string();  // what was asked for, which a link may lead away from
     fs::path draft = target.parent_path() / name.str();
     const int file = open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file >= 0) {

@@ -13,6 +13,7 @@
 #include "blum/core/sort_unique.hpp"
 #include "medial_axis/axis_parts.hpp"
 #include "medial_axis/check_angle.hpp"
+#include "medial_axis/quantiles.hpp"
 #include "medial_axis/surface_patches.hpp"
 
 namespace blum {
@@ -110,12 +111,13 @@ class LineWalker {
 
   void finish(AxisLine& line, EdgePart part, std::uint32_t number) {
     const auto [least, most] = std::minmax_element(line.radii.begin(), line.radii.end());
-    std::vector<std::pair<double, double>> means;
+    std::vector<LinearPart> parts;
     for (std::size_t k = 1; k < line.radii.size(); ++k) {
-      means.emplace_back((line.radii[k - 1] + line.radii[k]) / 2, line.arc_length[k] - line.arc_length[k - 1]);
+      const double length = line.arc_length[k] - line.arc_length[k - 1];
+      parts.push_back(LinearPart::on_edge(line.radii[k - 1], line.radii[k], length));
     }
     line.radius = {*least, 0, 0, *most};
-    add_quantiles(means, line.radius);
+    add_quantiles(std::move(parts), line.radius);
     const std::uint32_t first = junction_at_[line.vertices.front()];
     const std::uint32_t last = junction_at_[line.vertices.back()];
     line.closed = first == none;

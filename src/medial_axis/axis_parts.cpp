@@ -106,22 +106,4 @@ std::pair<bool, JunctionKind> AxisParts::junction(std::uint32_t vertex) const {
   return {true, a.seams == 1 && a.curves == 0 ? JunctionKind::seam_end : JunctionKind::junction};
 }
 
-void add_quantiles(std::vector<std::pair<double, double>>& values, AxisSpread& spread) {
-  constexpr double low_part = 0.05;
-  std::sort(values.begin(), values.end());
-  double total = 0;
-  for (const auto& [value, weight] : values) total += weight;
-  const auto up_to = [&](double part) {
-    if (!(total > 0)) return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))].first;
-    double sum = 0;
-    for (const auto& [value, weight] : values) {
-      sum += weight;
-      if (sum >= part * total) return value;
-    }
-    return values.back().first;
-  };
-  spread.low = up_to(low_part);
-  spread.median = up_to(0.5);
-}
-
 }  // namespace blum

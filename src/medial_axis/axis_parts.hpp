@@ -66,8 +66,4 @@ class AxisParts {
 void add_sheets(const AxisParts& parts, const std::vector<std::uint32_t>& seam_of_edge,
                 std::optional<double> homotopy_angle, AxisGraph& graph);
 
-/// Fills the low value and the median of values with weights: those up to which 5 % and half of the weight lie; of
-/// values without weight, of their number. @param values  (value, weight), not empty; sorted by it.
-void add_quantiles(std::vector<std::pair<double, double>>& values, AxisSpread& spread);
-
 }  // namespace blum

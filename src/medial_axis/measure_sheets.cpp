@@ -8,14 +8,17 @@
 
 #include "blum/core/sort_unique.hpp"
 #include "medial_axis/axis_parts.hpp"
+#include "medial_axis/quantiles.hpp"
 
 namespace blum {
 namespace {
 
+constexpr double wall_angle = 150;  ///< degrees: walls that see each other at this or more face each other
+
 /// Of a sheet, while it is measured.
 struct Measured {
-  std::vector<std::pair<double, double>> thickness, angle;  ///< of triangles: the mean of the corners, and the area
-  Vec3d corners;                                            ///< the sum of all
+  std::vector<LinearPart> thickness, angle, wall;  ///< of triangles; of those between walls: the thickness
+  Vec3d corners;                                   ///< the sum of all
   std::int64_t border_sides = 0, cut_vertices = 0;
   bool is_shown = false;  ///< some triangle is there for what it sees
 };
@@ -32,7 +35,8 @@ class SheetMeasurer {
     constexpr double infinite = std::numeric_limits<double>::infinity();
     for (const std::uint32_t sheet : parts.sheet_numbers()) {
       graph_.sheets.emplace_back().sheet = sheet;
-      graph_.sheets.back().thickness = graph_.sheets.back().separation_angle = {infinite, 0, 0, -infinite};
+      AxisSheet& own = graph_.sheets.back();
+      own.thickness = own.separation_angle = own.wall_thickness = {infinite, 0, 0, -infinite};
     }
   }
 
@@ -73,10 +77,14 @@ class SheetMeasurer {
     const Vec3d corners = at + axis.positions[b] + axis.positions[c];
     AxisSheet& sheet = sheet_of(t);
     Measured& measured = measured_[parts_.sheet_place(t)];
-    add_corners({2 * axis.radius[a], 2 * axis.radius[b], 2 * axis.radius[c]}, area, sheet.thickness,
-                measured.thickness);
-    add_corners({axis.separation_angle[a], axis.separation_angle[b], axis.separation_angle[c]}, area,
-                sheet.separation_angle, measured.angle);
+    const std::array<double, 3> thickness{2 * axis.radius[a], 2 * axis.radius[b], 2 * axis.radius[c]};
+    const std::array<double, 3> angles{axis.separation_angle[a], axis.separation_angle[b], axis.separation_angle[c]};
+    add_corners(thickness, area, sheet.thickness, measured.thickness);
+    add_corners(angles, area, sheet.separation_angle, measured.angle);
+    if (angles[0] + angles[1] + angles[2] >= 3 * wall_angle) {
+      add_corners(thickness, area, sheet.wall_thickness, measured.wall);
+      sheet.wall_area += area;
+    }
     ++sheet.triangles;
     sheet.area += area;
     if (homotopy_angle_ && axis.triangle_angle[t] <= *homotopy_angle_) {
@@ -89,12 +97,12 @@ class SheetMeasurer {
   }
 
   static void add_corners(const std::array<double, 3>& values, double area, AxisSpread& spread,
-                          std::vector<std::pair<double, double>>& means) {
+                          std::vector<LinearPart>& parts) {
     for (const double value : values) {
       spread.minimum = std::min(spread.minimum, value);
       spread.maximum = std::max(spread.maximum, value);
     }
-    means.emplace_back((values[0] + values[1] + values[2]) / 3, area);
+    parts.push_back(LinearPart::on_triangle(values, area));
   }
 
   /// Whether it is a part of the border.
@@ -113,8 +121,13 @@ class SheetMeasurer {
 
   static void finish(AxisSheet& sheet, Measured& measured) {
     const auto triangles = static_cast<std::int64_t>(sheet.triangles);
-    add_quantiles(measured.thickness, sheet.thickness);
-    add_quantiles(measured.angle, sheet.separation_angle);
+    add_quantiles(std::move(measured.thickness), sheet.thickness);
+    add_quantiles(std::move(measured.angle), sheet.separation_angle);
+    if (measured.wall.empty()) {
+      sheet.wall_thickness = {};
+    } else {
+      add_quantiles(std::move(measured.wall), sheet.wall_thickness);
+    }
     sheet.centroid =
         sheet.area > 0 ? sheet.centroid / sheet.area : measured.corners / static_cast<double>(3 * sheet.triangles);
     const std::int64_t edges = (3 * triangles + measured.border_sides) / 2;

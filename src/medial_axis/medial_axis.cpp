@@ -67,7 +67,7 @@ void add(BettiNumbers& sum, const BettiNumbers& part) {
 
 /// Throws where rounding of coordinates leaves a solid too few places to lie in.
 void check_place(const Box3& box) {
-  constexpr double least_size = 2e-9;  // of the largest coordinate: ten million steps of rounding
+  constexpr double least_size = 5e-7;  // of the largest coordinate: with less, roundings look like corners
   const Vec3d furthest = max(max(box.lower, box.upper), max(-1.0 * box.lower, -1.0 * box.upper));
   const double coordinate = std::max({furthest.x, furthest.y, furthest.z});
   const double size = longest_side(box);

@@ -66,6 +66,15 @@ def test_the_thinnest_wall_is_told(tmp_path):
     assert abs(wall["thickness"]["median"] - 0.24) < 0.01  # a rib
 
 
+def test_sheets_that_run_into_edges_are_no_thin_walls(tmp_path):
+    run("make", "plate", "-o", tmp_path / "p.ply")
+    arguments = ["medial", tmp_path / "p.ply", "-o", tmp_path / "p.vtp", "--resolution", 64, "--theta", 60]
+    wall = run_json(*arguments, "--graph", tmp_path / "g.json")["solids"][0]["axes"][0]["graph"]["thinnest_wall"]
+    sheets = json.loads((tmp_path / "g.json").read_text())["sheets"]
+    assert wall["thickness"]["low"] > 0.95 * wall["thickness"]["maximum"]
+    assert min(sheet["thickness"]["low"] for sheet in sheets) < 0.5 * wall["thickness"]["low"]
+
+
 def test_what_cannot_be_is_said_before_any_work(solids, axes, tmp_path):
     box = solids / "box.obj"
     for arguments, status, message in [

@@ -80,6 +80,7 @@ def test_labels_and_thresholds_are_chosen(image, tmp_path):
     for wrong in [
         ("--label", "x"),
         ("--label", "5-1"),
+        ("--label", "1-"),
         ("--label", "1,1"),
         ("--label", "1", "--threshold", 2),
         ("--spur", "-1"),
@@ -94,3 +95,9 @@ def test_meshes_are_refused_and_help_has_examples(tmp_path):
     run("make", "box", "-o", tmp_path / "box.ply")
     assert "no voxel image" in run("centreline", tmp_path / "box.ply", "-o", tmp_path / "g.json", status=1)[1]
     assert "blum centreline vessels.nii.gz -o vessels.json" in run("centreline", "--help")[0]
+
+
+def test_images_of_one_layer_are_warned_of(tmp_path):
+    np.save(tmp_path / "ring.npy", np.ones((1, 20, 30), dtype=np.uint8))
+    lines = run_json("centreline", tmp_path / "ring.npy", "-o", tmp_path / "g.json", warns=True)
+    assert any("single layer" in warning for warning in lines["warnings"])

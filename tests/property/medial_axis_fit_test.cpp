@@ -146,6 +146,23 @@ TEST(FittedAxisOfABox, RimsCutFewCorners) {
   EXPECT_LE(with_other_sheets, 2);
 }
 
+/// Between two points of a rim beside a hole the solid has a corner of its facets.
+TEST(FittedAxisOfHoles, HasRimsNextToTheirEdges) {
+  const TriangleMesh mesh = make_bracket({});
+  const MedialAxis axis = medial_axis(mesh, {.resolution = 96});
+  const double voxel = axis.report().bodies.front().spacing;
+  const AxisRows fitted = axis.fitted(60);
+  std::vector<double> depths;
+  for (std::size_t v = 0; v < fitted.vertices.size(); ++v) {
+    const VertexRow& vertex = fitted.vertices[v];
+    const bool is_at_right_angles = std::abs(vertex.separation_angle - 90) < 1;
+    if (vertex.role == MedialRole::rim && is_at_right_angles) depths.push_back(vertex.radius / voxel);
+  }
+  ASSERT_GT(depths.size(), 500U);
+  EXPECT_LE(quantile(depths, 0.5), 0.06);
+  EXPECT_LE(quantile(depths, 0.9), 0.21);
+}
+
 TEST(FittedAxisOfAnL, HasSixteenSheetsAtAllResolutions) {
   const TriangleMesh mesh = test::known_l_beam(0.6, 1).mesh;
   for (const int resolution : {48, 64, 96}) {

@@ -57,14 +57,14 @@ TEST(MedialHostileMesh, TurningShellsMovesNothing) {
 }
 
 /// Coordinates of 1e10 have steps of 2e-6, a millionth of the box: search and placing then end on the surface, which
-/// once read beyond the end of a list.
+/// once read beyond the end of a list. A bracket at 1e9 took minutes, and had no certificate.
 TEST(MedialHostileMesh, FarFromTheOriginItIsRightOrRefused) {
-  for (const double place : {1e8, 9e8}) {
+  for (const double place : {1e5, 3e6}) {
     const TriangleMesh mesh = test::box_between({place, place, 0}, {place + 2, place + 1, 0.5}, false);
     const MedialAxis axis = medial_axis(mesh, coarse);
     test::expect_certified(axis, mesh, {1, 0, 0});
   }
-  for (const double place : {1e10, 1e14}) {
+  for (const double place : {1e7, 1e10, 1e14}) {
     const TriangleMesh mesh = test::box_between({place, place, 0}, {place + 2, place + 1, 0.5}, false);
     EXPECT_THROW((void)medial_axis(mesh, coarse), InvalidMesh);
   }

@@ -188,10 +188,12 @@ struct AxisSheet {
   bool for_homotopy = false;    ///< all of them are
   AxisSpread thickness;         ///< twice the radius
   AxisSpread separation_angle;  ///< degrees, of vertices: near 180 between parallel walls
-  Vec3d centroid;               ///< of the area
-  double rim_length = 0;        ///< where it ends freely
-  double seam_length = 0;       ///< of the border along seams
-  double crease_length = 0;     ///< of the border along edges where it meets one other sheet
+  double wall_area = 0;       ///< of its triangles whose corners see their footprints at 150 degrees or more on average
+  AxisSpread wall_thickness;  ///< of these: twice the radius; zeros where there are none
+  Vec3d centroid;             ///< of the area
+  double rim_length = 0;      ///< where it ends freely
+  double seam_length = 0;     ///< of the border along seams
+  double crease_length = 0;   ///< of the border along edges where it meets one other sheet
   std::size_t boundary_loops = 0;
   std::int64_t euler_characteristic = 0;   ///< of the surface cut open: 1 for a disc, 0 for a ring, 2 for a sphere
   std::vector<std::uint32_t> seams;        ///< that it meets others (or itself) along, rising
@@ -212,6 +214,10 @@ struct Description<AxisSheet> {
       Member{"thickness", &AxisSheet::thickness, "mesh units", "twice the radius"},
       Member{"separation_angle", &AxisSheet::separation_angle, "degrees",
              "at which its vertices see their footprints: near 180 between parallel walls"},
+      Member{"wall_area", &AxisSheet::wall_area, "square mesh units",
+             "of the triangles between walls that face each other: at 150 degrees or more"},
+      Member{"wall_thickness", &AxisSheet::wall_thickness, "mesh units",
+             "twice the radius of these; zeros where there are none"},
       Member{"centroid", &AxisSheet::centroid, "mesh units", "of the area"},
       Member{"rim_length", &AxisSheet::rim_length, "mesh units", "of the border where it ends freely"},
       Member{"seam_length", &AxisSheet::seam_length, "mesh units", "of the border along seams"},

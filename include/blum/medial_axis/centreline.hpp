@@ -36,7 +36,8 @@ struct Description<CentrelineOptions> {
   static constexpr std::tuple members{
       Member{"selection", &CentrelineOptions::selection, "", "which voxels are selected"},
       Member{"spur", &CentrelineOptions::spur, "radii of the ball at their root",
-             "branches with a free end that reach no further go; a voxel and a half is added", Range::between(0, 100)},
+             "how far a branch with a free end must reach to stay; a voxel and a half is added",
+             Range::between(0, 100)},
   };
 };
 

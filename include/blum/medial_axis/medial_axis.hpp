@@ -58,7 +58,7 @@ struct Description<MedialAxisOptions> {
   static constexpr std::string_view doc = "What a medial axis is asked for";
   static constexpr std::tuple members{
       Member{"resolution", &MedialAxisOptions::resolution, "",
-             "meshes: voxels along the longest side of the box around the mesh", Range::between(8, 800)},
+             "meshes: voxels along the longest side of the box around the mesh, 8 to 800", Range::between(8, 800)},
       Member{"spacing", &MedialAxisOptions::spacing, "mesh units", "meshes: side of a voxel, instead of the resolution",
              Range::positive()},
       Member{"max_resolution", &MedialAxisOptions::max_resolution, "",

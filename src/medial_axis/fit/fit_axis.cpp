@@ -130,6 +130,7 @@ double fit_axis(AxisLists& lists, const FitTarget& target, const Context& contex
     furthest_cut = fitting.take(&Fitter::cut_rims, with_rims);
     is_changed = false;
   }
+  fitting.take(&Fitter::cut_rims_short);
   fitting.take(&Fitter::place_curves);
   fitting.bend_curves();
   fitting.take_folds_away(HUGE_VAL);

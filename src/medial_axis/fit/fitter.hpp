@@ -37,6 +37,7 @@ class Fitter {
   static constexpr double most_moved_to_centre = 4;
   /// Radius where sheets end that reach the surface, in voxels.
   static constexpr double least_radius = 0.02;
+  static constexpr std::array short_radii{0.2, 0.1, 0.05};
   /// Separation angle, in degrees, between walls that do not meet near by.
   static constexpr double parallel = 175;
   /// How much more than theta is seen next to where nothing is any more, in degrees.
@@ -143,6 +144,21 @@ class Fitter {
   }
   double cut_rims() {
     return move_unsettled(known_.rims, [&](std::uint32_t v) { return cut(v); });
+  }
+  /// Rims that stayed far from the surface, as edges between them would have cut off corners of holes: to where the
+  /// radius is a fifth of a voxel, a tenth, a twentieth. Each is taken where the one before was reached.
+  double cut_rims_short() {
+    double furthest = 0;
+    for (const double radius : short_radii) {
+      const double moved = move([&](std::uint32_t v) {
+        const AxisVertex& own = lists_.vertices[v];
+        const bool stayed = kinds_[v].is_rim() && own.radius > 1.2 * radius * voxel_ &&
+                            own.separation_angle >= target_.theta + nearly_theta;
+        return stayed ? slide(v, directions_.of_rim(v), 2, radius) : std::nullopt;
+      });
+      furthest = std::max(furthest, moved);
+    }
+    return furthest;
   }
 
  private:
@@ -314,10 +330,12 @@ class Fitter {
     bool is_curve = false;  ///< that ends at the vertex
     std::vector<Footprint> feet;
     const AxisVertex* sheet = nullptr;  ///< a vertex of the sheet that shows
+    double end_radius = least_radius;   ///< where it ends, in voxels
     bool is_past = false;               ///< whether the last point is past the border, and not past something else
     bool is_round = false;              ///< whether some point was in the middle of what is round
   };
   [[nodiscard]] bool is_shown_on(const Way& way, const AxisVertex& vertex) const {
+    if (vertex.radius < way.end_radius * voxel_ && vertex.separation_angle < parallel) return false;
     // Where a curve ends, feet around it are seen at twice the angle that they make with the curve.
     return is_shown(vertex, way.walls) && (!way.is_curve || angle_ahead(vertex, way.direction) > target_.theta);
   }
@@ -336,8 +354,9 @@ class Fitter {
     return found;
   }
 
-  /// The last vertex on the way from a vertex along its sheet or seam that shows.
-  [[nodiscard]] Moved slide(std::uint32_t v, const Vec3d& direction, std::size_t walls) const {
+  /// The last vertex on the way from a vertex along its sheet or seam that shows, with a radius of some voxels.
+  [[nodiscard]] Moved slide(std::uint32_t v, const Vec3d& direction, std::size_t walls,
+                            double end_radius = least_radius) const {
     const AxisVertex& own = lists_.vertices[v];
     const std::uint32_t inner = best_neighbour(v);
     const bool shows = is_shown(own, walls);
@@ -347,7 +366,8 @@ class Fitter {
               walls,
               kinds_[v].is_curve_end(),
               walls == 2 ? feet_of(shows ? v : inner) : feet_around(v),
-              shows ? &own : &lists_.vertices[inner]};
+              shows ? &own : &lists_.vertices[inner],
+              end_radius};
       if (const Moved start = on(way, 0)) return slide_outwards(way, *start);
       if (const Moved found = slide_inwards(way)) return found;
     }

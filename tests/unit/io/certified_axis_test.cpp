@@ -32,6 +32,14 @@ TEST(CertifiedAxis, TheBestFormOfABoxIsCertified) {
   EXPECT_EQ(found.certificate.checked.lambda, 0);
 }
 
+/// Nothing is seen at more than 180 degrees, so that nothing of it can be missing.
+TEST(CertifiedAxis, AtTheLargestAngleOnlyTheTopologyIsLeft) {
+  const TriangleMesh plate = make_box({.size = {4, 2, 0.5}});
+  const CertifiedAxis found = certified_axis(medial_axis(plate, {.resolution = 32}), plate, 180);
+  EXPECT_TRUE(found.certificate.holds()) << found.certificate.mismatches.front();
+  EXPECT_EQ(found.axis.axis.positions.size(), 1U);
+}
+
 TEST(CertifiedAxis, WithoutAToleranceAllVerticesStay) {
   const TriangleMesh box = make_box({});
   const MedialAxis axis = medial_axis(box, {.resolution = 24});

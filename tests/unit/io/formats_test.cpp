@@ -155,5 +155,17 @@ TEST(Drafts, TakeThePlaceOfAFileOrGo) {
   EXPECT_THROW(Draft(folder / "absent" / "a"), FileError);
 }
 
+TEST(Drafts, HaveTheExtensionOfTheLinkNotOfWhatItLeadsTo) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "run.dat") << "old";
+  std::filesystem::create_symlink("run.dat", folder / "latest.txt");
+  Draft draft(folder / "latest.txt");
+  EXPECT_EQ(draft.path().extension(), ".txt");
+  std::ofstream(draft.path()) << "new";
+  draft.keep();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "latest.txt"));
+  EXPECT_EQ(file_content(folder / "run.dat"), "new");
+}
+
 }  // namespace
 }  // namespace blum

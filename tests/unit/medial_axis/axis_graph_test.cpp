@@ -17,8 +17,8 @@
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
-#include "medial_axis/axis_parts.hpp"
 #include "medial_axis/label_sheets.hpp"
+#include "medial_axis/quantiles.hpp"
 #include "support/medial_rows.hpp"
 
 namespace blum {
@@ -165,7 +165,8 @@ TEST(AxisGraph, CurvesAreChainsWithTheirRadii) {
   EXPECT_EQ(graph.curves[1].arc_length, (std::vector<double>{0, 2, 8}));
   EXPECT_EQ(graph.curves[1].radii, (std::vector<double>{4, 2, 1}));
   EXPECT_EQ(graph.curves[1].radius.minimum, 1);
-  EXPECT_EQ(graph.curves[1].radius.median, 1.5) << "three quarters of the length have it";
+  // From 2 to 1 over three quarters of the length, then from 2 to 4.
+  EXPECT_NEAR(graph.curves[1].radius.median, 1 + 2.0 / 3, 1e-12);
   EXPECT_EQ(graph.curves[1].radius.maximum, 4);
   EXPECT_TRUE(graph.curves[3].closed);
   EXPECT_EQ(graph.curves[3].length, 8);
@@ -200,7 +201,7 @@ TEST(AxisGraph, DiscsRingsAndSpheresAreToldApart) {
   EXPECT_EQ(graph.area, 5);
   EXPECT_EQ(graph.rim_length, 12);
   EXPECT_EQ(graph.sheets[0].thickness.minimum, 2);
-  EXPECT_EQ(graph.sheets[0].thickness.median, 2);
+  EXPECT_NEAR(graph.sheets[0].thickness.median, 2, 1e-12);
   EXPECT_EQ(graph.sheets[0].thickness.maximum, 6);
   EXPECT_EQ(graph.sheets[0].separation_angle.median, 100);
   EXPECT_NEAR(length(graph.sheets[0].centroid - Vec3d{2.5, 0.5, 0}), 0, 1e-12);
@@ -318,19 +319,63 @@ TEST(AxisGraph, WhatIsMissingIsNamed) {
   EXPECT_THROW(static_cast<void>(axis_graph(complex)), InvalidOption);
 }
 
+AxisSpread spread_of(const std::vector<LinearPart>& parts) {
+  AxisSpread spread{1e300, 0, 0, -1e300};
+  for (const LinearPart& part : parts) {
+    spread.minimum = std::min(spread.minimum, part.values[0]);
+    spread.maximum = std::max(spread.maximum, part.values[2]);
+  }
+  add_quantiles(parts, spread);
+  return spread;
+}
+
 TEST(AxisGraph, LowValuesAndMediansAreOfWeights) {
-  std::vector<std::pair<double, double>> values{{5, 1}, {1, 1}, {3, 3}};
-  AxisSpread spread;
-  add_quantiles(values, spread);
-  EXPECT_EQ(spread.low, 1);
-  EXPECT_EQ(spread.median, 3);
-  values = {{2, 0}, {1, 0}, {4, 0}, {3, 0}};
-  add_quantiles(values, spread);
-  EXPECT_EQ(spread.low, 1) << "without weights";
-  EXPECT_EQ(spread.median, 2) << "without weights";
-  values = {{1, 0.01}, {4, 0.98}, {5, 0.01}};
-  add_quantiles(values, spread);
-  EXPECT_EQ(spread.low, 4) << "one small triangle is no wall";
+  const auto constant = [](double value, double weight) { return LinearPart::on_edge(value, value, weight); };
+  const AxisSpread some = spread_of({constant(5, 1), constant(1, 1), constant(3, 3)});
+  EXPECT_NEAR(some.low, 1, 1e-12);
+  EXPECT_NEAR(some.median, 3, 1e-12);
+  const AxisSpread without = spread_of({constant(2, 0), constant(1, 0), constant(4, 0), constant(3, 0)});
+  EXPECT_NEAR(without.low, 1, 1e-12);
+  EXPECT_NEAR(without.median, 2, 1e-12);
+  const AxisSpread crumb = spread_of({constant(1, 0.01), constant(4, 0.98), constant(5, 0.01)});
+  EXPECT_NEAR(crumb.low, 4, 1e-12) << "one small triangle is no wall";
+}
+
+TEST(AxisGraph, LowValuesAndMediansAreThoseOfLinearNumbers) {
+  const AxisSpread edge = spread_of({LinearPart::on_edge(3, 1, 7)});
+  EXPECT_NEAR(edge.low, 1.1, 1e-12);
+  EXPECT_NEAR(edge.median, 2, 1e-12);
+  const AxisSpread triangle = spread_of({LinearPart::on_triangle({1, 0, 0}, 2)});
+  EXPECT_NEAR(triangle.low, 1 - std::sqrt(0.95), 1e-12);
+  EXPECT_NEAR(triangle.median, 1 - std::sqrt(0.5), 1e-12);
+  // However it is cut: by its middle edges, into four.
+  const std::array<double, 3> whole{0.2, 1.3, 0.7};
+  const std::array<double, 3> middles{0.75, 1.0, 0.45};  // of the edges 01, 12, 20
+  const AxisSpread one = spread_of({LinearPart::on_triangle(whole, 4)});
+  const AxisSpread four =
+      spread_of({LinearPart::on_triangle({whole[0], middles[0], middles[2]}, 1),
+                 LinearPart::on_triangle({whole[1], middles[1], middles[0]}, 1),
+                 LinearPart::on_triangle({whole[2], middles[2], middles[1]}, 1), LinearPart::on_triangle(middles, 1)});
+  EXPECT_NEAR(one.low, four.low, 1e-12);
+  EXPECT_NEAR(one.median, four.median, 1e-12);
+}
+
+/// A wall that grows from thin to thick has few triangles once it is simplified.
+TEST(AxisGraph, SimplificationKeepsHowThicknessIsSpread) {
+  const std::vector<Point2> outline{{0, 0}, {6, 0}, {6, 1.5}, {0, 0.3}};
+  const TriangleMesh mesh = make_extrusion(outline, {}, {.thickness = 5});
+  const MedialAxis axis = medial_axis(mesh, {.resolution = 64});
+  const auto largest = [&](const Complex& complex) {
+    const AxisGraph graph = axis_graph(complex, mesh);
+    return *std::max_element(graph.sheets.begin(), graph.sheets.end(),
+                             [](const auto& a, const auto& b) { return a.area < b.area; });
+  };
+  const AxisSheet whole = largest(axis.fitted(120));
+  const AxisSheet lean = largest(axis.lean(120, 0.25 * 6.0 / 64).axis);
+  EXPECT_LT(lean.triangles * 4, whole.triangles);
+  EXPECT_NEAR(lean.thickness.low, whole.thickness.low, 0.02 * whole.thickness.low);
+  EXPECT_NEAR(lean.thickness.median, whole.thickness.median, 0.02 * whole.thickness.median);
+  EXPECT_NEAR(lean.separation_angle.low, whole.separation_angle.low, 1);
 }
 
 /// An L of a thick and a thin plate: above 90 degrees no sheet runs into the corner, and both are one.
