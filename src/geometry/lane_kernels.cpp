@@ -21,6 +21,7 @@
 
 #include "blum/geometry/orient3d.hpp"
 #include "geometry/box_tree.hpp"
+#include "geometry/moving_block.hpp"
 #include "geometry/primitive_block.hpp"
 #include "geometry/triangle_group.hpp"
 #include "geometry/winding_tree.hpp"
@@ -87,6 +88,24 @@ unsigned touching(const BoxBlock& block, const Box3& box) {
   alignas(64) double meet[lanes];
   for (std::size_t i = 0; i < lanes; ++i) meet[i] = touch(block, i, box);
   return bits_of(meet);
+}
+
+unsigned touching_moving(const MovingBlock& block, const MovingBoxF& box) {
+  alignas(64) float gap[lanes];  // the widest that stays open from start to end
+  for (std::size_t i = 0; i < lanes; ++i) gap[i] = -1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const float above =
+          std::min(block.lower[0][axis][i] - box.upper[0][axis], block.lower[1][axis][i] - box.upper[1][axis]);
+      const float below =
+          std::min(box.lower[0][axis] - block.upper[0][axis][i], box.lower[1][axis] - block.upper[1][axis][i]);
+      gap[i] = std::max(gap[i], std::max(above, below));
+    }
+  }
+  alignas(64) float meet[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) meet[i] = gap[i] > 0 ? 0.0F : static_cast<float>(1U << i);
+  const float sum = ((meet[0] + meet[1]) + (meet[2] + meet[3])) + ((meet[4] + meet[5]) + (meet[6] + meet[7]));
+  return static_cast<unsigned>(sum);
 }
 
 /// 1 where all corners of a triangle but those in common with another one lie on one side of the other's plane, by the
@@ -408,6 +427,7 @@ HWY_EXPORT(may_cross);
 HWY_EXPORT(may_reach);
 HWY_EXPORT(may_meet_block);
 HWY_EXPORT(touching);
+HWY_EXPORT(touching_moving);
 HWY_EXPORT(may_meet);
 HWY_EXPORT(approximate_distances);
 HWY_EXPORT(add_clusters);
@@ -425,6 +445,7 @@ const auto best_may_cross = BLUM_BEST(may_cross);
 const auto best_may_reach = BLUM_BEST(may_reach);
 const auto best_may_meet_block = BLUM_BEST(may_meet_block);
 const auto best_touching = BLUM_BEST(touching);
+const auto best_touching_moving = BLUM_BEST(touching_moving);
 const auto best_may_meet = BLUM_BEST(may_meet);
 const auto best_approximate_distances = BLUM_BEST(approximate_distances);
 const auto best_add_clusters = BLUM_BEST(add_clusters);
@@ -455,6 +476,10 @@ unsigned may_meet(const PrimitiveBlock& block, const ProbeTriangle& other) {
 
 unsigned touching(const BoxBlock& block, const Box3& box) {
   return best_touching(block, box);
+}
+
+unsigned touching(const MovingBlock& block, const MovingBoxF& box) {
+  return best_touching_moving(block, box);
 }
 
 unsigned may_meet(const TriangleGroup& group, const GroupTriangle& triangle) {
