@@ -12,15 +12,8 @@ namespace blum {
 namespace {
 
 using detail::FeatureKinds;
-using detail::FilteredImpact;
 
 constexpr std::size_t grain = 256;
-constexpr double least_tolerance = 0x1p-40;
-
-void check(const ImpactOptions& options) {
-  if (options.tolerance >= least_tolerance && options.tolerance <= 1) return;
-  throw InvalidOption("tolerance is " + exact_text(options.tolerance) + ", but must be 2^-40 (about 1e-12) to 1");
-}
 
 void check(const FourMovingPoints& points, std::size_t number) {
   for (const auto* ends : {&points.start, &points.end}) {
@@ -30,18 +23,10 @@ void check(const FourMovingPoints& points, std::size_t number) {
   }
 }
 
-std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance) {
-  const FilteredImpact filtered = detail::filtered_impact(points, kinds, tolerance);
-  if (filtered.answer == FilteredImpact::Answer::never) return std::nullopt;
-  if (filtered.answer == FilteredImpact::Answer::meets) return filtered.time;
-  return kinds == FeatureKinds::vertex_face ? detail::exact_vertex_face_impact(points, tolerance)
-                                            : detail::exact_edge_edge_impact(points, tolerance);
-}
-
 std::optional<double> checked_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
   check(options);
   check(points, 0);
-  return impact(points, kinds, options.tolerance);
+  return detail::impact(points, kinds, options.tolerance);
 }
 
 std::vector<std::optional<double>> impacts(std::span<const FourMovingPoints> points, FeatureKinds kinds,
@@ -50,12 +35,26 @@ std::vector<std::optional<double>> impacts(std::span<const FourMovingPoints> poi
   for (std::size_t k = 0; k < points.size(); ++k) check(points[k], k);
   std::vector<std::optional<double>> times(points.size());
   parallel_for(context, points.size(), grain, "impacts", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) times[k] = impact(points[k], kinds, options.tolerance);
+    for (std::size_t k = range.begin; k < range.end; ++k) times[k] = detail::impact(points[k], kinds, options.tolerance);
   });
   return times;
 }
 
 }  // namespace
+
+std::optional<double> detail::impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance) {
+  const FilteredImpact filtered = filtered_impact(points, kinds, tolerance);
+  if (filtered.answer == FilteredImpact::Answer::never) return std::nullopt;
+  if (filtered.answer == FilteredImpact::Answer::meets) return filtered.time;
+  return kinds == FeatureKinds::vertex_face ? exact_vertex_face_impact(points, tolerance)
+                                            : exact_edge_edge_impact(points, tolerance);
+}
+
+void check(const ImpactOptions& options) {
+  constexpr double least_tolerance = 0x1p-40;
+  if (options.tolerance >= least_tolerance && options.tolerance <= 1) return;
+  throw InvalidOption("tolerance is " + exact_text(options.tolerance) + ", but must be 2^-40 (about 1e-12) to 1");
+}
 
 std::optional<double> vertex_face_impact(const FourMovingPoints& points, const ImpactOptions& options) {
   return checked_impact(points, FeatureKinds::vertex_face, options);

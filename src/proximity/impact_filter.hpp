@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "blum/proximity/impact.hpp"
 
@@ -15,6 +16,10 @@ struct FilteredImpact {
   Answer answer = Answer::unknown;
   double time = 0;  ///< where they meet: as impacts tell it
 };
+
+/// Whether and when two moving features meet, exactly: by doubles where these decide it, else by integers.
+/// @param tolerance  as in ImpactOptions.
+[[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance);
 
 /// Whether and when two moving features meet, where doubles decide it: never a wrong answer.
 [[nodiscard]] FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance);

@@ -24,6 +24,9 @@ struct ImpactOptions {
   double tolerance = 1e-6;
 };
 
+/// @throws InvalidOption.
+void check(const ImpactOptions& options);
+
 /// The first time at which a moving vertex lies in a moving triangle, its border included.
 ///
 /// Whether there is one is exact for the coordinates as they are: no contact is missed, none is made up, whatever the
