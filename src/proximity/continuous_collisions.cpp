@@ -59,9 +59,8 @@ class Search {
   }
   void edges_and_edges(const MovingBoxBvh& edges, ContinuousCollisions& out) const {
     const auto find = [&](std::size_t block, Found<EdgeEdgeCollision>& found) {
-      edges.for_each_self_pair(block, [&](std::uint32_t a, std::uint32_t b) {
-        test_edge_edge(std::min(a, b), std::max(a, b), found);
-      });
+      edges.for_each_self_pair(
+          block, [&](std::uint32_t a, std::uint32_t b) { test_edge_edge(std::min(a, b), std::max(a, b), found); });
     };
     out.edge_edge = gathered<EdgeEdgeCollision>(edges.block_count(), "edges and edges", find, out);
     std::sort(out.edge_edge.begin(), out.edge_edge.end(), [](const EdgeEdgeCollision& a, const EdgeEdgeCollision& b) {

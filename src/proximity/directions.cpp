@@ -14,8 +14,8 @@ constexpr std::size_t direction_count = 10;
 using Heights = std::array<double, direction_count>;
 
 Heights heights_of(const Vec3d& p) {
-  return {p.x + p.y, p.x - p.y, p.x + p.z, p.x - p.z, p.y + p.z, p.y - p.z,
-          p.x + p.y + p.z, p.x + p.y - p.z, p.x - p.y + p.z, p.x - p.y - p.z};
+  return {p.x + p.y, p.x - p.y,       p.x + p.z,       p.x - p.z,       p.y + p.z,
+          p.y - p.z, p.x + p.y + p.z, p.x + p.y - p.z, p.x - p.y + p.z, p.x - p.y - p.z};
 }
 
 /// More than what the heights of two points together are rounded by: each of at most three numbers, two roundings.

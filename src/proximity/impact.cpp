@@ -35,7 +35,8 @@ std::vector<std::optional<double>> impacts(std::span<const FourMovingPoints> poi
   for (std::size_t k = 0; k < points.size(); ++k) check(points[k], k);
   std::vector<std::optional<double>> times(points.size());
   parallel_for(context, points.size(), grain, "impacts", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) times[k] = detail::impact(points[k], kinds, options.tolerance);
+    for (std::size_t k = range.begin; k < range.end; ++k)
+      times[k] = detail::impact(points[k], kinds, options.tolerance);
   });
   return times;
 }

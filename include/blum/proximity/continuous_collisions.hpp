@@ -56,8 +56,8 @@ struct ContinuousCollisions {
 /// @param end   the vertices at time 1: as many, finite where the mesh names them, of magnitude at most 1e150.
 /// @return      the same bytes for any number of threads.
 /// @throws InvalidMesh, InvalidOption, Cancelled.
-/// Cost: O(n log n) and the pairs whose boxes touch; a cloth of 92,000 triangles with 114,000 colliding pairs takes about
-/// half a second on one core. Method: docs/theory/proximity.md.
+/// Cost: O(n log n) and the pairs whose boxes touch; a cloth of 92,000 triangles with 114,000 colliding pairs takes
+/// about half a second on one core. Method: docs/theory/proximity.md.
 [[nodiscard]] ContinuousCollisions continuous_collisions(const MeshView& mesh, std::span<const Vec3d> end,
                                                          const ImpactOptions& options = {},
                                                          const Context& context = {});

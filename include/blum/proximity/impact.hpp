@@ -5,9 +5,12 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
 #include "blum/core/vec3.hpp"
 
 namespace blum {
@@ -22,6 +25,16 @@ struct FourMovingPoints {
 struct ImpactOptions {
   /// How much earlier than the true time of impact the one told may be, as a part of the motion: 2^-40 to 1.
   double tolerance = 1e-6;
+};
+
+template <>
+struct Description<ImpactOptions> {
+  static constexpr std::string_view name = "ImpactOptions";
+  static constexpr std::string_view doc = "What continuous collisions are asked for";
+  static constexpr std::tuple members{
+      Member{"tolerance", &ImpactOptions::tolerance, "parts of the motion",
+             "how much earlier than the true time of impact the one told may be", Range::between(0x1p-40, 1)},
+  };
 };
 
 /// @throws InvalidOption.

@@ -1,0 +1,49 @@
+// Blum: files of collisions, and of questions about them. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/io/file_metadata.hpp"
+#include "blum/proximity/continuous_collisions.hpp"
+
+namespace blum {
+
+/// Questions about continuous collisions of pairs of features, and the right answers where the file has them.
+struct ImpactQueries {
+  std::vector<FourMovingPoints> points;
+  std::vector<std::optional<bool>> truth;  ///< of each: whether they meet
+};
+
+/// Reads a file of questions in the form of the data sets of Wang et al. 2021 (A large-scale benchmark and an
+/// inclusion- based algorithm for continuous collision detection): text, without a head, eight rows for each question,
+/// which are the four points at time 0, then at time 1: vertex, then the face's three; or the ends of one edge, then
+/// those of the other. Columns, parted by commas: x, y and z, each as integer numerator and denominator, and where it
+/// is known the answer, 0 or 1, the same in all eight. Each coordinate must be exactly a double.
+/// @throws FileError; FormatError naming the line.
+[[nodiscard]] ImpactQueries read_impact_queries(const std::filesystem::path& path);
+
+/// Writes the collisions of a mesh; the format goes by the extension.
+///
+///   .npz   `vertex_face` [n, 4]: the vertex, then the corners of the face; `vertex_face_time` [n]; `face` [n]: the
+///          numbers of these faces; `edge_edge` [m, 4]: the ends of one edge, then those of the other;
+///          `edge_edge_time` [m]. Indices are int32, those of the mesh.
+///   .csv   a row for each collision: kind (vertex_face or edge_edge), the four vertices, the time.
+///   .json  an object with the metadata and the same lists.
+///
+/// A file appears under its name only when it is complete.
+/// @param mesh  whose collisions they are.
+/// @throws InvalidOption for another extension; FileError; Cancelled.
+void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshView& mesh,
+                      const FileMetadata& metadata = {}, const Context& context = {});
+
+/// The extensions that write_collisions() knows.
+[[nodiscard]] const std::vector<std::string>& collision_extensions();
+
+}  // namespace blum
