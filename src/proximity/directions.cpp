@@ -18,11 +18,11 @@ Heights heights_of(const Vec3d& p) {
           p.y - p.z, p.x + p.y + p.z, p.x + p.y - p.z, p.x - p.y + p.z, p.x - p.y - p.z};
 }
 
-/// More than what the heights of two points together are rounded by: each of at most three numbers, two roundings.
+/// More than what the difference of two heights is rounded by: each is a sum of at most three numbers.
 double rounding_of(const std::array<Vec3d, 4>& points) {
   double most = 0;
   for (const Vec3d& p : points) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  return 0x1p-49 * most;
+  return 0x1p-48 * most;
 }
 
 /// Along each direction, how far the first points are above the rest, and below; negative where they are not.
