@@ -175,8 +175,10 @@ unsigned depth_of(double tolerance) {
 /// The first root at which the features meet.
 std::optional<double> first_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance) {
   const RealRoots roots(polynomial);
-  for (const RealRoot& root : roots.all()) {
-    if (features.meet_at(roots, root)) return roots.refined(root, depth_of(tolerance)).lower_bound();
+  for (const RealRoot& isolated : roots.all()) {
+    // Narrow, signs next to it are soon told.
+    const RealRoot root = roots.refined(isolated, depth_of(tolerance));
+    if (features.meet_at(roots, root)) return root.lower_bound();
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #include "proximity/exact/real_roots.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -100,6 +101,14 @@ RealRoot RealRoots::refined(RealRoot root, unsigned depth) const {
   if (root.is_exact || root.depth >= depth) return root;
   const int low_sign = rest_.sign_at(root.low());
   const bool changes_sign = low_sign != rest_.sign_at(root.high());
+  // Where doubles say that it is, it mostly is.
+  constexpr unsigned double_digits = 50;
+  if (changes_sign && depth <= double_digits) {
+    const RealRoot guess = guessed(root, low_sign, depth);
+    const bool is_within = guess.cell >= root.cell << (depth - root.depth) && guess.cell < (root.cell + 1)
+                                                                                               << (depth - root.depth);
+    if (is_within && rest_.sign_at(guess.low()) == low_sign && rest_.sign_at(guess.high()) == -low_sign) return guess;
+  }
   const int low_variations = changes_sign ? 0 : variations(sequence_, root.low());
   while (root.depth < depth) {
     const RealRoot upper{2 * root.cell + 1, root.depth + 1};
@@ -111,9 +120,53 @@ RealRoot RealRoots::refined(RealRoot root, unsigned depth) const {
   return root;
 }
 
+/// The part of [0, 1], 2^-depth wide, that halving with doubles leads to. @param low_sign  before the root.
+RealRoot RealRoots::guessed(const RealRoot& root, int low_sign, unsigned depth) const {
+  // Scaled alike, so that the largest is about 1.
+  unsigned most_bits = 0;
+  for (int k = 0; k <= rest_.degree(); ++k) {
+    const Integer& c = rest_[static_cast<std::size_t>(k)];
+    if (c != 0) most_bits = std::max(most_bits, static_cast<unsigned>(msb(Integer(abs(c)))));
+  }
+  constexpr unsigned digits = 62;
+  const unsigned shift = most_bits > digits ? most_bits - digits : 0;
+  std::array<double, Polynomial::most_coefficients> c{};
+  for (int k = 0; k <= rest_.degree(); ++k) {
+    const auto power = static_cast<std::size_t>(k);
+    const Integer magnitude = abs(rest_[power]) >> shift;
+    c[power] = std::copysign(static_cast<double>(magnitude.convert_to<std::uint64_t>()), rest_[power] < 0 ? -1.0 : 1.0);
+  }
+  const auto value = [&](double t) {
+    double sum = 0;
+    for (int k = rest_.degree(); k >= 0; --k) sum = sum * t + c[static_cast<std::size_t>(k)];
+    return sum;
+  };
+  double low = std::ldexp(static_cast<double>(root.cell.convert_to<std::uint64_t>()), -static_cast<int>(root.depth));
+  double high = low + std::ldexp(1.0, -static_cast<int>(root.depth));
+  for (unsigned k = root.depth; k < depth; ++k) {
+    const double middle = 0.5 * (low + high);
+    ((value(middle) > 0) == (low_sign > 0) ? low : high) = middle;
+  }
+  return {Integer(static_cast<std::uint64_t>(std::ldexp(low, static_cast<int>(depth)))), depth};
+}
+
+/// The sign that a polynomial of degree 2 or less has all over the interval of a root; 0 where it may have several.
+int RealRoots::sign_over(const RealRoot& root, const Polynomial& other) {
+  const int low = other.sign_at(root.low());
+  if (low == 0 || other.sign_at(root.high()) != low) return 0;
+  if (other.degree() < 2) return low;
+  // The Bernstein coefficient between, twice: 2 a + b (low + high) + 2 c low high, times 4^depth.
+  const Integer middle = (((other[0] << (root.depth + 1)) + other[1] * (2 * root.cell + 1)) << root.depth) +
+                         other[2] * (root.cell * (root.cell + 1) * 2);
+  return middle.sign() == low ? low : 0;
+}
+
 int RealRoots::sign_at(const RealRoot& root, const Polynomial& other) const {
   if (other.degree() <= 0) return other.is_zero() ? 0 : other.leading().sign();
   if (root.is_exact) return other.sign_at(root.low());
+  if (other.degree() <= 2) {
+    if (const int sign = sign_over(root, other)) return sign;
+  }
   const std::vector<Polynomial> sequence = remainders(rest_, positive_remainder(rest_.derivative() * other, rest_));
   return variations(sequence, root.low()) - variations(sequence, root.high());
 }

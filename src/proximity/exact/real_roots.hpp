@@ -38,6 +38,8 @@ class RealRoots {
  private:
   void isolate();
   void separate();
+  [[nodiscard]] RealRoot guessed(const RealRoot& root, int low_sign, unsigned depth) const;
+  [[nodiscard]] static int sign_over(const RealRoot& root, const Polynomial& other);
 
   Polynomial rest_;  ///< without the roots that were met exactly
   std::vector<Polynomial> sequence_;
