@@ -74,5 +74,6 @@ NB_MODULE(_core, m) {
   bind_extend_axis(m);
   bind_centreline(m);
   bind_certificate(m);
+  bind_proximity(m);
   bind_files(m);
 }

@@ -60,6 +60,7 @@ from ._mesh import (
     weld,
     weld_clusters,
 )
+from ._proximity import ContinuousCollisions, continuous_collisions, edge_edge_impacts, vertex_face_impacts
 from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
 from ._smooth import smooth_surface
 from ._solid import CellularModel, Solid, SolidBody
@@ -77,6 +78,7 @@ __all__ = [
     "ClosestPointQuery",
     "ClosestPoints",
     "Complex",
+    "ContinuousCollisions",
     "DeviceArray",
     "DeviceDistanceTransform",
     "DeviceError",
@@ -114,10 +116,12 @@ __all__ = [
     "centreline",
     "certify",
     "closest_points",
+    "continuous_collisions",
     "cuda_devices",
     "distance_field",
     "distance_transform",
     "distance_transforms",
+    "edge_edge_impacts",
     "extend_axis",
     "extrusion",
     "file_formats",
@@ -140,6 +144,7 @@ __all__ = [
     "subdivided",
     "thread_count",
     "topology",
+    "vertex_face_impacts",
     "view",
     "voxel_topology",
     "weld",
