@@ -47,8 +47,8 @@ def continuous_collisions(
     progress: Progress = False,
     **options: Unpack[ImpactOptions],
 ) -> ContinuousCollisions:
-    """All pairs of a vertex and a triangle, and of two edges, of a mesh that meet while its vertices move along straight
-    lines; exact for the coordinates as they are.
+    """All pairs of a vertex and a triangle, and of two edges, of a mesh that meet while its vertices move along
+    straight lines; exact for the coordinates as they are.
 
     Pairs that share a vertex are left out; vertices in one place at both ends are one vertex.
 

@@ -1,5 +1,5 @@
-"""Proves that the package's collisions are those of the library's slow definition, that arrays go in and out as they are,
-and that wrong arguments are refused by name."""
+"""Proves that the package's collisions are those of single questions, that arrays go in and out as they are, and that
+wrong arguments are refused by name."""
 
 import numpy as np
 import pytest
