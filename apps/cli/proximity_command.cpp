@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 constexpr const char* examples = R"(Examples:
   blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.npz
                                          all pairs of a vertex and a face, or of two edges, that meet between two frames
-  blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.csv --json -)";
+  blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.csv --min-separation 1e-3
+                                         all that come as close as that)";
 
 struct Arguments {
   std::vector<std::string> scene;
@@ -98,7 +99,8 @@ void run(const Arguments& a) {
                     {"blum_version", BLUM_VERSION},
                     {"start", start.filename().string()},
                     {"end", end.filename().string()},
-                    {"tolerance", exact_text(options.tolerance)}},
+                    {"tolerance", exact_text(options.tolerance)},
+                    {"min_separation", exact_text(options.min_separation)}},
                    context);
   phases.push_back({"write", watch.lap()});
   progress.clear();
@@ -109,6 +111,7 @@ void run(const Arguments& a) {
                                               {"vertices", frames.start.vertices.size()},
                                               {"triangles", frames.start.triangles.size()},
                                               {"tolerance", options.tolerance},
+                                              {"min_separation", options.min_separation},
                                               {"vertex_face", found.vertex_face.size()},
                                               {"edge_edge", found.edge_edge.size()},
                                               {"earliest", to_json(found.earliest())},

@@ -1,6 +1,8 @@
 #include "blum/proximity/continuous_collisions.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -43,8 +45,8 @@ struct Found {
 
 class Search {
  public:
-  Search(const MovingFeatures& features, double tolerance, const Context& context)
-      : features_(features), tolerance_(tolerance), context_(context) {}
+  Search(const MovingFeatures& features, const ImpactOptions& options, const Context& context)
+      : features_(features), options_(options), context_(context) {}
 
   /// @param vertices, faces  hierarchies over their boxes.
   void vertices_and_faces(const MovingBoxBvh& vertices, const MovingBoxBvh& faces, ContinuousCollisions& out) const {
@@ -92,9 +94,9 @@ class Search {
     if (features_.place(a) == v || features_.place(b) == v || features_.place(c) == v) return;
     ++found.box_pairs;
     const FourMovingPoints points = features_.points({v, a, b, c});
-    if (detail::are_apart(points, 1)) return;
+    if (detail::are_apart(points, 1, options_.min_separation)) return;
     ++found.exact_tests;
-    if (const auto time = detail::impact(points, FeatureKinds::vertex_face, tolerance_)) {
+    if (const auto time = detail::impact(points, FeatureKinds::vertex_face, options_)) {
       found.collisions.push_back({v, TriangleId(face), *time});
     }
   }
@@ -105,24 +107,39 @@ class Search {
     if (a == c || a == d || b == c || b == d) return;
     ++found.box_pairs;
     const FourMovingPoints points = features_.points({a, b, c, d});
-    if (detail::are_apart(points, 2)) return;
+    if (detail::are_apart(points, 2, options_.min_separation)) return;
     ++found.exact_tests;
-    if (const auto time = detail::impact(points, FeatureKinds::edge_edge, tolerance_)) {
+    if (const auto time = detail::impact(points, FeatureKinds::edge_edge, options_)) {
       found.collisions.push_back({{a, b}, {c, d}, *time});
     }
   }
 
   const MovingFeatures& features_;
-  double tolerance_;
+  const ImpactOptions& options_;
   const Context& context_;
 };
+
+/// A box with its sides further out, by no less than half the distance that counts as meeting.
+void grow(Box3& box, double min_separation) {
+  if (!(min_separation > 0)) return;
+  const double by = 0.5 * min_separation;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = std::nextafter(box.lower[axis] - by, -infinite);
+    box.upper[axis] = std::nextafter(box.upper[axis] + by, infinite);
+  }
+}
 
 /// A hierarchy over the boxes of features, each by the vertices of it.
 template <class Features, class Vertices>
 MovingBoxBvh hierarchy(const MovingFeatures& moving, const Features& features, const Vertices& vertices_of,
-                       const Context& context) {
+                       double min_separation, const Context& context) {
   std::vector<MovingBox> boxes(features.size());
-  for (std::size_t k = 0; k < boxes.size(); ++k) boxes[k] = moving.box(vertices_of(features[k]));
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    boxes[k] = moving.box(vertices_of(features[k]));
+    grow(boxes[k].start, min_separation);
+    grow(boxes[k].end, min_separation);
+  }
   return MovingBoxBvh(boxes, context);
 }
 
@@ -148,11 +165,11 @@ ContinuousCollisions continuous_collisions(const MeshView& mesh, std::span<const
   timer.lap("features");
   const auto itself = [](const auto& feature) { return std::span<const std::uint32_t>(feature); };
   const auto alone = [](const std::uint32_t& vertex) { return std::span<const std::uint32_t>(&vertex, 1); };
-  const MovingBoxBvh vertices = hierarchy(features, features.vertices(), alone, context);
-  const MovingBoxBvh edges = hierarchy(features, features.edges(), itself, context);
-  const MovingBoxBvh faces = hierarchy(features, features.faces(), itself, context);
+  const MovingBoxBvh vertices = hierarchy(features, features.vertices(), alone, options.min_separation, context);
+  const MovingBoxBvh edges = hierarchy(features, features.edges(), itself, options.min_separation, context);
+  const MovingBoxBvh faces = hierarchy(features, features.faces(), itself, options.min_separation, context);
   timer.lap("boxes");
-  const Search search(features, options.tolerance, context);
+  const Search search(features, options, context);
   search.vertices_and_faces(vertices, faces, out);
   timer.lap("vertices and faces");
   search.edges_and_edges(edges, out);

@@ -55,14 +55,16 @@ Gaps gaps_of(const std::array<Vec3d, 4>& points, std::size_t first_count) {
 
 }  // namespace
 
-bool are_apart(const FourMovingPoints& points, std::size_t first_count) {
+bool are_apart(const FourMovingPoints& points, std::size_t first_count, double distance) {
   const Gaps start = gaps_of(points.start, first_count);
   const Gaps end = gaps_of(points.end, first_count);
+  constexpr std::size_t of_faces = 6;  // directions of length sqrt(2); the others are sqrt(3) long
   double widest = -1;
   for (std::size_t k = 0; k < direction_count; ++k) {
-    widest = std::max({widest, std::min(start.above[k], end.above[k]), std::min(start.below[k], end.below[k])});
+    const double gap = std::max(std::min(start.above[k], end.above[k]), std::min(start.below[k], end.below[k]));
+    widest = std::max(widest, gap - distance * (k < of_faces ? 1.4143 : 1.7321));
   }
-  return widest > rounding_of(points.start) + rounding_of(points.end);
+  return widest > rounding_of(points.start) + rounding_of(points.end) + 0x1p-50 * distance;
 }
 
 }  // namespace blum::detail

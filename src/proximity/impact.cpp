@@ -6,6 +6,7 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "proximity/exact/exact_impact.hpp"
+#include "proximity/exact/exact_separation.hpp"
 #include "proximity/impact_filter.hpp"
 
 namespace blum {
@@ -26,7 +27,7 @@ void check(const FourMovingPoints& points, std::size_t number) {
 std::optional<double> checked_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
   check(options);
   check(points, 0);
-  return detail::impact(points, kinds, options.tolerance);
+  return detail::impact(points, kinds, options);
 }
 
 std::vector<std::optional<double>> impacts(std::span<const FourMovingPoints> points, FeatureKinds kinds,
@@ -35,26 +36,35 @@ std::vector<std::optional<double>> impacts(std::span<const FourMovingPoints> poi
   for (std::size_t k = 0; k < points.size(); ++k) check(points[k], k);
   std::vector<std::optional<double>> times(points.size());
   parallel_for(context, points.size(), grain, "impacts", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k)
-      times[k] = detail::impact(points[k], kinds, options.tolerance);
+    for (std::size_t k = range.begin; k < range.end; ++k) times[k] = detail::impact(points[k], kinds, options);
   });
   return times;
 }
 
 }  // namespace
 
-std::optional<double> detail::impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance) {
-  const FilteredImpact filtered = filtered_impact(points, kinds, tolerance);
+std::optional<double> detail::impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
+  const auto [tolerance, distance] = options;
+  const FilteredImpact filtered = filtered_impact(points, kinds, options);
   if (filtered.answer == FilteredImpact::Answer::never) return std::nullopt;
   if (filtered.answer == FilteredImpact::Answer::meets) return filtered.time;
+  if (distance > 0) {
+    return kinds == FeatureKinds::vertex_face ? exact_vertex_face_approach(points, distance, tolerance)
+                                              : exact_edge_edge_approach(points, distance, tolerance);
+  }
   return kinds == FeatureKinds::vertex_face ? exact_vertex_face_impact(points, tolerance)
                                             : exact_edge_edge_impact(points, tolerance);
 }
 
 void check(const ImpactOptions& options) {
   constexpr double least_tolerance = 0x1p-40;
-  if (options.tolerance >= least_tolerance && options.tolerance <= 1) return;
-  throw InvalidOption("tolerance is " + exact_text(options.tolerance) + ", but must be 2^-40 (about 1e-12) to 1");
+  constexpr double most_separation = 1e150;
+  if (!(options.tolerance >= least_tolerance && options.tolerance <= 1)) {
+    throw InvalidOption("tolerance is " + exact_text(options.tolerance) + ", but must be 2^-40 (about 1e-12) to 1");
+  }
+  if (!(options.min_separation >= 0 && options.min_separation <= most_separation)) {
+    throw InvalidOption("min_separation is " + exact_text(options.min_separation) + ", but must be 0 to 1e150");
+  }
 }
 
 std::optional<double> vertex_face_impact(const FourMovingPoints& points, const ImpactOptions& options) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "blum/core/inline_list.hpp"
+#include "proximity/closest_points.hpp"
 
 namespace blum::detail {
 namespace {
@@ -86,23 +87,23 @@ class Filter {
     const MovingVector u = is_face_ ? vector(1, 2) : vector(0, 1);
     const MovingVector v = is_face_ ? vector(1, 3) : vector(2, 3);
     const MovingVector w = is_face_ ? vector(1, 0) : vector(0, 2);
-    const double u_most = u.magnitude();
-    const double v_most = v.magnitude();
-    const double w_most = w.magnitude();
-    in_range_ = is_in_range(u_most) && is_in_range(v_most) && is_in_range(w_most);
+    u_ = u;
+    v_ = v;
+    w_ = w;
+    u_most_ = u.magnitude();
+    v_most_ = v.magnitude();
+    w_most_ = w.magnitude();
+    in_range_ = is_in_range(u_most_) && is_in_range(v_most_) && is_in_range(w_most_);
     if (!in_range_) return;
     normal_ = product(u, v);
     volume_ = {dot(normal_[0], w.start), (dot(normal_[0], w.end) + 2 * dot(normal_[1], w.start)) / 3,
                (2 * dot(normal_[1], w.end) + dot(normal_[2], w.start)) / 3, dot(normal_[2], w.end)};
-    volume_error_ = volume_rounding * u_most * v_most * w_most;
-    normal_error_ = area_rounding * u_most * v_most;
-    u_ = u;
-    v_ = v;
-    w_ = w;
-    weight_error_ = area_rounding * w_most * std::max(u_most, v_most);
+    volume_error_ = volume_rounding * u_most_ * v_most_ * w_most_;
+    normal_error_ = area_rounding * u_most_ * v_most_;
+    weight_error_ = area_rounding * w_most_ * std::max(u_most_, v_most_);
   }
 
-  [[nodiscard]] FilteredImpact answer() {
+  [[nodiscard]] FilteredImpact meeting() {
     if (!in_range_) return {};
     if (may_be_zero(volume_, volume_error_)) {
       first_ = product(w_, v_);
@@ -110,6 +111,30 @@ class Filter {
     } else {
       return {FilteredImpact::Answer::never, 0};
     }
+    return first_by([&](const Interval& interval) { return look_at(interval); });
+  }
+
+  /// When they come as close as a distance, which is positive.
+  [[nodiscard]] FilteredImpact approach(double distance) {
+    const auto is_small = [](double magnitude) { return magnitude < 1e90; };
+    if (!is_small(u_most_) || !is_small(v_most_) || !is_small(w_most_) || !is_in_range(distance)) return {};
+    return first_by([&](const Interval& interval) {
+      if (are_apart_in(interval, distance)) return FilteredImpact::Answer::never;
+      const bool is_short = interval.high - interval.low <= tolerance_;
+      const bool is_close = is_short && (is_within(distance, interval.low) || is_within(distance, interval.high));
+      return is_close ? FilteredImpact::Answer::meets : FilteredImpact::Answer::unknown;
+    });
+  }
+
+ private:
+  struct Interval {
+    double low;
+    double high;
+  };
+
+  /// What an answer for intervals makes of all times.
+  template <class LookAt>
+  [[nodiscard]] FilteredImpact first_by(const LookAt& look_at) {
     left_.push_back({0, 1});
     for (int looks = 0; !left_.empty(); ++looks) {
       if (looks > most_looks) return {};
@@ -125,15 +150,10 @@ class Filter {
     return {FilteredImpact::Answer::never, 0};
   }
 
- private:
-  struct Interval {
-    double low;
-    double high;
-  };
-
   // Bounds on rounding, proven in docs/theory/proximity.md, with room.
   static constexpr double volume_rounding = 256 * unit_roundoff;
   static constexpr double area_rounding = 64 * unit_roundoff;
+  static constexpr double height_rounding = 64 * unit_roundoff;
   static constexpr int most_looks = 96;
   static constexpr double least_width = 0x1p-44;
 
@@ -170,13 +190,53 @@ class Filter {
       }
       if (is_inside && crosses && interval.high - interval.low <= tolerance_) return Answer::meets;
     }
-    return Answer::unknown;
+    // What is not told by signs may be seen along the direction in which the two are closest.
+    constexpr double narrow = 0.25;
+    constexpr double too_narrow = 0.03;  // what was not seen before, is too close
+    const double width = interval.high - interval.low;
+    return width <= narrow && width >= too_narrow && are_apart_in(interval, 0) ? Answer::never : Answer::unknown;
   }
+
+  /// Whether all through an interval the features are further apart than a distance, for certain, along the direction
+  /// in which they are closest in its middle. Heights along it are linear in time.
+  [[nodiscard]] bool are_apart_in(const Interval& interval, double distance) const {
+    const double middle = 0.5 * (interval.low + interval.high);
+    const ClosestPair closest = closest_at(middle);
+    const Vec3d way = closest.first - closest.second;
+    const double size = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
+    constexpr double least_size = 1e-100;  // squares of smaller numbers underflow
+    if (distance > 0 && size < least_size) return false;
+    const double rounding = height_rounding * size * (u_most_ + v_most_ + w_most_);
+    const double least = distance * length(way) * (1 + 8 * unit_roundoff) + rounding;
+    for (const double t : {interval.low, interval.high}) {
+      const double u = dot(way, at(u_, t));
+      const double v = dot(way, at(v_, t));
+      const double w = dot(way, at(w_, t));
+      const double gap = is_face_ ? std::min({w, w - u, w - v}) : std::min(0.0, u) - std::max(w, w + v);
+      if (!(gap > least)) return false;
+    }
+    return true;
+  }
+
+  /// Whether they are no further apart than a distance at a time, for certain.
+  [[nodiscard]] bool is_within(double distance, double t) const {
+    const ClosestPair closest = closest_at(t);
+    const double rounding = height_rounding * (u_most_ + v_most_ + w_most_);
+    return length(closest.first - closest.second) * (1 + 8 * unit_roundoff) + rounding < distance;
+  }
+
+  [[nodiscard]] ClosestPair closest_at(double t) const {
+    return is_face_ ? closest_of_point_and_triangle(at(w_, t), at(u_, t), at(v_, t))
+                    : closest_of_segments(at(u_, t), at(w_, t), at(v_, t));
+  }
+
+  static Vec3d at(const MovingVector& v, double t) { return v.start * (1 - t) + v.end * t; }
 
   bool is_face_;
   bool in_range_ = false;
   double tolerance_;
   MovingVector u_, v_, w_;
+  double u_most_ = 0, v_most_ = 0, w_most_ = 0;
   QuadraticVector normal_;
   QuadraticVector first_;   ///< s times the normal
   QuadraticVector second_;  ///< r times the normal
@@ -189,8 +249,9 @@ class Filter {
 
 }  // namespace
 
-FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance) {
-  return Filter(points, kinds, tolerance).answer();
+FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
+  Filter filter(points, kinds, options.tolerance);
+  return options.min_separation > 0 ? filter.approach(options.min_separation) : filter.meeting();
 }
 
 }  // namespace blum::detail

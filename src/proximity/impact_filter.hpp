@@ -18,10 +18,11 @@ struct FilteredImpact {
 };
 
 /// Whether and when two moving features meet, exactly: by doubles where these decide it, else by integers.
-/// @param tolerance  as in ImpactOptions.
-[[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance);
+[[nodiscard]] std::optional<double> impact(const FourMovingPoints& points, FeatureKinds kinds,
+                                           const ImpactOptions& options);
 
 /// Whether and when two moving features meet, where doubles decide it: never a wrong answer.
-[[nodiscard]] FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds, double tolerance);
+[[nodiscard]] FilteredImpact filtered_impact(const FourMovingPoints& points, FeatureKinds kinds,
+                                             const ImpactOptions& options);
 
 }  // namespace blum::detail

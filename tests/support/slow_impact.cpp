@@ -226,7 +226,99 @@ std::optional<ContactTime> first_contact(const Polynomial& volume, const Vector&
   return first;
 }
 
+/// Two parts of features that are close where `excess` is not positive, all of `inside` are at least zero and `size` is
+/// not zero.
+struct CloseParts {
+  Polynomial excess;
+  std::vector<Polynomial> inside;
+  Polynomial size;
+};
+
+/// Asks at all roots of all polynomials whether any parts are close.
+std::optional<ContactTime> first_approach(const std::vector<CloseParts>& all) {
+  std::vector<Time> times{Time(Roots({0, 1}), 0, 0)};
+  const auto add = [&](const Polynomial& one) {
+    if (one.size() > 1) add_roots(Roots(square_free(one)), 0, 1, times);
+  };
+  for (const CloseParts& parts : all) {
+    add(parts.excess);
+    add(parts.size);
+    for (const Polynomial& one : parts.inside) add(one);
+  }
+  std::optional<ContactTime> first;
+  for (Time& time : times) {
+    const bool is_close = std::any_of(all.begin(), all.end(), [&](const CloseParts& parts) {
+      return time.sign_of(parts.excess) <= 0 && time.sign_of(parts.size) > 0 &&
+             std::all_of(parts.inside.begin(), parts.inside.end(),
+                         [&](const Polynomial& one) { return time.sign_of(one) >= 0; });
+    });
+    if (!is_close) continue;
+    const ContactTime found = time.narrowed();
+    if (!first || found.high < first->high) first = found;
+  }
+  return first;
+}
+
+Polynomial scaled(Polynomial p, const Number& by) {
+  for (Number& c : p) c *= by;
+  return trimmed(std::move(p));
+}
+
+CloseParts two_points(const Vector& a, const Vector& b, const Number& square) {
+  return {sum(dot(b - a, b - a), {square}, -1), {}, {Number(1)}};
+}
+
+CloseParts point_and_segment(const Vector& p, const Vector& a, const Vector& b, const Number& square) {
+  const Polynomial size = dot(b - a, b - a);
+  const Vector area = cross(b - a, p - a);
+  return {sum(dot(area, area), scaled(size, square), -1), {dot(b - a, p - a), dot(a - b, p - b)}, size};
+}
+
+/// @param inside  how the closest points of plane and feature, or of two lines, lie on the features.
+CloseParts of_plane(const Vector& normal, const Vector& between, std::vector<Polynomial> inside, const Number& square) {
+  const Polynomial volume = dot(normal, between);
+  const Polynomial size = dot(normal, normal);
+  return {sum(product(volume, volume), scaled(size, square), -1), std::move(inside), size};
+}
+
 }  // namespace
+
+std::optional<ContactTime> slow_vertex_face_approach(const FourMovingPoints& points, double distance) {
+  const Number square = Number(distance) * Number(distance);
+  const Vector p = position(points, 0);
+  const Vector a = position(points, 1);
+  const Vector b = position(points, 2);
+  const Vector c = position(points, 3);
+  const Vector normal = cross(b - a, c - a);
+  std::vector<CloseParts> all{of_plane(
+      normal, p - a,
+      {dot(normal, cross(b - a, p - a)), dot(normal, cross(c - b, p - b)), dot(normal, cross(a - c, p - c))}, square)};
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+    all.push_back(point_and_segment(p, from, to, square));
+    all.push_back(two_points(p, from, square));
+  }
+  return first_approach(all);
+}
+
+std::optional<ContactTime> slow_edge_edge_approach(const FourMovingPoints& points, double distance) {
+  const Number square = Number(distance) * Number(distance);
+  const Vector a = position(points, 0);
+  const Vector b = position(points, 1);
+  const Vector c = position(points, 2);
+  const Vector d = position(points, 3);
+  const Vector normal = cross(b - a, d - c);
+  const Polynomial whole = dot(normal, normal);
+  const Polynomial s = dot(normal, cross(c - a, d - c));
+  const Polynomial r = dot(normal, cross(c - a, b - a));
+  std::vector<CloseParts> all{of_plane(normal, c - a, {s, sum(whole, s, -1), r, sum(whole, r, -1)}, square)};
+  for (const Vector* end : {&c, &d}) {
+    all.push_back(point_and_segment(*end, a, b, square));
+    all.push_back(two_points(*end, a, square));
+    all.push_back(two_points(*end, b, square));
+  }
+  for (const Vector* end : {&a, &b}) all.push_back(point_and_segment(*end, c, d, square));
+  return first_approach(all);
+}
 
 std::optional<ContactTime> slow_vertex_face_impact(const FourMovingPoints& points) {
   const Vector p = position(points, 0);

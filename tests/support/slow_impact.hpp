@@ -19,4 +19,8 @@ struct ContactTime {
 [[nodiscard]] std::optional<ContactTime> slow_vertex_face_impact(const FourMovingPoints& points);
 [[nodiscard]] std::optional<ContactTime> slow_edge_edge_impact(const FourMovingPoints& points);
 
+/// The first time at which they are no further apart than a distance, which is positive.
+[[nodiscard]] std::optional<ContactTime> slow_vertex_face_approach(const FourMovingPoints& points, double distance);
+[[nodiscard]] std::optional<ContactTime> slow_edge_edge_approach(const FourMovingPoints& points, double distance);
+
 }  // namespace blum::test

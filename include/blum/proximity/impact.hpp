@@ -25,6 +25,8 @@ struct FourMovingPoints {
 struct ImpactOptions {
   /// How much earlier than the true time of impact the one told may be, as a part of the motion: 2^-40 to 1.
   double tolerance = 1e-6;
+  /// How close, in mesh units, counts as meeting: 0 to 1e150. With 0, features must have a point in common.
+  double min_separation = 0;
 };
 
 template <>
@@ -34,6 +36,8 @@ struct Description<ImpactOptions> {
   static constexpr std::tuple members{
       Member{"tolerance", &ImpactOptions::tolerance, "parts of the motion",
              "how much earlier than the true time of impact the one told may be", Range::between(0x1p-40, 1)},
+      Member{"min_separation", &ImpactOptions::min_separation, "mesh units",
+             "how close counts as meeting; 0: features must have a point in common", Range::between(0, 1e150)},
   };
 };
 
@@ -41,6 +45,8 @@ struct Description<ImpactOptions> {
 void check(const ImpactOptions& options);
 
 /// The first time at which a moving vertex lies in a moving triangle, its border included.
+///
+/// With a minimum separation, the first time at which they are no further apart than that.
 ///
 /// Whether there is one is exact for the coordinates as they are: no contact is missed, none is made up, whatever the
 /// motion: triangles may lose their area and turn over, points may stay in a plane or at a place.

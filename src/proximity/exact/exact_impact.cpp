@@ -8,82 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "proximity/exact/moving_points.hpp"
 #include "proximity/exact/real_roots.hpp"
 
 namespace blum::detail {
 namespace {
-
-/// start + slope * t.
-struct Linear {
-  Integer start;
-  Integer slope;
-};
-
-using Vector = std::array<Linear, 3>;
-
-/// A finite double as mantissa * 2^exponent, the mantissa odd or zero.
-struct Parts {
-  std::int64_t mantissa;
-  int exponent;
-};
-
-Parts parts_of(double value) {
-  if (value == 0) return {0, std::numeric_limits<int>::max()};
-  int exponent = 0;
-  constexpr int digits = std::numeric_limits<double>::digits;
-  auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), digits));
-  exponent -= digits;
-  while (mantissa % 2 == 0) {
-    mantissa /= 2;
-    ++exponent;
-  }
-  return {mantissa, exponent};
-}
-
-/// The positions over time, scaled by one power of two such that all coordinates are integers.
-std::array<Vector, 4> positions(const FourMovingPoints& points) {
-  int least = std::numeric_limits<int>::max();
-  for (const auto* ends : {&points.start, &points.end}) {
-    for (const Vec3d& p : *ends) {
-      for (const double x : {p.x, p.y, p.z}) least = std::min(least, parts_of(x).exponent);
-    }
-  }
-  const auto integer = [&](double x) {
-    const Parts parts = parts_of(x);
-    return parts.mantissa == 0 ? Integer(0) : Integer(parts.mantissa) << static_cast<unsigned>(parts.exponent - least);
-  };
-  std::array<Vector, 4> out;
-  for (std::size_t k = 0; k < 4; ++k) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Integer start = integer(points.start[k][axis]);
-      out[k][axis] = {start, integer(points.end[k][axis]) - start};
-    }
-  }
-  return out;
-}
-
-Vector operator-(const Vector& a, const Vector& b) {
-  Vector out;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    out[axis] = {a[axis].start - b[axis].start, a[axis].slope - b[axis].slope};
-  }
-  return out;
-}
-
-Polynomial operator*(const Linear& a, const Linear& b) {
-  return {a.start * b.start, a.start * b.slope + a.slope * b.start, a.slope * b.slope};
-}
-
-/// One component of a cross product.
-Polynomial component(const Vector& a, const Vector& b, std::size_t axis) {
-  const std::size_t next = (axis + 1) % 3;
-  const std::size_t last = (axis + 2) % 3;
-  return a[next] * b[last] - a[last] * b[next];
-}
-
-Polynomial dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// Two features, in a plane of which two vectors are along both.
 class Features {
@@ -96,15 +25,15 @@ class Features {
   };
 
   static Features vertex_and_face(const FourMovingPoints& points) {
-    return {positions(points), {1, 2}, {1, 3}, {1, 0}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}};
+    return {integer_points(points).at, {1, 2}, {1, 3}, {1, 0}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}};
   }
   static Features edge_and_edge(const FourMovingPoints& points) {
-    return {positions(points), {0, 1}, {2, 3}, {0, 2}, {{2, 0, 1}, {3, 0, 1}, {0, 2, 3}, {1, 2, 3}}};
+    return {integer_points(points).at, {0, 1}, {2, 3}, {0, 2}, {{2, 0, 1}, {3, 0, 1}, {0, 2, 3}, {1, 2, 3}}};
   }
 
   /// Zero where all points lie in one plane.
   [[nodiscard]] Polynomial volume() const {
-    const Vector between = vector(between_[0], between_[1]);
+    const MovingVector between = vector(between_[0], between_[1]);
     Polynomial sum;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       sum = sum + normal(axis) * Polynomial{between[axis].start, between[axis].slope};
@@ -113,11 +42,11 @@ class Features {
   }
   /// Zero along all axes where the points of a face, or directions of edges, have no plane of their own.
   [[nodiscard]] Polynomial normal(std::size_t axis) const {
-    return component(vector(first_[0], first_[1]), vector(second_[0], second_[1]), axis);
+    return cross_component(vector(first_[0], first_[1]), vector(second_[0], second_[1]), axis);
   }
   /// Zero along all axes where the three points lie on a line.
   [[nodiscard]] Polynomial area(const Touch& touch, std::size_t axis) const {
-    return component(vector(touch.from, touch.to), vector(touch.from, touch.point), axis);
+    return cross_component(vector(touch.from, touch.to), vector(touch.from, touch.point), axis);
   }
   /// On that line: positive beyond the ends of the segment.
   [[nodiscard]] Polynomial beyond(const Touch& touch) const {
@@ -142,10 +71,10 @@ class Features {
  private:
   using Ends = std::array<std::size_t, 2>;
 
-  Features(const std::array<Vector, 4>& points, Ends first, Ends second, Ends between, std::vector<Touch> touches)
+  Features(const std::array<MovingVector, 4>& points, Ends first, Ends second, Ends between, std::vector<Touch> touches)
       : points_(points), first_(first), second_(second), between_(between), touches_(std::move(touches)) {}
 
-  [[nodiscard]] Vector vector(std::size_t from, std::size_t to) const { return points_[to] - points_[from]; }
+  [[nodiscard]] MovingVector vector(std::size_t from, std::size_t to) const { return points_[to] - points_[from]; }
 
   /// Whether they meet, seen along an axis that their plane does not hold.
   [[nodiscard]] bool overlap_along(std::size_t axis, const RealRoots& roots, const RealRoot& root) const {
@@ -159,18 +88,12 @@ class Features {
     return first * third >= 0 && second * third >= 0;
   }
 
-  std::array<Vector, 4> points_;
+  std::array<MovingVector, 4> points_;
   Ends first_;
   Ends second_;
   Ends between_;  ///< a point of the first and one of the second
   std::vector<Touch> touches_;
 };
-
-unsigned depth_of(double tolerance) {
-  int exponent = 0;
-  std::frexp(tolerance, &exponent);
-  return static_cast<unsigned>(std::max(1 - exponent, 0)) + 1;
-}
 
 /// The first root at which the features meet.
 std::optional<double> first_at_roots_of(const Polynomial& polynomial, const Features& features, double tolerance) {

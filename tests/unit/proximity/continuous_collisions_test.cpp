@@ -36,7 +36,7 @@ Collisions as_rows(const ContinuousCollisions& found) {
 }
 
 /// One pair after the other.
-Collisions slow_collisions(const MeshView& mesh, std::span<const Vec3d> end) {
+Collisions slow_collisions(const MeshView& mesh, std::span<const Vec3d> end, const ImpactOptions& options) {
   // Vertices in one place at both ends are one.
   std::map<std::array<double, 6>, std::uint32_t> first_at;
   std::vector<std::uint32_t> place;
@@ -69,7 +69,8 @@ Collisions slow_collisions(const MeshView& mesh, std::span<const Vec3d> end) {
     for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
       const auto& [a, b, c] = mesh.triangles[f];
       if (place[a] == v || place[b] == v || place[c] == v) continue;
-      if (const auto time = vertex_face_impact(moving({v, a, b, c}))) out.vertex_face.emplace_back(v, f, *time);
+      if (const auto time = vertex_face_impact(moving({v, a, b, c}), options))
+        out.vertex_face.emplace_back(v, f, *time);
     }
   }
   for (auto first = edges.begin(); first != edges.end(); ++first) {
@@ -77,17 +78,18 @@ Collisions slow_collisions(const MeshView& mesh, std::span<const Vec3d> end) {
       const auto& [a, b] = *first;
       const auto& [c, d] = *second;
       if (a == c || a == d || b == c || b == d) continue;
-      if (const auto time = edge_edge_impact(moving({a, b, c, d}))) out.edge_edge.emplace_back(*first, *second, *time);
+      if (const auto time = edge_edge_impact(moving({a, b, c, d}), options))
+        out.edge_edge.emplace_back(*first, *second, *time);
     }
   }
   return out;
 }
 
 /// @return  how many collide.
-std::size_t expect_right(const TriangleMesh& mesh, const std::vector<Vec3d>& end) {
-  const Collisions right = slow_collisions(mesh, end);
+std::size_t expect_right(const TriangleMesh& mesh, const std::vector<Vec3d>& end, const ImpactOptions& options = {}) {
+  const Collisions right = slow_collisions(mesh, end, options);
   for (const int threads : {1, 2, 7}) {
-    const ContinuousCollisions found = continuous_collisions(mesh, end, {}, {.threads = threads});
+    const ContinuousCollisions found = continuous_collisions(mesh, end, options, {.threads = threads});
     EXPECT_TRUE(as_rows(found) == right) << threads << " threads: " << found.vertex_face.size() << " and "
                                          << found.edge_edge.size() << ", not " << right.vertex_face.size() << " and "
                                          << right.edge_edge.size();
@@ -136,6 +138,19 @@ TEST(ContinuousCollisions, OfDegenerateSoupsAreThoseOfAllPairs) {
     for (Vec3d& p : soup.vertices) p = corner();
     EXPECT_GT(expect_right(soup, moved(soup, [&](const Vec3d& p) { return n % 2 == 0 ? corner() : p; })), 50U);
   }
+}
+
+TEST(ContinuousCollisions, WithASeparationAreThoseOfAllPairs) {
+  Random random(3);
+  const TriangleMesh soup = random_soup(random, 40, 0.15);
+  const std::vector<Vec3d> end = moved(soup, [&](const Vec3d& p) { return p + random.in_ball() * 0.1; });
+  std::size_t before = 0;
+  for (const double distance : {0.0, 1e-3, 0.02, 0.1}) {
+    const std::size_t found = expect_right(soup, end, {.min_separation = distance});
+    EXPECT_GE(found, before);
+    before = found;
+  }
+  EXPECT_GT(before, 200U);
 }
 
 TEST(ContinuousCollisions, OfConnectedMeshesAreThoseOfAllPairs) {

@@ -13,6 +13,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
 #include "proximity/exact/exact_impact.hpp"
+#include "proximity/exact/exact_separation.hpp"
 #include "proximity/impact_filter.hpp"
 #include "support/slow_impact.hpp"
 
@@ -62,7 +63,32 @@ bool expect_right(const FourMovingPoints& points, double tolerance = 1e-6) {
     expect_time(is_face ? detail::exact_vertex_face_impact(points, tolerance)
                         : detail::exact_edge_edge_impact(points, tolerance),
                 right, tolerance);
-    const FilteredImpact filtered = detail::filtered_impact(points, kinds, tolerance);
+    const FilteredImpact filtered = detail::filtered_impact(points, kinds, options);
+    if (filtered.answer == FilteredImpact::Answer::never) {
+      EXPECT_FALSE(right);
+    } else if (filtered.answer == FilteredImpact::Answer::meets) {
+      expect_time(filtered.time, right, tolerance);
+    }
+    any = any || right;
+  }
+  return any;
+}
+
+/// The same of the time at which they are as close as a distance.
+bool expect_right_approach(const FourMovingPoints& points, double distance, double tolerance = 1e-6) {
+  SCOPED_TRACE(text(points));
+  bool any = false;
+  for (const FeatureKinds kinds : {FeatureKinds::vertex_face, FeatureKinds::edge_edge}) {
+    const bool is_face = kinds == FeatureKinds::vertex_face;
+    SCOPED_TRACE(is_face ? "vertex and face" : "edge and edge");
+    const auto right =
+        is_face ? test::slow_vertex_face_approach(points, distance) : test::slow_edge_edge_approach(points, distance);
+    const ImpactOptions options{.tolerance = tolerance, .min_separation = distance};
+    expect_time(is_face ? vertex_face_impact(points, options) : edge_edge_impact(points, options), right, tolerance);
+    expect_time(is_face ? detail::exact_vertex_face_approach(points, distance, tolerance)
+                        : detail::exact_edge_edge_approach(points, distance, tolerance),
+                right, tolerance);
+    const FilteredImpact filtered = detail::filtered_impact(points, kinds, options);
     if (filtered.answer == FilteredImpact::Answer::never) {
       EXPECT_FALSE(right);
     } else if (filtered.answer == FilteredImpact::Answer::meets) {
@@ -225,6 +251,56 @@ TEST(Impact, ToleranceBoundsHowEarlyTimesAre) {
   }
 }
 
+TEST(Impact, WithASeparationIsThatOfRationalNumbers) {
+  Random random(12);
+  int meet = 0;
+  for (int k = 0; k < 8; ++k) {
+    meet += expect_right_approach(random_points([&] { return random.in_cube(); }), 0.1) ? 1 : 0;
+  }
+  EXPECT_GT(meet, 2);
+  meet = 0;
+  for (int k = 0; k < 40; ++k) meet += expect_right_approach(on_lattice(random, 3), k % 2 == 0 ? 1 : 0.5) ? 1 : 0;
+  EXPECT_GT(meet, 5);
+  EXPECT_LT(meet, 40);
+  for (int k = 0; k < 20; ++k) {
+    FourMovingPoints points = on_lattice(random, 3);
+    points.start[random.below(4)] = points.start[random.below(4)];
+    if (k % 2 == 0) points.end = points.start;
+    if (k % 3 == 0) points.end[1] = points.end[0];
+    expect_right_approach(points, 1);
+  }
+}
+
+/// Features that slide at exactly the distance, and ones that keep it all the time.
+TEST(Impact, AtExactlyTheSeparationIsAnImpact) {
+  const std::array<Vec3d, 3> triangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
+  const auto moving = [&](const Vec3d& from, const Vec3d& to) {
+    return FourMovingPoints{{from, triangle[0], triangle[1], triangle[2]}, {to, triangle[0], triangle[1], triangle[2]}};
+  };
+  const ImpactOptions half{.min_separation = 0.5};
+  const double below = std::nextafter(0.5, 0);
+  EXPECT_EQ(vertex_face_impact(moving({1, 1, 0.5}, {2, 1, 0.5}), half), 0.0);
+  EXPECT_EQ(vertex_face_impact(moving({1, 1, 0.5}, {2, 1, 0.5}), {.min_separation = below}), std::nullopt);
+  const auto sliding = vertex_face_impact(moving({-4, 1, 0.5}, {4, 1, 0.5}), half);
+  ASSERT_TRUE(sliding);
+  EXPECT_NEAR(*sliding, 0.5, 1e-6);
+  EXPECT_LE(*sliding, 0.5);
+  EXPECT_FALSE(vertex_face_impact(moving({-4, 1, 0.5}, {4, 1, 0.5}), {.min_separation = below}));
+  const auto beside = vertex_face_impact(moving({-1, 1, 0}, {1, 1, 0}), half);
+  ASSERT_TRUE(beside);
+  EXPECT_NEAR(*beside, 0.25, 1e-6);
+}
+
+TEST(Impact, WithASeparationScaleChangesNothing) {
+  Random random(13);
+  const FourMovingPoints points = on_lattice(random, 2);
+  for (const double scale : {0x1p-400, 0x1p-100, 0x1p300}) {
+    expect_right_approach(with_each(points, [&](const Vec3d& p) { return p * scale; }), scale);
+  }
+  expect_right_approach(points, 0x1p-60);
+  expect_right_approach(points, 0x1p300);
+}
+
 TEST(Impact, AtTheStartIsTimeZero) {
   const FourMovingPoints points{{{{0.25, 0.25, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
                                 {{{9, 9, 9}, {0, 0, 1}, {1, 0, 2}, {0, 1, 3}}}};
@@ -247,7 +323,7 @@ TEST(Impact, DoublesDecideNearlyAllRandomQueries) {
   for (int k = 0; k < 2000; ++k) {
     const FourMovingPoints points = random_points([&] { return random.in_cube(); });
     for (const FeatureKinds kinds : {FeatureKinds::vertex_face, FeatureKinds::edge_edge}) {
-      if (detail::filtered_impact(points, kinds, 1e-6).answer == FilteredImpact::Answer::unknown) ++unknown;
+      if (detail::filtered_impact(points, kinds, {}).answer == FilteredImpact::Answer::unknown) ++unknown;
     }
   }
   EXPECT_LE(unknown, 4);
@@ -272,6 +348,8 @@ TEST(Impact, RefusesWhatIsNoMotion) {
   EXPECT_THROW(static_cast<void>(vertex_face_impact(points, {.tolerance = 0})), InvalidOption);
   EXPECT_THROW(static_cast<void>(vertex_face_impact(points, {.tolerance = 2})), InvalidOption);
   EXPECT_THROW(static_cast<void>(edge_edge_impact(points, {.tolerance = std::nan("")})), InvalidOption);
+  EXPECT_THROW(static_cast<void>(edge_edge_impact(points, {.min_separation = -1})), InvalidOption);
+  EXPECT_THROW(static_cast<void>(edge_edge_impact(points, {.min_separation = std::nan("")})), InvalidOption);
   points.end[2].y = std::nan("");
   EXPECT_THROW(static_cast<void>(vertex_face_impact(points)), InvalidMesh);
   points.end[2].y = std::numeric_limits<double>::infinity();
