@@ -111,14 +111,14 @@ class Filter {
     } else {
       return {FilteredImpact::Answer::never, 0};
     }
-    return first_by([&](const Interval& interval) { return look_at(interval); });
+    return first_by(most_looks_for_meeting, [&](const Interval& interval) { return look_at(interval); });
   }
 
   /// When they come as close as a distance, which is positive.
   [[nodiscard]] FilteredImpact approach(double distance) {
     const auto is_small = [](double magnitude) { return magnitude < 1e90; };
     if (!is_small(u_most_) || !is_small(v_most_) || !is_small(w_most_) || !is_in_range(distance)) return {};
-    return first_by([&](const Interval& interval) {
+    return first_by(most_looks_for_approach, [&](const Interval& interval) {
       if (are_apart_in(interval, distance)) return FilteredImpact::Answer::never;
       const bool is_short = interval.high - interval.low <= tolerance_;
       const bool is_close = is_short && (is_within(distance, interval.low) || is_within(distance, interval.high));
@@ -134,7 +134,7 @@ class Filter {
 
   /// What an answer for intervals makes of all times.
   template <class LookAt>
-  [[nodiscard]] FilteredImpact first_by(const LookAt& look_at) {
+  [[nodiscard]] FilteredImpact first_by(int most_looks, const LookAt& look_at) {
     left_.push_back({0, 1});
     for (int looks = 0; !left_.empty(); ++looks) {
       if (looks > most_looks) return {};
@@ -154,7 +154,9 @@ class Filter {
   static constexpr double volume_rounding = 256 * unit_roundoff;
   static constexpr double area_rounding = 64 * unit_roundoff;
   static constexpr double height_rounding = 64 * unit_roundoff;
-  static constexpr int most_looks = 96;
+  // Looks at intervals, before integers take about as long.
+  static constexpr int most_looks_for_meeting = 96;
+  static constexpr int most_looks_for_approach = 10000;
   static constexpr double least_width = 0x1p-44;
 
   /// Whether products of three neither overflow nor lose more to underflow than to rounding.
