@@ -126,12 +126,16 @@ class QueryReader {
 
 }  // namespace
 
+ImpactQueries read_impact_queries(std::span<const std::byte> data, std::string_view name) {
+  return QueryReader({reinterpret_cast<const char*>(data.data()), data.size()}, std::string(name)).read();
+}
+
 ImpactQueries read_impact_queries(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw FileError("'" + path.string() + "' cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (file.bad()) throw FileError("'" + path.string() + "' cannot be read");
-  return QueryReader(text, "'" + path.string() + "'").read();
+  return read_impact_queries(std::as_bytes(std::span(text)), "'" + path.string() + "'");
 }
 
 }  // namespace blum

@@ -1,11 +1,13 @@
 // Blum: files of collisions, and of questions about them. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -28,6 +30,8 @@ struct ImpactQueries {
 /// is known the answer, 0 or 1, the same in all eight. Each coordinate must be exactly a double.
 /// @throws FileError; FormatError naming the line.
 [[nodiscard]] ImpactQueries read_impact_queries(const std::filesystem::path& path);
+/// The same from memory; `name` stands for the file in messages.
+[[nodiscard]] ImpactQueries read_impact_queries(std::span<const std::byte> data, std::string_view name = "questions");
 
 /// Writes the collisions of a mesh; the format goes by the extension.
 ///
