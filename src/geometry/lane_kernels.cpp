@@ -92,7 +92,7 @@ unsigned touching(const BoxBlock& block, const Box3& box) {
 
 unsigned touching_moving(const MovingBlock& block, const MovingBoxF& box) {
   alignas(64) float gap[lanes];  // the widest that stays open from start to end
-  for (std::size_t i = 0; i < lanes; ++i) gap[i] = -1;
+  std::fill_n(gap, lanes, -1.0F);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < lanes; ++i) {
       const float above =

@@ -47,7 +47,7 @@ double RealRoot::lower_bound() const {
   return std::ldexp(static_cast<double>(whole.convert_to<std::uint64_t>()), -static_cast<int>(digits));
 }
 
-RealRoots::RealRoots(const Polynomial& polynomial) : rest_(polynomial) {
+RealRoots::RealRoots(Polynomial polynomial) : rest_(std::move(polynomial)) {
   for (const int end : {0, 1}) {
     if (rest_.degree() <= 0 || rest_.sign_at({end, 0}) != 0) continue;
     roots_.push_back({end, 0, true});

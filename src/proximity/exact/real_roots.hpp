@@ -24,7 +24,7 @@ struct RealRoot {
 class RealRoots {
  public:
   /// @param polynomial  not zero.
-  explicit RealRoots(const Polynomial& polynomial);
+  explicit RealRoots(Polynomial polynomial);
 
   /// The roots, each once, by rising value.
   [[nodiscard]] const std::vector<RealRoot>& all() const { return roots_; }
