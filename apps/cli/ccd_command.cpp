@@ -47,7 +47,8 @@ Kind kind_of(const fs::path& path, const std::optional<std::string>& given) {
     return std::nullopt;
   };
   if (given) {
-    if (const auto kind = named(*given)) return *kind;
+    if (*given == "vertex-face") return Kind::vertex_face;
+    if (*given == "edge-edge") return Kind::edge_edge;
     throw UsageError("--kind is '" + *given + "', but must be vertex-face or edge-edge");
   }
   if (const auto kind = named(path.stem().string())) return *kind;

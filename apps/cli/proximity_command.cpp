@@ -56,8 +56,9 @@ Frames read_frames(const fs::path& start, const fs::path& end) {
     refuse("it has " + count_text(last.vertices.size()) + " vertices, not " + count_text(frames.start.vertices.size()) +
            " as");
   }
-  if (last.triangles != frames.start.triangles || last.segments != frames.start.segments) {
-    refuse("its triangles or segments name other vertices than those of");
+  if (last.triangles != frames.start.triangles || last.segments != frames.start.segments ||
+      last.points != frames.start.points) {
+    refuse("its triangles, segments or points name other vertices than those of");
   }
   frames.end = std::move(last.vertices);
   return frames;

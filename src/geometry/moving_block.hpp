@@ -11,7 +11,7 @@ struct MovingBoxF {
   float upper[2][3];
 };
 
-/// Eight of them. An empty box (+inf, -inf) is apart from everything.
+/// Eight of them. An empty box (+inf, -inf) is apart from everything that is finite.
 struct alignas(64) MovingBlock {
   float lower[2][3][lanes];
   float upper[2][3][lanes];

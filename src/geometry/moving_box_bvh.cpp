@@ -55,12 +55,16 @@ MovingBoxF around(const MovingBlock& block) {
   return box;
 }
 
-/// Maps coordinates to at most 1, in single precision and in their order.
+/// Maps coordinates to at most 1, in single precision and in their order. Those of boxes elsewhere may be as large as
+/// you like: they must not become infinite, as then they would be where empty boxes are.
 struct Frame {
   Vec3d middle;
   double scale = 1;
 
-  [[nodiscard]] float of(double x, std::size_t axis) const { return static_cast<float>((x - middle[axis]) * scale); }
+  [[nodiscard]] float of(double x, std::size_t axis) const {
+    constexpr double most = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp((x - middle[axis]) * scale, -most, most));
+  }
   [[nodiscard]] MovingBoxF of(const MovingBox& box) const {
     MovingBoxF out;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,14 +1,14 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <system_error>
 
 #include "blum/core/error.hpp"
 #include "blum/io/collision_io.hpp"
+#include "io/byte_source.hpp"
 #include "io/text_cursor.hpp"
 #include "io/text_scan.hpp"
 
@@ -19,7 +19,10 @@ constexpr std::size_t rows_per_query = 8;
 
 class QueryReader {
  public:
-  QueryReader(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {}
+  QueryReader(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
+  }
 
   ImpactQueries read() {
     ImpactQueries out;
@@ -110,9 +113,12 @@ class QueryReader {
     if (!is_whole || end != text.data() + text.size()) fail(in_quotes(text) + " is not a whole number");
     constexpr std::size_t always_exact = 15;  // digits
     if (error == std::errc{} && text.size() - sign <= always_exact) return value;
+    std::string_view rest = text.substr(sign);
+    rest.remove_prefix(std::min(rest.find_first_not_of('0'), rest.size() - 1));
+    const std::string shortest = (value < 0 ? "-" : "") + std::string(rest);
     std::array<char, 400> digits{};
     std::snprintf(digits.data(), digits.size(), "%.0f", value);
-    if (error != std::errc{} || text != digits.data()) fail(in_quotes(text) + " is not exactly a double");
+    if (error != std::errc{} || shortest != digits.data()) fail(in_quotes(text) + " is not exactly a double");
     return value;
   }
 
@@ -131,11 +137,10 @@ ImpactQueries read_impact_queries(std::span<const std::byte> data, std::string_v
 }
 
 ImpactQueries read_impact_queries(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileError("'" + path.string() + "' cannot be read");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) throw FileError("'" + path.string() + "' cannot be read");
-  return read_impact_queries(std::as_bytes(std::span(text)), "'" + path.string() + "'");
+  const volume_io::FileSource file(path);
+  std::vector<std::byte> bytes(static_cast<std::size_t>(file.size()));
+  file.read(0, bytes);
+  return read_impact_queries(bytes, "'" + path.string() + "'");
 }
 
 }  // namespace blum

@@ -1,6 +1,7 @@
 #include "blum/proximity/continuous_collisions.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -19,6 +20,7 @@ namespace {
 using detail::FeatureKinds;
 
 constexpr std::size_t blocks_per_range = 32;
+constexpr std::size_t most_collisions = std::size_t{1} << 26;  ///< 1.6 GB of them
 
 void check(const MeshView& mesh, std::span<const Vec3d> end) {
   validate(mesh);
@@ -41,6 +43,7 @@ struct Found {
   std::vector<Collision> collisions;
   std::size_t box_pairs = 0;
   std::size_t exact_tests = 0;
+  bool is_stopped = false;  ///< as the caller asked for it, or as there are too many
 };
 
 class Search {
@@ -79,6 +82,11 @@ class Search {
     parallel_for(context_, blocks, blocks_per_range, phase, [&](const WorkRange& range) {
       for (std::size_t b = range.begin; b < range.end; ++b) find(b, parts[range.begin / blocks_per_range]);
     });
+    throw_if_cancelled(context_);  // parts that stopped for it have not found all
+    if (collisions_ > most_collisions) {
+      throw OutOfMemory("more than " + std::to_string(most_collisions) +
+                        " pairs collide: parts that lie on each other, mostly; take duplicates away");
+    }
     std::vector<Collision> all;
     for (const Found<Collision>& part : parts) {
       all.insert(all.end(), part.collisions.begin(), part.collisions.end());
@@ -88,16 +96,27 @@ class Search {
     return all;
   }
 
+  /// Counts a pair. @return whether it is to be left out, as nothing counts any more.
+  template <class Collision>
+  bool stops(Found<Collision>& found) const {
+    constexpr std::size_t pairs_between_looks = 256;
+    if (++found.box_pairs % pairs_between_looks == 0) {
+      found.is_stopped = context_.cancel.stop_requested() || collisions_ > most_collisions;
+    }
+    return found.is_stopped;
+  }
+
   void test_vertex_face(std::uint32_t vertex, std::uint32_t face, Found<VertexFaceCollision>& found) const {
     const std::uint32_t v = features_.vertices()[vertex];
     const auto& [a, b, c] = features_.faces()[face];
     if (features_.place(a) == v || features_.place(b) == v || features_.place(c) == v) return;
-    ++found.box_pairs;
+    if (stops(found)) return;
     const FourMovingPoints points = features_.points({v, a, b, c});
     if (detail::are_apart(points, 1, options_.min_separation)) return;
     ++found.exact_tests;
     if (const auto time = detail::impact(points, FeatureKinds::vertex_face, options_)) {
       found.collisions.push_back({v, TriangleId(face), *time});
+      ++collisions_;
     }
   }
 
@@ -105,18 +124,20 @@ class Search {
     const auto& [a, b] = features_.edges()[first];
     const auto& [c, d] = features_.edges()[second];
     if (a == c || a == d || b == c || b == d) return;
-    ++found.box_pairs;
+    if (stops(found)) return;
     const FourMovingPoints points = features_.points({a, b, c, d});
     if (detail::are_apart(points, 2, options_.min_separation)) return;
     ++found.exact_tests;
     if (const auto time = detail::impact(points, FeatureKinds::edge_edge, options_)) {
       found.collisions.push_back({{a, b}, {c, d}, *time});
+      ++collisions_;
     }
   }
 
   const MovingFeatures& features_;
   const ImpactOptions& options_;
   const Context& context_;
+  mutable std::atomic<std::size_t> collisions_ = 0;
 };
 
 /// A box with its sides further out, by no less than half the distance that counts as meeting.

@@ -207,7 +207,7 @@ class Filter {
     const Vec3d way = closest.first - closest.second;
     const double size = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
     constexpr double least_size = 1e-100;  // squares of smaller numbers underflow
-    if (distance > 0 && size < least_size) return false;
+    if (size < least_size) return false;
     const double rounding = height_rounding * size * (u_most_ + v_most_ + w_most_);
     const double least = distance * length(way) * (1 + 8 * unit_roundoff) + rounding;
     for (const double t : {interval.low, interval.high}) {

@@ -10,15 +10,18 @@
 namespace blum {
 namespace {
 
-/// For each vertex the smallest one that is in the same place at both ends; empty where all are by themselves.
-std::vector<std::uint32_t> places(std::span<const Vec3d> start, std::span<const Vec3d> end) {
-  std::vector<std::uint32_t> first = weld_clusters(start);
-  std::vector<std::uint32_t> together;  // vertices that share their place at the start
+/// For each vertex that the mesh names the smallest one of these that is in the same place at both ends; empty where
+/// all are by themselves.
+std::vector<std::uint32_t> places(const MeshView& mesh, std::span<const Vec3d> end) {
+  const std::vector<std::uint32_t> first = weld_clusters(mesh.vertices);
+  std::vector<bool> is_shared(first.size(), false);  // of the first vertex in a place at the start
   for (std::uint32_t v = 0; v < first.size(); ++v) {
-    if (first[v] == v) continue;
-    together.push_back(v);
-    together.push_back(first[v]);
+    if (first[v] != v) is_shared[first[v]] = true;
   }
+  std::vector<std::uint32_t> together;
+  for_each_named_vertex(mesh, [&](std::uint32_t v) {
+    if (is_shared[first[v]]) together.push_back(v);
+  });
   if (together.empty()) return {};
   detail::sort_unique(together);
   const std::vector<std::uint32_t> last = weld_clusters(end);
@@ -36,7 +39,7 @@ std::vector<std::uint32_t> places(std::span<const Vec3d> start, std::span<const 
 }  // namespace
 
 MovingFeatures::MovingFeatures(const MeshView& mesh, std::span<const Vec3d> end, const Context& context)
-    : mesh_(mesh), end_(end), place_(places(mesh.vertices, end)) {
+    : mesh_(mesh), end_(end), place_(places(mesh, end)) {
   throw_if_cancelled(context);
   for_each_named_vertex(mesh, [&](std::uint32_t v) { vertices_.push_back(place(v)); });
   detail::sort_unique(vertices_);

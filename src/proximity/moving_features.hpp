@@ -14,7 +14,7 @@
 namespace blum {
 
 /// The features of a mesh between two frames. Vertices that are in one place in both are one vertex: of these, the one
-/// with the smallest index stands for all.
+/// that the mesh names with the smallest index stands for all.
 class MovingFeatures {
  public:
   /// @param mesh  at the start; must stay, as `end` must.

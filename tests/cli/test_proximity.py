@@ -55,7 +55,11 @@ def test_edges_are_told_by_name_or_option(tmp_path):
     (tmp_path / "cloth_ee.csv").rename(tmp_path / "x.csv")
     assert "give --kind" in run("ccd", tmp_path / "x.csv", status=2)[1]
     assert counts(run_json("ccd", tmp_path / "x.csv", "--kind", "edge-edge")) == [1, 1, 0, 0, 0]
-    assert "must be vertex-face or edge-edge" in run("ccd", tmp_path / "x.csv", "--kind", "edges", status=2)[1]
+    for wrong in ("edges", "not-edge-edge", "ee"):
+        assert "must be vertex-face or edge-edge" in run("ccd", tmp_path / "x.csv", "--kind", wrong, status=2)[1]
+    text = (tmp_path / "x.csv").read_text().replace("1,1,", "0000000000000000000001,1,", 1)
+    (tmp_path / "x.csv").write_text("\ufeff" + text.replace("\n", "\r\n"))
+    assert counts(run_json("ccd", tmp_path / "x.csv", "--kind", "edge-edge")) == [1, 1, 0, 0, 0]
 
 
 @pytest.mark.parametrize(
@@ -83,7 +87,10 @@ def test_what_is_no_question_is_refused(tmp_path, line, message):
 def test_files_without_questions_are_refused(tmp_path):
     (tmp_path / "vf.csv").write_text("\n\n")
     assert "no questions" in run("ccd", tmp_path / "vf.csv", status=1)[1]
-    assert "cannot be read" in run("ccd", tmp_path / "absent-vf.csv", status=1)[1]
+    assert "absent-vf.csv" in run("ccd", tmp_path / "absent-vf.csv", status=1)[1]
+    (tmp_path / "folder-vf.csv").mkdir()
+    assert "folder-vf.csv" in run("ccd", tmp_path / "folder-vf.csv", status=1)[1]
+    assert "/dev/zero" in run("ccd", "--kind", "vertex-face", "/dev/zero", status=1)[1]
     write_queries(tmp_path / "a-vf.csv", [FALLING], [1])
     rows = (tmp_path / "a-vf.csv").read_text().splitlines()
     rows[3] = rows[3][:-1] + "0"

@@ -49,13 +49,14 @@ struct ContinuousCollisions {
 ///
 /// Which pairs these are is exact for the coordinates as they are: see vertex_face_impact(). Pairs that share a vertex
 /// are left out; vertices that are in the same place at the start and at the end are one vertex, so that a mesh need
-/// not be welded: of those the one with the smallest index is told. Edges are those of triangles and the segments of
+/// not be welded: of those that the mesh
+/// names the one with the smallest index is told. Edges are those of triangles and the segments of
 /// the mesh, each once; vertices are those of triangles, segments and points. Triangles without area take part.
 ///
 /// @param mesh  at time 0; must pass validate(mesh).
 /// @param end   the vertices at time 1: as many, finite where the mesh names them, of magnitude at most 1e150.
 /// @return      the same bytes for any number of threads.
-/// @throws InvalidMesh, InvalidOption, Cancelled.
+/// @throws InvalidMesh, InvalidOption, Cancelled; OutOfMemory where more than 2^26 pairs collide.
 /// Cost: O(n log n) and the pairs whose boxes touch; a cloth of 92,000 triangles with 114,000 colliding pairs takes
 /// about half a second on one core. Method: docs/theory/proximity.md.
 [[nodiscard]] ContinuousCollisions continuous_collisions(const MeshView& mesh, std::span<const Vec3d> end,

@@ -101,6 +101,25 @@ TEST(MovingBoxBvh, FindsAllPairsAtAnyScaleAndPlace) {
   expect_pairs(far, far, self_pairs_of(MovingBoxBvh(far)), true, 1e-5);
 }
 
+/// What is far beyond single precision must not be where the lanes are that hold no box: these once were read.
+TEST(MovingBoxBvh, FindsNothingBesideItsBoxes) {
+  const std::vector<MovingBox> small{{{{0, 0, 0}, {1e-3, 1e-3, 1e-3}}, {{0, 0, 0}, {1e-3, 1e-3, 1e-3}}}};
+  const MovingBoxBvh few(small);
+  Random random(4);
+  const MovingBoxBvh many(random_boxes(random, 70, 1e-3, 0, {}));
+  for (const double far : {1e36, 1e39, 1e150, 1e308}) {
+    for (const double sign : {1.0, -1.0}) {
+      const Vec3d at{sign * far, sign * far, sign * far};
+      const MovingBox beyond{{at, at}, {at, at}};
+      const MovingBox leaving{{{}, {}}, {at, at}};
+      const MovingBoxBvh away(std::vector{beyond});
+      EXPECT_TRUE(pairs_of(away, few).empty());
+      EXPECT_TRUE(pairs_of(away, many).empty());
+      EXPECT_EQ(pairs_of(MovingBoxBvh(std::vector{leaving}), few).size(), 1U);
+    }
+  }
+}
+
 /// Boxes that are points, flat, all the same, or touch exactly.
 TEST(MovingBoxBvh, FindsAllPairsOfDegenerateBoxes) {
   Random random(3);

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
 #include <set>
 #include <stop_token>
+#include <thread>
 #include <tuple>
 
 #include "blum/core/error.hpp"
@@ -189,6 +191,58 @@ TEST(ContinuousCollisions, SegmentsAndPointsTakePart) {
   ASSERT_EQ(found.vertex_face.size(), 1U);
   EXPECT_EQ(found.vertex_face[0].vertex, 3U);
   EXPECT_NEAR(*found.earliest(), 0.5, 1e-6);
+}
+
+/// Beyond the range of single precision.
+TEST(ContinuousCollisions, PointsMayBeFarAway) {
+  TriangleMesh mesh;
+  mesh.triangles = {{0, 1, 2}};
+  mesh.points = {3};
+  for (const double size : {1e-50, 1.0}) {
+    for (const double far : {1.0, 1e39, 1e150}) {
+      mesh.vertices = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {far, far, far}};
+      EXPECT_EQ(expect_right(mesh, mesh.vertices), 0U);
+      std::vector<Vec3d> end = mesh.vertices;
+      end[3] = {0, 0, 0};
+      EXPECT_EQ(expect_right(mesh, end), 1U);
+    }
+  }
+}
+
+TEST(ContinuousCollisions, TellOnlyOfVerticesThatTheMeshNames) {
+  TriangleMesh mesh;
+  mesh.vertices = {{1, 1, 1}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1}, {1, 1, 1}};
+  mesh.triangles = {{1, 2, 3}};
+  mesh.points = {4, 5};
+  std::vector<Vec3d> end = mesh.vertices;
+  for (const std::size_t v : {0, 4, 5}) end[v].z = -1;
+  const ContinuousCollisions found = continuous_collisions(mesh, end);
+  ASSERT_EQ(found.vertex_face.size(), 1U);
+  EXPECT_EQ(found.vertex_face[0].vertex, 4U);
+}
+
+/// Each of many pairs collides: the work is long, and little of it is done between two looks.
+TEST(ContinuousCollisions, CanBeCancelledWhereAllCollides) {
+  constexpr std::uint32_t count = 3000;
+  TriangleMesh mesh;
+  std::vector<Vec3d> end;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}}) {
+      mesh.vertices.push_back(p);
+      end.push_back(p + Vec3d{0, 0, static_cast<double>(t + 1)});
+    }
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  std::stop_source stop;
+  const Context context{.threads = 2, .cancel = stop.get_token()};
+  const auto begin = std::chrono::steady_clock::now();
+  std::thread asking([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    stop.request_stop();
+  });
+  EXPECT_THROW(static_cast<void>(continuous_collisions(mesh, end, {}, context)), Cancelled);
+  asking.join();
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5);
 }
 
 TEST(ContinuousCollisions, OfNothingIsNothing) {
