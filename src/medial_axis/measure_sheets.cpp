@@ -81,7 +81,7 @@ class SheetMeasurer {
     const std::array<double, 3> angles{axis.separation_angle[a], axis.separation_angle[b], axis.separation_angle[c]};
     add_corners(thickness, area, sheet.thickness, measured.thickness);
     add_corners(angles, area, sheet.separation_angle, measured.angle);
-    if (angles[0] + angles[1] + angles[2] >= 3 * wall_angle) {
+    if (*std::min_element(angles.begin(), angles.end()) >= wall_angle) {
       add_corners(thickness, area, sheet.wall_thickness, measured.wall);
       sheet.wall_area += area;
     }

@@ -188,12 +188,12 @@ struct AxisSheet {
   bool for_homotopy = false;    ///< all of them are
   AxisSpread thickness;         ///< twice the radius
   AxisSpread separation_angle;  ///< degrees, of vertices: near 180 between parallel walls
-  double wall_area = 0;       ///< of its triangles whose corners see their footprints at 150 degrees or more on average
-  AxisSpread wall_thickness;  ///< of these: twice the radius; zeros where there are none
-  Vec3d centroid;             ///< of the area
-  double rim_length = 0;      ///< where it ends freely
-  double seam_length = 0;     ///< of the border along seams
-  double crease_length = 0;   ///< of the border along edges where it meets one other sheet
+  double wall_area = 0;         ///< of its triangles whose corners all see their footprints at 150 degrees or more
+  AxisSpread wall_thickness;    ///< of these: twice the radius; zeros where there are none
+  Vec3d centroid;               ///< of the area
+  double rim_length = 0;        ///< where it ends freely
+  double seam_length = 0;       ///< of the border along seams
+  double crease_length = 0;     ///< of the border along edges where it meets one other sheet
   std::size_t boundary_loops = 0;
   std::int64_t euler_characteristic = 0;   ///< of the surface cut open: 1 for a disc, 0 for a ring, 2 for a sphere
   std::vector<std::uint32_t> seams;        ///< that it meets others (or itself) along, rising
