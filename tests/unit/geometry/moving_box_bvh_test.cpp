@@ -75,7 +75,7 @@ Pairs self_pairs_of(const MovingBoxBvh& boxes) {
 
 TEST(MovingBoxBvh, FindsWhatLookingAtAllPairsFinds) {
   Random random(1);
-  for (const std::size_t count : {1, 2, 7, 8, 9, 64, 65, 300}) {
+  for (const std::size_t count : {1U, 2U, 7U, 8U, 9U, 64U, 65U, 300U}) {
     for (const double speed : {0.0, 0.1, 2.0}) {
       const auto here = random_boxes(random, count, 0.2, speed, {});
       const auto there = random_boxes(random, 100, 0.1, speed, {0.3, 0, 0});

@@ -215,7 +215,7 @@ TEST(ContinuousCollisions, TellOnlyOfVerticesThatTheMeshNames) {
   mesh.triangles = {{1, 2, 3}};
   mesh.points = {4, 5};
   std::vector<Vec3d> end = mesh.vertices;
-  for (const std::size_t v : {0, 4, 5}) end[v].z = -1;
+  for (const std::size_t v : {0U, 4U, 5U}) end[v].z = -1;
   const ContinuousCollisions found = continuous_collisions(mesh, end);
   ASSERT_EQ(found.vertex_face.size(), 1U);
   EXPECT_EQ(found.vertex_face[0].vertex, 4U);

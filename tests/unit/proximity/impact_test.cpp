@@ -127,7 +127,7 @@ TEST(Impact, OfRandomPointsIsThatOfRationalNumbers) {
 
 TEST(Impact, OfSmallIntegersIsThatOfRationalNumbers) {
   Random random(2);
-  for (const std::uint64_t most : {1, 2, 4}) {
+  for (const std::uint64_t most : {1U, 2U, 4U}) {
     int meet = 0;
     for (int k = 0; k < 200; ++k) meet += expect_right(on_lattice(random, most)) ? 1 : 0;
     EXPECT_GT(meet, 20);
