@@ -52,6 +52,13 @@ Polynomial Polynomial::without_root(const Dyadic& root) const {
   return whole;
 }
 
+void Polynomial::divide_by_content() {
+  Integer common = 0;
+  for (std::size_t k = 0; k < size_ && common != 1; ++k) common = gcd(common, coefficients_[k]);
+  if (common == 0 || common == 1) return;
+  for (std::size_t k = 0; k < size_; ++k) coefficients_[k] /= common;
+}
+
 Polynomial operator+(const Polynomial& a, const Polynomial& b) {
   Polynomial out = a;
   out.size_ = std::max(a.size_, b.size_);

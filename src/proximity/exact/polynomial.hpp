@@ -61,6 +61,9 @@ class Polynomial {
   /// Without the factor (t - root), as often as it is there.
   [[nodiscard]] Polynomial without_root(const Dyadic& root) const;
 
+  /// Makes coefficients that have a common divisor smaller, by a positive number.
+  void divide_by_content();
+
   friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
   friend Polynomial operator-(const Polynomial& a, const Polynomial& b);
   friend Polynomial operator*(const Polynomial& a, const Polynomial& b);

@@ -14,6 +14,7 @@ std::vector<Polynomial> remainders(const Polynomial& first, Polynomial second) {
   std::vector<Polynomial> all{first};
   while (!second.is_zero()) {
     Polynomial next = -positive_remainder(all.back(), second);
+    if (next.degree() > 1) next.divide_by_content();
     all.push_back(std::move(second));
     second = std::move(next);
   }
