@@ -53,9 +53,12 @@ Polynomial Polynomial::without_root(const Dyadic& root) const {
 }
 
 void Polynomial::divide_by_content() {
-  Integer common = 0;
-  for (std::size_t k = 0; k < size_ && common != 1; ++k) common = gcd(common, coefficients_[k]);
-  if (common == 0 || common == 1) return;
+  if (size_ == 0) return;
+  Integer common = abs(coefficients_[size_ - 1]);
+  for (std::size_t k = 0; k + 1 < size_ && common != 1; ++k) {
+    if (coefficients_[k] != 0) common = gcd(common, coefficients_[k]);
+  }
+  if (common == 1) return;
   for (std::size_t k = 0; k < size_; ++k) coefficients_[k] /= common;
 }
 
