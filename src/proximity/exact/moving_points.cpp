@@ -1,6 +1,7 @@
 #include "proximity/exact/moving_points.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -18,13 +19,10 @@ Parts parts_of(double value) {
   if (value == 0) return {0, std::numeric_limits<int>::max()};
   int exponent = 0;
   constexpr int digits = std::numeric_limits<double>::digits;
-  auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), digits));
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), digits));
   exponent -= digits;
-  while (mantissa % 2 == 0) {
-    mantissa /= 2;
-    ++exponent;
-  }
-  return {mantissa, exponent};
+  const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
+  return {mantissa / (std::int64_t{1} << zeros), exponent + zeros};
 }
 
 }  // namespace
