@@ -9,8 +9,8 @@
 
 #include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
-#include "blum/geometry/space_order.hpp"
 #include "geometry/moving_block.hpp"
+#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {

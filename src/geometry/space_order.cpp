@@ -1,4 +1,4 @@
-#include "blum/geometry/space_order.hpp"
+#include "geometry/space_order.hpp"
 
 #include <algorithm>
 #include <array>

@@ -17,12 +17,13 @@ namespace {
 
 /// Collisions of one kind as columns.
 struct Columns {
+  std::string name;
   std::vector<std::array<std::uint32_t, 4>> vertices;
   std::vector<double> times;
 };
 
 Columns vertex_face_of(const ContinuousCollisions& collisions, const MeshView& mesh) {
-  Columns out;
+  Columns out{"vertex_face", {}, {}};
   for (const VertexFaceCollision& one : collisions.vertex_face) {
     const auto& [a, b, c] = mesh.triangles[one.face.value];
     out.vertices.push_back({one.vertex, a, b, c});
@@ -32,7 +33,7 @@ Columns vertex_face_of(const ContinuousCollisions& collisions, const MeshView& m
 }
 
 Columns edge_edge_of(const ContinuousCollisions& collisions) {
-  Columns out;
+  Columns out{"edge_edge", {}, {}};
   for (const EdgeEdgeCollision& one : collisions.edge_edge) {
     out.vertices.push_back({one.first[0], one.first[1], one.second[0], one.second[1]});
     out.times.push_back(one.time);
@@ -47,11 +48,10 @@ void write_npz(AtomicFile& file, const ContinuousCollisions& collisions, const s
   const std::size_t bytes = 28 * kinds[0].times.size() + 24 * kinds[1].times.size();
   volume_io::FieldSink sink(bytes, context);
   volume_io::NpzWriter npz(file, sink, context);
-  const std::array<std::string, 2> names{"vertex_face", "edge_edge"};
-  for (std::size_t k = 0; k < 2; ++k) {
-    const std::span vertices(kinds[k].vertices);
-    npz.add(names[k], "i4", {vertices.size(), 4}, vertices);
-    npz.add(names[k] + "_time", "f8", {vertices.size()}, std::span<const double>(kinds[k].times));
+  for (const Columns& kind : kinds) {
+    const std::span vertices(kind.vertices);
+    npz.add(kind.name, "i4", {vertices.size(), 4}, vertices);
+    npz.add(kind.name + "_time", "f8", {vertices.size()}, std::span<const double>(kind.times));
   }
   npz.add("face", "i4", {faces.size()}, std::span<const std::uint32_t>(faces));
   if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
@@ -60,12 +60,11 @@ void write_npz(AtomicFile& file, const ContinuousCollisions& collisions, const s
 
 void write_csv(AtomicFile& file, const std::array<Columns, 2>& kinds) {
   file.write("kind,a,b,c,d,time\n");
-  const std::array<std::string, 2> names{"vertex_face", "edge_edge"};
-  for (std::size_t k = 0; k < 2; ++k) {
-    for (std::size_t n = 0; n < kinds[k].times.size(); ++n) {
-      std::string row = names[k];
-      for (const std::uint32_t v : kinds[k].vertices[n]) row += ',' + std::to_string(v);
-      file.write(row + ',' + exact_text(kinds[k].times[n]) + '\n');
+  for (const Columns& kind : kinds) {
+    for (std::size_t n = 0; n < kind.times.size(); ++n) {
+      std::string row = kind.name;
+      for (const std::uint32_t v : kind.vertices[n]) row += ',' + std::to_string(v);
+      file.write(row + ',' + exact_text(kind.times[n]) + '\n');
     }
   }
 }
@@ -73,18 +72,17 @@ void write_csv(AtomicFile& file, const std::array<Columns, 2>& kinds) {
 void write_json(AtomicFile& file, const std::array<Columns, 2>& kinds, const FileMetadata& metadata) {
   std::string head = metadata.empty() ? "{}" : volume_io::to_json(metadata);
   file.write("{\"metadata\": " + head);
-  const std::array<std::string, 2> names{"vertex_face", "edge_edge"};
-  for (std::size_t k = 0; k < 2; ++k) {
-    file.write(",\n\"" + names[k] + "\": [");
-    for (std::size_t n = 0; n < kinds[k].times.size(); ++n) {
+  for (const Columns& kind : kinds) {
+    file.write(",\n\"" + kind.name + "\": [");
+    for (std::size_t n = 0; n < kind.times.size(); ++n) {
       std::string row = n == 0 ? "\n[" : ",\n[";
-      for (const std::uint32_t v : kinds[k].vertices[n]) row += std::to_string(v) + ", ";
+      for (const std::uint32_t v : kind.vertices[n]) row += std::to_string(v) + ", ";
       row.resize(row.size() - 2);
       file.write(row + "]");
     }
-    file.write("],\n\"" + names[k] + "_time\": [");
-    for (std::size_t n = 0; n < kinds[k].times.size(); ++n) {
-      file.write((n == 0 ? "" : ", ") + exact_text(kinds[k].times[n]));
+    file.write("],\n\"" + kind.name + "_time\": [");
+    for (std::size_t n = 0; n < kind.times.size(); ++n) {
+      file.write((n == 0 ? "" : ", ") + exact_text(kind.times[n]));
     }
     file.write("]");
   }

@@ -28,7 +28,8 @@ class QueryReader {
     ImpactQueries out;
     FourMovingPoints points;
     std::optional<bool> truth;
-    for (std::size_t row = 0; next_line();) {
+    std::size_t row = 0;
+    while (next_line()) {
       const Row own = read_row();
       (row < 4 ? points.start[row] : points.end[row - 4]) = own.point;
       if (row > 0 && own.truth != truth) fail("the answer is not that of the row before, of the same question");
@@ -37,11 +38,8 @@ class QueryReader {
       row = 0;
       out.points.push_back(points);
       out.truth.push_back(truth);
-      begun_ = line_;
     }
-    if (line_ - begun_ > 0 && (rows_ % rows_per_query) != 0) {
-      fail("the file ends within a question: each has eight rows");
-    }
+    if (row != 0) fail("the file ends within a question: each has eight rows");
     return out;
   }
 
@@ -62,9 +60,7 @@ class QueryReader {
       row_ = volume_io::trim(text_.substr(0, end));
       text_.remove_prefix(end == std::string_view::npos ? text_.size() : end + 1);
       ++line_;
-      if (row_.empty()) continue;
-      ++rows_;
-      return true;
+      if (!row_.empty()) return true;
     }
     return false;
   }
@@ -126,8 +122,6 @@ class QueryReader {
   std::string name_;
   std::string_view row_;
   std::size_t line_ = 0;
-  std::size_t begun_ = 0;
-  std::size_t rows_ = 0;
 };
 
 }  // namespace

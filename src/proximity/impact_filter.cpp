@@ -84,20 +84,17 @@ class Filter {
     const auto vector = [&](std::size_t from, std::size_t to) {
       return MovingVector{points.start[to] - points.start[from], points.end[to] - points.end[from]};
     };
-    const MovingVector u = is_face_ ? vector(1, 2) : vector(0, 1);
-    const MovingVector v = is_face_ ? vector(1, 3) : vector(2, 3);
-    const MovingVector w = is_face_ ? vector(1, 0) : vector(0, 2);
-    u_ = u;
-    v_ = v;
-    w_ = w;
-    u_most_ = u.magnitude();
-    v_most_ = v.magnitude();
-    w_most_ = w.magnitude();
+    u_ = is_face_ ? vector(1, 2) : vector(0, 1);
+    v_ = is_face_ ? vector(1, 3) : vector(2, 3);
+    w_ = is_face_ ? vector(1, 0) : vector(0, 2);
+    u_most_ = u_.magnitude();
+    v_most_ = v_.magnitude();
+    w_most_ = w_.magnitude();
     in_range_ = is_in_range(u_most_) && is_in_range(v_most_) && is_in_range(w_most_);
     if (!in_range_) return;
-    normal_ = product(u, v);
-    volume_ = {dot(normal_[0], w.start), (dot(normal_[0], w.end) + 2 * dot(normal_[1], w.start)) / 3,
-               (2 * dot(normal_[1], w.end) + dot(normal_[2], w.start)) / 3, dot(normal_[2], w.end)};
+    normal_ = product(u_, v_);
+    volume_ = {dot(normal_[0], w_.start), (dot(normal_[0], w_.end) + 2 * dot(normal_[1], w_.start)) / 3,
+               (2 * dot(normal_[1], w_.end) + dot(normal_[2], w_.start)) / 3, dot(normal_[2], w_.end)};
     volume_error_ = volume_rounding * u_most_ * v_most_ * w_most_;
     normal_error_ = area_rounding * u_most_ * v_most_;
     weight_error_ = area_rounding * w_most_ * std::max(u_most_, v_most_);
@@ -105,12 +102,9 @@ class Filter {
 
   [[nodiscard]] FilteredImpact meeting() {
     if (!in_range_) return {};
-    if (may_be_zero(volume_, volume_error_)) {
-      first_ = product(w_, v_);
-      second_ = is_face_ ? product(u_, w_) : product(w_, u_);
-    } else {
-      return {FilteredImpact::Answer::never, 0};
-    }
+    if (!may_be_zero(volume_, volume_error_)) return {FilteredImpact::Answer::never, 0};
+    first_ = product(w_, v_);
+    second_ = is_face_ ? product(u_, w_) : product(w_, u_);
     return first_by(most_looks_for_meeting, [&](const Interval& interval) { return look_at(interval); });
   }
 

@@ -25,7 +25,7 @@ struct MovingBox {
 ///
 /// All queries may run on many threads at once, and allocate nothing. A pair that touches is never left out; few are
 /// seen that do not, for rounding to single precision.
-/// Cost: O(n log n) to build, about 0.15 microseconds per box; 60 bytes per box.
+/// Cost: O(n log n) to build, about 0.15 microseconds per box; 160 bytes per box.
 class MovingBoxBvh {
  public:
   /// @param boxes  finite, none empty; at most max_id_count. @throws Cancelled.

@@ -1,17 +1,13 @@
 // Blum: what of a moving mesh collides with what. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
-#include <tuple>
 #include <vector>
 
 #include "blum/core/context.hpp"
-#include "blum/core/describe.hpp"
 #include "blum/core/ids.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -49,9 +45,9 @@ struct ContinuousCollisions {
 ///
 /// Which pairs these are is exact for the coordinates as they are: see vertex_face_impact(). Pairs that share a vertex
 /// are left out; vertices that are in the same place at the start and at the end are one vertex, so that a mesh need
-/// not be welded: of those that the mesh
-/// names the one with the smallest index is told. Edges are those of triangles and the segments of
-/// the mesh, each once; vertices are those of triangles, segments and points. Triangles without area take part.
+/// not be welded: of those that the mesh names the one with the smallest index is told. Edges are those of triangles
+/// and the segments of the mesh, each once; vertices are those of triangles, segments and points. Triangles without
+/// area take part.
 ///
 /// @param mesh  at time 0; must pass validate(mesh).
 /// @param end   the vertices at time 1: as many, finite where the mesh names them, of magnitude at most 1e150.

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -33,12 +31,7 @@ class Features {
 
   /// Zero where all points lie in one plane.
   [[nodiscard]] Polynomial volume() const {
-    const MovingVector between = vector(between_[0], between_[1]);
-    Polynomial sum;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      sum = sum + normal(axis) * Polynomial{between[axis].start, between[axis].slope};
-    }
-    return sum;
+    return dot(cross(vector(first_[0], first_[1]), vector(second_[0], second_[1])), vector(between_[0], between_[1]));
   }
   /// Zero along all axes where the points of a face, or directions of edges, have no plane of their own.
   [[nodiscard]] Polynomial normal(std::size_t axis) const {

@@ -19,22 +19,6 @@ struct Parts {
   Polynomial size;
 };
 
-using Triple = std::array<Polynomial, 3>;
-
-Triple cross(const MovingVector& a, const MovingVector& b) {
-  return {cross_component(a, b, 0), cross_component(a, b, 1), cross_component(a, b, 2)};
-}
-
-Polynomial dot(const Triple& a, const Triple& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Polynomial dot(const Triple& a, const MovingVector& b) {
-  Polynomial sum;
-  for (std::size_t axis = 0; axis < 3; ++axis) sum = sum + a[axis] * Polynomial{b[axis].start, b[axis].slope};
-  return sum;
-}
-
 class Approach {
  public:
   explicit Approach(const IntegerPoints& points)
@@ -50,29 +34,11 @@ class Approach {
     const MovingVector way = vector(from, point);
     const Polynomial size = dot(edge, edge);
     const Polynomial along = dot(edge, way);
-    const Triple area = cross(edge, way);
+    const PolynomialVector area = cross(edge, way);
     parts_.push_back({dot(area, area) - square_ * size, {along, size - along}, size});
   }
-  void add_vertex_and_face() {
-    const MovingVector u = vector(1, 2);
-    const MovingVector v = vector(1, 3);
-    const MovingVector w = vector(1, 0);
-    const Triple normal = cross(u, v);
-    const Polynomial size = dot(normal, normal);
-    const Polynomial s = dot(normal, cross(w, v));
-    const Polynomial r = dot(normal, cross(u, w));
-    parts_.push_back({excess_of(normal, w, size), {s, r, size - s - r}, size});
-  }
-  void add_edge_and_edge() {
-    const MovingVector u = vector(0, 1);
-    const MovingVector v = vector(2, 3);
-    const MovingVector w = vector(0, 2);
-    const Triple normal = cross(u, v);
-    const Polynomial size = dot(normal, normal);
-    const Polynomial s = dot(normal, cross(w, v));
-    const Polynomial r = dot(normal, cross(w, u));
-    parts_.push_back({excess_of(normal, w, size), {s, size - s, r, size - r}, size});
-  }
+  void add_vertex_and_face() { add_insides(vector(1, 2), vector(1, 3), vector(1, 0), true); }
+  void add_edge_and_edge() { add_insides(vector(0, 1), vector(2, 3), vector(0, 2), false); }
 
   /// They are close for the first time at the start, or where two parts are exactly as far apart as the distance; of
   /// those that always are, where the closest points come to lie on them.
@@ -97,9 +63,20 @@ class Approach {
     return points_.at[to] - points_.at[from];
   }
 
-  [[nodiscard]] Polynomial excess_of(const Triple& normal, const MovingVector& between, const Polynomial& size) const {
-    const Polynomial volume = dot(normal, between);
-    return volume * volume - square_ * size;
+  /// Features that are a + s u and, w further on, b + r v; of a face, a point w from a + s u + r v.
+  void add_insides(const MovingVector& u, const MovingVector& v, const MovingVector& w, bool is_face) {
+    const PolynomialVector normal = cross(u, v);
+    const Polynomial size = dot(normal, normal);
+    const Polynomial volume = dot(normal, w);
+    const Polynomial s = dot(normal, cross(w, v));
+    const Polynomial r = dot(normal, is_face ? cross(u, w) : cross(w, u));
+    std::vector<Polynomial> inside{s, r};
+    if (is_face) {
+      inside.push_back(size - s - r);
+    } else {
+      inside.insert(inside.end(), {size - s, size - r});
+    }
+    parts_.push_back({volume * volume - square_ * size, std::move(inside), size});
   }
 
   [[nodiscard]] static bool holds(const Parts& parts, const RealRoots& roots, const RealRoot& root) {

@@ -71,6 +71,20 @@ Polynomial dot(const MovingVector& a, const MovingVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+PolynomialVector cross(const MovingVector& a, const MovingVector& b) {
+  return {cross_component(a, b, 0), cross_component(a, b, 1), cross_component(a, b, 2)};
+}
+
+Polynomial dot(const PolynomialVector& a, const PolynomialVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Polynomial dot(const PolynomialVector& a, const MovingVector& b) {
+  Polynomial sum;
+  for (std::size_t axis = 0; axis < 3; ++axis) sum = sum + a[axis] * Polynomial{b[axis].start, b[axis].slope};
+  return sum;
+}
+
 unsigned depth_of(double tolerance) {
   int exponent = 0;
   std::frexp(tolerance, &exponent);

@@ -31,6 +31,11 @@ struct IntegerPoints {
 [[nodiscard]] Polynomial cross_component(const MovingVector& a, const MovingVector& b, std::size_t axis);
 [[nodiscard]] Polynomial dot(const MovingVector& a, const MovingVector& b);
 
+using PolynomialVector = std::array<Polynomial, 3>;
+[[nodiscard]] PolynomialVector cross(const MovingVector& a, const MovingVector& b);
+[[nodiscard]] Polynomial dot(const PolynomialVector& a, const PolynomialVector& b);
+[[nodiscard]] Polynomial dot(const PolynomialVector& a, const MovingVector& b);
+
 /// The depth at which intervals are no wider than a tolerance, from 2^-40 to 1.
 [[nodiscard]] unsigned depth_of(double tolerance);
 
