@@ -37,20 +37,23 @@ void squared_distances(const BoxBlock& block, const Vec3d& query, double (&out)[
 
 /// A complete tree over consecutive leaves: block i of level k holds the boxes of blocks (or leaves, for k = 0)
 /// 8 i ... 8 i + 7 of the level below. The last level has one block.
-struct BoxTree {
-  std::vector<std::vector<BoxBlock>> levels;
+template <class Block>
+struct BlockTree {
+  std::vector<std::vector<Block>> levels;
 
   [[nodiscard]] bool is_empty() const { return levels.empty(); }
   [[nodiscard]] int top() const { return static_cast<int>(levels.size()) - 1; }
 };
+
+using BoxTree = BlockTree<BoxBlock>;
 
 /// @param leaves  one box per leaf.
 [[nodiscard]] BoxTree make_box_tree(std::span<const Box3> leaves, const Context& context);
 
 /// Calls visit(leaf) for the leaves whose boxes touch this one, until it returns false. Allocates nothing.
 /// @param first_leaf  leaves before this one are left out, as far as whole blocks of them are.
-template <class Visit>
-void for_each_touching(const BoxTree& tree, const Box3& box, std::size_t first_leaf, const Visit& visit) {
+template <class Block, class Box, class Visit>
+void for_each_touching(const BlockTree<Block>& tree, const Box& box, std::size_t first_leaf, const Visit& visit) {
   if (tree.is_empty()) return;
   struct Item {
     std::uint32_t block;
@@ -65,7 +68,7 @@ void for_each_touching(const BoxTree& tree, const Box3& box, std::size_t first_l
       if (!visit(static_cast<std::size_t>(item.block))) return;
       continue;
     }
-    const BoxBlock& block = tree.levels[static_cast<std::size_t>(item.level)][item.block];
+    const Block& block = tree.levels[static_cast<std::size_t>(item.level)][item.block];
     for (unsigned bits = touching(block, box); bits != 0; bits &= bits - 1) {
       const std::size_t child = item.block * lanes + static_cast<std::size_t>(std::countr_zero(bits));
       // A child of level k covers 8^k leaves.

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
+#include "geometry/box_tree.hpp"
 #include "geometry/moving_block.hpp"
 #include "geometry/space_order.hpp"
 
@@ -83,46 +83,22 @@ struct MovingBoxBvh::Data {
   std::vector<MovingBox> boxes;      ///< by rank
   std::vector<std::uint32_t> order;  ///< the index of each rank
   Frame frame;
-  std::vector<std::vector<MovingBlock>>
-      levels;  ///< block i of a level holds those around blocks 8 i ... of the one below
+  std::vector<MovingBlock> blocks;  ///< of the boxes by rank
+  BlockTree<MovingBlock> tree;      ///< its leaves are the blocks
 
   void build(const Context& context) {
-    std::vector<MovingBlock> blocks((boxes.size() + lanes - 1) / lanes, empty_block());
+    blocks.assign((boxes.size() + lanes - 1) / lanes, empty_block());
     parallel_for(context, blocks.size(), build_grain, "", [&](const WorkRange& range) {
       for (std::size_t rank = range.begin * lanes; rank < std::min(range.end * lanes, boxes.size()); ++rank) {
         set(blocks[rank / lanes], rank % lanes, frame.of(boxes[rank]));
       }
     });
-    levels.push_back(std::move(blocks));
-    while (levels.back().size() > 1) {
-      const std::vector<MovingBlock>& below = levels.back();
-      std::vector<MovingBlock> above((below.size() + lanes - 1) / lanes, empty_block());
-      for (std::size_t k = 0; k < below.size(); ++k) set(above[k / lanes], k % lanes, around(below[k]));
-      levels.push_back(std::move(above));
-    }
-  }
-
-  /// Calls visit(block of the lowest level) for those from `first` on that may touch a box.
-  template <class Visit>
-  void for_each_block(const MovingBoxF& box, std::size_t first, const Visit& visit) const {
-    struct Item {
-      std::uint32_t block;
-      std::uint32_t level;
-    };
-    InlineList<Item, 128> left;  // at most seven siblings wait on each of at most eleven levels
-    left.push_back({0, static_cast<std::uint32_t>(levels.size() - 1)});
-    while (!left.empty()) {
-      const Item item = left.pop_back();
-      if (item.level == 0) {
-        visit(item.block);
-        continue;
-      }
-      for (unsigned bits = touching(levels[item.level][item.block], box); bits != 0; bits &= bits - 1) {
-        const std::size_t child = item.block * lanes + static_cast<std::size_t>(std::countr_zero(bits));
-        const std::size_t end = (child + 1) << (3 * (item.level - 1));
-        if (end > first) left.push_back({static_cast<std::uint32_t>(child), item.level - 1});
-      }
-    }
+    const std::vector<MovingBlock>* below = &blocks;
+    do {
+      std::vector<MovingBlock> above((below->size() + lanes - 1) / lanes, empty_block());
+      for (std::size_t k = 0; k < below->size(); ++k) set(above[k / lanes], k % lanes, around((*below)[k]));
+      below = &tree.levels.emplace_back(std::move(above));
+    } while (below->size() > 1);
   }
 };
 
@@ -169,20 +145,21 @@ void MovingBoxBvh::for_each_pair(std::size_t block, const MovingBoxBvh& other,
   const std::size_t end = std::min((block + 1) * lanes, size());
   for (std::size_t rank = block * lanes; rank < end; ++rank) {
     const MovingBoxF box = other.data_->frame.of(data_->boxes[rank]);
-    other.data_->for_each_block(box, 0, [&](std::size_t there) {
-      for (unsigned bits = touching(other.data_->levels[0][there], box); bits != 0; bits &= bits - 1) {
+    for_each_touching(other.data_->tree, box, 0, [&](std::size_t there) {
+      for (unsigned bits = touching(other.data_->blocks[there], box); bits != 0; bits &= bits - 1) {
         const std::size_t other_rank = there * lanes + static_cast<std::size_t>(std::countr_zero(bits));
         visit(data_->order[rank], other.data_->order[other_rank]);
       }
+      return true;
     });
   }
 }
 
 void MovingBoxBvh::for_each_self_pair(std::size_t block, FunctionRef<void(std::uint32_t, std::uint32_t)> visit) const {
-  const MovingBlock& here = data_->levels[0][block];
+  const MovingBlock& here = data_->blocks[block];
   const MovingBoxF box = around(here);
-  data_->for_each_block(box, block, [&](std::size_t there) {
-    const MovingBlock& blocks = data_->levels[0][there];
+  for_each_touching(data_->tree, box, block, [&](std::size_t there) {
+    const MovingBlock& blocks = data_->blocks[there];
     for (unsigned rows = touching(here, around(blocks)); rows != 0; rows &= rows - 1) {
       const auto row = static_cast<std::size_t>(std::countr_zero(rows));
       unsigned columns = touching(blocks, box_at(here, row));
@@ -192,6 +169,7 @@ void MovingBoxBvh::for_each_self_pair(std::size_t block, FunctionRef<void(std::u
         visit(data_->order[block * lanes + row], data_->order[there * lanes + column]);
       }
     }
+    return true;
   });
 }
 
