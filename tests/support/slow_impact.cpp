@@ -167,11 +167,13 @@ void add_roots(const Roots& roots, const Number& low, const Number& high, std::v
   add_roots(roots, middle, high, times);
 }
 
-Vector position(const FourMovingPoints& points, std::size_t k) {
-  Vector out;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Number start = points.start[k][axis];
-    out[axis] = trimmed({start, Number(points.end[k][axis]) - start});
+std::array<Vector, 4> positions(const FourMovingPoints& points) {
+  std::array<Vector, 4> out;
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Number start = points.start[k][axis];
+      out[k][axis] = trimmed({start, Number(points.end[k][axis]) - start});
+    }
   }
   return out;
 }
@@ -285,10 +287,7 @@ CloseParts of_plane(const Vector& normal, const Vector& between, std::vector<Pol
 
 std::optional<ContactTime> slow_vertex_face_approach(const FourMovingPoints& points, double distance) {
   const Number square = Number(distance) * Number(distance);
-  const Vector p = position(points, 0);
-  const Vector a = position(points, 1);
-  const Vector b = position(points, 2);
-  const Vector c = position(points, 3);
+  const auto [p, a, b, c] = positions(points);
   const Vector normal = cross(b - a, c - a);
   std::vector<CloseParts> all{of_plane(
       normal, p - a,
@@ -302,10 +301,7 @@ std::optional<ContactTime> slow_vertex_face_approach(const FourMovingPoints& poi
 
 std::optional<ContactTime> slow_edge_edge_approach(const FourMovingPoints& points, double distance) {
   const Number square = Number(distance) * Number(distance);
-  const Vector a = position(points, 0);
-  const Vector b = position(points, 1);
-  const Vector c = position(points, 2);
-  const Vector d = position(points, 3);
+  const auto [a, b, c, d] = positions(points);
   const Vector normal = cross(b - a, d - c);
   const Polynomial whole = dot(normal, normal);
   const Polynomial s = dot(normal, cross(c - a, d - c));
@@ -321,10 +317,7 @@ std::optional<ContactTime> slow_edge_edge_approach(const FourMovingPoints& point
 }
 
 std::optional<ContactTime> slow_vertex_face_impact(const FourMovingPoints& points) {
-  const Vector p = position(points, 0);
-  const Vector a = position(points, 1);
-  const Vector b = position(points, 2);
-  const Vector c = position(points, 3);
+  const auto [p, a, b, c] = positions(points);
   const Vector normal = cross(b - a, c - a);
   return first_contact(
       dot(normal, p - a), normal,
@@ -333,10 +326,7 @@ std::optional<ContactTime> slow_vertex_face_impact(const FourMovingPoints& point
 }
 
 std::optional<ContactTime> slow_edge_edge_impact(const FourMovingPoints& points) {
-  const Vector a = position(points, 0);
-  const Vector b = position(points, 1);
-  const Vector c = position(points, 2);
-  const Vector d = position(points, 3);
+  const auto [a, b, c, d] = positions(points);
   const Vector normal = cross(b - a, d - c);
   // a + s (b - a) = c + r (d - c), with s and r times the squared length of the normal.
   const Polynomial whole = dot(normal, normal);

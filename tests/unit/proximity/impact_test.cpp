@@ -50,19 +50,34 @@ void expect_time(const std::optional<double>& found, const std::optional<Contact
   EXPECT_GE(*found, right->low - tolerance);
 }
 
+std::optional<ContactTime> slow_impact(const FourMovingPoints& points, FeatureKinds kinds, double distance) {
+  if (kinds == FeatureKinds::vertex_face) {
+    return distance > 0 ? test::slow_vertex_face_approach(points, distance) : test::slow_vertex_face_impact(points);
+  }
+  return distance > 0 ? test::slow_edge_edge_approach(points, distance) : test::slow_edge_edge_impact(points);
+}
+
+std::optional<double> exact_impact(const FourMovingPoints& points, FeatureKinds kinds, const ImpactOptions& options) {
+  const auto& [tolerance, distance] = options;
+  if (kinds == FeatureKinds::vertex_face) {
+    return distance > 0 ? detail::exact_vertex_face_approach(points, distance, tolerance)
+                        : detail::exact_vertex_face_impact(points, tolerance);
+  }
+  return distance > 0 ? detail::exact_edge_edge_approach(points, distance, tolerance)
+                      : detail::exact_edge_edge_impact(points, tolerance);
+}
+
 /// That the answers, those of doubles alone and those of integers alone are right. @return whether they meet.
-bool expect_right(const FourMovingPoints& points, double tolerance = 1e-6) {
+bool expect_right(const FourMovingPoints& points, const ImpactOptions& options = {}) {
   SCOPED_TRACE(text(points));
   bool any = false;
   for (const FeatureKinds kinds : {FeatureKinds::vertex_face, FeatureKinds::edge_edge}) {
     const bool is_face = kinds == FeatureKinds::vertex_face;
     SCOPED_TRACE(is_face ? "vertex and face" : "edge and edge");
-    const auto right = is_face ? test::slow_vertex_face_impact(points) : test::slow_edge_edge_impact(points);
-    const ImpactOptions options{.tolerance = tolerance};
+    const auto right = slow_impact(points, kinds, options.min_separation);
+    const double tolerance = options.tolerance;
     expect_time(is_face ? vertex_face_impact(points, options) : edge_edge_impact(points, options), right, tolerance);
-    expect_time(is_face ? detail::exact_vertex_face_impact(points, tolerance)
-                        : detail::exact_edge_edge_impact(points, tolerance),
-                right, tolerance);
+    expect_time(exact_impact(points, kinds, options), right, tolerance);
     const FilteredImpact filtered = detail::filtered_impact(points, kinds, options);
     if (filtered.answer == FilteredImpact::Answer::never) {
       EXPECT_FALSE(right);
@@ -75,28 +90,8 @@ bool expect_right(const FourMovingPoints& points, double tolerance = 1e-6) {
 }
 
 /// The same of the time at which they are as close as a distance.
-bool expect_right_approach(const FourMovingPoints& points, double distance, double tolerance = 1e-6) {
-  SCOPED_TRACE(text(points));
-  bool any = false;
-  for (const FeatureKinds kinds : {FeatureKinds::vertex_face, FeatureKinds::edge_edge}) {
-    const bool is_face = kinds == FeatureKinds::vertex_face;
-    SCOPED_TRACE(is_face ? "vertex and face" : "edge and edge");
-    const auto right =
-        is_face ? test::slow_vertex_face_approach(points, distance) : test::slow_edge_edge_approach(points, distance);
-    const ImpactOptions options{.tolerance = tolerance, .min_separation = distance};
-    expect_time(is_face ? vertex_face_impact(points, options) : edge_edge_impact(points, options), right, tolerance);
-    expect_time(is_face ? detail::exact_vertex_face_approach(points, distance, tolerance)
-                        : detail::exact_edge_edge_approach(points, distance, tolerance),
-                right, tolerance);
-    const FilteredImpact filtered = detail::filtered_impact(points, kinds, options);
-    if (filtered.answer == FilteredImpact::Answer::never) {
-      EXPECT_FALSE(right);
-    } else if (filtered.answer == FilteredImpact::Answer::meets) {
-      expect_time(filtered.time, right, tolerance);
-    }
-    any = any || right;
-  }
-  return any;
+bool expect_right_approach(const FourMovingPoints& points, double distance) {
+  return expect_right(points, {.min_separation = distance});
 }
 
 FourMovingPoints random_points(const std::function<Vec3d()>& next) {
@@ -247,7 +242,7 @@ TEST(Impact, ToleranceBoundsHowEarlyTimesAre) {
   Random random(9);
   for (int k = 0; k < 10; ++k) {
     const FourMovingPoints points = random_points([&] { return random.in_cube(); });
-    for (const double tolerance : {1.0, 0.25, 1e-3, 1e-9, 0x1p-40}) expect_right(points, tolerance);
+    for (const double tolerance : {1.0, 0.25, 1e-3, 1e-9, 0x1p-40}) expect_right(points, {.tolerance = tolerance});
   }
 }
 
