@@ -64,6 +64,10 @@ struct MovingVector {
   }
 };
 
+MovingVector between(const FourMovingPoints& points, std::size_t from, std::size_t to) {
+  return {points.start[to] - points.start[from], points.end[to] - points.end[from]};
+}
+
 /// The Bernstein coefficients of a vector in time.
 using QuadraticVector = std::array<Vec3d, 3>;
 
@@ -80,17 +84,15 @@ Bernstein<3> along(const QuadraticVector& v, std::size_t axis) {
 class Filter {
  public:
   Filter(const FourMovingPoints& points, FeatureKinds kinds, double tolerance)
-      : is_face_(kinds == FeatureKinds::vertex_face), tolerance_(tolerance) {
-    const auto vector = [&](std::size_t from, std::size_t to) {
-      return MovingVector{points.start[to] - points.start[from], points.end[to] - points.end[from]};
-    };
-    u_ = is_face_ ? vector(1, 2) : vector(0, 1);
-    v_ = is_face_ ? vector(1, 3) : vector(2, 3);
-    w_ = is_face_ ? vector(1, 0) : vector(0, 2);
-    u_most_ = u_.magnitude();
-    v_most_ = v_.magnitude();
-    w_most_ = w_.magnitude();
-    in_range_ = is_in_range(u_most_) && is_in_range(v_most_) && is_in_range(w_most_);
+      : is_face_(kinds == FeatureKinds::vertex_face),
+        tolerance_(tolerance),
+        u_(is_face_ ? between(points, 1, 2) : between(points, 0, 1)),
+        v_(is_face_ ? between(points, 1, 3) : between(points, 2, 3)),
+        w_(is_face_ ? between(points, 1, 0) : between(points, 0, 2)),
+        u_most_(u_.magnitude()),
+        v_most_(v_.magnitude()),
+        w_most_(w_.magnitude()),
+        in_range_(is_in_range(u_most_) && is_in_range(v_most_) && is_in_range(w_most_)) {
     if (!in_range_) return;
     normal_ = product(u_, v_);
     volume_ = {dot(normal_[0], w_.start), (dot(normal_[0], w_.end) + 2 * dot(normal_[1], w_.start)) / 3,
@@ -229,10 +231,10 @@ class Filter {
   static Vec3d at(const MovingVector& v, double t) { return v.start * (1 - t) + v.end * t; }
 
   bool is_face_;
-  bool in_range_ = false;
   double tolerance_;
   MovingVector u_, v_, w_;
-  double u_most_ = 0, v_most_ = 0, w_most_ = 0;
+  double u_most_, v_most_, w_most_;
+  bool in_range_;
   QuadraticVector normal_;
   QuadraticVector first_;   ///< s times the normal
   QuadraticVector second_;  ///< r times the normal
