@@ -1,0 +1,36 @@
+// Blum: turned and moved places. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "blum/core/vec3.hpp"
+
+namespace blum {
+
+/// Maps a point p to rotation * p + translation.
+struct RigidTransform {
+  Mat3 rotation;  ///< columns of length 1, at right angles
+  Vec3d translation;
+
+  [[nodiscard]] constexpr Vec3d operator()(const Vec3d& p) const { return rotation * p + translation; }
+
+  /// What takes points back.
+  [[nodiscard]] constexpr RigidTransform inverse() const {
+    RigidTransform out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.rotation.columns[k] = {rotation.columns[0][k], rotation.columns[1][k], rotation.columns[2][k]};
+    }
+    out.translation = -(out.rotation * translation);
+    return out;
+  }
+
+  /// The transform that does `first`, then `then`.
+  [[nodiscard]] friend constexpr RigidTransform operator*(const RigidTransform& then, const RigidTransform& first) {
+    RigidTransform out;
+    for (std::size_t k = 0; k < 3; ++k) out.rotation.columns[k] = then.rotation * first.rotation.columns[k];
+    out.translation = then(first.translation);
+    return out;
+  }
+
+  [[nodiscard]] friend constexpr bool operator==(const RigidTransform&, const RigidTransform&) = default;
+};
+
+}  // namespace blum

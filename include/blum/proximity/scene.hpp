@@ -1,0 +1,139 @@
+// Blum: proximity among the objects of a scene. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/core/phase_timer.hpp"
+#include "blum/geometry/rigid_transform.hpp"
+#include "blum/geometry/triangle_distance.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum {
+
+/// An object of a scene: its number, in the order in which objects were added.
+using ObjectId = Id<struct ObjectTag>;
+
+/// What an object is compared with. Two objects are compared where each is in a layer that the other one meets, and
+/// they are not excluded (ProximityScene::exclude).
+struct ObjectOptions {
+  std::uint32_t layers = 1;          ///< the layers that the object is in, a bit for each
+  std::uint32_t meets = 0xffffffff;  ///< the layers whose objects it is compared with
+  bool self = false;                 ///< whether it is compared with itself
+};
+
+template <>
+struct Description<ObjectOptions> {
+  static constexpr std::string_view name = "ObjectOptions";
+  static constexpr std::string_view doc = "What an object of a scene is compared with";
+  static constexpr std::tuple members{
+      Member{"layers", &ObjectOptions::layers, "bits", "the layers that the object is in, a bit for each"},
+      Member{"meets", &ObjectOptions::meets, "bits", "the layers whose objects it is compared with"},
+      Member{"self", &ObjectOptions::self, "", "whether it is compared with itself"},
+  };
+};
+
+/// Two primitives, and their closest points. Primitives of an object are the triangles of its mesh, then the segments,
+/// then the points, in its order.
+struct PrimitivePair {
+  ObjectId first_object;
+  ObjectId second_object;
+  std::uint32_t first = 0;  ///< primitive of the first object
+  std::uint32_t second = 0;
+  TriangleDistance between;  ///< a segment a, b is the triangle a, b, b; a point the one with three equal corners
+};
+
+/// What an answer took.
+struct ProximityReport {
+  std::size_t object_pairs = 0;  ///< compared; an object with itself is one
+  std::size_t candidates = 0;    ///< pairs of primitives that culling left over
+  std::size_t exact_tests = 0;   ///< pairs whose distance was computed
+  std::vector<PhaseTime> phases;
+};
+
+struct ProximityPairs {
+  std::vector<PrimitivePair> pairs;
+  ProximityReport report;
+};
+
+/// Meshes that move, deform and change, and what is close among them. A scene keeps copies of the meshes, and a
+/// hierarchy over each.
+///
+/// Answers are those of comparing all pairs of primitives with triangle_distance(), the same bytes for any number of
+/// threads, and after any updates those of a scene made anew: of pairs that are equally far apart the one with the
+/// smallest (object, primitive) of the first, then of the second. Positions are those of the meshes where their
+/// transforms take them, rounded to doubles.
+///
+/// An object compared with itself: primitives that share a vertex are left out, unless said otherwise; vertices in one
+/// place are one vertex, so that a mesh need not be welded.
+///
+/// Queries may run on many threads at once, updates not beside them. All throw Cancelled; InvalidOption for an object
+/// that is not there.
+class ProximityScene {
+ public:
+  ProximityScene();
+  ProximityScene(ProximityScene&&) noexcept;
+  ProximityScene& operator=(ProximityScene&&) noexcept;
+  ~ProximityScene();
+
+  /// @param mesh  must pass validate(mesh), with coordinates of magnitude at most 1e70.
+  /// @throws InvalidMesh; Cancelled, which leaves the scene as it was.
+  /// Cost: about 0.3 microseconds per primitive.
+  ObjectId add(const MeshView& mesh, const ObjectOptions& options = {}, const Context& context = {});
+  void remove(ObjectId object);
+
+  /// New positions of the vertices of an object, before its transform: as many as it has.
+  /// @throws InvalidMesh; Cancelled, after which the object must be updated again. Cost: a fifth of add().
+  void update(ObjectId object, std::span<const Vec3d> vertices, const Context& context = {});
+  /// Where the object is: at once. @throws InvalidOption for a transform that is not rigid to 1e-9, or beyond 1e70.
+  void update(ObjectId object, const RigidTransform& place);
+  /// Another mesh for an object, which stays where it is and is compared with what it was. As add().
+  void update(ObjectId object, const MeshView& mesh, const Context& context = {});
+
+  /// Leaves out a pair of objects, or an object with itself, whatever their layers; or takes that back.
+  void exclude(ObjectId first, ObjectId second, bool is_excluded = true);
+
+  /// How many objects were added, those that were removed included.
+  [[nodiscard]] std::size_t size() const;
+
+  /// The closest pair of primitives of two objects, whatever their layers; of one object with itself, that of
+  /// primitives that share no vertex. Its distance is 0 just where they meet.
+  /// @return nullopt where there is no pair, or none within the distance.
+  [[nodiscard]] std::optional<PrimitivePair> separation(ObjectId first, ObjectId second,
+                                                        double max_distance = std::numeric_limits<double>::infinity(),
+                                                        const Context& context = {}) const;
+  /// The closest pair for each pair of objects that are compared, where there is one; by rising (first, second) object.
+  [[nodiscard]] ProximityPairs separation(double max_distance = std::numeric_limits<double>::infinity(),
+                                          const Context& context = {}) const;
+
+  /// For each primitive of the scene the closest one that it is compared with, where there is one within a distance; by
+  /// rising (object, primitive) of the first. Sud 2006, ch. 4: the N-body distance query.
+  [[nodiscard]] ProximityPairs closest_primitives(double max_distance = std::numeric_limits<double>::infinity(),
+                                                  const Context& context = {}) const;
+
+  /// All pairs of primitives that are compared and no further apart than a distance; by rising (first object, first,
+  /// second object, second), each once, the smaller object or primitive first.
+  /// @param distance  mesh units, not negative. @throws OutOfMemory where more than 2^26 pairs are.
+  [[nodiscard]] ProximityPairs closer_than(double distance, const Context& context = {}) const;
+
+  /// All pairs of primitives that have a point in common, as closer_than(0). Of one object also those that share a
+  /// vertex, and have more in common than the corner or edge that they share: triangles that are folded onto each
+  /// other, or pass through each other beside it. The point told of these is a corner that they share.
+  [[nodiscard]] ProximityPairs collisions(const Context& context = {}) const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace blum

@@ -1,0 +1,101 @@
+// Blum: eight oriented boxes, and eight triangles to compare with another one. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/rigid_transform.hpp"
+#include "geometry/lanes.hpp"
+
+namespace blum {
+
+/// A box along three axes at right angles.
+struct OrientedBox {
+  Vec3d center;
+  std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  ///< of length 1
+  std::array<double, 3> half{};                                               ///< its size along each
+
+  [[nodiscard]] double half_sum() const { return half[0] + half[1] + half[2]; }
+};
+
+/// The box where a transform takes it.
+[[nodiscard]] inline OrientedBox placed(const OrientedBox& box, const RigidTransform& place) {
+  return {place(box.center),
+          {place.rotation * box.axes[0], place.rotation * box.axes[1], place.rotation * box.axes[2]},
+          box.half};
+}
+
+struct alignas(64) OrientedBlock {
+  double center[3][lanes];
+  double axes[3][3][lanes];  ///< axis, component
+  double half[3][lanes];
+
+  void set(std::size_t lane, const OrientedBox& box) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      center[k][lane] = box.center[k];
+      half[k][lane] = box.half[k];
+      for (std::size_t x = 0; x < 3; ++x) axes[k][x][lane] = box.axes[k][x];
+    }
+  }
+  [[nodiscard]] OrientedBox box(std::size_t lane) const {
+    OrientedBox out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.center[k] = center[k][lane];
+      out.half[k] = half[k][lane];
+      for (std::size_t x = 0; x < 3; ++x) out.axes[k][x] = axes[k][x][lane];
+    }
+    return out;
+  }
+};
+
+/// Squares of how far eight boxes are from another one, or of something less.
+void squared_gaps(const OrientedBlock& block, const OrientedBox& box, double (&out)[lanes]);
+
+/// A triangle, and a unit vector at right angles to it; 0 where it has no area.
+struct FlatTriangle {
+  std::array<Vec3d, 3> corners;
+  Vec3d normal;
+};
+
+/// Eight of them.
+struct alignas(64) FlatTriangleBlock {
+  double corner[3][3][lanes];  ///< corner, component
+  double normal[3][lanes];
+
+  void set(std::size_t lane, const std::array<Vec3d, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k][0][lane] = corners[k].x;
+      corner[k][1][lane] = corners[k].y;
+      corner[k][2][lane] = corners[k].z;
+    }
+  }
+  [[nodiscard]] FlatTriangle triangle(std::size_t lane) const {
+    FlatTriangle out;
+    for (std::size_t x = 0; x < 3; ++x) {
+      for (std::size_t k = 0; k < 3; ++k) out.corners[k][x] = corner[k][x][lane];
+      out.normal[x] = normal[x][lane];
+    }
+    return out;
+  }
+};
+
+/// Sets the normals from the corners, which slivers get none of. @param area  normals of twice the area in length.
+void set_normals(FlatTriangleBlock& block, double (&area)[3][lanes]);
+
+/// Sums over points of a plane.
+struct PlaneMoments {
+  double count = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+};
+
+/// Adds all corners. @param from  the origin, @param u, v  the axes of the plane.
+void add_moments(const FlatTriangleBlock& block, const Vec3d& from, const Vec3d& u, const Vec3d& v, PlaneMoments& out);
+
+/// The interval that the corners take along an axis.
+void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high);
+
+/// Squares of how far eight triangles are from another one, or of something less: along axes, along either normal, and
+/// along the line through both middles.
+void squared_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, double (&out)[lanes]);
+
+}  // namespace blum

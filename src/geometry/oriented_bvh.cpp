@@ -1,0 +1,318 @@
+#include "blum/geometry/oriented_bvh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/inline_list.hpp"
+#include "blum/core/parallel.hpp"
+#include "geometry/box_tree.hpp"
+#include "geometry/oriented_block.hpp"
+#include "geometry/oriented_fit.hpp"
+#include "geometry/space_order.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::size_t build_grain = 64;
+/// How much closer pairs may be than their boxes seem, relative to the largest coordinate.
+constexpr double rounding = 1e-13;
+
+std::array<std::uint32_t, 3> vertices_of(const MeshView& mesh, std::size_t primitive) {
+  if (primitive < mesh.triangles.size()) return mesh.triangles[primitive];
+  primitive -= mesh.triangles.size();
+  if (primitive < mesh.segments.size()) {
+    const auto& [a, b] = mesh.segments[primitive];
+    return {a, b, b};
+  }
+  const std::uint32_t v = mesh.points[primitive - mesh.segments.size()];
+  return {v, v, v};
+}
+
+double largest_coordinate(const Box3& box) {
+  double largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+  }
+  return largest;
+}
+
+/// A node of a tree: a leaf where the level is -1; else its children are the block of this index of this level.
+struct NodeRef {
+  std::uint32_t index = 0;
+  std::int32_t level = -1;
+  [[nodiscard]] bool is_leaf() const { return level < 0; }
+};
+
+/// Nodes of two trees that are still to be compared.
+struct NodePair {
+  double squared_gap = 0;
+  NodeRef here, there;
+};
+
+/// At most seven siblings wait for each of at most eleven levels of either tree.
+using PendingPairs = InlineList<NodePair, 256>;
+
+/// The squared limit that squares of gaps are compared with.
+double squared_limit(double limit, double slack) {
+  if (!(limit >= 0)) return -1;
+  const double wide = limit + slack;
+  return std::min(wide * wide * (1 + 1e-14), std::numeric_limits<double>::max());
+}
+
+/// Puts the pair with the smallest gap on top of those pushed since `bottom`.
+void push_sorted(PendingPairs& pending, std::size_t bottom, const NodePair& pair) {
+  std::size_t place = pending.size();
+  pending.push_back(pair);
+  for (; place > bottom && pending[place - 1].squared_gap < pair.squared_gap; --place) {
+    pending[place] = pending[place - 1];
+  }
+  pending[place] = pair;
+}
+
+}  // namespace
+
+struct OrientedBvh::Data {
+  Box3 bounds;
+  std::size_t vertices = 0;
+  std::vector<std::uint32_t> order;                   ///< the primitive of each rank
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< of primitives by rank
+  std::vector<FlatTriangleBlock> leaves;              ///< of primitives by rank
+  BlockTree<OrientedBlock> tree;                      ///< its leaves are the blocks of primitives
+  OrientedBox root;
+
+  [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
+  [[nodiscard]] std::size_t count_below(std::int32_t level) const {
+    return level == 0 ? leaves.size() : tree.levels[static_cast<std::size_t>(level) - 1].size();
+  }
+  [[nodiscard]] NodeRef top() const { return {0, tree.top()}; }
+  /// The box of a node. Blocks of level k hold the boxes of nodes of level k - 1.
+  [[nodiscard]] OrientedBox box(const NodeRef& node) const {
+    if (node.level == tree.top()) return root;
+    return tree.levels[static_cast<std::size_t>(node.level + 1)][node.index / lanes].box(node.index % lanes);
+  }
+
+  void fill(std::span<const Vec3d> positions, const Context& context);
+};
+
+/// Positions of all primitives, and all boxes.
+void OrientedBvh::Data::fill(std::span<const Vec3d> positions, const Context& context) {
+  std::vector<OrientedBox> boxes(leaves.size());
+  std::vector<Box3> around(leaves.size());
+  parallel_for(context, leaves.size(), build_grain, "", [&](const WorkRange& range) {
+    for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
+      const std::size_t count = lanes_of(leaf);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        // The last leaf repeats its last primitive.
+        const auto& v = corners[leaf * lanes + std::min(lane, count - 1)];
+        leaves[leaf].set(lane, {positions[v[0]], positions[v[1]], positions[v[2]]});
+      }
+      boxes[leaf] = box_around(leaves[leaf], around[leaf]);
+    }
+  });
+  bounds = {};
+  for (const Box3& box : around) bounds.extend(box);
+  tree.levels.clear();
+  do {
+    std::vector<OrientedBlock> level((boxes.size() + lanes - 1) / lanes);
+    std::vector<OrientedBox> above(level.size());
+    parallel_for(context, level.size(), build_grain, "", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        const std::size_t first = k * lanes;
+        const std::size_t count = std::min(lanes, boxes.size() - first);
+        for (std::size_t lane = 0; lane < lanes; ++lane) level[k].set(lane, boxes[first + std::min(lane, count - 1)]);
+        above[k] = box_around(std::span<const OrientedBox>(boxes).subspan(first, count));
+      }
+    });
+    tree.levels.push_back(std::move(level));
+    boxes = std::move(above);
+  } while (boxes.size() > 1);
+  root = boxes.front();
+}
+
+OrientedBvh::OrientedBvh(const MeshView& mesh, const Context& context) : data_(std::make_unique<Data>()) {
+  Data& data = *data_;
+  const std::size_t count = mesh.triangles.size() + mesh.segments.size() + mesh.points.size();
+  data.vertices = mesh.vertices.size();
+  const auto middle = [&](std::size_t primitive) {
+    Box3 box;
+    for (const std::uint32_t v : vertices_of(mesh, primitive)) box.extend(mesh.vertices[v]);
+    return box.center();
+  };
+  data.order = space_order(count, middle, context);
+  data.corners.resize(count);
+  for (std::size_t rank = 0; rank < count; ++rank) data.corners[rank] = vertices_of(mesh, data.order[rank]);
+  data.leaves.resize((count + lanes - 1) / lanes);
+  data.fill(mesh.vertices, context);
+}
+
+OrientedBvh::OrientedBvh(OrientedBvh&&) noexcept = default;
+OrientedBvh& OrientedBvh::operator=(OrientedBvh&&) noexcept = default;
+OrientedBvh::~OrientedBvh() = default;
+
+void OrientedBvh::refit(std::span<const Vec3d> vertices, const Context& context) {
+  if (vertices.size() != data_->vertices) {
+    throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data_->vertices) + " vertices is refitted to " +
+                      std::to_string(vertices.size()) + "; build a new one");
+  }
+  data_->fill(vertices, context);
+}
+
+std::size_t OrientedBvh::size() const {
+  return data_->order.size();
+}
+const Box3& OrientedBvh::bounds() const {
+  return data_->bounds;
+}
+std::size_t OrientedBvh::block_count() const {
+  return data_->leaves.size();
+}
+std::span<const std::uint32_t> OrientedBvh::block(std::size_t block) const {
+  return std::span<const std::uint32_t>(data_->order).subspan(block * lanes, data_->lanes_of(block));
+}
+
+namespace {
+
+/// A traversal of two trees at once: of the nodes of a pair the larger one is replaced by its children.
+template <class Data>
+class PairSearch {
+ public:
+  PairSearch(const Data& here, const Data& there, const RigidTransform& place, double limit,
+             const OrientedBvh::Visit& visit)
+      : here_(here),
+        there_(there),
+        place_(place),
+        back_(place.inverse()),
+        is_placed_(!(place == RigidTransform{})),
+        slack_(rounding *
+               (largest_coordinate(here.bounds) + largest_coordinate(there.bounds) + length(place.translation))),
+        limit_(limit),
+        visit_(visit) {}
+
+  /// Both trees are one, and only blocks from this one on are looked at: each pair of primitives once.
+  void only_from(std::size_t block) {
+    first_there_ = block;
+    is_self_ = true;
+  }
+
+  void run(const NodeRef& here, const NodeRef& there) {
+    pending_.push_back({0, here, there});
+    while (!pending_.empty()) {
+      const NodePair pair = pending_.pop_back();
+      const double most = squared_limit(limit_, slack_);
+      if (!(pair.squared_gap <= most)) continue;
+      if (pair.here.is_leaf() && pair.there.is_leaf()) {
+        compare_leaves(pair.here.index, pair.there.index);
+      } else {
+        descend(pair, most);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] OrientedBox there_seen_from_here(const NodeRef& node) const {
+    const OrientedBox box = there_.box(node);
+    return is_placed_ ? placed(box, place_) : box;
+  }
+  [[nodiscard]] OrientedBox here_seen_from_there(const NodeRef& node) const {
+    const OrientedBox box = here_.box(node);
+    return is_placed_ ? placed(box, back_) : box;
+  }
+
+  void descend(const NodePair& pair, double most) {
+    bool is_here = pair.there.is_leaf();
+    if (!is_here && !pair.here.is_leaf()) {
+      is_here = here_.box(pair.here).half_sum() >= there_.box(pair.there).half_sum();
+    }
+    alignas(64) double gaps[lanes];
+    const NodeRef& parent = is_here ? pair.here : pair.there;
+    const Data& tree = is_here ? here_ : there_;
+    const auto level = static_cast<std::size_t>(parent.level);
+    const OrientedBox other = is_here ? there_seen_from_here(pair.there) : here_seen_from_there(pair.here);
+    squared_gaps(tree.tree.levels[level][parent.index], other, gaps);
+    const std::size_t first = parent.index * lanes;
+    const std::size_t count = std::min(lanes, tree.count_below(parent.level) - first);
+    const std::size_t bottom = pending_.size();
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if (!(gaps[lane] <= most)) continue;
+      const NodeRef child{static_cast<std::uint32_t>(first + lane), parent.level - 1};
+      // A node of level k covers 8^(k + 1) blocks.
+      const bool is_early = !is_here && ((static_cast<std::size_t>(child.index) + 1)
+                                         << (3 * static_cast<unsigned>(child.level + 1))) <= first_there_;
+      if (is_early) continue;
+      push_sorted(pending_, bottom, {gaps[lane], is_here ? child : pair.here, is_here ? pair.there : child});
+    }
+  }
+
+  void compare_leaves(std::size_t here, std::size_t there) {
+    const std::size_t rows = there_.lanes_of(there);
+    const std::size_t columns = here_.lanes_of(here);
+    double most = squared_limit(limit_, slack_);
+    struct Candidate {
+      double squared_gap;
+      std::uint8_t row, column;
+    };
+    InlineList<Candidate, lanes * lanes> candidates;
+    for (std::size_t row = 0; row < rows; ++row) {
+      FlatTriangle triangle = there_.leaves[there].triangle(row);
+      if (is_placed_) {
+        for (Vec3d& corner : triangle.corners) corner = place_(corner);
+        triangle.normal = place_.rotation * triangle.normal;
+      }
+      alignas(64) double gaps[lanes];
+      squared_gaps(here_.leaves[here], triangle, gaps);
+      for (std::size_t column = 0; column < columns; ++column) {
+        if (!(gaps[column] <= most) || (is_self_ && here == there && column <= row)) continue;
+        candidates.push_back({gaps[column], static_cast<std::uint8_t>(row), static_cast<std::uint8_t>(column)});
+      }
+    }
+    std::sort(candidates.begin(), candidates.end(),
+              [](const Candidate& a, const Candidate& b) { return a.squared_gap < b.squared_gap; });
+    for (const Candidate& one : candidates) {
+      if (!(one.squared_gap <= most)) return;
+      const std::uint32_t first = here_.order[here * lanes + one.column];
+      const std::uint32_t second = there_.order[there * lanes + one.row];
+      const double lower = visit_(first, second, std::max(std::sqrt(one.squared_gap) - slack_, 0.0));
+      if (lower < limit_) {
+        limit_ = lower;
+        most = squared_limit(limit_, slack_);
+      }
+    }
+  }
+
+  const Data& here_;
+  const Data& there_;
+  RigidTransform place_;
+  RigidTransform back_;
+  bool is_placed_;
+  double slack_;
+  double limit_;
+  std::size_t first_there_ = 0;
+  bool is_self_ = false;
+  const OrientedBvh::Visit& visit_;
+  PendingPairs pending_;
+};
+
+}  // namespace
+
+void OrientedBvh::for_each_near_pair(const OrientedBvh& other, const RigidTransform& place, double limit,
+                                     Visit visit) const {
+  PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(data_->top(), other.data_->top());
+}
+
+void OrientedBvh::for_each_near_pair(std::size_t block, const OrientedBvh& other, const RigidTransform& place,
+                                     double limit, Visit visit) const {
+  const NodeRef leaf{static_cast<std::uint32_t>(block), -1};
+  PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(leaf, other.data_->top());
+}
+
+void OrientedBvh::for_each_near_self_pair(std::size_t block, double limit, Visit visit) const {
+  PairSearch<Data> search(*data_, *data_, {}, limit, visit);
+  search.only_from(block);
+  search.run({static_cast<std::uint32_t>(block), -1}, data_->top());
+}
+
+}  // namespace blum

@@ -1,0 +1,229 @@
+// Loops over the lanes of blocks of oriented boxes and triangles, for pairs of them: compiled as lane_kernels.cpp is.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#ifdef BLUM_HIGHWAY
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)  // these do nothing for loops of doubles
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "geometry/pair_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#else
+#define HWY_BEFORE_NAMESPACE() static_assert(true)
+#define HWY_AFTER_NAMESPACE() static_assert(true)
+#define HWY_NAMESPACE baseline
+#define HWY_ONCE 1
+#endif
+
+#include "geometry/oriented_block.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace blum::HWY_NAMESPACE {
+namespace {
+
+/// How far [-half, half] is from an interval around `center` of half size `reach`, squared.
+inline double squared_gap(double center, double half, double reach) {
+  const double gap = std::max(std::abs(center) - half - reach, 0.0);
+  return gap * gap;
+}
+
+void squared_box_gaps(const OrientedBlock& block, const OrientedBox& box, double (&out)[lanes]) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double x = box.center.x - block.center[0][i];
+    const double y = box.center.y - block.center[1][i];
+    const double z = box.center.z - block.center[2][i];
+    double reach[3] = {0, 0, 0};  // of the boxes of the block along the axes of the other one
+    double here = 0;              // seen along the axes of the block
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double ax = block.axes[k][0][i], ay = block.axes[k][1][i], az = block.axes[k][2][i];
+      double other = 0;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double cosine = std::abs(ax * box.axes[j].x + ay * box.axes[j].y + az * box.axes[j].z);
+        other += cosine * box.half[j];
+        reach[j] += cosine * block.half[k][i];
+      }
+      here += squared_gap(ax * x + ay * y + az * z, block.half[k][i], other);
+    }
+    double there = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      there += squared_gap(box.axes[j].x * x + box.axes[j].y * y + box.axes[j].z * z, box.half[j], reach[j]);
+    }
+    out[i] = std::max(here, there);
+  }
+}
+
+inline double least(double a, double b, double c) {
+  return std::min(std::min(a, b), c);
+}
+inline double most(double a, double b, double c) {
+  return std::max(std::max(a, b), c);
+}
+inline double gap_between(double low, double high, double other_low, double other_high) {
+  return std::max(std::max(other_low - high, low - other_high), 0.0);
+}
+
+/// The squared gap along one axis between eight intervals around three coordinates and another one.
+inline void add_axis_gap(const double (&a)[lanes], const double (&b)[lanes], const double (&c)[lanes], double low,
+                         double high, double (&sum)[lanes]) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double gap = gap_between(least(a[i], b[i], c[i]), most(a[i], b[i], c[i]), low, high);
+    sum[i] += gap * gap;
+  }
+}
+
+void squared_triangle_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, double (&out)[lanes]) {
+  const Vec3d p = triangle.corners[0];
+  const Vec3d q = triangle.corners[1];
+  const Vec3d r = triangle.corners[2];
+  const Vec3d n = triangle.normal;
+  alignas(64) double boxes[lanes] = {};
+  for (std::size_t x = 0; x < 3; ++x) {
+    add_axis_gap(block.corner[0][x], block.corner[1][x], block.corner[2][x], least(p[x], q[x], r[x]),
+                 most(p[x], q[x], r[x]), boxes);
+  }
+  const double height = n.x * p.x + n.y * p.y + n.z * p.z;
+  const Vec3d middle{p.x + q.x + r.x, p.y + q.y + r.y, p.z + q.z + r.z};
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const Vec3d a{block.corner[0][0][i], block.corner[0][1][i], block.corner[0][2][i]};
+    const Vec3d b{block.corner[1][0][i], block.corner[1][1][i], block.corner[1][2][i]};
+    const Vec3d c{block.corner[2][0][i], block.corner[2][1][i], block.corner[2][2][i]};
+    const Vec3d m{block.normal[0][i], block.normal[1][i], block.normal[2][i]};
+    const Vec3d way{middle.x - (a.x + b.x + c.x), middle.y - (a.y + b.y + c.y), middle.z - (a.z + b.z + c.z)};
+    const double at_a = dot(n, a), at_b = dot(n, b), at_c = dot(n, c);
+    const double from_other = gap_between(least(at_a, at_b, at_c), most(at_a, at_b, at_c), height, height);
+    const double level = dot(m, a), at_p = dot(m, p), at_q = dot(m, q), at_r = dot(m, r);
+    const double from_here = gap_between(least(at_p, at_q, at_r), most(at_p, at_q, at_r), level, level);
+    const double between =
+        std::max(least(dot(way, p), dot(way, q), dot(way, r)) - most(dot(way, a), dot(way, b), dot(way, c)), 0.0);
+    const double on_way = between * between / std::max(dot(way, way), 1e-300);
+    out[i] = std::max(std::max(boxes[i], on_way), std::max(from_other * from_other, from_here * from_here));
+  }
+}
+
+/// The square of a triangle's height over its longest side must be more than this part of the square of that side, or
+/// its normal is not looked at: for it would be too far off for heights of its own corners to be equal.
+constexpr double least_flatness = 1e-4;
+
+void set_normals(FlatTriangleBlock& block, double (&area)[3][lanes]) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const Vec3d a{block.corner[0][0][i], block.corner[0][1][i], block.corner[0][2][i]};
+    const Vec3d b{block.corner[1][0][i], block.corner[1][1][i], block.corner[1][2][i]};
+    const Vec3d c{block.corner[2][0][i], block.corner[2][1][i], block.corner[2][2][i]};
+    const Vec3d u = b - a;
+    const Vec3d v = c - a;
+    const Vec3d w = c - b;
+    const Vec3d n = cross(u, v);
+    const double longest = most(dot(u, u), dot(v, v), dot(w, w));
+    const double square = dot(n, n);
+    const double inverse = square > least_flatness * longest * longest ? 1 / std::sqrt(square) : 0;
+    area[0][i] = n.x;
+    area[1][i] = n.y;
+    area[2][i] = n.z;
+    block.normal[0][i] = n.x * inverse;
+    block.normal[1][i] = n.y * inverse;
+    block.normal[2][i] = n.z * inverse;
+  }
+}
+
+/// Sums over all corners of products of two coordinates in a plane, from a place near them.
+void add_moments(const FlatTriangleBlock& block, const Vec3d& from, const Vec3d& u, const Vec3d& v, PlaneMoments& out) {
+  alignas(64) double x[lanes] = {}, y[lanes] = {}, xx[lanes] = {}, xy[lanes] = {}, yy[lanes] = {};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const double px = block.corner[k][0][i] - from.x;
+      const double py = block.corner[k][1][i] - from.y;
+      const double pz = block.corner[k][2][i] - from.z;
+      const double s = u.x * px + u.y * py + u.z * pz;
+      const double t = v.x * px + v.y * py + v.z * pz;
+      x[i] += s;
+      y[i] += t;
+      xx[i] += s * s;
+      xy[i] += s * t;
+      yy[i] += t * t;
+    }
+  }
+  for (std::size_t i = 0; i < lanes; ++i) {
+    out.x += x[i];
+    out.y += y[i];
+    out.xx += xx[i];
+    out.xy += xy[i];
+    out.yy += yy[i];
+  }
+  out.count += 3 * static_cast<double>(lanes);
+}
+
+void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high) {
+  alignas(64) double least_of[lanes], most_of[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double a = axis.x * block.corner[0][0][i] + axis.y * block.corner[0][1][i] + axis.z * block.corner[0][2][i];
+    const double b = axis.x * block.corner[1][0][i] + axis.y * block.corner[1][1][i] + axis.z * block.corner[1][2][i];
+    const double c = axis.x * block.corner[2][0][i] + axis.y * block.corner[2][1][i] + axis.z * block.corner[2][2][i];
+    least_of[i] = least(a, b, c);
+    most_of[i] = most(a, b, c);
+  }
+  low = least_of[0];
+  high = most_of[0];
+  for (std::size_t i = 1; i < lanes; ++i) {
+    low = std::min(low, least_of[i]);
+    high = std::max(high, most_of[i]);
+  }
+}
+
+}  // namespace
+}  // namespace blum::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace blum {
+namespace {
+
+#if defined(BLUM_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1))
+/// Where the tables of functions have those of the best instruction set.
+std::size_t best_index() {
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return hwy::GetChosenTarget().GetIndex();
+}
+
+HWY_EXPORT(squared_box_gaps);
+HWY_EXPORT(squared_triangle_gaps);
+HWY_EXPORT(set_normals);
+HWY_EXPORT(add_moments);
+HWY_EXPORT(extent_along);
+#define BLUM_BEST(kernel) HWY_DISPATCH_TABLE(kernel)[best_index()]
+#else
+#define BLUM_BEST(kernel) (&HWY_NAMESPACE::kernel)
+#endif
+
+// Chosen once: the loops take tens of nanoseconds, and a look-up would be felt.
+const auto best_squared_box_gaps = BLUM_BEST(squared_box_gaps);
+const auto best_squared_triangle_gaps = BLUM_BEST(squared_triangle_gaps);
+const auto best_set_normals = BLUM_BEST(set_normals);
+const auto best_add_moments = BLUM_BEST(add_moments);
+const auto best_extent_along = BLUM_BEST(extent_along);
+
+}  // namespace
+
+void squared_gaps(const OrientedBlock& block, const OrientedBox& box, double (&out)[lanes]) {
+  best_squared_box_gaps(block, box, out);
+}
+
+void squared_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, double (&out)[lanes]) {
+  best_squared_triangle_gaps(block, triangle, out);
+}
+
+void set_normals(FlatTriangleBlock& block, double (&area)[3][lanes]) {
+  best_set_normals(block, area);
+}
+
+void add_moments(const FlatTriangleBlock& block, const Vec3d& from, const Vec3d& u, const Vec3d& v, PlaneMoments& out) {
+  best_add_moments(block, from, u, v, out);
+}
+
+void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high) {
+  best_extent_along(block, axis, low, high);
+}
+
+}  // namespace blum
+#endif  // HWY_ONCE

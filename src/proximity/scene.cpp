@@ -1,0 +1,176 @@
+#include "blum/proximity/scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/geometry/triangle_contact.hpp"
+#include "proximity/scene_object.hpp"
+#include "proximity/scene_pairs.hpp"
+
+namespace blum {
+namespace {
+
+using detail::ObjectPair;
+using detail::SceneObject;
+
+void check_distance(const char* what, double distance) {
+  if (distance >= 0) return;
+  throw InvalidOption(std::string(what) + " is " + std::to_string(distance) + ", but must be a number of at least 0");
+}
+
+}  // namespace
+
+struct ProximityScene::Data {
+  std::vector<std::optional<SceneObject>> objects;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> excluded;  ///< the smaller first
+
+  [[nodiscard]] const SceneObject& at(ObjectId object) const {
+    if (object.value >= objects.size() || !objects[object.value]) {
+      throw InvalidOption("the scene has no object " + std::to_string(object.value) +
+                          (object.value < objects.size() ? ": it was removed" : ""));
+    }
+    return *objects[object.value];
+  }
+  [[nodiscard]] SceneObject& at(ObjectId object) { return const_cast<SceneObject&>(std::as_const(*this).at(object)); }
+
+  [[nodiscard]] bool are_compared(std::uint32_t a, std::uint32_t b) const {
+    if (!objects[a] || !objects[b] || excluded.contains({a, b})) return false;
+    const ObjectOptions& of_a = objects[a]->options();
+    const ObjectOptions& of_b = objects[b]->options();
+    if (a == b) return of_a.self;
+    return (of_a.layers & of_b.meets) != 0 && (of_b.layers & of_a.meets) != 0;
+  }
+
+  /// The pairs of objects that are compared and whose boxes are no further apart than this, the smaller first.
+  [[nodiscard]] std::vector<ObjectPair> pairs(double distance) const {
+    std::vector<Box3> boxes(objects.size());
+    for (std::size_t k = 0; k < boxes.size(); ++k) {
+      if (objects[k]) boxes[k] = objects[k]->bounds();
+    }
+    std::vector<ObjectPair> out;
+    for (std::uint32_t a = 0; a < objects.size(); ++a) {
+      for (std::uint32_t b = a; b < objects.size(); ++b) {
+        if (are_compared(a, b) && detail::box_gap(boxes[a], boxes[b]) <= distance) {
+          out.emplace_back(ObjectId(a), *objects[a], ObjectId(b), *objects[b]);
+        }
+      }
+    }
+    return out;
+  }
+};
+
+ProximityScene::ProximityScene() : data_(std::make_unique<Data>()) {}
+ProximityScene::ProximityScene(ProximityScene&&) noexcept = default;
+ProximityScene& ProximityScene::operator=(ProximityScene&&) noexcept = default;
+ProximityScene::~ProximityScene() = default;
+
+ObjectId ProximityScene::add(const MeshView& mesh, const ObjectOptions& options, const Context& context) {
+  SceneObject object(mesh, options, context);
+  data_->objects.emplace_back(std::move(object));
+  return ObjectId(static_cast<std::uint32_t>(data_->objects.size() - 1));
+}
+
+void ProximityScene::remove(ObjectId object) {
+  static_cast<void>(data_->at(object));
+  data_->objects[object.value].reset();
+}
+
+void ProximityScene::update(ObjectId object, std::span<const Vec3d> vertices, const Context& context) {
+  data_->at(object).set_positions(vertices, context);
+}
+void ProximityScene::update(ObjectId object, const RigidTransform& place) {
+  data_->at(object).set_place(place);
+}
+void ProximityScene::update(ObjectId object, const MeshView& mesh, const Context& context) {
+  data_->at(object).set_mesh(mesh, context);
+}
+
+void ProximityScene::exclude(ObjectId first, ObjectId second, bool is_excluded) {
+  static_cast<void>(data_->at(first));
+  static_cast<void>(data_->at(second));
+  const auto [a, b] = std::minmax(first.value, second.value);
+  if (is_excluded) {
+    data_->excluded.emplace(a, b);
+  } else {
+    data_->excluded.erase({a, b});
+  }
+}
+
+std::size_t ProximityScene::size() const {
+  return data_->objects.size();
+}
+
+std::optional<PrimitivePair> ProximityScene::separation(ObjectId first, ObjectId second, double max_distance,
+                                                        const Context& context) const {
+  check_distance("max_distance", max_distance);
+  const SceneObject& a = data_->at(first);
+  const SceneObject& b = data_->at(second);
+  throw_if_cancelled(context);
+  ProximityReport report;
+  if (first <= second) return detail::closest_pair(ObjectPair(first, a, second, b), max_distance, report);
+  auto found = detail::closest_pair(ObjectPair(second, b, first, a), max_distance, report);
+  return found ? std::optional(detail::exchanged(*found)) : std::nullopt;
+}
+
+ProximityPairs ProximityScene::separation(double max_distance, const Context& context) const {
+  check_distance("max_distance", max_distance);
+  ProximityPairs out;
+  PhaseTimer timer(out.report.phases);
+  const std::vector<ObjectPair> pairs = data_->pairs(max_distance);
+  timer.lap("objects");
+  std::vector<std::optional<PrimitivePair>> found(pairs.size());
+  std::vector<ProximityReport> reports(pairs.size());
+  parallel_for(context, pairs.size(), 1, "separation", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      found[k] = detail::closest_pair(pairs[k], max_distance, reports[k]);
+    }
+  });
+  for (const auto& one : found) {
+    if (one) out.pairs.push_back(*one);
+  }
+  out.report.object_pairs = pairs.size();
+  for (const ProximityReport& one : reports) detail::add(one, out.report);
+  timer.lap("primitives");
+  return out;
+}
+
+ProximityPairs ProximityScene::closest_primitives(double max_distance, const Context& context) const {
+  check_distance("max_distance", max_distance);
+  ProximityPairs out;
+  PhaseTimer timer(out.report.phases);
+  const std::vector<ObjectPair> pairs = data_->pairs(max_distance);
+  timer.lap("objects");
+  detail::closest_of_each(pairs, data_->objects.size(), max_distance, context, out);
+  timer.lap("primitives");
+  return out;
+}
+
+ProximityPairs ProximityScene::closer_than(double distance, const Context& context) const {
+  check_distance("distance", distance);
+  ProximityPairs out;
+  PhaseTimer timer(out.report.phases);
+  const std::vector<ObjectPair> pairs = data_->pairs(distance);
+  timer.lap("objects");
+  detail::near_pairs(pairs, distance, detail::Neighbours::left_out, context, out);
+  timer.lap("primitives");
+  return out;
+}
+
+ProximityPairs ProximityScene::collisions(const Context& context) const {
+  ProximityPairs out;
+  PhaseTimer timer(out.report.phases);
+  const std::vector<ObjectPair> pairs = data_->pairs(0);
+  timer.lap("objects");
+  detail::near_pairs(pairs, 0, detail::Neighbours::folded, context, out);
+  timer.lap("primitives");
+  return out;
+}
+
+}  // namespace blum

@@ -1,0 +1,115 @@
+#include "proximity/scene_object.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/geometry/weld.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// Squares of squares of coordinates must stay finite.
+constexpr double largest_coordinate = 1e70;
+
+double magnitude(const Vec3d& p) {
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
+
+void check(const MeshView& mesh) {
+  validate(mesh);
+  const Box3 box = bounds(mesh);
+  if (magnitude(box.lower) > largest_coordinate || magnitude(box.upper) > largest_coordinate) {
+    throw InvalidMesh("a coordinate is beyond 1e70, which is the most that an object of a scene may have; scale it");
+  }
+}
+
+void check(const RigidTransform& place) {
+  constexpr double tolerance = 1e-9;
+  double error = 0;
+  const auto& c = place.rotation.columns;
+  for (std::size_t k = 0; k < 3; ++k) {
+    error = std::max({error, std::abs(dot(c[k], c[k]) - 1), std::abs(dot(c[k], c[(k + 1) % 3]))});
+  }
+  if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2]) || !(error <= tolerance)) {
+    throw InvalidOption(
+        "a transform is not rigid: the columns of its rotation must have length 1 and be at right "
+        "angles; scale vertices instead");
+  }
+  if (!(magnitude(place.translation) <= largest_coordinate)) {
+    throw InvalidOption("the translation of a transform is not finite, or beyond 1e70");
+  }
+}
+
+}  // namespace
+
+SceneObject::SceneObject(const MeshView& mesh, const ObjectOptions& options, const Context& context)
+    : options_(options) {
+  set_mesh(mesh, context);
+}
+
+void SceneObject::set_mesh(const MeshView& mesh, const Context& context) {
+  check(mesh);
+  OrientedBvh bvh(mesh, context);
+  TriangleMesh copy{{mesh.vertices.begin(), mesh.vertices.end()},
+                    {mesh.triangles.begin(), mesh.triangles.end()},
+                    {mesh.segments.begin(), mesh.segments.end()},
+                    {mesh.points.begin(), mesh.points.end()}};
+  mesh_ = std::move(copy);
+  bvh_ = std::move(bvh);
+}
+
+void SceneObject::set_positions(std::span<const Vec3d> vertices, const Context& context) {
+  if (vertices.size() != mesh_.vertices.size()) {
+    throw InvalidMesh("the object has " + std::to_string(mesh_.vertices.size()) + " vertices, but is updated with " +
+                      std::to_string(vertices.size()) + "; give it another mesh where these change");
+  }
+  MeshView moved = mesh_;
+  moved.vertices = vertices;
+  check(moved);
+  std::copy(vertices.begin(), vertices.end(), mesh_.vertices.begin());
+  bvh_->refit(mesh_.vertices, context);
+}
+
+void SceneObject::set_place(const RigidTransform& place) {
+  check(place);
+  place_ = place;
+  is_placed_ = !(place == RigidTransform{});
+}
+
+Box3 SceneObject::bounds() const {
+  const Box3& box = bvh_->bounds();
+  if (!is_placed_) return box;
+  Box3 out;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Vec3d p;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[axis] = (corner >> axis & 1U) != 0 ? box.upper[axis] : box.lower[axis];
+    out.extend(place_(p));
+  }
+  return out;
+}
+
+std::array<std::uint32_t, 3> SceneObject::vertices(std::uint32_t primitive) const {
+  std::size_t k = primitive;
+  if (k < mesh_.triangles.size()) return mesh_.triangles[k];
+  k -= mesh_.triangles.size();
+  if (k < mesh_.segments.size()) return {mesh_.segments[k][0], mesh_.segments[k][1], mesh_.segments[k][1]};
+  const std::uint32_t v = mesh_.points[k - mesh_.segments.size()];
+  return {v, v, v};
+}
+
+std::array<Vec3d, 3> SceneObject::corners(std::uint32_t primitive) const {
+  const auto [a, b, c] = vertices(primitive);
+  return {position(a), position(b), position(c)};
+}
+
+std::vector<std::uint32_t> SceneObject::clusters() const {
+  if (!is_placed_) return weld_clusters(mesh_.vertices);
+  std::vector<Vec3d> positions(mesh_.vertices.size());
+  for (std::uint32_t v = 0; v < positions.size(); ++v) positions[v] = position(v);
+  return weld_clusters(positions);
+}
+
+}  // namespace blum::detail

@@ -1,0 +1,54 @@
+// Blum: an object of a scene. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/oriented_bvh.hpp"
+#include "blum/geometry/rigid_transform.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/proximity/scene.hpp"
+
+namespace blum::detail {
+
+/// A mesh, where it is, and a hierarchy over it.
+class SceneObject {
+ public:
+  SceneObject(const MeshView& mesh, const ObjectOptions& options, const Context& context);
+
+  void set_positions(std::span<const Vec3d> vertices, const Context& context);
+  void set_place(const RigidTransform& place);
+  void set_mesh(const MeshView& mesh, const Context& context);
+
+  [[nodiscard]] const ObjectOptions& options() const { return options_; }
+  [[nodiscard]] const OrientedBvh& bvh() const { return *bvh_; }
+  [[nodiscard]] const RigidTransform& place() const { return place_; }
+  [[nodiscard]] std::size_t primitives() const { return bvh_->size(); }
+  [[nodiscard]] std::size_t triangles() const { return mesh_.triangles.size(); }
+  /// Around all of it in the scene.
+  [[nodiscard]] Box3 bounds() const;
+
+  /// The vertices of a primitive.
+  [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t primitive) const;
+  /// Where they are in the scene.
+  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const;
+  /// For each vertex the smallest one in the same place, where self is asked for.
+  [[nodiscard]] std::vector<std::uint32_t> clusters() const;
+
+ private:
+  [[nodiscard]] Vec3d position(std::uint32_t vertex) const {
+    return is_placed_ ? place_(mesh_.vertices[vertex]) : mesh_.vertices[vertex];
+  }
+
+  TriangleMesh mesh_;
+  ObjectOptions options_;
+  RigidTransform place_;
+  bool is_placed_ = false;
+  std::optional<OrientedBvh> bvh_;
+};
+
+}  // namespace blum::detail

@@ -1,0 +1,337 @@
+#include "proximity/scene_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <tuple>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/geometry/triangle_contact.hpp"
+
+namespace blum::detail {
+namespace {
+
+constexpr std::size_t blocks_per_range = 16;
+constexpr std::size_t most_pairs = std::size_t{1} << 26;
+
+double largest_coordinate(const Box3& box) {
+  double largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+  }
+  return largest;
+}
+
+/// How far the rotation of a transform is from one that keeps lengths.
+double rotation_error(const RigidTransform& place) {
+  double error = 0;
+  const auto& c = place.rotation.columns;
+  for (std::size_t k = 0; k < 3; ++k) {
+    error = std::max({error, std::abs(dot(c[k], c[k]) - 1), std::abs(dot(c[k], c[(k + 1) % 3]))});
+  }
+  return error;
+}
+
+/// How wrong gaps between boxes may be, as the hierarchies see them, beside distances between rounded positions.
+double position_slack(const SceneObject& object) {
+  constexpr double rounding = 1e-14;
+  const double size = largest_coordinate(object.bounds()) + largest_coordinate(object.bvh().bounds()) +
+                      length(object.place().translation);
+  return (rounding + 8 * rotation_error(object.place())) * size;
+}
+
+auto key(const PrimitivePair& pair) {
+  return std::tuple(pair.first_object, pair.first, pair.second_object, pair.second);
+}
+
+bool is_closer(const PrimitivePair& a, const PrimitivePair& b) {
+  if (a.between.distance != b.between.distance) return a.between.distance < b.between.distance;
+  return key(a) < key(b);
+}
+
+/// The closest pair so far.
+struct Closest {
+  std::optional<PrimitivePair> pair;
+  double limit;  ///< nothing further away than this counts
+
+  void offer(const PrimitivePair& other) {
+    if (other.between.distance > limit || (pair && !is_closer(other, *pair))) return;
+    pair = other;
+    limit = other.between.distance;
+  }
+  /// Whether a pair comes after the closest one, however close it is.
+  [[nodiscard]] bool rules_out(std::uint32_t i, std::uint32_t j) const {
+    return limit == 0 && pair && std::pair(i, j) > std::pair(pair->first, pair->second);
+  }
+};
+
+}  // namespace
+
+double box_gap(const Box3& a, const Box3& b) {
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis], 0.0});
+    squared += gap * gap;
+  }
+  constexpr double rounding = 1e-14;
+  return std::sqrt(squared) - rounding * (largest_coordinate(a) + largest_coordinate(b));
+}
+
+PrimitivePair exchanged(const PrimitivePair& pair) {
+  const TriangleDistance& d = pair.between;
+  return {pair.second_object,
+          pair.first_object,
+          pair.second,
+          pair.first,
+          {d.distance, d.second_point, d.first_point, d.second_feature, d.first_feature}};
+}
+
+void add(const ProximityReport& report, ProximityReport& to) {
+  to.candidates += report.candidates;
+  to.exact_tests += report.exact_tests;
+}
+
+ObjectPair::ObjectPair(ObjectId first, const SceneObject& a, ObjectId second, const SceneObject& b)
+    : first_(first), second_(second), a_(&a), b_(&b) {
+  // Without transforms positions are as the hierarchies see them.
+  const bool is_placed = !(a.place() == RigidTransform{} && b.place() == RigidTransform{});
+  if (is_placed) slack_ = position_slack(a) + position_slack(b);
+  if (is_self()) clusters_ = a.clusters();
+  if (!(a.place() == b.place())) place_ = a.place().inverse() * b.place();
+}
+
+bool ObjectPair::are_neighbours(std::uint32_t i, std::uint32_t j) const {
+  for (const std::uint32_t v : a_->vertices(i)) {
+    for (const std::uint32_t w : a_->vertices(j)) {
+      if (clusters_[v] == clusters_[w]) return true;
+    }
+  }
+  return false;
+}
+
+bool ObjectPair::are_folded(std::uint32_t i, std::uint32_t j) const {
+  if (i >= a_->triangles() || j >= a_->triangles()) return false;
+  const auto triangle = [&](std::uint32_t primitive) {
+    ContactTriangle out{a_->corners(primitive), a_->vertices(primitive)};
+    for (std::uint32_t& corner : out.corners) corner = clusters_[corner];
+    return out;
+  };
+  const ContactTriangle first = triangle(i);
+  const ContactTriangle second = triangle(j);
+  if (has_no_area(first.points) || has_no_area(second.points)) return false;
+  return contact(first, second) != Contact::none;
+}
+
+PrimitivePair ObjectPair::compare(std::uint32_t i, std::uint32_t j) const {
+  if (is_self() && j < i) std::swap(i, j);
+  return {first_, second_, i, j, triangle_distance(a_->corners(i), b_->corners(j))};
+}
+
+std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance, ProximityReport& report) {
+  Closest best{std::nullopt, max_distance};
+  const auto visit = [&](std::uint32_t i, std::uint32_t j, double) {
+    ++report.candidates;
+    if (objects.is_self() && objects.are_neighbours(i, j)) return best.limit + objects.slack();
+    if (objects.is_self() && j < i) std::swap(i, j);
+    if (!best.rules_out(i, j)) {
+      ++report.exact_tests;
+      best.offer(objects.compare(i, j));
+    }
+    return best.limit + objects.slack();
+  };
+  const OrientedBvh& a = objects.a().bvh();
+  if (!objects.is_self()) {
+    a.for_each_near_pair(objects.b().bvh(), objects.place(), max_distance + objects.slack(), visit);
+    return best.pair;
+  }
+  for (std::size_t block = 0; block < a.block_count(); ++block)
+    a.for_each_near_self_pair(block, best.limit + objects.slack(), visit);
+  return best.pair;
+}
+
+namespace {
+
+/// An object that another one is compared with, as seen from that one.
+struct Partner {
+  const ObjectPair* pair;
+  bool is_second;  ///< whether the partner is the second of the pair
+};
+
+/// The closest primitives of the primitives of a block.
+class BlockSearch {
+ public:
+  BlockSearch(const OrientedBvh& bvh, std::size_t block, double max_distance)
+      : bvh_(bvh), block_(block), primitives_(bvh.block(block)) {
+    best_.fill({std::nullopt, max_distance});
+  }
+
+  void look_at(const Partner& partner, ProximityReport& report) {
+    const ObjectPair& pair = *partner.pair;
+    const SceneObject& other = partner.is_second ? pair.b() : pair.a();
+    const RigidTransform place = partner.is_second ? pair.place() : pair.place().inverse();
+    const auto visit = [&](std::uint32_t here, std::uint32_t there, double at_least) {
+      ++report.candidates;
+      Closest& best = best_of(here);
+      const bool is_left_out = pair.is_self() && (here == there || pair.are_neighbours(here, there));
+      if (!is_left_out && at_least <= best.limit + pair.slack()) {
+        ++report.exact_tests;
+        const PrimitivePair found = partner.is_second ? pair.compare(here, there) : pair.compare(there, here);
+        const bool is_turned = pair.is_self() ? there < here : !partner.is_second;
+        best.offer(is_turned ? exchanged(found) : found);
+      }
+      return limit() + pair.slack();
+    };
+    bvh_.for_each_near_pair(block_, other.bvh(), place, limit() + pair.slack(), visit);
+  }
+
+  /// @param out  of each primitive of the object.
+  void tell(std::vector<std::optional<PrimitivePair>>& out) const {
+    for (std::size_t k = 0; k < primitives_.size(); ++k) out[primitives_[k]] = best_[k].pair;
+  }
+
+ private:
+  static constexpr std::size_t most = 8;
+
+  [[nodiscard]] Closest& best_of(std::uint32_t primitive) {
+    const auto at = std::find(primitives_.begin(), primitives_.end(), primitive);
+    return best_[static_cast<std::size_t>(at - primitives_.begin())];
+  }
+  [[nodiscard]] double limit() const {
+    double furthest = 0;
+    for (std::size_t k = 0; k < primitives_.size(); ++k) furthest = std::max(furthest, best_[k].limit);
+    return furthest;
+  }
+
+  const OrientedBvh& bvh_;
+  std::size_t block_;
+  std::span<const std::uint32_t> primitives_;
+  std::array<Closest, most> best_;
+};
+
+}  // namespace
+
+void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
+                     const Context& context, ProximityPairs& out) {
+  std::vector<std::vector<Partner>> partners(objects);
+  std::vector<const SceneObject*> scene(objects, nullptr);
+  for (const ObjectPair& pair : pairs) {
+    scene[pair.first().value] = &pair.a();
+    scene[pair.second().value] = &pair.b();
+    partners[pair.first().value].push_back({&pair, true});
+    if (!pair.is_self()) partners[pair.second().value].push_back({&pair, false});
+  }
+  out.report.object_pairs = pairs.size();
+  for (std::size_t k = 0; k < objects; ++k) {
+    if (partners[k].empty()) continue;
+    const OrientedBvh& bvh = scene[k]->bvh();
+    std::vector<std::optional<PrimitivePair>> found(bvh.size());
+    const std::size_t blocks = bvh.block_count();
+    std::vector<ProximityReport> reports((blocks + blocks_per_range - 1) / blocks_per_range);
+    parallel_for(context, blocks, blocks_per_range, "closest primitives", [&](const WorkRange& range) {
+      for (std::size_t block = range.begin; block < range.end; ++block) {
+        BlockSearch search(bvh, block, max_distance);
+        for (const Partner& partner : partners[k]) search.look_at(partner, reports[range.begin / blocks_per_range]);
+        search.tell(found);
+      }
+    });
+    for (const auto& one : found) {
+      if (one) out.pairs.push_back(*one);
+    }
+    for (const ProximityReport& one : reports) add(one, out.report);
+  }
+}
+
+namespace {
+
+/// What one part of the work finds.
+struct FoundPairs {
+  std::vector<PrimitivePair> pairs;
+  ProximityReport report;
+  bool is_stopped = false;  ///< as the caller asked for it, or as there are too many
+};
+
+class NearSearch {
+ public:
+  NearSearch(const ObjectPair& objects, double distance, Neighbours neighbours, std::atomic<std::size_t>& count,
+             const Context& context)
+      : objects_(objects), distance_(distance), neighbours_(neighbours), count_(count), context_(context) {}
+
+  void look_at(std::size_t block, FoundPairs& found) const {
+    if (found.is_stopped) return;
+    const double limit = distance_ + objects_.slack();
+    const auto visit = [&](std::uint32_t i, std::uint32_t j, double) {
+      test(i, j, found);
+      return found.is_stopped ? -1.0 : limit;
+    };
+    const OrientedBvh& bvh = objects_.a().bvh();
+    if (objects_.is_self()) {
+      bvh.for_each_near_self_pair(block, limit, visit);
+    } else {
+      bvh.for_each_near_pair(block, objects_.b().bvh(), objects_.place(), limit, visit);
+    }
+  }
+
+ private:
+  void test(std::uint32_t i, std::uint32_t j, FoundPairs& found) const {
+    constexpr std::size_t pairs_between_looks = 256;
+    if (++found.report.candidates % pairs_between_looks == 0) {
+      found.is_stopped = context_.cancel.stop_requested() || count_ > most_pairs;
+    }
+    if (objects_.is_self() && objects_.are_neighbours(i, j)) {
+      if (neighbours_ == Neighbours::folded) test_fold(i, j, found);
+      return;
+    }
+    ++found.report.exact_tests;
+    if (distance_ == 0 && !triangles_meet(objects_.a().corners(i), objects_.b().corners(j))) return;
+    const PrimitivePair pair = objects_.compare(i, j);
+    if (pair.between.distance <= distance_) tell(pair, found);
+  }
+  void test_fold(std::uint32_t i, std::uint32_t j, FoundPairs& found) const {
+    ++found.report.exact_tests;
+    if (!objects_.are_folded(i, j)) return;
+    tell(objects_.compare(i, j), found);
+  }
+  void tell(const PrimitivePair& pair, FoundPairs& found) const {
+    found.pairs.push_back(pair);
+    ++count_;
+  }
+
+  const ObjectPair& objects_;
+  double distance_;
+  Neighbours neighbours_;
+  std::atomic<std::size_t>& count_;
+  const Context& context_;
+};
+
+}  // namespace
+
+void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
+                ProximityPairs& out) {
+  std::atomic<std::size_t> count = 0;
+  out.report.object_pairs = pairs.size();
+  for (const ObjectPair& objects : pairs) {
+    const NearSearch search(objects, distance, neighbours, count, context);
+    const std::size_t blocks = objects.a().bvh().block_count();
+    std::vector<FoundPairs> parts((blocks + blocks_per_range - 1) / blocks_per_range);
+    parallel_for(context, blocks, blocks_per_range, "close pairs", [&](const WorkRange& range) {
+      for (std::size_t b = range.begin; b < range.end; ++b) search.look_at(b, parts[range.begin / blocks_per_range]);
+    });
+    throw_if_cancelled(context);  // parts that stopped for it have not found all
+    if (count > most_pairs) {
+      throw OutOfMemory("more than " + std::to_string(most_pairs) +
+                        " pairs are that close: ask for a smaller distance, or take duplicates away");
+    }
+    for (const FoundPairs& part : parts) {
+      out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
+      add(part.report, out.report);
+    }
+  }
+  std::sort(out.pairs.begin(), out.pairs.end(),
+            [](const PrimitivePair& a, const PrimitivePair& b) { return key(a) < key(b); });
+}
+
+}  // namespace blum::detail

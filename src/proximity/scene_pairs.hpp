@@ -1,0 +1,73 @@
+// Blum: close pairs of primitives of pairs of objects. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/proximity/scene.hpp"
+#include "proximity/scene_object.hpp"
+
+namespace blum::detail {
+
+/// How far two boxes are apart, or a little less for rounding.
+[[nodiscard]] double box_gap(const Box3& a, const Box3& b);
+
+[[nodiscard]] PrimitivePair exchanged(const PrimitivePair& pair);
+
+/// Counts and not times. @param to is added to.
+void add(const ProximityReport& report, ProximityReport& to);
+
+/// Two objects, the smaller one first, or an object and itself.
+class ObjectPair {
+ public:
+  ObjectPair(ObjectId first, const SceneObject& a, ObjectId second, const SceneObject& b);
+
+  [[nodiscard]] ObjectId first() const { return first_; }
+  [[nodiscard]] ObjectId second() const { return second_; }
+  [[nodiscard]] const SceneObject& a() const { return *a_; }
+  [[nodiscard]] const SceneObject& b() const { return *b_; }
+  [[nodiscard]] bool is_self() const { return first_ == second_; }
+  /// Where the second one is, seen from the first.
+  [[nodiscard]] const RigidTransform& place() const { return place_; }
+  /// How close they must be in the scene to be that close seen from the first, for rounding of positions.
+  [[nodiscard]] double slack() const { return slack_; }
+
+  /// Whether two primitives of one object have a vertex in common.
+  [[nodiscard]] bool are_neighbours(std::uint32_t i, std::uint32_t j) const;
+  /// Whether two primitives of one object that are neighbours have more in common than what they share.
+  [[nodiscard]] bool are_folded(std::uint32_t i, std::uint32_t j) const;
+  /// The closest points of a primitive of the first object and one of the second, the smaller one first in an object.
+  [[nodiscard]] PrimitivePair compare(std::uint32_t i, std::uint32_t j) const;
+
+ private:
+  ObjectId first_, second_;
+  const SceneObject* a_;
+  const SceneObject* b_;
+  RigidTransform place_;
+  double slack_ = 0;
+  std::vector<std::uint32_t> clusters_;  ///< of an object and itself: the vertex in the place of each
+};
+
+/// What is to be done with primitives of one object that share a vertex.
+enum class Neighbours : std::uint8_t {
+  left_out,
+  folded  ///< told where they have more in common than what they share
+};
+
+/// The closest pair within a distance.
+[[nodiscard]] std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance,
+                                                        ProximityReport& report);
+
+/// The closest one of each primitive. @param objects  how many there are in the scene.
+void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
+                     const Context& context, ProximityPairs& out);
+
+/// All pairs within a distance.
+void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
+                ProximityPairs& out);
+
+}  // namespace blum::detail
