@@ -166,8 +166,13 @@ ResolvedMesh resolved_once(const MeshView& mesh, const ResolveOptions& options, 
   }
   const detail::CrossedMesh crossed{welded.vertices, welded.triangles, welded.is_flat, found.pairs};
   const detail::CutMesh cut = detail::cut_triangles(crossed, context);
-  const detail::Boundary boundary = detail::boundary_of_inside(crossed, cut, context);
-  if (boundary.triangles.empty()) throw Unresolved("no point has a winding number above 0: it faces inwards");
+  const detail::Boundary boundary = detail::boundary_of_inside(crossed, cut, options.least_winding, context);
+  if (boundary.triangles.empty()) {
+    out.has_inside = false;
+    out.obstacle = "no point has a winding number above " + std::to_string(options.least_winding - 1) +
+                   (options.least_winding == 1 ? ": it faces inwards" : "");
+    return out;
+  }
   out.counts.cut = cut.cut;
   out.counts.touching_edges = boundary.touching_edges;
   out.mesh.triangles = boundary.triangles;
@@ -206,12 +211,17 @@ ResolvedMesh resolve_crossings(const MeshView& mesh, const ResolveOptions& optio
     if (!out.is_resolved()) return out;
     Topology facts = topology(out.mesh, own);
     const std::vector<std::int64_t> exact = genera(facts);
+    ResolveOptions rest = options;
+    rest.least_winding = 1;  // what was found is wound around once
     for (out.counts.rounds = 1;; ++out.counts.rounds) {
       out.obstacle = obstacle_of(out.mesh, facts, own);
       if (out.obstacle.empty() && genera(facts) != exact) out.obstacle = "rounding changed how its parts hang together";
-      if (out.obstacle.empty()) out.counts.pinches = pinches(out.mesh, facts);
+      if (out.obstacle.empty()) {
+        out.counts.pinches = pinches(out.mesh, facts);
+        out.body_of = body_of_triangles(out.mesh, facts);
+      }
       if (out.obstacle.empty() || out.counts.rounds >= static_cast<std::size_t>(options.most_rounds)) return out;
-      out = chained(out, resolved_once(out.mesh, options, own));
+      out = chained(out, resolved_once(out.mesh, rest, own));
       if (!out.is_resolved()) return out;
       facts = topology(out.mesh, own);
     }

@@ -13,6 +13,7 @@
 #include "blum/geometry/triangle_contact.hpp"
 #include "proximity/scene_object.hpp"
 #include "proximity/scene_pairs.hpp"
+#include "proximity/scene_penetration.hpp"
 
 namespace blum {
 namespace {
@@ -171,6 +172,25 @@ ProximityPairs ProximityScene::collisions(const Context& context) const {
   detail::near_pairs(pairs, 0, detail::Neighbours::folded, context, out);
   timer.lap("primitives");
   return out;
+}
+
+Penetrations ProximityScene::penetration(ObjectId first, ObjectId second, const PenetrationOptions& options,
+                                         const Context& context) const {
+  return detail::penetrations(first, data_->at(first), second, data_->at(second), options, context);
+}
+
+double ProximityScene::signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options,
+                                         const Context& context) const {
+  check(options);
+  const Box3 a = data_->at(first).bounds();
+  const Box3 b = data_->at(second).bounds();
+  const auto apart = separation(first, second, std::numeric_limits<double>::infinity(), context);
+  if (first != second && apart && apart->between.distance > 0 && detail::box_gap(a, b) > 0) {
+    return apart->between.distance;
+  }
+  const Penetrations found = penetration(first, second, options, context);
+  if (!found.parts.empty()) return -found.parts.front().depth;
+  return apart ? apart->between.distance : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace blum

@@ -105,11 +105,14 @@ std::array<Vec3d, 3> SceneObject::corners(std::uint32_t primitive) const {
   return {position(a), position(b), position(c)};
 }
 
+TriangleMesh SceneObject::surface() const {
+  TriangleMesh out{mesh_.vertices, mesh_.triangles};
+  for (std::uint32_t v = 0; v < out.vertices.size(); ++v) out.vertices[v] = position(v);
+  return out;
+}
+
 std::vector<std::uint32_t> SceneObject::clusters() const {
-  if (!is_placed_) return weld_clusters(mesh_.vertices);
-  std::vector<Vec3d> positions(mesh_.vertices.size());
-  for (std::uint32_t v = 0; v < positions.size(); ++v) positions[v] = position(v);
-  return weld_clusters(positions);
+  return is_placed_ ? weld_clusters(surface().vertices) : weld_clusters(mesh_.vertices);
 }
 
 }  // namespace blum::detail

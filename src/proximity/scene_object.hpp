@@ -36,7 +36,9 @@ class SceneObject {
   [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t primitive) const;
   /// Where they are in the scene.
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const;
-  /// For each vertex the smallest one in the same place, where self is asked for.
+  /// The triangles where they are in the scene.
+  [[nodiscard]] TriangleMesh surface() const;
+  /// For each vertex the smallest one in the same place in the scene.
   [[nodiscard]] std::vector<std::uint32_t> clusters() const;
 
  private:

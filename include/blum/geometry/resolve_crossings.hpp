@@ -19,6 +19,8 @@ struct ResolveOptions {
   std::size_t most_pairs = 100000;
   /// A mesh whose new vertices, rounded, make triangles cross anew is resolved again, this often at most.
   int most_rounds = 6;
+  /// Points are inside where the mesh winds around them this often or more: with 2, what lies in two parts of it.
+  int least_winding = 1;
 };
 
 /// What stood in the way of a mesh being the boundary of a solid.
@@ -64,12 +66,16 @@ struct ResolvedMesh {
   std::vector<std::uint32_t> vertex_of;    ///< of each vertex, in the input; no_vertex for new ones
   std::vector<std::uint32_t> triangle_of;  ///< of each triangle, the one of the input that it is a part of
 
+  /// The body that each triangle bounds, by the number of its outer shell in topology(mesh). Where it is resolved.
+  std::vector<std::uint32_t> body_of;
+  bool has_inside = true;  ///< false where no point is inside: that is an obstacle, too
+
   [[nodiscard]] bool is_resolved() const { return obstacle.empty(); }
 };
 
-/// The boundary of the points around which a closed mesh winds once or more, where the mesh crosses, overlaps or
-/// touches itself, has edges with more than two triangles or has triangles without area. Vertices at one place count as
-/// one.
+/// The boundary of the points around which a closed mesh winds once or more (or as often as asked), where the mesh
+/// crosses, overlaps or touches itself, has edges with more than two triangles or has triangles without area. Vertices
+/// at one place count as one.
 ///
 /// Triangles are cut along what crosses them, and what is not on the boundary goes; triangles that nothing crosses or
 /// touches are kept or go as a whole. Which parts there are, and how they meet, is decided in exact arithmetic; new

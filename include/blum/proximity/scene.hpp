@@ -18,6 +18,7 @@
 #include "blum/geometry/rigid_transform.hpp"
 #include "blum/geometry/triangle_distance.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/proximity/penetration.hpp"
 
 namespace blum {
 
@@ -130,6 +131,20 @@ class ProximityScene {
   /// vertex, and have more in common than the corner or edge that they share: triangles that are folded onto each
   /// other, or pass through each other beside it. The point told of these is a corner that they share.
   [[nodiscard]] ProximityPairs collisions(const Context& context = {}) const;
+
+  /// What two solids have in common, and how deep they lie in each other there: nothing where they only touch. Where
+  /// one lies in the other, it is deep by the largest distance of a point of it from the surface of that. With one
+  /// object twice: what lies in two parts of it; parts are then those that cross each other.
+  /// @throws InvalidMesh where an object is not closed, or faces inwards; InvalidOption; Cancelled.
+  /// Cost: about 1 microsecond for each triangle, and 0.1 ms for each pair that crosses. Method:
+  /// docs/theory/proximity.md.
+  [[nodiscard]] Penetrations penetration(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
+                                         const Context& context = {}) const;
+
+  /// The distance of two solids where they are apart; 0 where they touch; less the largest depth where they have more
+  /// in common. Mesh units. As penetration().
+  [[nodiscard]] double signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
+                                         const Context& context = {}) const;
 
  private:
   struct Data;

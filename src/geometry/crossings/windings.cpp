@@ -58,11 +58,12 @@ void for_each_edge(std::span<const Side> sides, const Use& use) {
 
 class Windings {
  public:
-  Windings(const CrossedMesh& mesh, const CutMesh& cut, const Context& context)
+  Windings(const CrossedMesh& mesh, const CutMesh& cut, int least_winding, const Context& context)
       : mesh_(mesh),
         space_(cut.space),
         facets_(cut.facets),
         sheet_of_(cut.sheet_of),
+        least_(least_winding),
         context_(context),
         sides_(sorted_sides(cut.facets)),
         patches_(cut.facets.size()) {}
@@ -239,7 +240,7 @@ class Windings {
 
   [[nodiscard]] bool is_kept(std::uint32_t f) {
     const std::int64_t front = *front_[patches_.find(f)];
-    return front <= 0 && front + facets_[f].times >= 1;
+    return front < least_ && front + facets_[f].times >= least_;
   }
 
   /// Two facets that are neighbours around the solid: one that falls to the lower end of their edge, one that rises.
@@ -341,6 +342,7 @@ class Windings {
   const ExactSpace& space_;
   const std::vector<Facet>& facets_;
   const std::vector<std::uint32_t>& sheet_of_;
+  std::int64_t least_;
   const Context& context_;
   std::vector<Side> sides_;
   UnionFind patches_;                                         ///< facets that are joined over edges of two
@@ -353,8 +355,8 @@ class Windings {
 
 }  // namespace
 
-Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, const Context& context) {
-  return Windings(mesh, cut, context).boundary();
+Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, int least_winding, const Context& context) {
+  return Windings(mesh, cut, least_winding, context).boundary();
 }
 
 }  // namespace blum::detail

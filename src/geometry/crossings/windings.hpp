@@ -1,4 +1,4 @@
-// Blum: what of facets bounds the points with a winding number of 1 or more. SPDX-License-Identifier: Apache-2.0
+// Blum: what of facets bounds the points with some winding number or more. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace blum::detail {
 
-/// The facets with a winding number of 1 or more behind them and of 0 or less in front, as a mesh.
+/// The facets with at least some winding number behind them and less in front, as a mesh.
 struct Boundary {
   std::vector<Triangle> triangles;  ///< names entries of `points`
   /// Several may be one point: where parts only touch, each has its own. Both are one but in the middle of edges
@@ -21,7 +21,9 @@ struct Boundary {
   std::size_t touching_edges = 0;        ///< edges along which parts only touch
 };
 
+/// @param least_winding  number of what is inside.
 /// @throws Unresolved where facets do not fit together, Cancelled.
-[[nodiscard]] Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, const Context& context);
+[[nodiscard]] Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, int least_winding,
+                                          const Context& context);
 
 }  // namespace blum::detail

@@ -1,0 +1,152 @@
+#include "proximity/deepest_point.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+#include <tuple>
+#include <vector>
+
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_distance.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// Parts are cut no further after this many points were looked at: the bound then says how far that went.
+constexpr std::size_t most_points = 2000000;
+
+/// A point of a patch, and what of the surface is closest to it.
+struct Sample {
+  Vec3d point;
+  double distance = 0;
+  std::uint32_t other = 0;
+};
+
+/// A part of a triangle of a patch.
+struct Part {
+  std::array<Sample, 3> corners;
+  std::size_t patch = 0;
+  std::size_t triangle = 0;
+  double bound = 0;
+  [[nodiscard]] friend bool operator<(const Part& a, const Part& b) {
+    return std::tuple(a.bound, b.patch, b.triangle) < std::tuple(b.bound, a.patch, a.triangle);
+  }
+};
+
+/// The surface that a patch lies in.
+struct Surface {
+  explicit Surface(const TriangleMesh& mesh) : mesh(mesh), sites(mesh), bvh(mesh, sites) {}
+
+  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t triangle) const {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+  }
+
+  MeshView mesh;
+  SiteTable sites;
+  Bvh bvh;
+};
+
+class Search {
+ public:
+  Search(std::span<const DeepPatch> patches, double tolerance) : patches_(patches), tolerance_(tolerance) {
+    for (const DeepPatch& patch : patches) {
+      surfaces_.emplace_back(patch.surface);
+      const Box3 box = bounds(patch.surface);
+      rounding_ = std::max(rounding_, 1e-14 * (length(box.lower) + length(box.upper)));
+    }
+  }
+
+  DeepestPoint run() {
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      for (std::size_t t = 0; t < patches_[p].triangles.size(); ++t) {
+        Part part;
+        part.patch = p;
+        part.triangle = t;
+        for (std::size_t c = 0; c < 3; ++c) part.corners[c] = sample(patches_[p].triangles[t][c], part);
+        push(part);
+      }
+    }
+    while (!parts_.empty() && !is_done(parts_.top().bound) && points_ < most_points) {
+      const Part part = parts_.top();
+      parts_.pop();
+      cut(part);
+    }
+    best_.bound = std::max(best_.distance, parts_.empty() ? 0.0 : parts_.top().bound);
+    return best_;
+  }
+
+ private:
+  [[nodiscard]] bool is_done(double bound) const { return bound <= best_.distance * (1 + tolerance_) + rounding_; }
+
+  Sample sample(const Vec3d& point, const Part& part) {
+    const Surface& surface = surfaces_[part.patch];
+    const NearestSite found = *surface.bvh.nearest(point);
+    const Sample out{point, found.distance, surface.sites.triangle(found.site).value};
+    if (out.distance > best_.distance || points_ == 0) {
+      best_ = {out.distance, 0, point, found.point, part.patch, part.triangle, out.other};
+    }
+    ++points_;
+    return out;
+  }
+
+  /// The distance from the surface is nowhere larger than that from one of its triangles, which is largest at a corner;
+  /// nor than that of a corner, and the way from there.
+  [[nodiscard]] double bound(const Part& part) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Sample& from : part.corners) {
+      const std::array<Vec3d, 3> other = surfaces_[part.patch].corners(from.other);
+      double furthest = 0;
+      double longest = 0;
+      for (const Sample& to : part.corners) {
+        furthest = std::max(furthest, triangle_distance({to.point, to.point, to.point}, other).distance);
+        longest = std::max(longest, length(to.point - from.point));
+      }
+      least = std::min({least, furthest, from.distance + longest});
+    }
+    return least;
+  }
+
+  void push(Part part) {
+    part.bound = bound(part);
+    if (!is_done(part.bound)) parts_.push(part);
+  }
+
+  /// In halves, across the longest side.
+  void cut(const Part& part) {
+    std::size_t at = 0;
+    double longest = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double square = squared_length(part.corners[(k + 1) % 3].point - part.corners[k].point);
+      if (square > longest) {
+        longest = square;
+        at = k;
+      }
+    }
+    const Vec3d middle = (part.corners[at].point + part.corners[(at + 1) % 3].point) * 0.5;
+    const Sample between = sample(middle, part);
+    Part first = part;
+    Part second = part;
+    first.corners[(at + 1) % 3] = between;
+    second.corners[at] = between;
+    push(first);
+    push(second);
+  }
+
+  std::span<const DeepPatch> patches_;
+  std::vector<Surface> surfaces_;
+  double tolerance_;
+  double rounding_ = 0;  ///< more than distances may be off
+  DeepestPoint best_;
+  std::size_t points_ = 0;
+  std::priority_queue<Part> parts_;
+};
+
+}  // namespace
+
+DeepestPoint deepest_point(std::span<const DeepPatch> patches, double tolerance) {
+  return Search(patches, tolerance).run();
+}
+
+}  // namespace blum::detail

@@ -1,0 +1,249 @@
+#include "proximity/scene_penetration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "blum/core/error.hpp"
+#include "blum/geometry/resolve_crossings.hpp"
+#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/weld.hpp"
+#include "blum/geometry/winding_number.hpp"
+#include "proximity/deepest_point.hpp"
+#include "proximity/overlap.hpp"
+
+namespace blum {
+
+void check(const PenetrationOptions& options) {
+  if (options.tolerance >= 1e-6 && options.tolerance <= 1) return;
+  throw InvalidOption("tolerance is " + std::to_string(options.tolerance) + ", but must be 1e-6 to 1");
+}
+
+}  // namespace blum
+
+namespace blum::detail {
+namespace {
+
+/// The surfaces of one object or two in one mesh, and where their triangles come from.
+struct Surfaces {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> triangle_of;  ///< of each triangle, in its object
+  std::size_t of_first = 0;                ///< triangles of the first object: these come first
+
+  [[nodiscard]] bool is_of_first(std::uint32_t triangle) const { return triangle < of_first; }
+
+  void add(const TriangleMesh& surface, const std::vector<std::uint32_t>& triangle) {
+    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), surface.vertices.begin(), surface.vertices.end());
+    for (const auto& [a, b, c] : surface.triangles) mesh.triangles.push_back({base + a, base + b, base + c});
+    triangle_of.insert(triangle_of.end(), triangle.begin(), triangle.end());
+  }
+};
+
+std::string name_of(ObjectId object) {
+  return "object " + std::to_string(object.value);
+}
+
+/// Adds the surface of a solid; without what lies in it twice, where it crosses itself.
+void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Context& context, Surfaces& out) {
+  TriangleMesh surface = object.surface();
+  if (surface.triangles.empty()) throw InvalidMesh(name_of(id) + " has no triangles, so nothing can lie in it");
+  std::vector<std::uint32_t> triangle(surface.triangles.size());
+  for (std::uint32_t t = 0; t < triangle.size(); ++t) triangle[t] = t;
+  if (!is_self && SelfIntersectionSearch().finds_any(surface, context)) {
+    ResolvedMesh resolved = resolve_crossings(surface, {}, context);
+    if (!resolved.is_resolved()) {
+      throw InvalidMesh(name_of(id) +
+                        " crosses or touches itself, and what lies in it cannot be told: " + resolved.obstacle);
+    }
+    surface = std::move(resolved.mesh);
+    triangle = std::move(resolved.triangle_of);
+  }
+  out.add(surface, triangle);
+}
+
+using Corners = std::array<Vec3d, 3>;
+
+Corners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+}
+
+/// One connected part of what solids have in common.
+class Body {
+ public:
+  Body(const Surfaces& surfaces, const Overlap& overlap, const std::vector<std::uint32_t>& labels,
+       std::vector<std::uint32_t> triangles)
+      : surfaces_(surfaces), overlap_(overlap), labels_(labels), triangles_(std::move(triangles)) {}
+
+  [[nodiscard]] Penetration measure(double tolerance) const {
+    Penetration out;
+    measure_size(out);
+    out.curves = border_curves(overlap_.mesh, labels_, triangles_);
+    measure_depth(tolerance, out);
+    return out;
+  }
+
+ private:
+  /// A patch, and where its triangles and those of the surface that it lies in come from.
+  struct Sources {
+    std::vector<std::uint32_t> patch;
+    std::vector<std::uint32_t> surface;
+  };
+
+  void measure_size(Penetration& out) const {
+    const Vec3d origin = corners(overlap_.mesh, triangles_.front())[0];
+    for (const std::uint32_t t : triangles_) {
+      const auto [a, b, c] = corners(overlap_.mesh, t);
+      const Vec3d normal = cross(b - a, c - a);
+      out.area[surfaces_.is_of_first(overlap_.source[t]) ? 0 : 1] += length(normal) / 2;
+      out.volume += dot(normal, a - origin) / 6;
+    }
+  }
+
+  void measure_depth(double tolerance, Penetration& out) const {
+    std::set<std::uint32_t> labels;
+    for (const std::uint32_t t : triangles_) labels.insert(labels_[t]);
+    std::vector<DeepPatch> patches;
+    std::vector<Sources> sources;
+    for (const std::uint32_t label : labels) {
+      Sources from;
+      DeepPatch patch = patch_of(label, from);
+      if (patch.surface.triangles.empty()) continue;
+      patches.push_back(std::move(patch));
+      sources.push_back(std::move(from));
+    }
+    if (patches.empty()) return;
+    const DeepestPoint found = deepest_point(patches, tolerance);
+    const std::uint32_t deep = sources[found.patch].patch[found.triangle];
+    out.depth = found.distance;
+    out.depth_bound = found.bound;
+    out.deep_point = found.point;
+    out.surface_point = found.closest;
+    out.is_first_deep = surfaces_.is_of_first(deep);
+    out.deep_triangle = surfaces_.triangle_of[deep];
+    out.surface_triangle = surfaces_.triangle_of[sources[found.patch].surface[found.other]];
+    if (!(found.distance > 0)) return;
+    const Vec3d out_of_it = (found.closest - found.point) / found.distance;
+    out.direction = out.is_first_deep ? out_of_it : -out_of_it;
+  }
+
+  /// The triangles of one label, and those of the others, which they lie in.
+  [[nodiscard]] DeepPatch patch_of(std::uint32_t label, Sources& from) const {
+    DeepPatch out;
+    out.surface.vertices = overlap_.mesh.vertices;
+    for (const std::uint32_t t : triangles_) {
+      if (labels_[t] == label) {
+        out.triangles.push_back(corners(overlap_.mesh, t));
+        from.patch.push_back(overlap_.source[t]);
+      } else {
+        out.surface.triangles.push_back(overlap_.mesh.triangles[t]);
+        from.surface.push_back(overlap_.source[t]);
+      }
+    }
+    if (out.surface.triangles.empty()) take_whole_surface(out.surface, from);
+    return out;
+  }
+
+  /// Where a part lies in a solid without meeting its surface: all of that.
+  void take_whole_surface(TriangleMesh& surface, Sources& from) const {
+    const std::set<std::uint32_t> own(from.patch.begin(), from.patch.end());
+    const bool is_of_first = surfaces_.is_of_first(*own.begin());
+    const bool is_self = surfaces_.of_first == surfaces_.mesh.triangles.size();
+    surface.vertices = surfaces_.mesh.vertices;
+    for (std::uint32_t t = 0; t < surfaces_.mesh.triangles.size(); ++t) {
+      if (is_self ? own.contains(t) : surfaces_.is_of_first(t) == is_of_first) continue;
+      surface.triangles.push_back(surfaces_.mesh.triangles[t]);
+      from.surface.push_back(t);
+    }
+  }
+
+  const Surfaces& surfaces_;
+  const Overlap& overlap_;
+  const std::vector<std::uint32_t>& labels_;
+  std::vector<std::uint32_t> triangles_;
+};
+
+/// Which triangles of an overlap belong together: those of one object, or of one part of an object that meets itself.
+std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self) {
+  if (!is_self) {
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t s : overlap.source) out.push_back(surfaces.is_of_first(s) ? 0 : 1);
+    return out;
+  }
+  const std::vector<std::uint32_t> cluster = weld_clusters(surfaces.mesh.vertices);
+  return patches_of(overlap, [&](std::uint32_t a, std::uint32_t b) {
+    for (const std::uint32_t v : surfaces.mesh.triangles[a]) {
+      for (const std::uint32_t w : surfaces.mesh.triangles[b]) {
+        if (cluster[v] == cluster[w]) return true;
+      }
+    }
+    return false;
+  });
+}
+
+/// Takes away parts that lie twice in one object alone, one shell in another.
+void keep_common(const Surfaces& surfaces, const Overlap& overlap, const Context& context,
+                 std::map<std::uint32_t, std::vector<std::uint32_t>>& bodies) {
+  std::array<std::optional<WindingNumber>, 2> winding;
+  for (auto at = bodies.begin(); at != bodies.end();) {
+    const std::vector<std::uint32_t>& triangles = at->second;
+    const bool is_first = surfaces.is_of_first(overlap.source[triangles.front()]);
+    const auto is_other = [&](std::uint32_t t) { return surfaces.is_of_first(overlap.source[t]) != is_first; };
+    bool is_common = std::any_of(triangles.begin(), triangles.end(), is_other);
+    if (!is_common) {
+      std::optional<WindingNumber>& other = winding[is_first ? 1 : 0];
+      if (!other) {
+        const std::span<const Triangle> all = surfaces.mesh.triangles;
+        other.emplace(
+            MeshView{surfaces.mesh.vertices, is_first ? all.subspan(surfaces.of_first) : all.first(surfaces.of_first)},
+            context);
+      }
+      const auto [a, b, c] = corners(overlap.mesh, triangles.front());
+      is_common = other->is_inside((a + b + c) / 3);
+    }
+    at = is_common ? std::next(at) : bodies.erase(at);
+  }
+}
+
+}  // namespace
+
+Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second, const SceneObject& b,
+                          const PenetrationOptions& options, const Context& context) {
+  check(options);
+  const bool is_self = first == second;
+  Penetrations out;
+  PhaseTimer timer(out.phases);
+  Surfaces surfaces;
+  add_surface(a, first, is_self, context, surfaces);
+  surfaces.of_first = surfaces.mesh.triangles.size();
+  if (!is_self) add_surface(b, second, is_self, context, surfaces);
+  timer.lap("surfaces");
+  const std::string names = is_self ? "parts of " + name_of(first) : name_of(first) + " and " + name_of(second);
+  const Overlap overlap = overlap_of(surfaces.mesh, names, context);
+  timer.lap("overlap");
+  std::map<std::uint32_t, std::vector<std::uint32_t>> bodies;
+  for (std::uint32_t t = 0; t < overlap.body_of.size(); ++t) bodies[overlap.body_of[t]].push_back(t);
+  if (!is_self) keep_common(surfaces, overlap, context, bodies);
+  const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self);
+  for (const auto& [body, triangles] : bodies) {
+    throw_if_cancelled(context);
+    out.parts.push_back(Body(surfaces, overlap, labels, triangles).measure(options.tolerance));
+  }
+  // Parts come in the order of their smallest triangles; equally deep ones stay in it.
+  std::vector<std::size_t> order(out.parts.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
+    return std::pair(-out.parts[x].depth, x) < std::pair(-out.parts[y].depth, y);
+  });
+  std::vector<Penetration> sorted;
+  for (const std::size_t k : order) sorted.push_back(std::move(out.parts[k]));
+  out.parts = std::move(sorted);
+  timer.lap("depths");
+  return out;
+}
+
+}  // namespace blum::detail
