@@ -1,7 +1,6 @@
 // Blum: the vertices, edges and faces of a mesh that moves. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,7 +8,6 @@
 #include "blum/core/context.hpp"
 #include "blum/geometry/moving_box_bvh.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
-#include "blum/proximity/impact.hpp"
 
 namespace blum {
 
@@ -38,14 +36,6 @@ class MovingFeatures {
       box.end.extend(end(v));
     }
     return box;
-  }
-  [[nodiscard]] FourMovingPoints points(const std::array<std::uint32_t, 4>& vertices) const {
-    FourMovingPoints out;
-    for (std::size_t k = 0; k < 4; ++k) {
-      out.start[k] = start(vertices[k]);
-      out.end[k] = end(vertices[k]);
-    }
-    return out;
   }
 
  private:

@@ -11,6 +11,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/triangle_contact.hpp"
+#include "proximity/scene_continuous.hpp"
 #include "proximity/scene_object.hpp"
 #include "proximity/scene_pairs.hpp"
 #include "proximity/scene_penetration.hpp"
@@ -172,6 +173,14 @@ ProximityPairs ProximityScene::collisions(const Context& context) const {
   detail::near_pairs(pairs, 0, detail::Neighbours::folded, context, out);
   timer.lap("primitives");
   return out;
+}
+
+SceneCollisions ProximityScene::continuous(std::span<const ObjectMotion> motions, const ImpactOptions& options,
+                                           const Context& context) const {
+  check(options);
+  detail::SceneMotion motion(data_->objects.size());
+  for (const ObjectMotion& one : motions) motion.add(data_->at(one.object), one);
+  return motion.collisions(data_->pairs(std::numeric_limits<double>::infinity()), options, context);
 }
 
 Penetrations ProximityScene::penetration(ObjectId first, ObjectId second, const PenetrationOptions& options,

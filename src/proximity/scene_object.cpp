@@ -25,6 +25,8 @@ void check(const MeshView& mesh) {
   }
 }
 
+}  // namespace
+
 void check(const RigidTransform& place) {
   constexpr double tolerance = 1e-9;
   double error = 0;
@@ -42,8 +44,6 @@ void check(const RigidTransform& place) {
   }
 }
 
-}  // namespace
-
 SceneObject::SceneObject(const MeshView& mesh, const ObjectOptions& options, const Context& context)
     : options_(options) {
   set_mesh(mesh, context);
@@ -60,7 +60,7 @@ void SceneObject::set_mesh(const MeshView& mesh, const Context& context) {
   bvh_ = std::move(bvh);
 }
 
-void SceneObject::set_positions(std::span<const Vec3d> vertices, const Context& context) {
+void SceneObject::check_positions(std::span<const Vec3d> vertices) const {
   if (vertices.size() != mesh_.vertices.size()) {
     throw InvalidMesh("the object has " + std::to_string(mesh_.vertices.size()) + " vertices, but is updated with " +
                       std::to_string(vertices.size()) + "; give it another mesh where these change");
@@ -68,6 +68,10 @@ void SceneObject::set_positions(std::span<const Vec3d> vertices, const Context& 
   MeshView moved = mesh_;
   moved.vertices = vertices;
   check(moved);
+}
+
+void SceneObject::set_positions(std::span<const Vec3d> vertices, const Context& context) {
+  check_positions(vertices);
   std::copy(vertices.begin(), vertices.end(), mesh_.vertices.begin());
   bvh_->refit(mesh_.vertices, context);
 }
@@ -105,14 +109,15 @@ std::array<Vec3d, 3> SceneObject::corners(std::uint32_t primitive) const {
   return {position(a), position(b), position(c)};
 }
 
-TriangleMesh SceneObject::surface() const {
-  TriangleMesh out{mesh_.vertices, mesh_.triangles};
-  for (std::uint32_t v = 0; v < out.vertices.size(); ++v) out.vertices[v] = position(v);
+std::vector<Vec3d> SceneObject::positions(std::span<const Vec3d> vertices, const RigidTransform& place) {
+  std::vector<Vec3d> out(vertices.begin(), vertices.end());
+  if (place == RigidTransform{}) return out;
+  for (Vec3d& p : out) p = place(p);
   return out;
 }
 
 std::vector<std::uint32_t> SceneObject::clusters() const {
-  return is_placed_ ? weld_clusters(surface().vertices) : weld_clusters(mesh_.vertices);
+  return is_placed_ ? weld_clusters(positions()) : weld_clusters(mesh_.vertices);
 }
 
 }  // namespace blum::detail

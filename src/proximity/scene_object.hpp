@@ -21,6 +21,8 @@ class SceneObject {
   SceneObject(const MeshView& mesh, const ObjectOptions& options, const Context& context);
 
   void set_positions(std::span<const Vec3d> vertices, const Context& context);
+  /// @throws as it does, for vertices that it would not take.
+  void check_positions(std::span<const Vec3d> vertices) const;
   void set_place(const RigidTransform& place);
   void set_mesh(const MeshView& mesh, const Context& context);
 
@@ -36,8 +38,11 @@ class SceneObject {
   [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t primitive) const;
   /// Where they are in the scene.
   [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t primitive) const;
-  /// The triangles where they are in the scene.
-  [[nodiscard]] TriangleMesh surface() const;
+  [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
+  /// The vertices where they are in the scene.
+  [[nodiscard]] std::vector<Vec3d> positions() const { return positions(mesh_.vertices, place_); }
+  /// Where vertices are with a transform.
+  [[nodiscard]] static std::vector<Vec3d> positions(std::span<const Vec3d> vertices, const RigidTransform& place);
   /// For each vertex the smallest one in the same place in the scene.
   [[nodiscard]] std::vector<std::uint32_t> clusters() const;
 
@@ -52,5 +57,8 @@ class SceneObject {
   bool is_placed_ = false;
   std::optional<OrientedBvh> bvh_;
 };
+
+/// @throws InvalidOption where it turns nothing rigidly, or moves it beyond 1e70.
+void check(const RigidTransform& place);
 
 }  // namespace blum::detail

@@ -49,7 +49,7 @@ std::string name_of(ObjectId object) {
 
 /// Adds the surface of a solid; without what lies in it twice, where it crosses itself.
 void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Context& context, Surfaces& out) {
-  TriangleMesh surface = object.surface();
+  TriangleMesh surface{object.positions(), object.mesh().triangles};
   if (surface.triangles.empty()) throw InvalidMesh(name_of(id) + " has no triangles, so nothing can lie in it");
   std::vector<std::uint32_t> triangle(surface.triangles.size());
   for (std::uint32_t t = 0; t < triangle.size(); ++t) triangle[t] = t;

@@ -13,17 +13,15 @@
 
 #include "blum/core/context.hpp"
 #include "blum/core/describe.hpp"
-#include "blum/core/ids.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/rigid_transform.hpp"
 #include "blum/geometry/triangle_distance.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
+#include "blum/proximity/impact.hpp"
+#include "blum/proximity/motion.hpp"
 #include "blum/proximity/penetration.hpp"
 
 namespace blum {
-
-/// An object of a scene: its number, in the order in which objects were added.
-using ObjectId = Id<struct ObjectTag>;
 
 /// What an object is compared with. Two objects are compared where each is in a layer that the other one meets, and
 /// they are not excluded (ProximityScene::exclude).
@@ -131,6 +129,14 @@ class ProximityScene {
   /// vertex, and have more in common than the corner or edge that they share: triangles that are folded onto each
   /// other, or pass through each other beside it. The point told of these is a corner that they share.
   [[nodiscard]] ProximityPairs collisions(const Context& context = {}) const;
+
+  /// All pairs of a vertex and a face, and of two edges, of objects that are compared, that meet while objects move,
+  /// each with the time at which they first do: see continuous_collisions(). Objects that are not named rest. The scene
+  /// stays as it is: update it with what was asked about, or with a part of it.
+  /// @param motions  each object once. @throws InvalidMesh for vertices as update() does, InvalidOption; OutOfMemory
+  /// where more than 2^26 pairs collide.
+  [[nodiscard]] SceneCollisions continuous(std::span<const ObjectMotion> motions, const ImpactOptions& options = {},
+                                           const Context& context = {}) const;
 
   /// What two solids have in common, and how deep they lie in each other there: nothing where they only touch. Where
   /// one lies in the other, it is deep by the largest distance of a point of it from the surface of that. With one

@@ -1,0 +1,187 @@
+#include "proximity/impact_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "proximity/directions.hpp"
+#include "proximity/impact_filter.hpp"
+
+namespace blum {
+namespace {
+
+using detail::FeatureKinds;
+
+constexpr std::size_t blocks_per_range = 32;
+constexpr std::size_t most_collisions = std::size_t{1} << 26;  ///< 1.6 GB of them
+
+/// A box with its sides further out, by no less than half the distance that counts as meeting.
+void grow(Box3& box, double min_separation) {
+  if (!(min_separation > 0)) return;
+  const double by = 0.5 * min_separation;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = std::nextafter(box.lower[axis] - by, -infinite);
+    box.upper[axis] = std::nextafter(box.upper[axis] + by, infinite);
+  }
+}
+
+/// A hierarchy over the boxes of features, each by the vertices of it.
+template <class Features, class Vertices>
+MovingBoxBvh hierarchy(const MovingFeatures& moving, const Features& features, const Vertices& vertices_of,
+                       double min_separation, const Context& context) {
+  std::vector<MovingBox> boxes(features.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    boxes[k] = moving.box(vertices_of(features[k]));
+    grow(boxes[k].start, min_separation);
+    grow(boxes[k].end, min_separation);
+  }
+  return MovingBoxBvh(boxes, context);
+}
+
+std::span<const std::uint32_t> itself(std::span<const std::uint32_t> feature) {
+  return feature;
+}
+std::span<const std::uint32_t> alone(const std::uint32_t& vertex) {
+  return {&vertex, 1};
+}
+
+/// Two features of one object or of two.
+FourMovingPoints points(const MovingFeatures& a, std::span<const std::uint32_t> first, const MovingFeatures& b,
+                        std::span<const std::uint32_t> second) {
+  FourMovingPoints out;
+  std::size_t k = 0;
+  for (const std::uint32_t v : first) {
+    out.start[k] = a.start(v);
+    out.end[k++] = a.end(v);
+  }
+  for (const std::uint32_t v : second) {
+    out.start[k] = b.start(v);
+    out.end[k++] = b.end(v);
+  }
+  return out;
+}
+
+}  // namespace
+
+MovingObject::MovingObject(const MeshView& mesh, std::span<const Vec3d> end, double min_separation,
+                           const Context& context)
+    : features_(mesh, end, context),
+      vertices_(hierarchy(features_, features_.vertices(), alone, min_separation, context)),
+      edges_(hierarchy(features_, features_.edges(), itself, min_separation, context)),
+      faces_(hierarchy(features_, features_.faces(), itself, min_separation, context)) {}
+
+/// What one part of the work finds.
+template <class Collision>
+struct ImpactSearch::Found {
+  std::vector<Collision> collisions;
+  std::size_t box_pairs = 0;
+  std::size_t exact_tests = 0;
+  bool is_stopped = false;  ///< as the caller asked for it, or as there are too many
+};
+
+std::vector<VertexFaceCollision> ImpactSearch::vertices_and_faces(const MovingObject& of_vertices,
+                                                                  const MovingObject& of_faces) {
+  const auto find = [&](std::size_t block, Found<VertexFaceCollision>& found) {
+    of_vertices.vertices().for_each_pair(block, of_faces.faces(), [&](std::uint32_t v, std::uint32_t f) {
+      test_vertex_face(of_vertices.features(), of_faces.features(), v, f, found);
+    });
+  };
+  auto out = gathered<VertexFaceCollision>(of_vertices.vertices().block_count(), "vertices and faces", find);
+  std::sort(out.begin(), out.end(), [](const VertexFaceCollision& a, const VertexFaceCollision& b) {
+    return std::pair(a.vertex, a.face.value) < std::pair(b.vertex, b.face.value);
+  });
+  return out;
+}
+
+std::vector<EdgeEdgeCollision> ImpactSearch::edges_and_edges(const MovingObject& a, const MovingObject& b) {
+  const bool is_self = &a == &b;
+  const auto find = [&](std::size_t block, Found<EdgeEdgeCollision>& found) {
+    const auto test = [&](std::uint32_t first, std::uint32_t second) {
+      if (is_self && second < first) std::swap(first, second);
+      test_edge_edge(a.features(), b.features(), first, second, found);
+    };
+    if (is_self) {
+      a.edges().for_each_self_pair(block, test);
+    } else {
+      a.edges().for_each_pair(block, b.edges(), test);
+    }
+  };
+  auto out = gathered<EdgeEdgeCollision>(a.edges().block_count(), "edges and edges", find);
+  std::sort(out.begin(), out.end(), [](const EdgeEdgeCollision& x, const EdgeEdgeCollision& y) {
+    return std::pair(x.first, x.second) < std::pair(y.first, y.second);
+  });
+  return out;
+}
+
+/// What find(block, found) finds in all blocks, in no stated order.
+template <class Collision, class Find>
+std::vector<Collision> ImpactSearch::gathered(std::size_t blocks, const char* phase, const Find& find) {
+  std::vector<Found<Collision>> parts((blocks + blocks_per_range - 1) / blocks_per_range);
+  parallel_for(context_, blocks, blocks_per_range, phase, [&](const WorkRange& range) {
+    for (std::size_t b = range.begin; b < range.end; ++b) find(b, parts[range.begin / blocks_per_range]);
+  });
+  throw_if_cancelled(context_);  // parts that stopped for it have not found all
+  if (collisions_ > most_collisions) {
+    throw OutOfMemory("more than " + std::to_string(most_collisions) +
+                      " pairs collide: parts that lie on each other, mostly; take duplicates away");
+  }
+  std::vector<Collision> all;
+  for (const Found<Collision>& part : parts) {
+    all.insert(all.end(), part.collisions.begin(), part.collisions.end());
+    box_pairs_ += part.box_pairs;
+    exact_tests_ += part.exact_tests;
+  }
+  return all;
+}
+
+/// Counts a pair. @return whether it is to be left out, as nothing counts any more.
+template <class Collision>
+bool ImpactSearch::stops(Found<Collision>& found) const {
+  constexpr std::size_t pairs_between_looks = 256;
+  if (++found.box_pairs % pairs_between_looks == 0) {
+    found.is_stopped = context_.cancel.stop_requested() || collisions_ > most_collisions;
+  }
+  return found.is_stopped;
+}
+
+void ImpactSearch::test_vertex_face(const MovingFeatures& of_vertices, const MovingFeatures& of_faces,
+                                    std::uint32_t vertex, std::uint32_t face, Found<VertexFaceCollision>& found) {
+  const std::uint32_t v = of_vertices.vertices()[vertex];
+  const Triangle& corners = of_faces.faces()[face];
+  if (&of_vertices == &of_faces) {
+    const auto is_same = [&](std::uint32_t corner) { return of_faces.place(corner) == v; };
+    if (std::any_of(corners.begin(), corners.end(), is_same)) return;
+  }
+  if (stops(found)) return;
+  const FourMovingPoints four = points(of_vertices, alone(v), of_faces, corners);
+  if (detail::are_apart(four, 1, options_.min_separation)) return;
+  ++found.exact_tests;
+  if (const auto time = detail::impact(four, FeatureKinds::vertex_face, options_)) {
+    found.collisions.push_back({v, TriangleId(face), *time});
+    ++collisions_;
+  }
+}
+
+void ImpactSearch::test_edge_edge(const MovingFeatures& a, const MovingFeatures& b, std::uint32_t first,
+                                  std::uint32_t second, Found<EdgeEdgeCollision>& found) {
+  const Segment& one = a.edges()[first];
+  const Segment& other = b.edges()[second];
+  const bool is_shared = one[0] == other[0] || one[0] == other[1] || one[1] == other[0] || one[1] == other[1];
+  if (&a == &b && is_shared) return;
+  if (stops(found)) return;
+  const FourMovingPoints four = points(a, one, b, other);
+  if (detail::are_apart(four, 2, options_.min_separation)) return;
+  ++found.exact_tests;
+  if (const auto time = detail::impact(four, FeatureKinds::edge_edge, options_)) {
+    found.collisions.push_back({one, other, *time});
+    ++collisions_;
+  }
+}
+
+}  // namespace blum

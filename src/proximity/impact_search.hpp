@@ -1,0 +1,71 @@
+// Blum: what of moving objects meets. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/moving_box_bvh.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/proximity/continuous_collisions.hpp"
+#include "blum/proximity/impact.hpp"
+#include "proximity/moving_features.hpp"
+
+namespace blum {
+
+/// A mesh between two frames, with hierarchies over the boxes of its features.
+class MovingObject {
+ public:
+  /// @param mesh            at the start; must stay, as `end` must.
+  /// @param min_separation  how close counts as meeting.
+  MovingObject(const MeshView& mesh, std::span<const Vec3d> end, double min_separation, const Context& context);
+
+  [[nodiscard]] const MovingFeatures& features() const { return features_; }
+  [[nodiscard]] const MovingBoxBvh& vertices() const { return vertices_; }
+  [[nodiscard]] const MovingBoxBvh& edges() const { return edges_; }
+  [[nodiscard]] const MovingBoxBvh& faces() const { return faces_; }
+
+ private:
+  MovingFeatures features_;
+  MovingBoxBvh vertices_;
+  MovingBoxBvh edges_;
+  MovingBoxBvh faces_;
+};
+
+/// Finds what meets, and counts what that took.
+class ImpactSearch {
+ public:
+  ImpactSearch(const ImpactOptions& options, const Context& context) : options_(options), context_(context) {}
+
+  /// The pairs of a vertex of one object and a face of another one, or the same one; rising.
+  /// @throws OutOfMemory, Cancelled.
+  [[nodiscard]] std::vector<VertexFaceCollision> vertices_and_faces(const MovingObject& of_vertices,
+                                                                    const MovingObject& of_faces);
+  /// The pairs of edges of two objects, the first one's first; or of one, the smaller edge first. Rising.
+  [[nodiscard]] std::vector<EdgeEdgeCollision> edges_and_edges(const MovingObject& a, const MovingObject& b);
+
+  [[nodiscard]] std::size_t box_pairs() const { return box_pairs_; }
+  [[nodiscard]] std::size_t exact_tests() const { return exact_tests_; }
+
+ private:
+  template <class Collision>
+  struct Found;
+  template <class Collision, class Find>
+  std::vector<Collision> gathered(std::size_t blocks, const char* phase, const Find& find);
+  template <class Collision>
+  bool stops(Found<Collision>& found) const;
+  void test_vertex_face(const MovingFeatures& of_vertices, const MovingFeatures& of_faces, std::uint32_t vertex,
+                        std::uint32_t face, Found<VertexFaceCollision>& found);
+  void test_edge_edge(const MovingFeatures& a, const MovingFeatures& b, std::uint32_t first, std::uint32_t second,
+                      Found<EdgeEdgeCollision>& found);
+
+  ImpactOptions options_;
+  const Context& context_;
+  std::atomic<std::size_t> collisions_ = 0;
+  std::size_t box_pairs_ = 0;
+  std::size_t exact_tests_ = 0;
+};
+
+}  // namespace blum
