@@ -170,6 +170,9 @@ const Box3& OrientedBvh::bounds() const {
 std::size_t OrientedBvh::block_count() const {
   return data_->leaves.size();
 }
+std::span<const std::uint32_t> OrientedBvh::order() const {
+  return data_->order;
+}
 std::span<const std::uint32_t> OrientedBvh::block(std::size_t block) const {
   return std::span<const std::uint32_t>(data_->order).subspan(block * lanes, data_->lanes_of(block));
 }

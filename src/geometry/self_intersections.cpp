@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -160,9 +161,19 @@ std::vector<TrianglePair> find_all(const Search& search, std::size_t limit, cons
 SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limit, const Context& context) {
   validate(mesh);
   throw_if_cancelled(context);
+  return find_self_intersections(mesh, order_in_space(mesh, coordinate_scale(bounds(mesh)), context), limit, context);
+}
+
+SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order, std::size_t limit,
+                                          const Context& context) {
+  validate(mesh);
+  throw_if_cancelled(context);
+  if (order.size() != mesh.triangles.size()) {
+    throw InvalidOption("the order of " + std::to_string(order.size()) + " triangles is given, of a mesh with " +
+                        std::to_string(mesh.triangles.size()));
+  }
   const double scale = coordinate_scale(bounds(mesh));
   const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
-  const std::vector<std::uint32_t> order = order_in_space(mesh, scale, context);
   SelfIntersections result;
   result.pairs = find_all(Search(mesh, scale, order, corners, context), limit, context);
   std::sort(result.pairs.begin(), result.pairs.end(), [](const TrianglePair& a, const TrianglePair& b) {

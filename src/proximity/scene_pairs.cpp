@@ -10,6 +10,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 
 namespace blum::detail {
@@ -247,6 +248,11 @@ void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, dou
 
 namespace {
 
+OutOfMemory too_many() {
+  return OutOfMemory("more than " + std::to_string(most_pairs) +
+                     " pairs are that close: ask for a smaller distance, or take duplicates away");
+}
+
 /// What one part of the work finds.
 struct FoundPairs {
   std::vector<PrimitivePair> pairs;
@@ -309,11 +315,40 @@ class NearSearch {
 
 }  // namespace
 
+namespace {
+
+bool has_flat_primitives(const SceneObject& object) {
+  if (object.triangles() != object.primitives()) return true;
+  for (std::uint32_t t = 0; t < object.triangles(); ++t) {
+    if (has_no_area(object.corners(t))) return true;
+  }
+  return false;
+}
+
+/// The collisions of an object with itself: for triangles with an area there is a search that knows neighbours.
+void add_self_intersections(const ObjectPair& objects, const Context& context, ProximityPairs& out) {
+  const SceneObject& object = objects.a();
+  const std::vector<Vec3d> positions = object.positions();
+  MeshView mesh = object.mesh();
+  mesh.vertices = positions;
+  const SelfIntersections found = find_self_intersections(mesh, object.bvh().order(), most_pairs, context);
+  if (!found.complete) throw too_many();
+  for (const TrianglePair& pair : found.pairs) out.pairs.push_back(objects.compare(pair.first.value, pair.second.value));
+  out.report.candidates += found.pairs.size();
+  out.report.exact_tests += found.pairs.size();
+}
+
+}  // namespace
+
 void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
                 ProximityPairs& out) {
   std::atomic<std::size_t> count = 0;
   out.report.object_pairs = pairs.size();
   for (const ObjectPair& objects : pairs) {
+    if (neighbours == Neighbours::folded && objects.is_self() && !has_flat_primitives(objects.a())) {
+      add_self_intersections(objects, context, out);
+      continue;
+    }
     const NearSearch search(objects, distance, neighbours, count, context);
     const std::size_t blocks = objects.a().bvh().block_count();
     std::vector<FoundPairs> parts((blocks + blocks_per_range - 1) / blocks_per_range);
@@ -321,10 +356,7 @@ void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours n
       for (std::size_t b = range.begin; b < range.end; ++b) search.look_at(b, parts[range.begin / blocks_per_range]);
     });
     throw_if_cancelled(context);  // parts that stopped for it have not found all
-    if (count > most_pairs) {
-      throw OutOfMemory("more than " + std::to_string(most_pairs) +
-                        " pairs are that close: ask for a smaller distance, or take duplicates away");
-    }
+    if (count > most_pairs) throw too_many();
     for (const FoundPairs& part : parts) {
       out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
       add(part.report, out.report);

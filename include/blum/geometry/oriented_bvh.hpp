@@ -53,6 +53,8 @@ class OrientedBvh {
 
   /// Primitives lie in blocks of eight, so that a loop over blocks can be shared by threads.
   [[nodiscard]] std::size_t block_count() const;
+  /// All primitives, in the order in which they lie in the hierarchy: neighbours in space together.
+  [[nodiscard]] std::span<const std::uint32_t> order() const;
   /// The primitives of a block.
   [[nodiscard]] std::span<const std::uint32_t> block(std::size_t block) const;
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -44,6 +45,12 @@ struct SelfIntersections {
 /// 0.8 s for 1.6 million on two cores; 250 bytes per triangle.
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limit = 100000,
                                                         const Context& context = {});
+
+/// The same with an order of the triangles in which neighbours in space are together, which takes a third of the time to
+/// find: OrientedBvh::order(). What is found does not depend on it, but where there is more than the limit.
+/// @throws InvalidOption where it has another size.
+[[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order,
+                                                        std::size_t limit, const Context& context = {});
 
 /// Asks frame after frame whether a mesh that deforms crosses or touches itself. It keeps the order of the triangles in
 /// space, which takes as long to find as all the rest, for as long as groups of neighbours stay together; the answers
