@@ -87,20 +87,42 @@ void offer_edges(const Sides& a, const Sides& b, Pair& best) {
   }
 }
 
+/// Which corners of a triangle may lie over the inside of another one; none is left out that does.
+std::array<bool, 3> may_be_over(const Sides& a, const Sides& b) {
+  const Vec3d normal = cross(b.edge[0], b.edge[1]);
+  const double longest = std::sqrt(std::max({squared_length(b.edge[0]), squared_length(b.edge[1]),
+                                             squared_length(b.edge[2])}));
+  // Coordinates are at most 2, so this is more than roundings of the normal and of what follows add up to.
+  const double margin = 1e-13 * longest * longest * longest;
+  std::array<bool, 3> out{true, true, true};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d inwards = cross(normal, b.edge[k]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      out[i] = out[i] && dot(inwards, a.corner[i] - b.corner[k]) >= -margin;
+    }
+  }
+  return out;
+}
+
 /// The corners of one triangle and the inside of another.
-void offer_corners_and_face(const Points& a, const TriangleFrame& face, Pair& best) {
+void offer_corners_and_face(const Sides& a, const Sides& b, Pair& best) {
+  const std::array<bool, 3> may_be = may_be_over(a, b);
+  if (!may_be[0] && !may_be[1] && !may_be[2]) return;
+  const TriangleFrame face = make_triangle_frame(b.corner);
   if (face.is_flat()) return;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3d w = a[i] - face.base;
+    if (!may_be[i]) continue;
+    const Vec3d w = a.corner[i] - face.base;
     const double s = dot(w, face.u);
     const double t = dot(w, face.v);
-    const bool is_over =
-        t > 0 && s * face.altitude > t * face.apex && (face.length - s) * face.altitude > t * (face.length - face.apex);
+    const bool is_over = t > 0 && s * face.altitude > t * face.apex &&
+                         (face.length - s) * face.altitude > t * (face.length - face.apex);
     if (!is_over) continue;
     const Vec3d rest = w - face.u * s - face.v * t;
     const double squared = squared_length(rest);
     if (squared < best.squared) {
-      best = {squared, a[i], a[i] - rest, {SiteKind::vertex, static_cast<std::uint8_t>(i)}, {SiteKind::face, 0}};
+      best = {squared, a.corner[i], a.corner[i] - rest, {SiteKind::vertex, static_cast<std::uint8_t>(i)},
+              {SiteKind::face, 0}};
     }
   }
 }
@@ -112,10 +134,10 @@ Pair closest(const Points& a, const Points& b) {
   Pair best;
   offer_corners_and_edges(of_a, of_b, best);
   offer_edges(of_a, of_b, best);
-  offer_corners_and_face(a, make_triangle_frame(b), best);
+  offer_corners_and_face(of_a, of_b, best);
   Pair other = best.exchanged();
   offer_corners_and_edges(of_b, of_a, other);
-  offer_corners_and_face(b, make_triangle_frame(a), other);
+  offer_corners_and_face(of_b, of_a, other);
   return other.exchanged();
 }
 

@@ -1,0 +1,36 @@
+// CGAL's self-intersections. CGAL is GPL: it is linked to benchmarks, to nothing else.
+#include "peers/collisions.hpp"
+
+#ifdef BLUM_BENCH_CGAL
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+
+namespace blum::bench {
+
+std::optional<std::size_t> cgal_self_intersections(const TriangleMesh& mesh) {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+  Mesh surface;
+  for (const Vec3d& p : mesh.vertices) surface.add_vertex(Kernel::Point_3(p.x, p.y, p.z));
+  for (const auto& [a, b, c] : mesh.triangles) {
+    surface.add_face(Mesh::Vertex_index(a), Mesh::Vertex_index(b), Mesh::Vertex_index(c));
+  }
+  std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> found;
+  CGAL::Polygon_mesh_processing::self_intersections(surface, std::back_inserter(found));
+  return found.size();
+}
+
+}  // namespace blum::bench
+
+#else
+
+namespace blum::bench {
+
+std::optional<std::size_t> cgal_self_intersections(const TriangleMesh&) {
+  return std::nullopt;
+}
+
+}  // namespace blum::bench
+
+#endif
