@@ -1,4 +1,5 @@
-// Blum: other programs that answer questions about close triangles; each is optional. SPDX-License-Identifier: Apache-2.0
+// Blum: other programs that answer questions about close triangles; each is optional. SPDX-License-Identifier:
+// Apache-2.0
 #pragma once
 
 #include <cstddef>

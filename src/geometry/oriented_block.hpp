@@ -80,16 +80,17 @@ struct alignas(64) FlatTriangleBlock {
   }
 };
 
-/// Sets the normals from the corners, which slivers get none of. @param area  normals of twice the area in length.
-void set_normals(FlatTriangleBlock& block, double (&area)[3][lanes]);
-
-/// Sums over points of a plane.
-struct PlaneMoments {
-  double count = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+/// What tells how a block of triangles lies.
+struct BlockShape {
+  Vec3d normal;  ///< the sum of normals of twice the area in length, each turned to the side of the first one
+  Vec3d along;   ///< from the middle of the first half to that of the second, times 12
 };
 
-/// Adds all corners. @param from  the origin, @param u, v  the axes of the plane.
-void add_moments(const FlatTriangleBlock& block, const Vec3d& from, const Vec3d& u, const Vec3d& v, PlaneMoments& out);
+/// Sets the normals from the corners; slivers get none.
+void set_normals(FlatTriangleBlock& block, BlockShape& out);
+
+/// The box around the corners.
+void extent_along_axes(const FlatTriangleBlock& block, Box3& out);
 
 /// The interval that the corners take along an axis.
 void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high);

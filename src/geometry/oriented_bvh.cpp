@@ -113,24 +113,26 @@ void OrientedBvh::Data::fill(std::span<const Vec3d> positions, const Context& co
       boxes[leaf] = box_around(leaves[leaf], around[leaf]);
     }
   });
-  bounds = {};
-  for (const Box3& box : around) bounds.extend(box);
   tree.levels.clear();
   do {
     std::vector<OrientedBlock> level((boxes.size() + lanes - 1) / lanes);
     std::vector<OrientedBox> above(level.size());
+    std::vector<Box3> around_above(level.size());
     parallel_for(context, level.size(), build_grain, "", [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
         const std::size_t first = k * lanes;
         const std::size_t count = std::min(lanes, boxes.size() - first);
         for (std::size_t lane = 0; lane < lanes; ++lane) level[k].set(lane, boxes[first + std::min(lane, count - 1)]);
-        above[k] = box_around(std::span<const OrientedBox>(boxes).subspan(first, count));
+        for (std::size_t i = first; i < first + count; ++i) around_above[k].extend(around[i]);
+        above[k] = box_around(std::span<const OrientedBox>(boxes).subspan(first, count), around_above[k]);
       }
     });
     tree.levels.push_back(std::move(level));
     boxes = std::move(above);
+    around = std::move(around_above);
   } while (boxes.size() > 1);
   root = boxes.front();
+  bounds = around.front();
 }
 
 OrientedBvh::OrientedBvh(const MeshView& mesh, const Context& context) : data_(std::make_unique<Data>()) {

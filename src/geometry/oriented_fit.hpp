@@ -14,6 +14,7 @@ namespace blum {
 [[nodiscard]] OrientedBox box_around(FlatTriangleBlock& block, Box3& bounds);
 
 /// The same around boxes whose last axes are at right angles to the surface in them.
-[[nodiscard]] OrientedBox box_around(std::span<const OrientedBox> boxes);
+/// @param bounds  the box along the coordinate axes around what is in them.
+[[nodiscard]] OrientedBox box_around(std::span<const OrientedBox> boxes, const Box3& bounds);
 
 }  // namespace blum

@@ -106,7 +106,8 @@ void squared_triangle_gaps(const FlatTriangleBlock& block, const FlatTriangle& t
 /// its normal is not looked at: for it would be too far off for heights of its own corners to be equal.
 constexpr double least_flatness = 1e-4;
 
-void set_normals(FlatTriangleBlock& block, double (&area)[3][lanes]) {
+void set_normals(FlatTriangleBlock& block, BlockShape& out) {
+  alignas(64) double area[3][lanes];
   for (std::size_t i = 0; i < lanes; ++i) {
     const Vec3d a{block.corner[0][0][i], block.corner[0][1][i], block.corner[0][2][i]};
     const Vec3d b{block.corner[1][0][i], block.corner[1][1][i], block.corner[1][2][i]};
@@ -125,33 +126,30 @@ void set_normals(FlatTriangleBlock& block, double (&area)[3][lanes]) {
     block.normal[1][i] = n.y * inverse;
     block.normal[2][i] = n.z * inverse;
   }
+  // Soups are not turned one way: to the side of one of them.
+  const Vec3d first{area[0][0], area[1][0], area[2][0]};
+  alignas(64) double turned[3][lanes];
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double way = first.x * area[0][i] + first.y * area[1][i] + first.z * area[2][i] < 0 ? -1.0 : 1.0;
+    for (std::size_t x = 0; x < 3; ++x) turned[x][i] = way * area[x][i];
+  }
+  for (std::size_t x = 0; x < 3; ++x) {
+    const double(&t)[lanes] = turned[x];
+    out.normal[x] = ((t[0] + t[1]) + (t[2] + t[3])) + ((t[4] + t[5]) + (t[6] + t[7]));
+    alignas(64) double sum[lanes];
+    for (std::size_t i = 0; i < lanes; ++i) {
+      sum[i] = block.corner[0][x][i] + block.corner[1][x][i] + block.corner[2][x][i];
+    }
+    out.along[x] = ((sum[4] + sum[5]) + (sum[6] + sum[7])) - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
+  }
 }
 
-/// Sums over all corners of products of two coordinates in a plane, from a place near them.
-void add_moments(const FlatTriangleBlock& block, const Vec3d& from, const Vec3d& u, const Vec3d& v, PlaneMoments& out) {
-  alignas(64) double x[lanes] = {}, y[lanes] = {}, xx[lanes] = {}, xy[lanes] = {}, yy[lanes] = {};
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < lanes; ++i) {
-      const double px = block.corner[k][0][i] - from.x;
-      const double py = block.corner[k][1][i] - from.y;
-      const double pz = block.corner[k][2][i] - from.z;
-      const double s = u.x * px + u.y * py + u.z * pz;
-      const double t = v.x * px + v.y * py + v.z * pz;
-      x[i] += s;
-      y[i] += t;
-      xx[i] += s * s;
-      xy[i] += s * t;
-      yy[i] += t * t;
-    }
-  }
-  for (std::size_t i = 0; i < lanes; ++i) {
-    out.x += x[i];
-    out.y += y[i];
-    out.xx += xx[i];
-    out.xy += xy[i];
-    out.yy += yy[i];
-  }
-  out.count += 3 * static_cast<double>(lanes);
+/// The least and the largest of eight.
+inline void ends(const double (&low)[lanes], const double (&high)[lanes], double& least_of, double& most_of) {
+  least_of = std::min(std::min(std::min(low[0], low[1]), std::min(low[2], low[3])),
+                      std::min(std::min(low[4], low[5]), std::min(low[6], low[7])));
+  most_of = std::max(std::max(std::max(high[0], high[1]), std::max(high[2], high[3])),
+                     std::max(std::max(high[4], high[5]), std::max(high[6], high[7])));
 }
 
 void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high) {
@@ -163,11 +161,18 @@ void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low
     least_of[i] = least(a, b, c);
     most_of[i] = most(a, b, c);
   }
-  low = least_of[0];
-  high = most_of[0];
-  for (std::size_t i = 1; i < lanes; ++i) {
-    low = std::min(low, least_of[i]);
-    high = std::max(high, most_of[i]);
+  ends(least_of, most_of, low, high);
+}
+
+void extent_along_axes(const FlatTriangleBlock& block, Box3& out) {
+  alignas(64) double least_of[lanes], most_of[lanes];
+  for (std::size_t x = 0; x < 3; ++x) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const double a = block.corner[0][x][i], b = block.corner[1][x][i], c = block.corner[2][x][i];
+      least_of[i] = least(a, b, c);
+      most_of[i] = most(a, b, c);
+    }
+    ends(least_of, most_of, out.lower[x], out.upper[x]);
   }
 }
 
@@ -189,8 +194,8 @@ std::size_t best_index() {
 HWY_EXPORT(squared_box_gaps);
 HWY_EXPORT(squared_triangle_gaps);
 HWY_EXPORT(set_normals);
-HWY_EXPORT(add_moments);
 HWY_EXPORT(extent_along);
+HWY_EXPORT(extent_along_axes);
 #define BLUM_BEST(kernel) HWY_DISPATCH_TABLE(kernel)[best_index()]
 #else
 #define BLUM_BEST(kernel) (&HWY_NAMESPACE::kernel)
@@ -200,8 +205,8 @@ HWY_EXPORT(extent_along);
 const auto best_squared_box_gaps = BLUM_BEST(squared_box_gaps);
 const auto best_squared_triangle_gaps = BLUM_BEST(squared_triangle_gaps);
 const auto best_set_normals = BLUM_BEST(set_normals);
-const auto best_add_moments = BLUM_BEST(add_moments);
 const auto best_extent_along = BLUM_BEST(extent_along);
+const auto best_extent_along_axes = BLUM_BEST(extent_along_axes);
 
 }  // namespace
 
@@ -213,12 +218,12 @@ void squared_gaps(const FlatTriangleBlock& block, const FlatTriangle& triangle, 
   best_squared_triangle_gaps(block, triangle, out);
 }
 
-void set_normals(FlatTriangleBlock& block, double (&area)[3][lanes]) {
-  best_set_normals(block, area);
+void set_normals(FlatTriangleBlock& block, BlockShape& out) {
+  best_set_normals(block, out);
 }
 
-void add_moments(const FlatTriangleBlock& block, const Vec3d& from, const Vec3d& u, const Vec3d& v, PlaneMoments& out) {
-  best_add_moments(block, from, u, v, out);
+void extent_along_axes(const FlatTriangleBlock& block, Box3& out) {
+  best_extent_along_axes(block, out);
 }
 
 void extent_along(const FlatTriangleBlock& block, const Vec3d& axis, double& low, double& high) {

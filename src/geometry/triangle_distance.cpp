@@ -90,8 +90,8 @@ void offer_edges(const Sides& a, const Sides& b, Pair& best) {
 /// Which corners of a triangle may lie over the inside of another one; none is left out that does.
 std::array<bool, 3> may_be_over(const Sides& a, const Sides& b) {
   const Vec3d normal = cross(b.edge[0], b.edge[1]);
-  const double longest = std::sqrt(std::max({squared_length(b.edge[0]), squared_length(b.edge[1]),
-                                             squared_length(b.edge[2])}));
+  const double longest =
+      std::sqrt(std::max({squared_length(b.edge[0]), squared_length(b.edge[1]), squared_length(b.edge[2])}));
   // Coordinates are at most 2, so this is more than roundings of the normal and of what follows add up to.
   const double margin = 1e-13 * longest * longest * longest;
   std::array<bool, 3> out{true, true, true};
@@ -115,13 +115,16 @@ void offer_corners_and_face(const Sides& a, const Sides& b, Pair& best) {
     const Vec3d w = a.corner[i] - face.base;
     const double s = dot(w, face.u);
     const double t = dot(w, face.v);
-    const bool is_over = t > 0 && s * face.altitude > t * face.apex &&
-                         (face.length - s) * face.altitude > t * (face.length - face.apex);
+    const bool is_over =
+        t > 0 && s * face.altitude > t * face.apex && (face.length - s) * face.altitude > t * (face.length - face.apex);
     if (!is_over) continue;
     const Vec3d rest = w - face.u * s - face.v * t;
     const double squared = squared_length(rest);
     if (squared < best.squared) {
-      best = {squared, a.corner[i], a.corner[i] - rest, {SiteKind::vertex, static_cast<std::uint8_t>(i)},
+      best = {squared,
+              a.corner[i],
+              a.corner[i] - rest,
+              {SiteKind::vertex, static_cast<std::uint8_t>(i)},
               {SiteKind::face, 0}};
     }
   }

@@ -333,7 +333,8 @@ void add_self_intersections(const ObjectPair& objects, const Context& context, P
   mesh.vertices = positions;
   const SelfIntersections found = find_self_intersections(mesh, object.bvh().order(), most_pairs, context);
   if (!found.complete) throw too_many();
-  for (const TrianglePair& pair : found.pairs) out.pairs.push_back(objects.compare(pair.first.value, pair.second.value));
+  for (const TrianglePair& pair : found.pairs)
+    out.pairs.push_back(objects.compare(pair.first.value, pair.second.value));
   out.report.candidates += found.pairs.size();
   out.report.exact_tests += found.pairs.size();
 }

@@ -46,8 +46,8 @@ struct SelfIntersections {
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limit = 100000,
                                                         const Context& context = {});
 
-/// The same with an order of the triangles in which neighbours in space are together, which takes a third of the time to
-/// find: OrientedBvh::order(). What is found does not depend on it, but where there is more than the limit.
+/// The same with an order of the triangles in which neighbours in space are together, which takes a third of the time
+/// to find: OrientedBvh::order(). What is found does not depend on it, but where there is more than the limit.
 /// @throws InvalidOption where it has another size.
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order,
                                                         std::size_t limit, const Context& context = {});
