@@ -15,6 +15,7 @@
 #include "proximity/scene_object.hpp"
 #include "proximity/scene_pairs.hpp"
 #include "proximity/scene_penetration.hpp"
+#include "proximity/scene_voronoi.hpp"
 
 namespace blum {
 namespace {
@@ -29,7 +30,13 @@ void check_distance(const char* what, double distance) {
 
 }  // namespace
 
+void check(const SceneOptions& options) {
+  if (options.cell_size >= 0.01 && options.cell_size <= 100) return;
+  throw InvalidOption("cell_size is " + std::to_string(options.cell_size) + ", but must be 0.01 to 100");
+}
+
 struct ProximityScene::Data {
+  SceneOptions options;
   std::vector<std::optional<SceneObject>> objects;
   std::set<std::pair<std::uint32_t, std::uint32_t>> excluded;  ///< the smaller first
 
@@ -50,6 +57,8 @@ struct ProximityScene::Data {
     return (of_a.layers & of_b.meets) != 0 && (of_b.layers & of_a.meets) != 0;
   }
 
+  [[nodiscard]] bool uses_cells() const { return options.culling == Culling::voronoi; }
+
   /// The pairs of objects that are compared and whose boxes are no further apart than this, the smaller first.
   [[nodiscard]] std::vector<ObjectPair> pairs(double distance) const {
     std::vector<Box3> boxes(objects.size());
@@ -68,7 +77,10 @@ struct ProximityScene::Data {
   }
 };
 
-ProximityScene::ProximityScene() : data_(std::make_unique<Data>()) {}
+ProximityScene::ProximityScene(const SceneOptions& options) : data_(std::make_unique<Data>()) {
+  check(options);
+  data_->options = options;
+}
 ProximityScene::ProximityScene(ProximityScene&&) noexcept = default;
 ProximityScene& ProximityScene::operator=(ProximityScene&&) noexcept = default;
 ProximityScene::~ProximityScene() = default;
@@ -149,8 +161,14 @@ ProximityPairs ProximityScene::closest_primitives(double max_distance, const Con
   PhaseTimer timer(out.report.phases);
   const std::vector<ObjectPair> pairs = data_->pairs(max_distance);
   timer.lap("objects");
-  detail::closest_of_each(pairs, data_->objects.size(), max_distance, context, out);
-  timer.lap("primitives");
+  out.report.object_pairs = pairs.size();
+  if (data_->uses_cells()) {
+    const double cell_size = data_->options.cell_size;
+    detail::closest_of_each_by_cells(pairs, data_->objects.size(), cell_size, max_distance, context, out);
+  } else {
+    detail::closest_of_each(pairs, data_->objects.size(), max_distance, context, out);
+    timer.lap("primitives");
+  }
   return out;
 }
 
@@ -160,8 +178,14 @@ ProximityPairs ProximityScene::closer_than(double distance, const Context& conte
   PhaseTimer timer(out.report.phases);
   const std::vector<ObjectPair> pairs = data_->pairs(distance);
   timer.lap("objects");
-  detail::near_pairs(pairs, distance, detail::Neighbours::left_out, context, out);
-  timer.lap("primitives");
+  out.report.object_pairs = pairs.size();
+  if (data_->uses_cells()) {
+    const double cell_size = data_->options.cell_size;
+    detail::near_pairs_by_cells(pairs, data_->objects.size(), cell_size, distance, context, out);
+  } else {
+    detail::near_pairs(pairs, distance, detail::Neighbours::left_out, context, out);
+    timer.lap("primitives");
+  }
   return out;
 }
 
@@ -170,8 +194,19 @@ ProximityPairs ProximityScene::collisions(const Context& context) const {
   PhaseTimer timer(out.report.phases);
   const std::vector<ObjectPair> pairs = data_->pairs(0);
   timer.lap("objects");
-  detail::near_pairs(pairs, 0, detail::Neighbours::folded, context, out);
-  timer.lap("primitives");
+  out.report.object_pairs = pairs.size();
+  if (!data_->uses_cells()) {
+    detail::near_pairs(pairs, 0, detail::Neighbours::folded, context, out);
+    timer.lap("primitives");
+    return out;
+  }
+  // Neighbours that are folded onto each other are no matter of distances: objects with themselves come by boxes.
+  std::vector<ObjectPair> others;
+  std::vector<ObjectPair> selves;
+  for (const ObjectPair& pair : pairs) (pair.is_self() ? selves : others).push_back(pair);
+  detail::near_pairs(selves, 0, detail::Neighbours::folded, context, out);
+  timer.lap("objects with themselves");
+  detail::near_pairs_by_cells(others, data_->objects.size(), data_->options.cell_size, 0, context, out);
   return out;
 }
 

@@ -17,7 +17,6 @@ namespace blum::detail {
 namespace {
 
 constexpr std::size_t blocks_per_range = 16;
-constexpr std::size_t most_pairs = std::size_t{1} << 26;
 
 double largest_coordinate(const Box3& box) {
   double largest = 0;
@@ -54,23 +53,13 @@ bool is_closer(const PrimitivePair& a, const PrimitivePair& b) {
   return key(a) < key(b);
 }
 
-/// The closest pair so far.
-struct Closest {
-  std::optional<PrimitivePair> pair;
-  double limit;  ///< nothing further away than this counts
-
-  void offer(const PrimitivePair& other) {
-    if (other.between.distance > limit || (pair && !is_closer(other, *pair))) return;
-    pair = other;
-    limit = other.between.distance;
-  }
-  /// Whether a pair comes after the closest one, however close it is.
-  [[nodiscard]] bool rules_out(std::uint32_t i, std::uint32_t j) const {
-    return limit == 0 && pair && std::pair(i, j) > std::pair(pair->first, pair->second);
-  }
-};
-
 }  // namespace
+
+void Closest::offer(const PrimitivePair& other) {
+  if (other.between.distance > limit || (pair && !is_closer(other, *pair))) return;
+  pair = other;
+  limit = other.between.distance;
+}
 
 double box_gap(const Box3& a, const Box3& b) {
   double squared = 0;
@@ -215,8 +204,9 @@ class BlockSearch {
 
 }  // namespace
 
-void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
-                     const Context& context, ProximityPairs& out) {
+ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
+                         FunctionRef<bool(ObjectId, std::uint32_t)> is_wanted, const Context& context,
+                         ProximityReport& report) {
   std::vector<std::vector<Partner>> partners(objects);
   std::vector<const SceneObject*> scene(objects, nullptr);
   for (const ObjectPair& pair : pairs) {
@@ -225,33 +215,53 @@ void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, dou
     partners[pair.first().value].push_back({&pair, true});
     if (!pair.is_self()) partners[pair.second().value].push_back({&pair, false});
   }
-  out.report.object_pairs = pairs.size();
-  for (std::size_t k = 0; k < objects; ++k) {
+  ClosestRows out(objects);
+  for (std::uint32_t k = 0; k < objects; ++k) {
     if (partners[k].empty()) continue;
     const OrientedBvh& bvh = scene[k]->bvh();
-    std::vector<std::optional<PrimitivePair>> found(bvh.size());
+    out[k].resize(bvh.size());
     const std::size_t blocks = bvh.block_count();
     std::vector<ProximityReport> reports((blocks + blocks_per_range - 1) / blocks_per_range);
     parallel_for(context, blocks, blocks_per_range, "closest primitives", [&](const WorkRange& range) {
       for (std::size_t block = range.begin; block < range.end; ++block) {
+        const std::span<const std::uint32_t> primitives = bvh.block(block);
+        const auto wanted = [&](std::uint32_t p) { return is_wanted(ObjectId(k), p); };
+        if (!std::any_of(primitives.begin(), primitives.end(), wanted)) continue;
         BlockSearch search(bvh, block, max_distance);
         for (const Partner& partner : partners[k]) search.look_at(partner, reports[range.begin / blocks_per_range]);
-        search.tell(found);
+        search.tell(out[k]);
       }
     });
-    for (const auto& one : found) {
-      if (one) out.pairs.push_back(*one);
+    for (const ProximityReport& one : reports) add(one, report);
+  }
+  return out;
+}
+
+void append(const ClosestRows& rows, std::vector<PrimitivePair>& out) {
+  for (const auto& object : rows) {
+    for (const auto& one : object) {
+      if (one) out.push_back(*one);
     }
-    for (const ProximityReport& one : reports) add(one, out.report);
   }
 }
 
-namespace {
-
-OutOfMemory too_many() {
-  return OutOfMemory("more than " + std::to_string(most_pairs) +
-                     " pairs are that close: ask for a smaller distance, or take duplicates away");
+void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
+                     const Context& context, ProximityPairs& out) {
+  const auto all = [](ObjectId, std::uint32_t) { return true; };
+  append(closest_rows(pairs, objects, max_distance, all, context, out.report), out.pairs);
 }
+
+void sort_pairs(std::vector<PrimitivePair>& pairs) {
+  std::sort(pairs.begin(), pairs.end(), [](const PrimitivePair& a, const PrimitivePair& b) { return key(a) < key(b); });
+}
+
+void check_count(std::size_t pairs) {
+  if (pairs <= most_close_pairs) return;
+  throw OutOfMemory("more than " + std::to_string(most_close_pairs) +
+                    " pairs are that close: ask for a smaller distance, or take duplicates away");
+}
+
+namespace {
 
 /// What one part of the work finds.
 struct FoundPairs {
@@ -285,7 +295,7 @@ class NearSearch {
   void test(std::uint32_t i, std::uint32_t j, FoundPairs& found) const {
     constexpr std::size_t pairs_between_looks = 256;
     if (++found.report.candidates % pairs_between_looks == 0) {
-      found.is_stopped = context_.cancel.stop_requested() || count_ > most_pairs;
+      found.is_stopped = context_.cancel.stop_requested() || count_ > most_close_pairs;
     }
     if (objects_.is_self() && objects_.are_neighbours(i, j)) {
       if (neighbours_ == Neighbours::folded) test_fold(i, j, found);
@@ -331,8 +341,8 @@ void add_self_intersections(const ObjectPair& objects, const Context& context, P
   const std::vector<Vec3d> positions = object.positions();
   MeshView mesh = object.mesh();
   mesh.vertices = positions;
-  const SelfIntersections found = find_self_intersections(mesh, object.bvh().order(), most_pairs, context);
-  if (!found.complete) throw too_many();
+  const SelfIntersections found = find_self_intersections(mesh, object.bvh().order(), most_close_pairs, context);
+  if (!found.complete) check_count(most_close_pairs + 1);
   for (const TrianglePair& pair : found.pairs)
     out.pairs.push_back(objects.compare(pair.first.value, pair.second.value));
   out.report.candidates += found.pairs.size();
@@ -343,8 +353,7 @@ void add_self_intersections(const ObjectPair& objects, const Context& context, P
 
 void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
                 ProximityPairs& out) {
-  std::atomic<std::size_t> count = 0;
-  out.report.object_pairs = pairs.size();
+  std::atomic<std::size_t> count = out.pairs.size();
   for (const ObjectPair& objects : pairs) {
     if (neighbours == Neighbours::folded && objects.is_self() && !has_flat_primitives(objects.a())) {
       add_self_intersections(objects, context, out);
@@ -357,14 +366,13 @@ void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours n
       for (std::size_t b = range.begin; b < range.end; ++b) search.look_at(b, parts[range.begin / blocks_per_range]);
     });
     throw_if_cancelled(context);  // parts that stopped for it have not found all
-    if (count > most_pairs) throw too_many();
+    check_count(count);
     for (const FoundPairs& part : parts) {
       out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
       add(part.report, out.report);
     }
   }
-  std::sort(out.pairs.begin(), out.pairs.end(),
-            [](const PrimitivePair& a, const PrimitivePair& b) { return key(a) < key(b); });
+  sort_pairs(out.pairs);
 }
 
 }  // namespace blum::detail

@@ -5,13 +5,27 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/function_ref.hpp"
 #include "blum/proximity/scene.hpp"
 #include "proximity/scene_object.hpp"
 
 namespace blum::detail {
+
+/// The closest pair of one primitive so far.
+struct Closest {
+  std::optional<PrimitivePair> pair;
+  double limit = 0;  ///< nothing further away than this counts
+
+  void offer(const PrimitivePair& other);
+  /// Whether a pair comes after the closest one, however close it is.
+  [[nodiscard]] bool rules_out(std::uint32_t i, std::uint32_t j) const {
+    return limit == 0 && pair && std::pair(i, j) > std::pair(pair->first, pair->second);
+  }
+};
 
 /// How far two boxes are apart, or a little less for rounding.
 [[nodiscard]] double box_gap(const Box3& a, const Box3& b);
@@ -62,9 +76,30 @@ enum class Neighbours : std::uint8_t {
 [[nodiscard]] std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance,
                                                         ProximityReport& report);
 
+/// The closest ones of primitives, by object and primitive.
+using ClosestRows = std::vector<std::vector<std::optional<PrimitivePair>>>;
+
 /// The closest one of each primitive. @param objects  how many there are in the scene.
+/// @param is_wanted  which primitives are asked about; others get none.
+[[nodiscard]] ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
+                                       FunctionRef<bool(ObjectId, std::uint32_t)> is_wanted, const Context& context,
+                                       ProximityReport& report);
+
+/// The same of all, in one row.
 void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
                      const Context& context, ProximityPairs& out);
+
+/// Adds those that there are to a list.
+void append(const ClosestRows& rows, std::vector<PrimitivePair>& out);
+
+/// Puts pairs into the order of objects and primitives.
+void sort_pairs(std::vector<PrimitivePair>& pairs);
+
+/// More pairs are not told: they are 14 GB.
+inline constexpr std::size_t most_close_pairs = std::size_t{1} << 26;
+
+/// @throws OutOfMemory where there are more.
+void check_count(std::size_t pairs);
 
 /// All pairs within a distance.
 void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,

@@ -1,6 +1,7 @@
 // Blum: proximity among the objects of a scene. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -42,6 +43,40 @@ struct Description<ObjectOptions> {
   };
 };
 
+/// How pairs that cannot count are left out. Answers are the same, to the byte.
+enum class Culling : std::uint8_t {
+  automatic,  ///< what is faster, as far as that is known: the hierarchy
+  bvh,        ///< a hierarchy of oriented boxes over each object
+  voronoi     ///< second-order Voronoi diagrams on a grid of the cells that primitives touch (Sud 2006, 4.3)
+};
+
+template <>
+struct Description<Culling> {
+  static constexpr std::string_view name = "Culling";
+  static constexpr std::array values{NamedValue{Culling::automatic, "automatic"}, NamedValue{Culling::bvh, "bvh"},
+                                     NamedValue{Culling::voronoi, "voronoi"}};
+};
+
+struct SceneOptions {
+  Culling culling = Culling::automatic;
+  /// Side of the cells of Voronoi culling, in parts of the mean extent of a primitive: 0.01 to 100.
+  double cell_size = 2;
+};
+
+template <>
+struct Description<SceneOptions> {
+  static constexpr std::string_view name = "SceneOptions";
+  static constexpr std::string_view doc = "How a scene finds close pairs";
+  static constexpr std::tuple members{
+      Member{"culling", &SceneOptions::culling, "", "how pairs that cannot count are left out: answers are the same"},
+      Member{"cell_size", &SceneOptions::cell_size, "mean extents of primitives",
+             "side of the cells of Voronoi culling", Range::between(0.01, 100)},
+  };
+};
+
+/// @throws InvalidOption.
+void check(const SceneOptions& options);
+
 /// Two primitives, and their closest points. Primitives of an object are the triangles of its mesh, then the segments,
 /// then the points, in its order.
 struct PrimitivePair {
@@ -54,6 +89,9 @@ struct PrimitivePair {
 
 /// What an answer took.
 struct ProximityReport {
+  Culling culling = Culling::bvh;  ///< what was used
+  std::size_t cells = 0;           ///< of Voronoi culling
+  std::size_t left_over = 0;  ///< primitives that Voronoi culling left to the hierarchy: those in large or full cells
   std::size_t object_pairs = 0;  ///< compared; an object with itself is one
   std::size_t candidates = 0;    ///< pairs of primitives that culling left over
   std::size_t exact_tests = 0;   ///< pairs whose distance was computed
@@ -80,7 +118,8 @@ struct ProximityPairs {
 /// that is not there.
 class ProximityScene {
  public:
-  ProximityScene();
+  /// @throws InvalidOption.
+  explicit ProximityScene(const SceneOptions& options = {});
   ProximityScene(ProximityScene&&) noexcept;
   ProximityScene& operator=(ProximityScene&&) noexcept;
   ~ProximityScene();

@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -145,7 +146,7 @@ std::vector<Row> no_further(const std::vector<Row>& all, double distance) {
 }
 
 /// All answers of a scene are those of looking at all pairs.
-void expect_answers(const ProximityScene& scene, const SlowScene& slow, const Context& context = {}) {
+void expect_scene_answers(const ProximityScene& scene, const SlowScene& slow, const Context& context) {
   const std::vector<Row> all = slow.all_pairs();
   ASSERT_EQ(rows(scene.separation(infinite, context).pairs), closest_of_objects(all));
   ASSERT_EQ(rows(scene.closest_primitives(infinite, context).pairs), closest_of_each(all, infinite));
@@ -163,6 +164,18 @@ void expect_answers(const ProximityScene& scene, const SlowScene& slow, const Co
     ASSERT_TRUE(back);
     ASSERT_EQ(row(*back), Row(b, j, a, i, distance));
     ASSERT_EQ(back->between.first_point, found->between.second_point);
+  }
+}
+
+/// And so are those of a scene that culls by Voronoi diagrams, on coarse and fine grids.
+void expect_answers(const ProximityScene& scene, const SlowScene& slow, const Context& context = {}) {
+  expect_scene_answers(scene, slow, context);
+  for (const double cell_size : {0.2, 1.0, 2.0, 20.0}) {
+    SCOPED_TRACE(cell_size);
+    ProximityScene by_cells({.culling = Culling::voronoi, .cell_size = cell_size});
+    slow.add_to(by_cells);
+    expect_scene_answers(by_cells, slow, context);
+    EXPECT_EQ(rows(by_cells.collisions(context).pairs), rows(scene.collisions(context).pairs));
   }
 }
 
@@ -252,12 +265,14 @@ TEST(ProximityScene, IsThatOfAllPairsForAnySize) {
       slow.objects.push_back({soup(90 + k, 25), {.self = true}, {}});
       for (Vec3d& p : slow.objects.back().mesh.vertices) p = p * scale;
     }
-    ProximityScene scene;
-    slow.add_to(scene);
     const std::vector<Row> all = slow.all_pairs();
-    ASSERT_EQ(rows(scene.separation().pairs), closest_of_objects(all));
-    ASSERT_EQ(rows(scene.closest_primitives().pairs), closest_of_each(all, infinite));
-    ASSERT_EQ(rows(scene.closer_than(0.1 * scale).pairs), no_further(all, 0.1 * scale));
+    for (const Culling culling : {Culling::bvh, Culling::voronoi}) {
+      ProximityScene scene({.culling = culling});
+      slow.add_to(scene);
+      ASSERT_EQ(rows(scene.separation().pairs), closest_of_objects(all));
+      ASSERT_EQ(rows(scene.closest_primitives().pairs), closest_of_each(all, infinite));
+      ASSERT_EQ(rows(scene.closer_than(0.1 * scale).pairs), no_further(all, 0.1 * scale));
+    }
   }
 }
 
@@ -277,8 +292,10 @@ TEST(ProximityScene, ComparesWhatIsAskedFor) {
   expect_answers(scene, slow);
 }
 
-TEST(ProximityScene, IsTheSameForAnyNumberOfThreads) {
-  ProximityScene scene;
+class ProximitySceneOfThreads : public testing::TestWithParam<Culling> {};
+
+TEST_P(ProximitySceneOfThreads, IsTheSameForAnyNumber) {
+  ProximityScene scene({.culling = GetParam()});
   scene.add(make_organic({.frequency = 12}), {.self = true});
   const ObjectId other = scene.add(make_torus({}), {.self = true});
   Random random(30);
@@ -294,6 +311,46 @@ TEST(ProximityScene, IsTheSameForAnyNumberOfThreads) {
     if (!first) first = answers;
     EXPECT_EQ(answers, *first);
   }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cullings, ProximitySceneOfThreads, testing::Values(Culling::bvh, Culling::voronoi),
+                         [](const auto& info) { return std::string(to_string(info.param)); });
+
+/// Voronoi culling of N-body distances leaves fewer pairs to the exact test than there are, and says what it did.
+TEST(ProximityScene, TellsHowItCulled) {
+  const TriangleMesh mesh = make_organic({.frequency = 10});
+  ProximityScene scene({.culling = Culling::voronoi});
+  scene.add(mesh, {.self = true});
+  const ProximityReport cells = scene.closest_primitives().report;
+  EXPECT_EQ(cells.culling, Culling::voronoi);
+  EXPECT_GT(cells.cells, 100U);
+  EXPECT_LT(cells.left_over, mesh.triangles.size() / 10);
+  EXPECT_GE(cells.exact_tests, mesh.triangles.size());
+  EXPECT_LT(cells.exact_tests, 60 * mesh.triangles.size());
+  ProximityScene automatic;
+  automatic.add(mesh, {.self = true});
+  EXPECT_EQ(automatic.closest_primitives().report.culling, Culling::bvh);
+  EXPECT_THROW(ProximityScene({.cell_size = 0}), InvalidOption);
+  EXPECT_THROW(ProximityScene({.cell_size = std::numeric_limits<double>::quiet_NaN()}), InvalidOption);
+}
+
+/// A plate of two triangles under a fine body, and a heap of triangles in one place: what does not fit the cells is
+/// left to the hierarchy, and answers are the same.
+TEST(ProximityScene, LeavesToTheHierarchyWhatDoesNotFitCells) {
+  SlowScene slow;
+  slow.objects.push_back({make_box({.size = {100, 100, 0.1}}), {.self = true}, {}});
+  slow.objects.push_back({make_sphere({.radius = 0.5, .frequency = 4}), {.self = true}, {}});
+  TriangleMesh heap;
+  for (std::uint32_t k = 0; k < 300; ++k) {
+    const double shift = 1e-9 * k;
+    heap.vertices.insert(heap.vertices.end(), {{shift, 2, 0.2}, {0.1, 2 + shift, 0.2}, {0, 2, 0.3 + shift}});
+    heap.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  slow.objects.push_back({heap, {.self = true}, {}});
+  ProximityScene scene({.culling = Culling::voronoi, .cell_size = 0.05});
+  slow.add_to(scene);
+  expect_scene_answers(scene, slow, {});
+  EXPECT_GT(scene.closest_primitives().report.left_over, 300U);
 }
 
 /// A hundred frames of a body that deforms and one that moves: answers are those of a scene made anew in each.

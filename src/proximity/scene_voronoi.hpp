@@ -1,0 +1,21 @@
+// Blum: close pairs of primitives, culled by Voronoi diagrams. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "blum/core/context.hpp"
+#include "blum/proximity/scene.hpp"
+#include "proximity/scene_pairs.hpp"
+
+namespace blum::detail {
+
+/// As closest_of_each().
+void closest_of_each_by_cells(std::span<const ObjectPair> pairs, std::size_t objects, double cell_size,
+                              double max_distance, const Context& context, ProximityPairs& out);
+
+/// As near_pairs(), without neighbours.
+void near_pairs_by_cells(std::span<const ObjectPair> pairs, std::size_t objects, double cell_size, double distance,
+                         const Context& context, ProximityPairs& out);
+
+}  // namespace blum::detail
