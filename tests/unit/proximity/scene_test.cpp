@@ -20,6 +20,7 @@
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/shapes/generators.hpp"
 #include "support/nasty_soup.hpp"
+#include "support/random_transform.hpp"
 
 namespace blum {
 namespace {
@@ -179,18 +180,6 @@ void expect_answers(const ProximityScene& scene, const SlowScene& slow, const Co
   }
 }
 
-RigidTransform turned(Random& random, double far) {
-  RigidTransform out;
-  auto& c = out.rotation.columns;
-  c[0] = random.in_ball();
-  c[0] = c[0] / length(c[0]);
-  c[1] = cross(c[0], random.in_ball());
-  c[1] = c[1] / length(c[1]);
-  c[2] = cross(c[0], c[1]);
-  out.translation = random.in_ball() * far;
-  return out;
-}
-
 TriangleMesh soup(std::uint64_t seed, std::size_t count) {
   TriangleMesh mesh = test::nasty_soup(seed, count);
   const auto vertices = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -205,7 +194,7 @@ TEST(ProximityScene, IsThatOfAllPairsForNastySoups) {
     SlowScene slow;
     for (std::uint32_t k = 0; k < 4; ++k) {
       slow.objects.push_back({soup(10 * seed + k, 5 + 30 * k), {.self = k % 2 == 0}, {}});
-      if (k >= 2) slow.objects.back().place = turned(random, 1.5);
+      if (k >= 2) slow.objects.back().place = test::random_transform(random, 1.5);
     }
     ProximityScene scene;
     slow.add_to(scene);
@@ -249,7 +238,8 @@ TEST(ProximityScene, IsThatOfAllPairsFarFromTheOrigin) {
     Random random(8);
     SlowScene slow;
     for (int k = 0; k < 3; ++k) {
-      slow.objects.push_back({soup(80 + static_cast<std::uint64_t>(k), 25), {.self = true}, turned(random, 1)});
+      slow.objects.push_back(
+          {soup(80 + static_cast<std::uint64_t>(k), 25), {.self = true}, test::random_transform(random, 1)});
       slow.objects.back().place.translation += Vec3d{far, -far, far};
     }
     ProximityScene scene;
@@ -299,7 +289,7 @@ TEST_P(ProximitySceneOfThreads, IsTheSameForAnyNumber) {
   scene.add(make_organic({.frequency = 12}), {.self = true});
   const ObjectId other = scene.add(make_torus({}), {.self = true});
   Random random(30);
-  scene.update(other, turned(random, 0.4));
+  scene.update(other, test::random_transform(random, 0.4));
   std::optional<std::vector<std::vector<Row>>> first;
   for (const int threads : {1, 2, 7}) {
     Context context;
@@ -369,7 +359,7 @@ TEST(ProximityScene, OfADeformingBodyIsThatOfASceneMadeAnew) {
       moved.vertices[v] = {std::cos(angle) * p.x - std::sin(angle) * p.y, std::sin(angle) * p.x + std::cos(angle) * p.y,
                            p.z * (1 - 0.009 * frame)};
     }
-    const RigidTransform place = turned(random, 1.2);
+    const RigidTransform place = test::random_transform(random, 1.2);
     scene.update(soft, moved.vertices);
     scene.update(rigid, place);
     ProximityScene anew;
@@ -386,7 +376,7 @@ TEST(ProximityScene, TakesAnotherMeshForAnObject) {
   SlowScene slow;
   for (std::uint64_t k = 0; k < 3; ++k) slow.objects.push_back({soup(40 + k, 15), {.self = true}, {}});
   Random random(41);
-  slow.objects[1].place = turned(random, 0.5);
+  slow.objects[1].place = test::random_transform(random, 0.5);
   ProximityScene scene;
   slow.add_to(scene);
   slow.objects[1].mesh = soup(45, 40);
@@ -438,127 +428,6 @@ TEST(ProximityScene, CollidesWithItselfAsSelfIntersectionsSay) {
     EXPECT_FALSE(expected.empty());
     EXPECT_EQ(found, expected);
   }
-}
-
-/// (kind, object and vertices of the first feature, of the second, time).
-using ImpactRow =
-    std::tuple<int, std::uint32_t, std::vector<std::uint32_t>, std::uint32_t, std::vector<std::uint32_t>, double>;
-
-std::vector<ImpactRow> impact_rows(const SceneCollisions& found) {
-  std::vector<ImpactRow> out;
-  for (const ObjectCollisions& pair : found.objects) {
-    for (const auto& [v, f, time] : pair.vertex_face) {
-      out.emplace_back(0, pair.first.value, std::vector{v}, pair.second.value, std::vector{f.value}, time);
-    }
-    for (const auto& [v, f, time] : pair.face_vertex) {
-      out.emplace_back(0, pair.second.value, std::vector{v}, pair.first.value, std::vector{f.value}, time);
-    }
-    for (const auto& [a, b, time] : pair.edge_edge) {
-      out.emplace_back(1, pair.first.value, std::vector{a[0], a[1]}, pair.second.value, std::vector{b[0], b[1]}, time);
-    }
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-/// The edges of a mesh, the smaller end first.
-std::set<Segment> edges_of(const TriangleMesh& mesh) {
-  std::set<Segment> out;
-  for (const Triangle& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) out.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
-  }
-  return out;
-}
-
-/// A body at both ends of a motion.
-struct Frames {
-  const TriangleMesh* mesh;
-  std::vector<Vec3d> start, end;
-};
-
-std::vector<ImpactRow> slow_impacts(const std::vector<Frames>& bodies, const ImpactOptions& options) {
-  std::vector<ImpactRow> out;
-  for (std::uint32_t a = 0; a < bodies.size(); ++a) {
-    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-      if (a == b) continue;
-      const auto& [mesh_a, start_a, end_a] = bodies[a];
-      const auto& [mesh_b, start_b, end_b] = bodies[b];
-      for (std::uint32_t v = 0; v < start_a.size(); ++v) {
-        for (std::uint32_t f = 0; f < mesh_b->triangles.size(); ++f) {
-          const auto& [i, j, k] = mesh_b->triangles[f];
-          const auto time = vertex_face_impact(
-              {{start_a[v], start_b[i], start_b[j], start_b[k]}, {end_a[v], end_b[i], end_b[j], end_b[k]}}, options);
-          if (time) out.emplace_back(0, a, std::vector{v}, b, std::vector{f}, *time);
-        }
-      }
-      if (b < a) continue;
-      for (const auto& [i, j] : edges_of(*mesh_a)) {
-        for (const auto& [k, l] : edges_of(*mesh_b)) {
-          const auto time = edge_edge_impact(
-              {{start_a[i], start_a[j], start_b[k], start_b[l]}, {end_a[i], end_a[j], end_b[k], end_b[l]}}, options);
-          if (time) out.emplace_back(1, a, std::vector{i, j}, b, std::vector{k, l}, *time);
-        }
-      }
-    }
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-/// Three bodies, one of which deforms, one turns, and one rests where it touches another one from the start.
-TEST(ProximityScene, MeetsAsAllPairsOfFeaturesDo) {
-  for (const double min_separation : {0.0, 0.05}) {
-    const ImpactOptions options{.min_separation = min_separation};
-    const TriangleMesh ball = make_sphere({.frequency = 2});
-    const TriangleMesh block = make_box({.segments = {2, 2, 2}});
-    Random random(60);
-    ProximityScene scene;
-    const ObjectId a = scene.add(ball);
-    const ObjectId b = scene.add(block);
-    const ObjectId c = scene.add(block);
-    const RigidTransform from = turned(random, 1.5);
-    const RigidTransform to = turned(random, 1.5);
-    RigidTransform rest;
-    rest.translation = {2, 0, 0};
-    scene.update(b, from);
-    scene.update(c, rest);
-    std::vector<Vec3d> squeezed = ball.vertices;
-    for (Vec3d& p : squeezed) p = {2.5 * p.x, 0.5 * p.y, p.z};
-    const auto placed = [&](const RigidTransform& place) {
-      std::vector<Vec3d> out = block.vertices;
-      for (Vec3d& p : out) p = place(p);
-      return out;
-    };
-    const std::vector<ObjectMotion> motions{{a, squeezed, {}}, {b, {}, to}};
-    const SceneCollisions found = scene.continuous(motions, options);
-    const std::vector<ImpactRow> expected = slow_impacts(
-        {{&ball, ball.vertices, squeezed}, {&block, placed(from), placed(to)}, {&block, placed(rest), placed(rest)}},
-        options);
-    EXPECT_EQ(impact_rows(found), expected);
-    ASSERT_FALSE(expected.empty());
-    double earliest = 1;
-    for (const ImpactRow& one : expected) earliest = std::min(earliest, std::get<5>(one));
-    EXPECT_EQ(found.earliest(), earliest);
-    // Nothing was moved.
-    EXPECT_EQ(impact_rows(scene.continuous(motions, options)), expected);
-  }
-}
-
-TEST(ProximityScene, MeetsItselfAsAMeshAloneDoes) {
-  const TriangleMesh mesh = make_organic({.frequency = 6});
-  std::vector<Vec3d> end = mesh.vertices;
-  for (Vec3d& p : end) p.z *= -0.5;
-  const ContinuousCollisions alone = continuous_collisions(mesh, end);
-  ProximityScene scene;
-  const ObjectId self = scene.add(mesh, {.self = true});
-  const SceneCollisions found = scene.continuous(std::vector<ObjectMotion>{{self, end, {}}});
-  ASSERT_EQ(found.objects.size(), 1U);
-  ASSERT_EQ(found.objects[0].vertex_face.size(), alone.vertex_face.size());
-  ASSERT_EQ(found.objects[0].edge_edge.size(), alone.edge_edge.size());
-  EXPECT_FALSE(alone.vertex_face.empty());
-  EXPECT_TRUE(found.objects[0].face_vertex.empty());
-  EXPECT_EQ(found.earliest(), alone.earliest());
-  EXPECT_EQ(found.exact_tests, alone.exact_tests);
 }
 
 TEST(ProximityScene, RefusesBadInput) {
