@@ -1,4 +1,4 @@
-// The scenes of the simulations.
+// Blum: the scenes of the simulations. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>

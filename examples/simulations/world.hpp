@@ -1,5 +1,7 @@
-// Bodies and cloth made of particles, moved by position-based dynamics (Müller and others 2007), which never pass
-// through each other: each step is asked about with continuous collisions, and shortened where something would meet.
+// Blum: bodies and cloth that never pass through each other, for examples. SPDX-License-Identifier: Apache-2.0
+//
+// They are made of particles, moved by position-based dynamics (Müller and others 2007). Each step is asked about with
+// continuous collisions, and shortened where something would meet.
 #pragma once
 
 #include <cstddef>
