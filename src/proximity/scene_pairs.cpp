@@ -10,6 +10,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/core/radix_sort.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 
@@ -252,7 +253,21 @@ void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, dou
 }
 
 void sort_pairs(std::vector<PrimitivePair>& pairs) {
-  std::sort(pairs.begin(), pairs.end(), [](const PrimitivePair& a, const PrimitivePair& b) { return key(a) < key(b); });
+  // Stable sorts by one number after the other, the last one first; most scenes have few objects.
+  std::vector<KeyedIndex> order(pairs.size());
+  std::vector<KeyedIndex> scratch;
+  for (std::uint32_t k = 0; k < order.size(); ++k) order[k].index = k;
+  const auto sort_by = [&](const auto& number) {
+    for (KeyedIndex& one : order) one.key = number(pairs[one.index]);
+    radix_sort(order, scratch);
+  };
+  sort_by([](const PrimitivePair& pair) { return pair.second; });
+  sort_by([](const PrimitivePair& pair) { return pair.second_object.value; });
+  sort_by([](const PrimitivePair& pair) { return pair.first; });
+  sort_by([](const PrimitivePair& pair) { return pair.first_object.value; });
+  std::vector<PrimitivePair> sorted(pairs.size());
+  for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = pairs[order[k].index];
+  pairs = std::move(sorted);
 }
 
 void check_count(std::size_t pairs) {
