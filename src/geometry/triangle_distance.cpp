@@ -52,16 +52,26 @@ struct Pair {
 
 /// The corners of one triangle and the edges of another.
 void offer_corners_and_edges(const Sides& a, const Sides& b, Pair& best) {
+  double least = best.squared;
+  std::size_t corner = 3;
+  std::size_t edge = 0;
+  double at = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3d w = a.corner[i] - b.corner[k];
-      const double t = std::clamp(dot(w, b.edge[k]) * b.inverse[k], 0.0, 1.0);
+      const double t = std::min(std::max(dot(w, b.edge[k]) * b.inverse[k], 0.0), 1.0);
       const double squared = squared_length(w - b.edge[k] * t);
-      if (!(squared < best.squared)) continue;
-      const Vec3d q = t >= 1 ? b.corner[(k + 1) % 3] : b.corner[k] + b.edge[k] * t;
-      best = {squared, a.corner[i], q, {SiteKind::vertex, static_cast<std::uint8_t>(i)}, on_edge(k, t)};
+      // Without branches, which would be guessed wrong as often as not.
+      const bool is_less = squared < least;
+      least = is_less ? squared : least;
+      at = is_less ? t : at;
+      corner = is_less ? i : corner;
+      edge = is_less ? k : edge;
     }
   }
+  if (corner == 3) return;
+  const Vec3d q = at >= 1 ? b.corner[(edge + 1) % 3] : b.corner[edge] + b.edge[edge] * at;
+  best = {least, a.corner[corner], q, {SiteKind::vertex, static_cast<std::uint8_t>(corner)}, on_edge(edge, at)};
 }
 
 /// The insides of edges, where both hold the feet of the line that is at right angles to them.
