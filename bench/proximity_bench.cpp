@@ -3,6 +3,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "blum/proximity/scene.hpp"
@@ -237,7 +240,39 @@ void penetration_case(benchmark::State& state) {
   state.counters["depth"] = found.parts.empty() ? 0 : found.parts.front().depth;
 }
 
+/// What both ways of culling leave to the exact test, and how long their stages take: for a body with itself, two
+/// bodies in each other, and a soup.
+void culling_case(benchmark::State& state, const std::string& scene_name, std::optional<double> cell_size) {
+  ProximityScene scene(cell_size ? SceneOptions{Culling::voronoi, *cell_size} : SceneOptions{Culling::bvh, 2});
+  if (scene_name == "body") {
+    scene.add(bodies().first, {.self = true});
+  } else if (scene_name == "bodies") {
+    scene.add(bodies().first);
+    RigidTransform place;
+    place.translation = {0.05, 0.02, 0.01};
+    scene.update(scene.add(bodies().second), place);
+  } else {
+    scene.add(make_soup({.triangles = 20000, .triangle_size = 0.03}), {.self = true});
+  }
+  ProximityPairs found;
+  const Context one = with_threads(1);
+  tell(state, time_runs([&] { found = scene.closest_primitives(infinite, one); }), 1);
+  const auto primitives = static_cast<double>(found.pairs.size());
+  state.counters["cells"] = static_cast<double>(found.report.cells);
+  state.counters["left_over"] = static_cast<double>(found.report.left_over);
+  state.counters["candidates_per_primitive"] = static_cast<double>(found.report.candidates) / primitives;
+  state.counters["exact_tests_per_primitive"] = static_cast<double>(found.report.exact_tests) / primitives;
+  report_phases(state, found.report.phases);
+}
+
 const bool registered = [] {
+  for (const std::string scene : {"body", "bodies", "soup"}) {
+    add("culling/" + scene + "/bvh", [=](benchmark::State& state) { culling_case(state, scene, std::nullopt); });
+    for (const double size : {0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0}) {
+      add("culling/" + scene + "/voronoi-" + std::to_string(size).substr(0, 4),
+          [=](benchmark::State& state) { culling_case(state, scene, size); });
+    }
+  }
   for (const double gap : {0.3, 0.1, 0.03, 0.01, 0.002}) {
     const std::string name = "separation-rigid/gap-" + std::to_string(gap).substr(0, 5) + "/";
     add(name + "blum", [=](benchmark::State& state) { rigid_case(state, gap, false); });
