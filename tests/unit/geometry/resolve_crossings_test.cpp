@@ -231,6 +231,39 @@ TEST(ResolveCrossings, NoisyMeshes) {
   }
 }
 
+/// Three boxes along a line, each in the next one by a part: what lies in two of them, and in all three.
+TEST(ResolveCrossings, WindingsOfTwoAndMoreAreWhatIsCommon) {
+  TriangleMesh mesh;
+  const auto add = [&](const TriangleMesh& box) {
+    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), box.vertices.begin(), box.vertices.end());
+    for (const auto& [a, b, c] : box.triangles) mesh.triangles.push_back({base + a, base + b, base + c});
+  };
+  add(box_between({0, 0, 0}, {2, 2, 2}));
+  add(box_between({1, 0.25, 0.25}, {4, 1.5, 1.75}));
+  add(box_between({1.5, 0.5, 0.5}, {5, 1, 3}));
+  const auto volume = [&](int least_winding) {
+    ResolveOptions options;
+    options.least_winding = least_winding;
+    const ResolvedMesh found = resolve_crossings(mesh, options);
+    EXPECT_EQ(found.obstacle, "");
+    EXPECT_TRUE(found.has_inside);
+    EXPECT_EQ(found.body_of, std::vector<std::uint32_t>(found.mesh.triangles.size(), 0));
+    return topology(found.mesh).signed_volume;
+  };
+  const double first_second = 1 * 1.25 * 1.5;
+  const double second_third = 2.5 * 0.5 * 1.25;
+  const double first_third = 0.5 * 0.5 * 1.5;
+  const double all = 0.5 * 0.5 * 1.25;
+  EXPECT_NEAR(volume(3), all, 1e-12);
+  EXPECT_NEAR(volume(2), first_second + second_third + first_third - 2 * all, 1e-12);
+  ResolveOptions options;
+  options.least_winding = 4;
+  const ResolvedMesh none = resolve_crossings(mesh, options);
+  EXPECT_FALSE(none.has_inside);
+  EXPECT_FALSE(none.is_resolved());
+}
+
 TEST(ResolveCrossings, AllThatIsTooMuchIsRefused) {
   TriangleMesh mesh = make_sphere({.frequency = 6});
   append(mesh, make_sphere({.frequency = 6}), {0.5, 0.1, 0.05});
