@@ -82,6 +82,7 @@ struct OrientedBvh::Data {
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< of primitives by rank
   std::vector<FlatTriangleBlock> leaves;              ///< of primitives by rank
   BlockTree<OrientedBlock> tree;                      ///< its leaves are the blocks of primitives
+  std::vector<std::vector<std::uint32_t>> first;      ///< smallest primitive of each block, and of each block of `tree`
   OrientedBox root;
 
   [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
@@ -95,8 +96,25 @@ struct OrientedBvh::Data {
     return tree.levels[static_cast<std::size_t>(node.level + 1)][node.index / lanes].box(node.index % lanes);
   }
 
+  /// The smallest primitive below a node.
+  [[nodiscard]] std::uint32_t first_of(const NodeRef& node) const {
+    return first[static_cast<std::size_t>(node.level + 1)][node.index];
+  }
+
   void fill(std::span<const Vec3d> positions, const Context& context);
+  void fill_first();
 };
+
+/// What does not change with positions.
+void OrientedBvh::Data::fill_first() {
+  std::vector<std::uint32_t> own = order;
+  while (own.size() > 1 || first.size() < 2) {
+    std::vector<std::uint32_t> above((own.size() + lanes - 1) / lanes, 0xffffffffU);
+    for (std::size_t k = 0; k < own.size(); ++k) above[k / lanes] = std::min(above[k / lanes], own[k]);
+    own = above;
+    first.push_back(std::move(above));
+  }
+}
 
 /// Positions of all primitives, and all boxes.
 void OrientedBvh::Data::fill(std::span<const Vec3d> positions, const Context& context) {
@@ -148,6 +166,7 @@ OrientedBvh::OrientedBvh(const MeshView& mesh, const Context& context) : data_(s
   data.corners.resize(count);
   for (std::size_t rank = 0; rank < count; ++rank) data.corners[rank] = vertices_of(mesh, data.order[rank]);
   data.leaves.resize((count + lanes - 1) / lanes);
+  data.fill_first();
   data.fill(mesh.vertices, context);
 }
 
@@ -247,7 +266,7 @@ class PairSearch {
       // A node of level k covers 8^(k + 1) blocks.
       const bool is_early = !is_here && ((static_cast<std::size_t>(child.index) + 1)
                                          << (3 * static_cast<unsigned>(child.level + 1))) <= first_there_;
-      if (is_early) continue;
+      if (is_early || (!is_here && there_.first_of(child) > last_there_)) continue;
       push_sorted(pending_, bottom, {gaps[lane], is_here ? child : pair.here, is_here ? pair.there : child});
     }
   }
@@ -262,6 +281,7 @@ class PairSearch {
     };
     InlineList<Candidate, lanes * lanes> candidates;
     for (std::size_t row = 0; row < rows; ++row) {
+      if (there_.order[there * lanes + row] > last_there_) continue;
       FlatTriangle triangle = there_.leaves[there].triangle(row);
       if (is_placed_) {
         for (Vec3d& corner : triangle.corners) corner = place_(corner);
@@ -280,9 +300,11 @@ class PairSearch {
       if (!(one.squared_gap <= most)) return;
       const std::uint32_t first = here_.order[here * lanes + one.column];
       const std::uint32_t second = there_.order[there * lanes + one.row];
-      const double lower = visit_(first, second, std::max(std::sqrt(one.squared_gap) - slack_, 0.0));
-      if (lower < limit_) {
-        limit_ = lower;
+      if (second > last_there_) continue;
+      const OrientedBvh::Wanted wanted = visit_(first, second, std::max(std::sqrt(one.squared_gap) - slack_, 0.0));
+      last_there_ = std::min(last_there_, wanted.last_there);
+      if (wanted.limit < limit_) {
+        limit_ = wanted.limit;
         most = squared_limit(limit_, slack_);
       }
     }
@@ -295,6 +317,7 @@ class PairSearch {
   bool is_placed_;
   double slack_;
   double limit_;
+  std::uint32_t last_there_ = 0xffffffffU;
   std::size_t first_there_ = 0;
   bool is_self_ = false;
   const OrientedBvh::Visit& visit_;

@@ -128,7 +128,9 @@ std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_
     ++report.candidates;
     if (objects.is_self() && objects.are_neighbours(i, j)) return best.limit + objects.slack();
     if (objects.is_self() && j < i) std::swap(i, j);
-    if (!best.rules_out(i, j)) {
+    const bool is_after =
+        best.limit == 0 && best.pair && std::pair(i, j) > std::pair(best.pair->first, best.pair->second);
+    if (!is_after) {
       ++report.exact_tests;
       best.offer(objects.compare(i, j));
     }
@@ -163,18 +165,20 @@ class BlockSearch {
   void look_at(const Partner& partner, ProximityReport& report) {
     const ObjectPair& pair = *partner.pair;
     const SceneObject& other = partner.is_second ? pair.b() : pair.a();
+    const ObjectId other_id = partner.is_second ? pair.second() : pair.first();
     const RigidTransform place = partner.is_second ? pair.place() : pair.place().inverse();
     const auto visit = [&](std::uint32_t here, std::uint32_t there, double at_least) {
       ++report.candidates;
       Closest& best = best_of(here);
       const bool is_left_out = pair.is_self() && (here == there || pair.are_neighbours(here, there));
-      if (!is_left_out && at_least <= best.limit + pair.slack()) {
+      const bool may_count = at_least <= best.limit + pair.slack() && !best.rules_out(other_id, there);
+      if (!is_left_out && may_count) {
         ++report.exact_tests;
         const PrimitivePair found = partner.is_second ? pair.compare(here, there) : pair.compare(there, here);
         const bool is_turned = pair.is_self() ? there < here : !partner.is_second;
         best.offer(is_turned ? exchanged(found) : found);
       }
-      return limit() + pair.slack();
+      return OrientedBvh::Wanted(limit() + pair.slack(), last_of(other_id));
     };
     bvh_.for_each_near_pair(block_, other.bvh(), place, limit() + pair.slack(), visit);
   }
@@ -195,6 +199,18 @@ class BlockSearch {
     double furthest = 0;
     for (std::size_t k = 0; k < primitives_.size(); ++k) furthest = std::max(furthest, best_[k].limit);
     return furthest;
+  }
+
+  /// The largest primitive of an object that may still be the closest of one here: where all have one at distance zero,
+  /// others must come before it.
+  [[nodiscard]] std::uint32_t last_of(ObjectId other) const {
+    std::uint32_t last = 0;
+    for (std::size_t k = 0; k < primitives_.size(); ++k) {
+      const Closest& best = best_[k];
+      if (best.limit > 0 || !best.pair || best.pair->second_object > other) return 0xffffffffU;
+      if (best.pair->second_object == other) last = std::max(last, best.pair->second);
+    }
+    return last;
   }
 
   const OrientedBvh& bvh_;

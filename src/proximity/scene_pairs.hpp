@@ -21,9 +21,9 @@ struct Closest {
   double limit = 0;  ///< nothing further away than this counts
 
   void offer(const PrimitivePair& other);
-  /// Whether a pair comes after the closest one, however close it is.
-  [[nodiscard]] bool rules_out(std::uint32_t i, std::uint32_t j) const {
-    return limit == 0 && pair && std::pair(i, j) > std::pair(pair->first, pair->second);
+  /// Whether a partner comes after the closest one, however close it is.
+  [[nodiscard]] bool rules_out(ObjectId object, std::uint32_t primitive) const {
+    return limit == 0 && pair && std::pair(object, primitive) > std::pair(pair->second_object, pair->second);
   }
 };
 

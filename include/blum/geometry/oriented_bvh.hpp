@@ -23,9 +23,18 @@ namespace blum {
 /// Cost: O(n log n) to build, about 0.3 microseconds per primitive; 150 bytes per primitive.
 class OrientedBvh {
  public:
+  /// Which pairs a visitor wants to see from now on.
+  struct Wanted {
+    double limit;                           ///< how close they must be; none where it is negative
+    std::uint32_t last_there = 0xffffffff;  ///< the largest primitive of the other hierarchy
+
+    Wanted(double limit_) : limit(limit_) {}  // NOLINT(google-explicit-constructor): mostly a distance is all
+    Wanted(double limit_, std::uint32_t last) : limit(limit_), last_there(last) {}
+  };
+
   /// Called with a primitive of this hierarchy, one of the other, and a distance that they are apart at least; returns
-  /// how close pairs must be from now on.
-  using Visit = FunctionRef<double(std::uint32_t, std::uint32_t, double)>;
+  /// what is wanted from now on: less than before.
+  using Visit = FunctionRef<Wanted(std::uint32_t, std::uint32_t, double)>;
 
   /// @param mesh  must pass validate(mesh). @throws Cancelled.
   explicit OrientedBvh(const MeshView& mesh, const Context& context = {});
