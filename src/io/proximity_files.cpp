@@ -26,12 +26,13 @@ using Two = std::array<T, 2>;
 /// Pairs, column by column.
 class PairColumns {
  public:
-  PairColumns(std::span<const PrimitivePair> pairs, std::span<const MeshView> objects)
-      : pairs_(pairs), objects_(objects) {
-    for (const PrimitivePair& pair : pairs) {
-      check(pair.first_object, pair.first);
-      check(pair.second_object, pair.second);
-    }
+  /// All are kept by reference. @throws InvalidOption where a pair is not of the objects; Cancelled.
+  PairColumns(std::span<const PrimitivePair> pairs, std::span<const MeshView> objects, const Context& context)
+      : pairs_(pairs), objects_(objects), context_(context) {
+    for_each([&](std::size_t n) {
+      check(pairs_[n].first_object, pairs_[n].first);
+      check(pairs_[n].second_object, pairs_[n].second);
+    });
   }
 
   [[nodiscard]] std::size_t size() const { return pairs_.size(); }
@@ -51,11 +52,20 @@ class PairColumns {
             feature_vertices(corners(pair.second_object, pair.second), pair.between.second_feature)};
   }
 
+  /// Calls visit(n) for each pair. @throws Cancelled.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    constexpr std::size_t look_every = 65536;
+    for (std::size_t n = 0; n < size(); ++n) {
+      if (n % look_every == 0) throw_if_cancelled(context_);
+      visit(n);
+    }
+  }
   /// All rows of one column.
   template <class Row>
   [[nodiscard]] std::vector<Row> all(Row (PairColumns::*row)(std::size_t) const) const {
     std::vector<Row> rows(size());
-    for (std::size_t n = 0; n < rows.size(); ++n) rows[n] = (this->*row)(n);
+    for_each([&](std::size_t n) { rows[n] = (this->*row)(n); });
     return rows;
   }
 
@@ -77,6 +87,7 @@ class PairColumns {
 
   std::span<const PrimitivePair> pairs_;
   std::span<const MeshView> objects_;
+  const Context& context_;
 };
 
 /// Bytes of a pair in .npz.
@@ -172,7 +183,7 @@ void write_vtp(const std::filesystem::path& path, const PairColumns& pairs, cons
   const std::span<std::int32_t> object = lines.edge_columns.add<std::int32_t>("object", 2);
   const std::span<std::int32_t> primitive = lines.edge_columns.add<std::int32_t>("primitive", 2);
   const std::span<std::int32_t> feature = lines.edge_columns.add<std::int32_t>("feature", 6);
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
+  pairs.for_each([&](std::size_t n) {
     const auto first = static_cast<std::uint32_t>(2 * n);
     lines.edges.push_back({first, first + 1});
     distance[n] = pairs.distance(n);
@@ -183,7 +194,7 @@ void write_vtp(const std::filesystem::path& path, const PairColumns& pairs, cons
       const std::array<std::int32_t, 3> vertices = pairs.feature(n)[side];
       std::copy(vertices.begin(), vertices.end(), &feature[6 * n + 3 * side]);
     }
-  }
+  });
   lines.vertex_columns = Columns(lines.positions.size());
   write_complex(path, lines, metadata, {}, context);
 }
@@ -203,7 +214,7 @@ void write_proximity_pairs(const std::filesystem::path& path, std::span<const Pr
     throw InvalidOption("'" + path.string() +
                         "': close pairs are written to .npz, .csv, .json, .vtp files; use one of these extensions");
   }
-  const PairColumns columns(pairs, objects);
+  const PairColumns columns(pairs, objects, context);
   throw_if_cancelled(context);
   if (extension == ".npz") {
     write_npz(path, columns, metadata, context);

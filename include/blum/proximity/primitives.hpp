@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "blum/geometry/triangle_distance.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -33,12 +34,12 @@ namespace blum {
                                                                   const TriangleFeature& feature) {
   const std::size_t count = feature.kind == SiteKind::vertex ? 1 : feature.kind == SiteKind::edge ? 2 : 3;
   std::array<std::int32_t, 3> out{-1, -1, -1};
-  auto end = out.begin();
+  std::size_t size = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const auto vertex = static_cast<std::int32_t>(triangle[(feature.index + k) % 3]);
-    if (std::find(out.begin(), end, vertex) == end) *end++ = vertex;
+    if (std::find(out.begin(), out.end(), vertex) == out.end()) out[size++] = vertex;
   }
-  if (end - out.begin() == 2) std::sort(out.begin(), end);
+  if (size == 2 && out[0] > out[1]) std::swap(out[0], out[1]);
   return out;
 }
 
