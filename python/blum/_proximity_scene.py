@@ -11,7 +11,19 @@ from typing import Any, overload
 import numpy as np
 
 from . import _core
-from ._arguments import FloatArray, Integer, IntArray, Real, as_array, float_rows, integer, matrix, number, triple, truth
+from ._arguments import (
+    FloatArray,
+    IntArray,
+    Integer,
+    Real,
+    as_array,
+    float_rows,
+    integer,
+    matrix,
+    number,
+    triple,
+    truth,
+)
 from ._errors import InvalidMesh, InvalidOption
 from ._mesh import as_mesh
 from ._progress import Progress, ProgressCallback, reporting

@@ -84,8 +84,9 @@ def test_closest_points_of_triangles_lie_on_their_features():
             assert found.distance[k] == 0 or on_feature(found.point[k, side], triangle, found.feature[k, side])
     same = blum.triangle_distances(a.tolist(), np.asfortranarray(b), threads=2)
     assert np.array_equal(same.point, found.point)
-    small = blum.triangle_distances(a.astype(np.float32), b.astype(np.float32))
-    assert np.array_equal(small.distance, blum.triangle_distances(a.astype(np.float32).astype(float), b.astype("f4")).distance)
+    small = a.astype(np.float32)
+    found = blum.triangle_distances(small, b).distance
+    assert np.array_equal(found, blum.triangle_distances(small.astype(np.float64), b).distance)
     assert blum.triangle_distances(np.zeros((0, 3, 3)), np.zeros((0, 3, 3))).distance.shape == (0,)
 
 
@@ -173,6 +174,12 @@ def test_self_comparison_leaves_neighbours_out():
     folded = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.9, 0]], [[0, 1, 2], [0, 1, 3]]
     assert blum.collisions(folded).primitive.tolist() == [[0, 1]]
     assert len(blum.collisions(folded, within=1)) == 0, "they share vertices"
+
+
+def test_what_a_mesh_has_in_common_with_itself_is_where_it_crosses_or_touches_itself():
+    wide = blum.noisy(blum.generate("torus", ring_segments=24, tube_segments=12), 0.4, 1)
+    wanted = blum.self_intersections(wide).pairs
+    assert len(wanted) > 100 and np.array_equal(blum.collisions(wide).primitive, wanted)
 
 
 def test_verbs_in_one_call_are_those_of_scenes():
