@@ -8,6 +8,7 @@ step costs no more than the query.
 
 import argparse
 import pathlib
+from itertools import pairwise
 
 import blum
 import numpy as np
@@ -22,7 +23,8 @@ ARM, OBSTACLE = 1, 2  # layers
 def link(length):
     """A beam along z, from joint to joint, with a round end."""
     beam, end = blum.generate("box", size_x=0.2, size_y=0.2, size_z=length), blum.generate("sphere", radius=0.15)
-    vertices = np.vstack([beam.vertices + [0, 0, length / 2], end.vertices + [0, 0, length]])
+    up = np.array([0, 0, length])
+    vertices = np.vstack([beam.vertices + up / 2, end.vertices + up])
     return blum.Mesh(vertices, np.vstack([beam.triangles, end.triangles + len(beam.vertices)]))
 
 
@@ -61,7 +63,7 @@ def main() -> None:
     scene = blum.ProximityScene()
     scene.add(obstacle, layers=OBSTACLE)
     links = [scene.add(link(length), layers=ARM) for length in LENGTHS]
-    for first, second in zip(links, links[1:], strict=False):
+    for first, second in pairwise(links):
         scene.exclude(first, second)  # neighbours meet at their joint
 
     rows = []

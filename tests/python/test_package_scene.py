@@ -177,7 +177,7 @@ def test_self_comparison_leaves_neighbours_out():
 
 
 def test_what_a_mesh_has_in_common_with_itself_is_where_it_crosses_or_touches_itself():
-    wide = blum.noisy(blum.generate("torus", ring_segments=24, tube_segments=12), 0.4, 1)
+    wide = blum.noisy(blum.generate("torus", ring_segments=24, tube_segments=12), 0.4)
     wanted = blum.self_intersections(wide).pairs
     assert len(wanted) > 100 and np.array_equal(blum.collisions(wide).primitive, wanted)
 
