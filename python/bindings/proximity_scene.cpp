@@ -54,9 +54,11 @@ class Scene {
   std::uint32_t add(const MeshView& mesh, const ObjectOptions& options, const RigidTransform& place,
                     const Context& context) {
     check(place);
+    corners_.reserve(corners_.size() + 1);
+    TriangleMesh corners = corners_of(mesh);
     const ObjectId object = scene_.add(mesh, options, context);
     scene_.update(object, place);
-    corners_.push_back(corners_of(mesh));
+    corners_.push_back(std::move(corners));
     return object.value;
   }
   void remove(ObjectId object) {
@@ -78,18 +80,20 @@ class Scene {
     ProximityPairs found;
     found.report.object_pairs = 1;
     if (const auto pair = scene_.separation(first, second, most, context)) found.pairs.push_back(*pair);
-    return with_features(std::move(found));
+    return with_features(std::move(found), context);
   }
   [[nodiscard]] Pairs separations(double most, const Context& context) const {
-    return with_features(scene_.separation(most, context));
+    return with_features(scene_.separation(most, context), context);
   }
   [[nodiscard]] Pairs closest_primitives(double most, const Context& context) const {
-    return with_features(scene_.closest_primitives(most, context));
+    return with_features(scene_.closest_primitives(most, context), context);
   }
   [[nodiscard]] Pairs closer_than(double distance, const Context& context) const {
-    return with_features(scene_.closer_than(distance, context));
+    return with_features(scene_.closer_than(distance, context), context);
   }
-  [[nodiscard]] Pairs collisions(const Context& context) const { return with_features(scene_.collisions(context)); }
+  [[nodiscard]] Pairs collisions(const Context& context) const {
+    return with_features(scene_.collisions(context), context);
+  }
 
  private:
   static TriangleMesh corners_of(const MeshView& mesh) {
@@ -103,10 +107,12 @@ class Scene {
                                                     const TriangleFeature& feature) const {
     return feature_vertices(primitive_vertices(corners_[object.value], primitive), feature);
   }
-  [[nodiscard]] Pairs with_features(ProximityPairs found) const {
+  [[nodiscard]] Pairs with_features(ProximityPairs found, const Context& context) const {
+    constexpr std::size_t look_every = 65536;
     Pairs out{std::move(found.pairs), {}, std::move(found.report)};
     out.features.reserve(out.pairs.size());
     for (const PrimitivePair& pair : out.pairs) {
+      if (out.features.size() % look_every == 0) throw_if_cancelled(context);
       out.features.push_back({feature(pair.first_object, pair.first, pair.between.first_feature),
                               feature(pair.second_object, pair.second, pair.between.second_feature)});
     }
