@@ -66,6 +66,7 @@ void add_proximity_command(const CommandLine& line) {
                   "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between "
                   "closest points); of continuous .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time), "
                   ".csv, .json. May be left out with separation");
+  a->culling.add_to(*command, "All but continuous: ");
   a->impact.add_to(*command, "continuous: ");
   add_threads_option(*command, a->threads);
   add_report_options(*command, a->report);

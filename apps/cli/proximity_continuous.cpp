@@ -51,6 +51,9 @@ void check(const ProximityArguments& a) {
   }
   if (!a.self) throw UsageError("one mesh has nothing to meet but itself: give --self");
   if (a.within) throw UsageError("--within is not for --query continuous: --min-separation says how close is told");
+  if (const auto names = a.culling.given(); !names.empty()) {
+    throw UsageError(names.front() + " is not for --query continuous");
+  }
   if (!a.output) throw UsageError("--query continuous tells its pairs in a file: give -o PAIRS");
   check_extension("--output", *a.output, collision_extensions());
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "blum/proximity/impact.hpp"
+#include "blum/proximity/scene.hpp"
 #include "common_options.hpp"
 #include "described.hpp"
 
@@ -19,6 +20,7 @@ struct ProximityArguments {
   std::optional<std::string> output;
   std::optional<std::string> threads;
   OptionTexts<ImpactOptions> impact;  ///< of continuous collisions alone
+  OptionTexts<SceneOptions> culling;  ///< of all other queries
   ReportOptions report;
 };
 

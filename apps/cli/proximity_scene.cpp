@@ -70,8 +70,9 @@ std::vector<TriangleMesh> read_objects(const std::vector<std::string>& files) {
   return meshes;
 }
 
-ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const ProximityArguments& a, const Context& context) {
-  ProximityScene scene;
+ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const ProximityArguments& a,
+                        const SceneOptions& culling, const Context& context) {
+  ProximityScene scene(culling);
   ObjectOptions options;
   options.self = a.self;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
@@ -135,6 +136,9 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"pairs", answer.found.pairs.size()},
                                    {"min_distance", to_json(answer.min_distance())},
                                    {"closest", closest_json(answer)},
+                                   {"culling", to_json(answer.found.report.culling)},
+                                   {"cells", answer.found.report.cells},
+                                   {"left_over", answer.found.report.left_over},
                                    {"candidates", answer.found.report.candidates},
                                    {"exact_tests", answer.found.report.exact_tests},
                                    {"seconds", answer.spent.seconds},
@@ -207,6 +211,8 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
 void run_scene_query(const ProximityArguments& a) {
   check(a);
   Answer answer;
+  const SceneOptions culling = a.culling.read();
+  check(culling);
   if (a.within) answer.within = parse_non_negative("--within", *a.within);
   const int threads = parse_threads(a.threads);
   std::vector<fs::path> outputs = a.report.files();
@@ -218,7 +224,7 @@ void run_scene_query(const ProximityArguments& a) {
   Stopwatch watch;
   answer.meshes = read_objects(a.scene);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  const ProximityScene scene = scene_of(answer.meshes, a, context);
+  const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
   phases.push_back({"build", watch.lap()});
   answer.found = ask(scene, a.query, answer.within, context);
   phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());

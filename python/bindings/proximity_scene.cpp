@@ -1,11 +1,13 @@
 #include "blum/proximity/scene.hpp"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "blum/geometry/triangle_distance.hpp"
 #include "blum/proximity/primitives.hpp"
 #include "call.hpp"
+#include "structs.hpp"
 
 namespace blum::python {
 namespace {
@@ -51,6 +54,8 @@ struct Pairs {
 /// A scene that knows which vertices its primitives have.
 class Scene {
  public:
+  explicit Scene(const SceneOptions& options) : scene_(options) {}
+
   std::uint32_t add(const MeshView& mesh, const ObjectOptions& options, const RigidTransform& place,
                     const Context& context) {
     check(place);
@@ -154,7 +159,7 @@ Out<std::int32_t> features_out(std::vector<Features> features) {
   return numbers<std::int32_t>(held(std::move(features)), [](Features& one) -> auto& { return one; }, two_vectors);
 }
 
-/// (object, primitive, distance, point, feature, object_pairs, candidates, exact_tests).
+/// (object, primitive, distance, point, feature, culling, cells, left_over, object_pairs, candidates, exact_tests).
 nb::tuple arrays_of(Pairs found) {
   const Held<PrimitivePair> pairs = held(std::move(found.pairs));
   return nb::make_tuple(numbers<std::int32_t>(
@@ -165,7 +170,8 @@ nb::tuple arrays_of(Pairs found) {
                             pairs, [](PrimitivePair& one) -> auto& { return one.between.distance; }, single),
                         numbers<double>(
                             pairs, [](PrimitivePair& one) -> auto& { return one.between.first_point; }, two_vectors),
-                        features_out(std::move(found.features)), found.report.object_pairs, found.report.candidates,
+                        features_out(std::move(found.features)), std::string(to_string(found.report.culling)),
+                        found.report.cells, found.report.left_over, found.report.object_pairs, found.report.candidates,
                         found.report.exact_tests);
 }
 
@@ -267,7 +273,10 @@ void bind_queries(nb::class_<Scene>& scene) {
 
 void bind_proximity_scene(nb::module_& m) {
   nb::class_<Scene> scene(m, "ProximityScene");
-  scene.def(nb::init<>());
+  bind_options<SceneOptions>(m);
+  scene.def(
+      "__init__", [](Scene* self, const nb::dict& given) { new (self) Scene(options_from<SceneOptions>(given)); },
+      nb::arg("options"));
   bind_updates(scene);
   bind_queries(scene);
   m.def(

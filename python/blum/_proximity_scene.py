@@ -6,7 +6,7 @@ import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, overload
+from typing import Any, Unpack, overload
 
 import numpy as np
 
@@ -26,7 +26,9 @@ from ._arguments import (
 )
 from ._errors import InvalidMesh, InvalidOption
 from ._mesh import as_mesh
+from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
+from ._structs import SceneOptions
 
 _ALL_LAYERS = 0xFFFFFFFF
 
@@ -52,6 +54,9 @@ class ProximityPairs:
     distance: FloatArray  #: (n,): mesh units; 0 just where they meet
     point: FloatArray  #: (n, 2, 3): the closest points; where they meet, a point near both
     feature: IntArray  #: (n, 2, 3): the one, two or three vertices of each mesh that the point lies on, padded with -1
+    culling: str  #: what left out pairs that cannot count: "bvh" or "voronoi"
+    cells: int  #: of Voronoi culling
+    left_over: int  #: primitives that Voronoi culling left to the hierarchy
     object_pairs: int  #: pairs of objects that were compared
     candidates: int  #: pairs of primitives that culling left over
     exact_tests: int  #: pairs whose distance was computed
@@ -78,12 +83,17 @@ class ProximityPairs:
         return f"ProximityPairs({len(self):,} {'pair' if len(self) == 1 else 'pairs'})"
 
 
+@takes("SceneOptions")
 class ProximityScene:
     """Meshes that move, deform and change, and what is close among them; exact for the coordinates as they are.
 
     A scene keeps copies of its meshes. Answers do not depend on the number of threads, and after any updates are those
     of a scene made anew. Of pairs that are equally far apart, the one with the smallest (object, primitive) of the
     first, then of the second, is told. Threads that share a scene wait for each other.
+
+    Parameters
+    ----------
+    **options
 
     >>> import blum
     >>> scene = blum.ProximityScene()
@@ -96,8 +106,8 @@ class ProximityScene:
     0
     """
 
-    def __init__(self) -> None:
-        self._scene = _core.ProximityScene()
+    def __init__(self, **options: Unpack[SceneOptions]) -> None:
+        self._scene = _core.ProximityScene(dict(options))
         self._count = 0
         self._busy = threading.Lock()
         self._owner: int | None = None  # the thread that asks or changes

@@ -162,6 +162,15 @@ def test_files_do_not_depend_on_threads(objects, tmp_path):
         assert files[0] == files[1] == files[2]
 
 
+def test_culling_changes_no_file(objects, tmp_path):
+    arguments = *objects, "--self", "--query", "nbody", "-o"
+    wanted = run_json("proximity", *arguments, tmp_path / "bvh.npz", "--culling", "bvh")
+    answer = run_json("proximity", *arguments, tmp_path / "v.npz", "--culling", "voronoi", "--cell-size", "1.5")
+    assert [wanted["culling"], wanted["cells"]] == ["bvh", 0]
+    assert answer["culling"] == "voronoi" and answer["cells"] > 0 and answer["left_over"] >= 0
+    assert (tmp_path / "bvh.npz").read_bytes() == (tmp_path / "v.npz").read_bytes()
+
+
 def test_what_makes_no_sense_is_refused(objects, tmp_path):
     torus, moved, soup = objects
     out = tmp_path / "p.npz"
@@ -181,6 +190,9 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
         ([torus, moved, "--within", "near"], 2, "is not a number"),
         ([torus, moved, "--tolerance", "0.1"], 2, "--tolerance is for --query continuous alone"),
         ([torus, moved, "--min-separation", "0.1"], 2, "--min-separation is for --query continuous alone"),
+        ([torus, moved, "--culling", "octree"], 2, "--culling"),
+        ([torus, moved, "--cell-size", "0"], 2, "--cell-size"),
+        ([torus, moved, "--query", "continuous", "--self", "--culling", "bvh", "-o", out], 2, "--culling is not for"),
         ([torus, moved, "--threads", "-1"], 2, "--threads"),
         ([torus, moved, "-o", tmp_path / "p.txt"], 2, "the extension must be .npz, .csv, .json or .vtp"),
         ([torus, soup, "-o", soup], 2, ""),

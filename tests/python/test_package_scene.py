@@ -186,6 +186,21 @@ def test_scenes_are_what_all_pairs_say_through_all_updates():
     check_scene(scene, [meshes[0], *meshes[2:]], [places[0], places[2], (turned(13), np.array([0, 0, 1]))], [0, 2, 3])
 
 
+def test_culling_changes_no_answer():
+    def answers(**options):
+        scene = blum.ProximityScene(**options)
+        for seed in (81, 82):
+            scene.add(soup(150, seed, 0.1), compare_self=True, transform=(turned(seed), [0, 0, 0]))
+        return [scene.separation(), scene.closest_primitives(), scene.closer_than(0.1), scene.collisions()]
+
+    wanted, found = answers(culling="bvh"), answers(culling="voronoi", cell_size=np.float32(1.5))
+    assert any(one.culling == "voronoi" and one.cells > 0 for one in found)
+    assert all(one.culling == "bvh" and one.cells == 0 for one in wanted)
+    for one, other in zip(found, wanted, strict=True):
+        for name in ("object", "primitive", "distance", "point", "feature"):
+            assert np.array_equal(getattr(one, name), getattr(other, name))
+
+
 def test_objects_are_compared_by_layers_exclusion_and_with_themselves():
     scene = blum.ProximityScene()
     robot = [scene.add(soup(10, seed), layers=1, meets=2) for seed in (1, 2)]
@@ -344,6 +359,9 @@ def scene_of_two():
         (lambda s: s.closer_than(-0.5), ValueError, "distance is -0.5"),
         (lambda s: s.closer_than("near"), TypeError, "distance must be a number"),
         (lambda s: s.closest_primitives(threads=-1), ValueError, "threads"),
+        (lambda _: blum.ProximityScene(culling="octree"), ValueError, "culling is 'octree'"),
+        (lambda _: blum.ProximityScene(cell_size=0), ValueError, "cell_size"),
+        (lambda _: blum.ProximityScene(cells=2), TypeError, "cells"),
         (lambda _: blum.collisions([], within=1), ValueError, "no mesh"),
         (lambda _: blum.collisions(soup(1, 1), within=-1), ValueError, "within is -1"),
         (lambda _: blum.collisions([soup(1, 1), 3]), TypeError, r"meshes\[1\] is a int"),
