@@ -227,7 +227,7 @@ def test_a_full_disk_leaves_the_file_as_it_was(objects, tmp_path, extension):
 def test_interrupted_work_ends_by_the_signal_and_leaves_nothing(tmp_path):
     run("make", "soup", "-o", tmp_path / "soup.ply", "--triangles", 200000)
     (tmp_path / "out.npz").write_bytes(b"old")
-    arguments = ["proximity", "soup.ply", "--self", "--query", "collide", "-o", "out.npz", "--threads", "1"]
+    arguments = ["proximity", "soup.ply", "--self", "--query", "nbody", "-o", "out.npz", "--threads", "1"]
     with subprocess.Popen([BLUM, *arguments], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         time.sleep(0.7)
         assert process.poll() is None, "the work was done before it could be interrupted"
