@@ -21,6 +21,7 @@ void bind_extend_axis(nb::module_& m);
 void bind_centreline(nb::module_& m);
 void bind_certificate(nb::module_& m);
 void bind_proximity(nb::module_& m);
+void bind_proximity_scene(nb::module_& m);
 void bind_files(nb::module_& m);
 
 }  // namespace blum::python

@@ -75,5 +75,6 @@ NB_MODULE(_core, m) {
   bind_centreline(m);
   bind_certificate(m);
   bind_proximity(m);
+  bind_proximity_scene(m);
   bind_files(m);
 }

@@ -61,6 +61,16 @@ from ._mesh import (
     weld_clusters,
 )
 from ._proximity import ContinuousCollisions, continuous_collisions, edge_edge_impacts, vertex_face_impacts
+from ._proximity_scene import (
+    PrimitivePair,
+    ProximityPairs,
+    ProximityScene,
+    TriangleDistances,
+    closest_primitives,
+    collisions,
+    separation,
+    triangle_distances,
+)
 from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti, noisy, shapes, subdivided
 from ._smooth import smooth_surface
 from ._solid import CellularModel, Solid, SolidBody
@@ -103,12 +113,16 @@ __all__ = [
     "NestedComplex",
     "OutOfMemory",
     "Present",
+    "PrimitivePair",
+    "ProximityPairs",
+    "ProximityScene",
     "SelfIntersections",
     "ShapeInfo",
     "ShapeParameter",
     "Sites",
     "Solid",
     "SolidBody",
+    "TriangleDistances",
     "WindingNumber",
     "__version__",
     "axis_graph",
@@ -116,6 +130,8 @@ __all__ = [
     "centreline",
     "certify",
     "closest_points",
+    "closest_primitives",
+    "collisions",
     "continuous_collisions",
     "cuda_devices",
     "distance_field",
@@ -138,12 +154,14 @@ __all__ = [
     "reference",
     "selected_voxels",
     "self_intersections",
+    "separation",
     "shapes",
     "smooth_surface",
     "solid_rule",
     "subdivided",
     "thread_count",
     "topology",
+    "triangle_distances",
     "vertex_face_impacts",
     "view",
     "voxel_topology",

@@ -116,8 +116,11 @@ def frames(tmp_path):
     return tmp_path
 
 
-def proximity(frames, output, **options):
-    return run_json("proximity", frames / "start.obj", frames / "end.obj", "--self", "-o", frames / output, **options)
+CONTINUOUS = "--query", "continuous", "--self"
+
+
+def proximity(frames, output):
+    return run_json("proximity", frames / "start.obj", frames / "end.obj", *CONTINUOUS, "-o", frames / output)
 
 
 def test_pairs_are_the_same_in_every_format(frames):
@@ -143,8 +146,8 @@ def test_pairs_are_the_same_in_every_format(frames):
 def test_pairs_do_not_depend_on_threads(frames):
     files = []
     for threads in (1, 2, 7):
-        run("proximity", frames / "start.obj", frames / "end.obj", "--self", "-o", frames / f"{threads}.npz", "--threads",
-            threads)  # fmt: skip
+        output = frames / f"{threads}.npz"
+        run("proximity", frames / "start.obj", frames / "end.obj", *CONTINUOUS, "-o", output, "--threads", threads)
         files.append((frames / f"{threads}.npz").read_bytes())
     assert files[0] == files[1] == files[2]
 
@@ -158,14 +161,17 @@ def test_what_is_no_motion_is_refused(frames):
         ([start, frames / "less.obj", "--self", "-o", out], 1, "it has 3 vertices, not 6"),
         ([start, frames / "other.obj", "--self", "-o", out], 1, "name other vertices"),
         ([start, end, "-o", out], 2, "give --self"),
+        ([start, end, "--self"], 2, "give -o PAIRS"),
         ([start, "--self", "-o", out], 2, "takes two files"),
-        ([start, end, "--self", "--query", "touch", "-o", out], 2, "must be continuous"),
         ([start, end, "--self", "-o", frames / "p.txt"], 2, "the extension must be .npz"),
+        ([start, end, "--self", "-o", frames / "p.vtp"], 2, "the extension must be .npz"),
         ([start, end, "--self", "-o", start], 2, ""),
         ([start, end, "--self", "-o", out, "--tolerance", "2"], 2, "tolerance"),
+        ([start, end, "--self", "-o", out, "--within", "2"], 2, "--min-separation says how close"),
         ([start, frames / "absent.obj", "--self", "-o", out], 1, "absent.obj"),
     ]:
-        assert message in run("proximity", *arguments, status=status)[1]
+        assert message in run("proximity", *arguments, "--query", "continuous", status=status)[1]
+    assert "must be separation, nbody, collide or continuous" in run("proximity", start, "--query", "x", status=2)[1]
     assert not out.exists() and names(frames) == ["end.obj", "less.obj", "other.obj", "start.obj"]
 
 

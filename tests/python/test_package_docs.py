@@ -52,6 +52,7 @@ def test_examples_run(example, tmp_path):
             "medial_axis_of_part.py": "out.vtp",
             "thickness_of_image.py": "out.nrrd",
             "clearance_of_scene.py": "out.csv",
+            "clearance_of_arm.py": "out.csv",
         }[example]
     )
     smaller = ["--resolution", "64"] if example in ("field_slices.py", "medial_axis_of_part.py") else []

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "blum/io/collision_io.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/proximity/continuous_collisions.hpp"
+#include "files.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "proximity_queries.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A mesh in two frames.
+struct Frames {
+  TriangleMesh start;
+  std::vector<Vec3d> end;
+};
+
+Frames read_frames(const fs::path& start, const fs::path& end) {
+  const Unattended reading;
+  Frames frames{read_mesh(start), {}};
+  TriangleMesh last = read_mesh(end);
+  const auto refuse = [&](const std::string& what) {
+    throw FormatError("'" + end.string() + "': " + what + " '" + start.string() +
+                      "': frames of one motion have the same " + "vertices and triangles, in the same order");
+  };
+  if (last.vertices.size() != frames.start.vertices.size()) {
+    refuse("it has " + count_text(last.vertices.size()) + " vertices, not " + count_text(frames.start.vertices.size()) +
+           " as");
+  }
+  if (last.triangles != frames.start.triangles || last.segments != frames.start.segments ||
+      last.points != frames.start.points) {
+    refuse("its triangles, segments or points name other vertices than those of");
+  }
+  frames.end = std::move(last.vertices);
+  return frames;
+}
+
+void check(const ProximityArguments& a) {
+  if (a.scene.size() != 2) {
+    throw UsageError("--query continuous takes two files, the mesh at the start and at the end of a motion, but " +
+                     plural(a.scene.size(), "is", "are") + " given");
+  }
+  if (!a.self) throw UsageError("one mesh has nothing to meet but itself: give --self");
+  if (a.within) throw UsageError("--within is not for --query continuous: --min-separation says how close is told");
+  if (const auto names = a.culling.given(); !names.empty()) {
+    throw UsageError(names.front() + " is not for --query continuous");
+  }
+  if (!a.output) throw UsageError("--query continuous tells its pairs in a file: give -o PAIRS");
+  check_extension("--output", *a.output, collision_extensions());
+}
+
+/// What of a mesh collides between two frames.
+struct Answer {
+  Frames frames;
+  ImpactOptions options;
+  ContinuousCollisions found;
+  PhaseSummary spent;
+  int threads = 0;
+};
+
+Json json_of(const ProximityArguments& a, const Answer& answer) {
+  const ContinuousCollisions& found = answer.found;
+  return answer_json("proximity", {{"scene", a.scene},
+                                   {"query", a.query},
+                                   {"vertices", answer.frames.start.vertices.size()},
+                                   {"triangles", answer.frames.start.triangles.size()},
+                                   {"tolerance", answer.options.tolerance},
+                                   {"min_separation", answer.options.min_separation},
+                                   {"vertex_face", found.vertex_face.size()},
+                                   {"edge_edge", found.edge_edge.size()},
+                                   {"earliest", to_json(found.earliest())},
+                                   {"box_pairs", found.box_pairs},
+                                   {"exact_tests", found.exact_tests},
+                                   {"seconds", answer.spent.seconds},
+                                   {"total_seconds", answer.spent.total},
+                                   {"peak_memory_bytes", peak_memory()},
+                                   {"threads", answer.threads},
+                                   {"outputs", {*a.output}}});
+}
+
+std::string text_of(const ProximityArguments& a, const Answer& answer) {
+  const TriangleMesh& mesh = answer.frames.start;
+  const ContinuousCollisions& found = answer.found;
+  const auto first = found.earliest();
+  TextTable table;
+  table.add("scene", a.scene[0] + " to " + a.scene[1] + ": " + plural(mesh.vertices.size(), "vertex", "vertices") +
+                         ", " + plural(mesh.triangles.size(), "triangle", "triangles"));
+  table.add("collisions", plural(found.vertex_face.size(), "vertex and face", "of a vertex and a face") + ", " +
+                              plural(found.edge_edge.size(), "of two edges", "of two edges") +
+                              (first ? "; the first at time " + rounded_text(*first) : ""));
+  table.add("tests", count_text(found.exact_tests) + " exact ones, of " + count_text(found.box_pairs) +
+                         " pairs whose moving boxes touch");
+  table.add("wrote", *a.output);
+  table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
+  return table.text();
+}
+
+}  // namespace
+
+void run_continuous_query(const ProximityArguments& a) {
+  check(a);
+  const fs::path start = a.scene[0];
+  const fs::path end = a.scene[1];
+  Answer answer;
+  answer.options = a.impact.read();
+  check(answer.options);
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> outputs = a.report.files();
+  outputs.emplace_back(*a.output);
+  check_outputs(outputs, {start, end});
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  std::vector<PhaseTime> phases;
+  answer.frames = read_frames(start, end);
+  phases.push_back({"read", watch.lap()});
+  answer.found = continuous_collisions(answer.frames.start, answer.frames.end, answer.options, context);
+  phases.insert(phases.end(), answer.found.phases.begin(), answer.found.phases.end());
+  static_cast<void>(watch.lap());
+  write_collisions(*a.output, answer.found, answer.frames.start,
+                   {{"content", "continuous collisions"},
+                    {"blum_version", BLUM_VERSION},
+                    {"start", start.filename().string()},
+                    {"end", end.filename().string()},
+                    {"tolerance", exact_text(answer.options.tolerance)},
+                    {"min_separation", exact_text(answer.options.min_separation)}},
+                   context);
+  phases.push_back({"write", watch.lap()});
+  progress.clear();
+  answer.spent = summarize(phases);
+  answer.threads = thread_count(context);
+  report(a.report, json_of(a, answer), text_of(a, answer));
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/io/proximity_io.hpp"
+#include "blum/proximity/primitives.hpp"
+#include "blum/proximity/scene.hpp"
+#include "files.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "proximity_queries.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows of the table that separation prints.
+constexpr std::size_t most_rows = 20;
+
+void check(const ProximityArguments& a) {
+  if (a.scene.size() == 1 && !a.self) {
+    throw UsageError("one object has nothing to meet but itself: give --self, or the files of more objects");
+  }
+  if (const auto names = a.impact.given(); !names.empty()) {
+    throw UsageError(names.front() + " is for --query continuous alone");
+  }
+  if (!a.output && a.query != "separation") {
+    throw UsageError("--query " + a.query + " tells its pairs in a file: give -o PAIRS");
+  }
+  if (a.output) check_extension("--output", *a.output, proximity_extensions());
+}
+
+/// The objects of a scene, and what was asked of them.
+struct Answer {
+  std::vector<TriangleMesh> meshes;
+  std::optional<double> within;
+  ProximityPairs found;
+  PhaseSummary spent;
+  int threads = 0;
+
+  [[nodiscard]] std::vector<MeshView> views() const { return {meshes.begin(), meshes.end()}; }
+  /// Of those equally close the first; nullptr where there is none.
+  [[nodiscard]] const PrimitivePair* closest() const {
+    const auto& pairs = found.pairs;
+    const auto first = std::min_element(pairs.begin(), pairs.end(), [](const PrimitivePair& p, const PrimitivePair& q) {
+      return p.between.distance < q.between.distance;
+    });
+    return first == pairs.end() ? nullptr : &*first;
+  }
+  [[nodiscard]] std::optional<double> min_distance() const {
+    const PrimitivePair* const pair = closest();
+    return pair == nullptr ? std::nullopt : std::optional(pair->between.distance);
+  }
+};
+
+std::vector<TriangleMesh> read_objects(const std::vector<std::string>& files) {
+  const Unattended reading;
+  std::vector<TriangleMesh> meshes;
+  meshes.reserve(files.size());
+  for (const std::string& file : files) meshes.push_back(read_mesh(file));
+  return meshes;
+}
+
+ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const ProximityArguments& a,
+                        const SceneOptions& culling, const Context& context) {
+  ProximityScene scene(culling);
+  ObjectOptions options;
+  options.self = a.self;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    try {
+      scene.add(meshes[k], options, context);
+    } catch (const InvalidMesh& error) {
+      throw InvalidMesh("'" + a.scene[k] + "': " + error.what());
+    }
+  }
+  return scene;
+}
+
+ProximityPairs ask(const ProximityScene& scene, const std::string& query, std::optional<double> within,
+                   const Context& context) {
+  const double most = within.value_or(std::numeric_limits<double>::infinity());
+  if (query == "separation") return scene.separation(most, context);
+  if (query == "nbody") return scene.closest_primitives(most, context);
+  return within.value_or(0) > 0 ? scene.closer_than(*within, context) : scene.collisions(context);
+}
+
+FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
+  FileMetadata out{{"content", "pairs of primitives"}, {"blum_version", BLUM_VERSION}, {"query", a.query}};
+  if (answer.within) out.emplace_back("within", exact_text(*answer.within));
+  out.emplace_back("self", a.self ? "true" : "false");
+  for (std::size_t k = 0; k < a.scene.size(); ++k) {
+    out.emplace_back("object_" + std::to_string(k), fs::path(a.scene[k]).filename().string());
+  }
+  return out;
+}
+
+Json objects_json(const ProximityArguments& a, const Answer& answer) {
+  Json json = Json::array();
+  for (std::size_t k = 0; k < a.scene.size(); ++k) {
+    const TriangleMesh& mesh = answer.meshes[k];
+    json.push_back({{"file", a.scene[k]},
+                    {"vertices", mesh.vertices.size()},
+                    {"triangles", mesh.triangles.size()},
+                    {"segments", mesh.segments.size()},
+                    {"points", mesh.points.size()}});
+  }
+  return json;
+}
+
+Json closest_json(const Answer& answer) {
+  const PrimitivePair* pair = answer.closest();
+  if (pair == nullptr) return nullptr;
+  return {{"distance", pair->between.distance},
+          {"object", {pair->first_object.value, pair->second_object.value}},
+          {"primitive", {pair->first, pair->second}},
+          {"point", {to_json(pair->between.first_point), to_json(pair->between.second_point)}}};
+}
+
+Json json_of(const ProximityArguments& a, const Answer& answer) {
+  Json outputs = Json::array();
+  if (a.output) outputs.push_back(*a.output);
+  return answer_json("proximity", {{"query", a.query},
+                                   {"objects", objects_json(a, answer)},
+                                   {"self", a.self},
+                                   {"within", to_json(answer.within)},
+                                   {"object_pairs", answer.found.report.object_pairs},
+                                   {"pairs", answer.found.pairs.size()},
+                                   {"min_distance", to_json(answer.min_distance())},
+                                   {"closest", closest_json(answer)},
+                                   {"culling", to_json(answer.found.report.culling)},
+                                   {"cells", answer.found.report.cells},
+                                   {"left_over", answer.found.report.left_over},
+                                   {"candidates", answer.found.report.candidates},
+                                   {"exact_tests", answer.found.report.exact_tests},
+                                   {"seconds", answer.spent.seconds},
+                                   {"total_seconds", answer.spent.total},
+                                   {"peak_memory_bytes", peak_memory()},
+                                   {"threads", answer.threads},
+                                   {"outputs", outputs}});
+}
+
+std::string distance_text(const PrimitivePair& pair) {
+  const TriangleDistance& between = pair.between;
+  if (between.distance == 0) return "they meet, near " + vector_text(between.first_point);
+  return rounded_text(between.distance) + ", from " + vector_text(between.first_point) + " to " +
+         vector_text(between.second_point);
+}
+
+std::string object_text(const ProximityArguments& a, const PrimitivePair& pair) {
+  const std::string first = fs::path(a.scene[pair.first_object.value]).filename().string();
+  if (pair.first_object == pair.second_object) return first + ", itself";
+  return first + ", " + fs::path(a.scene[pair.second_object.value]).filename().string();
+}
+
+/// A row for each pair of objects.
+void add_separations(const ProximityArguments& a, const Answer& answer, TextTable& table) {
+  const auto& pairs = answer.found.pairs;
+  for (std::size_t k = 0; k < std::min(pairs.size(), most_rows); ++k) {
+    table.add(object_text(a, pairs[k]), distance_text(pairs[k]));
+  }
+  if (pairs.size() > most_rows) {
+    table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " more; -o PAIRS tells all");
+  }
+}
+
+std::string scene_text(const Answer& answer) {
+  std::size_t triangles = 0;
+  std::size_t others = 0;
+  for (const TriangleMesh& mesh : answer.meshes) {
+    triangles += mesh.triangles.size();
+    others += mesh.segments.size() + mesh.points.size();
+  }
+  return plural(answer.meshes.size(), "object", "objects") + ", " + plural(triangles, "triangle", "triangles") +
+         (others > 0 ? ", " + plural(others, "segment or point", "segments and points") : "");
+}
+
+std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
+  const bool meet = a.query == "collide" && answer.within.value_or(0) == 0;
+  return plural(answer.found.pairs.size(), meet ? "pair that meets" : "pair", meet ? "pairs that meet" : "pairs") +
+         (answer.within && !meet ? " within " + rounded_text(*answer.within) : "");
+}
+
+std::string text_of(const ProximityArguments& a, const Answer& answer) {
+  TextTable table;
+  table.add("scene", scene_text(answer));
+  table.add("pairs", pairs_text(a, answer));
+  if (a.query == "separation") {
+    add_separations(a, answer, table);
+  } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
+    table.add("closest", object_text(a, *closest) + ": " + distance_text(*closest));
+  }
+  table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
+                         count_text(answer.found.report.candidates) + " candidates in " +
+                         plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
+  if (a.output) table.add("wrote", *a.output);
+  table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
+  return table.text();
+}
+
+}  // namespace
+
+void run_scene_query(const ProximityArguments& a) {
+  check(a);
+  Answer answer;
+  const SceneOptions culling = a.culling.read();
+  check(culling);
+  if (a.within) answer.within = parse_non_negative("--within", *a.within);
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> outputs = a.report.files();
+  if (a.output) outputs.emplace_back(*a.output);
+  check_outputs(outputs, {a.scene.begin(), a.scene.end()});
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  answer.meshes = read_objects(a.scene);
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
+  phases.push_back({"build", watch.lap()});
+  answer.found = ask(scene, a.query, answer.within, context);
+  phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
+  static_cast<void>(watch.lap());
+  if (a.output) {
+    write_proximity_pairs(*a.output, answer.found.pairs, answer.views(), metadata_of(a, answer), context);
+    phases.push_back({"write", watch.lap()});
+  }
+  progress.clear();
+  answer.spent = summarize(phases);
+  answer.threads = thread_count(context);
+  report(a.report, json_of(a, answer), text_of(a, answer));
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,46 @@
+// Blum: the vertices of primitives and of their features. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "blum/geometry/triangle_distance.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum {
+
+/// How many primitives a mesh has: its triangles, then its segments, then its points.
+[[nodiscard]] inline std::size_t primitive_count(const MeshView& mesh) {
+  return mesh.triangles.size() + mesh.segments.size() + mesh.points.size();
+}
+
+/// The vertices of a primitive of a mesh, as the corners of a triangle: a, b, b for a segment, three equal ones for a
+/// point. @param primitive  below primitive_count(mesh).
+[[nodiscard]] inline Triangle primitive_vertices(const MeshView& mesh, std::uint32_t primitive) {
+  std::size_t k = primitive;
+  if (k < mesh.triangles.size()) return mesh.triangles[k];
+  k -= mesh.triangles.size();
+  if (k < mesh.segments.size()) return {mesh.segments[k][0], mesh.segments[k][1], mesh.segments[k][1]};
+  const std::uint32_t v = mesh.points[k - mesh.segments.size()];
+  return {v, v, v};
+}
+
+/// The one, two or three vertices of a feature of a triangle, as files name them: padded with -1, of an edge the
+/// smaller one first, of a face in the order of the triangle. Vertices that the triangle names twice appear once.
+[[nodiscard]] inline std::array<std::int32_t, 3> feature_vertices(const Triangle& triangle,
+                                                                  const TriangleFeature& feature) {
+  const std::size_t count = feature.kind == SiteKind::vertex ? 1 : feature.kind == SiteKind::edge ? 2 : 3;
+  std::array<std::int32_t, 3> out{-1, -1, -1};
+  std::size_t size = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto vertex = static_cast<std::int32_t>(triangle[(feature.index + k) % 3]);
+    if (std::find(out.begin(), out.end(), vertex) == out.end()) out[size++] = vertex;
+  }
+  if (size == 2 && out[0] > out[1]) std::swap(out[0], out[1]);
+  return out;
+}
+
+}  // namespace blum

@@ -1,0 +1,292 @@
+#include "blum/proximity/scene.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "blum/geometry/triangle_distance.hpp"
+#include "blum/proximity/primitives.hpp"
+#include "call.hpp"
+#include "structs.hpp"
+
+namespace blum::python {
+namespace {
+
+/// A rotation, and beside it a translation.
+using PlaceIn = In<double, nb::shape<3, 4>>;
+using TrianglesOfPointsIn = In<double, nb::shape<-1, 3, 3>>;
+/// Of two sides, as in files.
+using Features = std::array<std::array<std::int32_t, 3>, 2>;
+
+RigidTransform place_of(const PlaceIn& rows) {
+  RigidTransform place;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t k = 0; k < 3; ++k) place.rotation.columns[k][row] = rows(row, k);
+    place.translation[row] = rows(row, 3);
+  }
+  return place;
+}
+
+/// @throws InvalidOption. A scene of one point asks, so that a place is refused before an object has changed.
+void check(const RigidTransform& place) {
+  const std::array<Vec3d, 1> vertices{};
+  const std::array<std::uint32_t, 1> points{};
+  ProximityScene scene;
+  scene.update(scene.add({vertices, {}, {}, points}), place);
+}
+
+/// Pairs, and the vertices of their features.
+struct Pairs {
+  std::vector<PrimitivePair> pairs;
+  std::vector<Features> features;
+  ProximityReport report;
+};
+
+/// A scene that knows which vertices its primitives have.
+class Scene {
+ public:
+  explicit Scene(const SceneOptions& options) : scene_(options) {}
+
+  std::uint32_t add(const MeshView& mesh, const ObjectOptions& options, const RigidTransform& place,
+                    const Context& context) {
+    check(place);
+    corners_.reserve(corners_.size() + 1);
+    TriangleMesh corners = corners_of(mesh);
+    const ObjectId object = scene_.add(mesh, options, context);
+    scene_.update(object, place);
+    corners_.push_back(std::move(corners));
+    return object.value;
+  }
+  void remove(ObjectId object) {
+    scene_.remove(object);
+    corners_[object.value] = {};
+  }
+  void set_mesh(ObjectId object, const MeshView& mesh, const Context& context) {
+    TriangleMesh corners = corners_of(mesh);
+    scene_.update(object, mesh, context);
+    corners_[object.value] = std::move(corners);
+  }
+  void set_vertices(ObjectId object, std::span<const Vec3d> vertices, const Context& context) {
+    scene_.update(object, vertices, context);
+  }
+  void set_place(ObjectId object, const RigidTransform& place) { scene_.update(object, place); }
+  void exclude(ObjectId first, ObjectId second, bool excluded) { scene_.exclude(first, second, excluded); }
+
+  [[nodiscard]] Pairs separation(ObjectId first, ObjectId second, double most, const Context& context) const {
+    ProximityPairs found;
+    found.report.object_pairs = 1;
+    if (const auto pair = scene_.separation(first, second, most, context)) found.pairs.push_back(*pair);
+    return with_features(std::move(found), context);
+  }
+  [[nodiscard]] Pairs separations(double most, const Context& context) const {
+    return with_features(scene_.separation(most, context), context);
+  }
+  [[nodiscard]] Pairs closest_primitives(double most, const Context& context) const {
+    return with_features(scene_.closest_primitives(most, context), context);
+  }
+  [[nodiscard]] Pairs closer_than(double distance, const Context& context) const {
+    return with_features(scene_.closer_than(distance, context), context);
+  }
+  [[nodiscard]] Pairs collisions(const Context& context) const {
+    return with_features(scene_.collisions(context), context);
+  }
+
+ private:
+  static TriangleMesh corners_of(const MeshView& mesh) {
+    return {{},
+            {mesh.triangles.begin(), mesh.triangles.end()},
+            {mesh.segments.begin(), mesh.segments.end()},
+            {mesh.points.begin(), mesh.points.end()}};
+  }
+
+  [[nodiscard]] std::array<std::int32_t, 3> feature(ObjectId object, std::uint32_t primitive,
+                                                    const TriangleFeature& feature) const {
+    return feature_vertices(primitive_vertices(corners_[object.value], primitive), feature);
+  }
+  [[nodiscard]] Pairs with_features(ProximityPairs found, const Context& context) const {
+    constexpr std::size_t look_every = 65536;
+    Pairs out{std::move(found.pairs), {}, std::move(found.report)};
+    out.features.reserve(out.pairs.size());
+    for (const PrimitivePair& pair : out.pairs) {
+      if (out.features.size() % look_every == 0) throw_if_cancelled(context);
+      out.features.push_back({feature(pair.first_object, pair.first, pair.between.first_feature),
+                              feature(pair.second_object, pair.second, pair.between.second_feature)});
+    }
+    return out;
+  }
+
+  ProximityScene scene_;
+  std::vector<TriangleMesh> corners_;  ///< of each object, without vertices
+};
+
+/// Numbers of every entry of a list, seen without a copy. @param of  the first of them of an entry, the others behind
+/// it.
+/// @param shape  of those of one entry.
+template <class T, class Entry, class Of, std::size_t axes>
+Out<T> numbers(const Held<Entry>& list, const Of& of, const std::array<std::size_t, axes>& shape) {
+  static_assert(sizeof(Entry) % sizeof(T) == 0);
+  static Entry nowhere{};  // an empty array needs a place, too
+  std::array<std::size_t, axes + 1> extents{list.entries->size()};
+  std::array<std::int64_t, axes + 1> strides{sizeof(Entry) / sizeof(T)};
+  std::int64_t step = 1;
+  for (std::size_t a = axes; a > 0; --a) {
+    extents[a] = shape[a - 1];
+    strides[a] = std::exchange(step, step * static_cast<std::int64_t>(shape[a - 1]));
+  }
+  Entry& first = list.entries->empty() ? nowhere : list.entries->front();
+  return Out<T>(reinterpret_cast<T*>(&of(first)), extents.size(), extents.data(), list.owner, strides.data());
+}
+
+constexpr std::array<std::size_t, 0> single{};
+constexpr std::array<std::size_t, 1> two{2};
+constexpr std::array<std::size_t, 2> two_vectors{2, 3};
+
+// What numbers() takes to be beside each other is.
+static_assert(offsetof(PrimitivePair, second_object) - offsetof(PrimitivePair, first_object) == sizeof(std::int32_t));
+static_assert(offsetof(PrimitivePair, second) - offsetof(PrimitivePair, first) == sizeof(std::int32_t));
+static_assert(offsetof(TriangleDistance, second_point) - offsetof(TriangleDistance, first_point) == 3 * sizeof(double));
+
+Out<std::int32_t> features_out(std::vector<Features> features) {
+  return numbers<std::int32_t>(held(std::move(features)), [](Features& one) -> auto& { return one; }, two_vectors);
+}
+
+/// (object, primitive, distance, point, feature, culling, cells, left_over, object_pairs, candidates, exact_tests).
+nb::tuple arrays_of(Pairs found) {
+  const Held<PrimitivePair> pairs = held(std::move(found.pairs));
+  return nb::make_tuple(numbers<std::int32_t>(
+                            pairs, [](PrimitivePair& one) -> auto& { return one.first_object; }, two),
+                        numbers<std::int32_t>(
+                            pairs, [](PrimitivePair& one) -> auto& { return one.first; }, two),
+                        numbers<double>(
+                            pairs, [](PrimitivePair& one) -> auto& { return one.between.distance; }, single),
+                        numbers<double>(
+                            pairs, [](PrimitivePair& one) -> auto& { return one.between.first_point; }, two_vectors),
+                        features_out(std::move(found.features)), std::string(to_string(found.report.culling)),
+                        found.report.cells, found.report.left_over, found.report.object_pairs, found.report.candidates,
+                        found.report.exact_tests);
+}
+
+/// (distance, point, feature), features by corners.
+nb::tuple arrays_of(std::vector<TriangleDistance> found) {
+  constexpr Triangle corners{0, 1, 2};
+  std::vector<Features> features;
+  features.reserve(found.size());
+  for (const TriangleDistance& one : found) {
+    features.push_back({feature_vertices(corners, one.first_feature), feature_vertices(corners, one.second_feature)});
+  }
+  const Held<TriangleDistance> kept = held(std::move(found));
+  return nb::make_tuple(numbers<double>(
+                            kept, [](TriangleDistance& one) -> auto& { return one.distance; }, single),
+                        numbers<double>(
+                            kept, [](TriangleDistance& one) -> auto& { return one.first_point; }, two_vectors),
+                        features_out(std::move(features)));
+}
+
+void bind_updates(nb::class_<Scene>& scene) {
+  scene.def(
+      "add",
+      [](Scene& self, const MeshArrays& mesh, std::uint32_t layers, std::uint32_t meets, bool compare_self,
+         const PlaceIn& place, int threads, nb::object progress) {
+        const MeshView view = mesh.view();
+        const RigidTransform where = place_of(place);
+        return run({threads, std::move(progress)}, [&](const Context& context) {
+          return self.add(view, {layers, meets, compare_self}, where, context);
+        });
+      },
+      nb::arg("mesh"), nb::arg("layers"), nb::arg("meets"), nb::arg("compare_self"), nb::arg("place").noconvert(),
+      nb::arg("threads"), nb::arg("progress").none());
+  scene.def("remove", [](Scene& self, std::uint32_t object) { self.remove(ObjectId(object)); }, nb::arg("object"));
+  scene.def(
+      "set_mesh",
+      [](Scene& self, std::uint32_t object, const MeshArrays& mesh, int threads, nb::object progress) {
+        const MeshView view = mesh.view();
+        run_call({threads, std::move(progress)},
+                 [&](const Context& context) { self.set_mesh(ObjectId(object), view, context); });
+      },
+      nb::arg("object"), nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
+      "set_vertices",
+      [](Scene& self, std::uint32_t object, const PointsIn& vertices, int threads, nb::object progress) {
+        run_call({threads, std::move(progress)},
+                 [&](const Context& context) { self.set_vertices(ObjectId(object), vectors(vertices), context); });
+      },
+      nb::arg("object"), nb::arg("vertices").noconvert(), nb::arg("threads"), nb::arg("progress").none());
+  scene.def_static("check_place", [](const PlaceIn& place) { check(place_of(place)); }, nb::arg("place").noconvert());
+  scene.def(
+      "set_place",
+      [](Scene& self, std::uint32_t object, const PlaceIn& place) {
+        self.set_place(ObjectId(object), place_of(place));
+      },
+      nb::arg("object"), nb::arg("place").noconvert());
+  scene.def(
+      "exclude",
+      [](Scene& self, std::uint32_t first, std::uint32_t second, bool excluded) {
+        self.exclude(ObjectId(first), ObjectId(second), excluded);
+      },
+      nb::arg("first"), nb::arg("second"), nb::arg("excluded"));
+}
+
+/// A query of all of a scene that takes a distance.
+using Query = Pairs (Scene::*)(double, const Context&) const;
+
+void bind_query(nb::class_<Scene>& scene, const char* name, Query query) {
+  scene.def(
+      name,
+      [query](const Scene& self, double distance, int threads, nb::object progress) {
+        return arrays_of(run({threads, std::move(progress)},
+                             [&](const Context& context) { return (self.*query)(distance, context); }));
+      },
+      nb::arg("distance"), nb::arg("threads"), nb::arg("progress").none());
+}
+
+void bind_queries(nb::class_<Scene>& scene) {
+  scene.def(
+      "separation",
+      [](const Scene& self, std::uint32_t first, std::uint32_t second, double most, int threads, nb::object progress) {
+        return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return self.separation(ObjectId(first), ObjectId(second), most, context);
+        }));
+      },
+      nb::arg("first"), nb::arg("second"), nb::arg("distance"), nb::arg("threads"), nb::arg("progress").none());
+  bind_query(scene, "separations", &Scene::separations);
+  bind_query(scene, "closest_primitives", &Scene::closest_primitives);
+  bind_query(scene, "closer_than", &Scene::closer_than);
+  scene.def(
+      "collisions",
+      [](const Scene& self, int threads, nb::object progress) {
+        return arrays_of(
+            run({threads, std::move(progress)}, [&](const Context& context) { return self.collisions(context); }));
+      },
+      nb::arg("threads"), nb::arg("progress").none());
+}
+
+}  // namespace
+
+void bind_proximity_scene(nb::module_& m) {
+  nb::class_<Scene> scene(m, "ProximityScene");
+  bind_options<SceneOptions>(m);
+  scene.def(
+      "__init__", [](Scene* self, const nb::dict& given) { new (self) Scene(options_from<SceneOptions>(given)); },
+      nb::arg("options"));
+  bind_updates(scene);
+  bind_queries(scene);
+  m.def(
+      "triangle_distances",
+      [](const TrianglesOfPointsIn& a, const TrianglesOfPointsIn& b, int threads, nb::object progress) {
+        return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return triangle_distances(rows<std::array<Vec3d, 3>>(a), rows<std::array<Vec3d, 3>>(b), context);
+        }));
+      },
+      nb::arg("a").noconvert(), nb::arg("b").noconvert(), nb::arg("threads"), nb::arg("progress").none());
+}
+
+}  // namespace blum::python

@@ -1,0 +1,459 @@
+"""Distances and collisions among meshes that move."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, Unpack, overload
+
+import numpy as np
+
+from . import _core
+from ._arguments import (
+    FloatArray,
+    IntArray,
+    Integer,
+    Real,
+    as_array,
+    float_rows,
+    integer,
+    matrix,
+    number,
+    triple,
+    truth,
+)
+from ._errors import InvalidMesh, InvalidOption
+from ._mesh import as_mesh
+from ._options import takes
+from ._progress import Progress, ProgressCallback, reporting
+from ._structs import SceneOptions
+
+_ALL_LAYERS = 0xFFFFFFFF
+
+
+@dataclass(frozen=True, eq=False)
+class PrimitivePair:
+    """Two primitives and their closest points. Primitives of a mesh are its triangles, then its segments, then its
+    points."""
+
+    object: tuple[int, int]  #: of the scene
+    primitive: tuple[int, int]  #: of each object
+    distance: float  #: mesh units; 0 just where they meet
+    point: FloatArray  #: (2, 3): of each primitive; where they meet, a point near both
+    feature: IntArray  #: (2, 3): the one, two or three vertices that each point lies on, padded with -1
+
+
+@dataclass(frozen=True, eq=False)
+class ProximityPairs:
+    """Pairs of primitives and their closest points, as arrays; `pairs[k]` is one, and false is what has none."""
+
+    object: IntArray  #: (n, 2): the objects
+    primitive: IntArray  #: (n, 2): the primitive of each: a triangle, or behind these a segment, then a point
+    distance: FloatArray  #: (n,): mesh units; 0 just where they meet
+    point: FloatArray  #: (n, 2, 3): the closest points; where they meet, a point near both
+    feature: IntArray  #: (n, 2, 3): the one, two or three vertices of each mesh that the point lies on, padded with -1
+    culling: str  #: what left out pairs that cannot count: "bvh" or "voronoi"
+    cells: int  #: of Voronoi culling
+    left_over: int  #: primitives that Voronoi culling left to the hierarchy
+    object_pairs: int  #: pairs of objects that were compared
+    candidates: int  #: pairs of primitives that culling left over
+    exact_tests: int  #: pairs whose distance was computed
+
+    def __len__(self) -> int:
+        return len(self.distance)
+
+    def __getitem__(self, index: Integer) -> PrimitivePair:
+        k = range(len(self))[int(index)]
+        (first_object, second_object), (first, second) = self.object[k].tolist(), self.primitive[k].tolist()
+        return PrimitivePair(
+            (first_object, second_object), (first, second), float(self.distance[k]), self.point[k], self.feature[k]
+        )
+
+    def __iter__(self) -> Iterator[PrimitivePair]:
+        return (self[k] for k in range(len(self)))
+
+    @property
+    def closest(self) -> PrimitivePair | None:
+        """The pair with the smallest distance, the first of those equally close; None where there is none."""
+        return self[int(np.argmin(self.distance))] if len(self) else None
+
+    def __repr__(self) -> str:
+        return f"ProximityPairs({len(self):,} {'pair' if len(self) == 1 else 'pairs'})"
+
+
+@takes("SceneOptions")
+class ProximityScene:
+    """Meshes that move, deform and change, and what is close among them; exact for the coordinates as they are.
+
+    A scene keeps copies of its meshes. Answers do not depend on the number of threads, and after any updates are those
+    of a scene made anew. Of pairs that are equally far apart, the one with the smallest (object, primitive) of the
+    first, then of the second, is told. Threads that share a scene wait for each other.
+
+    Parameters
+    ----------
+    **options
+
+    >>> import blum
+    >>> scene = blum.ProximityScene()
+    >>> table, ball = scene.add(blum.generate("box")), scene.add(blum.generate("sphere"))
+    >>> scene.update(ball, transform=([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0, 0, 3]))
+    >>> found = scene.separation(table, ball)
+    >>> round(found.distance, 6), found.point.round(6).tolist()
+    (1.5, [[0.0, 0.0, 0.5], [0.0, 0.0, 2.0]])
+    >>> len(scene.collisions())
+    0
+    """
+
+    def __init__(self, **options: Unpack[SceneOptions]) -> None:
+        self._scene = _core.ProximityScene(dict(options))
+        self._count = 0
+        self._busy = threading.Lock()
+        self._owner: int | None = None  # the thread that asks or changes
+
+    def __repr__(self) -> str:
+        return f"ProximityScene({self._count} {'object' if self._count == 1 else 'objects'})"
+
+    def add(
+        self,
+        mesh: Any,
+        *,
+        layers: Integer = 1,
+        meets: Integer = _ALL_LAYERS,
+        compare_self: bool = False,
+        transform: Any = None,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> int:
+        """Adds a mesh, and tells its number.
+
+        Parameters
+        ----------
+        mesh : anything that stands for a mesh
+        layers : int
+            The layers that the object is in, a bit for each.
+        meets : int
+            The layers whose objects it is compared with. Two objects are compared where each is in a layer that the
+            other one meets.
+        compare_self : bool
+            Whether it is compared with itself: primitives that share no vertex. (In C++ `ObjectOptions::self`.)
+        transform : see :meth:`update`
+        """
+        own = as_mesh(mesh)
+        options = _layers(layers, "layers"), _layers(meets, "meets"), truth(compare_self, "compare_self")
+        place = _place(np.eye(4) if transform is None else transform)
+        count = integer(threads, "threads")
+        with self._alone(progress) as report:
+            added: int = self._scene.add(own._arrays, *options, place, count, report)
+            self._count += 1
+        return added
+
+    def remove(self, index: Integer) -> None:
+        """Removes an object; the others keep their numbers."""
+        which = _object(index, "index")
+        with self._alone():
+            self._scene.remove(which)
+            self._count -= 1
+
+    def update(
+        self,
+        index: Integer,
+        vertices: Any = None,
+        transform: Any = None,
+        mesh: Any = None,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> None:
+        """Changes an object: where its vertices are, where the whole is, or what it is.
+
+        Parameters
+        ----------
+        index : int
+            The object.
+        vertices : (n, 3) array, optional
+            New positions before the transform, as many as there are.
+        transform : (4, 4) or (3, 4) array, or a pair (rotation (3, 3), translation (3,)), optional
+            Where the object is, from the positions of its vertices: not relative to where it was. Rigid to 1e-9, so in
+            doubles.
+        mesh : anything that stands for a mesh, optional
+            Another mesh for the object. It stays where it is, and is compared with what it was.
+        """
+        if vertices is not None and mesh is not None:
+            raise InvalidOption("mesh excludes vertices: a mesh brings its own")
+        if vertices is None and transform is None and mesh is None:
+            raise InvalidOption("there is nothing to update: give vertices, transform or mesh")
+        which = _object(index, "index")
+        rows = None if vertices is None else float_rows(vertices, "vertices")
+        own = None if mesh is None else as_mesh(mesh)
+        place = None if transform is None else _place(transform)
+        count = integer(threads, "threads")
+        with self._alone(progress) as report:
+            if place is not None:
+                self._scene.check_place(place)  # before anything has changed
+            if rows is not None:
+                self._scene.set_vertices(which, rows, count, report)
+            if own is not None:
+                self._scene.set_mesh(which, own._arrays, count, report)
+            if place is not None:
+                self._scene.set_place(which, place)
+
+    def exclude(self, a: Integer, b: Integer, excluded: bool = True) -> None:
+        """Leaves out a pair of objects, or an object with itself, whatever their layers; or takes that back."""
+        first, second = _object(a, "a"), _object(b, "b")
+        with self._alone():
+            self._scene.exclude(first, second, truth(excluded, "excluded"))
+
+    @overload
+    def separation(
+        self,
+        a: None = None,
+        b: None = None,
+        max_distance: Real = ...,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> ProximityPairs: ...
+    @overload
+    def separation(
+        self, a: Integer, b: Integer, max_distance: Real = ..., *, threads: int = 0, progress: Progress = False
+    ) -> PrimitivePair | None: ...
+    def separation(
+        self,
+        a: Integer | None = None,
+        b: Integer | None = None,
+        max_distance: Real = np.inf,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+    ) -> ProximityPairs | PrimitivePair | None:
+        """The closest pair of primitives of two objects, whatever their layers, or of one with itself; None where there
+        is none within `max_distance`. Without `a` and `b`, that of each two objects that are compared."""
+        if (a is None) != (b is None):
+            raise InvalidOption("separation takes two objects, or none for all pairs")
+        most, count = number(max_distance, "max_distance"), integer(threads, "threads")
+        if a is None or b is None:
+            with self._alone(progress) as report:
+                return ProximityPairs(*self._scene.separations(most, count, report))
+        first, second = _object(a, "a"), _object(b, "b")
+        with self._alone(progress) as report:
+            return ProximityPairs(*self._scene.separation(first, second, most, count, report)).closest
+
+    def closest_primitives(
+        self, max_distance: Real = np.inf, *, threads: int = 0, progress: Progress = False
+    ) -> ProximityPairs:
+        """For each primitive of the scene the closest one that it is compared with, where there is one within
+        `max_distance`; by rising object and primitive of the first."""
+        most, count = number(max_distance, "max_distance"), integer(threads, "threads")
+        with self._alone(progress) as report:
+            return ProximityPairs(*self._scene.closest_primitives(most, count, report))
+
+    def closer_than(self, distance: Real, *, threads: int = 0, progress: Progress = False) -> ProximityPairs:
+        """All pairs of primitives that are compared and no further apart than `distance`, each once."""
+        most, count = number(distance, "distance"), integer(threads, "threads")
+        with self._alone(progress) as report:
+            return ProximityPairs(*self._scene.closer_than(most, count, report))
+
+    def collisions(self, *, threads: int = 0, progress: Progress = False) -> ProximityPairs:
+        """All pairs of primitives that have a point in common. Of one object also those that share a vertex, and have
+        more in common than the corner or edge that they share."""
+        count = integer(threads, "threads")
+        with self._alone(progress) as report:
+            return ProximityPairs(*self._scene.collisions(count, report))
+
+    @contextmanager
+    def _alone(self, progress: Progress = False) -> Iterator[ProgressCallback | None]:
+        """What the library calls with progress, while nothing else asks or changes the scene."""
+        if self._owner == threading.get_ident():
+            raise RuntimeError("this scene is at work: its progress and signal handlers cannot ask or change it")
+        with self._busy, reporting(progress) as report:
+            self._owner = threading.get_ident()
+            try:
+                yield report
+            finally:
+                self._owner = None
+
+
+def separation(
+    a: Any, b: Any, *, max_distance: Real = np.inf, threads: int = 0, progress: Progress = False
+) -> PrimitivePair | None:
+    """The closest points of two meshes, exactly; None where they are further apart than `max_distance`.
+
+    For meshes that move, :class:`ProximityScene` asks again without starting anew.
+
+    >>> import blum
+    >>> box = blum.generate("box")
+    >>> found = blum.separation(box, (box.vertices + [3, 0, 0], box.triangles))
+    >>> found.distance, found.point[:, 0].tolist()
+    (2.0, [0.5, 2.5])
+    """
+    scene = ProximityScene()
+    for name, mesh in (("a", a), ("b", b)):
+        scene.add(as_mesh(mesh, name=name), threads=threads)
+    return scene.separation(0, 1, max_distance, threads=threads, progress=progress)
+
+
+def closest_primitives(
+    meshes: Any,
+    *,
+    max_distance: Real = np.inf,
+    compare_self: bool | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+) -> ProximityPairs:
+    """For each primitive (triangle, segment, point) of one or several meshes the closest one of another mesh, or of the
+    same one that shares no vertex with it; exact.
+
+    Parameters
+    ----------
+    meshes : anything that stands for a mesh, or a list of these
+    max_distance : float
+        Primitives that have nothing this close are left out.
+    compare_self : bool, optional
+        Whether each mesh is compared with itself. Default: where there is only one.
+
+    >>> import blum
+    >>> found = blum.closest_primitives(blum.generate("torus"))
+    >>> len(found), found.primitive[0, 0].item(), bool((found.distance > 0).all())
+    (6144, 0, True)
+    """
+    scene = _scene_of(meshes, compare_self, threads)
+    return scene.closest_primitives(max_distance, threads=threads, progress=progress)
+
+
+def collisions(
+    meshes: Any,
+    *,
+    within: Real = 0.0,
+    compare_self: bool | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+) -> ProximityPairs:
+    """All pairs of primitives (triangles, segments, points) of one or several meshes that meet, or that are no further
+    apart than `within`; exact.
+
+    Parameters
+    ----------
+    meshes : anything that stands for a mesh, or a list of these
+    within : float
+        In mesh units. With 0, primitives that share a vertex are told where they have more in common than that; else
+        they are left out.
+    compare_self : bool, optional
+        Whether each mesh is compared with itself. Default: where there is only one.
+
+    >>> import blum
+    >>> box = blum.generate("box")
+    >>> moved = blum.Mesh(box.vertices + [0.5, 0.25, 0.25], box.triangles)
+    >>> bool(blum.collisions([box, moved])), bool(blum.collisions(box))
+    (True, False)
+    """
+    distance = number(within, "within")
+    scene = _scene_of(meshes, compare_self, threads)
+    if distance == 0:
+        return scene.collisions(threads=threads, progress=progress)
+    if not distance > 0:
+        raise InvalidOption(f"within is {distance}, but must be a number of at least 0")
+    return scene.closer_than(distance, threads=threads, progress=progress)
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleDistances:
+    """How far triangles are apart, and where."""
+
+    distance: FloatArray  #: (n,): 0 just where they have a point in common
+    point: FloatArray  #: (n, 2, 3): the closest points of both; where they meet, a point near both
+    feature: IntArray  #: (n, 2, 3): the one, two or three corners (0 to 2) that each lies on, padded with -1
+
+
+def triangle_distances(a: Any, b: Any, *, threads: int = 0, progress: Progress = False) -> TriangleDistances:
+    """The closest points of pairs of triangles, of which any may have lost its area; exact where they meet.
+
+    Parameters
+    ----------
+    a, b : (n, 3, 3) arrays
+        The corners of the first and the second triangle of each pair.
+
+    >>> import blum
+    >>> floor, above = [[0, 0, 0], [4, 0, 0], [0, 4, 0]], [[1, 1, 2], [9, 0, 3], [0, 9, 3]]
+    >>> found = blum.triangle_distances([floor], [above])
+    >>> found.distance.tolist(), found.point.round(9).tolist()
+    ([2.0], [[[1.0, 1.0, 0.0], [1.0, 1.0, 2.0]]])
+    >>> found.feature.tolist()
+    [[[0, 1, 2], [0, -1, -1]]]
+    """
+    first, second = _triangles(a, "a"), _triangles(b, "b")
+    if len(first) != len(second):
+        raise InvalidMesh(f"a has {len(first)} triangles, and b {len(second)}; they must be as many")
+    with reporting(progress) as report:
+        return TriangleDistances(*_core.triangle_distances(first, second, integer(threads, "threads"), report))
+
+
+def _scene_of(meshes: Any, compare_self: bool | None, threads: int) -> ProximityScene:
+    several = [(f"meshes[{k}]", mesh) for k, mesh in enumerate(meshes)] if _is_several(meshes) else [("mesh", meshes)]
+    if not several:
+        raise InvalidMesh("meshes holds no mesh: give at least one")
+    own = len(several) == 1 if compare_self is None else truth(compare_self, "compare_self")
+    scene = ProximityScene()
+    for name, mesh in several:
+        scene.add(as_mesh(mesh, name=name), compare_self=own, threads=threads)
+    return scene
+
+
+def _is_several(meshes: Any) -> bool:
+    """Whether this is a list of meshes, and not vertices with triangles."""
+    if not isinstance(meshes, Sequence) or isinstance(meshes, (str, bytes)):
+        return False
+    return len(meshes) != 2 or not _is_rows(meshes[0])
+
+
+def _is_rows(value: Any) -> bool:
+    """Whether this is a matrix of numbers, as vertices are."""
+    try:
+        return np.ndim(value) == 2
+    except ValueError:  # lists of different lengths
+        return False
+
+
+def _layers(value: Any, name: str) -> int:
+    bits = integer(value, name, bits=64)
+    if not 0 <= bits <= _ALL_LAYERS:
+        raise InvalidOption(f"{name} is {bits}, but must be 0 to 2^32 - 1: a bit for each layer")
+    return bits
+
+
+def _object(value: Any, name: str) -> int:
+    index = integer(value, name)
+    if index < 0:
+        raise InvalidOption(f"{name} is {index}, but objects count from 0")
+    return index
+
+
+def _place(transform: Any) -> FloatArray:
+    """(3, 4): a rotation, and beside it a translation."""
+    if isinstance(transform, (tuple, list)) and len(transform) == 2:
+        rotation, translation = matrix(transform[0], "transform[0]"), triple(transform[1], "transform[1]")
+        rows = np.column_stack([rotation, translation])
+    else:
+        rows = as_array(transform, "transform")
+        if rows.dtype.kind not in "fiu":
+            raise TypeError(f"transform must hold real numbers, not {rows.dtype}")
+        if rows.shape not in ((4, 4), (3, 4)):
+            raise ValueError(
+                f"transform has the shape {rows.shape}, but must have (4, 4) or (3, 4), or be a pair "
+                "(rotation (3, 3), translation (3,))"
+            )
+        if len(rows) == 4 and rows[3].tolist() != [0, 0, 0, 1]:
+            raise InvalidOption(f"the last row of transform is {rows[3].tolist()}, but must be [0, 0, 0, 1]")
+    if not np.isfinite(rows).all():
+        raise InvalidOption("transform holds numbers that are not finite")
+    return np.ascontiguousarray(rows[:3], dtype=np.float64)
+
+
+def _triangles(value: Any, name: str) -> FloatArray:
+    array = as_array(value, name)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} must hold real numbers, not {array.dtype}")
+    if array.ndim != 3 or array.shape[1:] != (3, 3):
+        raise ValueError(f"{name} has the shape {array.shape}, but must have (n, 3, 3)")
+    return np.ascontiguousarray(array, dtype=np.float64)

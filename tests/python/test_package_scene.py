@@ -1,0 +1,428 @@
+"""Proves that what the package says of scenes is what comparing all pairs of triangles says, through updates and in any
+kind of array, and that wrong arguments are refused by name."""
+
+import threading
+
+import numpy as np
+import pytest
+
+blum = pytest.importorskip("blum")
+
+IDENTITY = np.eye(3)
+
+
+def soup(count, seed, size=0.3):
+    """(vertices, triangles): triangles that share nothing."""
+    random = np.random.default_rng(seed)
+    corners = random.uniform(-1, 1, (count, 1, 3)) + random.normal(scale=size, size=(count, 3, 3))
+    return corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3)
+
+
+def turned(seed):
+    """A rotation."""
+    rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return rotation * np.sign(np.linalg.det(rotation))
+
+
+def corners(mesh, place=None):
+    vertices, triangles = mesh
+    rotation, translation = place or (IDENTITY, np.zeros(3))
+    return (vertices @ rotation.T + translation)[triangles]
+
+
+def dot(a, b):
+    return (a * b).sum(-1)
+
+
+def edges_apart(p, u, q, v):
+    """How far the segments from p along u, and from q along v, are apart: at the ends, or where both are closest."""
+
+    def clipped(x):
+        return np.clip(x, 0, 1)[..., None]
+
+    w = q - p
+    best = np.full(p.shape[:-1], np.inf)
+    for t in (0, 1):  # an end of one, and the point of the other that is closest to it
+        s = clipped(dot(w + t * v, u) / dot(u, u))
+        best = np.minimum(best, np.linalg.norm(w + t * v - s * u, axis=-1))
+        s = clipped(dot(t * u - w, v) / dot(v, v))
+        best = np.minimum(best, np.linalg.norm(w + s * v - t * u, axis=-1))
+    normal = np.cross(u, v)
+    s, t = (dot(np.cross(w, other), normal) / dot(normal, normal) for other in (v, u))
+    inside = (s > 0) & (s < 1) & (t > 0) & (t < 1)
+    apart = np.abs(dot(w, normal)) / np.linalg.norm(normal, axis=-1)
+    return np.where(inside, np.minimum(best, apart), best)
+
+
+def corner_and_face_apart(p, q, triangle):
+    """How far p is above the face of a triangle, infinite beside it; and whether the segment pq passes the face."""
+    a, b, c = triangle[:, 0], triangle[:, 1], triangle[:, 2]
+    normal = np.cross(b - a, c - a)
+
+    def inside(x):
+        return np.all([dot(np.cross(e - s, x - s), normal) >= 0 for s, e in ((a, b), (b, c), (c, a))], axis=0)
+
+    height, end = dot(p - a, normal), dot(q - a, normal)
+    foot = p - (height / dot(normal, normal))[:, None] * normal
+    through = p + (height / (height - end))[:, None] * (q - p)
+    apart = np.abs(height) / np.linalg.norm(normal, axis=-1)
+    return np.where(inside(foot), apart, np.inf), (height * end <= 0) & inside(through)
+
+
+@np.errstate(divide="ignore", invalid="ignore")  # of parallel edges and planes: what is no number is not inside
+def slow_distances(a, b):
+    """(n,): of pairs of triangles that do not lie in one plane where they meet; shares nothing with the library."""
+    best = np.full(len(a), np.inf)
+    for i in range(3):
+        for j in range(3):
+            u, v = a[:, (i + 1) % 3] - a[:, i], b[:, (j + 1) % 3] - b[:, j]
+            best = np.minimum(best, edges_apart(a[:, i], u, b[:, j], v))
+    for one, other in ((a, b), (b, a)):
+        for k in range(3):
+            apart, passes = corner_and_face_apart(one[:, k], one[:, (k + 1) % 3], other)
+            best = np.where(passes, 0, np.minimum(best, apart))
+    return best
+
+
+def pairs_of(a, b):
+    """All pairs of n and m triangles."""
+    return np.repeat(a, len(b), axis=0), np.tile(b, (len(a), 1, 1))
+
+
+def all_distances(a, b):
+    """(n, m)"""
+    return slow_distances(*pairs_of(a, b)).reshape(len(a), len(b))
+
+
+def on_feature(point, triangle, feature):
+    """Whether a point lies in the hull of some of the corners."""
+    own = triangle[[k for k in feature if k >= 0]]
+    if len(own) == 1:
+        return np.allclose(point, own[0], atol=1e-9)
+    weights = np.linalg.lstsq((own[1:] - own[0]).T, point - own[0], rcond=None)[0]
+    return (
+        np.allclose(own[0] + weights @ (own[1:] - own[0]), point, atol=1e-9)
+        and weights.min() > -1e-9
+        and weights.sum() < 1 + 1e-9
+    )
+
+
+def test_distances_of_triangles_are_those_of_their_edges_and_faces():
+    a, b = pairs_of(corners(soup(60, 1, 0.5)), corners(soup(60, 2, 0.5)))
+    found, wanted = blum.triangle_distances(a, b).distance, slow_distances(a, b)
+    assert 100 < (wanted == 0).sum() < 3000 and np.array_equal(found == 0, wanted == 0)
+    assert np.allclose(found, wanted, rtol=0, atol=1e-12)
+
+
+def test_closest_points_of_triangles_lie_on_their_features():
+    a, b = corners(soup(200, 3)), corners(soup(200, 4))
+    found = blum.triangle_distances(a, b)
+    assert found.point.shape == (200, 2, 3) == found.feature.shape and found.feature.dtype == np.int32
+    assert np.allclose(np.linalg.norm(found.point[:, 0] - found.point[:, 1], axis=1), found.distance, atol=1e-12)
+    for k in range(200):
+        for side, triangle in enumerate((a[k], b[k])):
+            assert found.distance[k] == 0 or on_feature(found.point[k, side], triangle, found.feature[k, side])
+    same = blum.triangle_distances(a.tolist(), np.asfortranarray(b), threads=2)
+    assert np.array_equal(same.point, found.point)
+    small = a.astype(np.float32)
+    found = blum.triangle_distances(small, b).distance
+    assert np.array_equal(found, blum.triangle_distances(small.astype(np.float64), b).distance)
+    assert blum.triangle_distances(np.zeros((0, 3, 3)), np.zeros((0, 3, 3))).distance.shape == (0,)
+
+
+def check_scene(scene, meshes, places, numbers):
+    """All answers of a scene of soups are those of comparing all pairs."""
+    shown = {n: corners(mesh, place) for n, mesh, place in zip(numbers, meshes, places, strict=True)}
+    every = {(i, j): all_distances(shown[i], shown[j]) for i in numbers for j in numbers if i < j}
+    apart = scene.separation()
+    assert list(map(tuple, apart.object.tolist())) == sorted(every)
+    for pair in apart:
+        table = every[pair.object]
+        assert pair.primitive == tuple(int(k) for k in np.unravel_index(table.argmin(), table.shape))
+        assert pair.distance == pytest.approx(table.min(), abs=1e-12)
+        one = scene.separation(*pair.object)
+        assert (one.object, one.primitive, one.distance) == (pair.object, pair.primitive, pair.distance)
+        assert np.array_equal(one.point, pair.point) and np.array_equal(one.feature, pair.feature)
+        back = scene.separation(*pair.object[::-1])
+        assert back.distance == pair.distance and np.array_equal(back.point, pair.point[::-1])
+    nearest = scene.closest_primitives()
+    for i in numbers:
+        tables = [every[i, j] if i < j else every[j, i].T for j in numbers if i != j]
+        assert np.allclose(nearest.distance[nearest.object[:, 0] == i], np.hstack(tables).min(1), atol=1e-12)
+    for distance, found in ((0.25, scene.closer_than(0.25)), (0, scene.collisions()), (0, scene.closer_than(0))):
+        told = set(map(tuple, np.hstack([found.object, found.primitive]).tolist()))
+        assert len(told) == len(found) <= found.exact_tests
+        assert told == {
+            (*pair, int(i), int(j)) for pair, table in every.items() for i, j in np.argwhere(table <= distance)
+        }
+
+
+def test_scenes_are_what_all_pairs_say_through_all_updates():
+    meshes = [soup(25, seed) for seed in (5, 6, 7)]
+    places = [None] * 3
+    scene = blum.ProximityScene()
+    assert repr(scene) == "ProximityScene(0 objects)" and len(scene.separation()) == 0
+    assert [scene.add(mesh) for mesh in meshes] == [0, 1, 2]
+    check_scene(scene, meshes, places, [0, 1, 2])
+    places[1] = turned(8), np.array([0.5, 0, 0.25])
+    scene.update(1, transform=places[1])
+    check_scene(scene, meshes, places, [0, 1, 2])
+    places[2] = turned(9), np.array([0, 0.125, 0])
+    scene.update(2, transform=np.column_stack(places[2]))
+    meshes[2] = meshes[2][0] * [1, 2, 0.5], meshes[2][1]
+    scene.update(2, vertices=meshes[2][0])
+    check_scene(scene, meshes, places, [0, 1, 2])
+    meshes[0] = soup(40, 10)
+    places[0] = turned(11), np.zeros(3)
+    whole = np.eye(4)
+    whole[:3] = np.column_stack(places[0])
+    scene.update(0, mesh=meshes[0], transform=whole)
+    check_scene(scene, meshes, places, [0, 1, 2])
+    scene.remove(1)
+    assert repr(scene) == "ProximityScene(2 objects)"
+    check_scene(scene, [meshes[0], meshes[2]], [places[0], places[2]], [0, 2])
+    meshes.append(soup(10, 12))
+    assert scene.add(meshes[3], transform=(turned(13), [0, 0, 1])) == 3
+    check_scene(scene, [meshes[0], *meshes[2:]], [places[0], places[2], (turned(13), np.array([0, 0, 1]))], [0, 2, 3])
+
+
+def test_culling_changes_no_answer():
+    def answers(**options):
+        scene = blum.ProximityScene(**options)
+        for seed in (81, 82):
+            scene.add(soup(150, seed, 0.1), compare_self=True, transform=(turned(seed), [0, 0, 0]))
+        return [scene.separation(), scene.closest_primitives(), scene.closer_than(0.1), scene.collisions()]
+
+    wanted, found = answers(culling="bvh"), answers(culling="voronoi", cell_size=np.float32(1.5))
+    assert any(one.culling == "voronoi" and one.cells > 0 for one in found)
+    assert all(one.culling == "bvh" and one.cells == 0 for one in wanted)
+    for one, other in zip(found, wanted, strict=True):
+        for name in ("object", "primitive", "distance", "point", "feature"):
+            assert np.array_equal(getattr(one, name), getattr(other, name))
+
+
+def test_objects_are_compared_by_layers_exclusion_and_with_themselves():
+    scene = blum.ProximityScene()
+    robot = [scene.add(soup(10, seed), layers=1, meets=2) for seed in (1, 2)]
+    table = scene.add(soup(10, 3), layers=2)
+    assert scene.separation().object.tolist() == [[0, table], [1, table]]
+    assert scene.separation(*robot) is not None
+    scene.exclude(table, 0)
+    assert scene.separation().object.tolist() == [[1, table]]
+    scene.exclude(0, table, excluded=False)
+    assert len(scene.separation()) == 2
+    itself = scene.add(soup(10, 4), layers=np.uint32(4), meets=0, compare_self=np.True_)
+    assert [itself, itself] in scene.separation().object.tolist()
+    scene.exclude(itself, itself)
+    assert len(scene.separation()) == 2
+
+
+def test_self_comparison_leaves_neighbours_out():
+    strip = [[k / 2, k % 2, 0] for k in range(12)], [[k, k + 1, k + 2] for k in range(10)]
+    triangles = np.array(strip[1])
+    found = blum.closest_primitives(strip)
+    assert found.object_pairs == 1 and np.array_equal(found.primitive[:, 0], np.arange(10))
+    table = all_distances(corners((np.array(strip[0]), triangles)), corners((np.array(strip[0]), triangles)))
+    table[[[bool(set(t) & set(u)) for u in triangles.tolist()] for t in triangles.tolist()]] = np.inf
+    assert np.allclose(found.distance, table.min(1)) and np.array_equal(found.primitive[:, 1], table.argmin(1))
+    assert len(blum.collisions(strip)) == 0
+    folded = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.9, 0]], [[0, 1, 2], [0, 1, 3]]
+    assert blum.collisions(folded).primitive.tolist() == [[0, 1]]
+    assert len(blum.collisions(folded, within=1)) == 0, "they share vertices"
+
+
+def test_what_a_mesh_has_in_common_with_itself_is_where_it_crosses_or_touches_itself():
+    wide = blum.noisy(blum.generate("torus", ring_segments=24, tube_segments=12), 0.4)
+    wanted = blum.self_intersections(wide).pairs
+    assert len(wanted) > 100 and np.array_equal(blum.collisions(wide).primitive, wanted)
+
+
+def test_verbs_in_one_call_are_those_of_scenes():
+    a, b = soup(20, 21), soup(20, 22)
+    scene = blum.ProximityScene()
+    scene.add(a), scene.add(b)
+    assert blum.separation(a, b).primitive == scene.separation(0, 1).primitive
+    assert blum.separation(a, (b[0] + 50, b[1]), max_distance=1) is None
+    for found, wanted in [
+        (blum.closest_primitives([a, b]), scene.closest_primitives()),
+        (blum.closest_primitives((blum.Mesh(*a), blum.Mesh(*b)), max_distance=0.1), scene.closest_primitives(0.1)),
+        (blum.collisions([a, b], threads=1), scene.collisions()),
+        (blum.collisions([a, b], within=np.float32(0.25)), scene.closer_than(0.25)),
+    ]:
+        assert 0 < len(found) == len(wanted)
+        for name in ("object", "primitive", "distance", "point", "feature"):
+            assert np.array_equal(getattr(found, name), getattr(wanted, name))
+    assert len(blum.closest_primitives([a, b], compare_self=True)) == 40
+    assert len(blum.closest_primitives([a])) == 20 and len(blum.closest_primitives(a, compare_self=False)) == 0
+
+
+def test_segments_and_points_come_behind_triangles():
+    mesh = blum.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [3, 0, 0], [4, 0, 0], [9, 9, 9]], [[0, 1, 2]], [[4, 3]], [5])
+    scene = blum.ProximityScene()
+    scene.add(mesh, compare_self=True)
+    scene.add(([[3.5, 0, 1], [3.5, 5, 1], [4.5, 5, 1]], [[0, 1, 2]]))
+    found = scene.closest_primitives()
+    assert found.object.tolist() == [[0, 0], [0, 1], [0, 1], [1, 0]]
+    assert found.primitive.tolist() == [[0, 1], [1, 0], [2, 0], [0, 1]]
+    assert found.feature[0].tolist() == [[1, -1, -1], [3, -1, -1]], "vertices of the mesh"
+    assert found.feature[1].tolist() == [[3, 4, -1], [0, -1, -1]], "an edge, the smaller vertex first"
+    assert found.feature[2, 0].tolist() == [5, -1, -1]
+
+
+def test_arrays_of_other_kinds_are_taken():
+    vertices, triangles = soup(20, 31)
+    vertices = vertices.astype(np.float32).astype(np.float64)
+    other = soup(20, 32)
+    wanted = blum.separation((vertices, triangles), other)
+    spread = np.zeros((len(vertices), 6))
+    spread[:, ::2] = vertices
+    for given in (vertices.astype(np.float32), spread[:, ::2], np.asfortranarray(vertices), vertices.tolist()):
+        assert blum.separation((given, triangles), other).distance == wanted.distance
+        scene = blum.ProximityScene()
+        scene.add((vertices + 1, triangles.astype(np.int32))), scene.add(other)
+        scene.update(0, given)
+        assert scene.separation(0, 1).distance == wanted.distance
+
+
+def test_results_stay_when_the_scene_goes():
+    scene = blum.ProximityScene()
+    scene.add(soup(20, 41)), scene.add(soup(20, 42))
+    found = scene.closest_primitives()
+    kept = found.point.copy(), found.feature.copy()
+    point, feature = found.point, found.feature
+    del found, scene
+    assert np.array_equal(point, kept[0]) and np.array_equal(feature, kept[1])
+
+
+def test_pairs_are_a_sequence():
+    found = blum.closest_primitives([soup(5, 51), soup(5, 52)])
+    assert repr(found) == "ProximityPairs(10 pairs)" and len(list(found)) == 10
+    assert found[-1].primitive == tuple(found.primitive[-1]) and found[np.int64(3)].distance == found.distance[3]
+    assert found.closest.distance == found.distance.min()
+    with pytest.raises(IndexError):
+        found[10]
+    assert not blum.collisions(blum.generate("sphere")) and blum.collisions(blum.generate("sphere")).closest is None
+
+
+def test_what_is_refused_changes_nothing():
+    a, b = soup(20, 61), soup(20, 62)
+    scene = blum.ProximityScene()
+    scene.add(a), scene.add(b)
+    wanted = scene.separation(0, 1)
+    for change in (
+        {"transform": 2 * np.eye(3, 4)},
+        {"transform": (IDENTITY, [0, np.nan, 0])},
+        {"transform": 2 * np.eye(3, 4), "vertices": a[0] + 1},
+        {"vertices": a[0][:-3]},
+        {"vertices": np.full_like(a[0], np.inf)},
+        {"mesh": (a[0] * np.nan, a[1])},
+        {"mesh": a, "vertices": a[0]},
+        {},
+    ):
+        with pytest.raises(ValueError):
+            scene.update(0, **change)
+    with pytest.raises(ValueError):
+        scene.add(a, transform=np.diag([1.0, 1.0, 1.5, 1.0]))
+    assert scene.separation(0, 1).distance == wanted.distance and scene.add(a) == 2
+
+
+def scene_of_two():
+    scene = blum.ProximityScene()
+    scene.add(soup(3, 1)), scene.add(soup(3, 2))
+    return scene
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "text"),
+    [
+        (lambda s: s.add(3), TypeError, "mesh is a int"),
+        (lambda s: s.add(soup(1, 1), layers=-1), ValueError, "layers is -1"),
+        (lambda s: s.add(soup(1, 1), meets=2**32), ValueError, "meets is 4294967296"),
+        (lambda s: s.add(soup(1, 1), layers=1.0), TypeError, "layers must be an integer"),
+        (lambda s: s.add(soup(1, 1), compare_self="no"), TypeError, "compare_self must be True or False"),
+        (lambda s: s.add(soup(1, 1), transform="x"), TypeError, "transform"),
+        (lambda s: s.add(soup(1, 1), transform=np.eye(3)), ValueError, r"transform has the shape \(3, 3\)"),
+        (lambda s: s.add(soup(1, 1), transform=(np.eye(4), [0, 0, 0])), ValueError, r"transform\[0\] has the shape"),
+        (lambda s: s.add(soup(1, 1), transform=np.eye(4)[::-1]), ValueError, "last row of transform"),
+        (lambda s: s.add(([[0, 0, 1e71], [0, 0, 0]], [[0, 1, 1]])), ValueError, "1e70"),
+        (lambda s: s.remove(2), ValueError, "no object 2"),
+        (lambda s: s.remove(-1), ValueError, "index is -1"),
+        (lambda s: s.update(5, transform=np.eye(4)), ValueError, "no object 5"),
+        (lambda s: s.update(0, [1, 2, 3]), ValueError, "vertices has the shape"),
+        (lambda s: s.exclude(0, 7), ValueError, "no object 7"),
+        (lambda s: s.exclude(0, 1, 1), TypeError, "excluded must be True or False"),
+        (lambda s: s.separation(0), ValueError, "two objects"),
+        (lambda s: s.separation(0, 2), ValueError, "no object 2"),
+        (lambda s: s.separation("a", "b"), TypeError, "a must be an integer"),
+        (lambda s: s.separation(0, 1, -1), ValueError, "max_distance is -1"),
+        (lambda s: s.closest_primitives(np.nan), ValueError, "max_distance is nan"),
+        (lambda s: s.closer_than(-0.5), ValueError, "distance is -0.5"),
+        (lambda s: s.closer_than("near"), TypeError, "distance must be a number"),
+        (lambda s: s.closest_primitives(threads=-1), ValueError, "threads"),
+        (lambda _: blum.ProximityScene(culling="octree"), ValueError, "culling is 'octree'"),
+        (lambda _: blum.ProximityScene(cell_size=0), ValueError, "cell_size"),
+        (lambda _: blum.ProximityScene(cells=2), TypeError, "cells"),
+        (lambda _: blum.collisions([], within=1), ValueError, "no mesh"),
+        (lambda _: blum.collisions(soup(1, 1), within=-1), ValueError, "within is -1"),
+        (lambda _: blum.collisions([soup(1, 1), 3]), TypeError, r"meshes\[1\] is a int"),
+        (lambda _: blum.separation(soup(1, 1), None), TypeError, "b is a NoneType"),
+        (lambda _: blum.triangle_distances(np.zeros((1, 3, 3)), np.zeros((2, 3, 3))), ValueError, "as many"),
+        (lambda _: blum.triangle_distances(np.zeros((3, 3)), np.zeros((3, 3))), ValueError, r"must have \(n, 3, 3\)"),
+        (lambda _: blum.triangle_distances(np.full((1, 3, 3), np.nan), np.zeros((1, 3, 3))), ValueError, "not finite"),
+        (lambda _: blum.triangle_distances([["x"]], [["x"]]), TypeError, "a must hold real numbers"),
+    ],
+)
+def test_wrong_arguments_are_refused_by_name(call, error, text):
+    with pytest.raises(error, match=text):
+        call(scene_of_two())
+
+
+def test_a_removed_object_is_named():
+    scene = scene_of_two()
+    scene.remove(0)
+    for call in (lambda: scene.remove(0), lambda: scene.update(0, transform=np.eye(4)), lambda: scene.separation(0, 1)):
+        with pytest.raises(blum.InvalidOption, match="no object 0: it was removed"):
+            call()
+
+
+class Stop(Exception):
+    pass
+
+
+def test_progress_can_stop_a_query_and_cannot_change_the_scene():
+    scene = blum.ProximityScene()
+    scene.add(soup(60000, 71, size=0.02), compare_self=True)
+    phases, refused = [], []
+
+    def stop(fraction, phase):
+        phases.append(phase)
+        assert 0 <= fraction <= 1
+        try:
+            scene.remove(0)
+        except RuntimeError as error:
+            refused.append(str(error))
+        raise Stop
+
+    with pytest.raises(Stop):
+        scene.closest_primitives(threads=1, progress=stop)
+    assert len(phases) == 1 == len(refused) and "at work" in refused[0]
+    assert len(scene.closest_primitives(1e-3)) > 0, "the scene still answers"
+
+
+def test_threads_may_share_a_scene():
+    scene = scene_of_two()
+    wanted = scene.closest_primitives().distance.tolist()
+    wrong = []
+
+    def ask():
+        for _ in range(20):
+            scene.update(1, transform=np.eye(4))
+            if scene.closest_primitives().distance.tolist() != wanted:
+                wrong.append(1)
+
+    workers = [threading.Thread(target=ask) for _ in range(4)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert not wrong
