@@ -93,12 +93,12 @@ struct OrientedBvh::Data {
   /// The box of a node. Blocks of level k hold the boxes of nodes of level k - 1.
   [[nodiscard]] OrientedBox box(const NodeRef& node) const {
     if (node.level == tree.top()) return root;
-    return tree.levels[static_cast<std::size_t>(node.level + 1)][node.index / lanes].box(node.index % lanes);
+    return tree.levels[static_cast<std::size_t>(node.level) + 1][node.index / lanes].box(node.index % lanes);
   }
 
   /// The smallest primitive below a node.
   [[nodiscard]] std::uint32_t first_of(const NodeRef& node) const {
-    return first[static_cast<std::size_t>(node.level + 1)][node.index];
+    return first[static_cast<std::size_t>(node.level) + 1][node.index];
   }
 
   void fill(std::span<const Vec3d> positions, const Context& context);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 #include "proximity/scene_continuous.hpp"
@@ -25,14 +26,14 @@ using detail::SceneObject;
 
 void check_distance(const char* what, double distance) {
   if (distance >= 0) return;
-  throw InvalidOption(std::string(what) + " is " + std::to_string(distance) + ", but must be a number of at least 0");
+  throw InvalidOption(std::string(what) + " is " + exact_text(distance) + ", but must be a number of at least 0");
 }
 
 }  // namespace
 
 void check(const SceneOptions& options) {
   if (options.cell_size >= 0.01 && options.cell_size <= 100) return;
-  throw InvalidOption("cell_size is " + std::to_string(options.cell_size) + ", but must be 0.01 to 100");
+  throw InvalidOption("cell_size is " + exact_text(options.cell_size) + ", but must be 0.01 to 100");
 }
 
 struct ProximityScene::Data {
@@ -47,7 +48,10 @@ struct ProximityScene::Data {
     }
     return *objects[object.value];
   }
-  [[nodiscard]] SceneObject& at(ObjectId object) { return const_cast<SceneObject&>(std::as_const(*this).at(object)); }
+  [[nodiscard]] SceneObject& at(ObjectId object) {
+    static_cast<void>(std::as_const(*this).at(object));
+    return *objects[object.value];
+  }
 
   [[nodiscard]] bool are_compared(std::uint32_t a, std::uint32_t b) const {
     if (!objects[a] || !objects[b] || excluded.contains({a, b})) return false;
@@ -60,7 +64,9 @@ struct ProximityScene::Data {
   [[nodiscard]] bool uses_cells() const { return options.culling == Culling::voronoi; }
 
   /// The pairs of objects that are compared and whose boxes are no further apart than this, the smaller first.
-  [[nodiscard]] std::vector<ObjectPair> pairs(double distance) const {
+  [[nodiscard]] std::vector<ObjectPair> pairs(double distance, const Context& context) const {
+    static_cast<void>(thread_count(context));  // refused also where there is nothing to do
+    throw_if_cancelled(context);
     std::vector<Box3> boxes(objects.size());
     for (std::size_t k = 0; k < boxes.size(); ++k) {
       if (objects[k]) boxes[k] = objects[k]->bounds();
@@ -126,10 +132,9 @@ std::optional<PrimitivePair> ProximityScene::separation(ObjectId first, ObjectId
   check_distance("max_distance", max_distance);
   const SceneObject& a = data_->at(first);
   const SceneObject& b = data_->at(second);
-  throw_if_cancelled(context);
   ProximityReport report;
-  if (first <= second) return detail::closest_pair(ObjectPair(first, a, second, b), max_distance, report);
-  auto found = detail::closest_pair(ObjectPair(second, b, first, a), max_distance, report);
+  if (first <= second) return detail::closest_pair(ObjectPair(first, a, second, b), max_distance, context, report);
+  auto found = detail::closest_pair(ObjectPair(second, b, first, a), max_distance, context, report);
   return found ? std::optional(detail::exchanged(*found)) : std::nullopt;
 }
 
@@ -137,13 +142,13 @@ ProximityPairs ProximityScene::separation(double max_distance, const Context& co
   check_distance("max_distance", max_distance);
   ProximityPairs out;
   PhaseTimer timer(out.report.phases);
-  const std::vector<ObjectPair> pairs = data_->pairs(max_distance);
+  const std::vector<ObjectPair> pairs = data_->pairs(max_distance, context);
   timer.lap("objects");
   std::vector<std::optional<PrimitivePair>> found(pairs.size());
   std::vector<ProximityReport> reports(pairs.size());
   parallel_for(context, pairs.size(), 1, "separation", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
-      found[k] = detail::closest_pair(pairs[k], max_distance, reports[k]);
+      found[k] = detail::closest_pair(pairs[k], max_distance, context, reports[k]);
     }
   });
   for (const auto& one : found) {
@@ -159,7 +164,7 @@ ProximityPairs ProximityScene::closest_primitives(double max_distance, const Con
   check_distance("max_distance", max_distance);
   ProximityPairs out;
   PhaseTimer timer(out.report.phases);
-  const std::vector<ObjectPair> pairs = data_->pairs(max_distance);
+  const std::vector<ObjectPair> pairs = data_->pairs(max_distance, context);
   timer.lap("objects");
   out.report.object_pairs = pairs.size();
   if (data_->uses_cells()) {
@@ -176,7 +181,7 @@ ProximityPairs ProximityScene::closer_than(double distance, const Context& conte
   check_distance("distance", distance);
   ProximityPairs out;
   PhaseTimer timer(out.report.phases);
-  const std::vector<ObjectPair> pairs = data_->pairs(distance);
+  const std::vector<ObjectPair> pairs = data_->pairs(distance, context);
   timer.lap("objects");
   out.report.object_pairs = pairs.size();
   if (data_->uses_cells()) {
@@ -192,7 +197,7 @@ ProximityPairs ProximityScene::closer_than(double distance, const Context& conte
 ProximityPairs ProximityScene::collisions(const Context& context) const {
   ProximityPairs out;
   PhaseTimer timer(out.report.phases);
-  const std::vector<ObjectPair> pairs = data_->pairs(0);
+  const std::vector<ObjectPair> pairs = data_->pairs(0, context);
   timer.lap("objects");
   out.report.object_pairs = pairs.size();
   if (!data_->uses_cells()) {
@@ -215,7 +220,7 @@ SceneCollisions ProximityScene::continuous(std::span<const ObjectMotion> motions
   check(options);
   detail::SceneMotion motion(data_->objects.size());
   for (const ObjectMotion& one : motions) motion.add(data_->at(one.object), one);
-  return motion.collisions(data_->pairs(std::numeric_limits<double>::infinity()), options, context);
+  return motion.collisions(data_->pairs(std::numeric_limits<double>::infinity(), context), options, context);
 }
 
 Penetrations ProximityScene::penetration(ObjectId first, ObjectId second, const PenetrationOptions& options,

@@ -39,7 +39,11 @@ void check(const RigidTransform& place) {
         "a transform is not rigid: the columns of its rotation must have length 1 and be at right "
         "angles; scale vertices instead");
   }
-  if (!(magnitude(place.translation) <= largest_coordinate)) {
+  if (dot(cross(c[0], c[1]), c[2]) < 0) {
+    throw InvalidOption(
+        "a transform is a reflection, which turns bodies inside out; mirror the mesh instead, and turn its triangles");
+  }
+  if (!is_finite(place.translation) || magnitude(place.translation) > largest_coordinate) {
     throw InvalidOption("the translation of a transform is not finite, or beyond 1e70");
   }
 }

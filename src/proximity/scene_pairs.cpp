@@ -122,10 +122,21 @@ PrimitivePair ObjectPair::compare(std::uint32_t i, std::uint32_t j) const {
   return {first_, second_, i, j, triangle_distance(a_->corners(i), b_->corners(j))};
 }
 
-std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance, ProximityReport& report) {
+void CandidateLimit::check() const {
+  throw_if_cancelled(*context_);
+  if (!is_stopped_) return;
+  throw InvalidMesh("more than " + std::to_string(most_candidates) +
+                    " pairs of primitives lie on each other or next to it: take duplicates away");
+}
+
+std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance, const Context& context,
+                                          ProximityReport& report) {
+  static_cast<void>(thread_count(context));
+  throw_if_cancelled(context);
+  CandidateLimit candidates(context);
   Closest best{std::nullopt, max_distance};
   const auto visit = [&](std::uint32_t i, std::uint32_t j, double) {
-    ++report.candidates;
+    if (candidates.stops(++report.candidates)) return -1.0;
     if (objects.is_self() && objects.are_neighbours(i, j)) return best.limit + objects.slack();
     if (objects.is_self() && j < i) std::swap(i, j);
     const bool is_after =
@@ -139,10 +150,12 @@ std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_
   const OrientedBvh& a = objects.a().bvh();
   if (!objects.is_self()) {
     a.for_each_near_pair(objects.b().bvh(), objects.place(), max_distance + objects.slack(), visit);
-    return best.pair;
   }
-  for (std::size_t block = 0; block < a.block_count(); ++block)
+  for (std::size_t block = 0; objects.is_self() && block < a.block_count(); ++block) {
+    if (candidates.stops(report.candidates)) break;
     a.for_each_near_self_pair(block, best.limit + objects.slack(), visit);
+  }
+  candidates.check();
   return best.pair;
 }
 
@@ -157,8 +170,8 @@ struct Partner {
 /// The closest primitives of the primitives of a block.
 class BlockSearch {
  public:
-  BlockSearch(const OrientedBvh& bvh, std::size_t block, double max_distance)
-      : bvh_(bvh), block_(block), primitives_(bvh.block(block)) {
+  BlockSearch(const OrientedBvh& bvh, std::size_t block, double max_distance, CandidateLimit& candidates)
+      : bvh_(bvh), block_(block), primitives_(bvh.block(block)), candidates_(&candidates) {
     best_.fill({std::nullopt, max_distance});
   }
 
@@ -168,7 +181,7 @@ class BlockSearch {
     const ObjectId other_id = partner.is_second ? pair.second() : pair.first();
     const RigidTransform place = partner.is_second ? pair.place() : pair.place().inverse();
     const auto visit = [&](std::uint32_t here, std::uint32_t there, double at_least) {
-      ++report.candidates;
+      if (candidates_->stops(++report.candidates)) return OrientedBvh::Wanted(-1);
       Closest& best = best_of(here);
       const bool is_left_out = pair.is_self() && (here == there || pair.are_neighbours(here, there));
       const bool may_count = at_least <= best.limit + pair.slack() && !best.rules_out(other_id, there);
@@ -216,6 +229,7 @@ class BlockSearch {
   const OrientedBvh& bvh_;
   std::size_t block_;
   std::span<const std::uint32_t> primitives_;
+  CandidateLimit* candidates_;
   std::array<Closest, most> best_;
 };
 
@@ -233,6 +247,7 @@ ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects,
     if (!pair.is_self()) partners[pair.second().value].push_back({&pair, false});
   }
   ClosestRows out(objects);
+  CandidateLimit candidates(context);
   for (std::uint32_t k = 0; k < objects; ++k) {
     if (partners[k].empty()) continue;
     const OrientedBvh& bvh = scene[k]->bvh();
@@ -244,11 +259,12 @@ ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects,
         const std::span<const std::uint32_t> primitives = bvh.block(block);
         const auto wanted = [&](std::uint32_t p) { return is_wanted(ObjectId(k), p); };
         if (!std::any_of(primitives.begin(), primitives.end(), wanted)) continue;
-        BlockSearch search(bvh, block, max_distance);
+        BlockSearch search(bvh, block, max_distance, candidates);
         for (const Partner& partner : partners[k]) search.look_at(partner, reports[range.begin / blocks_per_range]);
         search.tell(out[k]);
       }
     });
+    candidates.check();
     for (const ProximityReport& one : reports) add(one, report);
   }
   return out;
@@ -304,8 +320,8 @@ struct FoundPairs {
 class NearSearch {
  public:
   NearSearch(const ObjectPair& objects, double distance, Neighbours neighbours, std::atomic<std::size_t>& count,
-             const Context& context)
-      : objects_(objects), distance_(distance), neighbours_(neighbours), count_(count), context_(context) {}
+             CandidateLimit& candidates)
+      : objects_(objects), distance_(distance), neighbours_(neighbours), count_(count), candidates_(candidates) {}
 
   void look_at(std::size_t block, FoundPairs& found) const {
     if (found.is_stopped) return;
@@ -324,10 +340,8 @@ class NearSearch {
 
  private:
   void test(std::uint32_t i, std::uint32_t j, FoundPairs& found) const {
-    constexpr std::size_t pairs_between_looks = 256;
-    if (++found.report.candidates % pairs_between_looks == 0) {
-      found.is_stopped = context_.cancel.stop_requested() || count_ > most_close_pairs;
-    }
+    found.is_stopped = candidates_.stops(++found.report.candidates) || count_ > most_close_pairs;
+    if (found.is_stopped) return;
     if (objects_.is_self() && objects_.are_neighbours(i, j)) {
       if (neighbours_ == Neighbours::folded) test_fold(i, j, found);
       return;
@@ -351,12 +365,8 @@ class NearSearch {
   double distance_;
   Neighbours neighbours_;
   std::atomic<std::size_t>& count_;
-  const Context& context_;
+  CandidateLimit& candidates_;
 };
-
-}  // namespace
-
-namespace {
 
 bool has_flat_primitives(const SceneObject& object) {
   if (object.triangles() != object.primitives()) return true;
@@ -385,18 +395,19 @@ void add_self_intersections(const ObjectPair& objects, const Context& context, P
 void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours neighbours, const Context& context,
                 ProximityPairs& out) {
   std::atomic<std::size_t> count = out.pairs.size();
+  CandidateLimit candidates(context);
   for (const ObjectPair& objects : pairs) {
     if (neighbours == Neighbours::folded && objects.is_self() && !has_flat_primitives(objects.a())) {
       add_self_intersections(objects, context, out);
       continue;
     }
-    const NearSearch search(objects, distance, neighbours, count, context);
+    const NearSearch search(objects, distance, neighbours, count, candidates);
     const std::size_t blocks = objects.a().bvh().block_count();
     std::vector<FoundPairs> parts((blocks + blocks_per_range - 1) / blocks_per_range);
     parallel_for(context, blocks, blocks_per_range, "close pairs", [&](const WorkRange& range) {
       for (std::size_t b = range.begin; b < range.end; ++b) search.look_at(b, parts[range.begin / blocks_per_range]);
     });
-    throw_if_cancelled(context);  // parts that stopped for it have not found all
+    candidates.check();  // parts that stopped have not found all
     check_count(count);
     for (const FoundPairs& part : parts) {
       out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());

@@ -1,6 +1,7 @@
 // Blum: close pairs of primitives of pairs of objects. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -72,9 +73,10 @@ enum class Neighbours : std::uint8_t {
   folded  ///< told where they have more in common than what they share
 };
 
-/// The closest pair within a distance.
+/// The closest pair within a distance. @throws InvalidOption for a context without threads, Cancelled; InvalidMesh
+/// where more pairs than most_candidates lie on each other.
 [[nodiscard]] std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance,
-                                                        ProximityReport& report);
+                                                        const Context& context, ProximityReport& report);
 
 /// The closest ones of primitives, by object and primitive.
 using ClosestRows = std::vector<std::vector<std::optional<PrimitivePair>>>;
@@ -95,7 +97,36 @@ void append(const ClosestRows& rows, std::vector<PrimitivePair>& out);
 /// Puts pairs into the order of objects and primitives.
 void sort_pairs(std::vector<PrimitivePair>& pairs);
 
-/// More pairs are not told: they are 14 GB.
+/// More candidates are not looked at by one loop: half a minute of them or more, as of a heap of equal triangles.
+inline constexpr std::size_t most_candidates = std::size_t{1} << 31;
+
+/// Candidates of all parts of a loop.
+class CandidateLimit {
+ public:
+  explicit CandidateLimit(const Context& context) : context_(&context) {}
+
+  /// To be asked for every candidate of a part. @param count  of that part so far.
+  /// @return whether to stop looking: as the caller asks for it, or as there are too many.
+  [[nodiscard]] bool stops(std::size_t count) {
+    constexpr std::size_t between_looks = 1024;
+    if (count % between_looks == 0) total_ += between_looks;
+    return is_stopped_ || (count % between_looks == 0 && look());
+  }
+  /// @throws Cancelled; InvalidMesh where there were too many.
+  void check() const;
+
+ private:
+  bool look() {
+    if (context_->cancel.stop_requested() || total_ > most_candidates) is_stopped_ = true;
+    return is_stopped_;
+  }
+
+  const Context* context_;
+  std::atomic<std::size_t> total_ = 0;
+  std::atomic<bool> is_stopped_ = false;
+};
+
+/// More pairs are not told: they are 5 GB.
 inline constexpr std::size_t most_close_pairs = std::size_t{1} << 26;
 
 /// @throws OutOfMemory where there are more.

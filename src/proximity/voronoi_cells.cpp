@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "blum/core/parallel.hpp"
@@ -67,7 +68,7 @@ void VoronoiCells::make_cells(double cell_size, const Context& context) {
   side_ = std::max({cell_size * sum / static_cast<double>(count), 2 * extent / static_cast<double>(cells_per_axis),
                     std::numeric_limits<double>::min()});
   rounding_ = 1e-13 * (length(all.lower) + length(all.upper));
-  radius_ = 0.5 * std::sqrt(3.0) * side_ + rounding_;
+  radius_ = 0.5 * std::numbers::sqrt3 * side_ + rounding_;
   std::vector<std::vector<Place>> parts((count + grain - 1) / grain);
   parallel_for(context, count, grain, "cells", [&](const WorkRange& range) {
     std::vector<Place>& out = parts[range.begin / grain];
