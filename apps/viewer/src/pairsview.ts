@@ -41,6 +41,7 @@ class PairsOfKind {
     const [line, faintLine] = this.#lineMaterials.map((material) => new THREE.Mesh(this.#lines, material));
     const [dot, faintDot] = dots.map((material) => new THREE.Points(this.#dots, material));
     const rim = new THREE.Mesh(this.#lines, lineMaterial(ink, rimWidth));
+    rim.material.depthWrite = false; // as lines lie at the same depth
     this.#faint = [faintLine, faintDot];
     shineThrough(faintLine.material, faintness);
     shineThrough(faintDot.material, faintness);
