@@ -202,6 +202,25 @@ describe("a moving scene", () => {
     await page.close();
   });
 
+  it("is drawn with fewer triangles while it moves slowly, and whole when it rests", async () => {
+    blum("make", "torus", "-o", "large.ply", "--ring-segments", "160", "--tube-segments", "80");
+    blum("view", "large.ply", "large.ply", "--frames", "-o", "large.html");
+    const { page, complaints } = await open(browser, fileUrl("large.html"));
+    const moving = (isMoving: boolean) =>
+      page.evaluate((is) => {
+        window.blum.page!.views[0].setMoving!(is);
+        window.blum.page!.stage.drawNow();
+      }, isMoving);
+    await moving(false);
+    const whole = await pixels(page);
+    await moving(true);
+    expect(await pixels(page)).not.toBe(whole);
+    await moving(false);
+    expect(await pixels(page)).toBe(whole);
+    expect(complaints).toEqual([]);
+    await page.close();
+  });
+
   it("is served as pages are", async () => {
     const { url, stop } = await serve("f00.obj", "f01.obj", "--frames");
     const { page, complaints } = await open(browser, url);

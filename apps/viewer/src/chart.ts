@@ -79,6 +79,11 @@ export class Chart {
     this.#scale = chartScale(this.#totals);
   }
 
+  /** The unit of the lines. */
+  get unit(): TimeUnit {
+    return this.#scale.unit;
+  }
+
   draw(colors: ChartColors): void {
     const { canvas } = this;
     const ratio = Math.min(window.devicePixelRatio, 2);

@@ -1,5 +1,6 @@
 // A moving scene on the stage: one mesh whose buffers are filled anew for each frame, and the pairs of that.
 import * as THREE from "three";
+import { coarsen } from "./coarse.ts";
 import { plural, rounded } from "./format.ts";
 import { capacityOf, vertexNormals } from "./framesmodel.ts";
 import { add, sub, tripleAt, type Ray } from "./geometry.ts";
@@ -14,6 +15,7 @@ import { checkbox, choice, element } from "./widgets.ts";
 
 const light: Triple = [0.66, 0.72, 0.79];
 const dark: Triple = [0.62, 0.68, 0.76];
+const worthCoarsening = 20_000; // triangles: less than for one mesh, as each frame is a whole picture
 const pairReach = 0.012; // how far beside a pair a click still hits it, as a part of the scene's radius
 
 type ColorBy = "distance" | "kind";
@@ -32,6 +34,9 @@ export class FramesView implements View {
   readonly #counts = element("p", "counts");
   #picker: { frame: number; of: Picker } | undefined;
   #mesh = -1; // whose triangles are in the buffer
+  readonly #coarseGeometry = new THREE.BufferGeometry();
+  #coarseMesh = -1; // whose triangles that has
+  #isMoving = false;
   #style: Style = "solid";
   #colorBy: ColorBy = "kind";
   #isThrough = true;
@@ -113,11 +118,30 @@ export class FramesView implements View {
     this.timeline.setTheme();
   }
 
+  setMoving(isMoving: boolean): void {
+    this.#isMoving = isMoving;
+    this.#chooseGeometry();
+  }
+
+  /** Fewer triangles where pictures take long; which ones is found once for a mesh that deforms. */
+  #chooseGeometry(): void {
+    const { positions, mesh } = this.item.frames[this.timeline.frame];
+    const triangles = this.item.meshes[mesh];
+    const isCoarse = this.#isMoving && triangles.length >= 3 * worthCoarsening;
+    if (isCoarse && this.#coarseMesh !== mesh) {
+      const { index } = coarsen(positions, triangles, triangles.length / 3);
+      this.#coarseGeometry.setIndex(new THREE.BufferAttribute(index, 1));
+      this.#coarseMesh = mesh;
+    }
+    this.#surface.geometry = isCoarse ? this.#coarseGeometry : this.#geometry;
+  }
+
   #makeBuffers(): void {
     const { vertices, triangles } = capacityOf(this.item);
     for (const name of ["position", "normal"]) {
       const attribute = new THREE.BufferAttribute(new Float32Array(3 * vertices), 3);
       this.#geometry.setAttribute(name, attribute.setUsage(THREE.DynamicDrawUsage));
+      this.#coarseGeometry.setAttribute(name, attribute);
     }
     const index = new THREE.BufferAttribute(new Uint32Array(3 * triangles), 1);
     this.#geometry.setIndex(index.setUsage(THREE.DynamicDrawUsage));
@@ -137,6 +161,7 @@ export class FramesView implements View {
       upload(index, triangles.length);
       this.#geometry.setDrawRange(0, triangles.length);
       this.#mesh = mesh;
+      if (this.#isMoving) this.#chooseGeometry();
     }
     this.#pairs?.show(frame);
     this.#counts.textContent = this.#countsText();
@@ -145,8 +170,8 @@ export class FramesView implements View {
   #show(frame: number): void {
     this.#fill(frame);
     this.#around.forget(); // which was of the frame before
-    if (this.timeline.isPlaying) this.#around.draw();
-    else this.#around.changed();
+    this.#around.moved();
+    if (!this.timeline.isPlaying) this.#around.changed();
   }
 
   #makeControls(): void {

@@ -69,7 +69,7 @@ class Page {
       radius: stage.radius,
       colors: scene.colors,
       changed: () => this.#changed(),
-      draw: () => stage.draw(),
+      moved: () => stage.moved(),
       forget: () => this.#showHit(undefined),
     };
     for (const item of items) {

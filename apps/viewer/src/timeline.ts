@@ -122,7 +122,7 @@ export class Timeline {
     const count = stages.names.length;
     this.#seconds.forEach((text, s) => {
       const seconds = s < count ? stages.seconds[this.#frame * count + s] : totalOf(stages, this.#frame);
-      text.textContent = timeText(seconds);
+      text.textContent = timeText(seconds, this.#chart?.unit);
     });
   }
 

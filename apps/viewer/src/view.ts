@@ -53,6 +53,6 @@ export type Surroundings = {
   radius: number;
   colors: Colors;
   changed: () => void; // something looks different now
-  draw: () => void; // the same where legends and texts stay as they are
+  moved: () => void; // the same while something plays: texts can wait, and less may be drawn
   forget: () => void; // what was clicked is not there any more
 };
