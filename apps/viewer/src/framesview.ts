@@ -115,6 +115,7 @@ export class FramesView implements View {
 
   setTheme(isDark: boolean): void {
     setColor(this.#material, isDark ? dark : light);
+    this.#pairs?.setTheme(isDark);
     this.timeline.setTheme();
   }
 

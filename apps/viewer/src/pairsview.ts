@@ -4,14 +4,16 @@ import type { Color } from "./colors.ts";
 import { fillPairs, mostPairs, pairCounts } from "./framesmodel.ts";
 import { raySegment, tripleAt, type Ray } from "./geometry.ts";
 import type { PairTable } from "./scene.ts";
-import { Coloring, dotMaterial, lineGeometry, lineMaterial, shineThrough } from "./shaders.ts";
+import { Coloring, dotMaterial, lineGeometry, lineMaterial, setColor, shineThrough } from "./shaders.ts";
 
 const colors: Color[] = [
   [0, 0.58, 0.52], // closest
   [0.93, 0.5, 0.02], // collision
   [0.5, 0.3, 0.88], // penetration
 ];
-const ink: Color = [0.12, 0.13, 0.17]; // around lines, as the light end of the ramp is lost on a light ground
+// Around lines, as one end of the ramp would be lost on the ground: the light one on a light ground.
+const rimOnLight: Color = [0.12, 0.13, 0.17];
+const rimOnDark: Color = [0.82, 0.85, 0.9];
 const lineWidth = 3;
 const rimWidth = 5;
 const dotSize = 8;
@@ -28,6 +30,7 @@ class PairsOfKind {
   readonly #lines: THREE.InstancedBufferGeometry;
   readonly #dots = new THREE.BufferGeometry();
   readonly #lineMaterials: THREE.RawShaderMaterial[];
+  readonly #rim = lineMaterial(rimOnLight, rimWidth);
   readonly #faint: THREE.Object3D[];
 
   constructor(color: Color, capacity: number, range: [number, number]) {
@@ -40,8 +43,8 @@ class PairsOfKind {
     const dots = [dotMaterial(color, dotSize), dotMaterial(color, dotSize)];
     const [line, faintLine] = this.#lineMaterials.map((material) => new THREE.Mesh(this.#lines, material));
     const [dot, faintDot] = dots.map((material) => new THREE.Points(this.#dots, material));
-    const rim = new THREE.Mesh(this.#lines, lineMaterial(ink, rimWidth));
-    rim.material.depthWrite = false; // as lines lie at the same depth
+    const rim = new THREE.Mesh(this.#lines, this.#rim);
+    this.#rim.depthWrite = false; // as lines lie at the same depth
     this.#faint = [faintLine, faintDot];
     shineThrough(faintLine.material, faintness);
     shineThrough(faintDot.material, faintness);
@@ -58,6 +61,9 @@ class PairsOfKind {
     for (const material of this.#lineMaterials) {
       material.uniforms.coloring.value = isByDistance ? Coloring.scalar : Coloring.plain;
     }
+  }
+  setTheme(isDark: boolean): void {
+    setColor(this.#rim, isDark ? rimOnDark : rimOnLight);
   }
   setThrough(isOn: boolean): void {
     for (const part of this.#faint) part.visible = isOn;
@@ -105,6 +111,9 @@ export class PairsView {
   }
   setByDistance(isByDistance: boolean): void {
     for (const kind of this.#kinds) kind.setByDistance(isByDistance);
+  }
+  setTheme(isDark: boolean): void {
+    for (const kind of this.#kinds) kind.setTheme(isDark);
   }
   /** Whether pairs are seen, faintly, where something is before them. */
   setThrough(isOn: boolean): void {
