@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "files.hpp"
+#include "frames_scene.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "summary.hpp"
@@ -25,13 +26,15 @@ constexpr const char* examples = R"(Examples:
   blum view part.stl                              serves the page until Ctrl-C; its address is printed
   blum view part.ply part.nrrd axis.npz --open    a mesh, its field and its medial axis, in the browser
   blum view part.ply axis.npz -o part.html        one file, for a browser without a network
+  blum view f*.ply --frames --pairs pairs.json    meshes as the frames of a moving scene, and what is close in each
 
 Files that cannot be read are named in the page. Exit status 1 where none could be read.
 The server answers this machine only, and gives out the page and the named files' contents, nothing else.)";
 
 struct Arguments {
   std::vector<std::string> inputs;
-  std::optional<std::string> output, port, weld;
+  std::optional<std::string> output, pairs, port, weld;
+  bool frames = false;
   bool open = false;
   bool quiet = false;
 };
@@ -42,9 +45,13 @@ void check(const Arguments& a) {
   }
   exclude(a.output.has_value(), "--output", a.port.has_value(), "--port", "the page is written or served");
   exclude(a.output.has_value(), "--output", a.open, "--open", "only a page that is served is opened");
+  if (a.frames && a.inputs.size() < 2) throw UsageError("--frames needs two meshes at least, in their order");
+  if (a.pairs && !a.frames) throw UsageError("--pairs belongs to frames: give --frames too");
   if (!a.output) return;
   check_extension("--output", *a.output, {".html", ".htm"});
-  check_outputs({*a.output}, {a.inputs.begin(), a.inputs.end()});
+  std::vector<std::filesystem::path> inputs(a.inputs.begin(), a.inputs.end());
+  if (a.pairs) inputs.emplace_back(*a.pairs);
+  check_outputs({*a.output}, inputs);
 }
 
 /// Shows a page in the desktop's browser; where there is none, its address is on the terminal.
@@ -58,12 +65,17 @@ void open_browser(const std::string& url) {
   }
 }
 
+std::string kind_text(const Json& item) {
+  if (item["kind"] == "axis") return "medial axis";
+  if (item["kind"] == "frames") return std::to_string(item["frames"].size()) + " frames";
+  return item["kind"].get<std::string>();
+}
+
 std::string shown_text(const Scene& scene) {
   std::string names;
   for (const Json& item : scene.header["items"]) {
     if (item["kind"] == "error") continue;
-    names += (names.empty() ? "" : ", ") + item["name"].get<std::string>() + " (" +
-             (item["kind"] == "axis" ? "medial axis" : item["kind"].get<std::string>()) + ")";
+    names += (names.empty() ? "" : ", ") + item["name"].get<std::string>() + " (" + kind_text(item) + ")";
   }
   return names;
 }
@@ -80,7 +92,9 @@ void run(const Arguments& a) {
   if (!a.output) server.emplace(port.value_or(0));  // before the work is done, lest the port is taken
   const Scene scene = [&] {
     const Unattended reading;
-    return make_scene({a.inputs.begin(), a.inputs.end()}, weld, a.output.has_value(), context);
+    const std::vector<std::filesystem::path> files(a.inputs.begin(), a.inputs.end());
+    if (a.frames) return make_frames_scene(files, a.pairs, weld, a.output.has_value(), context);
+    return make_scene(files, weld, a.output.has_value(), context);
   }();
   progress.clear();
   if (scene.problems.size() == a.inputs.size()) throw FileError(join_words(scene.problems));
@@ -102,6 +116,9 @@ void add_view_command(const CommandLine& line) {
   CLI::App* command = line.app.add_subcommand("view", "Shows files in a browser: meshes, images, fields, medial axes");
   command->add_option("FILE", a->inputs, "Meshes, images, fields and medial axes, any mixture")->required();
   add_text_option(*command, "-o,--output", a->output, "HTML", "Write the page to a file, with all that it shows");
+  command->add_flag("--frames", a->frames, "The files are meshes: the frames of one moving scene, in their order");
+  add_text_option(*command, "--pairs", a->pairs, "JSON",
+                  "With --frames: what is close in each frame, and how long finding it took (docs/guide/viewer.md)");
   add_text_option(*command, "--port", a->port, "P", "Serve the page on this port (default: one that is free)");
   command->add_flag("--open", a->open, "Open the served page in the desktop's browser");
   add_weld_option(*command, a->weld);

@@ -1,7 +1,6 @@
 #include "view_scene.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <new>
@@ -10,14 +9,13 @@
 #include <utility>
 
 #include "axis_item.hpp"
-#include "blum/complex/medial_columns.hpp"
 #include "blum/core/error.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
-#include "colors.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
+#include "scene_parts.hpp"
 
 namespace blum::cli {
 namespace {
@@ -26,29 +24,6 @@ namespace fs = std::filesystem;
 
 /// What a browser can hold as one array, and show before anyone leaves: 512^3.
 constexpr std::size_t most_nodes = std::size_t{1} << 27U;
-constexpr std::size_t most_triangles = 20'000'000;
-
-/// A place as single precision keeps it best: seen from the middle of the box.
-Json add_places(SceneBlob& blob, std::span<const Vec3d> places, const Vec3d& origin) {
-  std::vector<float> numbers;
-  numbers.reserve(3 * places.size());
-  for (const Vec3d& p : places) {
-    for (std::size_t a = 0; a < 3; ++a) numbers.push_back(static_cast<float>(p[a] - origin[a]));
-  }
-  return blob.add(numbers);
-}
-
-template <std::size_t corners>
-Json add_cells(SceneBlob& blob, const std::vector<std::array<std::uint32_t, corners>>& cells) {
-  std::vector<std::uint32_t> numbers;
-  numbers.reserve(corners * cells.size());
-  for (const auto& cell : cells) numbers.insert(numbers.end(), cell.begin(), cell.end());
-  return blob.add(numbers);
-}
-
-Json fact(const char* label, const std::string& text) {
-  return Json::array({label, text});
-}
 
 void check_size(std::size_t count, std::size_t most, const char* what, const fs::path& path, const char* advice) {
   if (count <= most) return;
@@ -60,7 +35,7 @@ Json mesh_item(SceneBlob& blob, const fs::path& path, std::optional<double> weld
   const MeshFile file = read_mesh_of_any_name(path, {weld});
   const TriangleMesh& mesh = file.mesh;
   validate(mesh);
-  check_size(mesh.triangles.size(), most_triangles, "triangles", path, "show a coarser mesh");
+  check_size(mesh.triangles.size(), most_triangles_shown, "triangles", path, "show a coarser mesh");
   const SiteTable sites(mesh);
   const Orientation facts = orientation(mesh, sites);
   const Box3 box = bounds(mesh);
@@ -208,26 +183,6 @@ bool is_site_file(const fs::path& path) {
   return file_extension(path) == ".nrrd" && file_extension(path.stem()) == ".site";
 }
 
-/// Browsers draw in single precision.
-void check_extent(const Json& item, const fs::path& path) {
-  if (item["bounds"].is_null()) return;
-  double extent = 0;
-  double farthest = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto lower = item["bounds"]["lower"][a].get<double>();
-    const auto upper = item["bounds"]["upper"][a].get<double>();
-    extent = std::max(extent, upper - lower);
-    farthest = std::max({farthest, std::abs(lower), std::abs(upper)});
-  }
-  constexpr double least = 1e-12;
-  constexpr double most = 1e30;
-  if ((extent == 0 || extent >= least) && farthest <= most) return;
-  throw FileError(
-      "'" + path.string() + "' cannot be drawn: " +
-      (farthest > most ? "it reaches to " + rounded_text(farthest) : "its longest side is " + rounded_text(extent)) +
-      ", and browsers draw what is between 1e-12 and 1e30; scale it");
-}
-
 Json item_of(SceneBlob& blob, const fs::path& path, std::optional<double> weld, const Context& context) {
   if (holds_complex(path)) return axis_item(blob, path, context);
   switch (is_site_file(path) ? InputKind::image : input_kind(path)) {
@@ -241,38 +196,6 @@ Json item_of(SceneBlob& blob, const fs::path& path, std::optional<double> weld, 
   return {};
 }
 
-/// A table of colours: red, green, blue and opacity in a byte each, as textures want them.
-template <class ColorAt>
-Json add_colors(SceneBlob& blob, std::uint32_t count, ColorAt color_at) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(std::size_t{4} * count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Color color = color_at(i);
-    for (const float component : {color.r, color.g, color.b, 1.0F}) bytes.push_back(byte_of(component));
-  }
-  return blob.add(bytes);
-}
-
-/// The colours of the tool's pictures. Ramps run to 1, from -1 where they diverge.
-Json colors_json(SceneBlob& blob) {
-  constexpr std::uint32_t ramp_colors = 512;
-  constexpr std::uint32_t legend_regions = 12;
-  const auto add_ramp = [&](Color (*color_of)(double), double from) {
-    const double step = (1 - from) / (ramp_colors - 1);
-    return add_colors(blob, ramp_colors, [&](std::uint32_t i) { return color_of(from + step * i); });
-  };
-  return {{"diverging", add_ramp(diverging_color, -1)},
-          {"sequential", add_ramp(sequential_color, 0)},
-          {"palette", add_colors(blob, palette_rows * palette_hues, palette_color)},
-          {"regions", add_colors(blob, legend_regions, region_color)}};
-}
-
-Json roles_json() {
-  Json roles = Json::object();
-  for (const auto& [role, name] : Description<MedialRole>::values) roles[std::string(name)] = role;
-  return roles;
-}
-
 }  // namespace
 
 Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld, bool compresses,
@@ -283,7 +206,7 @@ Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld,
     std::string message;
     try {
       Json item = item_of(scene.blob, path, weld, context);
-      check_extent(item, path);
+      check_extent(item, "'" + path.string() + "'");
       item["name"] = path.filename().string();
       items.push_back(std::move(item));
       continue;
@@ -297,8 +220,7 @@ Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld,
     scene.problems.push_back(message);
     items.push_back({{"kind", "error"}, {"name", path.filename().string()}, {"message", message}});
   }
-  scene.header = {
-      {"blum", BLUM_VERSION}, {"items", items}, {"colors", colors_json(scene.blob)}, {"roles", roles_json()}};
+  scene.header = scene_header(scene.blob, std::move(items));
   return scene;
 }
 

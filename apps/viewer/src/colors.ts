@@ -22,3 +22,13 @@ export function cssColor(table: Uint8Array, entry: number): string {
 export function rampColor(ramp: Uint8Array, t: number): string {
   return cssColor(ramp, Math.min(Math.max(t, 0), 1) * (ramp.length / 4 - 1));
 }
+
+// Of things that are told apart side by side, as stages in a chart: hues far from each other, in turn dark and light.
+const stageHues = [250, 75, 160, 330, 110, 30, 200, 290]; // degrees
+const stageRows = [8, 10]; // of the palette
+const paletteHues = 256;
+
+export function stageColor(palette: Uint8Array, stage: number): string {
+  const hue = Math.round((stageHues[stage % stageHues.length] * paletteHues) / 360);
+  return cssColor(palette, stageRows[stage % stageRows.length] * paletteHues + hue);
+}

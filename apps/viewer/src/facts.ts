@@ -8,6 +8,7 @@ const kinds: Record<Item["kind"], string> = {
   field: "distance field",
   image: "image",
   axis: "medial axis",
+  frames: "moving scene",
   error: "not read",
 };
 

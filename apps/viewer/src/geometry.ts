@@ -9,6 +9,18 @@ export const scale = (a: ArrayLike<number>, s: number): Triple => [a[0] * s, a[1
 export const dot = (a: ArrayLike<number>, b: ArrayLike<number>): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const distance = (a: ArrayLike<number>, b: ArrayLike<number>): number => Math.hypot(...sub(a, b));
 export const along = (ray: Ray, t: number): Triple => add(ray.origin, scale(ray.direction, t));
+/** Where a ray comes closest to a segment, and how far beside it then is. */
+export function raySegment(ray: Ray, a: Triple, b: Triple): { t: number; away: number } {
+  const ab = sub(b, a);
+  const from = sub(a, ray.origin);
+  const cosine = dot(ab, ray.direction);
+  const across = dot(ab, ab) - cosine * cosine; // of the segment as the ray sees it, squared
+  const s = across > 0 ? (cosine * dot(from, ray.direction) - dot(ab, from)) / across : 0;
+  const at = add(from, scale(ab, Math.min(Math.max(s, 0), 1)));
+  const t = Math.max(dot(at, ray.direction), 0);
+  return { t, away: distance(at, scale(ray.direction, t)) };
+}
+
 /** One of many triples that lie behind each other. */
 export const tripleAt = (numbers: ArrayLike<number>, i: number): Triple => [
   numbers[3 * i],

@@ -53,3 +53,10 @@ export const keyHelp: readonly (readonly [keys: string, text: string])[] = [
   ["0", "look at all"],
   ["Enter", "what is in the middle"],
 ];
+
+/** Of pages with a moving scene, see timeline.ts. */
+export const frameKeyHelp: typeof keyHelp = [
+  ["Space", "play and pause"],
+  [", .", "frame before and after"],
+  ["← →", "the same, while the slider of frames has the focus"],
+];

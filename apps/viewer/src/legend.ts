@@ -9,11 +9,12 @@ const digits = 4;
 
 export const titleOf = (legend: Legend): string => (legend.units ? `${legend.title} (${legend.units})` : legend.title);
 
-/** The colours from end to end; those of regions have sharp borders. */
+/** The colours from end to end; those of regions and keys have sharp borders. */
 export function colorsOf(legend: Legend, colors: Colors): string[] {
   if (legend.kind === "regions") {
     return Array.from({ length: colors.regions.length / 4 }, (_, i) => cssColor(colors.regions, i));
   }
+  if (legend.kind === "keys") return legend.entries.map((entry) => entry.color);
   return Array.from({ length: steps + 1 }, (_, i) => colorAt(legend, colors, i / steps));
 }
 
@@ -34,6 +35,10 @@ function colorAt(legend: Extract<Legend, { kind: "ramp" }>, colors: Colors, t: n
 /** Texts below the bar, and where: 0 is its left end, 1 its right. */
 export function marksOf(legend: Legend): [text: string, at: number][] {
   if (legend.kind === "regions") return [[legend.note, 0]];
+  if (legend.kind === "keys") {
+    const { entries } = legend;
+    return entries.map(({ text }, i) => [text, (i + 0.5) / entries.length]);
+  }
   const { from, to } = legend;
   const marks: [string, number][] = [[rounded(from, digits), 0]];
   const zero = -from / (to - from);
@@ -46,7 +51,7 @@ export function legendElement(legend: Legend, tables: Colors): HTMLElement {
   const bar = element("div", "bar");
   const colors = colorsOf(legend, tables);
   const stops =
-    legend.kind === "regions"
+    legend.kind !== "ramp"
       ? colors.map((color, i) => `${color} ${(100 * i) / colors.length}% ${(100 * (i + 1)) / colors.length}%`)
       : colors;
   bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;

@@ -1,7 +1,8 @@
 // The page: reads the scene, makes a view for each file, and puts controls beside the picture.
 import { AxisView } from "./axisview.ts";
 import { factsElement, kindName } from "./facts.ts";
-import { keyHelp, listen } from "./keys.ts";
+import { FramesView } from "./framesview.ts";
+import { frameKeyHelp, keyHelp, listen } from "./keys.ts";
 import { Knob } from "./knob.ts";
 import { legendElement } from "./legend.ts";
 import { Marker } from "./marker.ts";
@@ -39,6 +40,8 @@ function makeView(item: Exclude<Item, ErrorItem>, around: Surroundings, isAlone:
       return new MeshView(item, around, isAlone);
     case "axis":
       return new AxisView(item, around);
+    case "frames":
+      return new FramesView(item, around);
     case "field":
     case "image":
       return new VolumeView(item, around);
@@ -61,7 +64,14 @@ class Page {
     this.#marker = new Marker(stage.center);
     stage.shown = () => boundsOf(this.#visible().map((view) => view.item));
     const items = scene.items.filter((item): item is Exclude<Item, ErrorItem> => item.kind !== "error");
-    const around: Surroundings = { center: stage.center, radius: stage.radius, changed: () => this.#changed() };
+    const around: Surroundings = {
+      center: stage.center,
+      radius: stage.radius,
+      colors: scene.colors,
+      changed: () => this.#changed(),
+      moved: () => stage.moved(),
+      forget: () => this.#showHit(undefined),
+    };
     for (const item of items) {
       const view = makeView(item, around, items.length === 1);
       this.#views.push(view);
@@ -72,10 +82,14 @@ class Page {
         this.#knobs.push(knob);
         byId("stage").append(knob.root);
       }
+      if (view instanceof FramesView) {
+        byId("timeline").append(view.timeline.root);
+        byId("timeline").hidden = false;
+      }
     }
     stage.scene.add(this.#marker.object);
     byId("overlay").append(this.#readout.root);
-    panel.append(factsDetails(this.#facts), helpDetails());
+    panel.append(factsDetails(this.#facts), helpDetails(items.some((item) => item.kind === "frames")));
     stage.onDraw = () => {
       for (const knob of this.#knobs) knob.place();
     };
@@ -108,7 +122,7 @@ class Page {
       const hit = view.pick(ray);
       if (hit === undefined) continue;
       views.set(hit, view);
-      if (view instanceof MeshView && view.isSeenThrough) {
+      if ((view instanceof MeshView || view instanceof FramesView) && view.isSeenThrough) {
         if (seenThrough === undefined || hit.t < seenThrough.t) seenThrough = hit;
       } else if (best === undefined || hit.t < best.t) {
         best = hit;
@@ -126,7 +140,7 @@ class Page {
     const legends = this.#visible().flatMap((view) => view.legends());
     const link = element("a");
     link.href = URL.createObjectURL(await pictureWithLegends(this.#stage.canvas, legends, this.#scene.colors, isDark()));
-    link.download = pictureName(this.#visible().map((view) => view.item.name));
+    link.download = pictureName(this.#visible().map((view) => view.fileName ?? view.item.name));
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
@@ -171,9 +185,9 @@ function factsDetails(content: HTMLElement): HTMLElement {
   return details;
 }
 
-function helpDetails(): HTMLElement {
+function helpDetails(hasFrames: boolean): HTMLElement {
   const list = element("dl");
-  for (const [keys, text] of keyHelp) list.append(element("dt", "", element("kbd", "", keys)), element("dd", "", text));
+  for (const [keys, text] of hasFrames ? [...keyHelp, ...frameKeyHelp] : keyHelp) list.append(element("dt", "", element("kbd", "", keys)), element("dd", "", text));
   const touch = element("p", "counts", "Drag turns, two fingers or the right button move, the wheel or a pinch zooms; a click shows what is under the pointer. The round handle moves its slice.");
   return element("details", "", element("summary", "", "Keys and touch"), list, touch);
 }

@@ -59,25 +59,8 @@ export class MeshView implements View {
 
   pick(ray: Ray): Hit | undefined {
     const { positions, triangles } = this.item;
-    const own: Ray = { origin: sub(ray.origin, this.#offset), direction: ray.direction };
     this.#picker ??= new Picker(positions, triangles);
-    const hit = this.#picker.firstHit(own);
-    if (hit === undefined) return undefined;
-    const at = along(own, hit.t);
-    const corners = [0, 1, 2].map((k) => triangles[3 * hit.triangle + k]);
-    const nearest = corners.reduce((a, b) =>
-      distance(at, tripleAt(positions, a)) <= distance(at, tripleAt(positions, b)) ? a : b,
-    );
-    return {
-      t: hit.t,
-      title: this.item.name,
-      facts: [
-        ["triangle", `${hit.triangle} (corners ${corners.join(", ")})`],
-        ["nearest vertex", String(nearest)],
-      ],
-      at: add(at, this.item.origin),
-      footprints: [],
-    };
+    return surfaceHit(this.#picker, this.item, { positions, triangles }, ray, this.#offset);
   }
 
   /** What is seen through does not stand before what is inside. */
@@ -136,4 +119,36 @@ export class MeshView implements View {
     for (const part of parts) part.frustumCulled = false;
     return parts;
   }
+}
+
+/**
+ * What a ray of the drawn world hits of a mesh: its triangle and the nearest vertex.
+ * @param offset  of the mesh's origin in the drawn world.
+ */
+export function surfaceHit(
+  picker: Picker,
+  item: { name: string; origin: Triple },
+  mesh: { positions: Float32Array; triangles: Uint32Array },
+  ray: Ray,
+  offset: Triple,
+): Hit | undefined {
+  const { positions, triangles } = mesh;
+  const own: Ray = { origin: sub(ray.origin, offset), direction: ray.direction };
+  const hit = picker.firstHit(own);
+  if (hit === undefined) return undefined;
+  const at = along(own, hit.t);
+  const corners = [0, 1, 2].map((k) => triangles[3 * hit.triangle + k]);
+  const nearest = corners.reduce((a, b) =>
+    distance(at, tripleAt(positions, a)) <= distance(at, tripleAt(positions, b)) ? a : b,
+  );
+  return {
+    t: hit.t,
+    title: item.name,
+    facts: [
+      ["triangle", `${hit.triangle} (corners ${corners.join(", ")})`],
+      ["nearest vertex", String(nearest)],
+    ],
+    at: add(at, item.origin),
+    footprints: [],
+  };
 }

@@ -29,8 +29,9 @@ export function featureName(site: number, mesh: MeshItem): string {
 }
 
 export function readoutFacts(hit: Hit): Fact[] {
-  const facts: Fact[] = [...hit.facts, ["place", place(hit.at)]];
-  hit.footprints.forEach((p, i) => facts.push([hit.footprints.length > 1 ? `footprint ${i + 1}` : "footprint", place(p)]));
+  const { at, foot } = hit.labels ?? { at: "place", foot: "footprint" };
+  const facts: Fact[] = [...hit.facts, [at, place(hit.at)]];
+  hit.footprints.forEach((p, i) => facts.push([hit.footprints.length > 1 ? `${foot} ${i + 1}` : foot, place(p)]));
   if (hit.footprints.length === 0 && hit.about) facts.push(["footprint", `about ${place(hit.about)}`]);
   return facts;
 }

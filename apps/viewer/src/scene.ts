@@ -76,11 +76,34 @@ export type AxisItem = ItemBase & {
   sheets: Int32Array;
 };
 
+/** What is close in the frames of a moving scene, frame by frame. */
+export type PairTable = {
+  kindNames: string[];
+  first: Uint32Array; // number of the first pair of each frame, and of all pairs
+  kinds: Uint8Array;
+  points: Float32Array; // two of each pair, as seen from the item's origin
+  distances: Float64Array;
+  times: Float32Array; // from 0 to 1; NaN where there is none
+  range: [number, number]; // of the distances
+};
+
+/** How long the stages of each frame took. */
+export type Stages = { names: string[]; seconds: Float64Array };
+
+export type FramesItem = ItemBase & {
+  kind: "frames";
+  origin: Triple;
+  meshes: Uint32Array[]; // triangles; frames share them
+  frames: { name: string; mesh: number; positions: Float32Array }[];
+  pairs: PairTable | undefined;
+  stages: Stages | undefined;
+};
+
 /** Numbers of roles in files. */
 export type Roles = Record<"sheet" | "rim" | "seam" | "curve" | "junction", number>;
 
 export type ErrorItem = { kind: "error"; name: string; message: string };
-export type Item = MeshItem | FieldItem | ImageItem | AxisItem | ErrorItem;
+export type Item = MeshItem | FieldItem | ImageItem | AxisItem | FramesItem | ErrorItem;
 export type Scene = { version: string; items: Item[]; colors: Colors };
 
 export class SceneError extends Error {}
@@ -138,8 +161,10 @@ export async function readScene(bytes: Uint8Array): Promise<Scene> {
 type Raw = Record<string, any>;
 type Header = { blum: string; items: Raw[]; colors?: Record<keyof Colors, ArrayEntry>; roles?: Roles };
 
+type Reader = <T extends Numbers>(entry: ArrayEntry | undefined) => Promise<T>;
+
 async function readItem(raw: Raw, roles: Roles, read: (entry: ArrayEntry) => Promise<Numbers>): Promise<Item> {
-  const array = async <T extends Numbers>(entry: ArrayEntry | undefined): Promise<T> =>
+  const array: Reader = async <T extends Numbers>(entry: ArrayEntry | undefined): Promise<T> =>
     (entry === undefined ? undefined : await read(entry)) as T;
   const base = { name: raw.name, units: raw.units, facts: raw.facts, bounds: raw.bounds };
   switch (raw.kind) {
@@ -202,11 +227,43 @@ async function readItem(raw: Raw, roles: Roles, read: (entry: ArrayEntry) => Pro
         triangleUntil: await array<Float32Array>(raw.triangle_until),
         sheets: await array<Int32Array>(raw.sheets),
       };
+    case "frames":
+      return { ...base, kind: "frames", origin: raw.origin, ...(await readFrames(raw, array)) };
     case "error":
       return { kind: "error", name: raw.name, message: raw.message };
     default:
       return { kind: "error", name: raw.name, message: `the page does not know what '${raw.kind}' is` };
   }
+}
+
+async function readFrames(
+  raw: Raw,
+  array: Reader,
+): Promise<Pick<FramesItem, "meshes" | "frames" | "pairs" | "stages">> {
+  const meshes = (raw.meshes as ArrayEntry[]).map((entry) => array<Uint32Array>(entry));
+  const frames = (raw.frames as Raw[]).map(async ({ name, mesh, positions }) => ({
+    name: name as string,
+    mesh: mesh as number,
+    positions: await array<Float32Array>(positions),
+  }));
+  return {
+    meshes: await Promise.all(meshes),
+    frames: await Promise.all(frames),
+    pairs: raw.pairs && (await readPairs(raw.pairs, array)),
+    stages: raw.stages && { names: raw.stages.names, seconds: await array<Float64Array>(raw.stages.seconds) },
+  };
+}
+
+async function readPairs(raw: Raw, array: Reader): Promise<PairTable> {
+  return {
+    kindNames: raw.kind_names,
+    first: await array<Uint32Array>(raw.first),
+    kinds: await array<Uint8Array>(raw.kinds),
+    points: await array<Float32Array>(raw.points),
+    distances: await array<Float64Array>(raw.distances),
+    times: await array<Float32Array>(raw.times),
+    range: raw.range,
+  };
 }
 
 async function readArray(body: Uint8Array, entry: ArrayEntry): Promise<Numbers> {

@@ -96,6 +96,14 @@ const surfaceFragment = /* glsl */ `
     }
     #ifdef NORMALS
       vec3 n = normalize(vNormal);
+      #ifdef CREASES
+        // Where the triangle is turned away from the mean of its neighbours there is an edge, which stays sharp. That
+        // also covers vertices at which triangles of either orientation meet.
+        vec3 geometric = normalize(cross(dFdx(vView), dFdy(vView)));
+        if (dot(n, geometric) < 0.0) n = -n;
+        float agreed = dot(n, geometric);
+        n = agreed == agreed ? normalize(mix(geometric, n, smoothstep(0.72, 0.9, agreed))) : geometric;
+      #endif
     #else
       vec3 n = normalize(cross(dFdx(vView), dFdy(vView)));
     #endif
@@ -111,12 +119,13 @@ const surfaceFragment = /* glsl */ `
   }
 `;
 
-export type SurfaceOptions = { hasCells?: boolean; hasNormals?: boolean };
+export type SurfaceOptions = { hasCells?: boolean; hasNormals?: boolean; hasCreases?: boolean };
 
 export function surfaceMaterial(options: SurfaceOptions = {}): THREE.RawShaderMaterial {
   const defines: Record<string, string> = {};
   if (options.hasCells === true) defines.CELLS = "";
   if (options.hasNormals === true) defines.NORMALS = "";
+  if (options.hasCreases === true) defines.CREASES = "";
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
     vertexShader: surfaceVertex,
@@ -244,14 +253,28 @@ export function dotMaterial(color: Color, size: number): THREE.RawShaderMaterial
     fragmentShader: /* glsl */ `
       precision highp float;
       uniform vec3 color;
+      uniform float opacity;
       out vec4 outColor;
       void main() {
         if (length(gl_PointCoord - 0.5) > 0.5) discard;
-        outColor = vec4(color, 1.0);
+        outColor = vec4(color, opacity);
       }
     `,
-    uniforms: { color: { value: new THREE.Vector3(...color) }, size: { value: size }, pixelRatio },
+    uniforms: {
+      color: { value: new THREE.Vector3(...color) },
+      opacity: { value: 1 },
+      size: { value: size },
+      pixelRatio,
+    },
   });
+}
+
+/** Lets a line or dots shine through what is before them, faintly: for a second drawing below the first. */
+export function shineThrough(material: THREE.RawShaderMaterial, opacity: number): void {
+  material.uniforms.opacity.value = opacity;
+  material.transparent = true;
+  material.depthTest = false;
+  material.depthWrite = false;
 }
 
 /** How a slice shows its values. */

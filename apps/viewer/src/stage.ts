@@ -43,7 +43,7 @@ export class Stage {
     this.#controls = new OrbitControls(this.camera, canvas);
     this.#controls.rotateSpeed = 0.8;
     this.#controls.zoomToCursor = true;
-    this.#controls.addEventListener("change", () => this.#moved());
+    this.#controls.addEventListener("change", () => this.moved());
     this.#controls.addEventListener("start", () => (this.#fitted = undefined));
     this.#resize();
     this.look([0.55, -0.75, 0.42]);
@@ -99,7 +99,7 @@ export class Stage {
     offset.setFromSpherical(spherical).applyQuaternion(toUp.invert());
     this.camera.position.copy(this.#controls.target).add(offset);
     this.#controls.update();
-    this.#moved();
+    this.moved();
   }
 
   zoom(factor: number): void {
@@ -109,7 +109,7 @@ export class Stage {
     if (length < this.#controls.minDistance || length > this.#controls.maxDistance) return;
     this.camera.position.copy(this.#controls.target).add(offset);
     this.#controls.update();
-    this.#moved();
+    this.moved();
   }
 
   /** Whether dragging turns the view; not while something else is dragged. */
@@ -122,6 +122,20 @@ export class Stage {
     if (this.#isAsked) return;
     this.#isAsked = true;
     requestAnimationFrame(() => this.drawNow());
+  }
+
+  /** Draws, and less where whole pictures take long: more changes are about to follow. */
+  moved(): void {
+    if (this.#isSlow) {
+      if (this.#rest === undefined) this.onMoving(true);
+      else clearTimeout(this.#rest);
+      this.#rest = setTimeout(() => {
+        this.#rest = undefined;
+        this.onMoving(false);
+        this.draw();
+      }, restAfter);
+    }
+    this.draw();
   }
 
   /** Draws the first picture. Where that takes long, less is drawn while the view moves. */
@@ -166,19 +180,6 @@ export class Stage {
       y: box.top + ((1 - at.y) / 2) * box.height,
       isBehind: at.z > 1,
     };
-  }
-
-  #moved(): void {
-    if (this.#isSlow) {
-      if (this.#rest === undefined) this.onMoving(true);
-      else clearTimeout(this.#rest);
-      this.#rest = setTimeout(() => {
-        this.#rest = undefined;
-        this.onMoving(false);
-        this.draw();
-      }, restAfter);
-    }
-    this.draw();
   }
 
   /** How far away all corners of the box are in the picture, with some room. */

@@ -1,5 +1,6 @@
 // What all things on the stage have in common.
 import type * as THREE from "three";
+import type { Colors } from "./colors.ts";
 import type { Ray } from "./geometry.ts";
 import type { Fact, Item, Triple } from "./scene.ts";
 
@@ -10,6 +11,7 @@ export type Hit = {
   facts: Fact[];
   at: Triple; // in the world of the files
   footprints: Triple[];
+  labels?: { at: string; foot: string }; // what these are called, where it is not place and footprint
   radius?: number; // of a ball around `at`
   about?: Triple; // about where the footprint is, where it is not known
   reach?: number; // how far away it is
@@ -23,7 +25,8 @@ export type Legend =
   | (Ramp & { scale: "grey" })
   // Colours go to `extremes`, and the data from `from` to `to`.
   | (Ramp & { scale: "diverging"; extremes: [inside: number, outside: number] })
-  | (Titled & { kind: "regions"; note: string });
+  | (Titled & { kind: "regions"; note: string })
+  | (Titled & { kind: "keys"; entries: readonly { text: string; color: string }[] });
 
 export interface View {
   readonly item: Exclude<Item, { kind: "error" }>;
@@ -32,6 +35,8 @@ export interface View {
   readonly controls: HTMLElement;
   /** Whether any of it is seen, where its object is visible. */
   readonly isEmpty?: boolean;
+  /** What pictures of it are named after, where that is not its item. */
+  readonly fileName?: string;
   /** @param ray  in the drawn world. */
   pick(ray: Ray): Hit | undefined;
   legends(): Legend[];
@@ -46,5 +51,8 @@ export interface View {
 export type Surroundings = {
   center: Triple; // of the drawn world, in that of the files
   radius: number;
+  colors: Colors;
   changed: () => void; // something looks different now
+  moved: () => void; // the same while something plays: texts can wait, and less may be drawn
+  forget: () => void; // what was clicked is not there any more
 };

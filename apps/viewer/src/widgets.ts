@@ -47,6 +47,25 @@ export function choice<T extends string>(
   return group;
 }
 
+/** A list of which one entry is chosen. */
+export function select(
+  label: string,
+  options: readonly (readonly [value: string, text: string])[],
+  value: string,
+  onChange: Setter<string>,
+): HTMLElement {
+  const list = element("select");
+  list.setAttribute("aria-label", label);
+  for (const [option, text] of options) {
+    const entry = element("option", "", text);
+    entry.value = option;
+    entry.selected = option === value;
+    list.append(entry);
+  }
+  list.addEventListener("change", () => onChange(list.value));
+  return list;
+}
+
 export type Range = { min: number; max: number; step: number | "any" };
 
 /** A slider with a field for the exact number. */

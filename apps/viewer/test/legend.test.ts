@@ -86,3 +86,13 @@ describe("names", () => {
     ]);
   });
 });
+
+describe("keys", () => {
+  const entries = ["closest", "collision", "penetration"].map((text, i) => ({ text, color: `rgb(${i} 0 0)` }));
+  const legend: Legend = { kind: "keys", title: "pairs", units: "", entries };
+
+  it("have their own colours, and each its name in the middle of its part", () => {
+    expect(colorsOf(legend, colors)).toEqual(["rgb(0 0 0)", "rgb(1 0 0)", "rgb(2 0 0)"]);
+    expect(marksOf(legend)).toEqual([["closest", 1 / 6], ["collision", 0.5], ["penetration", 5 / 6]]);
+  });
+});

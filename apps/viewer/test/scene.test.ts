@@ -1,50 +1,8 @@
 // Proves that scenes read back as blum writes them, and that broken ones give a message.
-import { deflateSync } from "node:zlib";
 import { describe, expect, it } from "vitest";
 import { readScene, undoDelta, type MeshItem } from "../src/scene.ts";
 import { fromBase64 } from "../src/source.ts";
-
-type Part = { numbers: Float32Array | Uint32Array | Uint8Array; coding: "raw" | "deflate" | "delta" };
-
-function delta(numbers: Part["numbers"]): Uint8Array {
-  const bits = new Uint32Array(numbers.buffer.slice(0));
-  const out = new Uint8Array(4 * bits.length);
-  bits.forEach((value, i) => {
-    const difference = (value - (i > 0 ? bits[i - 1] : 0)) >>> 0;
-    for (let b = 0; b < 4; ++b) out[b * bits.length + i] = difference >>> (8 * b);
-  });
-  return out;
-}
-
-/** A scene as apps/cli/scene_blob.cpp lays it out. */
-function sceneOf(header: (entries: object[]) => object, parts: Part[]): Uint8Array {
-  const stored: Uint8Array[] = [];
-  let offset = 0;
-  const entries = parts.map(({ numbers, coding }) => {
-    const bytes = new Uint8Array(numbers.buffer);
-    const data = coding === "raw" ? bytes : deflateSync(coding === "delta" ? delta(numbers) : bytes);
-    const type = numbers instanceof Float32Array ? "f4" : numbers instanceof Uint32Array ? "u4" : "u1";
-    const entry = { type, count: numbers.length, offset, bytes: data.length, coding };
-    const padded = new Uint8Array(Math.ceil(data.length / 8) * 8);
-    padded.set(data);
-    stored.push(padded);
-    offset += padded.length;
-    return entry;
-  });
-  let text = JSON.stringify(header(entries));
-  while (text.length % 8 !== 0) text += " ";
-  const out = new Uint8Array(16 + text.length + offset);
-  out.set(new TextEncoder().encode("BLUMVIEW"));
-  new DataView(out.buffer).setUint32(8, 2, true);
-  new DataView(out.buffer).setUint32(12, text.length, true);
-  out.set(new TextEncoder().encode(text), 16);
-  let at = 16 + text.length;
-  for (const part of stored) {
-    out.set(part, at);
-    at += part.length;
-  }
-  return out;
-}
+import { delta, sceneOf, type Part } from "./scene_bytes.ts";
 
 const positions = Float32Array.from({ length: 300 }, (_, i) => Math.sin(i) * 1e3);
 const triangles = Uint32Array.from({ length: 300 }, (_, i) => (i * 7) % 100);
