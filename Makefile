@@ -1,7 +1,7 @@
 # Blum: the commands of everyday work. `make` lists them.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup build python test check demo format lint tidy bench docs asan tsan fuzz configurations install viewer clean
+.PHONY: help setup build python test check demo simulate format lint tidy bench docs asan tsan fuzz configurations install viewer clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
@@ -26,6 +26,11 @@ test: ## Install what the tests need, build, and run every test
 demo: setup ## Build the tool and run the main job on a generated shape: a field, pictures, a medial axis and a page in out/demo
 	@tools/build.sh release $(configure_options) -- blum
 	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
+
+simulate: ## Run a simulation without a missed collision, and make a page of it in out/simulations: make simulate S=cloth (or bodies, breaking, large)
+	@tools/setup.sh --tests
+	@tools/build.sh release $(configure_options) -- blum simulations
+	@tools/simulate.sh '$(or $(S),cloth)' out/simulations
 
 python: ## Build the Python package alone: build/release/python, for PYTHONPATH, with the Python of build/venv
 	@tools/setup.sh --tests

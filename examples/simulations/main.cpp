@@ -4,6 +4,7 @@
 //
 // writes FOLDER/frame_000.ply and so on, and FOLDER/pairs.json, which `blum view FOLDER/frame_*.ply --frames --pairs
 // FOLDER/pairs.json -o page.html` shows. Without arguments it runs a few frames of each, and writes nothing.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 using simulations::Scene;
 using simulations::StepReport;
 
-constexpr int steps_per_frame = 4;
+constexpr double frame_seconds = 1.0 / 30;
 
 std::unique_ptr<Scene> make(const std::string& name) {
   if (name == "cloth") return simulations::make_cloth_scene();
@@ -91,8 +92,8 @@ bool run(const std::string& name, int frames, const std::optional<fs::path>& fol
   StepReport last;
   for (int frame = 0; frame < frames; ++frame) {
     StepReport sum;
-    for (int step = 0; step < steps_per_frame; ++step) {
-      time += 1.0 / 120;
+    for (int step = 0; step < std::lround(frame_seconds / scene->step); ++step) {
+      time += scene->step;
       scene->drive(time, last);
       last = scene->world.step();
       add(last, sum);

@@ -152,9 +152,9 @@ class Bowl : public Scene {
 /// A wall of bricks with fine cracks between them, on a floor.
 class Breaking : public Scene {
  public:
-  Breaking() : Scene({.thickness = 0.004, .friction = 0.15}) {
+  Breaking() : Scene({.step = 1.0 / 480, .thickness = 0.006, .iterations = 8, .friction = 0.02}) {
     Object floor;
-    floor.mesh = moved(blum::make_box({.size = {6, 6, 0.2}, .segments = {6, 6, 1}}), {-3, -3, -0.21});
+    floor.mesh = moved(blum::make_box({.size = {5, 5, 0.2}, .segments = {5, 5, 1}}), {0, 0, -0.11});
     floor.kind = Kind::driven;
     world.add(std::move(floor));
     for (int row = 0; row < 5; ++row) {
@@ -167,7 +167,7 @@ class Breaking : public Scene {
     Object ball;
     ball.mesh = moved(blum::make_sphere({.radius = 0.22, .frequency = 10}), {0.1, 1.6, 0.62});
     ball.mass = 4;
-    ball.velocity.assign(ball.mesh.vertices.size(), {0, -5.5, 1});
+    ball.velocity.assign(ball.mesh.vertices.size(), {0, -6, 1.2});
     ball_ = world.add(std::move(ball));
   }
 
@@ -196,16 +196,17 @@ class Breaking : public Scene {
     for (const TriangleMesh& one : leaving) {
       Object piece;
       piece.mesh = one;
+      piece.mass = 0.5;
       world.add(std::move(piece));
     }
   }
 
  private:
   static TriangleMesh brick(int row, int column) {
-    constexpr double crack = 0.006;
+    constexpr double crack = 0.013;
     const TriangleMesh one = blum::make_box({.size = {0.3 - crack, 0.2, 0.22 - crack}, .segments = {4, 3, 3}});
     const double shift = row % 2 == 0 ? 0 : 0.15;
-    return moved(one, {-0.95 + 0.3 * column + shift, -0.1, 0.22 * row});
+    return moved(one, {-0.8 + 0.3 * column + shift, 0, 0.11 + 0.22 * row});
   }
   static TriangleMesh all_of(const std::vector<TriangleMesh>& parts) {
     TriangleMesh out;

@@ -12,7 +12,7 @@ namespace simulations {
 /// A world, and what happens to it.
 class Scene {
  public:
-  explicit Scene(const WorldOptions& options) : world(options) {}
+  explicit Scene(const WorldOptions& options) : world(options), step(options.step) {}
   virtual ~Scene() = default;
   /// Called before each step. @param time in seconds. @param last what the step before found.
   virtual void drive(double time, const StepReport& last) {
@@ -21,6 +21,7 @@ class Scene {
   }
 
   World world;
+  double step;  ///< seconds
 };
 
 /// A skirt on a body that sways and turns.

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# `make simulate`: runs a simulation of examples/simulations, and makes a page of its frames.
+#   tools/simulate.sh cloth|bodies|breaking|large OUTPUT_FOLDER [--frames N]
+# It ends with an error where the library's own continuous check finds a collision that was missed.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+name=$1
+out=$2
+shift 2
+build/release/bin/simulations "$name" "$out/$name" "$@"
+build/release/bin/blum view "$out/$name"/frame_*.ply --frames --pairs "$out/$name/pairs.json" -o "$out/$name.html"
+echo "simulate: open $out/$name.html"
