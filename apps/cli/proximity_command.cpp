@@ -21,6 +21,8 @@ constexpr const char* examples = R"(Examples:
                                          all pairs of triangles that meet
   blum proximity a.ply b.ply --query collide --within 0.01 -o pairs.npz
                                          all pairs no further apart than 0.01
+  blum proximity a.ply b.ply --query penetration --json -
+                                         what they have in common, part by part: depth, direction, area, volume, curves
   blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.npz
                                          all pairs of a vertex and a face, or of two edges, that meet between two frames
   blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.csv --min-separation 1e-3
@@ -31,13 +33,14 @@ struct Query {
   void (*run)(const ProximityArguments&);
 };
 constexpr std::array queries{Query{"separation", run_scene_query}, Query{"nbody", run_scene_query},
-                             Query{"collide", run_scene_query}, Query{"continuous", run_continuous_query}};
+                             Query{"collide", run_scene_query}, Query{"penetration", run_scene_query},
+                             Query{"continuous", run_continuous_query}};
 
 void run(const ProximityArguments& a) {
   const auto* const query =
       std::find_if(queries.begin(), queries.end(), [&](const Query& one) { return a.query == one.name; });
   if (query == queries.end()) {
-    throw UsageError("--query is '" + a.query + "', but must be separation, nbody, collide or continuous");
+    throw UsageError("--query is '" + a.query + "', but must be separation, nbody, collide, penetration or continuous");
   }
   query->run(a);
 }
@@ -55,8 +58,8 @@ void add_proximity_command(const CommandLine& line) {
   command
       ->add_option("--query", a->query,
                    "separation: the closest pair of each two objects (default); nbody: for each primitive (triangle, "
-                   "segment or point) the closest one; collide: all pairs that meet; continuous: what of a mesh meets "
-                   "between two frames")
+                   "segment or point) the closest one; collide: all pairs that meet; penetration: what solids have in "
+                   "common, and how deep they lie in each other; continuous: what of a mesh meets between two frames")
       ->type_name("QUERY");
   command->add_flag("--self", a->self, "Compare each object with itself, too: primitives that share no vertex");
   add_text_option(*command, "--within", a->within, "D",
@@ -65,8 +68,10 @@ void add_proximity_command(const CommandLine& line) {
   add_text_option(*command, "-o,--output", a->output, "FILE",
                   "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between "
                   "closest points); of continuous .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time), "
-                  ".csv, .json. May be left out with separation");
-  a->culling.add_to(*command, "All but continuous: ");
+                  ".csv, .json. Of penetration the deepest point of each part and the closest one to it, with the depth as a "
+                  "negative distance. May be left out with separation and penetration");
+  a->culling.add_to(*command, "separation, nbody, collide: ");
+  a->penetration.add_to(*command, "penetration: ");
   a->impact.add_to(*command, "continuous: ");
   add_threads_option(*command, a->threads);
   add_report_options(*command, a->report);

@@ -54,6 +54,9 @@ void check(const ProximityArguments& a) {
   if (const auto names = a.culling.given(); !names.empty()) {
     throw UsageError(names.front() + " is not for --query continuous");
   }
+  if (const auto names = a.penetration.given(); !names.empty()) {
+    throw UsageError(names.front() + " is for --query penetration alone");
+  }
   if (!a.output) throw UsageError("--query continuous tells its pairs in a file: give -o PAIRS");
   check_extension("--output", *a.output, collision_extensions());
 }

@@ -9,6 +9,7 @@
 #include "blum/proximity/scene.hpp"
 #include "common_options.hpp"
 #include "described.hpp"
+#include "summary.hpp"
 
 namespace blum::cli {
 
@@ -20,14 +21,32 @@ struct ProximityArguments {
   std::optional<std::string> output;
   std::optional<std::string> threads;
   OptionTexts<ImpactOptions> impact;  ///< of continuous collisions alone
-  OptionTexts<SceneOptions> culling;  ///< of all other queries
+  OptionTexts<SceneOptions> culling;  ///< of separation, nbody and collide
+  OptionTexts<PenetrationOptions> penetration;  ///< of penetration alone
   ReportOptions report;
 };
 
 /// --query continuous: two files are a mesh at the start and the end of a motion.
 void run_continuous_query(const ProximityArguments& a);
 
-/// --query separation, nbody or collide: each file is an object.
+/// --query separation, nbody, collide or penetration: each file is an object.
 void run_scene_query(const ProximityArguments& a);
+
+/// A part of what two objects of a scene have in common.
+struct ScenePenetration {
+  ObjectId first;
+  ObjectId second;
+  Penetration part;
+};
+
+/// Those of all pairs of objects, and with `is_self` of each with itself.
+[[nodiscard]] std::vector<ScenePenetration> all_penetrations(const ProximityScene& scene, bool is_self,
+                                                             const PenetrationOptions& options,
+                                                             const Context& context, std::vector<PhaseTime>& phases);
+
+/// A part as a pair: of the points that are told of it, with the depth as a negative distance.
+[[nodiscard]] PrimitivePair pair_of(const ScenePenetration& penetration);
+
+[[nodiscard]] Json json_of(const ScenePenetration& penetration);
 
 }  // namespace blum::cli

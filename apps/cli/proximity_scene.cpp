@@ -30,10 +30,18 @@ void check(const ProximityArguments& a) {
   if (a.scene.size() == 1 && !a.self) {
     throw UsageError("one object has nothing to meet but itself: give --self, or the files of more objects");
   }
+  const bool is_penetration = a.query == "penetration";
   if (const auto names = a.impact.given(); !names.empty()) {
     throw UsageError(names.front() + " is for --query continuous alone");
   }
-  if (!a.output && a.query != "separation") {
+  if (const auto names = a.penetration.given(); !is_penetration && !names.empty()) {
+    throw UsageError(names.front() + " is for --query penetration alone");
+  }
+  if (is_penetration && a.within) throw UsageError("--within is not for --query penetration");
+  if (const auto names = a.culling.given(); is_penetration && !names.empty()) {
+    throw UsageError(names.front() + " is not for --query penetration");
+  }
+  if (!a.output && a.query != "separation" && !is_penetration) {
     throw UsageError("--query " + a.query + " tells its pairs in a file: give -o PAIRS");
   }
   if (a.output) check_extension("--output", *a.output, proximity_extensions());
@@ -44,6 +52,7 @@ struct Answer {
   std::vector<TriangleMesh> meshes;
   std::optional<double> within;
   ProximityPairs found;
+  std::vector<ScenePenetration> parts;  ///< of --query penetration: what `found` tells
   PhaseSummary spent;
   int threads = 0;
 
@@ -83,6 +92,13 @@ ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const Proximity
     }
   }
   return scene;
+}
+
+void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, const Context& context,
+                     Answer& answer) {
+  answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
+  answer.found.report.object_pairs = scene.size() * (scene.size() - 1) / 2 + (a.self ? scene.size() : 0);
+  for (const ScenePenetration& part : answer.parts) answer.found.pairs.push_back(pair_of(part));
 }
 
 ProximityPairs ask(const ProximityScene& scene, const std::string& query, std::optional<double> within,
@@ -128,6 +144,8 @@ Json closest_json(const Answer& answer) {
 Json json_of(const ProximityArguments& a, const Answer& answer) {
   Json outputs = Json::array();
   if (a.output) outputs.push_back(*a.output);
+  Json parts = Json::array();
+  for (const ScenePenetration& part : answer.parts) parts.push_back(json_of(part));
   return answer_json("proximity", {{"query", a.query},
                                    {"objects", objects_json(a, answer)},
                                    {"self", a.self},
@@ -136,6 +154,7 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"pairs", answer.found.pairs.size()},
                                    {"min_distance", to_json(answer.min_distance())},
                                    {"closest", closest_json(answer)},
+                                   {"penetrations", parts},
                                    {"culling", to_json(answer.found.report.culling)},
                                    {"cells", answer.found.report.cells},
                                    {"left_over", answer.found.report.left_over},
@@ -155,10 +174,26 @@ std::string distance_text(const PrimitivePair& pair) {
          vector_text(between.second_point);
 }
 
+std::string penetration_text(const Penetration& part) {
+  return "depth " + rounded_text(part.depth) + " (at most " + rounded_text(part.depth_bound) + ") at " +
+         vector_text(part.deep_point) + ", out along " + vector_text(part.direction) + "; volume " +
+         rounded_text(part.volume);
+}
+
 std::string object_text(const ProximityArguments& a, const PrimitivePair& pair) {
   const std::string first = fs::path(a.scene[pair.first_object.value]).filename().string();
   if (pair.first_object == pair.second_object) return first + ", itself";
   return first + ", " + fs::path(a.scene[pair.second_object.value]).filename().string();
+}
+
+/// A row for each part of what two objects have in common.
+void add_penetrations(const ProximityArguments& a, const Answer& answer, TextTable& table) {
+  for (std::size_t k = 0; k < std::min(answer.parts.size(), most_rows); ++k) {
+    table.add(object_text(a, answer.found.pairs[k]), penetration_text(answer.parts[k].part));
+  }
+  if (answer.parts.size() > most_rows) {
+    table.add("...", plural(answer.parts.size() - most_rows, "part", "parts") + " more; --json FILE tells all");
+  }
 }
 
 /// A row for each pair of objects.
@@ -184,6 +219,10 @@ std::string scene_text(const Answer& answer) {
 }
 
 std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
+  if (a.query == "penetration") {
+    return answer.parts.empty() ? "none: nothing lies in anything else"
+                                : plural(answer.parts.size(), "part in common", "parts in common");
+  }
   const bool meet = a.query == "collide" && answer.within.value_or(0) == 0;
   return plural(answer.found.pairs.size(), meet ? "pair that meets" : "pair", meet ? "pairs that meet" : "pairs") +
          (answer.within && !meet ? " within " + rounded_text(*answer.within) : "");
@@ -193,12 +232,14 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
   TextTable table;
   table.add("scene", scene_text(answer));
   table.add("pairs", pairs_text(a, answer));
-  if (a.query == "separation") {
+  if (a.query == "penetration") {
+    add_penetrations(a, answer, table);
+  } else if (a.query == "separation") {
     add_separations(a, answer, table);
   } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
     table.add("closest", object_text(a, *closest) + ": " + distance_text(*closest));
   }
-  table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
+  if (a.query != "penetration") table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
                          count_text(answer.found.report.candidates) + " candidates in " +
                          plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
   if (a.output) table.add("wrote", *a.output);
@@ -213,6 +254,7 @@ void run_scene_query(const ProximityArguments& a) {
   Answer answer;
   const SceneOptions culling = a.culling.read();
   check(culling);
+  check(a.penetration.read());
   if (a.within) answer.within = parse_non_negative("--within", *a.within);
   const int threads = parse_threads(a.threads);
   std::vector<fs::path> outputs = a.report.files();
@@ -226,7 +268,11 @@ void run_scene_query(const ProximityArguments& a) {
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
   phases.push_back({"build", watch.lap()});
-  answer.found = ask(scene, a.query, answer.within, context);
+  if (a.query == "penetration") {
+    ask_penetration(scene, a, context, answer);
+  } else {
+    answer.found = ask(scene, a.query, answer.within, context);
+  }
   phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {

@@ -210,6 +210,10 @@ ResolvedMesh resolve_crossings(const MeshView& mesh, const ResolveOptions& optio
     out = resolved_once(mesh, options, own);
     if (!out.is_resolved()) return out;
     Topology facts = topology(out.mesh, own);
+    if (options.most_rounds == 0) {
+      out.body_of = body_of_triangles(out.mesh, facts);
+      return out;
+    }
     const std::vector<std::int64_t> exact = genera(facts);
     ResolveOptions rest = options;
     rest.least_winding = 1;  // what was found is wound around once

@@ -77,6 +77,7 @@ class Chains {
 Overlap overlap_of(const MeshView& surfaces, const std::string& names, const Context& context) {
   ResolveOptions options;
   options.least_winding = 2;
+  options.most_rounds = 0;  // distances are rounded anyway
   options.most_pairs = std::size_t{1} << 22;
   ResolvedMesh resolved = resolve_crossings(surfaces, options, context);
   if (!resolved.has_inside) return {};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/geometry/resolve_crossings.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/weld.hpp"
@@ -18,8 +19,8 @@
 namespace blum {
 
 void check(const PenetrationOptions& options) {
-  if (options.tolerance >= 1e-6 && options.tolerance <= 1) return;
-  throw InvalidOption("tolerance is " + std::to_string(options.tolerance) + ", but must be 1e-6 to 1");
+  if (options.depth_tolerance >= 1e-6 && options.depth_tolerance <= 1) return;
+  throw InvalidOption("depth_tolerance is " + exact_text(options.depth_tolerance) + ", but must be 1e-6 to 1");
 }
 
 }  // namespace blum
@@ -231,7 +232,7 @@ Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second,
   const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self);
   for (const auto& [body, triangles] : bodies) {
     throw_if_cancelled(context);
-    out.parts.push_back(Body(surfaces, overlap, labels, triangles).measure(options.tolerance));
+    out.parts.push_back(Body(surfaces, overlap, labels, triangles).measure(options.depth_tolerance));
   }
   // Parts come in the order of their smallest triangles; equally deep ones stay in it.
   std::vector<std::size_t> order(out.parts.size());

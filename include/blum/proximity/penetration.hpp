@@ -16,7 +16,7 @@ namespace blum {
 
 struct PenetrationOptions {
   /// How much larger than the depth told the true one may be, as a part of it: 1e-6 to 1.
-  double tolerance = 0.01;
+  double depth_tolerance = 0.01;
 };
 
 template <>
@@ -24,7 +24,7 @@ struct Description<PenetrationOptions> {
   static constexpr std::string_view name = "PenetrationOptions";
   static constexpr std::string_view doc = "How well penetration depths are told";
   static constexpr std::tuple members{
-      Member{"tolerance", &PenetrationOptions::tolerance, "parts of the depth",
+      Member{"depth_tolerance", &PenetrationOptions::depth_tolerance, "parts of the depth",
              "how much larger than the depth told the true one may be", Range::between(1e-6, 1)},
   };
 };

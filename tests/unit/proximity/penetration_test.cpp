@@ -49,7 +49,7 @@ Answer answer(const TriangleMesh& a, const TriangleMesh& b, double tolerance = 0
   ProximityScene scene;
   const ObjectId first = scene.add(a);
   const ObjectId second = scene.add(b);
-  const PenetrationOptions options{.tolerance = tolerance};
+  const PenetrationOptions options{.depth_tolerance = tolerance};
   return {scene.penetration(first, second, options), scene.signed_separation(first, second, options)};
 }
 

@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "proximity_queries.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+/// Adds seconds to a phase of this name.
+void add_phases(const std::vector<PhaseTime>& from, std::vector<PhaseTime>& to) {
+  for (const PhaseTime& one : from) {
+    const auto same = [&](const PhaseTime& other) { return other.phase == one.phase; };
+    const auto at = std::find_if(to.begin(), to.end(), same);
+    if (at == to.end()) {
+      to.push_back(one);
+    } else {
+      at->seconds += one.seconds;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ScenePenetration> all_penetrations(const ProximityScene& scene, bool is_self,
+                                               const PenetrationOptions& options, const Context& context,
+                                               std::vector<PhaseTime>& phases) {
+  std::vector<ScenePenetration> out;
+  const auto count = static_cast<std::uint32_t>(scene.size());
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = is_self ? a : a + 1; b < count; ++b) {
+      const Penetrations found = scene.penetration(ObjectId(a), ObjectId(b), options, context);
+      for (const Penetration& part : found.parts) out.push_back({ObjectId(a), ObjectId(b), part});
+      add_phases(found.phases, phases);
+    }
+  }
+  return out;
+}
+
+PrimitivePair pair_of(const ScenePenetration& penetration) {
+  const Penetration& part = penetration.part;
+  constexpr TriangleFeature inside{SiteKind::face, 0};
+  PrimitivePair out{penetration.first, penetration.second, part.deep_triangle, part.surface_triangle,
+                    {-part.depth, part.deep_point, part.surface_point, inside, inside}};
+  if (!part.is_first_deep) {
+    std::swap(out.first, out.second);
+    std::swap(out.between.first_point, out.between.second_point);
+  }
+  return out;
+}
+
+Json json_of(const ScenePenetration& penetration) {
+  const Penetration& part = penetration.part;
+  Json curves = Json::array();
+  for (const std::vector<Vec3d>& curve : part.curves) {
+    Json points = Json::array();
+    for (const Vec3d& p : curve) points.push_back(to_json(p));
+    curves.push_back(std::move(points));
+  }
+  return {{"object", {penetration.first.value, penetration.second.value}},
+          {"depth", part.depth},
+          {"depth_bound", part.depth_bound},
+          {"direction", to_json(part.direction)},
+          {"deep_point", to_json(part.deep_point)},
+          {"surface_point", to_json(part.surface_point)},
+          {"deep_object", part.is_first_deep ? penetration.first.value : penetration.second.value},
+          {"deep_triangle", part.deep_triangle},
+          {"surface_triangle", part.surface_triangle},
+          {"area", part.area},
+          {"volume", part.volume},
+          {"curves", std::move(curves)}};
+}
+
+}  // namespace blum::cli
