@@ -26,7 +26,9 @@ constexpr const char* examples = R"(Examples:
   blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.npz
                                          all pairs of a vertex and a face, or of two edges, that meet between two frames
   blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.csv --min-separation 1e-3
-                                         all that come as close as that)";
+                                         all that come as close as that
+  blum proximity cloth*.ply --frames --self --query continuous -o pairs.json
+                                         what meets between any frame and the next; blum view shows it)";
 
 struct Query {
   const char* name;
@@ -42,7 +44,7 @@ void run(const ProximityArguments& a) {
   if (query == queries.end()) {
     throw UsageError("--query is '" + a.query + "', but must be separation, nbody, collide, penetration or continuous");
   }
-  query->run(a);
+  (a.frames ? run_frames : query->run)(a);
 }
 
 }  // namespace
@@ -62,6 +64,9 @@ void add_proximity_command(const CommandLine& line) {
                    "common, and how deep they lie in each other; continuous: what of a mesh meets between two frames")
       ->type_name("QUERY");
   command->add_flag("--self", a->self, "Compare each object with itself, too: primitives that share no vertex");
+  command->add_flag("--frames", a->frames,
+                    "The files are frames of one object that moves; -o PAIRS.json tells the pairs of each, for `blum "
+                    "view --frames --pairs`");
   add_text_option(*command, "--within", a->within, "D",
                   "separation, nbody: only pairs no further apart than D, mesh units (default: all); collide: all of "
                   "these instead of those that meet");

@@ -17,6 +17,7 @@ struct ProximityArguments {
   std::vector<std::string> scene;
   std::string query = "separation";
   bool self = false;
+  bool frames = false;  ///< whether files are frames of one object
   std::optional<std::string> within;
   std::optional<std::string> output;
   std::optional<std::string> threads;
@@ -31,6 +32,9 @@ void run_continuous_query(const ProximityArguments& a);
 
 /// --query separation, nbody, collide or penetration: each file is an object.
 void run_scene_query(const ProximityArguments& a);
+
+/// Any query with --frames: the files are those of one object, one after the other.
+void run_frames(const ProximityArguments& a);
 
 /// A part of what two objects of a scene have in common.
 struct ScenePenetration {
