@@ -70,11 +70,12 @@ void add_proximity_command(const CommandLine& line) {
   add_text_option(*command, "--within", a->within, "D",
                   "separation, nbody: only pairs no further apart than D, mesh units (default: all); collide: all of "
                   "these instead of those that meet");
-  add_text_option(*command, "-o,--output", a->output, "FILE",
-                  "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between "
-                  "closest points); of continuous .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time), "
-                  ".csv, .json. Of penetration the deepest point of each part and the closest one to it, with the depth as a "
-                  "negative distance. May be left out with separation and penetration");
+  add_text_option(
+      *command, "-o,--output", a->output, "FILE",
+      "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between "
+      "closest points); of continuous .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time), "
+      ".csv, .json. Of penetration the deepest point of each part and the closest one to it, with the depth as a "
+      "negative distance. May be left out with separation and penetration");
   a->culling.add_to(*command, "separation, nbody, collide: ");
   a->penetration.add_to(*command, "penetration: ");
   a->impact.add_to(*command, "continuous: ");

@@ -64,7 +64,10 @@ void tell(const SceneCollisions& found, const TriangleMesh& from, std::span<cons
 class Sequence {
  public:
   Sequence(const ProximityArguments& a, const Context& context)
-      : arguments_(a), context_(context), impact_(a.impact.read()), penetration_(a.penetration.read()),
+      : arguments_(a),
+        context_(context),
+        impact_(a.impact.read()),
+        penetration_(a.penetration.read()),
         scene_(a.culling.read()) {
     if (a.within) within_ = parse_non_negative("--within", *a.within);
   }
@@ -80,8 +83,7 @@ class Sequence {
       if (k + 1 < arguments_.scene.size()) ask_continuous(k, out);
     } else if (query == "penetration") {
       for (const ScenePenetration& part : all_penetrations(scene_, true, penetration_, context_, out.phases)) {
-        out.pairs.push_back(
-            pair_json("penetration", part.part.deep_point, part.part.surface_point, part.part.depth));
+        out.pairs.push_back(pair_json("penetration", part.part.deep_point, part.part.surface_point, part.part.depth));
       }
     } else if (query == "collide") {
       const bool is_near = within_.value_or(0) > 0;
@@ -177,13 +179,14 @@ void run_frames(const ProximityArguments& a) {
   table.add("pairs", count_text(pairs) + "; see them with: blum view FRAMES --frames --pairs " + *a.output);
   table.add("wrote", *a.output);
   table.add("time", rounded_text(seconds) + " s");
-  report(a.report, answer_json("proximity", {{"query", a.query},
-                                             {"frames", a.scene.size()},
-                                             {"pairs", counts},
-                                             {"total_seconds", seconds},
-                                             {"peak_memory_bytes", peak_memory()},
-                                             {"threads", thread_count(context)},
-                                             {"outputs", {*a.output}}}),
+  report(a.report,
+         answer_json("proximity", {{"query", a.query},
+                                   {"frames", a.scene.size()},
+                                   {"pairs", counts},
+                                   {"total_seconds", seconds},
+                                   {"peak_memory_bytes", peak_memory()},
+                                   {"threads", thread_count(context)},
+                                   {"outputs", {*a.output}}}),
          table.text());
 }
 

@@ -42,7 +42,10 @@ std::vector<ScenePenetration> all_penetrations(const ProximityScene& scene, bool
 PrimitivePair pair_of(const ScenePenetration& penetration) {
   const Penetration& part = penetration.part;
   constexpr TriangleFeature inside{SiteKind::face, 0};
-  PrimitivePair out{penetration.first, penetration.second, part.deep_triangle, part.surface_triangle,
+  PrimitivePair out{penetration.first,
+                    penetration.second,
+                    part.deep_triangle,
+                    part.surface_triangle,
                     {-part.depth, part.deep_point, part.surface_point, inside, inside}};
   if (!part.is_first_deep) {
     std::swap(out.first, out.second);

@@ -21,8 +21,8 @@ struct ProximityArguments {
   std::optional<std::string> within;
   std::optional<std::string> output;
   std::optional<std::string> threads;
-  OptionTexts<ImpactOptions> impact;  ///< of continuous collisions alone
-  OptionTexts<SceneOptions> culling;  ///< of separation, nbody and collide
+  OptionTexts<ImpactOptions> impact;            ///< of continuous collisions alone
+  OptionTexts<SceneOptions> culling;            ///< of separation, nbody and collide
   OptionTexts<PenetrationOptions> penetration;  ///< of penetration alone
   ReportOptions report;
 };
@@ -45,8 +45,8 @@ struct ScenePenetration {
 
 /// Those of all pairs of objects, and with `is_self` of each with itself.
 [[nodiscard]] std::vector<ScenePenetration> all_penetrations(const ProximityScene& scene, bool is_self,
-                                                             const PenetrationOptions& options,
-                                                             const Context& context, std::vector<PhaseTime>& phases);
+                                                             const PenetrationOptions& options, const Context& context,
+                                                             std::vector<PhaseTime>& phases);
 
 /// A part as a pair: of the points that are told of it, with the depth as a negative distance.
 [[nodiscard]] PrimitivePair pair_of(const ScenePenetration& penetration);

@@ -94,8 +94,7 @@ ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const Proximity
   return scene;
 }
 
-void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, const Context& context,
-                     Answer& answer) {
+void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
   answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
   answer.found.report.object_pairs = scene.size() * (scene.size() - 1) / 2 + (a.self ? scene.size() : 0);
   for (const ScenePenetration& part : answer.parts) answer.found.pairs.push_back(pair_of(part));
@@ -239,9 +238,10 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
   } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
     table.add("closest", object_text(a, *closest) + ": " + distance_text(*closest));
   }
-  if (a.query != "penetration") table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
-                         count_text(answer.found.report.candidates) + " candidates in " +
-                         plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
+  if (a.query != "penetration")
+    table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
+                           count_text(answer.found.report.candidates) + " candidates in " +
+                           plural(answer.found.report.object_pairs, "pair of objects", "pairs of objects"));
   if (a.output) table.add("wrote", *a.output);
   table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   return table.text();

@@ -2,12 +2,15 @@
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -99,6 +102,7 @@ class Scene {
   [[nodiscard]] Pairs collisions(const Context& context) const {
     return with_features(scene_.collisions(context), context);
   }
+  [[nodiscard]] const ProximityScene& asked() const { return scene_; }
 
  private:
   static TriangleMesh corners_of(const MeshView& mesh) {
@@ -269,16 +273,111 @@ void bind_queries(nb::class_<Scene>& scene) {
       nb::arg("threads"), nb::arg("progress").none());
 }
 
+nb::tuple vector_out(const Vec3d& p) {
+  return nb::make_tuple(p.x, p.y, p.z);
+}
+
+/// (depth, depth_bound, direction, deep_point, surface_point, is_first_deep, deep_triangle, surface_triangle, area,
+/// volume, curves) of each part.
+nb::list parts_out(Penetrations found) {
+  nb::list out;
+  for (Penetration& part : found.parts) {
+    nb::list curves;
+    for (std::vector<Vec3d>& curve : part.curves) curves.append(handed_over<double>(std::move(curve), 3));
+    out.append(nb::make_tuple(part.depth, part.depth_bound, vector_out(part.direction), vector_out(part.deep_point),
+                              vector_out(part.surface_point), part.is_first_deep, part.deep_triangle,
+                              part.surface_triangle, nb::make_tuple(part.area[0], part.area[1]), part.volume, curves));
+  }
+  return out;
+}
+
+using Row4 = std::array<std::int32_t, 4>;
+using Row6 = std::array<std::int32_t, 6>;
+
+/// (vertex_face: object, vertex, object, face; its times; edge_edge: object, two vertices, object, two vertices; its
+/// times; box_pairs, exact_tests).
+nb::tuple collisions_out(const SceneCollisions& found) {
+  const auto number = [](std::uint32_t value) { return static_cast<std::int32_t>(value); };
+  std::vector<Row4> vertex_face;
+  std::vector<Row6> edge_edge;
+  std::vector<double> vertex_face_time;
+  std::vector<double> edge_edge_time;
+  for (const ObjectCollisions& pair : found.objects) {
+    const std::int32_t a = pair.first.to_file();
+    const std::int32_t b = pair.second.to_file();
+    const auto add = [&](std::int32_t of_vertex, std::int32_t of_face, const VertexFaceCollision& one) {
+      vertex_face.push_back({of_vertex, number(one.vertex), of_face, one.face.to_file()});
+      vertex_face_time.push_back(one.time);
+    };
+    for (const VertexFaceCollision& one : pair.vertex_face) add(a, b, one);
+    for (const VertexFaceCollision& one : pair.face_vertex) add(b, a, one);
+    for (const EdgeEdgeCollision& one : pair.edge_edge) {
+      edge_edge.push_back(
+          {a, number(one.first[0]), number(one.first[1]), b, number(one.second[0]), number(one.second[1])});
+      edge_edge_time.push_back(one.time);
+    }
+  }
+  return nb::make_tuple(handed_over<std::int32_t>(std::move(vertex_face), 4),
+                        handed_over<double>(std::move(vertex_face_time)),
+                        handed_over<std::int32_t>(std::move(edge_edge), 6),
+                        handed_over<double>(std::move(edge_edge_time)), found.box_pairs, found.exact_tests);
+}
+
+/// An object, and where its vertices and its place are at the end.
+using MotionIn = std::tuple<std::uint32_t, std::optional<PointsIn>, std::optional<PlaceIn>>;
+
+void bind_motions(nb::class_<Scene>& scene) {
+  scene.def(
+      "penetration",
+      [](const Scene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
+         nb::object progress) {
+        const auto options = options_from<PenetrationOptions>(given);
+        return parts_out(run({threads, std::move(progress)}, [&](const Context& context) {
+          return self.asked().penetration(ObjectId(first), ObjectId(second), options, context);
+        }));
+      },
+      nb::arg("first"), nb::arg("second"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
+      "signed_separation",
+      [](const Scene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
+         nb::object progress) {
+        const auto options = options_from<PenetrationOptions>(given);
+        return run({threads, std::move(progress)}, [&](const Context& context) {
+          return self.asked().signed_separation(ObjectId(first), ObjectId(second), options, context);
+        });
+      },
+      nb::arg("first"), nb::arg("second"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  scene.def(
+      "continuous",
+      [](const Scene& self, const std::vector<MotionIn>& given_motions, const nb::dict& given, int threads,
+         nb::object progress) {
+        const auto options = options_from<ImpactOptions>(given);
+        std::vector<ObjectMotion> motions;
+        for (const auto& [object, vertices, place] : given_motions) {
+          ObjectMotion& motion = motions.emplace_back();
+          motion.object = ObjectId(object);
+          if (vertices) motion.vertices = vectors(*vertices);
+          if (place) motion.place = place_of(*place);
+        }
+        return collisions_out(run({threads, std::move(progress)}, [&](const Context& context) {
+          return self.asked().continuous(motions, options, context);
+        }));
+      },
+      nb::arg("motions"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+}
+
 }  // namespace
 
 void bind_proximity_scene(nb::module_& m) {
   nb::class_<Scene> scene(m, "ProximityScene");
   bind_options<SceneOptions>(m);
+  bind_options<PenetrationOptions>(m);
   scene.def(
       "__init__", [](Scene* self, const nb::dict& given) { new (self) Scene(options_from<SceneOptions>(given)); },
       nb::arg("options"));
   bind_updates(scene);
   bind_queries(scene);
+  bind_motions(scene);
   m.def(
       "triangle_distances",
       [](const TrianglesOfPointsIn& a, const TrianglesOfPointsIn& b, int threads, nb::object progress) {

@@ -62,9 +62,11 @@ from ._mesh import (
 )
 from ._proximity import ContinuousCollisions, continuous_collisions, edge_edge_impacts, vertex_face_impacts
 from ._proximity_scene import (
+    Penetration,
     PrimitivePair,
     ProximityPairs,
     ProximityScene,
+    SceneCollisions,
     TriangleDistances,
     closest_primitives,
     collisions,
@@ -112,10 +114,12 @@ __all__ = [
     "Mesh",
     "NestedComplex",
     "OutOfMemory",
+    "Penetration",
     "Present",
     "PrimitivePair",
     "ProximityPairs",
     "ProximityScene",
+    "SceneCollisions",
     "SelfIntersections",
     "ShapeInfo",
     "ShapeParameter",

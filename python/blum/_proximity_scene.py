@@ -28,7 +28,7 @@ from ._errors import InvalidMesh, InvalidOption
 from ._mesh import as_mesh
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
-from ._structs import SceneOptions
+from ._structs import ImpactOptions, PenetrationOptions, SceneOptions
 
 _ALL_LAYERS = 0xFFFFFFFF
 
@@ -81,6 +81,47 @@ class ProximityPairs:
 
     def __repr__(self) -> str:
         return f"ProximityPairs({len(self):,} {'pair' if len(self) == 1 else 'pairs'})"
+
+
+@dataclass(frozen=True, eq=False)
+class Penetration:
+    """A connected part of what two solids have in common."""
+
+    depth: float  #: mesh units: the distance of deep_point from surface_point
+    depth_bound: float  #: what the depth is at most, for certain but for rounding
+    direction: FloatArray  #: (3,): where the first object is to be moved by the depth, to bring deep_point out
+    deep_point: FloatArray  #: (3,): the deepest point of the surface of one object in the other one
+    surface_point: FloatArray  #: (3,): the closest one to it of the surface of that
+    is_first_deep: bool  #: whether deep_point is one of the first object
+    deep_triangle: int  #: that deep_point lies on, in its object
+    surface_triangle: int  #: that surface_point lies on, in the other one
+    area: tuple[float, float]  #: of the parts of both surfaces that bound it; of one object, all in the first
+    volume: float  #: cubic mesh units
+    curves: list[FloatArray]  #: (n, 3) each: where the surfaces cross, closed
+
+    def __repr__(self) -> str:
+        return f"Penetration(depth {self.depth:.6g}, volume {self.volume:.6g})"
+
+
+@dataclass(frozen=True, eq=False)
+class SceneCollisions:
+    """What of the objects of a scene meets while they move."""
+
+    vertex_face: IntArray  #: (n, 4): the object of a vertex, the vertex, the object of the face, the face
+    vertex_face_time: FloatArray  #: (n,): when they meet first, 0 to 1
+    edge_edge: IntArray  #: (m, 6): an object and the ends of an edge of it, then another one, or the same one
+    edge_edge_time: FloatArray  #: (m,)
+    box_pairs: int  #: pairs of features whose moving boxes touch
+    exact_tests: int  #: pairs that were tested
+
+    @property
+    def earliest(self) -> float | None:
+        """The first time at which anything meets; None where nothing does."""
+        times = np.concatenate([self.vertex_face_time, self.edge_edge_time])
+        return float(times.min()) if len(times) else None
+
+    def __repr__(self) -> str:
+        return f"SceneCollisions({len(self.vertex_face)} vertex_face, {len(self.edge_edge)} edge_edge)"
 
 
 @takes("SceneOptions")
@@ -262,6 +303,93 @@ class ProximityScene:
         with self._alone(progress) as report:
             return ProximityPairs(*self._scene.collisions(count, report))
 
+    @takes("PenetrationOptions")
+    def penetration(
+        self,
+        a: Integer,
+        b: Integer,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+        **options: Unpack[PenetrationOptions],
+    ) -> list[Penetration]:
+        """What two solids have in common, in its connected parts, the deepest first; none where they only touch. With
+        one object twice, what lies in two parts of it.
+
+        Parameters
+        ----------
+        a, b : int
+            Objects: closed, facing outwards.
+        **options
+
+        >>> import blum
+        >>> scene = blum.ProximityScene()
+        >>> box, ball = scene.add(blum.generate("box")), scene.add(blum.generate("sphere", radius=0.5))
+        >>> scene.update(ball, transform=([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [0, 0, 0.9]))
+        >>> part, = scene.penetration(box, ball)
+        >>> round(part.depth, 6), part.direction.round(6).tolist(), len(part.curves)
+        (0.1, [-0.0, -0.0, -1.0], 1)
+        """
+        first, second, count = _object(a, "a"), _object(b, "b"), integer(threads, "threads")
+        with self._alone(progress) as report:
+            found = self._scene.penetration(first, second, dict(options), count, report)
+        return [_penetration(*part) for part in found]
+
+    @takes("PenetrationOptions")
+    def signed_separation(
+        self,
+        a: Integer,
+        b: Integer,
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+        **options: Unpack[PenetrationOptions],
+    ) -> float:
+        """The distance of two solids where they are apart, 0 where they touch, less the largest depth where they have
+        more in common.
+
+        Parameters
+        ----------
+        a, b : int
+        **options
+        """
+        first, second, count = _object(a, "a"), _object(b, "b"), integer(threads, "threads")
+        with self._alone(progress) as report:
+            distance: float = self._scene.signed_separation(first, second, dict(options), count, report)
+        return distance
+
+    @takes("ImpactOptions")
+    def continuous(
+        self,
+        motions: dict[int, Any],
+        *,
+        threads: int = 0,
+        progress: Progress = False,
+        **options: Unpack[ImpactOptions],
+    ) -> SceneCollisions:
+        """All pairs of a vertex and a face, and of two edges, of objects that are compared, that meet while objects
+        move: their vertices along straight lines. The scene stays as it is.
+
+        Parameters
+        ----------
+        motions : dict
+            For each object that moves where it is at the end: vertices (n, 3) before its transform, or
+            ``{"vertices": ..., "transform": ...}`` with either or both, as :meth:`update` takes them.
+        **options
+
+        >>> import blum
+        >>> scene = blum.ProximityScene()
+        >>> box = blum.generate("box")
+        >>> floor, falling = scene.add(box), scene.add((box.vertices + [0.25, 0.25, 3], box.triangles))
+        >>> found = scene.continuous({falling: box.vertices + [0.25, 0.25, -1]})
+        >>> found.earliest
+        0.5
+        """
+        rows = [_motion(which, end) for which, end in motions.items()]
+        count = integer(threads, "threads")
+        with self._alone(progress) as report:
+            return SceneCollisions(*self._scene.continuous(rows, dict(options), count, report))
+
     @contextmanager
     def _alone(self, progress: Progress = False) -> Iterator[ProgressCallback | None]:
         """What the library calls with progress, while nothing else asks or changes the scene."""
@@ -398,6 +526,24 @@ def _scene_of(meshes: Any, compare_self: bool | None, threads: int) -> Proximity
     for name, mesh in several:
         scene.add(as_mesh(mesh, name=name), compare_self=own, threads=threads)
     return scene
+
+
+def _penetration(
+    depth: float, bound: float, direction: Any, deep: Any, surface: Any, is_first: bool, *rest: Any
+) -> Penetration:
+    return Penetration(depth, bound, np.array(direction), np.array(deep), np.array(surface), is_first, *rest)
+
+
+def _motion(which: Any, end: Any) -> tuple[int, FloatArray | None, FloatArray | None]:
+    given = end if isinstance(end, dict) else {"vertices": end}
+    if unknown := set(given) - {"vertices", "transform"}:
+        raise InvalidOption(f"motions[{which}] has {sorted(unknown)}, but takes 'vertices' and 'transform'")
+    vertices, transform = given.get("vertices"), given.get("transform")
+    return (
+        _object(which, "motions"),
+        None if vertices is None else float_rows(vertices, f"motions[{which}]"),
+        None if transform is None else _place(transform),
+    )
 
 
 def _is_several(meshes: Any) -> bool:

@@ -183,7 +183,7 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
         ([torus, "--query", "nbody", "-o", out], 2, "give --self"),
         ([torus, moved, "--query", "nbody"], 2, "give -o PAIRS"),
         ([torus, moved, "--query", "collide"], 2, "give -o PAIRS"),
-        ([torus, moved, "--query", "near"], 2, "must be separation, nbody, collide or continuous"),
+        ([torus, moved, "--query", "near"], 2, "must be separation, nbody, collide, penetration or continuous"),
         ([torus, moved, "--within", "-0.5"], 2, "--within '-0.5': must not be negative"),
         ([torus, moved, "--within", "nan"], 2, "--within 'nan'"),
         ([torus, moved, "--within", "inf"], 2, "--within 'inf'"),

@@ -426,3 +426,69 @@ def test_threads_may_share_a_scene():
     for worker in workers:
         worker.join()
     assert not wrong
+
+
+def two_boxes(shift):
+    box = blum.generate("box")
+    scene = blum.ProximityScene()
+    scene.add(box)
+    scene.add((box.vertices + shift, box.triangles))
+    return scene, box
+
+
+def test_penetration_of_boxes_is_exact():
+    scene, _ = two_boxes([0.1, 0.2, 0.75])
+    (part,) = scene.penetration(0, 1, depth_tolerance=1e-4)
+    assert part.depth == pytest.approx(0.25, abs=1e-12)
+    assert part.depth <= part.depth_bound <= part.depth * (1 + 1e-4) + 1e-12
+    assert part.direction == pytest.approx([0, 0, -1], abs=1e-9)
+    assert part.volume == pytest.approx(0.9 * 0.8 * 0.25, abs=1e-12)
+    assert sum(part.area) == pytest.approx(2 * (0.9 * 0.8 + 0.9 * 0.25 + 0.8 * 0.25), abs=1e-12)
+    assert np.linalg.norm(part.deep_point - part.surface_point) == pytest.approx(part.depth)
+    assert all((curve[0] == curve[-1]).all() for curve in part.curves)
+    assert scene.signed_separation(0, 1) == -part.depth
+    assert "depth" in repr(part)
+
+
+def test_signed_separation_changes_its_sign_at_contact():
+    for height, sign in ((1.5, 1), (np.nextafter(1, 2), 1), (1, 0), (np.nextafter(1, 0), -1)):
+        scene, box = two_boxes([0, 0, 0])
+        vertices = box.vertices + [0.25, 0.25, 1]
+        vertices[vertices[:, 2] == 0.5, 2] = height - 0.5
+        scene.update(1, vertices)
+        assert np.sign(scene.signed_separation(0, 1)) == sign
+        assert bool(scene.penetration(0, 1)) == (sign < 0)
+
+
+def test_continuous_collisions_of_objects():
+    scene, box = two_boxes([0.25, 0.25, 3])
+    found = scene.continuous({1: box.vertices + [0.25, 0.25, -1]})
+    assert found.earliest == 0.5
+    assert set(found.vertex_face[:, 0]) | set(found.vertex_face[:, 2]) == {0, 1}
+    assert found.vertex_face.shape[1] == 4
+    assert found.edge_edge.shape[1] == 6
+    assert len(found.vertex_face_time) == len(found.vertex_face)
+    moved = {"vertices": box.vertices, "transform": (IDENTITY, [0.25, 0.25, -1])}
+    assert scene.continuous({1: moved}).earliest == 0.5
+    # The scene was not changed; and what does not move does not meet.
+    assert scene.separation(0, 1).distance == 2
+    assert scene.continuous({}).earliest is None
+    assert scene.continuous({1: {"transform": (IDENTITY, [0, 0, -1.5])}}, min_separation=0.6).earliest is not None
+
+
+def test_motions_and_penetrations_say_what_was_wrong():
+    scene, box = two_boxes([0, 0, 3])
+    open_mesh = scene.add((box.vertices, np.asarray(box.triangles)[1:]))
+    with pytest.raises(blum.InvalidMesh, match="closed"):
+        scene.penetration(0, open_mesh)
+    for options in ({"depth_tolerance": 0}, {"depth_tolerance": np.nan}):
+        with pytest.raises(blum.InvalidOption, match="depth_tolerance"):
+            scene.penetration(0, 1, **options)
+    with pytest.raises(blum.InvalidMesh, match="vertices"):
+        scene.continuous({1: box.vertices[:3]})
+    with pytest.raises(blum.InvalidOption, match="speed"):
+        scene.continuous({1: {"speed": 3}})
+    with pytest.raises(blum.InvalidOption, match="object 9"):
+        scene.continuous({9: box.vertices})
+    with pytest.raises(blum.InvalidOption):
+        scene.continuous({1: {"transform": np.diag([1, 1, -1, 1.0])}})

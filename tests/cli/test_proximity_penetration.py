@@ -1,0 +1,116 @@
+"""`blum proximity --query penetration` tells what solids have in common, and `--frames` what each frame of a moving
+object holds, for `blum view`; both say what was wrong."""
+
+import json
+
+import numpy as np
+import pytest
+from tool import BLUM, run, run_json
+
+pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
+blum = pytest.importorskip("blum")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A box from -1/2 to 1/2, a ball that reaches 0.1 into it from above, and frames of the ball going down."""
+    folder = tmp_path_factory.mktemp("penetration")
+    run("make", "box", "-o", folder / "box.ply")
+    ball = blum.generate("sphere", radius=0.5, frequency=6)
+    blum.Mesh(ball.vertices + [0, 0, 0.9], ball.triangles).write(folder / "ball.ply")
+    box = blum.read_mesh(folder / "box.ply")
+    for k in range(4):
+        vertices = np.vstack([box.vertices, ball.vertices + [0, 0, 1.3 - 0.2 * k]])
+        triangles = np.vstack([box.triangles, np.asarray(ball.triangles) + len(box.vertices)])
+        blum.Mesh(vertices, triangles).write(folder / f"frame{k}.ply")
+    return folder
+
+
+def frames(folder):
+    return [folder / f"frame{k}.ply" for k in range(4)]
+
+
+def test_tells_what_solids_have_in_common(folder):
+    answer = run_json(
+        "proximity", folder / "box.ply", folder / "ball.ply", "--query", "penetration", "-o", folder / "parts.npz"
+    )
+    (part,) = answer["penetrations"]
+    assert answer["pairs"] == 1
+    assert answer["min_distance"] == -part["depth"]
+    assert part["depth"] == pytest.approx(0.1, abs=2e-3)
+    assert part["depth"] <= part["depth_bound"] <= part["depth"] * 1.01 + 1e-12
+    assert part["direction"] == pytest.approx([0, 0, -1], abs=1e-9)
+    assert part["volume"] == pytest.approx(np.pi * 0.1**2 * (0.5 - 0.1 / 3), rel=0.1)
+    (curve,) = part["curves"]
+    assert curve[0] == curve[-1]
+    assert np.allclose(np.array(curve)[:, 2], 0.5)
+    with np.load(folder / "parts.npz") as file:
+        assert file["distance"].tolist() == [-part["depth"]]
+        assert np.linalg.norm(file["point"][0, 0] - file["point"][0, 1]) == pytest.approx(part["depth"])
+    scene = blum.ProximityScene()
+    scene.add(folder / "box.ply")
+    scene.add(folder / "ball.ply")
+    assert scene.penetration(0, 1)[0].depth == part["depth"]
+
+
+def test_finer_tolerance_brings_the_bound_closer(folder):
+    def part(*more):
+        return run_json(
+            "proximity", folder / "box.ply", folder / "ball.ply", "--query", "penetration", *more
+        )["penetrations"][0]
+
+    fine = part("--depth-tolerance", "1e-6")
+    assert fine["depth_bound"] <= fine["depth"] * (1 + 1e-6) + 1e-12
+    assert part("--depth-tolerance", "1")["depth_bound"] <= 2 * fine["depth"] + 1e-12
+
+
+def test_says_what_was_wrong_with_solids(folder, tmp_path):
+    open_mesh = blum.generate("box")
+    blum.Mesh(open_mesh.vertices, np.asarray(open_mesh.triangles)[1:]).write(tmp_path / "open.ply")
+    files = folder / "ball.ply", tmp_path / "open.ply"
+    assert "closed surfaces" in run("proximity", *files, "--query", "penetration", status=1)[1]
+    two = folder / "box.ply", folder / "ball.ply"
+    for more, status, word in (
+        (["--within", "1"], 2, "--within"),
+        (["--culling", "bvh"], 2, "--culling"),
+        (["--depth-tolerance", "0"], 2, "--depth-tolerance"),
+        (["--tolerance", "0.1"], 2, "--tolerance"),
+    ):
+        assert word in run("proximity", *two, "--query", "penetration", *more, status=status)[1]
+    assert "--depth-tolerance" in run("proximity", *two, "--depth-tolerance", "0.1", status=2)[1]
+
+
+@pytest.mark.parametrize("query", ["separation", "nbody", "collide", "continuous", "penetration"])
+def test_tells_of_each_frame_for_the_viewer(folder, query):
+    out = folder / f"{query}.json"
+    answer = run_json("proximity", *frames(folder), "--frames", "--self", "--query", query, "-o", out)
+    told = json.loads(out.read_text())["frames"]
+    assert answer["frames"] == len(told) == 4
+    assert answer["pairs"] == [len(frame["pairs"]) for frame in told]
+    # Apart by 0.3 and 0.1, then 0.1 and 0.3 in each other; on the way from the second frame to the third they meet.
+    has_pairs = {
+        "separation": [1, 1, 1, 1],
+        "nbody": [1, 1, 1, 1],
+        "collide": [0, 0, 1, 1],
+        "continuous": [0, 1, 1, 0],
+        "penetration": [0, 0, 1, 1],
+    }[query]
+    assert [int(bool(frame["pairs"])) for frame in told] == has_pairs
+    assert all("boxes" in frame["stages"] for frame in told)
+    if query == "continuous":
+        assert min(pair["time"] for pair in told[1]["pairs"]) == pytest.approx(0.5, abs=0.02)
+    if query == "penetration":
+        assert told[2]["pairs"][0]["distance"] == pytest.approx(0.1, abs=5e-3)
+    run("view", *frames(folder), "--frames", "--pairs", out, "-o", folder / f"{query}.html")
+
+
+def test_says_what_was_wrong_with_frames(folder):
+    out = folder / "bad.json"
+    for arguments, word in (
+        ([*frames(folder), "--frames", "-o", out], "--self"),
+        ([frames(folder)[0], "--frames", "--self", "-o", out], "two files"),
+        ([*frames(folder), "--frames", "--self"], "-o"),
+        ([*frames(folder), "--frames", "--self", "-o", folder / "bad.npz"], ".json"),
+    ):
+        assert word in run("proximity", *arguments, status=2)[1]
+    assert not out.exists()
