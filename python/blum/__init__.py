@@ -61,12 +61,9 @@ from ._mesh import (
     weld_clusters,
 )
 from ._proximity import ContinuousCollisions, continuous_collisions, edge_edge_impacts, vertex_face_impacts
+from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
 from ._proximity_scene import (
-    Penetration,
-    PrimitivePair,
-    ProximityPairs,
     ProximityScene,
-    SceneCollisions,
     TriangleDistances,
     closest_primitives,
     collisions,

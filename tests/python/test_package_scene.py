@@ -453,7 +453,7 @@ def test_penetration_of_boxes_is_exact():
 def test_signed_separation_changes_its_sign_at_contact():
     for height, sign in ((1.5, 1), (np.nextafter(1, 2), 1), (1, 0), (np.nextafter(1, 0), -1)):
         scene, box = two_boxes([0, 0, 0])
-        vertices = box.vertices + [0.25, 0.25, 1]
+        vertices = box.vertices + np.array([0.25, 0.25, 1])
         vertices[vertices[:, 2] == 0.5, 2] = height - 0.5
         scene.update(1, vertices)
         assert np.sign(scene.signed_separation(0, 1)) == sign
@@ -462,7 +462,7 @@ def test_signed_separation_changes_its_sign_at_contact():
 
 def test_continuous_collisions_of_objects():
     scene, box = two_boxes([0.25, 0.25, 3])
-    found = scene.continuous({1: box.vertices + [0.25, 0.25, -1]})
+    found = scene.continuous({1: box.vertices + np.array([0.25, 0.25, -1])})
     assert found.earliest == 0.5
     assert set(found.vertex_face[:, 0]) | set(found.vertex_face[:, 2]) == {0, 1}
     assert found.vertex_face.shape[1] == 4
