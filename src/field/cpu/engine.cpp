@@ -1,6 +1,7 @@
 #include "field/cpu/engine.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "blum/core/parallel.hpp"
 #include "blum/core/phase_timer.hpp"
@@ -111,6 +112,12 @@ FieldResult Engine::compute(const FieldRequest& request, const Context& context,
   std::sort(unsettled.begin(), unsettled.end());
   timer.lap("field");
   return result;
+}
+
+std::vector<std::size_t> Engine::compute_second(const SecondRequest& request, const Context& /*context*/) {
+  std::vector<std::size_t> nodes(request.grid.node_count());
+  std::iota(nodes.begin(), nodes.end(), std::size_t{0});
+  return nodes;
 }
 
 }  // namespace blum::cpu

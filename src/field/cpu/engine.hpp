@@ -24,6 +24,7 @@ class Engine final : public FieldBackend {
   [[nodiscard]] bool needs_sites_for(sign::Method /*method*/) const override { return false; }
   [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context,
                                     std::vector<PhaseTime>& phases) override;
+  [[nodiscard]] std::vector<std::size_t> compute_second(const SecondRequest& request, const Context& context) override;
 
  private:
   void build_records(const FieldRequest& request, const Context& context);
