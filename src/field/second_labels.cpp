@@ -16,6 +16,18 @@ std::vector<std::uint32_t> connected_parts(const MeshView& mesh, const SiteTable
   return out;
 }
 
+/// The same objects, named by numbers that count them.
+std::vector<std::uint32_t> numbered(std::span<const std::uint32_t> objects) {
+  std::vector<std::uint32_t> names(objects.begin(), objects.end());
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  std::vector<std::uint32_t> out(objects.size());
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    out[v] = static_cast<std::uint32_t>(std::lower_bound(names.begin(), names.end(), objects[v]) - names.begin());
+  }
+  return out;
+}
+
 std::size_t count_labels(const MeshView& mesh, const std::vector<std::uint32_t>& of_vertex) {
   std::vector<std::uint32_t> used;
   std::vector<bool> is_named(mesh.vertices.size(), false);
@@ -33,8 +45,7 @@ SecondLabels::SecondLabels(SecondRule rule, const MeshView& mesh, const SiteTabl
                            std::span<const std::uint32_t> objects, const Context& context) {
   throw_if_cancelled(context);
   if (rule == SecondRule::other_object) {
-    of_vertex_ = objects.empty() ? connected_parts(mesh, sites)
-                                 : std::vector<std::uint32_t>(objects.begin(), objects.end());
+    of_vertex_ = objects.empty() ? connected_parts(mesh, sites) : numbered(objects);
   }
   count_ = count_labels(mesh, of_vertex_);
 }

@@ -31,6 +31,7 @@ class SecondLabels {
 
   /// Whether each vertex is its own label.
   [[nodiscard]] bool is_by_vertex() const { return of_vertex_.empty(); }
+  /// Below the number of vertices.
   [[nodiscard]] std::uint32_t of_vertex(std::uint32_t vertex) const {
     return of_vertex_.empty() ? vertex : of_vertex_[vertex];
   }

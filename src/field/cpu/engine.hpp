@@ -10,6 +10,7 @@
 #include "field/cpu/adjacency.hpp"
 #include "field/cpu/cluster_forest.hpp"
 #include "field/cpu/normal_frame.hpp"
+#include "field/cpu/second_sites.hpp"
 #include "field/cpu/site_records.hpp"
 #include "field/cpu/tile_kernel.hpp"
 
@@ -28,6 +29,8 @@ class Engine final : public FieldBackend {
 
  private:
   void build_records(const FieldRequest& request, const Context& context);
+  /// Of a field, but for its request and signs.
+  [[nodiscard]] FieldJob make_job(const GridSpec& grid, const Context& context) const;
 
   MeshView mesh_;
   ConnectivityCache connectivity_;
@@ -40,6 +43,7 @@ class Engine final : public FieldBackend {
   SiteRecords records_;
   ClusterForest forest_;
   std::vector<TileScratch> scratch_;
+  SecondSites second_;
 };
 
 }  // namespace blum::cpu

@@ -1,0 +1,529 @@
+#include "field/cpu/second_kernel.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "field/cpu/second_kernel.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h must come before the headers that are compiled once per target.
+#include "field/cpu/gather-inl.hpp"
+#include "field/cpu/second_leaf-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace blum::cpu {
+namespace HWY_NAMESPACE {
+namespace {
+
+using OfSite = SecondLabels::OfSite;
+
+/// A tile with more clusters than this is split, so that candidate lists stay in cache.
+constexpr std::size_t most_clusters = 8000;
+constexpr std::int64_t smallest_tile = 16;
+constexpr std::int64_t leaf_size = 4;
+/// Links of a site beyond this are first cut down to those that are near.
+constexpr std::size_t many_links = 32;
+constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
+constexpr std::array<std::size_t, 3> label_columns{1, 2, 3};
+
+/// Surface points that bound how far the second site is: of two that are apart, one may be second wherever anything is
+/// first, so that a second site is no further than the further of the two. One alone where it may be second at all
+/// nodes at hand; none where nothing is known.
+struct Bounds {
+  std::array<Vec3f, 2> point{};
+  std::array<OfSite, 2> labels{};
+  std::size_t count = 0;
+};
+
+struct BoundedTileTest {
+  TileTest first, second;
+  std::size_t count;
+  Vec center;
+  V radius;
+
+  BoundedTileTest(const CenteredBox& tile, const Bounds& bounds)
+      : first(tile, bounds.point[0]),
+        second(tile, bounds.point[1]),
+        count(bounds.count),
+        center(first.center),
+        radius(first.radius) {}
+
+  HWY_INLINE std::uint32_t keeps(const BoxArrays& boxes, std::size_t at) const {
+    if (count == 0) return 0xffff;
+    return count == 1 ? first.keeps(boxes, at) : first.keeps(boxes, at) | second.keeps(boxes, at);
+  }
+};
+
+template <int boxes>
+struct BoundedTest : BlockTest<boxes> {
+  Domination other;
+  std::size_t count;
+
+  BoundedTest(const CenteredBox& box, const Bounds& bounds)
+      : BlockTest<boxes>(box, Dominators{{bounds.point[0]}, 1}),
+        other(box.center, Dominators{{bounds.point[1]}, 1}, box.half + Vec3f{box_slack, box_slack, box_slack}),
+        count(bounds.count) {}
+  BoundedTest(const Halving& h, const Bounds& bounds)
+      : BlockTest<boxes>(h, Dominators{{bounds.point[0]}, 1}),
+        other(h.middle, Dominators{{bounds.point[1]}, 1}, h.reach()),
+        count(bounds.count) {}
+
+  template <class Block>
+  HWY_INLINE M keeps(const Block& block) const {
+    if (count == 0) return hn::FirstN(d, lanes);
+    const M keep = block.keeps(this->domination);
+    return count == 1 ? keep : hn::Or(keep, block.keeps(other));
+  }
+};
+
+/// Writes candidates and their labels out for the leaves.
+struct SecondStore {
+  LeafStore store;
+  const SecondJob& job;
+  const RecordList& list;
+  LeafWords& words;
+  std::size_t columns;
+
+  template <class Block>
+  HWY_INLINE void operator()(std::size_t b, const Block& block, V id) const {
+    store(b, block, id);
+    const std::size_t end = std::min(list.count(), (b + 1) * lanes);
+    for (std::size_t at = b * lanes; at < end; ++at) {
+      const OfSite& labels = job.labels[list[at].id];
+      for (std::size_t c = 0; c < columns; ++c) words.column(c)[at] = labels[c];
+    }
+  }
+};
+
+/// Works on one tile: owns nothing, holds what the recursion passes along.
+class SecondWorker {
+ public:
+  SecondWorker(const SecondJob& job, SecondScratch& scratch)
+      : job_(job), field_(job.field), mine_(scratch.impl()), scratch_(mine_.tile.impl()), unsettled_(scratch.unsettled) {
+    for (std::size_t c = 0; c < 8; ++c) {
+      Vec3d first;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        first[axis] = field_.spacing[axis] * (((c >> axis) & 1) != 0 ? 0.5 : -3.5);
+      }
+      full_patterns_[c] = LeafPattern(first, field_.spacing);
+    }
+  }
+
+  void tile(const NodeBox& box, std::int64_t size) {
+    if (field_.cancel.stop_requested()) return;
+    if (job_.request.has_band() && is_without_first(box)) return fill(box);
+    only_ = job_.links == nullptr ? only_labels(box) : nullptr;
+    const CenteredBox place = centered(field_, box);
+    const Bounds bounds = bounds_of(place.center);
+    if (only_ != nullptr && bounds.count == 0 && !job_.request.labels->has_second(*only_)) return fill(box);
+    const std::size_t clusters = find_tile_clusters(field_, BoundedTileTest(place, bounds), scratch_);
+    if (clusters > most_clusters && size > smallest_tile) {
+      const Halving parts = halve(field_, box, size);
+      for (std::size_t c = 0; c < 8; ++c) {
+        if (parts.exists[c]) tile(parts.child[c], size / 2);
+      }
+      return;
+    }
+    gather_records(field_, BoundedTest<1>(place, bounds), scratch_, scratch_.gathered);
+    if (only_ != nullptr) {
+      for (RecordList& list : scratch_.gathered) keep_others(list);
+    }
+    divide(box, size, scratch_.gathered, bounds, 0);
+  }
+
+ private:
+  // --- what is known of a box's first sites
+
+  /// Calls visit(first node of a row) for the rows of a box until it returns false; whether none did.
+  template <class Visit>
+  bool all_rows(const NodeBox& box, Visit visit) const {
+    const auto& size = field_.request.grid.size;
+    for (std::int64_t k = 0; k < box.count[2]; ++k) {
+      for (std::int64_t j = 0; j < box.count[1]; ++j) {
+        const std::int64_t row = ((box.first[2] + k) * size[1] + box.first[1] + j) * size[0] + box.first[0];
+        if (!visit(static_cast<std::size_t>(row))) return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool is_without_first(const NodeBox& box) const {
+    return all_rows(box, [&](std::size_t row) {
+      const std::uint32_t* sites = job_.request.site + row;
+      return std::all_of(sites, sites + box.count[0], [](std::uint32_t site) { return site == dead_record; });
+    });
+  }
+
+  /// The labels that all first sites of a box have; null where they differ, or there are none.
+  [[nodiscard]] const OfSite* only_labels(const NodeBox& box) const {
+    const OfSite* only = nullptr;
+    const bool is_only = all_rows(box, [&](std::size_t row) {
+      for (std::int64_t i = 0; i < box.count[0]; ++i) {
+        const std::uint32_t site = job_.request.site[row + static_cast<std::size_t>(i)];
+        if (site == dead_record) continue;
+        if (only == nullptr) only = &job_.labels[site];
+        if (*only != job_.labels[site]) return false;
+      }
+      return true;
+    });
+    return is_only ? only : nullptr;
+  }
+
+  void keep_others(RecordList& list) const {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < list.count(); ++k) {
+      if (!share_label(job_.labels[list[k].id], *only_)) list.move(k, kept++);
+    }
+    list.shorten(kept);
+  }
+
+  /// Gives a box of nodes beyond the band no second site.
+  void fill(const NodeBox& box) const {
+    (void)all_rows(box, [&](std::size_t row) {
+      std::fill_n(job_.request.distance2 + row, box.count[0], limit());
+      std::fill_n(job_.request.site2 + row, box.count[0], dead_record);
+      return true;
+    });
+  }
+
+  /// What nodes without a second site get.
+  [[nodiscard]] float limit() const {
+    return job_.request.has_band() ? static_cast<float>(job_.request.band) : std::numeric_limits<float>::infinity();
+  }
+
+  // --- bounds
+
+  [[nodiscard]] Bounds bounds_of(const Vec3f& center) const {
+    Bounds out;
+    const auto add = [&](const auto& may_be) {
+      const Witness found = nearest_record(field_, center, may_be);
+      if (found.record == nullptr) return false;
+      out.point[out.count] = found.point;
+      out.labels[out.count++] = job_.labels[found.record->id];
+      return true;
+    };
+    if (only_ != nullptr) {
+      (void)add([&](std::uint32_t site) { return !share_label(job_.labels[site], *only_); });
+      return out;
+    }
+    if (!add([](std::uint32_t) { return true; })) return out;
+    const OfSite first = out.labels[0];
+    if (!add([&](std::uint32_t site) { return job_.are_apart(first, job_.labels[site]); })) out.count = 0;
+    return out;
+  }
+
+  /// Bounds for a child of a box, of the sites that the lanes have found closest to its centre; else the parent's.
+  [[nodiscard]] Bounds bounds_of_child(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
+                                       const Vec3f& center, const Bounds& parent) const {
+    alignas(64) std::array<float, lanes> squared;
+    alignas(64) std::array<std::uint32_t, lanes> index;
+    hn::Store(closest.squared[child], d, squared.data());
+    hn::Store(closest.index[child], di, index.data());
+    Bounds out;
+    const auto take_nearest = [&](const auto& may_be) {
+      while (true) {
+        const std::size_t lane =
+            static_cast<std::size_t>(std::min_element(squared.begin(), squared.end()) - squared.begin());
+        if (!(squared[lane] < hwy::HighestValue<float>())) return false;
+        squared[lane] = hwy::HighestValue<float>();
+        const auto kind = static_cast<Kind>(index[lane] >> 28);
+        const Record& record = candidates[kind][index[lane] & 0x0fffffffU];
+        Vec3f point;
+        if (!may_be(job_.labels[record.id]) || !closest_on_record(kind, record, center, point)) continue;
+        out.point[out.count] = point;
+        out.labels[out.count++] = job_.labels[record.id];
+        return true;
+      }
+    };
+    if (!take_nearest([](const OfSite&) { return true; })) return parent;
+    if (only_ != nullptr) return out;
+    if (take_nearest([&](const OfSite& labels) { return job_.are_apart(out.labels[0], labels); })) return out;
+    // The parent's further point does where it is apart from the child's nearest.
+    for (std::size_t k = 0; k < parent.count; ++k) {
+      if (!job_.are_apart(out.labels[0], parent.labels[k])) continue;
+      out.point[1] = parent.point[k];
+      out.labels[1] = parent.labels[k];
+      out.count = 2;
+      return out;
+    }
+    return parent;
+  }
+
+  // --- recursion
+
+  void divide(const NodeBox& box, std::int64_t size, const Candidates& candidates, const Bounds& bounds,
+              std::size_t level) {
+    if (size == 2 * leaf_size) return divide_into_leaves(box, candidates, bounds);
+    if (field_.cancel.stop_requested()) return;
+    const Halving parts = halve(field_, box, size);
+    TileScratch::Impl::Level& here = scratch_.levels[level];
+    ClosestAtCenters closest;
+    halve_kinds(BoundedTest<8>(parts, bounds), candidates, here.bits, closest,
+                [](std::size_t) { return [](auto&&...) {}; });
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (!parts.exists[c]) continue;
+      for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+        list_child(candidates[kind], here.bits[kind], c, here.child[kind]);
+      }
+      const CenteredBox place = centered(field_, parts.child[c]);
+      const Bounds of_child = bounds_of_child(candidates, closest, c, place.center, bounds);
+      list_slivers(candidates[sliver_kind], place, of_child, here.child[sliver_kind]);
+      divide(parts.child[c], size / 2, here.child, of_child, level + 1);
+    }
+  }
+
+  static void list_slivers(const RecordList& from, const CenteredBox& place, const Bounds& bounds, RecordList& to) {
+    to.reset(from.count());
+    if (from.count() == 0) return;
+    double reach = bounds.count == 0 ? std::numeric_limits<double>::infinity() : 0.0;
+    for (std::size_t k = 0; k < bounds.count; ++k) {
+      reach = std::max(reach, static_cast<double>(length(bounds.point[k] - place.center)));
+    }
+    reach = reach * 1.0001 + 2 * length(place.half) + 4 * box_slack;
+    const Vec3d center = to_double(place.center);
+    for (std::size_t k = 0; k < from.count(); ++k) {
+      if (length(center - closest_on_sliver(from[k], center)) <= reach) to.append(from[k]);
+    }
+  }
+
+  void divide_into_leaves(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
+    const Halving parts = halve(field_, box, 2 * leaf_size);
+    TileScratch::Impl::Level& here = scratch_.levels.back();
+    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+      scratch_.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
+      mine_.labels[kind].reset(label_columns[kind], candidates[kind].count());
+      mine_.allowed[kind].reset(1, candidates[kind].count());
+    }
+    NoClosest closest;
+    halve_kinds(BoundedTest<8>(parts, bounds), candidates, here.bits, closest,
+                [&](std::size_t kind) {
+                  return SecondStore{LeafStore{scratch_.leaf[kind]}, job_, candidates[kind], mine_.labels[kind],
+                                     label_columns[kind]};
+                });
+    const bool is_full = box.count[0] == 2 * leaf_size && box.count[1] == 2 * leaf_size && box.count[2] == 2 * leaf_size;
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (!parts.exists[c]) continue;
+      const LeafInput input{scratch_.leaf, here.bits, c};
+      if (is_full) {
+        leaf(parts.child[c], input, candidates[sliver_kind], full_patterns_[c], parts);
+      } else {
+        leaf(parts.child[c], input, candidates[sliver_kind], pattern_of(parts.child[c], parts.middle), parts);
+      }
+    }
+  }
+
+  [[nodiscard]] LeafPattern pattern_of(const NodeBox& box, const Vec3f& middle) const {
+    Vec3d first;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] =
+          field_.first_node[axis] + static_cast<double>(box.first[axis]) * field_.spacing[axis] - middle[axis];
+    }
+    return {first, field_.spacing};
+  }
+
+  // --- leaves
+
+  void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, const LeafPattern& pattern,
+            const Halving& parts) {
+    SecondLeaf state;
+    read_firsts(box, state);
+    state.find_firsts();
+    state.squared.fill(hwy::HighestValue<float>());
+    state.id.fill(nobody);
+    const CenteredBox place = centered(field_, box);
+    const float radius = length(place.half) * 1.0001F + 4 * box_slack;
+    std::array<OfSite, most_firsts> labels;
+    for (std::size_t begin = 0; begin < state.count; begin += most_firsts) {
+      const std::size_t end = std::min(begin + most_firsts, state.count);
+      state.set_bits(begin, end);
+      for (std::size_t k = begin; k < end; ++k) {
+        labels[k - begin] = job_.labels[state.firsts[k]];
+        if (job_.links == nullptr) continue;
+        find_links(labels[k - begin], place.center, radius);
+        offer_links(mine_.links, *job_.links, parts.middle, pattern, state.nodes[k], 1U << (k - begin), state);
+      }
+      const std::span<const OfSite> firsts(labels.data(), end - begin);
+      const float bound = furthest(state) + radius;
+      const Vec offset = set(place.center - parts.middle);
+      save_bits(input, begin > 0, end < state.count);
+      choose_candidates<vertex_kind>(input, offset, bound, mine_.labels[0], firsts, mine_.allowed[0]);
+      choose_candidates<edge_kind>(input, offset, bound, mine_.labels[1], firsts, mine_.allowed[1]);
+      choose_candidates<face_kind>(input, offset, bound, mine_.labels[2], firsts, mine_.allowed[2]);
+      evaluate_second(input, mine_.allowed, pattern, state);
+      for (std::size_t k = 0; k < slivers.count(); ++k) {
+        const Vec3d center = to_double(place.center);
+        if (length(center - closest_on_sliver(slivers[k], center)) <= bound) {
+          offer_sliver(slivers[k], box, firsts, state);
+        }
+      }
+    }
+    write(box, state);
+  }
+
+  /// Choosing candidates clears bits: where a leaf has more first sites than fit a word, all start from the same.
+  void save_bits(const LeafInput& input, bool is_later, bool is_followed) {
+    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+      std::uint16_t* words = input.bits[kind].child(input.child);
+      std::vector<std::uint16_t>& saved = mine_.saved_bits[kind];
+      if (is_later) {
+        std::copy(saved.begin(), saved.end(), words);
+      } else if (is_followed) {
+        saved.assign(words, words + input.bits[kind].blocks());
+      }
+    }
+  }
+
+  void read_firsts(const NodeBox& box, SecondLeaf& state) const {
+    state.first.fill(dead_record);
+    std::size_t row = 0;
+    (void)all_rows(box, [&](std::size_t node) {
+      const std::size_t j = row % static_cast<std::size_t>(box.count[1]);
+      const std::size_t k = row / static_cast<std::size_t>(box.count[1]);
+      ++row;
+      std::copy_n(job_.request.site + node, box.count[0], state.first.data() + 16 * k + 4 * j);
+      return true;
+    });
+  }
+
+  /// The links of a site's vertices that do not touch it.
+  void find_links(const OfSite& vertices, const Vec3f& center, float radius) {
+    mine_.links.clear();
+    const auto is_own = [&](std::uint32_t v) { return v == vertices[0] || v == vertices[1] || v == vertices[2]; };
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k > 0 && (vertices[k] == vertices[0] || (k == 2 && vertices[2] == vertices[1]))) continue;
+      for (const std::uint32_t link : job_.links->of(vertices[k])) {
+        const LinkSegment& segment = job_.links->segments[link];
+        if (!is_own(segment.start) && !is_own(segment.end)) mine_.links.push_back(link);
+      }
+    }
+    if (mine_.links.size() > many_links) keep_near_links(center, radius);
+  }
+
+  void keep_near_links(const Vec3f& center, float radius) {
+    mine_.link_distances.resize(mine_.links.size());
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < mine_.links.size(); ++k) {
+      const LinkSegment& segment = job_.links->segments[mine_.links[k]];
+      const Vec3f from = center - segment.middle;
+      const float along = std::clamp(dot(from, segment.tangent), -segment.half_length, segment.half_length);
+      mine_.link_distances[k] = length(from - segment.tangent * along);
+      nearest = std::min(nearest, mine_.link_distances[k]);
+    }
+    const float furthest_of_use = (nearest + 2 * radius) * 1.00001F;
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < mine_.links.size(); ++k) {
+      if (mine_.link_distances[k] <= furthest_of_use) mine_.links[kept++] = mine_.links[k];
+    }
+    mine_.links.resize(kept);
+  }
+
+  /// The largest distance that a node at hand has so far; without bound where one has none.
+  static float furthest(const SecondLeaf& state) {
+    V worst = hn::Zero(d);
+    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
+      const M is_here = hn::RebindMask(d, hn::Ne(hn::Load(di, state.bit.data() + node), hn::Zero(di)));
+      worst = hn::Max(worst, hn::IfThenElseZero(is_here, hn::Load(d, state.squared.data() + node)));
+    }
+    const float squared = hn::GetLane(hn::MaxOfLanes(d, worst));
+    return squared < hwy::HighestValue<float>() ? std::sqrt(squared) * 1.00001F : 1e18F;
+  }
+
+  void offer_sliver(const Record& sliver, const NodeBox& box, std::span<const OfSite> firsts, SecondLeaf& state) const {
+    std::uint32_t beside = 0;
+    for (std::size_t k = 0; k < firsts.size(); ++k) {
+      if (!share_label(firsts[k], job_.labels[sliver.id])) beside |= 1U << k;
+    }
+    for (std::size_t node = 0; node < leaf_nodes; ++node) {
+      if ((state.bit[node] & beside) == 0) continue;
+      const std::array<std::size_t, 3> at{node % 4, node / 4 % 4, node / 16};
+      Vec3d query;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        query[axis] = field_.first_node[axis] +
+                      field_.spacing[axis] * static_cast<double>(box.first[axis] + static_cast<std::int64_t>(at[axis]));
+      }
+      const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
+      if (squared > state.squared[node] || (squared == state.squared[node] && sliver.id >= state.id[node])) continue;
+      state.squared[node] = squared;
+      state.id[node] = sliver.id;
+    }
+  }
+
+  void write(const NodeBox& box, SecondLeaf& state) {
+    alignas(64) std::array<float, leaf_nodes> distance;
+    const V none = set(limit());
+    M open = hn::FirstN(d, 0);
+    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
+      const V squared = hn::Load(d, state.squared.data() + node);
+      const V value = hn::Mul(hn::Sqrt(squared), set(field_.to_world));
+      const M has_none = hn::Ge(squared, set(hwy::HighestValue<float>()));
+      const M is_beyond = hn::Or(has_none, hn::Gt(value, none));
+      open = hn::Or(open, has_none);
+      hn::Store(hn::IfThenElse(is_beyond, none, value), d, distance.data() + node);
+      const VI id = hn::Load(di, state.id.data() + node);
+      hn::Store(hn::IfThenElse(hn::RebindMask(di, is_beyond), hn::Set(di, dead_record), id), di, state.id.data() + node);
+    }
+    const bool has_open = !hn::AllFalse(d, open);
+    std::size_t row = 0;
+    (void)all_rows(box, [&](std::size_t node) {
+      const std::size_t j = row % static_cast<std::size_t>(box.count[1]);
+      const std::size_t k = row / static_cast<std::size_t>(box.count[1]);
+      ++row;
+      const std::size_t from = 16 * k + 4 * j;
+      std::copy_n(distance.data() + from, box.count[0], job_.request.distance2 + node);
+      std::copy_n(state.id.data() + from, box.count[0], job_.request.site2 + node);
+      if (has_open) report_open(state, from, static_cast<std::size_t>(box.count[0]), node);
+      return true;
+    });
+  }
+
+  void report_open(const SecondLeaf& state, std::size_t from, std::size_t count, std::size_t node) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t first = state.first[from + i];
+      if (first == dead_record || state.squared[from + i] < hwy::HighestValue<float>()) continue;
+      if (job_.request.labels->has_second(job_.labels[first])) unsettled_.push_back(node + i);
+    }
+  }
+
+  const SecondJob& job_;
+  const FieldJob& field_;
+  SecondScratch::Impl& mine_;
+  TileScratch::Impl& scratch_;
+  std::vector<std::size_t>& unsettled_;
+  const OfSite* only_ = nullptr;  ///< labels of all first sites of the tile at hand, where the rule is by objects
+  std::array<LeafPattern, 8> full_patterns_;
+};
+
+void compute_second_tile_here(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch) {
+  SecondWorker(job, scratch).tile(tile, tile_size(job.field.request.grid.size));
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace blum::cpu
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace blum::cpu {
+
+HWY_EXPORT(compute_second_tile_here);
+
+SecondScratch::SecondScratch() : impl_(std::make_unique<Impl>()) {}
+SecondScratch::SecondScratch(SecondScratch&&) noexcept = default;
+SecondScratch& SecondScratch::operator=(SecondScratch&&) noexcept = default;
+SecondScratch::~SecondScratch() = default;
+
+bool SecondJob::are_apart(const SecondLabels::OfSite& a, const SecondLabels::OfSite& b) const {
+  if (share_label(a, b)) return false;
+  for (const std::uint32_t label : a) {
+    const auto first = others.begin() + first_other[label];
+    const auto last = others.begin() + first_other[label + 1];
+    for (const std::uint32_t other : b) {
+      if (std::binary_search(first, last, other)) return false;
+    }
+  }
+  return true;
+}
+
+void compute_second_tile(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(compute_second_tile_here)(job, tile, scratch);
+}
+
+}  // namespace blum::cpu
+#endif
