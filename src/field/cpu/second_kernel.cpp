@@ -5,7 +5,7 @@
 #include "hwy/foreach_target.h"
 // foreach_target.h must come before the headers that are compiled once per target.
 #include "field/cpu/gather-inl.hpp"
-#include "field/cpu/second_leaf-inl.hpp"
+#include "field/cpu/second_cell-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
@@ -17,11 +17,8 @@ using OfSite = SecondLabels::OfSite;
 /// A tile with more clusters than this is split, so that candidate lists stay in cache.
 constexpr std::size_t most_clusters = 8000;
 constexpr std::int64_t smallest_tile = 16;
-constexpr std::int64_t leaf_size = 4;
 /// Links of a site beyond this are first cut down to those that are near.
 constexpr std::size_t many_links = 32;
-constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
-constexpr std::array<std::size_t, 3> label_columns{1, 2, 3};
 
 /// Surface points that bound how far the second site is: of two that are apart, one may be second wherever anything is
 /// first, so that a second site is no further than the further of the two. One alone where it may be second at all
@@ -73,38 +70,16 @@ struct BoundedTest : BlockTest<boxes> {
   }
 };
 
-/// Writes candidates and their labels out for the leaves.
-struct SecondStore {
-  LeafStore store;
-  const SecondJob& job;
-  const RecordList& list;
-  LeafWords& words;
-  std::size_t columns;
-
-  template <class Block>
-  HWY_INLINE void operator()(std::size_t b, const Block& block, V id) const {
-    store(b, block, id);
-    const std::size_t end = std::min(list.count(), (b + 1) * lanes);
-    for (std::size_t at = b * lanes; at < end; ++at) {
-      const OfSite& labels = job.labels[list[at].id];
-      for (std::size_t c = 0; c < columns; ++c) words.column(c)[at] = labels[c];
-    }
-  }
-};
-
 /// Works on one tile: owns nothing, holds what the recursion passes along.
 class SecondWorker {
  public:
   SecondWorker(const SecondJob& job, SecondScratch& scratch)
-      : job_(job), field_(job.field), mine_(scratch.impl()), scratch_(mine_.tile.impl()), unsettled_(scratch.unsettled) {
-    for (std::size_t c = 0; c < 8; ++c) {
-      Vec3d first;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        first[axis] = field_.spacing[axis] * (((c >> axis) & 1) != 0 ? 0.5 : -3.5);
-      }
-      full_patterns_[c] = LeafPattern(first, field_.spacing);
-    }
-  }
+      : job_(job),
+        field_(job.field),
+        mine_(scratch.impl()),
+        scratch_(mine_.tile.impl()),
+        cell_(mine_.cell),
+        unsettled_(scratch.unsettled) {}
 
   void tile(const NodeBox& box, std::int64_t size) {
     if (field_.cancel.stop_requested()) return;
@@ -250,7 +225,7 @@ class SecondWorker {
 
   void divide(const NodeBox& box, std::int64_t size, const Candidates& candidates, const Bounds& bounds,
               std::size_t level) {
-    if (size == 2 * leaf_size) return divide_into_leaves(box, candidates, bounds);
+    if (size == SecondCell::side) return cell(box, candidates, bounds);
     if (field_.cancel.stop_requested()) return;
     const Halving parts = halve(field_, box, size);
     TileScratch::Impl::Level& here = scratch_.levels[level];
@@ -263,7 +238,10 @@ class SecondWorker {
         list_child(candidates[kind], here.bits[kind], c, here.child[kind]);
       }
       const CenteredBox place = centered(field_, parts.child[c]);
-      const Bounds of_child = bounds_of_child(candidates, closest, c, place.center, bounds);
+      // Cells find their bounds in links.
+      const bool needs_bounds = size > 2 * SecondCell::side || job_.links == nullptr;
+      const Bounds of_child =
+          needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
       list_slivers(candidates[sliver_kind], place, of_child, here.child[sliver_kind]);
       divide(parts.child[c], size / 2, here.child, of_child, level + 1);
     }
@@ -283,120 +261,91 @@ class SecondWorker {
     }
   }
 
-  void divide_into_leaves(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
-    const Halving parts = halve(field_, box, 2 * leaf_size);
-    TileScratch::Impl::Level& here = scratch_.levels.back();
-    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
-      scratch_.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
-      mine_.labels[kind].reset(label_columns[kind], candidates[kind].count());
-      mine_.allowed[kind].reset(1, candidates[kind].count());
+  // --- cells
+
+  void cell(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
+    read_firsts(box);
+    CellSorter sorter(cell_, job_.keys.empty() ? nullptr : job_.keys.data());
+    sorter.find_groups(box.count);
+    const Vec3f middle = centered(field_, box).center;
+    sorter.place(positions(box, middle));
+    if (job_.links == nullptr) {
+      cell_.squared.fill(no_distance);
+      cell_.id.fill(nobody);
     }
-    NoClosest closest;
-    halve_kinds(BoundedTest<8>(parts, bounds), candidates, here.bits, closest,
-                [&](std::size_t kind) {
-                  return SecondStore{LeafStore{scratch_.leaf[kind]}, job_, candidates[kind], mine_.labels[kind],
-                                     label_columns[kind]};
-                });
-    const bool is_full = box.count[0] == 2 * leaf_size && box.count[1] == 2 * leaf_size && box.count[2] == 2 * leaf_size;
-    for (std::size_t c = 0; c < 8; ++c) {
-      if (!parts.exists[c]) continue;
-      const LeafInput input{scratch_.leaf, here.bits, c};
-      if (is_full) {
-        leaf(parts.child[c], input, candidates[sliver_kind], full_patterns_[c], parts);
-      } else {
-        leaf(parts.child[c], input, candidates[sliver_kind], pattern_of(parts.child[c], parts.middle), parts);
+    for (std::size_t g = 0; g < cell_.group_count; ++g) {
+      SecondCell::Group& group = cell_.groups[g];
+      group.labels = job_.labels[group.site];
+      if (job_.links != nullptr) {
+        find_links(group.labels);
+        if (mine_.links.size() > many_links) keep_near_links(middle, group);
+        offer_links(mine_.links, *job_.links, middle, group, cell_);
       }
+      find_extent(cell_, group);
+      bound_by_points(bounds, middle, group);
     }
+    offer_candidates<vertex_kind>(candidates[vertex_kind], middle, job_.labels, cell_);
+    offer_candidates<edge_kind>(candidates[edge_kind], middle, job_.labels, cell_);
+    offer_candidates<face_kind>(candidates[face_kind], middle, job_.labels, cell_);
+    for (std::size_t k = 0; k < candidates[sliver_kind].count(); ++k) offer_sliver(candidates[sliver_kind][k], middle);
+    unsort(cell_);
+    write(box);
   }
 
-  [[nodiscard]] LeafPattern pattern_of(const NodeBox& box, const Vec3f& middle) const {
-    Vec3d first;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[axis] =
-          field_.first_node[axis] + static_cast<double>(box.first[axis]) * field_.spacing[axis] - middle[axis];
-    }
-    return {first, field_.spacing};
-  }
-
-  // --- leaves
-
-  void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, const LeafPattern& pattern,
-            const Halving& parts) {
-    SecondLeaf state;
-    read_firsts(box, state);
-    state.find_firsts();
-    state.squared.fill(hwy::HighestValue<float>());
-    state.id.fill(nobody);
-    const CenteredBox place = centered(field_, box);
-    const float radius = length(place.half) * 1.0001F + 4 * box_slack;
-    std::array<OfSite, most_firsts> labels;
-    for (std::size_t begin = 0; begin < state.count; begin += most_firsts) {
-      const std::size_t end = std::min(begin + most_firsts, state.count);
-      state.set_bits(begin, end);
-      for (std::size_t k = begin; k < end; ++k) {
-        labels[k - begin] = job_.labels[state.firsts[k]];
-        if (job_.links == nullptr) continue;
-        find_links(labels[k - begin], place.center, radius);
-        offer_links(mine_.links, *job_.links, parts.middle, pattern, state.nodes[k], 1U << (k - begin), state);
-      }
-      const std::span<const OfSite> firsts(labels.data(), end - begin);
-      const float bound = furthest(state) + radius;
-      const Vec offset = set(place.center - parts.middle);
-      save_bits(input, begin > 0, end < state.count);
-      choose_candidates<vertex_kind>(input, offset, bound, mine_.labels[0], firsts, mine_.allowed[0]);
-      choose_candidates<edge_kind>(input, offset, bound, mine_.labels[1], firsts, mine_.allowed[1]);
-      choose_candidates<face_kind>(input, offset, bound, mine_.labels[2], firsts, mine_.allowed[2]);
-      evaluate_second(input, mine_.allowed, pattern, state);
-      for (std::size_t k = 0; k < slivers.count(); ++k) {
-        const Vec3d center = to_double(place.center);
-        if (length(center - closest_on_sliver(slivers[k], center)) <= bound) {
-          offer_sliver(slivers[k], box, firsts, state);
-        }
-      }
-    }
-    write(box, state);
-  }
-
-  /// Choosing candidates clears bits: where a leaf has more first sites than fit a word, all start from the same.
-  void save_bits(const LeafInput& input, bool is_later, bool is_followed) {
-    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
-      std::uint16_t* words = input.bits[kind].child(input.child);
-      std::vector<std::uint16_t>& saved = mine_.saved_bits[kind];
-      if (is_later) {
-        std::copy(saved.begin(), saved.end(), words);
-      } else if (is_followed) {
-        saved.assign(words, words + input.bits[kind].blocks());
-      }
-    }
-  }
-
-  void read_firsts(const NodeBox& box, SecondLeaf& state) const {
-    state.first.fill(dead_record);
+  void read_firsts(const NodeBox& box) {
+    // Rows that are cut off have nodes only as far as anyone looks.
     std::size_t row = 0;
     (void)all_rows(box, [&](std::size_t node) {
-      const std::size_t j = row % static_cast<std::size_t>(box.count[1]);
-      const std::size_t k = row / static_cast<std::size_t>(box.count[1]);
-      ++row;
-      std::copy_n(job_.request.site + node, box.count[0], state.first.data() + 16 * k + 4 * j);
+      std::copy_n(job_.request.site + node, box.count[0], cell_.first.data() + first_of_row(box, row++));
       return true;
     });
   }
 
+  /// Of the rows of a box, in the cell.
+  static std::size_t first_of_row(const NodeBox& box, std::size_t row) {
+    const auto rows = static_cast<std::size_t>(box.count[1]);
+    return 8 * (row % rows) + 64 * (row / rows);
+  }
+
+  /// Of the nodes along each axis, from the cell's middle.
+  [[nodiscard]] std::array<std::array<float, 8>, 3> positions(const NodeBox& box, const Vec3f& middle) const {
+    std::array<std::array<float, 8>, 3> out{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < 8; ++k) {
+        const double index = static_cast<double>(box.first[axis] + static_cast<std::int64_t>(k));
+        out[axis][k] = static_cast<float>(field_.first_node[axis] + index * field_.spacing[axis] - middle[axis]);
+      }
+    }
+    return out;
+  }
+
+  /// Where a point may be second at all nodes of a group, no second site is further.
+  static void bound_by_points(const Bounds& bounds, const Vec3f& middle, SecondCell::Group& group) {
+    const float radius = length(group.half) + box_slack;
+    for (std::size_t k = 0; k < bounds.count; ++k) {
+      if (share_label(bounds.labels[k], group.labels)) continue;
+      const float distance = length(middle + group.center - bounds.point[k]);
+      group.bound = std::min(group.bound, distance * 1.00001F + 2 * radius);
+    }
+  }
+
   /// The links of a site's vertices that do not touch it.
-  void find_links(const OfSite& vertices, const Vec3f& center, float radius) {
+  HWY_NOINLINE void find_links(const OfSite& vertices) {
     mine_.links.clear();
     const auto is_own = [&](std::uint32_t v) { return v == vertices[0] || v == vertices[1] || v == vertices[2]; };
     for (std::size_t k = 0; k < 3; ++k) {
       if (k > 0 && (vertices[k] == vertices[0] || (k == 2 && vertices[2] == vertices[1]))) continue;
-      for (const std::uint32_t link : job_.links->of(vertices[k])) {
-        const LinkSegment& segment = job_.links->segments[link];
-        if (!is_own(segment.start) && !is_own(segment.end)) mine_.links.push_back(link);
+      for (const SecondLinks::Entry& link : job_.links->of(vertices[k])) {
+        if (!is_own(link.start) && !is_own(link.end)) mine_.links.push_back(link.segment);
       }
     }
-    if (mine_.links.size() > many_links) keep_near_links(center, radius);
   }
 
-  void keep_near_links(const Vec3f& center, float radius) {
+  /// Of many links, those that any node of a group may be closest to.
+  void keep_near_links(const Vec3f& middle, SecondCell::Group& group) {
+    find_extent(cell_, group);  // what its nodes have does not matter yet
+    const Vec3f center = middle + group.center;
+    const float radius = length(group.half) + box_slack;
     mine_.link_distances.resize(mine_.links.size());
     float nearest = std::numeric_limits<float>::infinity();
     for (std::size_t k = 0; k < mine_.links.size(); ++k) {
@@ -414,70 +363,62 @@ class SecondWorker {
     mine_.links.resize(kept);
   }
 
-  /// The largest distance that a node at hand has so far; without bound where one has none.
-  static float furthest(const SecondLeaf& state) {
-    V worst = hn::Zero(d);
-    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
-      const M is_here = hn::RebindMask(d, hn::Ne(hn::Load(di, state.bit.data() + node), hn::Zero(di)));
-      worst = hn::Max(worst, hn::IfThenElseZero(is_here, hn::Load(d, state.squared.data() + node)));
-    }
-    const float squared = hn::GetLane(hn::MaxOfLanes(d, worst));
-    return squared < hwy::HighestValue<float>() ? std::sqrt(squared) * 1.00001F : 1e18F;
-  }
-
-  void offer_sliver(const Record& sliver, const NodeBox& box, std::span<const OfSite> firsts, SecondLeaf& state) const {
-    std::uint32_t beside = 0;
-    for (std::size_t k = 0; k < firsts.size(); ++k) {
-      if (!share_label(firsts[k], job_.labels[sliver.id])) beside |= 1U << k;
-    }
-    for (std::size_t node = 0; node < leaf_nodes; ++node) {
-      if ((state.bit[node] & beside) == 0) continue;
-      const std::array<std::size_t, 3> at{node % 4, node / 4 % 4, node / 16};
-      Vec3d query;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        query[axis] = field_.first_node[axis] +
-                      field_.spacing[axis] * static_cast<double>(box.first[axis] + static_cast<std::int64_t>(at[axis]));
+  void offer_sliver(const Record& sliver, const Vec3f& middle) {
+    for (std::size_t g = 0; g < cell_.group_count; ++g) {
+      const SecondCell::Group& group = cell_.groups[g];
+      if (share_label(group.labels, job_.labels[sliver.id])) continue;
+      const Vec3d center = to_double(middle + group.center);
+      if (length(center - closest_on_sliver(sliver, center)) > group.bound) continue;
+      for (std::size_t at = group.begin; at < group.end; ++at) {
+        const Vec3d query = to_double(middle) + to_double(Vec3f{cell_.x[at], cell_.y[at], cell_.z[at]});
+        const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
+        if (squared > cell_.squared[at] || (squared == cell_.squared[at] && sliver.id >= cell_.id[at])) continue;
+        cell_.squared[at] = squared;
+        cell_.id[at] = sliver.id;
       }
-      const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
-      if (squared > state.squared[node] || (squared == state.squared[node] && sliver.id >= state.id[node])) continue;
-      state.squared[node] = squared;
-      state.id[node] = sliver.id;
     }
   }
 
-  void write(const NodeBox& box, SecondLeaf& state) {
-    alignas(64) std::array<float, leaf_nodes> distance;
+  HWY_NOINLINE void write(const NodeBox& box) {
     const V none = set(limit());
     M open = hn::FirstN(d, 0);
-    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
-      const V squared = hn::Load(d, state.squared.data() + node);
+    for (std::size_t node = 0; node < static_cast<std::size_t>(64 * box.count[2]); node += lanes) {
+      const V squared = hn::Load(d, cell_.distance.data() + node);
       const V value = hn::Mul(hn::Sqrt(squared), set(field_.to_world));
-      const M has_none = hn::Ge(squared, set(hwy::HighestValue<float>()));
+      const M has_none = hn::Ge(squared, set(no_distance));
       const M is_beyond = hn::Or(has_none, hn::Gt(value, none));
       open = hn::Or(open, has_none);
-      hn::Store(hn::IfThenElse(is_beyond, none, value), d, distance.data() + node);
-      const VI id = hn::Load(di, state.id.data() + node);
-      hn::Store(hn::IfThenElse(hn::RebindMask(di, is_beyond), hn::Set(di, dead_record), id), di, state.id.data() + node);
+      hn::Store(hn::IfThenElse(is_beyond, none, value), d, cell_.distance.data() + node);
+      const VI id = hn::Load(di, cell_.site.data() + node);
+      hn::Store(hn::IfThenElse(hn::RebindMask(di, is_beyond), hn::Set(di, dead_record), id), di,
+                cell_.site.data() + node);
     }
-    const bool has_open = !hn::AllFalse(d, open);
     std::size_t row = 0;
     (void)all_rows(box, [&](std::size_t node) {
-      const std::size_t j = row % static_cast<std::size_t>(box.count[1]);
-      const std::size_t k = row / static_cast<std::size_t>(box.count[1]);
-      ++row;
-      const std::size_t from = 16 * k + 4 * j;
-      std::copy_n(distance.data() + from, box.count[0], job_.request.distance2 + node);
-      std::copy_n(state.id.data() + from, box.count[0], job_.request.site2 + node);
-      if (has_open) report_open(state, from, static_cast<std::size_t>(box.count[0]), node);
+      const std::size_t from = first_of_row(box, row++);
+      std::copy_n(cell_.distance.data() + from, box.count[0], job_.request.distance2 + node);
+      std::copy_n(cell_.site.data() + from, box.count[0], job_.request.site2 + node);
       return true;
     });
+    if (!hn::AllFalse(d, open)) report_open(box);
   }
 
-  void report_open(const SecondLeaf& state, std::size_t from, std::size_t count, std::size_t node) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t first = state.first[from + i];
-      if (first == dead_record || state.squared[from + i] < hwy::HighestValue<float>()) continue;
-      if (job_.request.labels->has_second(job_.labels[first])) unsettled_.push_back(node + i);
+  /// Nodes that nothing has claimed, although there is something that may be second.
+  void report_open(const NodeBox& box) {
+    for (std::size_t r = 0; r < cell_.run_count; ++r) {
+      const SecondCell::Run& run = cell_.runs[r];
+      if (run.group == SecondCell::no_group) continue;
+      if (!job_.request.labels->has_second(cell_.groups[run.group].labels)) continue;
+      for (std::size_t k = 0; k < run.length; ++k) {
+        if (cell_.squared[run.at + k] < no_distance) continue;
+        const std::size_t node = run.node + k;
+        const std::array<std::size_t, 3> in_cell{node % 8, node / 8 % 8, node / 64};
+        std::int64_t index = 0;
+        for (std::size_t axis = 3; axis-- > 0;) {
+          index = index * field_.request.grid.size[axis] + box.first[axis] + static_cast<std::int64_t>(in_cell[axis]);
+        }
+        unsettled_.push_back(static_cast<std::size_t>(index));
+      }
     }
   }
 
@@ -485,9 +426,9 @@ class SecondWorker {
   const FieldJob& field_;
   SecondScratch::Impl& mine_;
   TileScratch::Impl& scratch_;
+  SecondCell& cell_;
   std::vector<std::size_t>& unsettled_;
   const OfSite* only_ = nullptr;  ///< labels of all first sites of the tile at hand, where the rule is by objects
-  std::array<LeafPattern, 8> full_patterns_;
 };
 
 void compute_second_tile_here(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch) {

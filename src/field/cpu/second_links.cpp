@@ -78,13 +78,13 @@ void build_link_entries(const MeshView& mesh, const SiteTable& sites, const Adja
       const Segment& ends = sites.edges()[edge];
       link.push_back(ends);
       link.push_back({ends[1], ends[0]});
+      out.entries.push_back({edge, ends[0], ends[1]});
     }
     std::sort(link.begin(), link.end());
-    out.entries.insert(out.entries.end(), own.begin(), own.end());
     for (std::size_t k = adjacency.first_neighbour[v]; k < adjacency.first_neighbour[v + 1]; ++k) {
       const std::uint32_t neighbour = adjacency.neighbours[k];
       if (needs_point(link, neighbour)) {
-        out.entries.push_back(static_cast<std::uint32_t>(sites.edge_count() + neighbour));
+        out.entries.push_back({static_cast<std::uint32_t>(sites.edge_count() + neighbour), neighbour, neighbour});
       }
     }
     out.first.push_back(static_cast<std::uint32_t>(out.entries.size()));

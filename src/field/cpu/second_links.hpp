@@ -33,11 +33,17 @@ struct LinkSegment {
 struct SecondLinks {
   /// Of the edges, in their order, then of the vertices, as points.
   Buffer<LinkSegment> segments;
+  /// A segment and its ends.
+  struct Entry {
+    std::uint32_t segment = 0;
+    std::uint32_t start = 0;
+    std::uint32_t end = 0;
+  };
   /// Segments of vertex v: entries[first[v] .. first[v + 1]).
   std::vector<std::uint32_t> first;
-  std::vector<std::uint32_t> entries;
+  std::vector<Entry> entries;
 
-  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {
+  [[nodiscard]] std::span<const Entry> of(std::uint32_t vertex) const {
     return std::span(entries).subspan(first[vertex], first[vertex + 1] - first[vertex]);
   }
 };

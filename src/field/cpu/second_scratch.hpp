@@ -10,26 +10,52 @@
 
 namespace blum::cpu {
 
-/// Whole numbers of prepared candidates, read lane by lane.
-class LeafWords {
- public:
-  void reset(std::size_t columns, std::size_t capacity) {
-    stride_ = (capacity + 31) / 16 * 16;
-    if (values_.size() < columns * stride_) values_ = Buffer<std::uint32_t>(columns * stride_ * 2);
-  }
-  [[nodiscard]] std::uint32_t* column(std::size_t c) { return values_.data() + c * stride_; }
-  [[nodiscard]] const std::uint32_t* column(std::size_t c) const { return values_.data() + c * stride_; }
+/// A box of up to 8 x 8 x 8 nodes, its nodes sorted by what may be second at them: node (i, j, k) is i + 8 j + 64 k.
+/// Whole vectors may be read and written past the end of all arrays.
+struct SecondCell {
+  static constexpr std::int64_t side = 8;
+  static constexpr std::size_t nodes = 512;
+  static constexpr std::size_t padding = 64;
+  static constexpr std::uint16_t no_group = 0xffff;
 
- private:
-  Buffer<std::uint32_t> values_;
-  std::size_t stride_ = 0;
+  /// Nodes in a row (never of two rows) with the same first site.
+  struct Run {
+    std::uint16_t node = 0;
+    std::uint16_t length = 0;
+    std::uint16_t group = no_group;
+    std::uint16_t next = 0;  ///< run of the same group
+    std::uint16_t at = 0;    ///< where its nodes are in the arrays below
+  };
+  /// Nodes beside which the same sites may be second.
+  struct Group {
+    std::uint8_t eighth = 0;  ///< of the cell, where groups keep to them
+    std::uint32_t site = 0;  ///< a first site
+    std::uint32_t key = 0;
+    std::uint16_t first_run = 0, last_run = 0;
+    std::uint16_t begin = 0, end = 0;
+    SecondLabels::OfSite labels{};
+    Vec3f center, half;  ///< of a box around its nodes, from the cell's middle
+    float bound = 0;     ///< no second site has its point, line or plane further than this from the centre
+  };
+
+  alignas(64) std::array<std::uint32_t, nodes + padding> first;  ///< by node; dead_record: none, or no node
+  std::array<Run, nodes> runs;
+  std::size_t run_count = 0;
+  std::array<Group, nodes> groups;
+  std::size_t group_count = 0;
+  std::array<std::uint16_t, 1024> table;  ///< finds groups: their number and 1
+  // By group:
+  alignas(64) std::array<float, nodes + padding> x, y, z;  ///< from the cell's middle
+  alignas(64) std::array<float, nodes + padding> squared;
+  alignas(64) std::array<std::uint32_t, nodes + padding> id;
+  // By node:
+  alignas(64) std::array<float, nodes + padding> distance;
+  alignas(64) std::array<std::uint32_t, nodes + padding> site;
 };
 
 struct SecondScratch::Impl {
   TileScratch tile;
-  std::array<LeafWords, 3> labels;   ///< of the candidates of a box of 8^3 nodes; vertices have one, edges two
-  std::array<LeafWords, 3> allowed;  ///< of the leaf at hand: a bit for each first site beside which they may be second
-  std::array<std::vector<std::uint16_t>, 3> saved_bits;
+  SecondCell cell;
   std::vector<std::uint32_t> links;  ///< of the first site at hand
   std::vector<float> link_distances;
 };
