@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "field/cpu/halving-inl.hpp"
+#include "field/cpu/leaf-inl.hpp"
 #include "field/cpu/second_kernel.hpp"
 #include "field/cpu/second_scratch.hpp"
 
@@ -38,12 +38,13 @@ HWY_INLINE Vec positions_at(const SecondCell& cell, std::size_t at) {
   return {hn::LoadU(d, cell.x.data() + at), hn::LoadU(d, cell.y.data() + at), hn::LoadU(d, cell.z.data() + at)};
 }
 
+/// Of the nodes along each axis, from the cell's middle; whole vectors may be read from each.
+using CellPositions = std::array<std::array<float, 16>, 3>;
+
 /// Sorts the nodes of a cell into groups.
 class CellSorter {
  public:
-  /// @param keys  of every site: sites of one key exclude the same ones; null: each site has its own. With keys, groups
-  ///              also keep to eighths of the cell, for boxes around them that are small.
-  CellSorter(SecondCell& cell, const std::uint32_t* keys) : cell_(cell), keys_(keys) {}
+  explicit CellSorter(SecondCell& cell) : cell_(cell) {}
 
   void find_groups(const std::array<std::int64_t, 3>& count) {
     cell_.run_count = 0;
@@ -55,7 +56,7 @@ class CellSorter {
   }
 
   /// Writes the positions of all nodes, group after group; whole vectors, of which the next run overwrites the rest.
-  void place(const std::array<std::array<float, 8>, 3>& at) {
+  void place(const CellPositions& at) {
     std::size_t place = 0;
     for (std::size_t g = 0; g < cell_.group_count; ++g) {
       SecondCell::Group& group = cell_.groups[g];
@@ -63,8 +64,7 @@ class CellSorter {
       for (std::size_t r = group.first_run;; r = cell_.runs[r].next) {
         SecondCell::Run& run = cell_.runs[r];
         run.at = static_cast<std::uint16_t>(place);
-        const std::size_t i = run.node % 8;
-        std::memcpy(cell_.x.data() + place, at[0].data() + i, sizeof(float) * (8 - i));
+        std::memcpy(cell_.x.data() + place, at[0].data() + run.node % 8, 8 * sizeof(float));
         std::fill_n(cell_.y.data() + place, 8, at[1][run.node / 8 % 8]);
         std::fill_n(cell_.z.data() + place, 8, at[2][run.node / 64]);
         place += run.length;
@@ -79,7 +79,7 @@ class CellSorter {
     const std::uint32_t* sites = cell_.first.data() + first_node;
     std::size_t begin = 0;
     for (std::size_t i = 1; i <= static_cast<std::size_t>(count); ++i) {
-      const bool is_end = i == static_cast<std::size_t>(count) || (keys_ != nullptr && i == 4);
+      const bool is_end = i == static_cast<std::size_t>(count);
       if (!is_end && sites[i] == sites[begin]) continue;
       add_run(first_node + begin, i - begin, sites[begin]);
       begin = i;
@@ -91,14 +91,12 @@ class CellSorter {
     SecondCell::Run& run = cell_.runs[r];
     run = {static_cast<std::uint16_t>(node), static_cast<std::uint16_t>(length), SecondCell::no_group, 0, 0};
     if (site == dead_record) return;
-    const std::size_t eighth = (node >> 2 & 1) | (node >> 5 & 1) << 1 | (node >> 8) << 2;
-    const std::uint32_t key = keys_ == nullptr ? site : keys_[site];
-    const std::uint32_t hash = (key + (keys_ == nullptr ? 0 : static_cast<std::uint32_t>(eighth) << 27)) * 0x9e3779b1U;
+    const std::uint32_t hash = site * 0x9e3779b1U;
     for (std::size_t slot = hash >> 22;; slot = (slot + 1) % cell_.table.size()) {
       const std::uint16_t found = cell_.table[slot];
-      if (found == 0) return add_group(r, slot, site, key, eighth);
+      if (found == 0) return add_group(r, slot, site);
       SecondCell::Group& group = cell_.groups[found - 1U];
-      if (group.key != key || (keys_ != nullptr && group.eighth != eighth)) continue;
+      if (group.site != site) continue;
       run.group = static_cast<std::uint16_t>(found - 1);
       cell_.runs[group.last_run].next = static_cast<std::uint16_t>(r);
       group.last_run = static_cast<std::uint16_t>(r);
@@ -106,19 +104,16 @@ class CellSorter {
     }
   }
 
-  void add_group(std::size_t r, std::size_t slot, std::uint32_t site, std::uint32_t key, std::size_t eighth) {
+  void add_group(std::size_t r, std::size_t slot, std::uint32_t site) {
     const std::size_t g = cell_.group_count++;
     cell_.table[slot] = static_cast<std::uint16_t>(g + 1);
     cell_.runs[r].group = static_cast<std::uint16_t>(g);
     SecondCell::Group& group = cell_.groups[g];
     group.site = site;
-    group.key = key;
-    group.eighth = static_cast<std::uint8_t>(eighth);
     group.first_run = group.last_run = static_cast<std::uint16_t>(r);
   }
 
   SecondCell& cell_;
-  const std::uint32_t* keys_;
 };
 
 /// Offers closed segments to the nodes of a group, which have nothing yet. It writes past the end of the group: groups
@@ -151,174 +146,114 @@ HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const Second
   }
 }
 
-/// Finds the box around a group's nodes, and bounds its candidates by what the nodes have.
-HWY_INLINE void find_extent(const SecondCell& cell, SecondCell::Group& group) {
-  Vec low = set(Vec3f{1e30F, 1e30F, 1e30F});
-  Vec high = set(Vec3f{-1e30F, -1e30F, -1e30F});
-  V worst = hn::Zero(d);
-  for (std::size_t at = group.begin; at < group.end; at += lanes) {
-    const M is_here = hn::FirstN(d, group.end - at);
-    const Vec p = positions_at(cell, at);
-    const auto lower = [&](V bound, V value) { return hn::Min(bound, hn::IfThenElse(is_here, value, bound)); };
-    const auto upper = [&](V bound, V value) { return hn::Max(bound, hn::IfThenElse(is_here, value, bound)); };
-    low = {lower(low.x, p.x), lower(low.y, p.y), lower(low.z, p.z)};
-    high = {upper(high.x, p.x), upper(high.y, p.y), upper(high.z, p.z)};
-    worst = upper(worst, hn::LoadU(d, cell.squared.data() + at));
+/// A ball around the nodes of a group, from the cell's middle.
+struct GroupBall {
+  Vec3f center;
+  float radius = 0;
+};
+HWY_INLINE GroupBall ball_of(const SecondCell& cell, const SecondCell::Group& group) {
+  Vec3f low{1e30F, 1e30F, 1e30F};
+  Vec3f high = low * -1.0F;
+  for (std::size_t at = group.begin; at < group.end; ++at) {
+    const Vec3f p{cell.x[at], cell.y[at], cell.z[at]};
+    low = min(low, p);
+    high = max(high, p);
   }
-  const auto least = [](V v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
-  const auto most = [](V v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
-  const Vec3f lower{least(low.x), least(low.y), least(low.z)};
-  const Vec3f upper{most(high.x), most(high.y), most(high.z)};
-  group.center = (lower + upper) * 0.5F;
-  group.half = (upper - lower) * 0.5F + Vec3f{box_slack, box_slack, box_slack};
-  const float squared = most(worst);
-  group.bound = squared < no_distance ? std::sqrt(squared) * 1.00001F + length(group.half) + box_slack : 1e18F;
+  return {(low + high) * 0.5F, length(high - low) * 0.50001F + box_slack};
 }
 
-/// The squared distance of a point, `offset` from where a block was made, from each candidate's point, line or plane.
-HWY_INLINE V squared_from_flat(const VertexBlock& block, const Vec& offset) {
-  const Vec to_site = block.to_site + offset;
-  return dot(to_site, to_site);
-}
-HWY_INLINE V squared_from_flat(const EdgeBlock& block, const Vec& offset) {
-  return hn::Add(square(hn::Add(block.across_b, dot(block.b, offset))),
-                 square(hn::Add(block.across_n, dot(block.n, offset))));
-}
-HWY_INLINE V squared_from_flat(const FaceBlock& block, const Vec& offset) {
-  return square(hn::Add(block.height, dot(block.n, offset)));
-}
+/// The first sites of a leaf and its seconds so far.
+struct SecondLeaf {
+  alignas(64) std::array<std::uint32_t, leaf_nodes> first;  ///< dead_record where there is none
+  alignas(64) std::array<float, leaf_nodes> squared;
+  alignas(64) std::array<std::uint32_t, leaf_nodes> id;
+  /// Labels of the first sites, found when they are asked for.
+  alignas(64) std::array<std::array<std::uint32_t, leaf_nodes>, 3> labels;
+  bool has_labels = false;
 
-/// The labels of a block of candidates: one column for vertices, two for edges, three for faces.
-template <Kind kind>
-struct BlockLabels {
-  static constexpr std::size_t columns = kind == vertex_kind ? 1 : kind == edge_kind ? 2 : 3;
-  VI label[columns];
-
-  BlockLabels(const RecordList& list, std::size_t first, std::span<const SecondLabels::OfSite> labels) {
-    alignas(64) std::array<std::array<std::uint32_t, 16>, columns> values{};
-    const std::size_t end = std::min(list.count(), first + lanes);
-    for (std::size_t at = first; at < end; ++at) {
-      const SecondLabels::OfSite& of_site = labels[list[at].id];
-      for (std::size_t c = 0; c < columns; ++c) values[c][at - first] = of_site[c];
+  void find_labels(std::span<const SecondLabels::OfSite> of_site) {
+    has_labels = true;
+    for (std::size_t node = 0; node < leaf_nodes; ++node) {
+      const bool has_first = first[node] != dead_record;
+      for (std::size_t k = 0; k < 3; ++k) labels[k][node] = has_first ? of_site[first[node]][k] : dead_record;
     }
-    for (std::size_t c = 0; c < columns; ++c) label[c] = hn::Load(di, values[c].data());
-  }
-
-  /// Where none is one of these three.
-  HWY_INLINE M has_none_of(const SecondLabels::OfSite& others) const {
-    auto has = hn::Eq(label[0], hn::Set(di, others[0]));
-    for (std::size_t c = 0; c < columns; ++c) {
-      for (std::size_t k = c == 0 ? 1 : 0; k < 3; ++k) has = hn::Or(has, hn::Eq(label[c], hn::Set(di, others[k])));
-    }
-    return hn::RebindMask(d, hn::Not(has));
   }
 };
 
-/// Lets a candidate win nodes of a group where `inside` is negative.
-struct GroupOffer {
-  SecondCell& cell;
-  const SecondCell::Group& group;
+/// Offers candidates to the nodes of a leaf. Mostly no candidate but a node's first site is as close as what the node
+/// has, so that labels are looked at only where one is.
+struct SecondPass : LeafEvaluation<SecondPass, false> {
+  SecondLeaf& leaf;
+  std::size_t first_node;
+  std::span<const SecondLabels::OfSite> labels;
 
-  template <class Evaluate>
-  HWY_INLINE void run(std::uint32_t candidate_id, Evaluate evaluate) const {
-    const V id = set_id(candidate_id);
-    for (std::size_t at = group.begin; at < group.end; at += lanes) {
-      V inside;
-      V squared;
-      evaluate(positions_at(cell, at), inside, squared);
-      const V best = hn::LoadU(d, cell.squared.data() + at);
-      const V best_id = hn::BitCast(d, hn::LoadU(di, cell.id.data() + at));
-      const M is_inside = hn::RebindMask(d, hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(ds, inside))));
-      // What lies past the end of the group is another's.
-      const M is_here = hn::And(is_inside, hn::FirstN(d, group.end - at));
-      const M wins = hn::And(is_here, is_better(squared, id, best, best_id));
-      if (hn::AllFalse(d, wins)) continue;
-      hn::StoreU(hn::IfThenElse(wins, squared, best), d, cell.squared.data() + at);
-      hn::StoreU(hn::BitCast(di, hn::IfThenElse(wins, id, best_id)), di, cell.id.data() + at);
+  SecondPass(const LeafPattern::Pass& pattern, std::size_t node, std::span<const SecondLabels::OfSite> of_site,
+             SecondLeaf& of_leaf)
+      : LeafEvaluation<SecondPass, false>(pattern), leaf(of_leaf), first_node(node), labels(of_site) {}
+
+  HWY_INLINE void take(std::size_t k, V inside, V squared, V id, V /*side*/) {
+    const std::size_t node = first_node + k * lanes;
+    const M is_inside = hn::RebindMask(d, hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(ds, inside))));
+    const M is_close = hn::Le(squared, hn::Load(d, leaf.squared.data() + node));
+    const M is_other = hn::RebindMask(d, hn::Ne(hn::BitCast(di, id), hn::Load(di, leaf.first.data() + node)));
+    const M wins = hn::And(hn::And(is_inside, is_close), is_other);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, wins))) settle(node, wins, squared, id);
+  }
+
+  /// Lets the candidate win where it may be second, if it does.
+  HWY_NOINLINE void settle(std::size_t node, M wins, V squared, V id) {
+    if (!leaf.has_labels) leaf.find_labels(labels);
+    const SecondLabels::OfSite own = labels[hn::GetLane(hn::BitCast(di, id))];
+    for (const std::array<std::uint32_t, leaf_nodes>& of_first : leaf.labels) {
+      const VI label = hn::Load(di, of_first.data() + node);
+      for (const std::uint32_t one : own) wins = hn::AndNot(hn::RebindMask(d, hn::Eq(label, hn::Set(di, one))), wins);
     }
-  }
-
-  HWY_INLINE void vertex(const Record& record, const Vec3f& middle) const {
-    const Vec site = set(vec_at(record, VertexColumns::position) - middle);
-    run(record.id, [&](const Vec& at, V& inside, V& squared) {
-      const Vec from = at - site;
-      inside = set(-1.0F);
-      for (int k = 0; k < 4; ++k) {
-        const Vec direction = set(vec_at(record, VertexColumns::direction + 3 * k));
-        inside = hn::And(inside, hn::Sub(dot(from, direction), set(plane_slack)));
-      }
-      squared = dot(from, from);
-    });
-  }
-
-  HWY_INLINE void edge(const Record& record, const Vec3f& middle) const {
-    const Vec3f tangent = vec_at(record, EdgeColumns::tangent);
-    const Vec3f binormal = vec_at(record, EdgeColumns::binormal);
-    const Vec site = set(vec_at(record, EdgeColumns::midpoint) - middle);
-    const Vec t = set(tangent);
-    const Vec b = set(binormal);
-    const Vec n = set(blum::cross(tangent, binormal));
-    run(record.id, [&](const Vec& at, V& inside, V& squared) {
-      const Vec from = at - site;
-      const V across_b = dot(from, b);
-      const V across_n = dot(from, n);
-      // Beyond its ends the edge is as far as its end: the excess keeps the distance exact within the slack.
-      const V excess = hn::Sub(hn::Abs(dot(from, t)), set(value_at(record, EdgeColumns::half_length)));
-      const V beyond = hn::Max(excess, hn::Zero(d));
-      const V second = hn::MulAdd(set(value_at(record, EdgeColumns::second_b)), across_b,
-                                  hn::MulSub(set(value_at(record, EdgeColumns::second_n)), across_n, set(plane_slack)));
-      const V first = hn::Sub(across_b, set(value_at(record, EdgeColumns::first_limit)));
-      inside = hn::And(hn::And(hn::Sub(excess, set(plane_slack)), first), second);
-      squared = hn::MulAdd(across_b, across_b, hn::MulAdd(across_n, across_n, hn::Mul(beyond, beyond)));
-    });
-  }
-
-  HWY_INLINE void face(const Record& record, const Vec3f& middle) const {
-    const Vec site = set(vec_at(record, FaceColumns::anchor) - middle);
-    run(record.id, [&](const Vec& at, V& inside, V& squared) {
-      const Vec from = at - site;
-      const V minus_u = dot(from, set(vec_at(record, FaceColumns::minus_u)));
-      const V minus_v = dot(from, set(vec_at(record, FaceColumns::minus_v)));
-      const V minus_w = hn::Sub(hn::Sub(set(-1.0F), minus_u), minus_v);
-      inside = hn::And(hn::And(minus_u, minus_v), minus_w);
-      squared = square(dot(from, set(vec_at(record, FaceColumns::normal))));
-    });
-  }
-
-  template <Kind kind>
-  HWY_INLINE void record(const Record& record, const Vec3f& middle) const {
-    if constexpr (kind == vertex_kind) vertex(record, middle);
-    if constexpr (kind == edge_kind) edge(record, middle);
-    if constexpr (kind == face_kind) face(record, middle);
+    const V best = hn::Load(d, leaf.squared.data() + node);
+    const V best_id = hn::BitCast(d, hn::Load(di, leaf.id.data() + node));
+    wins = hn::And(wins, is_better(squared, id, best, best_id));
+    hn::Store(hn::IfThenElse(wins, squared, best), d, leaf.squared.data() + node);
+    hn::Store(hn::BitCast(di, hn::IfThenElse(wins, id, best_id)), di, leaf.id.data() + node);
   }
 };
 
-/// Offers the candidates of a kind to all groups of a cell.
+/// The squared distance of the leaf's centre, `offset` from what the columns were written for, from each candidate's
+/// point, line or plane.
 template <Kind kind>
-HWY_NOINLINE void offer_candidates(const RecordList& list, const Vec3f& middle,
-                                   std::span<const SecondLabels::OfSite> labels, SecondCell& cell) {
-  NoClosest closest;
-  for (std::size_t first = 0; first < list.count(); first += lanes) {
-    Columns columns;
-    load_columns(list.data() + first, columns);
-    const typename BlockOf<kind>::type block(columns, set(middle));
-    const BlockLabels<kind> block_labels(list, first, labels);
-    const M valid = Lanes(first, list.count()).valid;
-    for (std::size_t g = 0; g < cell.group_count; ++g) {
-      const SecondCell::Group& group = cell.groups[g];
-      const M is_near = hn::Le(squared_from_flat(block, set(group.center)), set(group.bound * group.bound));
-      M keep = hn::And(hn::And(valid, is_near), block_labels.has_none_of(group.labels));
-      if (hn::AllFalse(d, keep)) continue;
-      const BlockTest<1> test(middle + group.center, group.half, Dominators{{middle + group.center}, 0});
-      const typename BlockOf<kind>::type here(columns, test.middle);
-      V worst[1];
-      test.run(here, keep, hn::Zero(di), worst, closest);
-      keep = hn::And(keep, hn::Le(worst[0], hn::Zero(d)));
-      const GroupOffer offer{cell, group};
-      for (std::uint32_t kept = bits(keep); kept != 0; kept &= kept - 1) {
-        offer.template record<kind>(list[first + static_cast<std::size_t>(std::countr_zero(kept))], middle);
-      }
-    }
+HWY_INLINE V squared_from_flat(const LeafColumns& in, std::size_t b, const Vec& offset) {
+  const auto at = [&](int column) { return hn::Load(d, in.column(static_cast<std::size_t>(column)) + b * lanes); };
+  const auto affine = [&](int column) {
+    return hn::Add(at(column), dot(Vec{at(column + 1), at(column + 2), at(column + 3)}, offset));
+  };
+  if constexpr (kind == vertex_kind) {
+    const Vec to_site = Vec{at(LeafVertex::to_site), at(LeafVertex::to_site + 1), at(LeafVertex::to_site + 2)} + offset;
+    return dot(to_site, to_site);
+  } else if constexpr (kind == edge_kind) {
+    return hn::Add(square(affine(LeafEdge::across_b)), square(affine(LeafEdge::across_n)));
+  } else {
+    return square(affine(LeafFace::height));
+  }
+}
+
+/// Drops candidates that are further than `bound` from the leaf's centre.
+template <Kind kind>
+HWY_INLINE void keep_near(const LeafInput& input, const Vec& offset, float bound) {
+  std::uint16_t* words = input.bits[kind].child(input.child);
+  const V limit = set(bound * bound);
+  for (std::size_t b = 0; b < input.bits[kind].blocks(); ++b) {
+    if (words[b] == 0) continue;
+    const M is_near = hn::Le(squared_from_flat<kind>(input.columns[kind], b, offset), limit);
+    words[b] = static_cast<std::uint16_t>(words[b] & bits(is_near));
+  }
+}
+
+HWY_NOINLINE void evaluate_second(const LeafInput& input, const LeafPattern& pattern,
+                                  std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
+  const std::vector<Vec3f> no_sides;
+  for (std::size_t index = 0; index < passes; ++index) {
+    SecondPass pass(pattern.pass[index], index * pass_nodes, labels, leaf);
+    for_each_candidate<vertex_kind>(input, [&](std::size_t i) { pass.vertex(input.columns[0], i, no_sides); });
+    for_each_candidate<edge_kind>(input, [&](std::size_t i) { pass.edge(input.columns[1], i); });
+    for_each_candidate<face_kind>(input, [&](std::size_t i) { pass.face(input.columns[2], i); });
   }
 }
 

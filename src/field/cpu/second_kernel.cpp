@@ -19,6 +19,7 @@ constexpr std::size_t most_clusters = 8000;
 constexpr std::int64_t smallest_tile = 16;
 /// Links of a site beyond this are first cut down to those that are near.
 constexpr std::size_t many_links = 32;
+constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
 /// Surface points that bound how far the second site is: of two that are apart, one may be second wherever anything is
 /// first, so that a second site is no further than the further of the two. One alone where it may be second at all
@@ -79,7 +80,15 @@ class SecondWorker {
         mine_(scratch.impl()),
         scratch_(mine_.tile.impl()),
         cell_(mine_.cell),
-        unsettled_(scratch.unsettled) {}
+        unsettled_(scratch.unsettled) {
+    for (std::size_t c = 0; c < 8; ++c) {
+      Vec3d first;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        first[axis] = field_.spacing[axis] * (((c >> axis) & 1) != 0 ? 0.5 : -3.5);
+      }
+      full_patterns_[c] = LeafPattern(first, field_.spacing);
+    }
+  }
 
   void tile(const NodeBox& box, std::int64_t size) {
     if (field_.cancel.stop_requested()) return;
@@ -265,31 +274,42 @@ class SecondWorker {
 
   void cell(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
     read_firsts(box);
-    CellSorter sorter(cell_, job_.keys.empty() ? nullptr : job_.keys.data());
+    if (job_.links != nullptr) {
+      offer_all_links(box);
+    } else {
+      cell_.distance.fill(no_distance);
+      cell_.site.fill(nobody);
+    }
+    const Halving parts = halve(field_, box, SecondCell::side);
+    TileScratch::Impl::Level& here = scratch_.levels.back();
+    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+      scratch_.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
+    }
+    NoClosest closest;
+    halve_kinds(BoundedTest<8>(parts, bounds), candidates, here.bits, closest,
+                [&](std::size_t kind) { return LeafStore{scratch_.leaf[kind]}; });
+    const bool is_full = box.count == std::array<std::int64_t, 3>{8, 8, 8};
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (!parts.exists[c]) continue;
+      const LeafInput input{scratch_.leaf, here.bits, c};
+      const LeafPattern& pattern = is_full ? full_patterns_[c] : (pattern_ = pattern_of(parts.child[c], parts.middle));
+      leaf(parts.child[c], input, candidates[sliver_kind], pattern, parts.middle);
+    }
+    write(box);
+  }
+
+  void offer_all_links(const NodeBox& box) {
+    CellSorter sorter(cell_);
     sorter.find_groups(box.count);
     const Vec3f middle = centered(field_, box).center;
     sorter.place(positions(box, middle));
-    if (job_.links == nullptr) {
-      cell_.squared.fill(no_distance);
-      cell_.id.fill(nobody);
-    }
     for (std::size_t g = 0; g < cell_.group_count; ++g) {
-      SecondCell::Group& group = cell_.groups[g];
-      group.labels = job_.labels[group.site];
-      if (job_.links != nullptr) {
-        find_links(group.labels);
-        if (mine_.links.size() > many_links) keep_near_links(middle, group);
-        offer_links(mine_.links, *job_.links, middle, group, cell_);
-      }
-      find_extent(cell_, group);
-      bound_by_points(bounds, middle, group);
+      const SecondCell::Group& group = cell_.groups[g];
+      find_links(job_.labels[group.site]);
+      if (mine_.links.size() > many_links) keep_near_links(middle, group);
+      offer_links(mine_.links, *job_.links, middle, group, cell_);
     }
-    offer_candidates<vertex_kind>(candidates[vertex_kind], middle, job_.labels, cell_);
-    offer_candidates<edge_kind>(candidates[edge_kind], middle, job_.labels, cell_);
-    offer_candidates<face_kind>(candidates[face_kind], middle, job_.labels, cell_);
-    for (std::size_t k = 0; k < candidates[sliver_kind].count(); ++k) offer_sliver(candidates[sliver_kind][k], middle);
     unsort(cell_);
-    write(box);
   }
 
   void read_firsts(const NodeBox& box) {
@@ -307,9 +327,8 @@ class SecondWorker {
     return 8 * (row % rows) + 64 * (row / rows);
   }
 
-  /// Of the nodes along each axis, from the cell's middle.
-  [[nodiscard]] std::array<std::array<float, 8>, 3> positions(const NodeBox& box, const Vec3f& middle) const {
-    std::array<std::array<float, 8>, 3> out{};
+  [[nodiscard]] CellPositions positions(const NodeBox& box, const Vec3f& middle) const {
+    CellPositions out{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < 8; ++k) {
         const double index = static_cast<double>(box.first[axis] + static_cast<std::int64_t>(k));
@@ -319,13 +338,87 @@ class SecondWorker {
     return out;
   }
 
-  /// Where a point may be second at all nodes of a group, no second site is further.
-  static void bound_by_points(const Bounds& bounds, const Vec3f& middle, SecondCell::Group& group) {
-    const float radius = length(group.half) + box_slack;
-    for (std::size_t k = 0; k < bounds.count; ++k) {
-      if (share_label(bounds.labels[k], group.labels)) continue;
-      const float distance = length(middle + group.center - bounds.point[k]);
-      group.bound = std::min(group.bound, distance * 1.00001F + 2 * radius);
+  // --- leaves
+
+  [[nodiscard]] LeafPattern pattern_of(const NodeBox& box, const Vec3f& middle) const {
+    Vec3d first;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] =
+          field_.first_node[axis] + static_cast<double>(box.first[axis]) * field_.spacing[axis] - middle[axis];
+    }
+    return {first, field_.spacing};
+  }
+
+  void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, const LeafPattern& pattern,
+            const Vec3f& middle) {
+    SecondLeaf state;
+    const std::size_t begin = ((input.child & 1) != 0 ? 4 : 0) + ((input.child & 2) != 0 ? 32 : 0) +
+                              ((input.child & 4) != 0 ? 256 : 0);
+    const auto each_row = [&](auto use) {
+      for (std::size_t row = 0; row < 16; ++row) use(begin + 8 * (row % 4) + 64 * (row / 4), 4 * row);
+    };
+    each_row([&](std::size_t from, std::size_t to) {
+      std::memcpy(state.first.data() + to, cell_.first.data() + from, 16);
+      std::memcpy(state.squared.data() + to, cell_.distance.data() + from, 16);
+      std::memcpy(state.id.data() + to, cell_.site.data() + from, 16);
+    });
+    forget_beyond(box, state);
+    const CenteredBox place = centered(field_, box);
+    const float bound = furthest(state) + length(place.half) * 1.0001F + 4 * box_slack;
+    const Vec offset = set(place.center - middle);
+    keep_near<vertex_kind>(input, offset, bound);
+    keep_near<edge_kind>(input, offset, bound);
+    keep_near<face_kind>(input, offset, bound);
+    evaluate_second(input, pattern, job_.labels, state);
+    for (std::size_t k = 0; k < slivers.count(); ++k) {
+      const Vec3d center = to_double(place.center);
+      if (length(center - closest_on_sliver(slivers[k], center)) <= bound) offer_sliver(slivers[k], box, state);
+    }
+    each_row([&](std::size_t to, std::size_t from) {
+      std::memcpy(cell_.distance.data() + to, state.squared.data() + from, 16);
+      std::memcpy(cell_.site.data() + to, state.id.data() + from, 16);
+    });
+  }
+
+  /// Where a leaf has no node, or the node is beyond the band, nothing is first and nothing can be second.
+  static void forget_beyond(const NodeBox& box, SecondLeaf& state) {
+    for (std::size_t node = 0; node < leaf_nodes; ++node) {
+      const bool is_node = static_cast<std::int64_t>(node % 4) < box.count[0] &&
+                           static_cast<std::int64_t>(node / 4 % 4) < box.count[1] &&
+                           static_cast<std::int64_t>(node / 16) < box.count[2];
+      if (!is_node) state.first[node] = dead_record;
+    }
+    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
+      const M has_first = hn::RebindMask(d, hn::Ne(hn::Load(di, state.first.data() + node), hn::Set(di, dead_record)));
+      const V squared = hn::Load(d, state.squared.data() + node);
+      hn::Store(hn::IfThenElse(has_first, squared, set(-1.0F)), d, state.squared.data() + node);
+    }
+  }
+
+  /// The largest distance that a node has so far; without bound where one has none.
+  static float furthest(const SecondLeaf& state) {
+    V worst = hn::Zero(d);
+    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
+      worst = hn::Max(worst, hn::Load(d, state.squared.data() + node));
+    }
+    const float squared = hn::GetLane(hn::MaxOfLanes(d, worst));
+    return squared < no_distance ? std::sqrt(squared) * 1.00001F : 1e18F;
+  }
+
+  void offer_sliver(const Record& sliver, const NodeBox& box, SecondLeaf& state) const {
+    for (std::size_t node = 0; node < leaf_nodes; ++node) {
+      if (state.first[node] == dead_record) continue;
+      if (share_label(job_.labels[state.first[node]], job_.labels[sliver.id])) continue;
+      const std::array<std::size_t, 3> at{node % 4, node / 4 % 4, node / 16};
+      Vec3d query;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        query[axis] = field_.first_node[axis] +
+                      field_.spacing[axis] * static_cast<double>(box.first[axis] + static_cast<std::int64_t>(at[axis]));
+      }
+      const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
+      if (squared > state.squared[node] || (squared == state.squared[node] && sliver.id >= state.id[node])) continue;
+      state.squared[node] = squared;
+      state.id[node] = sliver.id;
     }
   }
 
@@ -342,10 +435,9 @@ class SecondWorker {
   }
 
   /// Of many links, those that any node of a group may be closest to.
-  void keep_near_links(const Vec3f& middle, SecondCell::Group& group) {
-    find_extent(cell_, group);  // what its nodes have does not matter yet
-    const Vec3f center = middle + group.center;
-    const float radius = length(group.half) + box_slack;
+  void keep_near_links(const Vec3f& middle, const SecondCell::Group& group) {
+    const GroupBall ball = ball_of(cell_, group);
+    const Vec3f center = middle + ball.center;
     mine_.link_distances.resize(mine_.links.size());
     float nearest = std::numeric_limits<float>::infinity();
     for (std::size_t k = 0; k < mine_.links.size(); ++k) {
@@ -355,7 +447,7 @@ class SecondWorker {
       mine_.link_distances[k] = length(from - segment.tangent * along);
       nearest = std::min(nearest, mine_.link_distances[k]);
     }
-    const float furthest_of_use = (nearest + 2 * radius) * 1.00001F;
+    const float furthest_of_use = (nearest + 2 * ball.radius) * 1.00001F;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < mine_.links.size(); ++k) {
       if (mine_.link_distances[k] <= furthest_of_use) mine_.links[kept++] = mine_.links[k];
@@ -363,62 +455,40 @@ class SecondWorker {
     mine_.links.resize(kept);
   }
 
-  void offer_sliver(const Record& sliver, const Vec3f& middle) {
-    for (std::size_t g = 0; g < cell_.group_count; ++g) {
-      const SecondCell::Group& group = cell_.groups[g];
-      if (share_label(group.labels, job_.labels[sliver.id])) continue;
-      const Vec3d center = to_double(middle + group.center);
-      if (length(center - closest_on_sliver(sliver, center)) > group.bound) continue;
-      for (std::size_t at = group.begin; at < group.end; ++at) {
-        const Vec3d query = to_double(middle) + to_double(Vec3f{cell_.x[at], cell_.y[at], cell_.z[at]});
-        const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
-        if (squared > cell_.squared[at] || (squared == cell_.squared[at] && sliver.id >= cell_.id[at])) continue;
-        cell_.squared[at] = squared;
-        cell_.id[at] = sliver.id;
-      }
-    }
-  }
-
   HWY_NOINLINE void write(const NodeBox& box) {
     const V none = set(limit());
     M open = hn::FirstN(d, 0);
     for (std::size_t node = 0; node < static_cast<std::size_t>(64 * box.count[2]); node += lanes) {
       const V squared = hn::Load(d, cell_.distance.data() + node);
-      const V value = hn::Mul(hn::Sqrt(squared), set(field_.to_world));
+      const V value = hn::Mul(hn::Sqrt(hn::Abs(squared)), set(field_.to_world));
       const M has_none = hn::Ge(squared, set(no_distance));
-      const M is_beyond = hn::Or(has_none, hn::Gt(value, none));
+      const M has_no_first = hn::Lt(squared, hn::Zero(d));
+      const M is_beyond = hn::Or(hn::Or(has_none, has_no_first), hn::Gt(value, none));
       open = hn::Or(open, has_none);
       hn::Store(hn::IfThenElse(is_beyond, none, value), d, cell_.distance.data() + node);
       const VI id = hn::Load(di, cell_.site.data() + node);
-      hn::Store(hn::IfThenElse(hn::RebindMask(di, is_beyond), hn::Set(di, dead_record), id), di,
-                cell_.site.data() + node);
+      // What nobody has claimed is looked at once more.
+      const auto is_settled = hn::RebindMask(di, hn::AndNot(has_none, is_beyond));
+      hn::Store(hn::IfThenElse(is_settled, hn::Set(di, dead_record), id), di, cell_.site.data() + node);
     }
+    const bool has_open = !hn::AllFalse(d, open);
     std::size_t row = 0;
     (void)all_rows(box, [&](std::size_t node) {
       const std::size_t from = first_of_row(box, row++);
+      if (has_open) report_open(box, from, node);
       std::copy_n(cell_.distance.data() + from, box.count[0], job_.request.distance2 + node);
       std::copy_n(cell_.site.data() + from, box.count[0], job_.request.site2 + node);
       return true;
     });
-    if (!hn::AllFalse(d, open)) report_open(box);
   }
 
   /// Nodes that nothing has claimed, although there is something that may be second.
-  void report_open(const NodeBox& box) {
-    for (std::size_t r = 0; r < cell_.run_count; ++r) {
-      const SecondCell::Run& run = cell_.runs[r];
-      if (run.group == SecondCell::no_group) continue;
-      if (!job_.request.labels->has_second(cell_.groups[run.group].labels)) continue;
-      for (std::size_t k = 0; k < run.length; ++k) {
-        if (cell_.squared[run.at + k] < no_distance) continue;
-        const std::size_t node = run.node + k;
-        const std::array<std::size_t, 3> in_cell{node % 8, node / 8 % 8, node / 64};
-        std::int64_t index = 0;
-        for (std::size_t axis = 3; axis-- > 0;) {
-          index = index * field_.request.grid.size[axis] + box.first[axis] + static_cast<std::int64_t>(in_cell[axis]);
-        }
-        unsettled_.push_back(static_cast<std::size_t>(index));
-      }
+  void report_open(const NodeBox& box, std::size_t from, std::size_t node) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
+      const std::uint32_t first = cell_.first[from + i];
+      if (first == dead_record || cell_.site[from + i] != nobody) continue;
+      if (job_.request.labels->has_second(job_.labels[first])) unsettled_.push_back(node + i);
+      cell_.site[from + i] = dead_record;
     }
   }
 
@@ -428,6 +498,8 @@ class SecondWorker {
   TileScratch::Impl& scratch_;
   SecondCell& cell_;
   std::vector<std::size_t>& unsettled_;
+  std::array<LeafPattern, 8> full_patterns_;
+  LeafPattern pattern_;  ///< of the leaf at hand, where it is cut off
   const OfSite* only_ = nullptr;  ///< labels of all first sites of the tile at hand, where the rule is by objects
 };
 

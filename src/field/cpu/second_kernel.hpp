@@ -23,8 +23,6 @@ struct SecondJob {
   /// from others, and what the links of the first site's vertices hold is looked at besides.
   std::span<const SecondLabels::OfSite> labels;
   const SecondLinks* links = nullptr;
-  /// Of every site: the same where the same sites may be second beside two. Empty: each has its own.
-  std::span<const std::uint32_t> keys;
   /// Labels that some site has in common with label l: others[first_other[l] .. first_other[l + 1]), rising.
   std::span<const std::uint32_t> first_other;
   std::span<const std::uint32_t> others;

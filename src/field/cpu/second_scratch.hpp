@@ -10,7 +10,7 @@
 
 namespace blum::cpu {
 
-/// A box of up to 8 x 8 x 8 nodes, its nodes sorted by what may be second at them: node (i, j, k) is i + 8 j + 64 k.
+/// A box of up to 8 x 8 x 8 nodes, its nodes sorted by their first sites: node (i, j, k) is i + 8 j + 64 k.
 /// Whole vectors may be read and written past the end of all arrays.
 struct SecondCell {
   static constexpr std::int64_t side = 8;
@@ -26,16 +26,11 @@ struct SecondCell {
     std::uint16_t next = 0;  ///< run of the same group
     std::uint16_t at = 0;    ///< where its nodes are in the arrays below
   };
-  /// Nodes beside which the same sites may be second.
+  /// Nodes with the same first site.
   struct Group {
-    std::uint8_t eighth = 0;  ///< of the cell, where groups keep to them
-    std::uint32_t site = 0;  ///< a first site
-    std::uint32_t key = 0;
+    std::uint32_t site = 0;
     std::uint16_t first_run = 0, last_run = 0;
     std::uint16_t begin = 0, end = 0;
-    SecondLabels::OfSite labels{};
-    Vec3f center, half;  ///< of a box around its nodes, from the cell's middle
-    float bound = 0;     ///< no second site has its point, line or plane further than this from the centre
   };
 
   alignas(64) std::array<std::uint32_t, nodes + padding> first;  ///< by node; dead_record: none, or no node

@@ -136,12 +136,6 @@ void SecondSites::build(const FirstSites& first, const SecondLabels& labels, con
     build_link_segments(first.mesh, first.sites, first.positions, context, links_);
   } else {
     find_others(first, labels);
-    keys_.resize(labels_.size());
-    for (std::uint32_t k = 0; k < keys_.size(); ++k) {
-      const SecondLabels::OfSite& own = labels_[k];
-      // Sites have ids, and labels numbers, below 2^31.
-      keys_[k] = own[0] == own[1] && own[0] == own[2] ? own[0] : 0x80000000U | k;
-    }
   }
 }
 
@@ -149,7 +143,6 @@ SecondJob SecondSites::job() const {
   SecondJob out;
   out.labels = labels_;
   out.links = has_links_ ? &links_ : nullptr;
-  if (!has_links_) out.keys = keys_;
   out.first_other = first_other_;
   out.others = others_;
   return out;

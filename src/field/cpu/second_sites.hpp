@@ -44,7 +44,6 @@ class SecondSites {
   ClusterForest forest_;
   std::vector<SecondLabels::OfSite> labels_;
   std::vector<std::uint32_t> first_other_, others_;
-  std::vector<std::uint32_t> keys_;
   SecondLinks links_;
   bool has_links_ = false;
 };
