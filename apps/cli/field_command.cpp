@@ -116,7 +116,7 @@ struct Run {
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
   std::vector<fs::path> outputs;
-  std::optional<fs::path> removed;  ///< sites of a field that was replaced by one without
+  std::optional<fs::path> removed;       ///< sites of a field that was replaced by one without
   std::vector<fs::path> removed_second;  ///< likewise what was of order 2
   std::vector<std::string> warnings;
   TextTable table;
@@ -415,7 +415,9 @@ void add_field_command(const CommandLine& line) {
   CLI::App* command = line.app.add_subcommand("field", "Exact distance and closest site at every node of a grid");
   command->add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       ->required();
-  command->add_option("-o,--output", a->output, "Field file: .nrrd (and OUT.site.nrrd; of order 2 OUT.distance2.nrrd, OUT.site2.nrrd), .npz or .vti")
+  command
+      ->add_option("-o,--output", a->output,
+                   "Field file: .nrrd (and OUT.site.nrrd; of order 2 OUT.distance2.nrrd, OUT.site2.nrrd), .npz or .vti")
       ->required()
       ->type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {

@@ -73,25 +73,21 @@ void bind_field_class(nb::module_& m) {
                                       std::move(sign_reason)));
           },
           nb::arg("distance").noconvert(), nb::arg("grid"), nb::arg("site").none(), nb::arg("distance2").none(),
-          nb::arg("site2").none(), nb::arg("second").none(), nb::arg("site_ids"),
-          nb::arg("band").none(), nb::arg("sign_rule"), nb::arg("sign_reason"))
+          nb::arg("site2").none(), nb::arg("second").none(), nb::arg("site_ids"), nb::arg("band").none(),
+          nb::arg("sign_rule"), nb::arg("sign_reason"))
       .def_prop_ro("distance",
                    [](nb::pointer_and_handle<Field> self) {
                      return grid_view(self.p->distance.data(), self.p->grid.size, self.h);
                    })
       .def_prop_ro("site",
-                   [](nb::pointer_and_handle<Field> self) -> nb::object {
-                     return sites_of(self, self.p->site);
-                   })
+                   [](nb::pointer_and_handle<Field> self) -> nb::object { return sites_of(self, self.p->site); })
       .def_prop_ro("distance2",
                    [](nb::pointer_and_handle<Field> self) -> nb::object {
                      if (self.p->distance2.empty()) return nb::none();
                      return nb::cast(grid_view(self.p->distance2.data(), self.p->grid.size, self.h));
                    })
       .def_prop_ro("site2",
-                   [](nb::pointer_and_handle<Field> self) -> nb::object {
-                     return sites_of(self, self.p->site2);
-                   })
+                   [](nb::pointer_and_handle<Field> self) -> nb::object { return sites_of(self, self.p->site2); })
       .def_prop_ro("second",
                    [](const Field& field) -> std::optional<std::string> {
                      if (!field.second) return std::nullopt;
@@ -173,8 +169,7 @@ void bind_field(nb::module_& m) {
         });
       },
       nb::arg("mesh"), nb::arg("grid"), nb::arg("objects").none(), nb::arg("options"), nb::arg("threads"),
-      nb::arg("device"),
-      nb::arg("progress").none());
+      nb::arg("device"), nb::arg("progress").none());
 }
 
 }  // namespace blum::python

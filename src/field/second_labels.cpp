@@ -61,8 +61,8 @@ SecondLabels::OfSite SecondLabels::of_site(const SiteTable& sites, SiteId site) 
 
 bool SecondLabels::has_second(const OfSite& labels) const {
   // A vertex with another label is a site that may be second, and there is one if there are more labels than these.
-  const std::size_t own = 1 + (labels[1] != labels[0] ? 1U : 0U) +
-                          (labels[2] != labels[0] && labels[2] != labels[1] ? 1U : 0U);
+  const std::size_t own =
+      1 + (labels[1] != labels[0] ? 1U : 0U) + (labels[2] != labels[0] && labels[2] != labels[1] ? 1U : 0U);
   return count_ > own;
 }
 

@@ -99,9 +99,7 @@ void write_field_npz(const std::filesystem::path& path, const Field& field, cons
     check_sites(field.site2, corners.size());
   }
   AtomicFile file(path);
-  FieldSink sink(array_size(field) + 12 * corners.size() +
-                     (has_mesh ? 24 * info.mesh->vertices.size() : 0),
-                 context);
+  FieldSink sink(array_size(field) + 12 * corners.size() + (has_mesh ? 24 * info.mesh->vertices.size() : 0), context);
   NpzWriter npz(file, sink, context);
   const auto& n = field.grid.size;
   const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(n[2]), static_cast<std::uint64_t>(n[1]),

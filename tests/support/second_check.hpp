@@ -51,8 +51,8 @@ inline void merge(SecondError& all, const SecondError& one) {
   all.wrong_absent += one.wrong_absent;
 }
 
-inline void check_second(const Field& field, const reference::BruteForce& brute,
-                         std::span<const std::uint32_t> labels, double diagonal, std::size_t node, SecondError& error) {
+inline void check_second(const Field& field, const reference::BruteForce& brute, std::span<const std::uint32_t> labels,
+                         double diagonal, std::size_t node, SecondError& error) {
   const SiteId first = field.site[node];
   const SiteId second = field.site2[node];
   const float limit = field.band ? static_cast<float>(*field.band) : HUGE_VALF;

@@ -35,11 +35,13 @@ struct FieldFileInfo {
 ///
 ///   .nrrd  the distances, raw; the sites go to a second file, OUT.site.nrrd for OUT.nrrd, and of fields of order 2 the
 ///          second distances and sites to OUT.distance2.nrrd and OUT.site2.nrrd. Metadata as key/value pairs.
-///   .npz   uncompressed arrays for NumPy: `distance` and `site`, of order 2 `distance2` and `site2` [z, y, x]; `origin`, `spacing` float64 [3] in x, y, z
+///   .npz   uncompressed arrays for NumPy: `distance` and `site`, of order 2 `distance2` and `site2` [z, y, x];
+///   `origin`, `spacing` float64 [3] in x, y, z
 ///          order; `direction` float64 [3, 3], column a being the direction of index axis a; `metadata`, one string
 ///          of JSON. With a mesh and mesh sites also `vertices` float64 [m, 3] and `site_vertices` int32 [s, 3]: the
 ///          one, two or three vertices of each site, padded with -1.
-///   .vti   VTK image data: point data `distance` and `site`, of order 2 `distance2` and `site2`, raw appended; `metadata` (JSON) as field data.
+///   .vti   VTK image data: point data `distance` and `site`, of order 2 `distance2` and `site2`, raw appended;
+///   `metadata` (JSON) as field data.
 ///
 /// The metadata name Blum's version, the source, the sign rule and its reason, the band, what the site values count
 /// and how sites are numbered, with counts. A field without site values is written without them. Numbers are stored

@@ -206,8 +206,8 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const Test& test,
 
 /// Adds the records of the found clusters that may matter to the tile to the order to sort.
 template <Kind kind, class Test>
-HWY_NOINLINE void find_records(const Test& test, const FieldJob& job,
-                               const std::vector<std::uint32_t>& clusters, std::vector<detail::KeyedIndex>& out) {
+HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std::vector<std::uint32_t>& clusters,
+                               std::vector<detail::KeyedIndex>& out) {
   const Record* records = job.sites->kinds[kind].records.data();
   NoClosest closest;
   for (const std::uint32_t cluster : clusters) {

@@ -339,8 +339,7 @@ struct Lanes {
 /// Tests all candidates of a kind against the eight children, and offers distances at their centres. `store` is called
 /// with each block that has a candidate left, for the leaves to read.
 template <Kind kind, class Test, class Closest, class Store>
-HWY_INLINE void halve_kind(const Test& test, const RecordList& parent, ChildBits& out, Closest& closest,
-                           Store store) {
+HWY_INLINE void halve_kind(const Test& test, const RecordList& parent, ChildBits& out, Closest& closest, Store store) {
   const std::size_t count = parent.count();
   out.reset((count + lanes - 1) / lanes);
   for (std::size_t b = 0; b < out.blocks(); ++b) {

@@ -38,6 +38,13 @@ HWY_INLINE Vec positions_at(const SecondCell& cell, std::size_t at) {
   return {hn::LoadU(d, cell.x.data() + at), hn::LoadU(d, cell.y.data() + at), hn::LoadU(d, cell.z.data() + at)};
 }
 
+/// Positions of `lanes` nodes of a leaf, from where its pattern is seen from.
+HWY_INLINE Vec positions_of(const LeafPattern& pattern, std::size_t node) {
+  const LeafPattern::Pass& pass = pattern.pass[node / pass_nodes];
+  const std::size_t k = node % pass_nodes / lanes;
+  return {pass.x[k % planar], pass.y[k % planar], pass.z[k / planar]};
+}
+
 /// Of the nodes along each axis, from the cell's middle; whole vectors may be read from each.
 using CellPositions = std::array<std::array<float, 16>, 3>;
 
@@ -46,12 +53,24 @@ class CellSorter {
  public:
   explicit CellSorter(SecondCell& cell) : cell_(cell) {}
 
-  void find_groups(const std::array<std::int64_t, 3>& count) {
+  void find_groups() {
     cell_.run_count = 0;
     cell_.group_count = 0;
     cell_.table.fill(0);
-    for (std::int64_t k = 0; k < count[2]; ++k) {
-      for (std::int64_t j = 0; j < count[1]; ++j) add_row(static_cast<std::size_t>(64 * k + 8 * j), count[0]);
+    cell_.before_first[SecondCell::front - 1] = dead_record;
+    for (std::size_t node = 0; node < SecondCell::nodes; node += 64) {
+      std::uint64_t begins = 0x0101010101010101U;  // of rows
+      for (std::size_t k = 0; k < 64; k += lanes) {
+        const std::uint32_t* sites = cell_.first() + node + k;
+        const auto differs = hn::Ne(hn::Load(di, sites), hn::LoadU(di, sites - 1));
+        begins |= std::uint64_t{bits(hn::RebindMask(d, differs))} << k;
+      }
+      for (; begins != 0; begins &= begins - 1) {
+        const auto at = static_cast<std::size_t>(std::countr_zero(begins));
+        const std::uint64_t later = begins & (begins - 1);
+        const std::size_t end = later == 0 ? 64 : static_cast<std::size_t>(std::countr_zero(later));
+        add_run(node + at, end - at, cell_.first()[node + at]);
+      }
     }
   }
 
@@ -64,9 +83,9 @@ class CellSorter {
       for (std::size_t r = group.first_run;; r = cell_.runs[r].next) {
         SecondCell::Run& run = cell_.runs[r];
         run.at = static_cast<std::uint16_t>(place);
-        std::memcpy(cell_.x.data() + place, at[0].data() + run.node % 8, 8 * sizeof(float));
-        std::fill_n(cell_.y.data() + place, 8, at[1][run.node / 8 % 8]);
-        std::fill_n(cell_.z.data() + place, 8, at[2][run.node / 64]);
+        put(at[0].data() + run.node % 8, cell_.x.data() + place);
+        put(at[1][run.node / 8 % 8], cell_.y.data() + place);
+        put(at[2][run.node / 64], cell_.z.data() + place);
         place += run.length;
         if (r == group.last_run) break;
       }
@@ -75,15 +94,12 @@ class CellSorter {
   }
 
  private:
-  void add_row(std::size_t first_node, std::int64_t count) {
-    const std::uint32_t* sites = cell_.first.data() + first_node;
-    std::size_t begin = 0;
-    for (std::size_t i = 1; i <= static_cast<std::size_t>(count); ++i) {
-      const bool is_end = i == static_cast<std::size_t>(count);
-      if (!is_end && sites[i] == sites[begin]) continue;
-      add_run(first_node + begin, i - begin, sites[begin]);
-      begin = i;
-    }
+  static constexpr hn::CappedTag<float, 8> d8{};
+  static HWY_INLINE void put(const float* from, float* to) {
+    for (std::size_t k = 0; k < 8; k += hn::Lanes(d8)) hn::StoreU(hn::LoadU(d8, from + k), d8, to + k);
+  }
+  static HWY_INLINE void put(float value, float* to) {
+    for (std::size_t k = 0; k < 8; k += hn::Lanes(d8)) hn::StoreU(hn::Set(d8, value), d8, to + k);
   }
 
   void add_run(std::size_t node, std::size_t length, std::uint32_t site) {
@@ -144,6 +160,70 @@ HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const Second
     hn::StoreU(best, d, cell.squared.data() + at);
     hn::StoreU(hn::BitCast(di, best_id), di, cell.id.data() + at);
   }
+}
+
+/// What bounds squared distances from above at nodes x around a centre c: |x - c|^2 + 2 (x - c) . slope + limit, which
+/// has the form of a squared distance from a point, as a Domination needs it. Any slope is valid with the limit that
+/// goes with it; a good one follows the distances.
+struct DistanceBound {
+  Vec3f slope;
+  float limit = 0;
+  float largest = 0;  ///< squared distance, which rounding goes with
+  bool is_known = false;
+
+  /// The test that drops what is further than this everywhere in the box center +- reach.
+  [[nodiscard]] Domination domination(const Vec3f& center, const Vec3f& reach) const {
+    Domination out(center, Dominators{{center}, 1}, reach);
+    const float slack = 4e-6F * largest + 2e-6F * std::sqrt(largest) + 1e-12F;
+    out.point[0] = {set(slope), set(limit + slack)};
+    return out;
+  }
+};
+
+/// @param count   of nodes.
+/// @param node_at callable: first of `lanes` nodes -> their positions from the centre.
+/// @param squared of the nodes; those below 0 do not count. Read as whole vectors.
+template <class NodeAt>
+HWY_INLINE DistanceBound bound_distances(std::size_t count, const NodeAt& node_at, const float* squared) {
+  V worst = hn::Zero(d);
+  Vec product = set(Vec3f{});
+  Vec weight = set(Vec3f{1e-12F, 1e-12F, 1e-12F});
+  const auto value_at = [&](std::size_t at) {
+    const V value = hn::LoadU(d, squared + at);
+    return hn::IfThenElse(hn::FirstN(d, count - at), value, set(-1.0F));
+  };
+  for (std::size_t at = 0; at < count; at += lanes) {
+    const V value = value_at(at);
+    worst = hn::Max(worst, value);
+    const Vec x = node_at(at);
+    const M counts = hn::Ge(value, hn::Zero(d));
+    const auto add = [&](V& sum, V& weights, V coordinate) {
+      const V used = hn::IfThenElseZero(counts, coordinate);
+      sum = hn::MulAdd(used, value, sum);
+      weights = hn::MulAdd(used, used, weights);
+    };
+    add(product.x, weight.x, x.x);
+    add(product.y, weight.y, x.y);
+    add(product.z, weight.z, x.z);
+  }
+  DistanceBound out;
+  out.largest = hn::GetLane(hn::MaxOfLanes(d, worst));
+  if (!(out.largest < no_distance)) return out;
+  out.is_known = true;
+  const auto ratio = [](V above, V below) {
+    return 0.5F * hn::GetLane(hn::SumOfLanes(d, above)) / hn::GetLane(hn::SumOfLanes(d, below));
+  };
+  out.slope = {ratio(product.x, weight.x), ratio(product.y, weight.y), ratio(product.z, weight.z)};
+  const Vec twice = set(out.slope * 2.0F);
+  V limit = set(-1e18F);
+  for (std::size_t at = 0; at < count; at += lanes) {
+    const V value = value_at(at);
+    const Vec x = node_at(at);
+    const V excess = hn::Sub(value, dot(x, x + twice));
+    limit = hn::Max(limit, hn::IfThenElse(hn::Ge(value, hn::Zero(d)), excess, limit));
+  }
+  out.limit = hn::GetLane(hn::MaxOfLanes(d, limit));
+  return out;
 }
 
 /// A ball around the nodes of a group, from the cell's middle.
@@ -215,36 +295,6 @@ struct SecondPass : LeafEvaluation<SecondPass, false> {
     hn::Store(hn::BitCast(di, hn::IfThenElse(wins, id, best_id)), di, leaf.id.data() + node);
   }
 };
-
-/// The squared distance of the leaf's centre, `offset` from what the columns were written for, from each candidate's
-/// point, line or plane.
-template <Kind kind>
-HWY_INLINE V squared_from_flat(const LeafColumns& in, std::size_t b, const Vec& offset) {
-  const auto at = [&](int column) { return hn::Load(d, in.column(static_cast<std::size_t>(column)) + b * lanes); };
-  const auto affine = [&](int column) {
-    return hn::Add(at(column), dot(Vec{at(column + 1), at(column + 2), at(column + 3)}, offset));
-  };
-  if constexpr (kind == vertex_kind) {
-    const Vec to_site = Vec{at(LeafVertex::to_site), at(LeafVertex::to_site + 1), at(LeafVertex::to_site + 2)} + offset;
-    return dot(to_site, to_site);
-  } else if constexpr (kind == edge_kind) {
-    return hn::Add(square(affine(LeafEdge::across_b)), square(affine(LeafEdge::across_n)));
-  } else {
-    return square(affine(LeafFace::height));
-  }
-}
-
-/// Drops candidates that are further than `bound` from the leaf's centre.
-template <Kind kind>
-HWY_INLINE void keep_near(const LeafInput& input, const Vec& offset, float bound) {
-  std::uint16_t* words = input.bits[kind].child(input.child);
-  const V limit = set(bound * bound);
-  for (std::size_t b = 0; b < input.bits[kind].blocks(); ++b) {
-    if (words[b] == 0) continue;
-    const M is_near = hn::Le(squared_from_flat<kind>(input.columns[kind], b, offset), limit);
-    words[b] = static_cast<std::uint16_t>(words[b] & bits(is_near));
-  }
-}
 
 HWY_NOINLINE void evaluate_second(const LeafInput& input, const LeafPattern& pattern,
                                   std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {

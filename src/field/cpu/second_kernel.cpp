@@ -63,6 +63,12 @@ struct BoundedTest : BlockTest<boxes> {
         other(h.middle, Dominators{{bounds.point[1]}, 1}, h.reach()),
         count(bounds.count) {}
 
+  /// Takes one bound instead, for what is known of all nodes.
+  void bound_by(const Domination& all) {
+    this->domination = all;
+    count = 1;
+  }
+
   template <class Block>
   HWY_INLINE M keeps(const Block& block) const {
     if (count == 0) return hn::FirstN(d, lanes);
@@ -249,8 +255,7 @@ class SecondWorker {
       const CenteredBox place = centered(field_, parts.child[c]);
       // Cells find their bounds in links.
       const bool needs_bounds = size > 2 * SecondCell::side || job_.links == nullptr;
-      const Bounds of_child =
-          needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
+      const Bounds of_child = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
       list_slivers(candidates[sliver_kind], place, of_child, here.child[sliver_kind]);
       divide(parts.child[c], size / 2, here.child, of_child, level + 1);
     }
@@ -274,21 +279,23 @@ class SecondWorker {
 
   void cell(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
     read_firsts(box);
+    const Halving parts = halve(field_, box, SecondCell::side);
+    DistanceBound bound;
     if (job_.links != nullptr) {
-      offer_all_links(box);
+      bound = offer_all_links(box, parts.middle);
     } else {
       cell_.distance.fill(no_distance);
       cell_.site.fill(nobody);
     }
-    const Halving parts = halve(field_, box, SecondCell::side);
     TileScratch::Impl::Level& here = scratch_.levels.back();
     for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
       scratch_.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
     }
     NoClosest closest;
-    halve_kinds(BoundedTest<8>(parts, bounds), candidates, here.bits, closest,
-                [&](std::size_t kind) { return LeafStore{scratch_.leaf[kind]}; });
-    const bool is_full = box.count == std::array<std::int64_t, 3>{8, 8, 8};
+    BoundedTest<8> test(parts, bounds);
+    if (bound.is_known) test.bound_by(bound.domination(parts.middle, parts.reach()));
+    halve_kinds(test, candidates, here.bits, closest, [&](std::size_t kind) { return LeafStore{scratch_.leaf[kind]}; });
+    const bool is_full = box.count == full_;
     for (std::size_t c = 0; c < 8; ++c) {
       if (!parts.exists[c]) continue;
       const LeafInput input{scratch_.leaf, here.bits, c};
@@ -298,25 +305,29 @@ class SecondWorker {
     write(box);
   }
 
-  void offer_all_links(const NodeBox& box) {
+  /// @return  what bounds the distances from above, around the middle.
+  DistanceBound offer_all_links(const NodeBox& box, const Vec3f& middle) {
     CellSorter sorter(cell_);
-    sorter.find_groups(box.count);
-    const Vec3f middle = centered(field_, box).center;
+    sorter.find_groups();
     sorter.place(positions(box, middle));
     for (std::size_t g = 0; g < cell_.group_count; ++g) {
       const SecondCell::Group& group = cell_.groups[g];
-      find_links(job_.labels[group.site]);
-      if (mine_.links.size() > many_links) keep_near_links(middle, group);
-      offer_links(mine_.links, *job_.links, middle, group, cell_);
+      std::span<const std::uint32_t> links = find_links(job_.labels[group.site]);
+      if (links.size() > many_links) links = near_links(links, middle, group);
+      offer_links(links, *job_.links, middle, group, cell_);
     }
+    const std::size_t count = cell_.group_count == 0 ? 0 : cell_.groups[cell_.group_count - 1].end;
+    const DistanceBound bound =
+        bound_distances(count, [&](std::size_t at) { return positions_at(cell_, at); }, cell_.squared.data());
     unsort(cell_);
+    return bound;
   }
 
   void read_firsts(const NodeBox& box) {
-    // Rows that are cut off have nodes only as far as anyone looks.
+    if (box.count != full_) std::fill_n(cell_.first(), SecondCell::nodes, dead_record);
     std::size_t row = 0;
     (void)all_rows(box, [&](std::size_t node) {
-      std::copy_n(job_.request.site + node, box.count[0], cell_.first.data() + first_of_row(box, row++));
+      std::copy_n(job_.request.site + node, box.count[0], cell_.first() + first_of_row(box, row++));
       return true;
     });
   }
@@ -352,24 +363,30 @@ class SecondWorker {
   void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, const LeafPattern& pattern,
             const Vec3f& middle) {
     SecondLeaf state;
-    const std::size_t begin = ((input.child & 1) != 0 ? 4 : 0) + ((input.child & 2) != 0 ? 32 : 0) +
-                              ((input.child & 4) != 0 ? 256 : 0);
+    const std::size_t begin =
+        ((input.child & 1) != 0 ? 4 : 0) + ((input.child & 2) != 0 ? 32 : 0) + ((input.child & 4) != 0 ? 256 : 0);
     const auto each_row = [&](auto use) {
       for (std::size_t row = 0; row < 16; ++row) use(begin + 8 * (row % 4) + 64 * (row / 4), 4 * row);
     };
     each_row([&](std::size_t from, std::size_t to) {
-      std::memcpy(state.first.data() + to, cell_.first.data() + from, 16);
+      std::memcpy(state.first.data() + to, cell_.first() + from, 16);
       std::memcpy(state.squared.data() + to, cell_.distance.data() + from, 16);
       std::memcpy(state.id.data() + to, cell_.site.data() + from, 16);
     });
     forget_beyond(box, state);
     const CenteredBox place = centered(field_, box);
-    const float bound = furthest(state) + length(place.half) * 1.0001F + 4 * box_slack;
     const Vec offset = set(place.center - middle);
-    keep_near<vertex_kind>(input, offset, bound);
-    keep_near<edge_kind>(input, offset, bound);
-    keep_near<face_kind>(input, offset, bound);
+    const DistanceBound known = bound_distances(
+        leaf_nodes, [&](std::size_t at) { return positions_of(pattern, at) - offset; }, state.squared.data());
+    if (known.is_known) {
+      const Vec3f half = place.half + Vec3f{box_slack, box_slack, box_slack};
+      const LeafDomination domination{known.domination(place.center, half), offset};
+      dominate<vertex_kind>(input, domination);
+      dominate<edge_kind>(input, domination);
+      dominate<face_kind>(input, domination);
+    }
     evaluate_second(input, pattern, job_.labels, state);
+    const float bound = slivers.count() == 0 ? 0 : furthest(state) + length(place.half) * 1.0001F + 4 * box_slack;
     for (std::size_t k = 0; k < slivers.count(); ++k) {
       const Vec3d center = to_double(place.center);
       if (length(center - closest_on_sliver(slivers[k], center)) <= bound) offer_sliver(slivers[k], box, state);
@@ -423,25 +440,34 @@ class SecondWorker {
   }
 
   /// The links of a site's vertices that do not touch it.
-  HWY_NOINLINE void find_links(const OfSite& vertices) {
-    mine_.links.clear();
-    const auto is_own = [&](std::uint32_t v) { return v == vertices[0] || v == vertices[1] || v == vertices[2]; };
+  std::span<const std::uint32_t> find_links(const OfSite& vertices) {
+    std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (k > 0 && (vertices[k] == vertices[0] || (k == 2 && vertices[2] == vertices[1]))) continue;
-      for (const SecondLinks::Entry& link : job_.links->of(vertices[k])) {
-        if (!is_own(link.start) && !is_own(link.end)) mine_.links.push_back(link.segment);
+      const std::span<const SecondLinks::Entry> entries = job_.links->of(vertices[k]);
+      if (mine_.links.size() < count + entries.size()) mine_.links.resize(2 * (count + entries.size()));
+      std::uint32_t* out = mine_.links.data();
+      for (const SecondLinks::Entry& link : entries) {
+        out[count] = link.segment;
+        unsigned is_own = 0;  // without branches, which no machine can foresee
+        for (const std::uint32_t v : vertices) {
+          is_own |= static_cast<unsigned>(link.start == v) | static_cast<unsigned>(link.end == v);
+        }
+        count += 1 - is_own;
       }
     }
+    return {mine_.links.data(), count};
   }
 
-  /// Of many links, those that any node of a group may be closest to.
-  void keep_near_links(const Vec3f& middle, const SecondCell::Group& group) {
+  /// Of many links, those that any node of a group may be closest to; in their place.
+  std::span<const std::uint32_t> near_links(std::span<const std::uint32_t> links, const Vec3f& middle,
+                                            const SecondCell::Group& group) {
     const GroupBall ball = ball_of(cell_, group);
     const Vec3f center = middle + ball.center;
-    mine_.link_distances.resize(mine_.links.size());
+    mine_.link_distances.resize(links.size());
     float nearest = std::numeric_limits<float>::infinity();
-    for (std::size_t k = 0; k < mine_.links.size(); ++k) {
-      const LinkSegment& segment = job_.links->segments[mine_.links[k]];
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      const LinkSegment& segment = job_.links->segments[links[k]];
       const Vec3f from = center - segment.middle;
       const float along = std::clamp(dot(from, segment.tangent), -segment.half_length, segment.half_length);
       mine_.link_distances[k] = length(from - segment.tangent * along);
@@ -449,10 +475,11 @@ class SecondWorker {
     }
     const float furthest_of_use = (nearest + 2 * ball.radius) * 1.00001F;
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < mine_.links.size(); ++k) {
-      if (mine_.link_distances[k] <= furthest_of_use) mine_.links[kept++] = mine_.links[k];
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      mine_.links[kept] = links[k];
+      kept += mine_.link_distances[k] <= furthest_of_use ? 1U : 0U;
     }
-    mine_.links.resize(kept);
+    return {mine_.links.data(), kept};
   }
 
   HWY_NOINLINE void write(const NodeBox& box) {
@@ -485,12 +512,14 @@ class SecondWorker {
   /// Nodes that nothing has claimed, although there is something that may be second.
   void report_open(const NodeBox& box, std::size_t from, std::size_t node) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
-      const std::uint32_t first = cell_.first[from + i];
+      const std::uint32_t first = cell_.first()[from + i];
       if (first == dead_record || cell_.site[from + i] != nobody) continue;
       if (job_.request.labels->has_second(job_.labels[first])) unsettled_.push_back(node + i);
       cell_.site[from + i] = dead_record;
     }
   }
+
+  static constexpr std::array<std::int64_t, 3> full_{SecondCell::side, SecondCell::side, SecondCell::side};
 
   const SecondJob& job_;
   const FieldJob& field_;
@@ -499,7 +528,7 @@ class SecondWorker {
   SecondCell& cell_;
   std::vector<std::size_t>& unsettled_;
   std::array<LeafPattern, 8> full_patterns_;
-  LeafPattern pattern_;  ///< of the leaf at hand, where it is cut off
+  LeafPattern pattern_;           ///< of the leaf at hand, where it is cut off
   const OfSite* only_ = nullptr;  ///< labels of all first sites of the tile at hand, where the rule is by objects
 };
 

@@ -19,10 +19,10 @@ namespace blum::cpu {
 /// A closed edge in the normalised frame, or a point (no tangent, no length).
 struct LinkSegment {
   Vec3f middle;
-  Vec3f tangent;           ///< unit
+  Vec3f tangent;  ///< unit
   float half_length = 0;
-  std::uint32_t id = 0;    ///< SiteId of what lies between the ends
-  std::uint32_t start = 0; ///< vertex at middle - tangent * half_length; its id is below that of the other end
+  std::uint32_t id = 0;     ///< SiteId of what lies between the ends
+  std::uint32_t start = 0;  ///< vertex at middle - tangent * half_length; its id is below that of the other end
   std::uint32_t end = 0;
 };
 

@@ -33,7 +33,11 @@ struct SecondCell {
     std::uint16_t begin = 0, end = 0;
   };
 
-  alignas(64) std::array<std::uint32_t, nodes + padding> first;  ///< by node; dead_record: none, or no node
+  /// First sites by node; dead_record: none, or no node. Begins with room for one before the first.
+  static constexpr std::size_t front = 16;
+  alignas(64) std::array<std::uint32_t, front + nodes + padding> before_first;
+  [[nodiscard]] std::uint32_t* first() { return before_first.data() + front; }
+  [[nodiscard]] const std::uint32_t* first() const { return before_first.data() + front; }
   std::array<Run, nodes> runs;
   std::size_t run_count = 0;
   std::array<Group, nodes> groups;
@@ -51,7 +55,7 @@ struct SecondCell {
 struct SecondScratch::Impl {
   TileScratch tile;
   SecondCell cell;
-  std::vector<std::uint32_t> links;  ///< of the first site at hand
+  std::vector<std::uint32_t> links;  ///< of the first site at hand; as long as any have been
   std::vector<float> link_distances;
 };
 

@@ -54,9 +54,8 @@ void remove_reaches(SiteRecords& sites, const Context& context) {
 
 /// Whether an edge joins vertices of different labels.
 bool has_mixed_edges(const SiteTable& sites, const SecondLabels& labels) {
-  return std::any_of(sites.edges().begin(), sites.edges().end(), [&](const Segment& edge) {
-    return labels.of_vertex(edge[0]) != labels.of_vertex(edge[1]);
-  });
+  return std::any_of(sites.edges().begin(), sites.edges().end(),
+                     [&](const Segment& edge) { return labels.of_vertex(edge[0]) != labels.of_vertex(edge[1]); });
 }
 
 /// What bounds the domain of a site whatever is first: of what meets at it, that which has no labels but its own.

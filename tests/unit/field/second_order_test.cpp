@@ -200,8 +200,7 @@ TEST(SecondOrder, OfObjectsOfTheCallers) {
       const double turn = std::atan2(v.y, v.x) / (2 * M_PI) + 0.5;
       objects.push_back(static_cast<std::uint32_t>(turn * count) % count);
     }
-    const Field field =
-        distance_field(mesh, grid, objects, {.sign = SignMode::none, .order = 2, .second = by_object});
+    const Field field = distance_field(mesh, grid, objects, {.sign = SignMode::none, .order = 2, .second = by_object});
     expect_promise(compare_second(field, mesh, objects, some_nodes(grid, 4000)));
   }
 }
@@ -247,8 +246,8 @@ TEST(SecondOrder, KeepsItsPromiseWithEveryInstructionSet) {
     SCOPED_TRACE(target);
     cpu::use_simd_target(target);
     expect_promise(compare_second(second_field(mesh, grid, by_vertex), mesh, {}, some_nodes(grid, 3000)));
-    expect_promise(compare_second(second_field(mesh, grid, by_object), mesh, test::slow_parts(mesh),
-                                  some_nodes(grid, 3000)));
+    expect_promise(
+        compare_second(second_field(mesh, grid, by_object), mesh, test::slow_parts(mesh), some_nodes(grid, 3000)));
   }
   cpu::use_simd_target("");
 }
