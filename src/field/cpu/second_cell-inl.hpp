@@ -46,7 +46,7 @@ HWY_INLINE Vec positions_of(const LeafPattern& pattern, std::size_t node) {
 }
 
 /// Of the nodes along each axis, from the cell's middle; whole vectors may be read from each.
-using CellPositions = std::array<std::array<float, 16>, 3>;
+using CellPositions = std::array<std::array<float, 32>, 3>;
 
 /// Sorts the nodes of a cell into groups.
 class CellSorter {
@@ -59,7 +59,7 @@ class CellSorter {
     cell_.table.fill(0);
     cell_.before_first[SecondCell::front - 1] = dead_record;
     for (std::size_t node = 0; node < SecondCell::nodes; node += 64) {
-      std::uint64_t begins = 0x0101010101010101U;  // of rows
+      std::uint64_t begins = 0x0001000100010001U;  // of rows
       for (std::size_t k = 0; k < 64; k += lanes) {
         const std::uint32_t* sites = cell_.first() + node + k;
         const auto differs = hn::Ne(hn::Load(di, sites), hn::LoadU(di, sites - 1));
@@ -83,9 +83,9 @@ class CellSorter {
       for (std::size_t r = group.first_run;; r = cell_.runs[r].next) {
         SecondCell::Run& run = cell_.runs[r];
         run.at = static_cast<std::uint16_t>(place);
-        put(at[0].data() + run.node % 8, cell_.x.data() + place);
-        put(at[1][run.node / 8 % 8], cell_.y.data() + place);
-        put(at[2][run.node / 64], cell_.z.data() + place);
+        put(at[0].data() + run.node % SecondCell::row, cell_.x.data() + place);
+        put(at[1][run.node / SecondCell::row % SecondCell::row], cell_.y.data() + place);
+        put(at[2][run.node / SecondCell::layer], cell_.z.data() + place);
         place += run.length;
         if (r == group.last_run) break;
       }
@@ -94,12 +94,11 @@ class CellSorter {
   }
 
  private:
-  static constexpr hn::CappedTag<float, 8> d8{};
   static HWY_INLINE void put(const float* from, float* to) {
-    for (std::size_t k = 0; k < 8; k += hn::Lanes(d8)) hn::StoreU(hn::LoadU(d8, from + k), d8, to + k);
+    for (std::size_t k = 0; k < SecondCell::row; k += lanes) hn::StoreU(hn::LoadU(d, from + k), d, to + k);
   }
   static HWY_INLINE void put(float value, float* to) {
-    for (std::size_t k = 0; k < 8; k += hn::Lanes(d8)) hn::StoreU(hn::Set(d8, value), d8, to + k);
+    for (std::size_t k = 0; k < SecondCell::row; k += lanes) hn::StoreU(set(value), d, to + k);
   }
 
   void add_run(std::size_t node, std::size_t length, std::uint32_t site) {
@@ -108,7 +107,7 @@ class CellSorter {
     run = {static_cast<std::uint16_t>(node), static_cast<std::uint16_t>(length), SecondCell::no_group, 0, 0};
     if (site == dead_record) return;
     const std::uint32_t hash = site * 0x9e3779b1U;
-    for (std::size_t slot = hash >> 22;; slot = (slot + 1) % cell_.table.size()) {
+    for (std::size_t slot = hash >> 19;; slot = (slot + 1) % cell_.table.size()) {
       const std::uint16_t found = cell_.table[slot];
       if (found == 0) return add_group(r, slot, site);
       SecondCell::Group& group = cell_.groups[found - 1U];
@@ -171,6 +170,15 @@ struct DistanceBound {
   float largest = 0;  ///< squared distance, which rounding goes with
   bool is_known = false;
 
+  /// The same around another centre, `offset` further.
+  [[nodiscard]] DistanceBound around(const Vec3f& offset) const {
+    DistanceBound out = *this;
+    out.slope = slope + offset;
+    out.limit = limit + squared_length(offset) + 2 * blum::dot(offset, slope);
+    // What rounding may have taken from it.
+    out.largest = std::max(largest, squared_length(out.slope));
+    return out;
+  }
   /// The test that drops what is further than this everywhere in the box center +- reach.
   [[nodiscard]] Domination domination(const Vec3f& center, const Vec3f& reach) const {
     Domination out(center, Dominators{{center}, 1}, reach);
@@ -249,11 +257,12 @@ struct SecondLeaf {
   alignas(64) std::array<std::uint32_t, leaf_nodes> id;
   /// Labels of the first sites, found when they are asked for.
   alignas(64) std::array<std::array<std::uint32_t, leaf_nodes>, 3> labels;
-  bool has_labels = false;
+  std::uint64_t has_labels = 0;  ///< a bit for each node
 
-  void find_labels(std::span<const SecondLabels::OfSite> of_site) {
-    has_labels = true;
-    for (std::size_t node = 0; node < leaf_nodes; ++node) {
+  /// Of `lanes` nodes.
+  void find_labels(std::size_t begin, std::span<const SecondLabels::OfSite> of_site) {
+    has_labels |= std::uint64_t{1} << begin;
+    for (std::size_t node = begin; node < begin + lanes; ++node) {
       const bool has_first = first[node] != dead_record;
       for (std::size_t k = 0; k < 3; ++k) labels[k][node] = has_first ? of_site[first[node]][k] : dead_record;
     }
@@ -282,7 +291,7 @@ struct SecondPass : LeafEvaluation<SecondPass, false> {
 
   /// Lets the candidate win where it may be second, if it does.
   HWY_NOINLINE void settle(std::size_t node, M wins, V squared, V id) {
-    if (!leaf.has_labels) leaf.find_labels(labels);
+    if ((leaf.has_labels >> node & 1) == 0) leaf.find_labels(node, labels);
     const SecondLabels::OfSite own = labels[hn::GetLane(hn::BitCast(di, id))];
     for (const std::array<std::uint32_t, leaf_nodes>& of_first : leaf.labels) {
       const VI label = hn::Load(di, of_first.data() + node);
@@ -317,8 +326,8 @@ HWY_INLINE void unsort(SecondCell& cell) {
       continue;
     }
     // Whole vectors, of which the next run overwrites the rest.
-    std::memcpy(cell.distance.data() + run.node, cell.squared.data() + run.at, 8 * sizeof(float));
-    std::memcpy(cell.site.data() + run.node, cell.id.data() + run.at, 8 * sizeof(std::uint32_t));
+    std::memcpy(cell.distance.data() + run.node, cell.squared.data() + run.at, SecondCell::row * sizeof(float));
+    std::memcpy(cell.site.data() + run.node, cell.id.data() + run.at, SecondCell::row * sizeof(std::uint32_t));
   }
 }
 

@@ -17,6 +17,7 @@ using OfSite = SecondLabels::OfSite;
 /// A tile with more clusters than this is split, so that candidate lists stay in cache.
 constexpr std::size_t most_clusters = 8000;
 constexpr std::int64_t smallest_tile = 16;
+constexpr std::int64_t leaf_size = 4;
 /// Links of a site beyond this are first cut down to those that are near.
 constexpr std::size_t many_links = 32;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
@@ -240,12 +241,14 @@ class SecondWorker {
 
   void divide(const NodeBox& box, std::int64_t size, const Candidates& candidates, const Bounds& bounds,
               std::size_t level) {
-    if (size == SecondCell::side) return cell(box, candidates, bounds);
+    if (size == 2 * leaf_size) return divide_into_leaves(box, candidates, bounds);
     if (field_.cancel.stop_requested()) return;
     const Halving parts = halve(field_, box, size);
+    const bool is_cell = size == SecondCell::side;
+    if (is_cell) begin_cell(box, parts.middle);
     TileScratch::Impl::Level& here = scratch_.levels[level];
     ClosestAtCenters closest;
-    halve_kinds(BoundedTest<8>(parts, bounds), candidates, here.bits, closest,
+    halve_kinds(test_of(parts, bounds, is_cell), candidates, here.bits, closest,
                 [](std::size_t) { return [](auto&&...) {}; });
     for (std::size_t c = 0; c < 8; ++c) {
       if (!parts.exists[c]) continue;
@@ -253,12 +256,21 @@ class SecondWorker {
         list_child(candidates[kind], here.bits[kind], c, here.child[kind]);
       }
       const CenteredBox place = centered(field_, parts.child[c]);
-      // Cells find their bounds in links.
-      const bool needs_bounds = size > 2 * SecondCell::side || job_.links == nullptr;
+      // Within cells, links tell more.
+      const bool needs_bounds = !is_cell || job_.links == nullptr;
       const Bounds of_child = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
       list_slivers(candidates[sliver_kind], place, of_child, here.child[sliver_kind]);
       divide(parts.child[c], size / 2, here.child, of_child, level + 1);
     }
+    if (is_cell) write(box);
+  }
+
+  [[nodiscard]] BoundedTest<8> test_of(const Halving& parts, const Bounds& bounds, bool is_in_cell) const {
+    BoundedTest<8> test(parts, bounds);
+    if (is_in_cell && cell_bound_.is_known) {
+      test.bound_by(cell_bound_.around(parts.middle - cell_middle_).domination(parts.middle, parts.reach()));
+    }
+    return test;
   }
 
   static void list_slivers(const RecordList& from, const CenteredBox& place, const Bounds& bounds, RecordList& to) {
@@ -277,32 +289,40 @@ class SecondWorker {
 
   // --- cells
 
-  void cell(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
+  /// Evaluates links at all nodes of a cell.
+  void begin_cell(const NodeBox& box, const Vec3f& middle) {
+    cell_box_ = box;
+    cell_middle_ = middle;
+    cell_bound_ = {};
     read_firsts(box);
-    const Halving parts = halve(field_, box, SecondCell::side);
-    DistanceBound bound;
     if (job_.links != nullptr) {
-      bound = offer_all_links(box, parts.middle);
+      cell_bound_ = offer_all_links(box, middle);
     } else {
       cell_.distance.fill(no_distance);
       cell_.site.fill(nobody);
     }
+  }
+
+  void divide_into_leaves(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
+    const Halving parts = halve(field_, box, 2 * leaf_size);
     TileScratch::Impl::Level& here = scratch_.levels.back();
     for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
       scratch_.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
     }
     NoClosest closest;
-    BoundedTest<8> test(parts, bounds);
-    if (bound.is_known) test.bound_by(bound.domination(parts.middle, parts.reach()));
-    halve_kinds(test, candidates, here.bits, closest, [&](std::size_t kind) { return LeafStore{scratch_.leaf[kind]}; });
-    const bool is_full = box.count == full_;
+    halve_kinds(test_of(parts, bounds, true), candidates, here.bits, closest,
+                [&](std::size_t kind) { return LeafStore{scratch_.leaf[kind]}; });
+    const bool is_full = is_cube(box, 2 * leaf_size);
     for (std::size_t c = 0; c < 8; ++c) {
       if (!parts.exists[c]) continue;
       const LeafInput input{scratch_.leaf, here.bits, c};
       const LeafPattern& pattern = is_full ? full_patterns_[c] : (pattern_ = pattern_of(parts.child[c], parts.middle));
       leaf(parts.child[c], input, candidates[sliver_kind], pattern, parts.middle);
     }
-    write(box);
+  }
+
+  static bool is_cube(const NodeBox& box, std::int64_t side) {
+    return box.count[0] == side && box.count[1] == side && box.count[2] == side;
   }
 
   /// @return  what bounds the distances from above, around the middle.
@@ -324,10 +344,10 @@ class SecondWorker {
   }
 
   void read_firsts(const NodeBox& box) {
-    if (box.count != full_) std::fill_n(cell_.first(), SecondCell::nodes, dead_record);
+    if (!is_cube(box, SecondCell::side)) std::fill_n(cell_.first(), SecondCell::nodes, dead_record);
     std::size_t row = 0;
     (void)all_rows(box, [&](std::size_t node) {
-      std::copy_n(job_.request.site + node, box.count[0], cell_.first() + first_of_row(box, row++));
+      copy_row(job_.request.site + node, cell_.first() + first_of_row(box, row++), box.count[0]);
       return true;
     });
   }
@@ -335,13 +355,22 @@ class SecondWorker {
   /// Of the rows of a box, in the cell.
   static std::size_t first_of_row(const NodeBox& box, std::size_t row) {
     const auto rows = static_cast<std::size_t>(box.count[1]);
-    return 8 * (row % rows) + 64 * (row / rows);
+    return SecondCell::row * (row % rows) + SecondCell::layer * (row / rows);
+  }
+
+  template <class T>
+  static void copy_row(const T* from, T* to, std::int64_t count) {
+    if (count == SecondCell::side) {
+      std::memcpy(to, from, SecondCell::row * sizeof(T));
+    } else {
+      std::copy_n(from, count, to);
+    }
   }
 
   [[nodiscard]] CellPositions positions(const NodeBox& box, const Vec3f& middle) const {
     CellPositions out{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t k = 0; k < 8; ++k) {
+      for (std::size_t k = 0; k < SecondCell::row; ++k) {
         const double index = static_cast<double>(box.first[axis] + static_cast<std::int64_t>(k));
         out[axis][k] = static_cast<float>(field_.first_node[axis] + index * field_.spacing[axis] - middle[axis]);
       }
@@ -363,10 +392,14 @@ class SecondWorker {
   void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, const LeafPattern& pattern,
             const Vec3f& middle) {
     SecondLeaf state;
-    const std::size_t begin =
-        ((input.child & 1) != 0 ? 4 : 0) + ((input.child & 2) != 0 ? 32 : 0) + ((input.child & 4) != 0 ? 256 : 0);
+    std::size_t begin = 0;
+    for (std::size_t axis = 3; axis-- > 0;) {
+      begin = SecondCell::row * begin + static_cast<std::size_t>(box.first[axis] - cell_box_.first[axis]);
+    }
     const auto each_row = [&](auto use) {
-      for (std::size_t row = 0; row < 16; ++row) use(begin + 8 * (row % 4) + 64 * (row / 4), 4 * row);
+      for (std::size_t row = 0; row < 16; ++row) {
+        use(begin + SecondCell::row * (row % 4) + SecondCell::layer * (row / 4), 4 * row);
+      }
     };
     each_row([&](std::size_t from, std::size_t to) {
       std::memcpy(state.first.data() + to, cell_.first() + from, 16);
@@ -399,7 +432,7 @@ class SecondWorker {
 
   /// Where a leaf has no node, or the node is beyond the band, nothing is first and nothing can be second.
   static void forget_beyond(const NodeBox& box, SecondLeaf& state) {
-    for (std::size_t node = 0; node < leaf_nodes; ++node) {
+    for (std::size_t node = 0; node < leaf_nodes && !is_cube(box, leaf_size); ++node) {
       const bool is_node = static_cast<std::int64_t>(node % 4) < box.count[0] &&
                            static_cast<std::int64_t>(node / 4 % 4) < box.count[1] &&
                            static_cast<std::int64_t>(node / 16) < box.count[2];
@@ -485,7 +518,8 @@ class SecondWorker {
   HWY_NOINLINE void write(const NodeBox& box) {
     const V none = set(limit());
     M open = hn::FirstN(d, 0);
-    for (std::size_t node = 0; node < static_cast<std::size_t>(64 * box.count[2]); node += lanes) {
+    const std::size_t nodes = SecondCell::layer * static_cast<std::size_t>(box.count[2]);
+    for (std::size_t node = 0; node < nodes; node += lanes) {
       const V squared = hn::Load(d, cell_.distance.data() + node);
       const V value = hn::Mul(hn::Sqrt(hn::Abs(squared)), set(field_.to_world));
       const M has_none = hn::Ge(squared, set(no_distance));
@@ -503,8 +537,8 @@ class SecondWorker {
     (void)all_rows(box, [&](std::size_t node) {
       const std::size_t from = first_of_row(box, row++);
       if (has_open) report_open(box, from, node);
-      std::copy_n(cell_.distance.data() + from, box.count[0], job_.request.distance2 + node);
-      std::copy_n(cell_.site.data() + from, box.count[0], job_.request.site2 + node);
+      copy_row(cell_.distance.data() + from, job_.request.distance2 + node, box.count[0]);
+      copy_row(cell_.site.data() + from, job_.request.site2 + node, box.count[0]);
       return true;
     });
   }
@@ -519,8 +553,6 @@ class SecondWorker {
     }
   }
 
-  static constexpr std::array<std::int64_t, 3> full_{SecondCell::side, SecondCell::side, SecondCell::side};
-
   const SecondJob& job_;
   const FieldJob& field_;
   SecondScratch::Impl& mine_;
@@ -528,7 +560,10 @@ class SecondWorker {
   SecondCell& cell_;
   std::vector<std::size_t>& unsettled_;
   std::array<LeafPattern, 8> full_patterns_;
-  LeafPattern pattern_;           ///< of the leaf at hand, where it is cut off
+  LeafPattern pattern_;  ///< of the leaf at hand, where it is cut off
+  NodeBox cell_box_;     ///< the cell at hand
+  Vec3f cell_middle_;
+  DistanceBound cell_bound_;      ///< around its middle
   const OfSite* only_ = nullptr;  ///< labels of all first sites of the tile at hand, where the rule is by objects
 };
 

@@ -10,11 +10,13 @@
 
 namespace blum::cpu {
 
-/// A box of up to 8 x 8 x 8 nodes, its nodes sorted by their first sites: node (i, j, k) is i + 8 j + 64 k.
+/// A box of up to 16^3 nodes, its nodes sorted by their first sites: node (i, j, k) is i + 16 j + 256 k.
 /// Whole vectors may be read and written past the end of all arrays.
 struct SecondCell {
-  static constexpr std::int64_t side = 8;
-  static constexpr std::size_t nodes = 512;
+  static constexpr std::int64_t side = 16;
+  static constexpr std::size_t row = 16;
+  static constexpr std::size_t layer = 256;
+  static constexpr std::size_t nodes = 4096;
   static constexpr std::size_t padding = 64;
   static constexpr std::uint16_t no_group = 0xffff;
 
@@ -42,7 +44,7 @@ struct SecondCell {
   std::size_t run_count = 0;
   std::array<Group, nodes> groups;
   std::size_t group_count = 0;
-  std::array<std::uint16_t, 1024> table;  ///< finds groups: their number and 1
+  std::array<std::uint16_t, 8192> table;  ///< finds groups: their number and 1
   // By group:
   alignas(64) std::array<float, nodes + padding> x, y, z;  ///< from the cell's middle
   alignas(64) std::array<float, nodes + padding> squared;
