@@ -76,10 +76,10 @@ Request parse(const Arguments& a) {
   if (a.spacing) r.spacing = parse_positive("--spacing", *a.spacing);
   if (a.bounds) r.bounds = parse_bounds("--bounds", *a.bounds);
   if (a.padding) r.padding = parse_non_negative("--padding", *a.padding);
-  if (a.options.has("second") && r.options.order != 2) throw UsageError("--second needs --order 2");
   exclude(a.options.has("site_ids"), "--site-ids", a.options.has("sites"), "--no-sites", "there are none to number");
   r.option_texts = a.options;
   r.options = a.options.read(1);
+  if (a.options.has("second") && r.options.order != 2) throw UsageError("--second needs --order 2");
   r.selections = parse_selections(a.labels, a.threshold);
   r.weld = parse_weld(a.weld);
   r.threads = parse_threads(a.threads);

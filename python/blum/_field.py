@@ -70,7 +70,7 @@ class Field:
         self.source = source
         self._distance: npt.NDArray[np.float32] = core.distance
         self._site = cast("IntArray | None", core.site)
-        self._distance2: npt.NDArray[np.float32] | None = core.distance2
+        self._distance2 = cast("npt.NDArray[np.float32] | None", core.distance2)
         self._site2 = cast("IntArray | None", core.site2)
         # Now rather than when they are asked for: a solver that reuses its field may be writing it then.
         self._grid = Grid._of(core.grid)
@@ -250,9 +250,7 @@ def _restored(
     source: str,
     space: str,
 ) -> Field:
-    core = _core.Field(
-        distance, grid._spec, site, distance2, site2, second, site_ids, band, sign_rule, sign_reason
-    )
+    core = _core.Field(distance, grid._spec, site, distance2, site2, second, site_ids, band, sign_rule, sign_reason)
     return Field._of(core, mesh, source, space)
 
 

@@ -72,7 +72,7 @@ def test_second_sites_have_no_vertex_of_the_first(torus, tmp_path):
     assert field.distance2.shape == field.site2.shape == field.distance.shape
     assert field.second == "no-common-vertex" and (field.distance2 >= np.abs(field.distance)).all()
     sites = blum.Sites(torus)
-    own, other = sites.vertices(field.site), sites.vertices(field.site2)
+    own, other = sites.vertices(field.site.ravel()), sites.vertices(field.site2.ravel())
     assert not ((own[..., :, None] == other[..., None, :]) & (own[..., :, None] >= 0)).any()
     for end in ("nrrd", "npz", "vti"):
         field.write(tmp_path / f"both.{end}")

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+#include "hwy/cache_control.h"
+
 #include "field/cpu/leaf-inl.hpp"
 #include "field/cpu/second_kernel.hpp"
 #include "field/cpu/second_scratch.hpp"
@@ -51,7 +53,7 @@ using CellPositions = std::array<std::array<float, 32>, 3>;
 /// Sorts the nodes of a cell into groups.
 class CellSorter {
  public:
-  explicit CellSorter(SecondCell& cell) : cell_(cell) {}
+  CellSorter(SecondCell& cell, std::span<const SecondLabels::OfSite> labels) : cell_(cell), labels_(labels) {}
 
   void find_groups() {
     cell_.run_count = 0;
@@ -72,6 +74,10 @@ class CellSorter {
         add_run(node + at, end - at, cell_.first()[node + at]);
       }
     }
+  }
+
+  void find_labels() {
+    for (std::size_t g = 0; g < cell_.group_count; ++g) cell_.groups[g].labels = labels_[cell_.groups[g].site];
   }
 
   /// Writes the positions of all nodes, group after group; whole vectors, of which the next run overwrites the rest.
@@ -125,10 +131,12 @@ class CellSorter {
     cell_.runs[r].group = static_cast<std::uint16_t>(g);
     SecondCell::Group& group = cell_.groups[g];
     group.site = site;
+    hwy::Prefetch(&labels_[site]);  // read by find_labels()
     group.first_run = group.last_run = static_cast<std::uint16_t>(r);
   }
 
   SecondCell& cell_;
+  std::span<const SecondLabels::OfSite> labels_;
 };
 
 /// Offers closed segments to the nodes of a group, which have nothing yet. It writes past the end of the group: groups

@@ -4,15 +4,13 @@
 #define HWY_TARGET_INCLUDE "field/cpu/second_kernel.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h must come before the headers that are compiled once per target.
-#include "field/cpu/gather-inl.hpp"
+#include "field/cpu/second_bounds-inl.hpp"
 #include "field/cpu/second_cell-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
 namespace HWY_NAMESPACE {
 namespace {
-
-using OfSite = SecondLabels::OfSite;
 
 /// A tile with more clusters than this is split, so that candidate lists stay in cache.
 constexpr std::size_t most_clusters = 8000;
@@ -21,62 +19,6 @@ constexpr std::int64_t leaf_size = 4;
 /// Links of a site beyond this are first cut down to those that are near.
 constexpr std::size_t many_links = 32;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
-
-/// Surface points that bound how far the second site is: of two that are apart, one may be second wherever anything is
-/// first, so that a second site is no further than the further of the two. One alone where it may be second at all
-/// nodes at hand; none where nothing is known.
-struct Bounds {
-  std::array<Vec3f, 2> point{};
-  std::array<OfSite, 2> labels{};
-  std::size_t count = 0;
-};
-
-struct BoundedTileTest {
-  TileTest first, second;
-  std::size_t count;
-  Vec center;
-  V radius;
-
-  BoundedTileTest(const CenteredBox& tile, const Bounds& bounds)
-      : first(tile, bounds.point[0]),
-        second(tile, bounds.point[1]),
-        count(bounds.count),
-        center(first.center),
-        radius(first.radius) {}
-
-  HWY_INLINE std::uint32_t keeps(const BoxArrays& boxes, std::size_t at) const {
-    if (count == 0) return 0xffff;
-    return count == 1 ? first.keeps(boxes, at) : first.keeps(boxes, at) | second.keeps(boxes, at);
-  }
-};
-
-template <int boxes>
-struct BoundedTest : BlockTest<boxes> {
-  Domination other;
-  std::size_t count;
-
-  BoundedTest(const CenteredBox& box, const Bounds& bounds)
-      : BlockTest<boxes>(box, Dominators{{bounds.point[0]}, 1}),
-        other(box.center, Dominators{{bounds.point[1]}, 1}, box.half + Vec3f{box_slack, box_slack, box_slack}),
-        count(bounds.count) {}
-  BoundedTest(const Halving& h, const Bounds& bounds)
-      : BlockTest<boxes>(h, Dominators{{bounds.point[0]}, 1}),
-        other(h.middle, Dominators{{bounds.point[1]}, 1}, h.reach()),
-        count(bounds.count) {}
-
-  /// Takes one bound instead, for what is known of all nodes.
-  void bound_by(const Domination& all) {
-    this->domination = all;
-    count = 1;
-  }
-
-  template <class Block>
-  HWY_INLINE M keeps(const Block& block) const {
-    if (count == 0) return hn::FirstN(d, lanes);
-    const M keep = block.keeps(this->domination);
-    return count == 1 ? keep : hn::Or(keep, block.keeps(other));
-  }
-};
 
 /// Works on one tile: owns nothing, holds what the recursion passes along.
 class SecondWorker {
@@ -327,12 +269,14 @@ class SecondWorker {
 
   /// @return  what bounds the distances from above, around the middle.
   DistanceBound offer_all_links(const NodeBox& box, const Vec3f& middle) {
-    CellSorter sorter(cell_);
+    CellSorter sorter(cell_, job_.labels);
     sorter.find_groups();
+    sorter.find_labels();
     sorter.place(positions(box, middle));
     for (std::size_t g = 0; g < cell_.group_count; ++g) {
       const SecondCell::Group& group = cell_.groups[g];
-      std::span<const std::uint32_t> links = find_links(job_.labels[group.site]);
+      prefetch_links(g);
+      std::span<const std::uint32_t> links = find_links(group.labels);
       if (links.size() > many_links) links = near_links(links, middle, group);
       offer_links(links, *job_.links, middle, group, cell_);
     }
@@ -469,6 +413,26 @@ class SecondWorker {
       if (squared > state.squared[node] || (squared == state.squared[node] && sliver.id >= state.id[node])) continue;
       state.squared[node] = squared;
       state.id[node] = sliver.id;
+    }
+  }
+
+  /// Of groups that come soon: links lie all over memory.
+  void prefetch_links(std::size_t g) const {
+    if (g + 8 < cell_.group_count) {
+      for (const std::uint32_t v : cell_.groups[g + 8].labels) hwy::Prefetch(&job_.links->first[v]);
+    }
+    if (g + 4 < cell_.group_count) {
+      for (const std::uint32_t v : cell_.groups[g + 4].labels) {
+        const std::span<const SecondLinks::Entry> entries = job_.links->of(v);
+        if (entries.empty()) continue;
+        hwy::Prefetch(entries.data());
+        hwy::Prefetch(entries.data() + entries.size() - 1);
+      }
+    }
+    if (g + 2 < cell_.group_count) {
+      for (const std::uint32_t v : cell_.groups[g + 2].labels) {
+        for (const SecondLinks::Entry& entry : job_.links->of(v)) hwy::Prefetch(&job_.links->segments[entry.segment]);
+      }
     }
   }
 

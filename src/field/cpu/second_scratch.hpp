@@ -31,6 +31,7 @@ struct SecondCell {
   /// Nodes with the same first site.
   struct Group {
     std::uint32_t site = 0;
+    SecondLabels::OfSite labels{};
     std::uint16_t first_run = 0, last_run = 0;
     std::uint16_t begin = 0, end = 0;
   };
