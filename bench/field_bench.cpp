@@ -94,6 +94,26 @@ void simd_case(benchmark::State& state, const std::string& name, int n, const st
   state.SetLabel(input.note + ", against " + cpu::simd_targets().front());
 }
 
+/// The second site of every node, against the first alone, in turn.
+void second_case(benchmark::State& state, const std::string& name, int n, SecondRule rule, int threads) {
+  const Shape& input = shape(name);
+  const GridSpec grid = cube_grid(input.mesh, n);
+  const auto with = [&](int order) {
+    return [&, order] {
+      Field field = distance_field(input.mesh, grid, {.sign = SignMode::none, .order = order, .second = rule},
+                                   {.threads = threads});
+      benchmark::DoNotOptimize(field.distance.data());
+    };
+  };
+  const TimesOfTwo times = time_in_turn(with(1), with(2));
+  report(state, times.second, static_cast<double>(grid.node_count()));
+  state.counters["first_wall_s"] = times.first.wall;
+  state.counters["first_cpu_s"] = times.first.cpu;
+  state.counters["wall_ratio"] = times.second.wall / times.first.wall;
+  state.counters["cpu_ratio"] = times.second.cpu / times.first.cpu;
+  state.SetLabel(input.note);
+}
+
 const bool registered = [] {
   add_cases("bunny", {64, 128, 256, 512});
   add_cases("fandisk", {64, 128, 256, 512});
@@ -101,6 +121,10 @@ const bool registered = [] {
   for (const char* name : {"bunny", "fandisk"}) {
     const std::string shape_name = name;
     add("threads/" + shape_name + "/256/blum", [=](benchmark::State& state) { thread_case(state, shape_name, 256); });
+    for (const int n : {128, 256}) {
+      add("second/" + shape_name + "/" + std::to_string(n),
+          [=](benchmark::State& state) { second_case(state, shape_name, n, SecondRule::no_common_vertex, 0); });
+    }
     for (const std::string& target : cpu::simd_targets()) {
       add("simd/" + shape_name + "/256/" + target,
           [=](benchmark::State& state) { simd_case(state, shape_name, 256, target); });

@@ -33,6 +33,7 @@ constexpr const char* examples = R"(Examples:
   blum field bunny.obj -o bunny.nrrd --resolution 256
   blum field bunny.obj -o bunny.npz --band 3v --json summary.json
   blum field part.stl -o part.vti --weld 1e-6 --sign winding
+  blum field parts.ply -o gap.npz --order 2 --second other-object
   blum field part.ply -o cut.nrrd --bounds -1,-1,0,1,1,0      one layer: a 2D field
   blum field scan.nii.gz -o organ.nrrd --label 1,3            organ-label1.nrrd and organ-label3.nrrd
   blum field scan.nrrd -o bone.npz --threshold 300)";
@@ -78,6 +79,7 @@ Request parse(const Arguments& a) {
   exclude(a.options.has("site_ids"), "--site-ids", a.options.has("sites"), "--no-sites", "there are none to number");
   r.option_texts = a.options;
   r.options = a.options.read(1);
+  if (a.options.has("second") && r.options.order != 2) throw UsageError("--second needs --order 2");
   r.selections = parse_selections(a.labels, a.threshold);
   r.weld = parse_weld(a.weld);
   r.threads = parse_threads(a.threads);
@@ -98,6 +100,8 @@ void check_applicable(const Arguments& a, const Request& r, InputKind kind) {
                 {a.padding.has_value(), "--padding"},
                 {a.options.has("site_ids"), "--site-ids"},
                 {a.options.has("sites"), "--no-sites"},
+                {a.options.has("order"), "--order"},
+                {a.options.has("second"), "--second"},
                 {a.weld.has_value(), "--weld"},
                 {r.options.sign == SignMode::normals, "--sign normals"},
                 {r.options.sign == SignMode::winding, "--sign winding"}},
@@ -112,7 +116,8 @@ struct Run {
   std::vector<PhaseTime> phases;
   double field_seconds = 0;
   std::vector<fs::path> outputs;
-  std::optional<fs::path> removed;  ///< sites of a field that was replaced by one without
+  std::optional<fs::path> removed;       ///< sites of a field that was replaced by one without
+  std::vector<fs::path> removed_second;  ///< likewise what was of order 2
   std::vector<std::string> warnings;
   TextTable table;
   bool names_device = false;  ///< one other than the CPU was asked for, which `auto` may be, too
@@ -148,6 +153,22 @@ std::string sites_text(const Field& field, const FieldStatistics& s) {
   return part(0, "vertices") + ", " + part(1, "edges") + ", " + part(2, "faces") + " of the nodes' closest";
 }
 
+Json second_json(const Field& field, const FieldStatistics& s) {
+  if (!s.second) return nullptr;
+  return {{"rule", field.second ? Json(to_string(*field.second)) : Json(nullptr)},
+          {"minimum", s.second->minimum ? Json(*s.second->minimum) : Json(nullptr)},
+          {"maximum", s.second->maximum ? Json(*s.second->maximum) : Json(nullptr)},
+          {"nodes_without", s.second->nodes_without}};
+}
+
+std::string second_text(const Field& field, const SecondStatistics& s) {
+  std::string text = "no site may be second";
+  if (s.minimum && s.maximum) text = "distance " + rounded_text(*s.minimum) + " to " + rounded_text(*s.maximum);
+  if (field.second) text += ", " + std::string(to_string(*field.second));
+  if (s.nodes_without > 0) text += "; " + count_text(s.nodes_without) + " nodes have none";
+  return text;
+}
+
 /// `label` may be null.
 void add_field(Run& run, const Field& field, const FieldStatistics& s, const std::vector<fs::path>& files,
                const std::int64_t* label) {
@@ -165,6 +186,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   json["band"] = field.band ? Json(*field.band) : Json(nullptr);
   json["distance"] = {{"minimum", s.minimum}, {"maximum", s.maximum}, {"inside_nodes", s.inside_nodes}};
   json["sites"] = sites_json(field, s);
+  json["second"] = second_json(field, s);
   run.fields.push_back(json);
 
   if (label) run.table.add("label", std::to_string(*label));
@@ -175,6 +197,7 @@ void add_field(Run& run, const Field& field, const FieldStatistics& s, const std
   run.table.add("distance", rounded_text(s.minimum) + " to " + rounded_text(s.maximum) +
                                 (field.band ? ", in a band of +-" + rounded_text(*field.band) : ""));
   run.table.add("sites", sites_text(field, s));
+  if (s.second) run.table.add("second", second_text(field, *s.second));
 }
 
 /// The largest spacing along which an image has neighbours.
@@ -215,6 +238,8 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
   const double rate = nodes / std::max(run.field_seconds, 1e-9);
   Json outputs = Json::array();
   for (const fs::path& file : run.outputs) outputs.push_back(file.string());
+  Json removed_second = Json::array();
+  for (const fs::path& file : run.removed_second) removed_second.push_back(file.string());
   const Json json = answer_json("field", {{"input", run.input},
                                           {"grid", to_json(grid)},
                                           {"sign_asked", to_string(request.options.sign)},
@@ -228,13 +253,17 @@ void finish(const Request& request, Run& run, const GridSpec& grid, const Contex
                                           {"thread_backend", thread_backend()},
                                           {"warnings", run.warnings},
                                           {"outputs", outputs},
-                                          {"removed", run.removed ? Json(run.removed->string()) : Json(nullptr)}});
+                                          {"removed", run.removed ? Json(run.removed->string()) : Json(nullptr)},
+                                          {"removed_second", removed_second}});
   run.table.add("time", spent.text);
   run.table.add("speed", rounded_text(std::round(rate / 1e4) / 1e2) + " million nodes/s on " +
                              plural(static_cast<std::uint64_t>(thread_count(context)), "thread", "threads") + ", " +
                              bytes_text(static_cast<double>(peak_memory())) + " at most");
   for (const fs::path& file : run.outputs) run.table.add("wrote", file.string());
   if (run.removed) run.table.add("removed", run.removed->string() + ": sites of the field that was replaced");
+  for (const fs::path& file : run.removed_second) {
+    run.table.add("removed", file.string() + ": of the second order of the field that was replaced");
+  }
   report(request.report, json, run.input_text + run.table.text());
   if (!request.report.quiet) warn(run.warnings);
 }
@@ -245,8 +274,8 @@ GridSpec make_grid(const Request& r, const Box3& box) {
   return r.spacing ? grid_around_with_spacing(box, *r.spacing, r.padding) : grid_around(box, r.resolution, r.padding);
 }
 
-void check_field_memory(const GridSpec& grid, std::size_t fields, bool with_sites = true) {
-  check_memory((with_sites ? 8.0 : 4.0) * static_cast<double>(grid.node_count()) * static_cast<double>(fields),
+void check_field_memory(const GridSpec& grid, std::size_t fields, double bytes_per_node = 8) {
+  check_memory(bytes_per_node * static_cast<double>(grid.node_count()) * static_cast<double>(fields),
                "a grid of " + size_text(grid) + " nodes", "use a coarser grid, or smaller bounds");
 }
 
@@ -263,7 +292,7 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   context.device = r.device;
   check_outputs(
       [&] {
-        std::vector<fs::path> files = files_of_field(r.output);
+        std::vector<fs::path> files = files_of_field(r.output, true, r.options.order);
         for (const fs::path& file : r.report.files()) files.push_back(file);
         return files;
       }(),
@@ -286,7 +315,8 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   run.time("input facts", watch.lap());
 
   const GridSpec grid = make_grid(r, bounds(mesh));
-  check_field_memory(grid, 1, r.options.sites);
+  // The second order needs the sites of both on the way.
+  check_field_memory(grid, 1, r.options.order == 2 ? 16 : r.options.sites ? 8 : 4);
   add_grid_text(run, grid);
   static_cast<void>(watch.lap());
   const Field field = distance_field(mesh, grid, r.option_texts.read(grid.spacing.x), context);
@@ -298,10 +328,11 @@ void run_mesh(const Request& r, Progress& progress, const Interrupt& interrupt) 
   const FieldStatistics statistics = field_statistics(field, features, context);
   run.time("statistics", watch.lap());
   if (!r.options.sites) run.removed = sites_of_replaced_field(r.output);
+  if (r.options.order == 1) run.removed_second = second_of_replaced_field(r.output);
   write_field(r.output, field, {&mesh, &sites, r.input.filename().string(), BLUM_VERSION}, context);
   run.time("write", watch.lap());
   progress.clear();
-  add_field(run, field, statistics, files_of_field(r.output, r.options.sites), nullptr);
+  add_field(run, field, statistics, files_of_field(r.output, r.options.sites, r.options.order), nullptr);
   run.warnings = warnings_of(field, statistics, mesh, facts);
   if (is_welded_away(file)) run.warnings.push_back(welded_away_text(file));
   finish(r, run, grid, context);
@@ -384,7 +415,9 @@ void add_field_command(const CommandLine& line) {
   CLI::App* command = line.app.add_subcommand("field", "Exact distance and closest site at every node of a grid");
   command->add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       ->required();
-  command->add_option("-o,--output", a->output, "Field file: .nrrd (and OUT.site.nrrd), .npz or .vti")
+  command
+      ->add_option("-o,--output", a->output,
+                   "Field file: .nrrd (and OUT.site.nrrd; of order 2 OUT.distance2.nrrd, OUT.site2.nrrd), .npz or .vti")
       ->required()
       ->type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -88,6 +89,36 @@ void add_range(const Field& field, const WorkRange& range, const Borders& border
   }
 }
 
+/// Whether a node has a second site; of fields without sites, its distance tells.
+bool has_second(const Field& field, std::size_t node) {
+  if (!field.site2.empty()) return field.site2[node].has_value();
+  return field.distance2[node] < (field.band ? static_cast<float>(*field.band) : HUGE_VALF);
+}
+
+SecondStatistics second_statistics(const Field& field, const Context& context) {
+  std::vector<SecondStatistics> partials(static_cast<std::size_t>(thread_count(context)));
+  const auto add = [](SecondStatistics& to, float minimum, float maximum) {
+    to.minimum = std::min(to.minimum.value_or(minimum), minimum);
+    to.maximum = std::max(to.maximum.value_or(maximum), maximum);
+  };
+  parallel_for(context, field.distance2.size(), grain, "", [&](const WorkRange& range) {
+    SecondStatistics& partial = partials[static_cast<std::size_t>(range.worker)];
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      if (has_second(field, i)) {
+        add(partial, field.distance2[i], field.distance2[i]);
+      } else {
+        ++partial.nodes_without;
+      }
+    }
+  });
+  SecondStatistics all;
+  for (const SecondStatistics& partial : partials) {
+    if (partial.minimum) add(all, *partial.minimum, *partial.maximum);
+    all.nodes_without += partial.nodes_without;
+  }
+  return all;
+}
+
 }  // namespace
 
 FieldStatistics field_statistics(const Field& field, const SiteTable* sites, const Context& context) {
@@ -121,6 +152,7 @@ FieldStatistics field_statistics(const Field& field, const SiteTable* sites, con
     result.kinds[1].sites = seen.count(borders.edges, borders.faces);
     result.kinds[2].sites = seen.count(borders.faces, sites->size());
   }
+  if (field.order() == 2) result.second = second_statistics(field, silent);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "blum/core/context.hpp"
 #include "blum/field/field.hpp"
@@ -16,6 +17,12 @@ struct KindCount {
   std::uint64_t sites = 0;  ///< distinct sites that are closest to some node
 };
 
+/// What the second order of a field holds.
+struct SecondStatistics {
+  std::optional<float> minimum, maximum;  ///< distances, where any node has a second site
+  std::uint64_t nodes_without = 0;        ///< nodes without a second site (or beyond the band)
+};
+
 struct FieldStatistics {
   float minimum = 0;
   float maximum = 0;
@@ -23,6 +30,7 @@ struct FieldStatistics {
   std::uint64_t siteless_nodes = 0;  ///< beyond the band
   KindCount all;
   std::array<KindCount, 3> kinds;  ///< by SiteKind; only where the field's sites are features and `sites` is given
+  std::optional<SecondStatistics> second;  ///< of fields of order 2
 };
 
 /// @param sites  the mesh's sites, where the field's site values are features; else null.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "arrays.hpp"
@@ -31,12 +32,16 @@ Buffer<T> copied(const Array& array) {
 }
 
 Field field_of(const FloatsIn& distance, const GridSpec& grid, const std::optional<SitesIn>& site,
-               const std::string& site_ids, std::optional<double> band, const std::string& sign_rule,
-               std::string sign_reason) {
+               const std::optional<FloatsIn>& distance2, const std::optional<SitesIn>& site2,
+               const std::optional<std::string>& second, const std::string& site_ids, std::optional<double> band,
+               const std::string& sign_rule, std::string sign_reason) {
   Field field;
   field.grid = grid;
   field.distance = copied<float>(distance);
   if (site) field.site = copied<SiteId>(*site);
+  if (distance2) field.distance2 = copied<float>(*distance2);
+  if (site2) field.site2 = copied<SiteId>(*site2);
+  if (second) field.second = parse_enum<SecondRule>("second", *second);
   field.site_ids = parse_enum<SiteIds>("site_ids", site_ids);
   field.band = band;
   field.sign_rule = parse_enum<SignRule>("sign_rule", sign_rule);
@@ -44,26 +49,49 @@ Field field_of(const FloatsIn& distance, const GridSpec& grid, const std::option
   return field;
 }
 
+/// A view of site ids, or none.
+nb::object sites_of(const nb::pointer_and_handle<Field>& self, Buffer<SiteId>& sites) {
+  if (sites.empty()) return nb::none();
+  return nb::cast(grid_view(reinterpret_cast<std::int32_t*>(sites.data()), self.p->grid.size, self.h));
+}
+
+using ObjectsIn = nb::ndarray<const std::uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+std::span<const std::uint32_t> objects_of(const std::optional<ObjectsIn>& objects) {
+  return objects ? std::span(objects->data(), objects->size()) : std::span<const std::uint32_t>();
+}
+
 void bind_field_class(nb::module_& m) {
   nb::class_<Field>(m, "Field")
       .def(
           "__init__",
           [](Field* self, const FloatsIn& distance, const GridSpec& grid, const std::optional<SitesIn>& site,
-             const std::string& site_ids, std::optional<double> band, const std::string& sign_rule,
-             std::string sign_reason) {
-            new (self) Field(field_of(distance, grid, site, site_ids, band, sign_rule, std::move(sign_reason)));
+             const std::optional<FloatsIn>& distance2, const std::optional<SitesIn>& site2,
+             const std::optional<std::string>& second, const std::string& site_ids, std::optional<double> band,
+             const std::string& sign_rule, std::string sign_reason) {
+            new (self) Field(field_of(distance, grid, site, distance2, site2, second, site_ids, band, sign_rule,
+                                      std::move(sign_reason)));
           },
-          nb::arg("distance").noconvert(), nb::arg("grid"), nb::arg("site").none(), nb::arg("site_ids"),
-          nb::arg("band").none(), nb::arg("sign_rule"), nb::arg("sign_reason"))
+          nb::arg("distance").noconvert(), nb::arg("grid"), nb::arg("site").none(), nb::arg("distance2").none(),
+          nb::arg("site2").none(), nb::arg("second").none(), nb::arg("site_ids"), nb::arg("band").none(),
+          nb::arg("sign_rule"), nb::arg("sign_reason"))
       .def_prop_ro("distance",
                    [](nb::pointer_and_handle<Field> self) {
                      return grid_view(self.p->distance.data(), self.p->grid.size, self.h);
                    })
       .def_prop_ro("site",
+                   [](nb::pointer_and_handle<Field> self) -> nb::object { return sites_of(self, self.p->site); })
+      .def_prop_ro("distance2",
                    [](nb::pointer_and_handle<Field> self) -> nb::object {
-                     if (self.p->site.empty()) return nb::none();
-                     auto* const sites = reinterpret_cast<std::int32_t*>(self.p->site.data());
-                     return nb::cast(grid_view(sites, self.p->grid.size, self.h));
+                     if (self.p->distance2.empty()) return nb::none();
+                     return nb::cast(grid_view(self.p->distance2.data(), self.p->grid.size, self.h));
+                   })
+      .def_prop_ro("site2",
+                   [](nb::pointer_and_handle<Field> self) -> nb::object { return sites_of(self, self.p->site2); })
+      .def_prop_ro("second",
+                   [](const Field& field) -> std::optional<std::string> {
+                     if (!field.second) return std::nullopt;
+                     return std::string(to_string(*field.second));
                    })
       .def_ro("grid", &Field::grid)
       .def_prop_ro("site_ids", [](const Field& field) { return std::string(to_string(field.site_ids)); })
@@ -116,7 +144,11 @@ void bind_solver(nb::module_& m) {
             return run({threads, std::move(progress)},
                        [&](const Context& context) { return &solver.compute(view, context); });
           },
-          nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none(), nb::rv_policy::reference_internal);
+          nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none(), nb::rv_policy::reference_internal)
+      .def(
+          "set_objects",
+          [](FieldSolver& solver, const std::optional<ObjectsIn>& objects) { solver.set_objects(objects_of(objects)); },
+          nb::arg("objects").none());
 }
 
 }  // namespace
@@ -127,15 +159,17 @@ void bind_field(nb::module_& m) {
   bind_solver(m);
   m.def(
       "distance_field",
-      [](const MeshArrays& mesh, const GridSpec& grid, const nb::dict& given, int threads, const std::string& device,
-         nb::object progress) {
+      [](const MeshArrays& mesh, const GridSpec& grid, const std::optional<ObjectsIn>& objects, const nb::dict& given,
+         int threads, const std::string& device, nb::object progress) {
         const MeshView view = mesh.view();
         const auto options = options_from<FieldOptions>(given);
-        return run({threads, std::move(progress), parse_device(device)},
-                   [&](const Context& context) { return distance_field(view, grid, options, context); });
+        return run({threads, std::move(progress), parse_device(device)}, [&](const Context& context) {
+          if (!objects) return distance_field(view, grid, options, context);
+          return distance_field(view, grid, objects_of(objects), options, context);
+        });
       },
-      nb::arg("mesh"), nb::arg("grid"), nb::arg("options"), nb::arg("threads"), nb::arg("device"),
-      nb::arg("progress").none());
+      nb::arg("mesh"), nb::arg("grid"), nb::arg("objects").none(), nb::arg("options"), nb::arg("threads"),
+      nb::arg("device"), nb::arg("progress").none());
 }
 
 }  // namespace blum::python

@@ -53,7 +53,7 @@ class Field:
         if array.shape != grid.shape:
             raise ValueError(f"distance has the shape {array.shape}, but the grid's is {grid.shape}")
         values = np.ascontiguousarray(array, dtype=np.float32)
-        self._take(_core.Field(values, grid._spec, None, "features", None, "none", ""))
+        self._take(_core.Field(values, grid._spec, None, None, None, None, "features", None, "none", ""))
 
     @classmethod
     def _of(cls, core: _core.Field, mesh: Mesh | None = None, source: str = "", space: str = "") -> Field:
@@ -70,6 +70,8 @@ class Field:
         self.source = source
         self._distance: npt.NDArray[np.float32] = core.distance
         self._site = cast("IntArray | None", core.site)
+        self._distance2 = cast("npt.NDArray[np.float32] | None", core.distance2)
+        self._site2 = cast("IntArray | None", core.site2)
         # Now rather than when they are asked for: a solver that reuses its field may be writing it then.
         self._grid = Grid._of(core.grid)
         self._seconds = dict(core.seconds)
@@ -78,7 +80,7 @@ class Field:
 
     def __reduce__(self) -> tuple[Any, ...]:
         told = (self.site_ids, self.band, self.sign_rule, self.sign_reason)
-        arrays = (self.distance, self.grid, self.site)
+        arrays = (self.distance, self.grid, self.site, self.distance2, self.site2, self.second)
         return _restored, (*arrays, *told, self.mesh, self.source, self._space)
 
     @property
@@ -90,6 +92,25 @@ class Field:
     def site(self) -> IntArray | None:
         """int32 (z, y, x): the closest site, -1 where there is none; None for a field without sites."""
         return self._site
+
+    @property
+    def distance2(self) -> npt.NDArray[np.float32] | None:
+        """float32 (z, y, x): distance to the second site, mesh units, never negative; None for a field of order 1.
+
+        Where no site may be second: infinity, with a band the band's half-width.
+        """
+        return self._distance2
+
+    @property
+    def site2(self) -> IntArray | None:
+        """int32 (z, y, x): the second site, -1 where there is none; None for a field of order 1 or without sites."""
+        return self._site2
+
+    @property
+    def second(self) -> str | None:
+        """Which sites may be second: "no-common-vertex" or "other-object"; None for a field of order 1."""
+        found: str | None = self._core.second
+        return found
 
     @property
     def grid(self) -> Grid:
@@ -180,15 +201,19 @@ class Field:
     def to_pyvista(self) -> Any:
         """A pyvista.ImageData with the point data `distance` and `site`; a dict of arrays where PyVista is missing.
 
+        Of order 2 also `distance2` and `site2`.
+
         The point data are copies: VTK would hold on to the library's memory beyond Python's end, which then tells of a
         leak.
         """
         try:
             import pyvista
         except ImportError:
+            second = {} if self.distance2 is None else {"distance2": self.distance2, "site2": self.site2}
             return {
                 "distance": self.distance,
                 "site": self.site,
+                **second,
                 "origin": self.origin,
                 "spacing": self.spacing,
                 "direction": self.grid.direction,
@@ -200,6 +225,10 @@ class Field:
         out.point_data["distance"] = np.array(self.distance).ravel()
         if self.site is not None:
             out.point_data["site"] = np.array(self.site).ravel()
+        if self.distance2 is not None:
+            out.point_data["distance2"] = np.array(self.distance2).ravel()
+        if self.site2 is not None:
+            out.point_data["site2"] = np.array(self.site2).ravel()
         return out
 
     def __repr__(self) -> str:
@@ -210,6 +239,9 @@ def _restored(
     distance: Any,
     grid: Grid,
     site: Any,
+    distance2: Any,
+    site2: Any,
+    second: str | None,
     site_ids: str,
     band: float | None,
     sign_rule: str,
@@ -218,8 +250,18 @@ def _restored(
     source: str,
     space: str,
 ) -> Field:
-    core = _core.Field(distance, grid._spec, site, site_ids, band, sign_rule, sign_reason)
+    core = _core.Field(distance, grid._spec, site, distance2, site2, second, site_ids, band, sign_rule, sign_reason)
     return Field._of(core, mesh, source, space)
+
+
+def _objects_array(objects: Any) -> npt.NDArray[np.uint32] | None:
+    """One small number per object, whatever whole numbers name them."""
+    if objects is None:
+        return None
+    labels = as_array(objects, "objects")
+    if labels.ndim != 1 or labels.dtype.kind not in "iub":
+        raise ValueError(f"objects must be whole numbers (n,), not {labels.dtype} {labels.shape}")
+    return np.ascontiguousarray(np.unique(labels, return_inverse=True)[1].reshape(-1), dtype=np.uint32)
 
 
 @takes("FieldOptions")
@@ -233,12 +275,13 @@ def distance_field(
     bounds: Any = None,
     grid: Grid | None = None,
     weld: Real | None = None,
+    objects: Any = None,
     threads: int = 0,
     device: str = "cpu",
     progress: Progress = False,
     **options: Unpack[FieldOptions],
 ) -> Field:
-    """Exact distance and closest site at every node of a grid.
+    """Exact distance and closest site at every node of a grid; of order 2 also the second site.
 
     Parameters
     ----------
@@ -257,6 +300,8 @@ def distance_field(
         The grid itself.
     weld : float, optional
         Merge vertices closer than this first, mesh units; 0: equal ones. Default: as :func:`read_mesh` has it.
+    objects : (n,) of whole numbers, optional
+        For ``order=2, second="other-object"``: which object each vertex belongs to. Default: the connected parts.
     threads : int
         0: all cores. Results do not depend on it.
     device : "cpu", "auto", "cuda" or "cuda:K"
@@ -278,6 +323,9 @@ def distance_field(
     >>> field = blum.distance_field(blum.generate("box"), resolution=32)
     >>> field.distance.shape, field.sign_rule
     ((32, 32, 32), 'normals')
+    >>> both = blum.distance_field(blum.generate("box"), resolution=32, order=2)
+    >>> bool((both.distance2 >= abs(both.distance)).all())
+    True
     """
     shape = as_mesh(mesh, triangles, weld=weld)
     nodes = grid_for(shape, grid, bounds, resolution, spacing, padding)
@@ -285,6 +333,7 @@ def distance_field(
         core = _core.distance_field(
             shape._arrays,
             nodes._spec,
+            _objects_array(objects),
             dict(options),
             integer(threads, "threads"),
             device_name(device),
@@ -352,11 +401,16 @@ class FieldSolver:
         triangles: Any = None,
         *,
         weld: Real | None = None,
+        objects: Any = None,
         threads: int = 0,
         progress: Progress = False,
     ) -> Field:
-        """The field of this frame's mesh. Threads that share a solver wait for each other."""
+        """The field of this frame's mesh. Threads that share a solver wait for each other.
+
+        `objects` are those of this frame, as for :func:`distance_field`.
+        """
         shape = as_mesh(mesh, triangles, weld=weld)
+        labels = _objects_array(objects)
         compute = self._solver.compute_in_place if self._reuse else self._solver.compute
         count = integer(threads, "threads")
         if self._owner == threading.get_ident():
@@ -364,6 +418,7 @@ class FieldSolver:
         with self._busy, reporting(progress) as report:
             self._owner = threading.get_ident()
             try:
+                self._solver.set_objects(labels)
                 return Field._of(compute(shape._arrays, count, report), shape, shape.source)
             finally:
                 self._owner = None

@@ -27,7 +27,15 @@ auto make_on(const Device& device, const MakeCuda& make_cuda, const MakeCpu& mak
 
 }  // namespace
 
-std::unique_ptr<FieldBackend> make_field_backend(const Context& context, std::string& reason) {
+std::unique_ptr<FieldBackend> make_field_backend(const Context& context, int order, std::string& reason) {
+  if (order == 2) {
+    if (context.device.kind == DeviceKind::cuda) {
+      throw InvalidOption("fields of order 2 are computed on the CPU only, not on " + to_string(context.device) +
+                          ": ask for the device 'cpu' or 'auto'");
+    }
+    if (context.device.kind == DeviceKind::automatic) reason = "fields of order 2 are computed on the CPU only";
+    return std::make_unique<cpu::Engine>();
+  }
   return make_on(
       context.device, cuda::make_field_backend,
       []() -> std::unique_ptr<FieldBackend> { return std::make_unique<cpu::Engine>(); }, reason);

@@ -13,6 +13,7 @@
 #include "blum/geometry/triangle_mesh.hpp"
 #include "field/field_request.hpp"
 #include "field/image_request.hpp"
+#include "field/second_request.hpp"
 
 namespace blum {
 
@@ -45,6 +46,12 @@ class FieldBackend {
   /// Fills the memory of a request, the host's, and appends phase times.
   [[nodiscard]] virtual FieldResult compute(const FieldRequest& request, const Context& context,
                                             std::vector<PhaseTime>& phases) = 0;
+
+  /// Fills the second order of the field that compute() made; returns the nodes that are left to exact queries, rising.
+  [[nodiscard]] virtual std::vector<std::size_t> compute_second(const SecondRequest& /*request*/,
+                                                                const Context& /*context*/) {
+    return {};
+  }
 };
 
 /// Transforms images on one device that is not the CPU.
@@ -64,9 +71,9 @@ class ImageBackend {
   virtual void transform(const detail::ImageRequest& request) = 0;
 };
 
-/// The back end of context.device. @param reason  gets why it is the CPU's where `automatic` was asked for.
-/// @throws DeviceError.
-[[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context, std::string& reason);
+/// The back end of context.device for fields of an order. @param reason  gets why it is the CPU's where `automatic` was
+/// asked for. @throws DeviceError; InvalidOption for order 2 on a device that is not the CPU.
+[[nodiscard]] std::unique_ptr<FieldBackend> make_field_backend(const Context& context, int order, std::string& reason);
 /// Likewise; none for the CPU. @throws DeviceError.
 [[nodiscard]] std::unique_ptr<ImageBackend> make_image_backend(const Context& context, std::string& reason);
 

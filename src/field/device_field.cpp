@@ -63,6 +63,7 @@ struct DeviceFieldSolver::State {
 DeviceFieldSolver::DeviceFieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context) {
   validate(grid);
   check_options(options);
+  if (options.order != 1) throw InvalidOption("fields in a device's memory are of order 1; order 2 is for the CPU");
   // Of no mesh yet: refuses what no mesh on a device can have.
   if (options.sign == SignMode::normals) (void)sign::plan_unseen_signs(options.sign, 0);
   state_ = std::make_unique<State>(grid, options, context.device);

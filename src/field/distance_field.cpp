@@ -14,6 +14,7 @@
 #include "blum/geometry/pseudonormals.hpp"
 #include "field/backend.hpp"
 #include "field/field_options.hpp"
+#include "field/second_order.hpp"
 #include "field/sign/apply.hpp"
 #include "field/sign/policy.hpp"
 
@@ -46,14 +47,18 @@ void settle_nodes(const std::vector<std::size_t>& nodes, const MeshView& mesh, c
   });
 }
 
-void show_triangles(const SiteTable& sites, const Context& context, Field& field) {
-  parallel_for(context, field.site.size(), nodes_per_range, "", [&](const WorkRange& range) {
+void show_triangles(const SiteTable& sites, const Context& context, Buffer<SiteId>& values) {
+  parallel_for(context, values.size(), nodes_per_range, "", [&](const WorkRange& range) {
     for (std::size_t node = range.begin; node < range.end; ++node) {
-      const SiteId site = field.site[node];
-      if (site.has_value()) field.site[node] = SiteId(sites.triangle(site).value);
+      if (values[node].has_value()) values[node] = SiteId(sites.triangle(values[node]).value);
     }
   });
-  field.site_ids = SiteIds::triangles;
+}
+
+void check_object_count(const std::vector<std::uint32_t>& objects, const MeshView& mesh) {
+  if (objects.empty() || objects.size() == mesh.vertices.size()) return;
+  throw InvalidOption("there are " + std::to_string(objects.size()) + " objects for " +
+                      std::to_string(mesh.vertices.size()) + " vertices; each vertex needs one");
 }
 
 }  // namespace
@@ -64,6 +69,7 @@ struct FieldSolver::State {
   std::unique_ptr<FieldBackend> engine;
   std::string device_reason;
   sign::Planner planner;
+  std::vector<std::uint32_t> objects;  ///< of the vertices; empty: the connected parts
   Field field;
 
   void compute(const MeshView& mesh, const Context& frame_context);
@@ -71,6 +77,8 @@ struct FieldSolver::State {
  private:
   /// Gives field and request their memory; what the field has of it already, it keeps.
   void allocate(bool with_sites, FieldRequest& request);
+  /// Adds the second order to a field that is complete but for what its sites count.
+  void compute_second(const MeshView& mesh, const Context& frame_context);
 };
 
 void FieldSolver::State::allocate(bool with_sites, FieldRequest& request) {
@@ -83,9 +91,30 @@ void FieldSolver::State::allocate(bool with_sites, FieldRequest& request) {
   request.site = &field.site.data()->value;
 }
 
+void FieldSolver::State::compute_second(const MeshView& mesh, const Context& frame_context) {
+  PhaseTimer timer(field.phases);
+  const SiteTable& sites = engine->sites();
+  const SecondLabels labels(options.second, mesh, sites, objects, frame_context);
+  field.second = options.second;
+  const std::size_t nodes = field.grid.node_count();
+  if (field.distance2.size() != nodes) field.distance2 = Buffer<float>(nodes);
+  if (field.site2.size() != nodes) field.site2 = Buffer<SiteId>(nodes);
+  SecondRequest request;
+  request.grid = field.grid;
+  request.band = options.band.value_or(0);
+  request.labels = &labels;
+  request.distance = field.distance.data();
+  request.site = &field.site.data()->value;
+  request.distance2 = field.distance2.data();
+  request.site2 = &field.site2.data()->value;
+  settle_second(engine->compute_second(request, frame_context), mesh, sites, request, frame_context);
+  timer.lap("second order");
+}
+
 void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_context) {
   validate(mesh);
   check_site_ids(options, !mesh.segments.empty() || !mesh.points.empty());
+  check_object_count(objects, mesh);
   throw_if_cancelled(frame_context);
   field.band = options.band;
   field.site_ids = SiteIds::features;
@@ -99,7 +128,7 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   const sign::Plan plan = planner.plan(options.sign, mesh, sites, frame_context);
   connectivity_timer.lap("connectivity");
   FieldRequest request = make_field_request(field.grid, options, plan);
-  allocate(options.sites || engine->needs_sites_for(plan.method), request);
+  allocate(options.sites || options.order == 2 || engine->needs_sites_for(plan.method), request);
   FieldResult result = engine->compute(request, frame_context, field.phases);
   PhaseTimer sign_timer(field.phases);
   const bool by_normals = plan.method == sign::Method::pseudonormals;
@@ -110,8 +139,16 @@ void FieldSolver::State::compute(const MeshView& mesh, const Context& frame_cont
   field.sign_rule = plan.rule;
   field.sign_reason = plan.reason;
   sign_timer.lap("sign");
-  if (!options.sites) field.site = {};
-  if (options.site_ids == SiteIds::triangles) show_triangles(sites, frame_context, field);
+  if (options.order == 2) compute_second(mesh, frame_context);
+  if (!options.sites) {
+    field.site = {};
+    field.site2 = {};
+  }
+  if (options.site_ids == SiteIds::triangles) {
+    show_triangles(sites, frame_context, field.site);
+    show_triangles(sites, frame_context, field.site2);
+    field.site_ids = SiteIds::triangles;
+  }
 }
 
 FieldSolver::FieldSolver(const GridSpec& grid, const FieldOptions& options, const Context& context)
@@ -119,7 +156,7 @@ FieldSolver::FieldSolver(const GridSpec& grid, const FieldOptions& options, cons
   validate(grid);
   check_options(options);
   (void)thread_count(context);
-  state_->engine = make_field_backend(context, state_->device_reason);
+  state_->engine = make_field_backend(context, options.order, state_->device_reason);
   state_->options = options;
   state_->context = context;
   state_->field.grid = grid;
@@ -138,6 +175,11 @@ const Field& FieldSolver::compute(const MeshView& mesh, const Context& context) 
   return state_->field;
 }
 
+void FieldSolver::set_objects(std::span<const std::uint32_t> objects) {
+  if (!objects.empty()) check_objects(state_->options);
+  state_->objects.assign(objects.begin(), objects.end());
+}
+
 Field FieldSolver::take() {
   Field taken = std::move(state_->field);
   state_->field = Field{};
@@ -147,6 +189,15 @@ Field FieldSolver::take() {
 
 Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options, const Context& context) {
   FieldSolver solver(grid, options, context);
+  (void)solver.compute(mesh);
+  return solver.take();
+}
+
+Field distance_field(const MeshView& mesh, const GridSpec& grid, std::span<const std::uint32_t> objects,
+                     const FieldOptions& options, const Context& context) {
+  check_objects(options);
+  FieldSolver solver(grid, options, context);
+  solver.set_objects(objects);
   (void)solver.compute(mesh);
   return solver.take();
 }

@@ -1,6 +1,7 @@
 #include "field/field_options.hpp"
 
 #include <cmath>
+#include <string>
 
 #include "blum/core/error.hpp"
 
@@ -13,6 +14,14 @@ void check_options(const FieldOptions& options) {
   if (options.site_ids == SiteIds::voxels) {
     throw InvalidOption("voxel ids are for fields of images; a mesh has features or triangles");
   }
+  if (options.order != 1 && options.order != 2) {
+    throw InvalidOption("the order of a field is 1 or 2, not " + std::to_string(options.order));
+  }
+}
+
+void check_objects(const FieldOptions& options) {
+  if (options.order == 2 && options.second == SecondRule::other_object) return;
+  throw InvalidOption("objects are for fields of order 2 whose second site is of another object");
 }
 
 void check_site_ids(const FieldOptions& options, bool has_free_parts) {

@@ -11,6 +11,9 @@ namespace blum {
 /// @throws InvalidOption.
 void check_options(const FieldOptions& options);
 
+/// @throws InvalidOption where objects are of no use.
+void check_objects(const FieldOptions& options);
+
 /// @param has_free_parts  whether the mesh has segments or points, which lie on no triangle.
 /// @throws InvalidOption where triangle ids are asked for.
 void check_site_ids(const FieldOptions& options, bool has_free_parts);

@@ -1,12 +1,14 @@
 // Blum: the field formats, one by one. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "blum/core/context.hpp"
 #include "blum/field/field.hpp"
@@ -17,10 +19,15 @@
 
 namespace blum::volume_io {
 
-/// The file of the site ids that go with OUT.nrrd: OUT.site.nrrd.
-[[nodiscard]] std::filesystem::path site_path(const std::filesystem::path& path);
-/// Whether that file is there and says that it holds the sites of OUT.nrrd.
-[[nodiscard]] bool has_own_sites_beside(const std::filesystem::path& path);
+/// The arrays of a field that have a NRRD file of their own beside the distances, in the order of array_path().
+enum class BesideArray : std::uint8_t { site, distance2, site2 };
+inline constexpr std::array beside_arrays{BesideArray::site, BesideArray::distance2, BesideArray::site2};
+/// "site", "distance2" or "site2".
+[[nodiscard]] std::string_view name_of(BesideArray array);
+/// The file of an array that goes with OUT.nrrd: OUT.site.nrrd and so on.
+[[nodiscard]] std::filesystem::path beside_path(const std::filesystem::path& path, BesideArray array);
+/// Whether that file is there and says that it holds an array of OUT.nrrd.
+[[nodiscard]] bool has_own_beside(const std::filesystem::path& path, BesideArray array);
 
 void write_field_nrrd(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
                       const Context& context);
@@ -40,6 +47,17 @@ void write_field_vti(const std::filesystem::path& path, const Field& field, cons
 }
 [[nodiscard]] inline std::span<const std::byte> site_bytes(const Field& field) {
   return std::as_bytes(field.site.span());
+}
+[[nodiscard]] inline std::span<const std::byte> distance2_bytes(const Field& field) {
+  return std::as_bytes(field.distance2.span());
+}
+[[nodiscard]] inline std::span<const std::byte> site2_bytes(const Field& field) {
+  return std::as_bytes(field.site2.span());
+}
+/// How many bytes all of them are.
+[[nodiscard]] inline std::uint64_t array_size(const Field& field) {
+  return distance_bytes(field).size() + site_bytes(field).size() + distance2_bytes(field).size() +
+         site2_bytes(field).size();
 }
 
 /// Copies `bytes.size()` bytes of values, in the machine's byte order, out of a file.

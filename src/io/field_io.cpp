@@ -18,6 +18,12 @@ void check_sizes(const Field& field) {
                       std::to_string(field.site.size()) + " sites, but its grid has " + std::to_string(nodes) +
                       " nodes");
   }
+  if ((!field.distance2.empty() && field.distance2.size() != nodes) ||
+      (!field.site2.empty() && (field.site2.size() != nodes || field.distance2.empty()))) {
+    throw InvalidGrid("the field has " + std::to_string(field.distance2.size()) + " second distances and " +
+                      std::to_string(field.site2.size()) + " second sites, but its grid has " + std::to_string(nodes) +
+                      " nodes");
+  }
 }
 
 Field read(const volume_io::ByteSource& source, FieldFormat format, const std::filesystem::path& path) {

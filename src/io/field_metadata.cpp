@@ -48,6 +48,11 @@ Metadata field_metadata(const Field& field, const FieldFileInfo& info) {
     pairs.emplace_back("band", exact_text(*field.band));
     pairs.emplace_back("beyond_band", field.site.empty() ? "distance +-band" : "distance +-band, site -1");
   }
+  if (field.order() == 2) {
+    pairs.emplace_back("distance2", std::string("to the second site, >= 0, units of ") + unit + "; " +
+                                        (field.band ? "the band" : "infinity") + " where there is none");
+  }
+  if (field.second) pairs.emplace_back("second", to_string(*field.second));
   if (!field.site.empty()) {
     pairs.emplace_back("site_ids", to_string(field.site_ids));
     pairs.emplace_back("sites", site_sentence(field.site_ids));
@@ -78,6 +83,10 @@ void apply_metadata(const Metadata& metadata, const std::string& name, Field& fi
   if (const std::string_view text = find_value(metadata, "site_ids"); !text.empty()) {
     constexpr std::array all{SiteIds::features, SiteIds::triangles, SiteIds::voxels};
     field.site_ids = from_text(text, all, "site_ids", name);
+  }
+  if (const std::string_view text = find_value(metadata, "second"); !text.empty()) {
+    constexpr std::array all{SecondRule::no_common_vertex, SecondRule::other_object};
+    field.second = from_text(text, all, "second", name);
   }
   field.sign_reason = find_value(metadata, "sign_reason");
 }

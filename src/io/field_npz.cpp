@@ -37,8 +37,8 @@ SiteVertices site_vertices(const Field& field, const FieldFileInfo& info) {
 }
 
 /// Whether the mesh can be the one whose sites the field names.
-void check_sites(const Field& field, std::size_t site_count) {
-  for (const SiteId site : field.site) {
+void check_sites(const Buffer<SiteId>& sites, std::size_t site_count) {
+  for (const SiteId site : sites) {
     if (!site.has_value() || site.value < site_count) continue;
     throw InvalidMesh("the field names site " + std::to_string(site.value) + ", but the mesh given with it has only " +
                       std::to_string(site_count) + ": it is not the mesh that the field is of");
@@ -51,6 +51,24 @@ void add_direction(NpzWriter& npz, const Mat3& direction) {
     for (std::size_t column = 0; column < 3; ++column) rows[3 * row + column] = direction.columns[column][row];
   }
   npz.add("direction", "f8", {3, 3}, std::span<const double>(rows));
+}
+
+void check_shape(const ByteStream& stream, const NpyHeader& header, const GridSpec& grid) {
+  if (npy_image_size(header, stream.name()) == grid.size) return;
+  throw FormatError(stream.name() + ": its shape is not that of 'distance'");
+}
+
+Buffer<float> distances_of(ByteStream& stream, const NpyHeader& header) {
+  if (header.fortran) return to_float(read_npy_values(stream, header));
+  const std::uint64_t count = check_npy_values(stream, header);
+  return read_distances(header.type, count, [&](std::span<std::byte> out) { read_npy_raw(stream, header, out); });
+}
+
+Buffer<SiteId> sites_of(ByteStream& stream, const NpyHeader& header) {
+  if (header.fortran) return to_sites(read_npy_values(stream, header), stream.name());
+  const std::uint64_t count = check_npy_values(stream, header);
+  return read_sites(
+      header.type, count, [&](std::span<std::byte> out) { read_npy_raw(stream, header, out); }, stream.name());
 }
 
 void read_geometry(NpzReader& npz, const std::string& name, GridSpec& grid) {
@@ -76,17 +94,20 @@ void write_field_npz(const std::filesystem::path& path, const Field& field, cons
   const bool has_mesh = info.mesh != nullptr && !field.site.empty() && field.site_ids != SiteIds::voxels;
   if (has_mesh) validate(*info.mesh);
   const SiteVertices corners = has_mesh ? site_vertices(field, info) : SiteVertices{};
-  if (has_mesh) check_sites(field, corners.size());
+  if (has_mesh) {
+    check_sites(field.site, corners.size());
+    check_sites(field.site2, corners.size());
+  }
   AtomicFile file(path);
-  FieldSink sink(distance_bytes(field).size() + site_bytes(field).size() + 12 * corners.size() +
-                     (has_mesh ? 24 * info.mesh->vertices.size() : 0),
-                 context);
+  FieldSink sink(array_size(field) + 12 * corners.size() + (has_mesh ? 24 * info.mesh->vertices.size() : 0), context);
   NpzWriter npz(file, sink, context);
   const auto& n = field.grid.size;
   const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(n[2]), static_cast<std::uint64_t>(n[1]),
                                          static_cast<std::uint64_t>(n[0])};
   npz.add("distance", "f4", shape, field.distance.span());
   if (!field.site.empty()) npz.add("site", "i4", shape, field.site.span());
+  if (!field.distance2.empty()) npz.add("distance2", "f4", shape, field.distance2.span());
+  if (!field.site2.empty()) npz.add("site2", "i4", shape, field.site2.span());
   npz.add_vector("origin", field.grid.origin);
   npz.add_vector("spacing", field.grid.spacing);
   add_direction(npz, field.grid.direction);
@@ -108,19 +129,19 @@ Field read_field_npz(const ByteSource& source, const std::filesystem::path&) {
   Field field;
   field.distance = npz.read("distance", [&](ByteStream& stream, const NpyHeader& header) {
     field.grid.size = npy_image_size(header, stream.name());
-    if (header.fortran) return to_float(read_npy_values(stream, header));
-    const std::uint64_t count = check_npy_values(stream, header);
-    return read_distances(header.type, count, [&](std::span<std::byte> out) { read_npy_raw(stream, header, out); });
+    return distances_of(stream, header);
   });
-  if (npz.has("site")) {
-    field.site = npz.read("site", [&](ByteStream& stream, const NpyHeader& header) {
-      if (npy_image_size(header, stream.name()) != field.grid.size) {
-        throw FormatError(stream.name() + ": its shape is not that of 'distance'");
-      }
-      if (header.fortran) return to_sites(read_npy_values(stream, header), stream.name());
-      const std::uint64_t count = check_npy_values(stream, header);
-      return read_sites(
-          header.type, count, [&](std::span<std::byte> out) { read_npy_raw(stream, header, out); }, stream.name());
+  if (npz.has("distance2")) {
+    field.distance2 = npz.read("distance2", [&](ByteStream& stream, const NpyHeader& header) {
+      check_shape(stream, header, field.grid);
+      return distances_of(stream, header);
+    });
+  }
+  for (const auto& [name, sites] : {std::pair{"site", &field.site}, std::pair{"site2", &field.site2}}) {
+    if (!npz.has(name)) continue;
+    *sites = npz.read(name, [&](ByteStream& stream, const NpyHeader& header) {
+      check_shape(stream, header, field.grid);
+      return sites_of(stream, header);
     });
   }
   read_geometry(npz, source.name(), field.grid);

@@ -1,5 +1,8 @@
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "blum/core/error.hpp"
 #include "blum/io/atomic_file.hpp"
@@ -13,17 +16,23 @@
 namespace blum::volume_io {
 namespace {
 
-/// The key that says that a second file holds the sites: one left over from another run is not taken for it.
-constexpr const char* sites_key = "site_file";
-/// The key that marks the file of the sites, and names that of the distances.
+/// The key that says that a second file holds an array: one left over from another run is not taken for it.
+std::string key_of(BesideArray array) {
+  return std::string(name_of(array)) + "_file";
+}
+/// The key that marks the file of another array, and names that of the distances.
 constexpr const char* distances_key = "distance_file";
+/// The key that says which array that is; without it, the sites.
+constexpr const char* array_key = "array";
 
-/// @throws FormatError for the file of a field's sites, which looks like one of distances.
+/// @throws FormatError for a file of another array of a field, which looks like one of distances.
 void check_holds_distances(const NrrdHeader& header, const std::string& name) {
   const std::string_view distances = find_value(header.key_values, distances_key);
   if (distances.empty()) return;
-  throw FormatError(name + ": it holds the site ids of a field, not its distances; open the file of the distances, '" +
-                    std::string(distances) + "', which finds its sites by itself");
+  const bool is_second = find_value(header.key_values, array_key) == name_of(BesideArray::distance2);
+  throw FormatError(name + ": it holds the " + (is_second ? "second distances" : "site ids") +
+                    " of a field, not its distances; open the file of the distances, '" + std::string(distances) +
+                    "', which finds " + (is_second ? "the others" : "its sites") + " by itself");
 }
 
 Buffer<float> nrrd_distances(const ByteSource& data, const NrrdHeader& header) {
@@ -32,34 +41,51 @@ Buffer<float> nrrd_distances(const ByteSource& data, const NrrdHeader& header) {
                         [&](std::span<std::byte> out) { read_nrrd_data(data, header, out); });
 }
 
-Buffer<SiteId> nrrd_sites(const std::filesystem::path& path, const GridSpec& grid) {
+/// Reads an array that has a file of its own.
+void read_beside(const std::filesystem::path& path, BesideArray array, Field& field) {
   const FileSource source(path);
   const NrrdHeader header = read_nrrd_header(source);
-  if (header.grid.size != grid.size) {
-    throw FormatError(source.name() + ": it holds site ids for another grid than the distances beside it");
+  if (header.grid.size != field.grid.size) {
+    throw FormatError(source.name() + ": it holds " +
+                      (array == BesideArray::distance2 ? "second distances" : "site ids") +
+                      " for another grid than the distances beside it");
   }
   if (!header.data_file.empty()) throw FormatError(source.name() + ": its data are in another file");
+  if (array == BesideArray::distance2) {
+    field.distance2 = nrrd_distances(source, header);
+    return;
+  }
   check_nrrd_data_size(source, header);
-  return read_sites(
+  (array == BesideArray::site ? field.site : field.site2) = read_sites(
       header.type, header.grid.node_count(), [&](std::span<std::byte> out) { read_nrrd_data(source, header, out); },
       source.name());
 }
 
+std::span<const std::byte> bytes_of(const Field& field, BesideArray array) {
+  if (array == BesideArray::distance2) return distance2_bytes(field);
+  return array == BesideArray::site ? site_bytes(field) : site2_bytes(field);
+}
+
 }  // namespace
 
-bool has_own_sites_beside(const std::filesystem::path& path) {
+std::string_view name_of(BesideArray array) {
+  constexpr std::array<std::string_view, beside_arrays.size()> names{"site", "distance2", "site2"};
+  return names[static_cast<std::size_t>(array)];
+}
+
+bool has_own_beside(const std::filesystem::path& path, BesideArray array) {
   try {
-    const NrrdHeader header = read_nrrd_header(FileSource(site_path(path)));
+    const NrrdHeader header = read_nrrd_header(FileSource(beside_path(path, array)));
     return find_value(header.key_values, distances_key) == path.filename().string();
   } catch (const Error&) {
     return false;  // there is none, or it is none of Blum's
   }
 }
 
-std::filesystem::path site_path(const std::filesystem::path& path) {
+std::filesystem::path beside_path(const std::filesystem::path& path, BesideArray array) {
   std::filesystem::path out = path;
   out.replace_extension();
-  out += ".site.nrrd";
+  out += "." + std::string(name_of(array)) + ".nrrd";
   return out;
 }
 
@@ -67,26 +93,38 @@ void write_field_nrrd(const std::filesystem::path& path, const Field& field, con
                       const Context& context) {
   Metadata metadata = field_metadata(field, info);
   AtomicFile distances(path);
-  std::optional<AtomicFile> sites;
-  FieldSink sink(distance_bytes(field).size() + site_bytes(field).size(), context);
-  if (!field.site.empty()) {
-    Metadata of_sites = metadata;
-    of_sites.emplace_back(distances_key, path.filename().string());
-    metadata.emplace_back(sites_key, site_path(path).filename().string());
-    sites.emplace(site_path(path));
-    sink.write(*sites, nrrd_header(ScalarType::i32, field.grid, info.space, of_sites));
-    sink.write(*sites, site_bytes(field));
+  std::array<std::optional<AtomicFile>, beside_arrays.size()> others;
+  FieldSink sink(array_size(field), context);
+  const Metadata of_field = metadata;
+  for (const BesideArray array : beside_arrays) {
+    const std::span<const std::byte> bytes = bytes_of(field, array);
+    if (bytes.empty()) continue;
+    Metadata of_array = of_field;
+    of_array.emplace_back(distances_key, path.filename().string());
+    if (array != BesideArray::site) of_array.emplace_back(array_key, name_of(array));
+    metadata.emplace_back(key_of(array), beside_path(path, array).filename().string());
+    AtomicFile& file = others[static_cast<std::size_t>(array)].emplace(beside_path(path, array));
+    const ScalarType type = array == BesideArray::distance2 ? ScalarType::f32 : ScalarType::i32;
+    sink.write(file, nrrd_header(type, field.grid, info.space, of_array));
+    sink.write(file, bytes);
   }
   sink.write(distances, nrrd_header(ScalarType::f32, field.grid, info.space, metadata));
   sink.write(distances, distance_bytes(field));
   distances.finish();
-  if (sites) sites->finish();
+  for (std::optional<AtomicFile>& other : others) {
+    if (other) other->finish();
+  }
   throw_if_cancelled(context);
-  if (sites) sites->commit();
+  for (std::optional<AtomicFile>& other : others) {
+    if (other) other->commit();
+  }
   distances.commit();
   // Those of the field that was there; should they stay, the new file does not name them.
   std::error_code ignored;
-  if (!sites && has_own_sites_beside(path)) std::filesystem::remove(site_path(path), ignored);
+  for (const BesideArray array : beside_arrays) {
+    const bool is_written = others[static_cast<std::size_t>(array)].has_value();
+    if (!is_written && has_own_beside(path, array)) std::filesystem::remove(beside_path(path, array), ignored);
+  }
 }
 
 Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& path) {
@@ -102,9 +140,10 @@ Field read_field_nrrd(const ByteSource& source, const std::filesystem::path& pat
     field.distance = nrrd_distances(FileSource(nrrd_data_path(header, path)), header);
   }
   apply_metadata(header.key_values, source.name(), field);
-  if (!path.empty() && !find_value(header.key_values, sites_key).empty()) {
+  for (const BesideArray array : beside_arrays) {
+    if (path.empty() || find_value(header.key_values, key_of(array)).empty()) continue;
     std::error_code error;
-    if (std::filesystem::exists(site_path(path), error)) field.site = nrrd_sites(site_path(path), field.grid);
+    if (std::filesystem::exists(beside_path(path, array), error)) read_beside(beside_path(path, array), array, field);
   }
   return field;
 }

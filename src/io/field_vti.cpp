@@ -1,4 +1,6 @@
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "blum/core/exact_text.hpp"
@@ -37,9 +39,15 @@ std::string header_text(const Field& field, const FieldFileInfo& info) {
       matrix_text(field.grid.direction) + "\">\n    <FieldData>\n" +
       vtk_string_array("metadata", to_json(field_metadata(field, info))) + "    </FieldData>\n    <Piece Extent=\"" +
       extent + "\">\n      <PointData Scalars=\"distance\">\n" + vtk_appended_array(ScalarType::f32, "distance", 1, 0);
-  if (!field.site.empty()) {
-    out += vtk_appended_array(ScalarType::i32, "site", 1, sizeof(std::uint64_t) + distance_bytes(field).size());
-  }
+  std::uint64_t offset = sizeof(std::uint64_t) + distance_bytes(field).size();
+  const auto add = [&](ScalarType type, const char* name, std::span<const std::byte> bytes) {
+    if (bytes.empty()) return;
+    out += vtk_appended_array(type, name, 1, offset);
+    offset += sizeof(std::uint64_t) + bytes.size();
+  };
+  add(ScalarType::i32, "site", site_bytes(field));
+  add(ScalarType::f32, "distance2", distance2_bytes(field));
+  add(ScalarType::i32, "site2", site2_bytes(field));
   out += "      </PointData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n_";
   return out;
 }
@@ -55,10 +63,12 @@ void write_array(FieldSink& sink, AtomicFile& file, std::span<const std::byte> b
 void write_field_vti(const std::filesystem::path& path, const Field& field, const FieldFileInfo& info,
                      const Context& context) {
   AtomicFile file(path);
-  FieldSink sink(distance_bytes(field).size() + site_bytes(field).size(), context);
+  FieldSink sink(array_size(field), context);
   sink.write(file, header_text(field, info));
   write_array(sink, file, distance_bytes(field));
-  if (!field.site.empty()) write_array(sink, file, site_bytes(field));
+  for (const auto bytes : {site_bytes(field), distance2_bytes(field), site2_bytes(field)}) {
+    if (!bytes.empty()) write_array(sink, file, bytes);
+  }
   sink.write(file, "\n  </AppendedData>\n</VTKFile>\n");
   file.commit();
 }

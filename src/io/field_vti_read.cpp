@@ -20,8 +20,7 @@ namespace {
 struct VtiHeader {
   GridSpec grid;
   VtkAppended appended;
-  std::optional<VtkArray> distance;
-  std::optional<VtkArray> site;
+  std::optional<VtkArray> distance, site, distance2, site2;
   std::string metadata;
 };
 
@@ -103,10 +102,18 @@ class VtiParser {
         tag.find("format") == "ascii") {
       header_.metadata = vtk_string(tag.text, name_);
     }
-    if (section_ != "PointData" || (name != "distance" && name != "site")) return;
+    std::optional<VtkArray>* const place = place_of(name);
+    if (section_ != "PointData" || place == nullptr) return;
     const VtkArray array = vtk_array(tag, name_);
     if (array.components != 1) fail("'" + std::string(name) + "' has several components at each point");
-    (name == "site" ? header_.site : header_.distance) = array;
+    *place = array;
+  }
+
+  std::optional<VtkArray>* place_of(std::string_view name) {
+    if (name == "distance") return &header_.distance;
+    if (name == "site") return &header_.site;
+    if (name == "distance2") return &header_.distance2;
+    return name == "site2" ? &header_.site2 : nullptr;
   }
 
   void read_appended(const XmlTag& tag) {
@@ -139,12 +146,20 @@ Field read_field_vti(const ByteSource& source, const std::filesystem::path&) {
   };
   Field field;
   field.grid = header.grid;
-  PlainStream distances = open_vtk_array(source, header.appended, *header.distance, count, "the extent");
-  field.distance = read_distances(header.distance->type, count, reader(distances, *header.distance));
-  if (header.site) {
-    PlainStream sites = open_vtk_array(source, header.appended, *header.site, count, "the extent");
-    field.site = read_sites(header.site->type, count, reader(sites, *header.site), source.name());
-  }
+  const auto read_floats = [&](const std::optional<VtkArray>& place, Buffer<float>& out) {
+    if (!place) return;
+    PlainStream stream = open_vtk_array(source, header.appended, *place, count, "the extent");
+    out = read_distances(place->type, count, reader(stream, *place));
+  };
+  const auto read_ids = [&](const std::optional<VtkArray>& place, Buffer<SiteId>& out) {
+    if (!place) return;
+    PlainStream stream = open_vtk_array(source, header.appended, *place, count, "the extent");
+    out = read_sites(place->type, count, reader(stream, *place), source.name());
+  };
+  read_floats(header.distance, field.distance);
+  read_ids(header.site, field.site);
+  read_floats(header.distance2, field.distance2);
+  read_ids(header.site2, field.site2);
   if (!header.metadata.empty()) {
     apply_metadata(from_json(header.metadata, source.name()), source.name(), field);
   }

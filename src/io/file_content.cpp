@@ -109,14 +109,33 @@ std::string_view image_format_name(const fs::path& path) {
   return format ? std::string_view(format->name()) : "unknown";
 }
 
-std::vector<fs::path> files_of_field(const fs::path& path, bool with_sites) {
-  if (!with_sites || file_extension(path) != ".nrrd") return {path};
-  return {path, volume_io::site_path(path)};
+std::vector<fs::path> files_of_field(const fs::path& path, bool with_sites, int order) {
+  using volume_io::BesideArray;
+  std::vector<fs::path> files{path};
+  if (file_extension(path) != ".nrrd") return files;
+  for (const BesideArray array : volume_io::beside_arrays) {
+    const bool is_there = (array != BesideArray::distance2 || order == 2) &&
+                          (array != BesideArray::site || with_sites) &&
+                          (array != BesideArray::site2 || (with_sites && order == 2));
+    if (is_there) files.push_back(volume_io::beside_path(path, array));
+  }
+  return files;
 }
 
 std::optional<fs::path> sites_of_replaced_field(const fs::path& path) {
-  if (file_extension(path) != ".nrrd" || !volume_io::has_own_sites_beside(path)) return std::nullopt;
-  return volume_io::site_path(path);
+  using volume_io::BesideArray;
+  if (file_extension(path) != ".nrrd" || !volume_io::has_own_beside(path, BesideArray::site)) return std::nullopt;
+  return volume_io::beside_path(path, BesideArray::site);
+}
+
+std::vector<fs::path> second_of_replaced_field(const fs::path& path) {
+  using volume_io::BesideArray;
+  std::vector<fs::path> files;
+  if (file_extension(path) != ".nrrd") return files;
+  for (const BesideArray array : {BesideArray::distance2, BesideArray::site2}) {
+    if (volume_io::has_own_beside(path, array)) files.push_back(volume_io::beside_path(path, array));
+  }
+  return files;
 }
 
 }  // namespace blum

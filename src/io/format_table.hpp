@@ -96,7 +96,8 @@ inline constexpr std::array table{
     Row{"NPY", ".npy", ".npy", "scalars of any type, [z, y, x]; no spacing", "NumPy", &image_npy},
     Row{"Vol", ".vol", "", "bytes; no spacing", "DGtal", &image_vol},
 
-    Row{"NRRD", ".nrrd", ".nrrd", "distances; sites in a second file, NAME.site.nrrd", "3D Slicer, ITK", &field_nrrd},
+    Row{"NRRD", ".nrrd", ".nrrd", "distances; sites (and what is of order 2) in files beside it, NAME.site.nrrd",
+        "3D Slicer, ITK", &field_nrrd},
     Row{"NPZ", ".npz", ".npz", "distances, sites, vertices of sites", "NumPy", &field_npz},
     Row{"VTI", ".vti", ".vti", "distances, sites", "ParaView, VTK", &field_vti},
 

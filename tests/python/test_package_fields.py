@@ -63,6 +63,62 @@ def test_arrays_are_shared_both_ways(torus):
     assert np.shares_memory(blum.Image(image).values, image)
 
 
+def test_second_sites_have_no_vertex_of_the_first(torus, tmp_path):
+    first = blum.distance_field(torus, resolution=20)
+    assert first.distance2 is None and first.site2 is None and first.second is None
+    field = blum.distance_field(torus, resolution=20, order=2)
+    assert np.array_equal(field.distance, first.distance) and np.array_equal(field.site, first.site)
+    assert field.distance2.dtype == np.float32 and field.site2.dtype == np.int32
+    assert field.distance2.shape == field.site2.shape == field.distance.shape
+    assert field.second == "no-common-vertex" and (field.distance2 >= np.abs(field.distance)).all()
+    sites = blum.Sites(torus)
+    own, other = sites.vertices(field.site.ravel()), sites.vertices(field.site2.ravel())
+    assert not ((own[..., :, None] == other[..., None, :]) & (own[..., :, None] >= 0)).any()
+    for end in ("nrrd", "npz", "vti"):
+        field.write(tmp_path / f"both.{end}")
+        again = blum.read_field(tmp_path / f"both.{end}")
+        assert np.array_equal(again.distance2, field.distance2) and np.array_equal(again.site2, field.site2)
+        assert again.second == field.second
+    import pickle
+
+    copy = pickle.loads(pickle.dumps(field))
+    assert np.array_equal(copy.distance2, field.distance2) and np.array_equal(copy.site2, field.site2)
+    assert copy.second == field.second
+
+
+def test_second_sites_of_other_objects_are_those_of_the_other_mesh():
+    one = blum.generate("sphere", frequency=4)
+    vertices = np.vstack([one.vertices, one.vertices * 0.5 + (2, 0.3, 0)])
+    triangles = np.vstack([one.triangles, one.triangles + len(one.vertices)])
+    other = blum.Mesh(vertices[len(one.vertices) :], one.triangles)
+    field = blum.distance_field(vertices, triangles, resolution=24, sign="none", order=2, second="other-object")
+    near = [blum.distance_field(mesh, grid=field.grid, sign="none").distance for mesh in (one, other)]
+    assert np.abs(field.distance2 - np.maximum(*near)).max() < 1e-5
+    # The same objects, by labels of any numbers; and no others.
+    labels = np.where(np.arange(len(vertices)) < len(one.vertices), -7, 1000)
+    given = blum.distance_field(
+        vertices, triangles, grid=field.grid, sign="none", order=2, second="other-object", objects=labels
+    )
+    assert np.array_equal(given.distance2, field.distance2) and np.array_equal(given.site2, field.site2)
+    one_object = blum.FieldSolver(field.grid, sign="none", order=2, second="other-object")
+    alone = one_object.compute(vertices, triangles, objects=np.zeros(len(vertices), dtype=int))
+    assert np.isinf(alone.distance2).all() and (alone.site2 == -1).all()
+    assert np.array_equal(one_object.compute(vertices, triangles).distance2, field.distance2)
+
+
+def test_what_order_2_refuses(torus):
+    with pytest.raises(blum.InvalidOption, match="order"):
+        blum.distance_field(torus, resolution=8, order=3)
+    with pytest.raises(blum.InvalidOption, match="objects"):
+        blum.distance_field(torus, resolution=8, objects=np.zeros(len(torus.vertices), dtype=int))
+    with pytest.raises(blum.InvalidOption, match="objects"):
+        blum.distance_field(torus, resolution=8, order=2, second="other-object", objects=[1, 2])
+    with pytest.raises(ValueError, match="whole numbers"):
+        blum.distance_field(torus, resolution=8, order=2, second="other-object", objects=[0.5])
+    with pytest.raises(blum.InvalidOption, match="CPU"):
+        blum.distance_field(torus, resolution=8, order=2, device="cuda")
+
+
 @pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int64])
 @pytest.mark.parametrize("index", [np.int32, np.uint32, np.int64, np.uint8])
 def test_every_dtype_and_order_gives_the_same_field(dtype, index):

@@ -50,7 +50,7 @@ class OnBackEnd : public testing::Test {
     if (back_end != BackEnd::device) return;
     try {
       std::string reason;
-      (void)make_field_backend(context(), reason);
+      (void)make_field_backend(context(), 1, reason);
     } catch (const DeviceError& error) {
       GTEST_SKIP() << "no CUDA device: " << error.what();
     }

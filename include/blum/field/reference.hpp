@@ -1,6 +1,9 @@
 // Blum: brute-force fields in double precision, for tests and for trust. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "blum/core/ids.hpp"
@@ -30,6 +33,13 @@ class BruteForce {
   [[nodiscard]] double site_distance(SiteId id, const Vec3d& query) const;
   /// Closest site among all that a triangle, segment or point names. Cost: O(sites).
   [[nodiscard]] Nearest nearest(const Vec3d& query) const;
+  /// Closest site among those that have no vertex of one site's labels, which is how fields of order 2 choose.
+  /// @param first   the other site.
+  /// @param labels  one per vertex of the mesh; empty: each vertex is its own. Cost: O(sites).
+  [[nodiscard]] std::optional<Nearest> second(const Vec3d& query, SiteId first,
+                                              std::span<const std::uint32_t> labels = {}) const;
+  /// Whether two sites have a vertex each with the same label.
+  [[nodiscard]] bool share_label(SiteId a, SiteId b, std::span<const std::uint32_t> labels = {}) const;
 
  private:
   MeshView mesh_;

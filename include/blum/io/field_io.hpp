@@ -33,12 +33,15 @@ struct FieldFileInfo {
 /// Writes a field; the format goes by the extension. In all of them, distances are float32 in mesh units (negative
 /// inside when signed) and sites int32 (-1 where there is none), one per node, x fastest.
 ///
-///   .nrrd  the distances, raw; the sites go to a second file, OUT.site.nrrd for OUT.nrrd. Metadata as key/value pairs.
-///   .npz   uncompressed arrays for NumPy: `distance` and `site` [z, y, x]; `origin`, `spacing` float64 [3] in x, y, z
+///   .nrrd  the distances, raw; the sites go to a second file, OUT.site.nrrd for OUT.nrrd, and of fields of order 2 the
+///          second distances and sites to OUT.distance2.nrrd and OUT.site2.nrrd. Metadata as key/value pairs.
+///   .npz   uncompressed arrays for NumPy: `distance` and `site`, of order 2 `distance2` and `site2` [z, y, x];
+///   `origin`, `spacing` float64 [3] in x, y, z
 ///          order; `direction` float64 [3, 3], column a being the direction of index axis a; `metadata`, one string
 ///          of JSON. With a mesh and mesh sites also `vertices` float64 [m, 3] and `site_vertices` int32 [s, 3]: the
 ///          one, two or three vertices of each site, padded with -1.
-///   .vti   VTK image data: point data `distance` and `site`, raw appended; `metadata` (JSON) as field data.
+///   .vti   VTK image data: point data `distance` and `site`, of order 2 `distance2` and `site2`, raw appended;
+///   `metadata` (JSON) as field data.
 ///
 /// The metadata name Blum's version, the source, the sign rule and its reason, the band, what the site values count
 /// and how sites are numbered, with counts. A field without site values is written without them. Numbers are stored
@@ -46,7 +49,7 @@ struct FieldFileInfo {
 ///
 /// A file appears under its name only when it is complete; for .nrrd both are complete before either appears. A field
 /// without sites that replaces one with sites takes its place as a whole: OUT.site.nrrd goes, where it says that it
-/// belongs to OUT.nrrd.
+/// belongs to OUT.nrrd; so do the files of order 2, when a field of order 1 replaces one.
 /// @throws InvalidOption for another extension; FileError when the system refuses; InvalidGrid when the field does not
 /// fit its grid; InvalidMesh for a mesh (.npz files hold it) that validate() refuses or that lacks sites of the field;
 /// Cancelled.

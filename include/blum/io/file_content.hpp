@@ -35,13 +35,16 @@ namespace blum {
 /// "NRRD", "NIfTI", "NPY", "Vol", or "unknown".
 [[nodiscard]] std::string_view image_format_name(const std::filesystem::path& path);
 
-/// Every file that stands for a field of this name: for .nrrd, its sites are in a second one, NAME.site.nrrd.
+/// Every file that stands for a field of this name: for .nrrd, its sites are in a second one, NAME.site.nrrd, and of
+/// order 2 the second distances and sites in NAME.distance2.nrrd and NAME.site2.nrrd.
 /// @param with_sites  whether the field has any.
 [[nodiscard]] std::vector<std::filesystem::path> files_of_field(const std::filesystem::path& path,
-                                                                bool with_sites = true);
+                                                                bool with_sites = true, int order = 1);
 
 /// The file that write_field() removes when it writes a field without sites under this name: the sites of the field
 /// that it replaces, where they are in a file of their own.
 [[nodiscard]] std::optional<std::filesystem::path> sites_of_replaced_field(const std::filesystem::path& path);
+/// The same for a field of order 1: the files of the second distances and sites of the field that it replaces.
+[[nodiscard]] std::vector<std::filesystem::path> second_of_replaced_field(const std::filesystem::path& path);
 
 }  // namespace blum

@@ -5,6 +5,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/pseudonormals.hpp"
+#include "field/cpu/second_kernel.hpp"
 
 namespace blum::cpu {
 namespace {
@@ -77,21 +78,27 @@ void Engine::build_records(const FieldRequest& request, const Context& context) 
   build_cluster_forest(records_, context, forest_);
 }
 
-FieldResult Engine::compute(const FieldRequest& request, const Context& context, std::vector<PhaseTime>& phases) {
-  PhaseTimer timer(phases);
-  build_records(request, context);
+FieldJob Engine::make_job(const GridSpec& grid, const Context& context) const {
   FieldJob job;
-  job.request = request;
-  job.sites = &records_;
-  job.forest = &forest_;
+  job.request.grid = grid;
   job.first_node = frame_.first_node;
   job.spacing = frame_.spacing;
   job.to_world = static_cast<float>(1 / frame_.scale);
+  job.is_streamed = grid.node_count() > fewest_streamed_nodes;
+  job.cancel = context.cancel;
+  return job;
+}
+
+FieldResult Engine::compute(const FieldRequest& request, const Context& context, std::vector<PhaseTime>& phases) {
+  PhaseTimer timer(phases);
+  build_records(request, context);
+  FieldJob job = make_job(request.grid, context);
+  job.request = request;
+  job.sites = &records_;
+  job.forest = &forest_;
   if (request.has_band()) job.band = static_cast<float>(request.band * frame_.scale);
   const bool by_normals = request.sign == sign::Method::pseudonormals;
   if (by_normals) job.vertex_sides = vertex_sides(mesh_, sites_, frame_, context);
-  job.is_streamed = request.grid.node_count() > fewest_streamed_nodes;
-  job.cancel = context.cancel;
   timer.lap("sites and hierarchy");
 
   const Tiling tiling(request.grid.size, tile_size(request.grid.size));
@@ -111,6 +118,28 @@ FieldResult Engine::compute(const FieldRequest& request, const Context& context,
   std::sort(unsettled.begin(), unsettled.end());
   timer.lap("field");
   return result;
+}
+
+std::vector<std::size_t> Engine::compute_second(const SecondRequest& request, const Context& context) {
+  second_.build({mesh_, sites_, adjacency_, positions_, order_, records_}, *request.labels, context);
+  SecondJob job = second_.job();
+  job.field = make_job(request.grid, context);
+  job.field.sites = &second_.records();
+  job.field.forest = &second_.forest();
+  job.request = request;
+  const Tiling tiling(request.grid.size, tile_size(request.grid.size));
+  std::vector<SecondScratch> scratch(static_cast<std::size_t>(thread_count(context)));
+  parallel_for(context, tiling.count(), 1, "second order", [&](const WorkRange& range) {
+    for (std::size_t tile = range.begin; tile < range.end; ++tile) {
+      compute_second_tile(job, tiling.box(tile), scratch[static_cast<std::size_t>(range.worker)]);
+    }
+  });
+  std::vector<std::size_t> unsettled;
+  for (const SecondScratch& one : scratch) {
+    unsettled.insert(unsettled.end(), one.unsettled.begin(), one.unsettled.end());
+  }
+  std::sort(unsettled.begin(), unsettled.end());
+  return unsettled;
 }
 
 }  // namespace blum::cpu

@@ -10,6 +10,7 @@
 #include "field/cpu/adjacency.hpp"
 #include "field/cpu/cluster_forest.hpp"
 #include "field/cpu/normal_frame.hpp"
+#include "field/cpu/second_sites.hpp"
 #include "field/cpu/site_records.hpp"
 #include "field/cpu/tile_kernel.hpp"
 
@@ -24,9 +25,12 @@ class Engine final : public FieldBackend {
   [[nodiscard]] bool needs_sites_for(sign::Method /*method*/) const override { return false; }
   [[nodiscard]] FieldResult compute(const FieldRequest& request, const Context& context,
                                     std::vector<PhaseTime>& phases) override;
+  [[nodiscard]] std::vector<std::size_t> compute_second(const SecondRequest& request, const Context& context) override;
 
  private:
   void build_records(const FieldRequest& request, const Context& context);
+  /// Of a field, but for its request and signs.
+  [[nodiscard]] FieldJob make_job(const GridSpec& grid, const Context& context) const;
 
   MeshView mesh_;
   ConnectivityCache connectivity_;
@@ -39,6 +43,7 @@ class Engine final : public FieldBackend {
   SiteRecords records_;
   ClusterForest forest_;
   std::vector<TileScratch> scratch_;
+  SecondSites second_;
 };
 
 }  // namespace blum::cpu

@@ -76,7 +76,8 @@ struct TileTest {
 
 /// Keeps a cluster unless the tile lies outside of every direction in which its sites can be closest: as spheres, the
 /// distance from the tile's centre to the cone is above the sum of both radii.
-HWY_INLINE std::uint32_t meets_cones(const TileTest& tile, const BoxArrays& boxes, const ConeArrays& cones,
+template <class Test>
+HWY_INLINE std::uint32_t meets_cones(const Test& tile, const BoxArrays& boxes, const ConeArrays& cones,
                                      std::size_t first) {
   std::uint32_t result = 0;
   for_each_box_vector(boxes, first, [&](std::size_t offset, const Vec& lower, const Vec& upper) {
@@ -103,7 +104,8 @@ HWY_INLINE std::uint32_t existing_boxes(std::size_t first, std::size_t count) {
 }
 
 /// Depth-first search for the clusters that a tile must look at, in storage order.
-HWY_NOINLINE void find_clusters(const ClusterTree& tree, const RecordSet& set_of_kind, const TileTest& test,
+template <class Test>
+HWY_NOINLINE void find_clusters(const ClusterTree& tree, const RecordSet& set_of_kind, const Test& test,
                                 std::size_t level, std::size_t first, std::vector<std::uint32_t>& out) {
   const BoxArrays& boxes = level == 0 ? set_of_kind.cluster_boxes : tree.levels[level - 1];
   std::uint32_t kept = test.keeps(boxes, first) & existing_boxes(first, boxes.count);
@@ -119,12 +121,14 @@ HWY_NOINLINE void find_clusters(const ClusterTree& tree, const RecordSet& set_of
   }
 }
 
-/// Nearest-first search for the closest record to a point.
+/// Nearest-first search for the closest record to a point, among those of which may_be(site id) is true.
+template <class MayBe>
 struct NearestSearch {
   const SiteRecords& sites;
   const ClusterForest& forest;
   Vec3f query;
-  Witness best;
+  const MayBe& may_be;
+  Witness best{};
 
   void visit_cluster(Kind kind, std::size_t cluster) {
     const RecordSet& set_of_kind = sites.kinds[kind];
@@ -134,7 +138,7 @@ struct NearestSearch {
       Vec3f point;
       if (record.id == dead_record || !closest_on_record(kind, record, query, point)) continue;
       const float squared = squared_length(query - point);
-      if (squared < best.squared_distance) best = {point, kind, &record, squared};
+      if (squared < best.squared_distance && may_be(record.id)) best = {point, kind, &record, squared};
     }
   }
 
@@ -174,16 +178,19 @@ struct NearestSearch {
   }
 };
 
-HWY_INLINE Witness nearest_record(const FieldJob& job, const Vec3f& query) {
-  NearestSearch search{*job.sites, *job.forest, query, {}};
+template <class MayBe>
+HWY_INLINE Witness nearest_record(const FieldJob& job, const Vec3f& query, const MayBe& may_be) {
+  NearestSearch<MayBe> search{*job.sites, *job.forest, query, may_be};
   search.run();
   return search.best;
 }
+HWY_INLINE Witness nearest_record(const FieldJob& job, const Vec3f& query) {
+  return nearest_record(job, query, [](std::uint32_t) { return true; });
+}
 
 /// Finds the clusters of all kinds that matter to a tile; returns how many.
-HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const CenteredBox& tile, const Vec3f& p0,
-                                          TileScratch::Impl& scratch) {
-  const TileTest test(tile, p0);
+template <class Test>
+HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const Test& test, TileScratch::Impl& scratch) {
   std::size_t total = 0;
   for (std::size_t kind = 0; kind < kind_count; ++kind) {
     auto& clusters = scratch.clusters[kind];
@@ -198,9 +205,9 @@ HWY_INLINE std::size_t find_tile_clusters(const FieldJob& job, const CenteredBox
 }
 
 /// Adds the records of the found clusters that may matter to the tile to the order to sort.
-template <Kind kind>
-HWY_NOINLINE void find_records(const BlockTest<1>& test, const FieldJob& job,
-                               const std::vector<std::uint32_t>& clusters, std::vector<detail::KeyedIndex>& out) {
+template <Kind kind, class Test>
+HWY_NOINLINE void find_records(const Test& test, const FieldJob& job, const std::vector<std::uint32_t>& clusters,
+                               std::vector<detail::KeyedIndex>& out) {
   const Record* records = job.sites->kinds[kind].records.data();
   NoClosest closest;
   for (const std::uint32_t cluster : clusters) {
@@ -211,7 +218,7 @@ HWY_NOINLINE void find_records(const BlockTest<1>& test, const FieldJob& job,
       load_columns(records + first, columns);
       const M is_live = hn::RebindMask(d, hn::Ne(hn::BitCast(di, columns.column[15]), hn::Set(di, dead_record)));
       const typename BlockOf<kind>::type block(columns, test.middle);
-      const M keep = hn::And(is_live, block.keeps(test.domination));
+      const M keep = hn::And(is_live, test.keeps(block));
       if (hn::AllFalse(d, keep)) continue;
       V worst[1];
       test.run(block, keep, hn::Zero(di), worst, closest);
@@ -224,9 +231,8 @@ HWY_NOINLINE void find_records(const BlockTest<1>& test, const FieldJob& job,
 }
 
 /// Copies the records that may matter to a tile, in rising order of site id.
-HWY_INLINE void gather_records(const FieldJob& job, const CenteredBox& tile, const Vec3f& p0,
-                               TileScratch::Impl& scratch, Candidates& out) {
-  const BlockTest<1> test(tile, Dominators{{p0}, 1});
+template <class Test>
+HWY_INLINE void gather_records(const FieldJob& job, const Test& test, TileScratch::Impl& scratch, Candidates& out) {
   for (std::size_t kind = 0; kind < kind_count; ++kind) {
     const Record* records = job.sites->kinds[kind].records.data();
     const auto& clusters = scratch.clusters[kind];

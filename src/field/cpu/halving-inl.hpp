@@ -193,6 +193,12 @@ struct BlockTest {
   BlockTest(const CenteredBox& box, const Dominators& dominators)
       : BlockTest(box.center, box.half + Vec3f{box_slack, box_slack, box_slack}, dominators) {}
 
+  /// What is not beaten everywhere in the box.
+  template <class Block>
+  HWY_INLINE M keeps(const Block& block) const {
+    return block.keeps(domination);
+  }
+
   /// Adds the test value <= limit of an affine function at every child.
   HWY_INLINE void bound(V base, const Vec& gradient, V limit, V worst[boxes]) const {
     V value[boxes];
@@ -332,9 +338,8 @@ struct Lanes {
 
 /// Tests all candidates of a kind against the eight children, and offers distances at their centres. `store` is called
 /// with each block that has a candidate left, for the leaves to read.
-template <Kind kind, class Closest, class Store>
-HWY_INLINE void halve_kind(const BlockTest<8>& test, const RecordList& parent, ChildBits& out, Closest& closest,
-                           Store store) {
+template <Kind kind, class Test, class Closest, class Store>
+HWY_INLINE void halve_kind(const Test& test, const RecordList& parent, ChildBits& out, Closest& closest, Store store) {
   const std::size_t count = parent.count();
   out.reset((count + lanes - 1) / lanes);
   for (std::size_t b = 0; b < out.blocks(); ++b) {
@@ -342,7 +347,7 @@ HWY_INLINE void halve_kind(const BlockTest<8>& test, const RecordList& parent, C
     load_columns(parent.data() + b * lanes, columns);
     const typename BlockOf<kind>::type block(columns, test.middle);
     const Lanes here(b * lanes, count);
-    const M keep = hn::And(here.valid, block.keeps(test.domination));
+    const M keep = hn::And(here.valid, test.keeps(block));
     const std::uint32_t kept = bits(keep);
     if (kept == 0) {
       for (std::size_t c = 0; c < 8; ++c) out.child(c)[b] = 0;
@@ -358,8 +363,8 @@ HWY_INLINE void halve_kind(const BlockTest<8>& test, const RecordList& parent, C
 }
 
 /// halve_kind for vertices, edges and faces. `store_of(kind)` makes each kind's store.
-template <class Closest, class StoreOf>
-HWY_INLINE void halve_kinds(const BlockTest<8>& test, const Candidates& parent, std::array<ChildBits, kind_count>& out,
+template <class Test, class Closest, class StoreOf>
+HWY_INLINE void halve_kinds(const Test& test, const Candidates& parent, std::array<ChildBits, kind_count>& out,
                             Closest& closest, StoreOf store_of) {
   halve_kind<vertex_kind>(test, parent[vertex_kind], out[vertex_kind], closest, store_of(vertex_kind));
   halve_kind<edge_kind>(test, parent[edge_kind], out[edge_kind], closest, store_of(edge_kind));

@@ -169,25 +169,21 @@ struct LeafPattern {
   }
 };
 
-/// The running winners of one pass, in registers.
-template <bool with_sides>
-struct LeafPass {
+/// Evaluates candidates at the nodes of one pass, and has each offered to the winners, which the derived class keeps.
+template <class Winners, bool with_sides>
+struct LeafEvaluation {
   V x[planar], y[planar], z[slabs];
-  V squared[pass_vectors];
-  V id[pass_vectors];
-  V side[pass_vectors];
 
-  explicit LeafPass(const LeafPattern::Pass& pattern) {
+  explicit LeafEvaluation(const LeafPattern::Pass& pattern) {
     for (std::size_t p = 0; p < planar; ++p) {
       x[p] = pattern.x[p];
       y[p] = pattern.y[p];
     }
     for (std::size_t s = 0; s < slabs; ++s) z[s] = pattern.z[s];
-    for (std::size_t k = 0; k < pass_vectors; ++k) {
-      squared[k] = set(hwy::HighestValue<float>());
-      id[k] = hn::BitCast(d, hn::Set(di, dead_record));
-      side[k] = hn::Zero(d);
-    }
+  }
+
+  HWY_INLINE void offer(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
+    static_cast<Winners*>(this)->take(k, inside, candidate, candidate_id, candidate_side);
   }
 
   HWY_INLINE void affine(const LeafColumns& in, int column, std::size_t at, V out[pass_vectors]) const {
@@ -199,14 +195,6 @@ struct LeafPass {
       const V in_plane = hn::MulAdd(gx, x[p], hn::MulAdd(gy, y[p], base));
       for (std::size_t s = 0; s < slabs; ++s) out[s * planar + p] = hn::MulAdd(gz, z[s], in_plane);
     }
-  }
-
-  /// Lets a candidate win the nodes where `inside` is negative and it is strictly closer.
-  HWY_INLINE void offer(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
-    const V wins = hn::And(inside, hn::Sub(candidate, squared[k]));
-    squared[k] = if_sign_bit(wins, candidate, squared[k]);
-    id[k] = if_sign_bit(wins, candidate_id, id[k]);
-    if constexpr (with_sides) side[k] = if_sign_bit(wins, candidate_side, side[k]);
   }
 
   HWY_INLINE void vertex(const LeafColumns& in, std::size_t at, const std::vector<Vec3f>& vertex_sides) {
@@ -281,6 +269,30 @@ struct LeafPass {
       const V inside = hn::And(hn::And(minus_u[k], minus_v[k]), minus_w);
       offer(k, inside, hn::Mul(height[k], height[k]), new_id, height[k]);
     }
+  }
+};
+
+/// The running winners of one pass, in registers.
+template <bool with_sides>
+struct LeafPass : LeafEvaluation<LeafPass<with_sides>, with_sides> {
+  V squared[pass_vectors];
+  V id[pass_vectors];
+  V side[pass_vectors];
+
+  explicit LeafPass(const LeafPattern::Pass& pattern) : LeafEvaluation<LeafPass<with_sides>, with_sides>(pattern) {
+    for (std::size_t k = 0; k < pass_vectors; ++k) {
+      squared[k] = set(hwy::HighestValue<float>());
+      id[k] = hn::BitCast(d, hn::Set(di, dead_record));
+      side[k] = hn::Zero(d);
+    }
+  }
+
+  /// Lets a candidate win the nodes where `inside` is negative and it is strictly closer.
+  HWY_INLINE void take(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
+    const V wins = hn::And(inside, hn::Sub(candidate, squared[k]));
+    squared[k] = if_sign_bit(wins, candidate, squared[k]);
+    id[k] = if_sign_bit(wins, candidate_id, id[k]);
+    if constexpr (with_sides) side[k] = if_sign_bit(wins, candidate_side, side[k]);
   }
 };
 

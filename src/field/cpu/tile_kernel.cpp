@@ -49,7 +49,7 @@ class TileWorker {
     const Witness nearest = nearest_record(job_, place.center);
     int side = 0;
     if (needs_settling_ && settle(box, place.half, nearest, place.center, side)) return;
-    const std::size_t clusters = find_tile_clusters(job_, place, nearest.point, scratch_);
+    const std::size_t clusters = find_tile_clusters(job_, TileTest(place, nearest.point), scratch_);
     if (clusters > most_clusters && size > smallest_tile) {
       const Halving parts = halve(job_, box, size);
       for (std::size_t c = 0; c < 8; ++c) {
@@ -57,7 +57,8 @@ class TileWorker {
       }
       return;
     }
-    gather_records(job_, place, nearest.point, scratch_, scratch_.gathered);
+    const BlockTest<1> test(place, Dominators{{nearest.point}, 1});
+    gather_records(job_, test, scratch_, scratch_.gathered);
     divide(box, size, scratch_.gathered, Dominators{{nearest.point}, 1}, side, 0);
   }
 

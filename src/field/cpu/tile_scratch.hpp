@@ -28,6 +28,13 @@ class RecordList {
     for (; lane_bits != 0; lane_bits &= lane_bits - 1) append(block[std::countr_zero(lane_bits)]);
   }
 
+  /// Moves a record to an earlier place, for lists that are thinned out; shorten() ends that.
+  void move(std::size_t from, std::size_t to) { records_[to] = records_[from]; }
+  void shorten(std::size_t count) {
+    count_ = count;
+    finish();
+  }
+
   /// Makes the padding readable; to be called once the list is complete.
   void finish() { std::memset(static_cast<void*>(records_.data() + count_), 0, padding * sizeof(Record)); }
 

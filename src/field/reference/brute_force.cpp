@@ -57,6 +57,32 @@ Nearest BruteForce::nearest(const Vec3d& query) const {
   return best;
 }
 
+bool BruteForce::share_label(SiteId a, SiteId b, std::span<const std::uint32_t> labels) const {
+  const auto label = [&](std::int32_t v) {
+    const auto vertex = static_cast<std::uint32_t>(v);
+    return labels.empty() ? vertex : labels[vertex];
+  };
+  for (const std::int32_t u : sites_.vertices(a)) {
+    for (const std::int32_t v : sites_.vertices(b)) {
+      if (u >= 0 && v >= 0 && label(u) == label(v)) return true;
+    }
+  }
+  return false;
+}
+
+std::optional<Nearest> BruteForce::second(const Vec3d& query, SiteId first,
+                                          std::span<const std::uint32_t> labels) const {
+  std::optional<Nearest> best;
+  for (std::uint32_t i = 0; i < sites_.size(); ++i) {
+    const SiteId id(i);
+    if (i < named_.size() && !named_[i]) continue;
+    if (share_label(first, id, labels)) continue;
+    const double distance = site_distance(id, query);
+    if (!best || distance < best->distance) best = Nearest{distance, id};
+  }
+  return best;
+}
+
 double winding_number(const MeshView& mesh, const Vec3d& query) {
   double solid_angle = 0;
   for (const Triangle& t : mesh.triangles) {

@@ -66,6 +66,11 @@ void expect_same(const Field& a, const Field& b) {
   EXPECT_EQ(std::memcmp(a.distance.data(), b.distance.data(), 4 * a.distance.size()), 0);
   ASSERT_EQ(a.site.size(), b.site.size());
   EXPECT_TRUE(std::equal(a.site.begin(), a.site.end(), b.site.begin()));
+  ASSERT_EQ(a.distance2.size(), b.distance2.size());
+  EXPECT_TRUE(std::equal(a.distance2.begin(), a.distance2.end(), b.distance2.begin()));
+  ASSERT_EQ(a.site2.size(), b.site2.size());
+  EXPECT_TRUE(std::equal(a.site2.begin(), a.site2.end(), b.site2.begin()));
+  EXPECT_EQ(a.second, b.second);
   EXPECT_EQ(a.band, b.band);
   EXPECT_EQ(a.sign_rule, b.sign_rule);
   EXPECT_EQ(a.sign_reason, b.sign_reason);
@@ -228,6 +233,52 @@ TEST_P(FieldFiles, DamagedAnywhereNeverCrash) {
     }
   }
   EXPECT_GT(refused, 100U);
+}
+
+TEST(Fields, OfOrderTwoReadBackFromEveryFormat) {
+  Field field = sample_field();
+  const std::size_t count = field.grid.node_count();
+  field.distance2 = Buffer<float>(count);
+  field.site2 = Buffer<SiteId>(count);
+  field.second = SecondRule::other_object;
+  for (std::size_t i = 0; i < count; ++i) {
+    field.distance2[i] = i % 3 == 0 ? HUGE_VALF : 0.25F * static_cast<float>(i);
+    field.site2[i] = i % 3 == 0 ? SiteId::none() : SiteId(static_cast<std::uint32_t>(i % 16));
+  }
+  for (const char* name : {"a.nrrd", "a.npz", "a.vti"}) {
+    SCOPED_TRACE(name);
+    const TemporaryFolder folder;
+    write_field(folder / name, field);
+    expect_same(read_field(folder / name), field);
+    Field without_sites = read_field(folder / name);
+    without_sites.site = {};
+    without_sites.site2 = {};
+    write_field(folder / name, without_sites);
+    expect_same(read_field(folder / name), without_sites);
+    write_field(folder / name, sample_field());
+    expect_same(read_field(folder / name), sample_field());
+    EXPECT_EQ(names_in(folder.path()).size(), std::string(name) == "a.nrrd" ? 2U : 1U);
+  }
+  field.distance2 = {};
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_field(folder / "b.npz", field), InvalidGrid);
+}
+
+TEST(NrrdFields, FilesOfTheSecondOrderAreNotTakenForDistances) {
+  const TemporaryFolder folder;
+  Field field = sample_field();
+  field.distance2 = Buffer<float>(field.grid.node_count(), 1.0F);
+  write_field(folder / "a.nrrd", field);
+  EXPECT_THROW((void)read_field(folder / "a.distance2.nrrd"), FormatError);
+  EXPECT_EQ(second_of_replaced_field(folder / "a.nrrd"),
+            (std::vector<std::filesystem::path>{folder / "a.distance2.nrrd"}));
+  // Another grid's second distances beside the distances are an error.
+  Field other = sample_field({3, 4, 2});
+  other.distance2 = Buffer<float>(other.grid.node_count(), 1.0F);
+  write_field(folder / "c.nrrd", other);
+  std::filesystem::copy_file(folder / "c.distance2.nrrd", folder / "a.distance2.nrrd",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_THROW((void)read_field(folder / "a.nrrd"), FormatError);
 }
 
 TEST(NrrdFields, SitesLieBesideTheDistances) {

@@ -1,0 +1,77 @@
+// Blum: bounds on how far the second sites of a box are. SPDX-License-Identifier: Apache-2.0
+#if defined(BLUM_FIELD_CPU_SECOND_BOUNDS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef BLUM_FIELD_CPU_SECOND_BOUNDS_INL
+#undef BLUM_FIELD_CPU_SECOND_BOUNDS_INL
+#else
+#define BLUM_FIELD_CPU_SECOND_BOUNDS_INL
+#endif
+
+#include "field/cpu/gather-inl.hpp"
+#include "field/cpu/second_kernel.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace blum::cpu {
+namespace HWY_NAMESPACE {
+
+using OfSite = SecondLabels::OfSite;
+
+/// Surface points that bound how far the second site is: of two that are apart, one may be second wherever anything is
+/// first, so that a second site is no further than the further of the two. One alone where it may be second at all
+/// nodes at hand; none where nothing is known.
+struct Bounds {
+  std::array<Vec3f, 2> point{};
+  std::array<OfSite, 2> labels{};
+  std::size_t count = 0;
+};
+
+struct BoundedTileTest {
+  TileTest first, second;
+  std::size_t count;
+  Vec center;
+  V radius;
+
+  BoundedTileTest(const CenteredBox& tile, const Bounds& bounds)
+      : first(tile, bounds.point[0]),
+        second(tile, bounds.point[1]),
+        count(bounds.count),
+        center(first.center),
+        radius(first.radius) {}
+
+  HWY_INLINE std::uint32_t keeps(const BoxArrays& boxes, std::size_t at) const {
+    if (count == 0) return 0xffff;
+    return count == 1 ? first.keeps(boxes, at) : first.keeps(boxes, at) | second.keeps(boxes, at);
+  }
+};
+
+template <int boxes>
+struct BoundedTest : BlockTest<boxes> {
+  Domination other;
+  std::size_t count;
+
+  BoundedTest(const CenteredBox& box, const Bounds& bounds)
+      : BlockTest<boxes>(box, Dominators{{bounds.point[0]}, 1}),
+        other(box.center, Dominators{{bounds.point[1]}, 1}, box.half + Vec3f{box_slack, box_slack, box_slack}),
+        count(bounds.count) {}
+  BoundedTest(const Halving& h, const Bounds& bounds)
+      : BlockTest<boxes>(h, Dominators{{bounds.point[0]}, 1}),
+        other(h.middle, Dominators{{bounds.point[1]}, 1}, h.reach()),
+        count(bounds.count) {}
+
+  /// Takes one bound instead, for what is known of all nodes.
+  void bound_by(const Domination& all) {
+    this->domination = all;
+    count = 1;
+  }
+
+  template <class Block>
+  HWY_INLINE M keeps(const Block& block) const {
+    if (count == 0) return hn::FirstN(d, lanes);
+    const M keep = block.keeps(this->domination);
+    return count == 1 ? keep : hn::Or(keep, block.keeps(other));
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace blum::cpu
+HWY_AFTER_NAMESPACE();
+#endif

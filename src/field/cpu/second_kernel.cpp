@@ -1,0 +1,570 @@
+#include "field/cpu/second_kernel.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "field/cpu/second_kernel.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h must come before the headers that are compiled once per target.
+#include "field/cpu/second_bounds-inl.hpp"
+#include "field/cpu/second_cell-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace blum::cpu {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// A tile with more clusters than this is split, so that candidate lists stay in cache.
+constexpr std::size_t most_clusters = 8000;
+constexpr std::int64_t smallest_tile = 16;
+constexpr std::int64_t leaf_size = 4;
+/// Links of a site beyond this are first cut down to those that are near.
+constexpr std::size_t many_links = 32;
+constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
+
+/// Works on one tile: owns nothing, holds what the recursion passes along.
+class SecondWorker {
+ public:
+  SecondWorker(const SecondJob& job, SecondScratch& scratch)
+      : job_(job),
+        field_(job.field),
+        mine_(scratch.impl()),
+        scratch_(mine_.tile.impl()),
+        cell_(mine_.cell),
+        unsettled_(scratch.unsettled) {
+    for (std::size_t c = 0; c < 8; ++c) {
+      Vec3d first;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        first[axis] = field_.spacing[axis] * (((c >> axis) & 1) != 0 ? 0.5 : -3.5);
+      }
+      full_patterns_[c] = LeafPattern(first, field_.spacing);
+    }
+  }
+
+  void tile(const NodeBox& box, std::int64_t size) {
+    if (field_.cancel.stop_requested()) return;
+    if (job_.request.has_band() && is_without_first(box)) return fill(box);
+    only_ = job_.links == nullptr ? only_labels(box) : nullptr;
+    const CenteredBox place = centered(field_, box);
+    const Bounds bounds = bounds_of(place.center);
+    if (only_ != nullptr && bounds.count == 0 && !job_.request.labels->has_second(*only_)) return fill(box);
+    const std::size_t clusters = find_tile_clusters(field_, BoundedTileTest(place, bounds), scratch_);
+    if (clusters > most_clusters && size > smallest_tile) {
+      const Halving parts = halve(field_, box, size);
+      for (std::size_t c = 0; c < 8; ++c) {
+        if (parts.exists[c]) tile(parts.child[c], size / 2);
+      }
+      return;
+    }
+    gather_records(field_, BoundedTest<1>(place, bounds), scratch_, scratch_.gathered);
+    if (only_ != nullptr) {
+      for (RecordList& list : scratch_.gathered) keep_others(list);
+    }
+    divide(box, size, scratch_.gathered, bounds, 0);
+  }
+
+ private:
+  // --- what is known of a box's first sites
+
+  /// Calls visit(first node of a row) for the rows of a box until it returns false; whether none did.
+  template <class Visit>
+  bool all_rows(const NodeBox& box, Visit visit) const {
+    const auto& size = field_.request.grid.size;
+    for (std::int64_t k = 0; k < box.count[2]; ++k) {
+      for (std::int64_t j = 0; j < box.count[1]; ++j) {
+        const std::int64_t row = ((box.first[2] + k) * size[1] + box.first[1] + j) * size[0] + box.first[0];
+        if (!visit(static_cast<std::size_t>(row))) return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool is_without_first(const NodeBox& box) const {
+    return all_rows(box, [&](std::size_t row) {
+      const std::uint32_t* sites = job_.request.site + row;
+      return std::all_of(sites, sites + box.count[0], [](std::uint32_t site) { return site == dead_record; });
+    });
+  }
+
+  /// The labels that all first sites of a box have; null where they differ, or there are none.
+  [[nodiscard]] const OfSite* only_labels(const NodeBox& box) const {
+    const OfSite* only = nullptr;
+    const bool is_only = all_rows(box, [&](std::size_t row) {
+      for (std::int64_t i = 0; i < box.count[0]; ++i) {
+        const std::uint32_t site = job_.request.site[row + static_cast<std::size_t>(i)];
+        if (site == dead_record) continue;
+        if (only == nullptr) only = &job_.labels[site];
+        if (*only != job_.labels[site]) return false;
+      }
+      return true;
+    });
+    return is_only ? only : nullptr;
+  }
+
+  void keep_others(RecordList& list) const {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < list.count(); ++k) {
+      if (!share_label(job_.labels[list[k].id], *only_)) list.move(k, kept++);
+    }
+    list.shorten(kept);
+  }
+
+  /// Gives a box of nodes beyond the band no second site.
+  void fill(const NodeBox& box) const {
+    (void)all_rows(box, [&](std::size_t row) {
+      std::fill_n(job_.request.distance2 + row, box.count[0], limit());
+      std::fill_n(job_.request.site2 + row, box.count[0], dead_record);
+      return true;
+    });
+  }
+
+  /// What nodes without a second site get.
+  [[nodiscard]] float limit() const {
+    return job_.request.has_band() ? static_cast<float>(job_.request.band) : std::numeric_limits<float>::infinity();
+  }
+
+  // --- bounds
+
+  [[nodiscard]] Bounds bounds_of(const Vec3f& center) const {
+    Bounds out;
+    const auto add = [&](const auto& may_be) {
+      const Witness found = nearest_record(field_, center, may_be);
+      if (found.record == nullptr) return false;
+      out.point[out.count] = found.point;
+      out.labels[out.count++] = job_.labels[found.record->id];
+      return true;
+    };
+    if (only_ != nullptr) {
+      (void)add([&](std::uint32_t site) { return !share_label(job_.labels[site], *only_); });
+      return out;
+    }
+    if (!add([](std::uint32_t) { return true; })) return out;
+    const OfSite first = out.labels[0];
+    if (!add([&](std::uint32_t site) { return job_.are_apart(first, job_.labels[site]); })) out.count = 0;
+    return out;
+  }
+
+  /// Bounds for a child of a box, of the sites that the lanes have found closest to its centre; else the parent's.
+  [[nodiscard]] Bounds bounds_of_child(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
+                                       const Vec3f& center, const Bounds& parent) const {
+    alignas(64) std::array<float, lanes> squared;
+    alignas(64) std::array<std::uint32_t, lanes> index;
+    hn::Store(closest.squared[child], d, squared.data());
+    hn::Store(closest.index[child], di, index.data());
+    Bounds out;
+    const auto take_nearest = [&](const auto& may_be) {
+      while (true) {
+        const std::size_t lane =
+            static_cast<std::size_t>(std::min_element(squared.begin(), squared.end()) - squared.begin());
+        if (!(squared[lane] < hwy::HighestValue<float>())) return false;
+        squared[lane] = hwy::HighestValue<float>();
+        const auto kind = static_cast<Kind>(index[lane] >> 28);
+        const Record& record = candidates[kind][index[lane] & 0x0fffffffU];
+        Vec3f point;
+        if (!may_be(job_.labels[record.id]) || !closest_on_record(kind, record, center, point)) continue;
+        out.point[out.count] = point;
+        out.labels[out.count++] = job_.labels[record.id];
+        return true;
+      }
+    };
+    if (!take_nearest([](const OfSite&) { return true; })) return parent;
+    if (only_ != nullptr) return out;
+    if (take_nearest([&](const OfSite& labels) { return job_.are_apart(out.labels[0], labels); })) return out;
+    // The parent's further point does where it is apart from the child's nearest.
+    for (std::size_t k = 0; k < parent.count; ++k) {
+      if (!job_.are_apart(out.labels[0], parent.labels[k])) continue;
+      out.point[1] = parent.point[k];
+      out.labels[1] = parent.labels[k];
+      out.count = 2;
+      return out;
+    }
+    return parent;
+  }
+
+  // --- recursion
+
+  void divide(const NodeBox& box, std::int64_t size, const Candidates& candidates, const Bounds& bounds,
+              std::size_t level) {
+    if (size == 2 * leaf_size) return divide_into_leaves(box, candidates, bounds);
+    if (field_.cancel.stop_requested()) return;
+    const Halving parts = halve(field_, box, size);
+    const bool is_cell = size == SecondCell::side;
+    if (is_cell) begin_cell(box, parts.middle);
+    TileScratch::Impl::Level& here = scratch_.levels[level];
+    ClosestAtCenters closest;
+    halve_kinds(test_of(parts, bounds, is_cell), candidates, here.bits, closest,
+                [](std::size_t) { return [](auto&&...) {}; });
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (!parts.exists[c]) continue;
+      for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+        list_child(candidates[kind], here.bits[kind], c, here.child[kind]);
+      }
+      const CenteredBox place = centered(field_, parts.child[c]);
+      // Within cells, links tell more.
+      const bool needs_bounds = !is_cell || job_.links == nullptr;
+      const Bounds of_child = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
+      list_slivers(candidates[sliver_kind], place, of_child, here.child[sliver_kind]);
+      divide(parts.child[c], size / 2, here.child, of_child, level + 1);
+    }
+    if (is_cell) write(box);
+  }
+
+  [[nodiscard]] BoundedTest<8> test_of(const Halving& parts, const Bounds& bounds, bool is_in_cell) const {
+    BoundedTest<8> test(parts, bounds);
+    if (is_in_cell && cell_bound_.is_known) {
+      test.bound_by(cell_bound_.around(parts.middle - cell_middle_).domination(parts.middle, parts.reach()));
+    }
+    return test;
+  }
+
+  static void list_slivers(const RecordList& from, const CenteredBox& place, const Bounds& bounds, RecordList& to) {
+    to.reset(from.count());
+    if (from.count() == 0) return;
+    double reach = bounds.count == 0 ? std::numeric_limits<double>::infinity() : 0.0;
+    for (std::size_t k = 0; k < bounds.count; ++k) {
+      reach = std::max(reach, static_cast<double>(length(bounds.point[k] - place.center)));
+    }
+    reach = reach * 1.0001 + 2 * length(place.half) + 4 * box_slack;
+    const Vec3d center = to_double(place.center);
+    for (std::size_t k = 0; k < from.count(); ++k) {
+      if (length(center - closest_on_sliver(from[k], center)) <= reach) to.append(from[k]);
+    }
+  }
+
+  // --- cells
+
+  /// Evaluates links at all nodes of a cell.
+  void begin_cell(const NodeBox& box, const Vec3f& middle) {
+    cell_box_ = box;
+    cell_middle_ = middle;
+    cell_bound_ = {};
+    read_firsts(box);
+    if (job_.links != nullptr) {
+      cell_bound_ = offer_all_links(box, middle);
+    } else {
+      cell_.distance.fill(no_distance);
+      cell_.site.fill(nobody);
+    }
+  }
+
+  void divide_into_leaves(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
+    const Halving parts = halve(field_, box, 2 * leaf_size);
+    TileScratch::Impl::Level& here = scratch_.levels.back();
+    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+      scratch_.leaf[kind].reset(leaf_columns[kind], candidates[kind].count());
+    }
+    NoClosest closest;
+    halve_kinds(test_of(parts, bounds, true), candidates, here.bits, closest,
+                [&](std::size_t kind) { return LeafStore{scratch_.leaf[kind]}; });
+    const bool is_full = is_cube(box, 2 * leaf_size);
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (!parts.exists[c]) continue;
+      const LeafInput input{scratch_.leaf, here.bits, c};
+      const LeafPattern& pattern = is_full ? full_patterns_[c] : (pattern_ = pattern_of(parts.child[c], parts.middle));
+      leaf(parts.child[c], input, candidates[sliver_kind], pattern, parts.middle);
+    }
+  }
+
+  static bool is_cube(const NodeBox& box, std::int64_t side) {
+    return box.count[0] == side && box.count[1] == side && box.count[2] == side;
+  }
+
+  /// @return  what bounds the distances from above, around the middle.
+  DistanceBound offer_all_links(const NodeBox& box, const Vec3f& middle) {
+    CellSorter sorter(cell_, job_.labels);
+    sorter.find_groups();
+    sorter.find_labels();
+    sorter.place(positions(box, middle));
+    for (std::size_t g = 0; g < cell_.group_count; ++g) {
+      const SecondCell::Group& group = cell_.groups[g];
+      prefetch_links(g);
+      std::span<const std::uint32_t> links = find_links(group.labels);
+      if (links.size() > many_links) links = near_links(links, middle, group);
+      offer_links(links, *job_.links, middle, group, cell_);
+    }
+    const std::size_t count = cell_.group_count == 0 ? 0 : cell_.groups[cell_.group_count - 1].end;
+    const DistanceBound bound =
+        bound_distances(count, [&](std::size_t at) { return positions_at(cell_, at); }, cell_.squared.data());
+    unsort(cell_);
+    return bound;
+  }
+
+  void read_firsts(const NodeBox& box) {
+    if (!is_cube(box, SecondCell::side)) std::fill_n(cell_.first(), SecondCell::nodes, dead_record);
+    std::size_t row = 0;
+    (void)all_rows(box, [&](std::size_t node) {
+      copy_row(job_.request.site + node, cell_.first() + first_of_row(box, row++), box.count[0]);
+      return true;
+    });
+  }
+
+  /// Of the rows of a box, in the cell.
+  static std::size_t first_of_row(const NodeBox& box, std::size_t row) {
+    const auto rows = static_cast<std::size_t>(box.count[1]);
+    return SecondCell::row * (row % rows) + SecondCell::layer * (row / rows);
+  }
+
+  template <class T>
+  static void copy_row(const T* from, T* to, std::int64_t count) {
+    if (count == SecondCell::side) {
+      std::memcpy(to, from, SecondCell::row * sizeof(T));
+    } else {
+      std::copy_n(from, count, to);
+    }
+  }
+
+  [[nodiscard]] CellPositions positions(const NodeBox& box, const Vec3f& middle) const {
+    CellPositions out{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < SecondCell::row; ++k) {
+        const double index = static_cast<double>(box.first[axis] + static_cast<std::int64_t>(k));
+        out[axis][k] = static_cast<float>(field_.first_node[axis] + index * field_.spacing[axis] - middle[axis]);
+      }
+    }
+    return out;
+  }
+
+  // --- leaves
+
+  [[nodiscard]] LeafPattern pattern_of(const NodeBox& box, const Vec3f& middle) const {
+    Vec3d first;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] =
+          field_.first_node[axis] + static_cast<double>(box.first[axis]) * field_.spacing[axis] - middle[axis];
+    }
+    return {first, field_.spacing};
+  }
+
+  void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, const LeafPattern& pattern,
+            const Vec3f& middle) {
+    SecondLeaf state;
+    std::size_t begin = 0;
+    for (std::size_t axis = 3; axis-- > 0;) {
+      begin = SecondCell::row * begin + static_cast<std::size_t>(box.first[axis] - cell_box_.first[axis]);
+    }
+    const auto each_row = [&](auto use) {
+      for (std::size_t row = 0; row < 16; ++row) {
+        use(begin + SecondCell::row * (row % 4) + SecondCell::layer * (row / 4), 4 * row);
+      }
+    };
+    each_row([&](std::size_t from, std::size_t to) {
+      std::memcpy(state.first.data() + to, cell_.first() + from, 16);
+      std::memcpy(state.squared.data() + to, cell_.distance.data() + from, 16);
+      std::memcpy(state.id.data() + to, cell_.site.data() + from, 16);
+    });
+    forget_beyond(box, state);
+    const CenteredBox place = centered(field_, box);
+    const Vec offset = set(place.center - middle);
+    const DistanceBound known = bound_distances(
+        leaf_nodes, [&](std::size_t at) { return positions_of(pattern, at) - offset; }, state.squared.data());
+    if (known.is_known) {
+      const Vec3f half = place.half + Vec3f{box_slack, box_slack, box_slack};
+      const LeafDomination domination{known.domination(place.center, half), offset};
+      dominate<vertex_kind>(input, domination);
+      dominate<edge_kind>(input, domination);
+      dominate<face_kind>(input, domination);
+    }
+    evaluate_second(input, pattern, job_.labels, state);
+    const float bound = slivers.count() == 0 ? 0 : furthest(state) + length(place.half) * 1.0001F + 4 * box_slack;
+    for (std::size_t k = 0; k < slivers.count(); ++k) {
+      const Vec3d center = to_double(place.center);
+      if (length(center - closest_on_sliver(slivers[k], center)) <= bound) offer_sliver(slivers[k], box, state);
+    }
+    each_row([&](std::size_t to, std::size_t from) {
+      std::memcpy(cell_.distance.data() + to, state.squared.data() + from, 16);
+      std::memcpy(cell_.site.data() + to, state.id.data() + from, 16);
+    });
+  }
+
+  /// Where a leaf has no node, or the node is beyond the band, nothing is first and nothing can be second.
+  static void forget_beyond(const NodeBox& box, SecondLeaf& state) {
+    for (std::size_t node = 0; node < leaf_nodes && !is_cube(box, leaf_size); ++node) {
+      const bool is_node = static_cast<std::int64_t>(node % 4) < box.count[0] &&
+                           static_cast<std::int64_t>(node / 4 % 4) < box.count[1] &&
+                           static_cast<std::int64_t>(node / 16) < box.count[2];
+      if (!is_node) state.first[node] = dead_record;
+    }
+    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
+      const M has_first = hn::RebindMask(d, hn::Ne(hn::Load(di, state.first.data() + node), hn::Set(di, dead_record)));
+      const V squared = hn::Load(d, state.squared.data() + node);
+      hn::Store(hn::IfThenElse(has_first, squared, set(-1.0F)), d, state.squared.data() + node);
+    }
+  }
+
+  /// The largest distance that a node has so far; without bound where one has none.
+  static float furthest(const SecondLeaf& state) {
+    V worst = hn::Zero(d);
+    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
+      worst = hn::Max(worst, hn::Load(d, state.squared.data() + node));
+    }
+    const float squared = hn::GetLane(hn::MaxOfLanes(d, worst));
+    return squared < no_distance ? std::sqrt(squared) * 1.00001F : 1e18F;
+  }
+
+  void offer_sliver(const Record& sliver, const NodeBox& box, SecondLeaf& state) const {
+    for (std::size_t node = 0; node < leaf_nodes; ++node) {
+      if (state.first[node] == dead_record) continue;
+      if (share_label(job_.labels[state.first[node]], job_.labels[sliver.id])) continue;
+      const std::array<std::size_t, 3> at{node % 4, node / 4 % 4, node / 16};
+      Vec3d query;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        query[axis] = field_.first_node[axis] +
+                      field_.spacing[axis] * static_cast<double>(box.first[axis] + static_cast<std::int64_t>(at[axis]));
+      }
+      const auto squared = static_cast<float>(squared_length(query - closest_on_sliver(sliver, query)));
+      if (squared > state.squared[node] || (squared == state.squared[node] && sliver.id >= state.id[node])) continue;
+      state.squared[node] = squared;
+      state.id[node] = sliver.id;
+    }
+  }
+
+  /// Of groups that come soon: links lie all over memory.
+  void prefetch_links(std::size_t g) const {
+    if (g + 8 < cell_.group_count) {
+      for (const std::uint32_t v : cell_.groups[g + 8].labels) hwy::Prefetch(&job_.links->first[v]);
+    }
+    if (g + 4 < cell_.group_count) {
+      for (const std::uint32_t v : cell_.groups[g + 4].labels) {
+        const std::span<const SecondLinks::Entry> entries = job_.links->of(v);
+        if (entries.empty()) continue;
+        hwy::Prefetch(entries.data());
+        hwy::Prefetch(entries.data() + entries.size() - 1);
+      }
+    }
+    if (g + 2 < cell_.group_count) {
+      for (const std::uint32_t v : cell_.groups[g + 2].labels) {
+        for (const SecondLinks::Entry& entry : job_.links->of(v)) hwy::Prefetch(&job_.links->segments[entry.segment]);
+      }
+    }
+  }
+
+  /// The links of a site's vertices that do not touch it.
+  std::span<const std::uint32_t> find_links(const OfSite& vertices) {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k > 0 && (vertices[k] == vertices[0] || (k == 2 && vertices[2] == vertices[1]))) continue;
+      const std::span<const SecondLinks::Entry> entries = job_.links->of(vertices[k]);
+      if (mine_.links.size() < count + entries.size()) mine_.links.resize(2 * (count + entries.size()));
+      std::uint32_t* out = mine_.links.data();
+      for (const SecondLinks::Entry& link : entries) {
+        out[count] = link.segment;
+        unsigned is_own = 0;  // without branches, which no machine can foresee
+        for (const std::uint32_t v : vertices) {
+          is_own |= static_cast<unsigned>(link.start == v) | static_cast<unsigned>(link.end == v);
+        }
+        count += 1 - is_own;
+      }
+    }
+    return {mine_.links.data(), count};
+  }
+
+  /// Of many links, those that any node of a group may be closest to; in their place.
+  std::span<const std::uint32_t> near_links(std::span<const std::uint32_t> links, const Vec3f& middle,
+                                            const SecondCell::Group& group) {
+    const GroupBall ball = ball_of(cell_, group);
+    const Vec3f center = middle + ball.center;
+    mine_.link_distances.resize(links.size());
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      const LinkSegment& segment = job_.links->segments[links[k]];
+      const Vec3f from = center - segment.middle;
+      const float along = std::clamp(dot(from, segment.tangent), -segment.half_length, segment.half_length);
+      mine_.link_distances[k] = length(from - segment.tangent * along);
+      nearest = std::min(nearest, mine_.link_distances[k]);
+    }
+    const float furthest_of_use = (nearest + 2 * ball.radius) * 1.00001F;
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < links.size(); ++k) {
+      mine_.links[kept] = links[k];
+      kept += mine_.link_distances[k] <= furthest_of_use ? 1U : 0U;
+    }
+    return {mine_.links.data(), kept};
+  }
+
+  HWY_NOINLINE void write(const NodeBox& box) {
+    const V none = set(limit());
+    M open = hn::FirstN(d, 0);
+    const std::size_t nodes = SecondCell::layer * static_cast<std::size_t>(box.count[2]);
+    for (std::size_t node = 0; node < nodes; node += lanes) {
+      const V squared = hn::Load(d, cell_.distance.data() + node);
+      const V value = hn::Mul(hn::Sqrt(hn::Abs(squared)), set(field_.to_world));
+      const M has_none = hn::Ge(squared, set(no_distance));
+      const M has_no_first = hn::Lt(squared, hn::Zero(d));
+      const M is_beyond = hn::Or(hn::Or(has_none, has_no_first), hn::Gt(value, none));
+      open = hn::Or(open, has_none);
+      hn::Store(hn::IfThenElse(is_beyond, none, value), d, cell_.distance.data() + node);
+      const VI id = hn::Load(di, cell_.site.data() + node);
+      // What nobody has claimed is looked at once more.
+      const auto is_settled = hn::RebindMask(di, hn::AndNot(has_none, is_beyond));
+      hn::Store(hn::IfThenElse(is_settled, hn::Set(di, dead_record), id), di, cell_.site.data() + node);
+    }
+    const bool has_open = !hn::AllFalse(d, open);
+    std::size_t row = 0;
+    (void)all_rows(box, [&](std::size_t node) {
+      const std::size_t from = first_of_row(box, row++);
+      if (has_open) report_open(box, from, node);
+      copy_row(cell_.distance.data() + from, job_.request.distance2 + node, box.count[0]);
+      copy_row(cell_.site.data() + from, job_.request.site2 + node, box.count[0]);
+      return true;
+    });
+  }
+
+  /// Nodes that nothing has claimed, although there is something that may be second.
+  void report_open(const NodeBox& box, std::size_t from, std::size_t node) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
+      const std::uint32_t first = cell_.first()[from + i];
+      if (first == dead_record || cell_.site[from + i] != nobody) continue;
+      if (job_.request.labels->has_second(job_.labels[first])) unsettled_.push_back(node + i);
+      cell_.site[from + i] = dead_record;
+    }
+  }
+
+  const SecondJob& job_;
+  const FieldJob& field_;
+  SecondScratch::Impl& mine_;
+  TileScratch::Impl& scratch_;
+  SecondCell& cell_;
+  std::vector<std::size_t>& unsettled_;
+  std::array<LeafPattern, 8> full_patterns_;
+  LeafPattern pattern_;  ///< of the leaf at hand, where it is cut off
+  NodeBox cell_box_;     ///< the cell at hand
+  Vec3f cell_middle_;
+  DistanceBound cell_bound_;      ///< around its middle
+  const OfSite* only_ = nullptr;  ///< labels of all first sites of the tile at hand, where the rule is by objects
+};
+
+void compute_second_tile_here(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch) {
+  SecondWorker(job, scratch).tile(tile, tile_size(job.field.request.grid.size));
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace blum::cpu
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace blum::cpu {
+
+HWY_EXPORT(compute_second_tile_here);
+
+SecondScratch::SecondScratch() : impl_(std::make_unique<Impl>()) {}
+SecondScratch::SecondScratch(SecondScratch&&) noexcept = default;
+SecondScratch& SecondScratch::operator=(SecondScratch&&) noexcept = default;
+SecondScratch::~SecondScratch() = default;
+
+bool SecondJob::are_apart(const SecondLabels::OfSite& a, const SecondLabels::OfSite& b) const {
+  if (share_label(a, b)) return false;
+  for (const std::uint32_t label : a) {
+    const auto first = others.begin() + first_other[label];
+    const auto last = others.begin() + first_other[label + 1];
+    for (const std::uint32_t other : b) {
+      if (std::binary_search(first, last, other)) return false;
+    }
+  }
+  return true;
+}
+
+void compute_second_tile(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(compute_second_tile_here)(job, tile, scratch);
+}
+
+}  // namespace blum::cpu
+#endif

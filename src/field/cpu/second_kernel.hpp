@@ -1,0 +1,55 @@
+// Blum: computes one tile of the second order of a field. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "field/cpu/second_links.hpp"
+#include "field/cpu/tile_kernel.hpp"
+#include "field/second_request.hpp"
+
+namespace blum::cpu {
+
+/// Everything that tiles of the second order read, and where they write.
+struct SecondJob {
+  /// The records that may be second, without reaches: what beats a site beyond its reach may be excluded. Of the
+  /// request in it only the grid is looked at.
+  FieldJob field;
+  SecondRequest request;
+  /// The labels of every site. Records' planes come from sites with the same labels only; where `links` is set, also
+  /// from others, and what the links of the first site's vertices hold is looked at besides.
+  std::span<const SecondLabels::OfSite> labels;
+  const SecondLinks* links = nullptr;
+  /// Labels that some site has in common with label l: others[first_other[l] .. first_other[l + 1]), rising.
+  std::span<const std::uint32_t> first_other;
+  std::span<const std::uint32_t> others;
+
+  /// Whether no site has labels of both, so that one of the two may be second wherever anything is first.
+  [[nodiscard]] bool are_apart(const SecondLabels::OfSite& a, const SecondLabels::OfSite& b) const;
+};
+
+/// Memory that a worker keeps from tile to tile, and what it found that is left to exact queries.
+class SecondScratch {
+ public:
+  SecondScratch();
+  SecondScratch(SecondScratch&&) noexcept;
+  SecondScratch& operator=(SecondScratch&&) noexcept;
+  ~SecondScratch();
+
+  struct Impl;
+  Impl& impl() { return *impl_; }
+
+  /// Linear indices of nodes that no site claimed, although there is one that may be second.
+  std::vector<std::size_t> unsettled;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Computes the second distance and site of every node of a box, as compute_tile() does the first.
+void compute_second_tile(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch);
+
+}  // namespace blum::cpu
