@@ -163,8 +163,8 @@ struct Field {
 ///              is taken. Objects are the connected parts of the mesh: vertices that triangles or segments join.
 /// @throws InvalidMesh, InvalidGrid, InvalidOption, OutOfMemory, DeviceError, Cancelled.
 /// Cost: about O(nodes + sites log sites); 8 bytes per node, without sites 4. (A CUDA device takes 8 on the way where
-/// signs are found by sites: `normals` of shells that cross or face different ways.) Order 2 takes twice that memory,
-/// and about twice the time.
+/// signs are found by sites: `normals` of shells that cross or face different ways.) Order 2 takes twice that memory
+/// and, without signs, three to four times the time.
 /// Method: docs/theory/fields.md (Sud 2006, ch. 2 and 4).
 [[nodiscard]] Field distance_field(const MeshView& mesh, const GridSpec& grid, const FieldOptions& options = {},
                                    const Context& context = {});

@@ -174,14 +174,6 @@ template <class Winners, bool with_sides>
 struct LeafEvaluation {
   V x[planar], y[planar], z[slabs];
 
-  explicit LeafEvaluation(const LeafPattern::Pass& pattern) {
-    for (std::size_t p = 0; p < planar; ++p) {
-      x[p] = pattern.x[p];
-      y[p] = pattern.y[p];
-    }
-    for (std::size_t s = 0; s < slabs; ++s) z[s] = pattern.z[s];
-  }
-
   HWY_INLINE void offer(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
     static_cast<Winners*>(this)->take(k, inside, candidate, candidate_id, candidate_side);
   }
@@ -269,6 +261,16 @@ struct LeafEvaluation {
       const V inside = hn::And(hn::And(minus_u[k], minus_v[k]), minus_w);
       offer(k, inside, hn::Mul(height[k], height[k]), new_id, height[k]);
     }
+  }
+
+ private:
+  friend Winners;
+  explicit LeafEvaluation(const LeafPattern::Pass& pattern) {
+    for (std::size_t p = 0; p < planar; ++p) {
+      x[p] = pattern.x[p];
+      y[p] = pattern.y[p];
+    }
+    for (std::size_t s = 0; s < slabs; ++s) z[s] = pattern.z[s];
   }
 };
 
