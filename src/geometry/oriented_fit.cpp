@@ -43,12 +43,17 @@ class Extent {
   std::array<double, 3> high_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 };
 
+/// Shorter sums of normals have lost digits, as squares of theirs are too small.
+constexpr double least_normal = 1e-140;
+
 /// Two directions at right angles to a third one and to each other, the first one as close as can be to another one.
 std::array<Vec3d, 2> plane_axes(const Vec3d& normal, const Vec3d& along) {
   const Vec3d flat = along - normal * dot(normal, along);
   const double size = squared_length(flat);
   if (size > 1e-12 * squared_length(along)) {
-    const Vec3d u = flat / std::sqrt(size);
+    Vec3d u = flat / std::sqrt(size);
+    u -= normal * dot(normal, u);  // once more: where little was left, so was what rounding left along the normal
+    u = u / length(u);
     return {u, cross(normal, u)};
   }
   const Vec3d magnitude{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
@@ -70,7 +75,7 @@ OrientedBox smaller_box(const Box3& bounds, const Vec3d& normal, const Vec3d& al
   plain.center = bounds.center();
   for (std::size_t k = 0; k < 3; ++k) plain.half[k] = (bounds.upper[k] - bounds.lower[k]) * 0.5;
   const double size = length(normal);
-  if (!(size > 0)) return plain;
+  if (!(size > least_normal)) return plain;
   const Vec3d unit = normal / size;
   const auto [u, v] = plane_axes(unit, along);
   Extent turned({u, v, unit});

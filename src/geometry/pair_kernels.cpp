@@ -97,7 +97,8 @@ void squared_triangle_gaps(const FlatTriangleBlock& block, const FlatTriangle& t
     const double from_here = gap_between(least(at_p, at_q, at_r), most(at_p, at_q, at_r), level, level);
     const double between =
         std::max(least(dot(way, p), dot(way, q), dot(way, r)) - most(dot(way, a), dot(way, b), dot(way, c)), 0.0);
-    const double on_way = between * between / std::max(dot(way, way), 1e-300);
+    // In this order, as fourth powers of small lengths would lose digits.
+    const double on_way = between / std::max(dot(way, way), 1e-280) * between;
     out[i] = std::max(std::max(boxes[i], on_way), std::max(from_other * from_other, from_here * from_here));
   }
 }
@@ -105,6 +106,8 @@ void squared_triangle_gaps(const FlatTriangleBlock& block, const FlatTriangle& t
 /// The square of a triangle's height over its longest side must be more than this part of the square of that side, or
 /// its normal is not looked at: for it would be too far off for heights of its own corners to be equal.
 constexpr double least_flatness = 1e-4;
+/// And below this it has lost digits.
+constexpr double smallest_square = 1e-280;
 
 void set_normals(FlatTriangleBlock& block, BlockShape& out) {
   alignas(64) double area[3][lanes];
@@ -118,7 +121,8 @@ void set_normals(FlatTriangleBlock& block, BlockShape& out) {
     const Vec3d n = cross(u, v);
     const double longest = most(dot(u, u), dot(v, v), dot(w, w));
     const double square = dot(n, n);
-    const double inverse = square > least_flatness * longest * longest ? 1 / std::sqrt(square) : 0;
+    const double least_square = std::max(least_flatness * longest * longest, smallest_square);
+    const double inverse = square > least_square ? 1 / std::sqrt(square) : 0;
     area[0][i] = n.x;
     area[1][i] = n.y;
     area[2][i] = n.z;

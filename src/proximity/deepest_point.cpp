@@ -14,7 +14,7 @@ namespace blum::detail {
 namespace {
 
 /// Parts are cut no further after this many points were looked at: the bound then says how far that went.
-constexpr std::size_t most_points = 2000000;
+constexpr std::size_t most_points = 200000;
 
 /// A point of a patch, and what of the surface is closest to it.
 struct Sample {
@@ -50,7 +50,8 @@ struct Surface {
 
 class Search {
  public:
-  Search(std::span<const DeepPatch> patches, double tolerance) : patches_(patches), tolerance_(tolerance) {
+  Search(std::span<const DeepPatch> patches, double tolerance, const Context& context)
+      : patches_(patches), tolerance_(tolerance), context_(context) {
     for (const DeepPatch& patch : patches) {
       surfaces_.emplace_back(patch.surface);
       const Box3 box = bounds(patch.surface);
@@ -73,7 +74,7 @@ class Search {
       parts_.pop();
       cut(part);
     }
-    best_.bound = std::max(best_.distance, parts_.empty() ? 0.0 : parts_.top().bound);
+    best_.bound = std::max({best_.distance, dropped_, parts_.empty() ? 0.0 : parts_.top().bound});
     return best_;
   }
 
@@ -87,7 +88,8 @@ class Search {
     if (out.distance > best_.distance || points_ == 0) {
       best_ = {out.distance, 0, point, found.point, part.patch, part.triangle, out.other};
     }
-    ++points_;
+    constexpr std::size_t points_between_looks = 1024;
+    if (++points_ % points_between_looks == 0) throw_if_cancelled(context_);
     return out;
   }
 
@@ -110,7 +112,11 @@ class Search {
 
   void push(Part part) {
     part.bound = bound(part);
-    if (!is_done(part.bound)) parts_.push(part);
+    if (is_done(part.bound)) {
+      dropped_ = std::max(dropped_, part.bound);
+    } else {
+      parts_.push(part);
+    }
   }
 
   /// In halves, across the longest side.
@@ -137,16 +143,18 @@ class Search {
   std::span<const DeepPatch> patches_;
   std::vector<Surface> surfaces_;
   double tolerance_;
+  const Context& context_;
   double rounding_ = 0;  ///< more than distances may be off
   DeepestPoint best_;
+  double dropped_ = 0;  ///< largest bound of parts that are not looked at further
   std::size_t points_ = 0;
   std::priority_queue<Part> parts_;
 };
 
 }  // namespace
 
-DeepestPoint deepest_point(std::span<const DeepPatch> patches, double tolerance) {
-  return Search(patches, tolerance).run();
+DeepestPoint deepest_point(std::span<const DeepPatch> patches, double tolerance, const Context& context) {
+  return Search(patches, tolerance, context).run();
 }
 
 }  // namespace blum::detail

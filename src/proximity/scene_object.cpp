@@ -12,6 +12,7 @@ namespace {
 
 /// Squares of squares of coordinates must stay finite.
 constexpr double largest_coordinate = 1e70;
+constexpr double smallest_coordinate = 1e-140;
 
 double magnitude(const Vec3d& p) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -22,6 +23,10 @@ void check(const MeshView& mesh) {
   const Box3 box = bounds(mesh);
   if (magnitude(box.lower) > largest_coordinate || magnitude(box.upper) > largest_coordinate) {
     throw InvalidMesh("a coordinate is beyond 1e70, which is the most that an object of a scene may have; scale it");
+  }
+  const double largest = std::max(magnitude(box.lower), magnitude(box.upper));
+  if (largest > 0 && largest < smallest_coordinate) {
+    throw InvalidMesh("no coordinate is above 1e-140: an object of a scene must be larger; scale it");
   }
 }
 
@@ -69,8 +74,12 @@ void SceneObject::check_positions(std::span<const Vec3d> vertices) const {
     throw InvalidMesh("the object has " + std::to_string(mesh_.vertices.size()) + " vertices, but is updated with " +
                       std::to_string(vertices.size()) + "; give it another mesh where these change");
   }
-  const auto is_fine = [](const Vec3d& p) { return magnitude(p) <= largest_coordinate && is_finite(p); };
-  if (std::all_of(vertices.begin(), vertices.end(), is_fine)) return;
+  const auto is_fine = [](const Vec3d& p) { return is_finite(p) && magnitude(p) <= largest_coordinate; };
+  const auto is_large = [](const Vec3d& p) { return magnitude(p) >= smallest_coordinate; };
+  if (std::all_of(vertices.begin(), vertices.end(), is_fine) &&
+      std::any_of(vertices.begin(), vertices.end(), is_large)) {
+    return;
+  }
   // Vertices that nothing names may be anything.
   MeshView moved = mesh_;
   moved.vertices = vertices;

@@ -37,12 +37,18 @@ double rotation_error(const RigidTransform& place) {
   return error;
 }
 
-/// How wrong gaps between boxes may be, as the hierarchies see them, beside distances between rounded positions.
-double position_slack(const SceneObject& object) {
+/// The coordinates that are computed with.
+double largest_coordinate(const SceneObject& object) {
+  return largest_coordinate(object.bounds()) + largest_coordinate(object.bvh().bounds()) +
+         length(object.place().translation);
+}
+
+/// How wrong gaps between boxes may be, as the hierarchies see them, beside distances between rounded positions. Either
+/// object is seen through the transforms of both.
+double position_slack(const SceneObject& a, const SceneObject& b) {
   constexpr double rounding = 1e-14;
-  const double size = largest_coordinate(object.bounds()) + largest_coordinate(object.bvh().bounds()) +
-                      length(object.place().translation);
-  return (rounding + 8 * rotation_error(object.place())) * size;
+  const double error = rotation_error(a.place()) + rotation_error(b.place());
+  return (rounding + 8 * error) * (largest_coordinate(a) + largest_coordinate(b));
 }
 
 auto key(const PrimitivePair& pair) {
@@ -90,7 +96,7 @@ ObjectPair::ObjectPair(ObjectId first, const SceneObject& a, ObjectId second, co
     : first_(first), second_(second), a_(&a), b_(&b) {
   // Without transforms positions are as the hierarchies see them.
   const bool is_placed = !(a.place() == RigidTransform{} && b.place() == RigidTransform{});
-  if (is_placed) slack_ = position_slack(a) + position_slack(b);
+  if (is_placed) slack_ = position_slack(a, b);
   if (is_self()) clusters_ = a.clusters();
   if (!(a.place() == b.place())) place_ = a.place().inverse() * b.place();
 }

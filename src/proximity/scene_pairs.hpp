@@ -97,8 +97,8 @@ void append(const ClosestRows& rows, std::vector<PrimitivePair>& out);
 /// Puts pairs into the order of objects and primitives.
 void sort_pairs(std::vector<PrimitivePair>& pairs);
 
-/// More candidates are not looked at by one loop: half a minute of them or more, as of a heap of equal triangles.
-inline constexpr std::size_t most_candidates = std::size_t{1} << 31;
+/// More candidates are not looked at by one query: a minute of them or more, as of a heap of equal triangles.
+inline constexpr std::size_t most_candidates = std::size_t{1} << 29;
 
 /// Candidates of all parts of a loop.
 class CandidateLimit {

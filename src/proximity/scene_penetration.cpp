@@ -48,10 +48,24 @@ std::string name_of(ObjectId object) {
   return "object " + std::to_string(object.value);
 }
 
+/// From the middle of its box, so that it is not lost where the surface is far from the origin.
+double signed_volume(const TriangleMesh& surface) {
+  const Vec3d from = bounds(surface).center();
+  double sum = 0;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vec3d p = surface.vertices[a] - from;
+    sum += dot(p, cross(surface.vertices[b] - from, surface.vertices[c] - from));
+  }
+  return sum / 6;
+}
+
 /// Adds the surface of a solid; without what lies in it twice, where it crosses itself.
 void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Context& context, Surfaces& out) {
   TriangleMesh surface{object.positions(), object.mesh().triangles};
   if (surface.triangles.empty()) throw InvalidMesh(name_of(id) + " has no triangles, so nothing can lie in it");
+  if (signed_volume(surface) < 0) {
+    throw InvalidMesh(name_of(id) + " faces inwards: its volume is negative; turn its triangles around");
+  }
   std::vector<std::uint32_t> triangle(surface.triangles.size());
   for (std::uint32_t t = 0; t < triangle.size(); ++t) triangle[t] = t;
   if (!is_self && SelfIntersectionSearch().finds_any(surface, context)) {
@@ -80,11 +94,11 @@ class Body {
        std::vector<std::uint32_t> triangles)
       : surfaces_(surfaces), overlap_(overlap), labels_(labels), triangles_(std::move(triangles)) {}
 
-  [[nodiscard]] Penetration measure(double tolerance) const {
+  [[nodiscard]] Penetration measure(double tolerance, const Context& context) const {
     Penetration out;
     measure_size(out);
     out.curves = border_curves(overlap_.mesh, labels_, triangles_);
-    measure_depth(tolerance, out);
+    measure_depth(tolerance, context, out);
     return out;
   }
 
@@ -105,7 +119,7 @@ class Body {
     }
   }
 
-  void measure_depth(double tolerance, Penetration& out) const {
+  void measure_depth(double tolerance, const Context& context, Penetration& out) const {
     std::set<std::uint32_t> labels;
     for (const std::uint32_t t : triangles_) labels.insert(labels_[t]);
     std::vector<DeepPatch> patches;
@@ -118,7 +132,7 @@ class Body {
       sources.push_back(std::move(from));
     }
     if (patches.empty()) return;
-    const DeepestPoint found = deepest_point(patches, tolerance);
+    const DeepestPoint found = deepest_point(patches, tolerance, context);
     const std::uint32_t deep = sources[found.patch].patch[found.triangle];
     out.depth = found.distance;
     out.depth_bound = found.bound;
@@ -232,7 +246,7 @@ Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second,
   const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self);
   for (const auto& [body, triangles] : bodies) {
     throw_if_cancelled(context);
-    out.parts.push_back(Body(surfaces, overlap, labels, triangles).measure(options.depth_tolerance));
+    out.parts.push_back(Body(surfaces, overlap, labels, triangles).measure(options.depth_tolerance, context));
   }
   // Parts come in the order of their smallest triangles; equally deep ones stay in it.
   std::vector<std::size_t> order(out.parts.size());

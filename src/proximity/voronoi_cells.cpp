@@ -27,7 +27,7 @@ Vec3d normal_of(const std::array<Vec3d, 3>& p) {
   const Vec3d n = cross(u, v);
   const double longest = std::max({dot(u, u), dot(v, v), dot(v - u, v - u)});
   const double square = dot(n, n);
-  return square > 1e-4 * longest * longest ? n / std::sqrt(square) : Vec3d{};
+  return square > std::max(1e-4 * longest * longest, 1e-280) ? n / std::sqrt(square) : Vec3d{};
 }
 
 Box3 box_of(const std::array<Vec3d, 3>& p) {

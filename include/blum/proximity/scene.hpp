@@ -115,7 +115,8 @@ struct ProximityPairs {
 /// place are one vertex, so that a mesh need not be welded.
 ///
 /// Queries may run on many threads at once, updates not beside them. All throw Cancelled; InvalidOption for an object
-/// that is not there.
+/// that is not there; InvalidMesh where more than 2^29 pairs of primitives lie on each other or next to it, as of heaps
+/// of equal triangles, of which all pairs would have to be looked at.
 class ProximityScene {
  public:
   /// @throws InvalidOption.
@@ -124,7 +125,8 @@ class ProximityScene {
   ProximityScene& operator=(ProximityScene&&) noexcept;
   ~ProximityScene();
 
-  /// @param mesh  must pass validate(mesh), with coordinates of magnitude at most 1e70.
+  /// @param mesh  must pass validate(mesh), with coordinates of magnitude at most 1e70, one of them at least 1e-140 (or
+  /// all 0).
   /// @throws InvalidMesh; Cancelled, which leaves the scene as it was.
   /// Cost: about 0.3 microseconds per primitive.
   ObjectId add(const MeshView& mesh, const ObjectOptions& options = {}, const Context& context = {});
@@ -180,9 +182,10 @@ class ProximityScene {
   /// What two solids have in common, and how deep they lie in each other there: nothing where they only touch. Where
   /// one lies in the other, it is deep by the largest distance of a point of it from the surface of that. With one
   /// object twice: what lies in two parts of it; parts are then those that cross each other.
-  /// @throws InvalidMesh where an object is not closed, or faces inwards; InvalidOption; Cancelled.
-  /// Cost: about 1 microsecond for each triangle, and 0.1 ms for each pair that crosses. Method:
-  /// docs/theory/proximity.md.
+  /// @throws InvalidMesh where an object is not closed, or faces inwards, or lies so far from the origin, beyond some
+  /// 1e9 times its size, that its parts cannot be told apart; InvalidOption; Cancelled. Cost: about 1 microsecond for
+  /// each triangle, 0.1 ms for each pair that crosses, and up to 2 s for each part in common: the more, the wider it is
+  /// for its depth. Method: docs/theory/proximity.md.
   [[nodiscard]] Penetrations penetration(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;
 

@@ -57,7 +57,7 @@ Answer answer(const TriangleMesh& a, const TriangleMesh& b, double tolerance = 0
 void expect_sound(const Penetration& part, const TriangleMesh& a, const TriangleMesh& b, double tolerance) {
   EXPECT_GT(part.depth, 0);
   EXPECT_GE(part.depth_bound, part.depth);
-  EXPECT_LE(part.depth_bound, part.depth * (1 + tolerance) * (1 + 1e-9));
+  EXPECT_LE(part.depth_bound, part.depth * (1 + tolerance) * (1 + 1e-9) + 1e-12);
   EXPECT_NEAR(length(part.deep_point - part.surface_point), part.depth, 1e-12);
   EXPECT_NEAR(length(part.direction), 1, 1e-12);
   const Vec3d way = part.is_first_deep ? part.surface_point - part.deep_point : part.deep_point - part.surface_point;
@@ -283,8 +283,36 @@ TEST(Penetration, RefusesWhatIsNoSolid) {
   points.vertices = {{0, 0, 0}};
   points.points = {0};
   EXPECT_THROW(answer(points, solid), InvalidMesh);
+  TriangleMesh inverted = box({0, 0, 0}, {1, 1, 1});
+  for (Triangle& t : inverted.triangles) std::swap(t[0], t[1]);
+  EXPECT_THROW(answer(inverted, solid), InvalidMesh);
+  EXPECT_THROW(answer(solid, inverted), InvalidMesh);
   EXPECT_THROW(answer(solid, solid, 0), InvalidOption);
   EXPECT_THROW(answer(solid, solid, std::numeric_limits<double>::quiet_NaN()), InvalidOption);
+}
+
+/// Parts that are looked at no further count: with a tolerance of 1, the depth found may be half of the true one.
+TEST(Penetration, BoundHoldsWhatWasNotLookedAt) {
+  const TriangleMesh a{{{0, 3, 3}, {0, 1, 1}, {3, 1, 0}, {2, 3, 2}}, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
+  const TriangleMesh b{{{1, 0, 3}, {0, 3, 0}, {0, 0, 1}, {0, 0, 2}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  const double depth = answer(a, b, 1e-4).found.parts.at(0).depth;
+  EXPECT_NEAR(depth, 0.1873, 1e-4);
+  for (const double tolerance : {1.0, 0.3, 0.01}) {
+    const Penetration part = answer(a, b, tolerance).found.parts.at(0);
+    EXPECT_GE(part.depth_bound, depth);
+    EXPECT_LE(part.depth, depth * (1 + 1e-4));
+  }
+}
+
+/// A block that lies a little in a floor: wide for its depth. It takes no minutes, and the bound is one.
+TEST(Penetration, OfShallowContactsIsBounded) {
+  const TriangleMesh floor = box({-5, -5, -1}, {5, 5, 0});
+  for (const double deep : {1e-2, 1e-4, 1e-6}) {
+    const Penetration part = answer(floor, box({0.1, 0.2, -deep}, {1.1, 1.2, 1})).found.parts.at(0);
+    EXPECT_NEAR(part.depth, deep, 1e-12);
+    EXPECT_GE(part.depth_bound, part.depth);
+    EXPECT_LT(part.depth_bound, 0.02);
+  }
 }
 
 /// The same solid twice: all of it is in common, and nothing of it is deep in the other's surface but its inside.

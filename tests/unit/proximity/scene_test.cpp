@@ -446,6 +446,8 @@ TEST(ProximityScene, RefusesBadInput) {
   RigidTransform bent;
   bent.rotation.columns[1].y = 1.1;
   EXPECT_THROW(scene.update(id, bent), InvalidOption);
+  bent.rotation.columns[1].y = -1;  // a reflection
+  EXPECT_THROW(scene.update(id, bent), InvalidOption);
   bent.rotation.columns[1].y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(scene.update(id, bent), InvalidOption);
   EXPECT_THROW(static_cast<void>(scene.closer_than(-1)), InvalidOption);
