@@ -56,7 +56,7 @@ std::size_t World::add(Object object) {
   object.velocity.resize(object.mesh.vertices.size());
   if (object.kind == Kind::body && object.rest.empty()) object.rest = object.mesh.vertices;
   object.id = scene_.add(object.mesh, {.self = object.self});
-  objects_.push_back(std::move(object));
+  objects_.emplace_back(std::move(object));
   return objects_.size() - 1;
 }
 
@@ -138,50 +138,58 @@ std::vector<World::Contact> World::contacts(StepReport& report) const {
 void World::satisfy(const std::vector<Contact>& contacts, Positions& to) const {
   for (int round = 0; round < options_.iterations; ++round) {
     for (std::size_t k = 0; k < objects_.size(); ++k) {
-      if (!objects_[k]) continue;
-      for (const auto& [a, b, rest, stiffness] : objects_[k]->springs) {
-        const double wa = inverse_mass(k, a);
-        const double wb = inverse_mass(k, b);
-        const Vec3d way = to[k][b] - to[k][a];
-        const double size = length(way);
-        if (wa + wb == 0 || size == 0) continue;
-        const Vec3d move = way * (stiffness * (size - rest) / (size * (wa + wb)));
-        to[k][a] += move * wa;
-        to[k][b] -= move * wb;
-      }
+      if (objects_[k]) pull_springs(k, to[k]);
     }
-    for (const Contact& contact : contacts) {
-      std::array<Vec3d, 2> point;
-      double sum = 0;
-      for (std::size_t side = 0; side < 2; ++side) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          const std::uint32_t v = contact.corners[side][c];
-          const double weight = contact.weight[side][c];
-          point[side] += to[contact.object[side]][v] * weight;
-          sum += weight * weight * inverse_mass(contact.object[side], v);
-        }
-      }
-      const double missing = options_.thickness - dot(contact.normal, point[1] - point[0]);
-      if (missing <= 0 || sum == 0) continue;
-      for (std::size_t side = 0; side < 2; ++side) {
-        const Vec3d move = contact.normal * ((side == 0 ? -missing : missing) / sum);
-        for (std::size_t c = 0; c < 3; ++c) {
-          const std::uint32_t v = contact.corners[side][c];
-          to[contact.object[side]][v] += move * (contact.weight[side][c] * inverse_mass(contact.object[side], v));
-        }
-      }
-    }
+    for (const Contact& contact : contacts) push_apart(contact, to);
     for (std::size_t k = 0; k < objects_.size(); ++k) {
-      if (!objects_[k] || objects_[k]->kind != Kind::body) continue;
-      const std::vector<Vec3d>& rest = objects_[k]->rest;
-      const Vec3d from = mean(rest);
-      const Vec3d middle = mean(to[k]);
-      const blum::Mat3 turn = best_rotation(rest, to[k], from, middle);
-      constexpr double stiffness = 0.6;
-      for (std::size_t v = 0; v < rest.size(); ++v) {
-        to[k][v] += (turn * (rest[v] - from) + middle - to[k][v]) * stiffness;
-      }
+      if (objects_[k] && objects_[k]->kind == Kind::body) keep_shape(k, to[k]);
     }
+  }
+}
+
+void World::pull_springs(std::size_t object, std::vector<Vec3d>& to) const {
+  for (const auto& [a, b, rest, stiffness] : objects_[object]->springs) {
+    const double wa = inverse_mass(object, a);
+    const double wb = inverse_mass(object, b);
+    const Vec3d way = to[b] - to[a];
+    const double size = length(way);
+    if (wa + wb == 0 || size == 0) continue;
+    const Vec3d move = way * (stiffness * (size - rest) / (size * (wa + wb)));
+    to[a] += move * wa;
+    to[b] -= move * wb;
+  }
+}
+
+void World::push_apart(const Contact& contact, Positions& to) const {
+  std::array<Vec3d, 2> point{Vec3d{}, Vec3d{}};
+  double sum = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = contact.corners[side][c];
+      const double weight = contact.weight[side][c];
+      point[side] += to[contact.object[side]][v] * weight;
+      sum += weight * weight * inverse_mass(contact.object[side], v);
+    }
+  }
+  const double missing = options_.thickness - dot(contact.normal, point[1] - point[0]);
+  if (missing <= 0 || sum == 0) return;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Vec3d move = contact.normal * ((side == 0 ? -missing : missing) / sum);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = contact.corners[side][c];
+      to[contact.object[side]][v] += move * (contact.weight[side][c] * inverse_mass(contact.object[side], v));
+    }
+  }
+}
+
+void World::keep_shape(std::size_t object, std::vector<Vec3d>& to) const {
+  constexpr double stiffness = 0.6;
+  const std::vector<Vec3d>& rest = objects_[object]->rest;
+  const Vec3d from = mean(rest);
+  const Vec3d middle = mean(to);
+  const blum::Mat3 turn = best_rotation(rest, to, from, middle);
+  for (std::size_t v = 0; v < rest.size(); ++v) {
+    to[v] += (turn * (rest[v] - from) + middle - to[v]) * stiffness;
   }
 }
 
@@ -200,43 +208,60 @@ void World::shorten(Positions& to, StepReport& report) {
   for (report.rounds = 0;; ++report.rounds) {
     const blum::SceneCollisions found = collisions(to);
     if (found.objects.empty()) break;
-    std::vector<std::vector<double>> part(objects_.size());
-    for (std::size_t k = 0; k < objects_.size(); ++k) part[k].assign(to[k].size(), 1);
-    const auto limit = [&](std::size_t k, std::uint32_t v, double time) {
-      part[k][v] = std::min(part[k][v], report.rounds < most_rounds ? 0.8 * time : 0.0);
-    };
+    if (report.rounds == 0) show(found, to, report);
+    Shares shares(objects_.size());
+    for (std::size_t k = 0; k < objects_.size(); ++k) shares[k].assign(to[k].size(), 1);
     for (const blum::ObjectCollisions& pair : found.objects) {
-      const std::size_t a = *number(pair.first);
-      const std::size_t b = *number(pair.second);
-      const auto vertex_face = [&](std::size_t of_vertex, std::size_t of_face, const blum::VertexFaceCollision& one) {
-        limit(of_vertex, one.vertex, one.time);
-        for (const std::uint32_t v : objects_[of_face]->mesh.triangles[one.face.value]) limit(of_face, v, one.time);
-        if (report.rounds > 0) return;
-        ++report.impacts;
-        const Vec3d& at = objects_[of_vertex]->mesh.vertices[one.vertex];
-        if (report.shown.size() < 500) report.shown.push_back({at, to[of_vertex][one.vertex], one.time});
-      };
-      for (const auto& one : pair.vertex_face) vertex_face(a, b, one);
-      for (const auto& one : pair.face_vertex) vertex_face(b, a, one);
-      for (const auto& one : pair.edge_edge) {
-        for (const std::uint32_t v : one.first) limit(a, v, one.time);
-        for (const std::uint32_t v : one.second) limit(b, v, one.time);
-        if (report.rounds == 0) ++report.impacts;
-      }
+      limit(pair, report.rounds < most_rounds ? 0.8 : 0.0, shares);
     }
     for (std::size_t k = 0; k < objects_.size(); ++k) {
-      if (!objects_[k]) continue;
-      // What is driven waits as a whole.
-      const bool is_driven = objects_[k]->kind == Kind::driven;
-      const double all = part[k].empty() ? 1 : *std::min_element(part[k].begin(), part[k].end());
-      for (std::size_t v = 0; v < to[k].size(); ++v) {
-        const Vec3d& from = objects_[k]->mesh.vertices[v];
-        const double share = is_driven ? all : part[k][v];
-        if (share < 1) to[k][v] = from + (to[k][v] - from) * share;
-      }
+      if (objects_[k]) go_less_far(*objects_[k], shares[k], to[k]);
     }
   }
   report.impact_seconds += watch.lap();
+}
+
+/// Counts collisions, and keeps some of them.
+void World::show(const blum::SceneCollisions& found, const Positions& to, StepReport& report) const {
+  constexpr std::size_t most_shown = 500;
+  for (const blum::ObjectCollisions& pair : found.objects) {
+    report.impacts += pair.vertex_face.size() + pair.face_vertex.size() + pair.edge_edge.size();
+    const std::size_t a = *number(pair.first);
+    for (const auto& one : pair.vertex_face) {
+      if (report.shown.size() >= most_shown) return;
+      report.shown.push_back({objects_[a]->mesh.vertices[one.vertex], to[a][one.vertex], one.time});
+    }
+  }
+}
+
+/// Which part of their way particles may go: a part of that until they meet.
+void World::limit(const blum::ObjectCollisions& pair, double part, Shares& shares) const {
+  const std::size_t a = *number(pair.first);
+  const std::size_t b = *number(pair.second);
+  const auto lower = [&](std::size_t k, std::uint32_t v, double time) {
+    shares[k][v] = std::min(shares[k][v], part * time);
+  };
+  const auto vertex_face = [&](std::size_t of_vertex, std::size_t of_face, const blum::VertexFaceCollision& one) {
+    lower(of_vertex, one.vertex, one.time);
+    for (const std::uint32_t v : objects_[of_face]->mesh.triangles[one.face.value]) lower(of_face, v, one.time);
+  };
+  for (const auto& one : pair.vertex_face) vertex_face(a, b, one);
+  for (const auto& one : pair.face_vertex) vertex_face(b, a, one);
+  for (const auto& one : pair.edge_edge) {
+    for (const std::uint32_t v : one.first) lower(a, v, one.time);
+    for (const std::uint32_t v : one.second) lower(b, v, one.time);
+  }
+}
+
+void World::go_less_far(const Object& object, const std::vector<double>& shares, std::vector<Vec3d>& to) {
+  // What is driven waits as a whole.
+  const bool is_driven = object.kind == Kind::driven;
+  const double all = shares.empty() ? 1 : *std::min_element(shares.begin(), shares.end());
+  for (std::size_t v = 0; v < to.size(); ++v) {
+    const Vec3d& from = object.mesh.vertices[v];
+    const double share = is_driven ? all : shares[v];
+    if (share < 1) to[v] = from + (to[v] - from) * share;
+  }
 }
 
 void World::accept(const Positions& to, const std::vector<Contact>& contacts, StepReport& report) {

@@ -92,12 +92,20 @@ class World {
  private:
   /// Where particles go.
   using Positions = std::vector<std::vector<blum::Vec3d>>;
+  /// Which part of their way particles go.
+  using Shares = std::vector<std::vector<double>>;
 
   struct Contact;
   [[nodiscard]] Positions predicted() const;
   [[nodiscard]] std::vector<Contact> contacts(StepReport& report) const;
   void satisfy(const std::vector<Contact>& contacts, Positions& to) const;
+  void pull_springs(std::size_t object, std::vector<blum::Vec3d>& to) const;
+  void push_apart(const Contact& contact, Positions& to) const;
+  void keep_shape(std::size_t object, std::vector<blum::Vec3d>& to) const;
   void shorten(Positions& to, StepReport& report);
+  void show(const blum::SceneCollisions& found, const Positions& to, StepReport& report) const;
+  void limit(const blum::ObjectCollisions& pair, double part, Shares& shares) const;
+  static void go_less_far(const Object& object, const std::vector<double>& shares, std::vector<blum::Vec3d>& to);
   [[nodiscard]] blum::SceneCollisions collisions(const Positions& to) const;
   void accept(const Positions& to, const std::vector<Contact>& contacts, StepReport& report);
   [[nodiscard]] double inverse_mass(std::size_t object, std::uint32_t particle) const;
