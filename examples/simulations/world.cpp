@@ -226,7 +226,7 @@ void World::show(const blum::SceneCollisions& found, const Positions& to, StepRe
   constexpr std::size_t most_shown = 500;
   for (const blum::ObjectCollisions& pair : found.objects) {
     report.impacts += pair.vertex_face.size() + pair.face_vertex.size() + pair.edge_edge.size();
-    const std::size_t a = *number(pair.first);
+    const std::size_t a = number(pair.first).value();
     for (const auto& one : pair.vertex_face) {
       if (report.shown.size() >= most_shown) return;
       report.shown.push_back({objects_[a]->mesh.vertices[one.vertex], to[a][one.vertex], one.time});
@@ -236,8 +236,8 @@ void World::show(const blum::SceneCollisions& found, const Positions& to, StepRe
 
 /// Which part of their way particles may go: a part of that until they meet.
 void World::limit(const blum::ObjectCollisions& pair, double part, Shares& shares) const {
-  const std::size_t a = *number(pair.first);
-  const std::size_t b = *number(pair.second);
+  const std::size_t a = number(pair.first).value();
+  const std::size_t b = number(pair.second).value();
   const auto lower = [&](std::size_t k, std::uint32_t v, double time) {
     shares[k][v] = std::min(shares[k][v], part * time);
   };
