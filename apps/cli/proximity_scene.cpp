@@ -8,9 +8,9 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/primitives.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "blum/io/proximity_io.hpp"
-#include "blum/proximity/primitives.hpp"
 #include "blum/proximity/scene.hpp"
 #include "files.hpp"
 #include "options.hpp"

@@ -16,8 +16,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/geometry/primitives.hpp"
 #include "blum/geometry/triangle_distance.hpp"
-#include "blum/proximity/primitives.hpp"
 #include "call.hpp"
 #include "structs.hpp"
 

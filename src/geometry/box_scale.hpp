@@ -23,11 +23,7 @@ namespace blum {
 
 /// The same for its largest coordinate.
 [[nodiscard]] inline double coordinate_scale(const Box3& box) {
-  double largest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-  }
-  return scale_to_one(largest);
+  return scale_to_one(box.largest_coordinate());
 }
 
 /// Larger by a margin on all sides; an empty box stays empty.

@@ -9,6 +9,7 @@
 #include "blum/core/error.hpp"
 #include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/primitives.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/oriented_block.hpp"
 #include "geometry/oriented_fit.hpp"
@@ -20,25 +21,6 @@ namespace {
 constexpr std::size_t build_grain = 64;
 /// How much closer pairs may be than their boxes seem, relative to the largest coordinate.
 constexpr double rounding = 1e-13;
-
-std::array<std::uint32_t, 3> vertices_of(const MeshView& mesh, std::size_t primitive) {
-  if (primitive < mesh.triangles.size()) return mesh.triangles[primitive];
-  primitive -= mesh.triangles.size();
-  if (primitive < mesh.segments.size()) {
-    const auto& [a, b] = mesh.segments[primitive];
-    return {a, b, b};
-  }
-  const std::uint32_t v = mesh.points[primitive - mesh.segments.size()];
-  return {v, v, v};
-}
-
-double largest_coordinate(const Box3& box) {
-  double largest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-  }
-  return largest;
-}
 
 /// A node of a tree: a leaf where the level is -1; else its children are the block of this index of this level.
 struct NodeRef {
@@ -155,16 +137,17 @@ void OrientedBvh::Data::fill(std::span<const Vec3d> positions, const Context& co
 
 OrientedBvh::OrientedBvh(const MeshView& mesh, const Context& context) : data_(std::make_unique<Data>()) {
   Data& data = *data_;
-  const std::size_t count = mesh.triangles.size() + mesh.segments.size() + mesh.points.size();
+  const std::size_t count = primitive_count(mesh);
   data.vertices = mesh.vertices.size();
   const auto middle = [&](std::size_t primitive) {
     Box3 box;
-    for (const std::uint32_t v : vertices_of(mesh, primitive)) box.extend(mesh.vertices[v]);
+    for (const std::uint32_t v : primitive_vertices(mesh, static_cast<std::uint32_t>(primitive)))
+      box.extend(mesh.vertices[v]);
     return box.center();
   };
   data.order = space_order(count, middle, context);
   data.corners.resize(count);
-  for (std::size_t rank = 0; rank < count; ++rank) data.corners[rank] = vertices_of(mesh, data.order[rank]);
+  for (std::size_t rank = 0; rank < count; ++rank) data.corners[rank] = primitive_vertices(mesh, data.order[rank]);
   data.leaves.resize((count + lanes - 1) / lanes);
   data.fill_first();
   data.fill(mesh.vertices, context);
@@ -212,7 +195,7 @@ class PairSearch {
         back_(place.inverse()),
         is_placed_(!(place == RigidTransform{})),
         slack_(rounding *
-               (largest_coordinate(here.bounds) + largest_coordinate(there.bounds) + length(place.translation))),
+               (here.bounds.largest_coordinate() + there.bounds.largest_coordinate() + length(place.translation))),
         limit_(limit),
         visit_(visit) {}
 

@@ -199,16 +199,7 @@ struct Placed {
       b[k] *= scale;
     }
     // At most 2 then, but for coordinates at the ends of the range.
-    largest = std::max(coordinate(box), 0.0) * scale;
-  }
-
- private:
-  static double coordinate(const Box3& box) {
-    double largest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-    }
-    return largest;
+    largest = box.largest_coordinate() * scale;
   }
 };
 

@@ -38,11 +38,6 @@ struct Part {
 struct Surface {
   explicit Surface(const TriangleMesh& mesh) : mesh(mesh), sites(mesh), bvh(mesh, sites) {}
 
-  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t triangle) const {
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
-  }
-
   MeshView mesh;
   SiteTable sites;
   Bvh bvh;
@@ -98,7 +93,7 @@ class Search {
   [[nodiscard]] double bound(const Part& part) const {
     double least = std::numeric_limits<double>::infinity();
     for (const Sample& from : part.corners) {
-      const std::array<Vec3d, 3> other = surfaces_[part.patch].corners(from.other);
+      const std::array<Vec3d, 3> other = triangle_corners(surfaces_[part.patch].mesh, from.other);
       double furthest = 0;
       double longest = 0;
       for (const Sample& to : part.corners) {

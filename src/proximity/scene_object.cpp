@@ -5,6 +5,7 @@
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/geometry/primitives.hpp"
 #include "blum/geometry/weld.hpp"
 
 namespace blum::detail {
@@ -20,11 +21,10 @@ double magnitude(const Vec3d& p) {
 
 void check(const MeshView& mesh) {
   validate(mesh);
-  const Box3 box = bounds(mesh);
-  if (magnitude(box.lower) > largest_coordinate || magnitude(box.upper) > largest_coordinate) {
+  const double largest = bounds(mesh).largest_coordinate();
+  if (largest > largest_coordinate) {
     throw InvalidMesh("a coordinate is beyond 1e70, which is the most that an object of a scene may have; scale it");
   }
-  const double largest = std::max(magnitude(box.lower), magnitude(box.upper));
   if (largest > 0 && largest < smallest_coordinate) {
     throw InvalidMesh("no coordinate is above 1e-140: an object of a scene must be larger; scale it");
   }
@@ -34,12 +34,8 @@ void check(const MeshView& mesh) {
 
 void check(const RigidTransform& place) {
   constexpr double tolerance = 1e-9;
-  double error = 0;
   const auto& c = place.rotation.columns;
-  for (std::size_t k = 0; k < 3; ++k) {
-    error = std::max({error, std::abs(dot(c[k], c[k]) - 1), std::abs(dot(c[k], c[(k + 1) % 3]))});
-  }
-  if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2]) || !(error <= tolerance)) {
+  if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2]) || !(place.rotation_error() <= tolerance)) {
     throw InvalidOption(
         "a transform is not rigid: the columns of its rotation must have length 1 and be at right "
         "angles; scale vertices instead");
@@ -112,12 +108,7 @@ Box3 SceneObject::bounds() const {
 }
 
 std::array<std::uint32_t, 3> SceneObject::vertices(std::uint32_t primitive) const {
-  std::size_t k = primitive;
-  if (k < mesh_.triangles.size()) return mesh_.triangles[k];
-  k -= mesh_.triangles.size();
-  if (k < mesh_.segments.size()) return {mesh_.segments[k][0], mesh_.segments[k][1], mesh_.segments[k][1]};
-  const std::uint32_t v = mesh_.points[k - mesh_.segments.size()];
-  return {v, v, v};
+  return primitive_vertices(mesh_, primitive);
 }
 
 std::array<Vec3d, 3> SceneObject::corners(std::uint32_t primitive) const {

@@ -19,27 +19,9 @@ namespace {
 
 constexpr std::size_t blocks_per_range = 16;
 
-double largest_coordinate(const Box3& box) {
-  double largest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-  }
-  return largest;
-}
-
-/// How far the rotation of a transform is from one that keeps lengths.
-double rotation_error(const RigidTransform& place) {
-  double error = 0;
-  const auto& c = place.rotation.columns;
-  for (std::size_t k = 0; k < 3; ++k) {
-    error = std::max({error, std::abs(dot(c[k], c[k]) - 1), std::abs(dot(c[k], c[(k + 1) % 3]))});
-  }
-  return error;
-}
-
 /// The coordinates that are computed with.
 double largest_coordinate(const SceneObject& object) {
-  return largest_coordinate(object.bounds()) + largest_coordinate(object.bvh().bounds()) +
+  return object.bounds().largest_coordinate() + object.bvh().bounds().largest_coordinate() +
          length(object.place().translation);
 }
 
@@ -47,7 +29,7 @@ double largest_coordinate(const SceneObject& object) {
 /// object is seen through the transforms of both.
 double position_slack(const SceneObject& a, const SceneObject& b) {
   constexpr double rounding = 1e-14;
-  const double error = rotation_error(a.place()) + rotation_error(b.place());
+  const double error = a.place().rotation_error() + b.place().rotation_error();
   return (rounding + 8 * error) * (largest_coordinate(a) + largest_coordinate(b));
 }
 
@@ -75,7 +57,7 @@ double box_gap(const Box3& a, const Box3& b) {
     squared += gap * gap;
   }
   constexpr double rounding = 1e-14;
-  return std::sqrt(squared) - rounding * (largest_coordinate(a) + largest_coordinate(b));
+  return std::sqrt(squared) - rounding * (a.largest_coordinate() + b.largest_coordinate());
 }
 
 PrimitivePair exchanged(const PrimitivePair& pair) {

@@ -80,13 +80,6 @@ void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Con
   out.add(surface, triangle);
 }
 
-using Corners = std::array<Vec3d, 3>;
-
-Corners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const auto& [a, b, c] = mesh.triangles[triangle];
-  return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
-}
-
 /// One connected part of what solids have in common.
 class Body {
  public:
@@ -110,9 +103,9 @@ class Body {
   };
 
   void measure_size(Penetration& out) const {
-    const Vec3d origin = corners(overlap_.mesh, triangles_.front())[0];
+    const Vec3d origin = triangle_corners(overlap_.mesh, triangles_.front())[0];
     for (const std::uint32_t t : triangles_) {
-      const auto [a, b, c] = corners(overlap_.mesh, t);
+      const auto [a, b, c] = triangle_corners(overlap_.mesh, t);
       const Vec3d normal = cross(b - a, c - a);
       out.area[surfaces_.is_of_first(overlap_.source[t]) ? 0 : 1] += length(normal) / 2;
       out.volume += dot(normal, a - origin) / 6;
@@ -152,7 +145,7 @@ class Body {
     out.surface.vertices = overlap_.mesh.vertices;
     for (const std::uint32_t t : triangles_) {
       if (labels_[t] == label) {
-        out.triangles.push_back(corners(overlap_.mesh, t));
+        out.triangles.push_back(triangle_corners(overlap_.mesh, t));
         from.patch.push_back(overlap_.source[t]);
       } else {
         out.surface.triangles.push_back(overlap_.mesh.triangles[t]);
@@ -217,7 +210,7 @@ void keep_common(const Surfaces& surfaces, const Overlap& overlap, const Context
             MeshView{surfaces.mesh.vertices, is_first ? all.subspan(surfaces.of_first) : all.first(surfaces.of_first)},
             context);
       }
-      const auto [a, b, c] = corners(overlap.mesh, triangles.front());
+      const auto [a, b, c] = triangle_corners(overlap.mesh, triangles.front());
       is_common = other->is_inside((a + b + c) / 3);
     }
     at = is_common ? std::next(at) : bodies.erase(at);

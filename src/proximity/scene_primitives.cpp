@@ -26,8 +26,7 @@ ScenePrimitives::ScenePrimitives(std::span<const ObjectPair> pairs, std::size_t 
 }
 
 std::array<Vec3d, 3> ScenePrimitives::corners(std::uint32_t row) const {
-  const auto& [a, b, c] = mesh_.triangles[row];
-  return {mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
+  return triangle_corners(mesh_, row);
 }
 
 bool ScenePrimitives::are_compared(std::uint32_t a, std::uint32_t b) const {

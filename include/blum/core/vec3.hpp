@@ -1,6 +1,7 @@
 // Blum: small vectors and matrices. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -92,6 +93,14 @@ struct Box3 {
   [[nodiscard]] Vec3d size() const { return upper - lower; }
   [[nodiscard]] Vec3d center() const { return (lower + upper) * 0.5; }
   [[nodiscard]] double diagonal() const { return is_empty() ? 0.0 : length(size()); }
+  /// The largest magnitude of a coordinate of its sides.
+  [[nodiscard]] double largest_coordinate() const {
+    double largest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      largest = std::max({largest, std::abs(lower[axis]), std::abs(upper[axis])});
+    }
+    return largest;
+  }
   void extend(const Vec3d& p) {
     lower = min(lower, p);
     upper = max(upper, p);

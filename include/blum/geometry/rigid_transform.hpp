@@ -1,6 +1,10 @@
 // Blum: turned and moved places. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
 #include "blum/core/vec3.hpp"
 
 namespace blum {
@@ -11,6 +15,16 @@ struct RigidTransform {
   Vec3d translation;
 
   [[nodiscard]] constexpr Vec3d operator()(const Vec3d& p) const { return rotation * p + translation; }
+
+  /// How far its rotation is from one that keeps lengths: the largest error of lengths squared and of right angles.
+  [[nodiscard]] double rotation_error() const {
+    double error = 0;
+    const auto& c = rotation.columns;
+    for (std::size_t k = 0; k < 3; ++k) {
+      error = std::max({error, std::abs(dot(c[k], c[k]) - 1), std::abs(dot(c[k], c[(k + 1) % 3]))});
+    }
+    return error;
+  }
 
   /// What takes points back.
   [[nodiscard]] constexpr RigidTransform inverse() const {

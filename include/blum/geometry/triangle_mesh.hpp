@@ -52,6 +52,12 @@ void for_each_named_vertex(const MeshView& mesh, Visit visit) {
   for (const std::uint32_t v : mesh.points) visit(v);
 }
 
+/// Where the corners of a triangle of a mesh are.
+[[nodiscard]] inline std::array<Vec3d, 3> triangle_corners(const MeshView& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+}
+
 /// The triangles of a mesh, each turned to face the other way.
 [[nodiscard]] std::vector<Triangle> reversed_triangles(std::span<const Triangle> triangles);
 

@@ -56,10 +56,7 @@ class SurfaceMesh {
   [[nodiscard]] const std::array<std::uint32_t, 2>& triangles_of(std::uint32_t edge) const {
     return triangles_of_edge_[edge];
   }
-  [[nodiscard]] TriangleCorners corners(std::uint32_t triangle) const {
-    const Triangle& t = mesh_.triangles[triangle];
-    return {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
-  }
+  [[nodiscard]] TriangleCorners corners(std::uint32_t triangle) const { return triangle_corners(mesh_, triangle); }
   [[nodiscard]] EdgeEnds ends(std::uint32_t edge) const {
     const Segment& e = edges()[edge];
     return {mesh_.vertices[e[0]], mesh_.vertices[e[1]]};

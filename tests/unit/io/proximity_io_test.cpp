@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
+#include "blum/geometry/primitives.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/proximity_io.hpp"
-#include "blum/proximity/primitives.hpp"
 #include "io/byte_source.hpp"
 #include "io/npz.hpp"
 #include "unit/io/temporary_folder.hpp"
