@@ -1,9 +1,7 @@
 #include "blum/proximity/scene.hpp"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
-#include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -11,7 +9,6 @@
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
-#include "blum/geometry/triangle_contact.hpp"
 #include "proximity/scene_continuous.hpp"
 #include "proximity/scene_object.hpp"
 #include "proximity/scene_pairs.hpp"
@@ -23,6 +20,7 @@ namespace {
 
 using detail::ObjectPair;
 using detail::SceneObject;
+using detail::TwoObjects;
 
 void check_distance(const char* what, double distance) {
   if (distance >= 0) return;
@@ -63,22 +61,31 @@ struct ProximityScene::Data {
 
   [[nodiscard]] bool uses_cells() const { return options.culling == Culling::voronoi; }
 
-  /// The pairs of objects that are compared and whose boxes are no further apart than this, the smaller first.
-  [[nodiscard]] std::vector<ObjectPair> pairs(double distance, const Context& context) const {
+  /// The pairs of objects that are compared and whose boxes are no further apart than this.
+  [[nodiscard]] std::vector<TwoObjects> compared(double distance, const Context& context) const {
     static_cast<void>(thread_count(context));  // refused also where there is nothing to do
     throw_if_cancelled(context);
     std::vector<Box3> boxes(objects.size());
     for (std::size_t k = 0; k < boxes.size(); ++k) {
       if (objects[k]) boxes[k] = objects[k]->bounds();
     }
-    std::vector<ObjectPair> out;
+    std::vector<TwoObjects> out;
     for (std::uint32_t a = 0; a < objects.size(); ++a) {
       for (std::uint32_t b = a; b < objects.size(); ++b) {
         if (are_compared(a, b) && detail::box_gap(boxes[a], boxes[b]) <= distance) {
-          out.emplace_back(ObjectId(a), *objects[a], ObjectId(b), *objects[b]);
+          out.push_back({ObjectId(a), &*objects[a], ObjectId(b), &*objects[b]});
         }
       }
     }
+    return out;
+  }
+  /// The same, with what comparing primitives needs. @param report  is told of them, and how long that took.
+  [[nodiscard]] std::vector<ObjectPair> pairs(double distance, const Context& context, ProximityReport& report) const {
+    PhaseTimer timer(report.phases);
+    const std::vector<TwoObjects> found = compared(distance, context);
+    std::vector<ObjectPair> out(found.begin(), found.end());
+    report.object_pairs = out.size();
+    timer.lap("objects");
     return out;
   }
 };
@@ -141,9 +148,8 @@ std::optional<PrimitivePair> ProximityScene::separation(ObjectId first, ObjectId
 ProximityPairs ProximityScene::separation(double max_distance, const Context& context) const {
   check_distance("max_distance", max_distance);
   ProximityPairs out;
+  const std::vector<ObjectPair> pairs = data_->pairs(max_distance, context, out.report);
   PhaseTimer timer(out.report.phases);
-  const std::vector<ObjectPair> pairs = data_->pairs(max_distance, context);
-  timer.lap("objects");
   std::vector<std::optional<PrimitivePair>> found(pairs.size());
   std::vector<ProximityReport> reports(pairs.size());
   parallel_for(context, pairs.size(), 1, "separation", [&](const WorkRange& range) {
@@ -154,7 +160,6 @@ ProximityPairs ProximityScene::separation(double max_distance, const Context& co
   for (const auto& one : found) {
     if (one) out.pairs.push_back(*one);
   }
-  out.report.object_pairs = pairs.size();
   for (const ProximityReport& one : reports) detail::add(one, out.report);
   timer.lap("primitives");
   return out;
@@ -163,10 +168,8 @@ ProximityPairs ProximityScene::separation(double max_distance, const Context& co
 ProximityPairs ProximityScene::closest_primitives(double max_distance, const Context& context) const {
   check_distance("max_distance", max_distance);
   ProximityPairs out;
+  const std::vector<ObjectPair> pairs = data_->pairs(max_distance, context, out.report);
   PhaseTimer timer(out.report.phases);
-  const std::vector<ObjectPair> pairs = data_->pairs(max_distance, context);
-  timer.lap("objects");
-  out.report.object_pairs = pairs.size();
   if (data_->uses_cells()) {
     const double cell_size = data_->options.cell_size;
     detail::closest_of_each_by_cells(pairs, data_->objects.size(), cell_size, max_distance, context, out);
@@ -180,10 +183,8 @@ ProximityPairs ProximityScene::closest_primitives(double max_distance, const Con
 ProximityPairs ProximityScene::closer_than(double distance, const Context& context) const {
   check_distance("distance", distance);
   ProximityPairs out;
+  const std::vector<ObjectPair> pairs = data_->pairs(distance, context, out.report);
   PhaseTimer timer(out.report.phases);
-  const std::vector<ObjectPair> pairs = data_->pairs(distance, context);
-  timer.lap("objects");
-  out.report.object_pairs = pairs.size();
   if (data_->uses_cells()) {
     const double cell_size = data_->options.cell_size;
     detail::near_pairs_by_cells(pairs, data_->objects.size(), cell_size, distance, context, out);
@@ -196,10 +197,8 @@ ProximityPairs ProximityScene::closer_than(double distance, const Context& conte
 
 ProximityPairs ProximityScene::collisions(const Context& context) const {
   ProximityPairs out;
+  const std::vector<ObjectPair> pairs = data_->pairs(0, context, out.report);
   PhaseTimer timer(out.report.phases);
-  const std::vector<ObjectPair> pairs = data_->pairs(0, context);
-  timer.lap("objects");
-  out.report.object_pairs = pairs.size();
   if (!data_->uses_cells()) {
     detail::near_pairs(pairs, 0, detail::Neighbours::folded, context, out);
     timer.lap("primitives");
@@ -220,7 +219,7 @@ SceneCollisions ProximityScene::continuous(std::span<const ObjectMotion> motions
   check(options);
   detail::SceneMotion motion(data_->objects.size());
   for (const ObjectMotion& one : motions) motion.add(data_->at(one.object), one);
-  return motion.collisions(data_->pairs(std::numeric_limits<double>::infinity(), context), options, context);
+  return motion.collisions(data_->compared(std::numeric_limits<double>::infinity(), context), options, context);
 }
 
 Penetrations ProximityScene::penetration(ObjectId first, ObjectId second, const PenetrationOptions& options,

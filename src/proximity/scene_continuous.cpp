@@ -54,7 +54,7 @@ void SceneMotion::add(const SceneObject& object, const ObjectMotion& motion) {
   end = SceneObject::positions(vertices, motion.place.value_or(object.place()));
 }
 
-SceneCollisions SceneMotion::collisions(std::span<const ObjectPair> pairs, const ImpactOptions& options,
+SceneCollisions SceneMotion::collisions(std::span<const TwoObjects> pairs, const ImpactOptions& options,
                                         const Context& context) const {
   SceneCollisions out;
   PhaseTimer timer(out.phases);
@@ -69,13 +69,11 @@ SceneCollisions SceneMotion::collisions(std::span<const ObjectPair> pairs, const
     one->end = ends_[id.value].value_or(one->mesh.vertices);
     boxes[id.value] = box_around(one->mesh.vertices, one->end, one->mesh);
   };
-  std::vector<const ObjectPair*> close;
-  for (const ObjectPair& pair : pairs) {
-    look_at(pair.first(), pair.a());
-    look_at(pair.second(), pair.b());
-    if (box_gap(boxes[pair.first().value], boxes[pair.second().value]) <= options.min_separation) {
-      close.push_back(&pair);
-    }
+  std::vector<const TwoObjects*> close;
+  for (const TwoObjects& pair : pairs) {
+    look_at(pair.first, *pair.a);
+    look_at(pair.second, *pair.b);
+    if (box_gap(boxes[pair.first.value], boxes[pair.second.value]) <= options.min_separation) close.push_back(&pair);
   }
   const auto object = [&](ObjectId id) -> const MovingObject& {
     Moving& one = *moving[id.value];
@@ -84,12 +82,12 @@ SceneCollisions SceneMotion::collisions(std::span<const ObjectPair> pairs, const
   };
   timer.lap("objects");
   ImpactSearch search(options, context);
-  for (const ObjectPair* pair : close) {
-    ObjectCollisions found{pair->first(), pair->second(), {}, {}, {}};
-    const MovingObject& a = object(pair->first());
-    const MovingObject& b = object(pair->second());
+  for (const TwoObjects* pair : close) {
+    ObjectCollisions found{pair->first, pair->second, {}, {}, {}};
+    const MovingObject& a = object(pair->first);
+    const MovingObject& b = object(pair->second);
     found.vertex_face = search.vertices_and_faces(a, b);
-    if (!pair->is_self()) found.face_vertex = search.vertices_and_faces(b, a);
+    if (pair->first != pair->second) found.face_vertex = search.vertices_and_faces(b, a);
     found.edge_edge = search.edges_and_edges(a, b);
     const bool is_empty = found.vertex_face.empty() && found.face_vertex.empty() && found.edge_edge.empty();
     if (!is_empty) out.objects.push_back(std::move(found));

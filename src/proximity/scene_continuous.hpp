@@ -22,7 +22,7 @@ class SceneMotion {
   void add(const SceneObject& object, const ObjectMotion& motion);
 
   /// See ProximityScene::continuous(). @param pairs  that are compared.
-  [[nodiscard]] SceneCollisions collisions(std::span<const ObjectPair> pairs, const ImpactOptions& options,
+  [[nodiscard]] SceneCollisions collisions(std::span<const TwoObjects> pairs, const ImpactOptions& options,
                                            const Context& context) const;
 
  private:

@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <tuple>
 
@@ -258,18 +257,14 @@ ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects,
   return out;
 }
 
-void append(const ClosestRows& rows, std::vector<PrimitivePair>& out) {
-  for (const auto& object : rows) {
-    for (const auto& one : object) {
-      if (one) out.push_back(*one);
-    }
-  }
-}
-
 void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
                      const Context& context, ProximityPairs& out) {
   const auto all = [](ObjectId, std::uint32_t) { return true; };
-  append(closest_rows(pairs, objects, max_distance, all, context, out.report), out.pairs);
+  for (const auto& object : closest_rows(pairs, objects, max_distance, all, context, out.report)) {
+    for (const auto& one : object) {
+      if (one) out.pairs.push_back(*one);
+    }
+  }
 }
 
 void sort_pairs(std::vector<PrimitivePair>& pairs) {

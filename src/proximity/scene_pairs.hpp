@@ -37,8 +37,17 @@ struct Closest {
 void add(const ProximityReport& report, ProximityReport& to);
 
 /// Two objects, the smaller one first, or an object and itself.
+struct TwoObjects {
+  ObjectId first;
+  const SceneObject* a;
+  ObjectId second;
+  const SceneObject* b;
+};
+
+/// Two objects, and what comparing their primitives needs.
 class ObjectPair {
  public:
+  explicit ObjectPair(const TwoObjects& two) : ObjectPair(two.first, *two.a, two.second, *two.b) {}
   ObjectPair(ObjectId first, const SceneObject& a, ObjectId second, const SceneObject& b);
 
   [[nodiscard]] ObjectId first() const { return first_; }
@@ -90,9 +99,6 @@ using ClosestRows = std::vector<std::vector<std::optional<PrimitivePair>>>;
 /// The same of all, in one row.
 void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
                      const Context& context, ProximityPairs& out);
-
-/// Adds those that there are to a list.
-void append(const ClosestRows& rows, std::vector<PrimitivePair>& out);
 
 /// Puts pairs into the order of objects and primitives.
 void sort_pairs(std::vector<PrimitivePair>& pairs);

@@ -3,7 +3,7 @@
 namespace blum::detail {
 
 ScenePrimitives::ScenePrimitives(std::span<const ObjectPair> pairs, std::size_t objects)
-    : objects_(objects), pairs_(objects * objects, nullptr) {
+    : objects_(objects), pairs_(objects * objects, nullptr), first_row_(objects, 0) {
   std::vector<const SceneObject*> scene(objects, nullptr);
   for (const ObjectPair& pair : pairs) {
     const std::size_t a = pair.first().value;
@@ -14,6 +14,7 @@ ScenePrimitives::ScenePrimitives(std::span<const ObjectPair> pairs, std::size_t 
   }
   for (std::uint32_t k = 0; k < objects; ++k) {
     if (scene[k] == nullptr) continue;
+    first_row_[k] = static_cast<std::uint32_t>(members_.size());
     const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
     const std::vector<Vec3d> positions = scene[k]->positions();
     mesh_.vertices.insert(mesh_.vertices.end(), positions.begin(), positions.end());
@@ -25,8 +26,10 @@ ScenePrimitives::ScenePrimitives(std::span<const ObjectPair> pairs, std::size_t 
   }
 }
 
-std::array<Vec3d, 3> ScenePrimitives::corners(std::uint32_t row) const {
-  return triangle_corners(mesh_, row);
+Box3 ScenePrimitives::box(std::uint32_t row) const {
+  Box3 box;
+  for (const Vec3d& corner : corners(row)) box.extend(corner);
+  return box;
 }
 
 bool ScenePrimitives::are_compared(std::uint32_t a, std::uint32_t b) const {

@@ -30,7 +30,12 @@ class ScenePrimitives {
   /// All of them where they are in the scene, as triangles: a segment is one with a corner twice, a point with one
   /// thrice.
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
-  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t row) const;
+  [[nodiscard]] std::array<Vec3d, 3> corners(std::uint32_t row) const { return triangle_corners(mesh_, row); }
+  [[nodiscard]] Box3 box(std::uint32_t row) const;
+  /// Where a primitive of an object that is compared stands.
+  [[nodiscard]] std::uint32_t row(ObjectId object, std::uint32_t primitive) const {
+    return first_row_[object.value] + primitive;
+  }
 
   /// Whether two are compared: their objects are, and they are not neighbours in one.
   [[nodiscard]] bool are_compared(std::uint32_t a, std::uint32_t b) const;
@@ -43,6 +48,7 @@ class ScenePrimitives {
   std::size_t objects_;
   std::vector<const ObjectPair*> pairs_;  ///< of each two objects, either way; null where they are not compared
   std::vector<Member> members_;
+  std::vector<std::uint32_t> first_row_;  ///< of each object
   TriangleMesh mesh_;
 };
 

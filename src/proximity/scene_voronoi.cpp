@@ -14,12 +14,6 @@ namespace {
 
 constexpr std::size_t grain = 256;
 
-Box3 box_of(const std::array<Vec3d, 3>& p) {
-  Box3 box;
-  for (const Vec3d& corner : p) box.extend(corner);
-  return box;
-}
-
 /// Calls test(other) for the primitives that may be the closest one of a primitive, or within a distance, each once or
 /// a few times.
 template <class Test>
@@ -44,11 +38,10 @@ void for_each_candidate(const ScenePrimitives& primitives, const VoronoiCells& c
 }
 
 /// The counts of parts of the work, added up.
-void add_all(const std::vector<ProximityReport>& parts, const VoronoiCells& cells, std::size_t rows,
-             ProximityReport& report) {
+void add_all(const std::vector<ProximityReport>& parts, const VoronoiCells& cells, ProximityReport& report) {
   report.culling = Culling::voronoi;
   report.cells += cells.size();
-  for (std::uint32_t row = 0; row < rows; ++row) report.left_over += cells.is_left_over(row) ? 1 : 0;
+  report.left_over += cells.left_over();
   for (const ProximityReport& part : parts) add(part, report);
 }
 
@@ -68,26 +61,20 @@ void closest_of_each_by_cells(std::span<const ObjectPair> pairs, std::size_t obj
     for (auto row = static_cast<std::uint32_t>(range.begin); row < range.end; ++row) {
       if (cells.is_left_over(row)) continue;
       Closest best{std::nullopt, max_distance};
-      const Box3 box = box_of(primitives.corners(row));
+      const Box3 box = primitives.box(row);
       for_each_candidate(primitives, cells, row, max_distance, true, seen, [&](std::uint32_t other) {
         ++report.candidates;
-        if (box_gap(box, box_of(primitives.corners(other))) > best.limit) return;
+        if (box_gap(box, primitives.box(other)) > best.limit) return;
         ++report.exact_tests;
         best.offer(primitives.compare(row, other));
       });
       found[row] = best.pair;
     }
   });
-  add_all(parts, cells, primitives.size(), out.report);
+  add_all(parts, cells, out.report);
   if (out.report.left_over > 0) {
-    // Primitives stand in the order of objects and of their own numbers.
-    std::vector<std::uint32_t> first(objects, 0);
-    for (std::uint32_t row = 0; row < found.size(); ++row) {
-      const Member& member = primitives.member(row);
-      if (member.primitive == 0) first[member.object.value] = row;
-    }
     const auto is_wanted = [&](ObjectId object, std::uint32_t primitive) {
-      return cells.is_left_over(first[object.value] + primitive);
+      return cells.is_left_over(primitives.row(object, primitive));
     };
     const ClosestRows rest = closest_rows(pairs, objects, max_distance, is_wanted, context, out.report);
     for (std::uint32_t row = 0; row < found.size(); ++row) {
@@ -107,9 +94,7 @@ void near_pairs_by_cells(std::span<const ObjectPair> pairs, std::size_t objects,
   PhaseTimer timer(out.report.phases);
   const VoronoiCells cells(primitives, cell_size, distance, false, context);
   timer.lap("diagram");
-  std::size_t left_over = 0;
-  for (std::uint32_t row = 0; row < primitives.size(); ++row) left_over += cells.is_left_over(row) ? 1 : 0;
-  if (left_over > 0) {
+  if (cells.left_over() > 0) {
     // Pairs of these with all others are asked for: the hierarchy finds the rest by the way.
     near_pairs(pairs, distance, Neighbours::left_out, context, out);
     out.report.left_over = primitives.size();
@@ -126,11 +111,11 @@ void near_pairs_by_cells(std::span<const ObjectPair> pairs, std::size_t objects,
     Part& part = parts[range.begin / grain];
     std::vector<std::uint32_t> seen;
     for (auto row = static_cast<std::uint32_t>(range.begin); row < range.end; ++row) {
-      const Box3 box = box_of(primitives.corners(row));
+      const Box3 box = primitives.box(row);
       for_each_candidate(primitives, cells, row, distance, false, seen, [&](std::uint32_t other) {
         if (other < row || count > most_close_pairs) return;  // each pair once
         ++part.report.candidates;
-        if (box_gap(box, box_of(primitives.corners(other))) > distance) return;
+        if (box_gap(box, primitives.box(other)) > distance) return;
         ++part.report.exact_tests;
         const PrimitivePair pair = primitives.compare(row, other);
         if (pair.between.distance > distance) return;
@@ -145,7 +130,7 @@ void near_pairs_by_cells(std::span<const ObjectPair> pairs, std::size_t objects,
     out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
     reports.push_back(std::move(part.report));
   }
-  add_all(reports, cells, primitives.size(), out.report);
+  add_all(reports, cells, out.report);
   sort_pairs(out.pairs);
   timer.lap("exact tests");
 }

@@ -30,12 +30,6 @@ Vec3d normal_of(const std::array<Vec3d, 3>& p) {
   return square > std::max(1e-4 * longest * longest, 1e-280) ? n / std::sqrt(square) : Vec3d{};
 }
 
-Box3 box_of(const std::array<Vec3d, 3>& p) {
-  Box3 box;
-  for (const Vec3d& corner : p) box.extend(corner);
-  return box;
-}
-
 double largest_side(const Box3& box) {
   const Vec3d size = box.size();
   return std::max({size.x, size.y, size.z});
@@ -62,7 +56,7 @@ void VoronoiCells::make_cells(double cell_size, const Context& context) {
   const Box3 all = bounds(primitives_.mesh());
   const std::size_t count = primitives_.size();
   double sum = 0;
-  for (std::uint32_t row = 0; row < count; ++row) sum += largest_side(box_of(primitives_.corners(row)));
+  for (std::uint32_t row = 0; row < count; ++row) sum += largest_side(primitives_.box(row));
   const double extent = largest_side(all);
   origin_ = all.lower;
   side_ = std::max({cell_size * sum / static_cast<double>(count), 2 * extent / static_cast<double>(cells_per_axis),
@@ -74,7 +68,7 @@ void VoronoiCells::make_cells(double cell_size, const Context& context) {
     std::vector<Place>& out = parts[range.begin / grain];
     for (auto row = static_cast<std::uint32_t>(range.begin); row < range.end; ++row) {
       const std::array<Vec3d, 3> corners = primitives_.corners(row);
-      const Box3 box = box_of(corners);
+      const Box3 box = primitives_.box(row);
       std::array<std::int64_t, 3> low{};
       std::array<std::int64_t, 3> size{};
       std::int64_t cells = 1;
@@ -134,6 +128,10 @@ std::span<const std::uint32_t> VoronoiCells::touching(std::uint32_t cell) const 
 
 std::span<const std::uint32_t> VoronoiCells::cells(std::uint32_t row) const {
   return std::span<const std::uint32_t>(cells_).subspan(row_first_[row], row_first_[row + 1] - row_first_[row]);
+}
+
+std::size_t VoronoiCells::left_over() const {
+  return static_cast<std::size_t>(std::count(is_left_over_.begin(), is_left_over_.end(), std::uint8_t{1}));
 }
 
 std::span<const CellEntry> VoronoiCells::entries(std::uint32_t cell) const {

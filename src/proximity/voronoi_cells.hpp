@@ -34,6 +34,8 @@ class VoronoiCells {
   /// has too many primitives near it.
   [[nodiscard]] std::span<const std::uint32_t> cells(std::uint32_t row) const;
   [[nodiscard]] bool is_left_over(std::uint32_t row) const { return is_left_over_[row] != 0; }
+  /// How many are.
+  [[nodiscard]] std::size_t left_over() const;
   /// Those near a cell, by rising distance from its middle.
   [[nodiscard]] std::span<const CellEntry> entries(std::uint32_t cell) const;
   /// Distances of entries are compared with those of the middle; they may be further by this for points of the cell.
