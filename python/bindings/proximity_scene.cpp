@@ -39,14 +39,6 @@ RigidTransform place_of(const PlaceIn& rows) {
   return place;
 }
 
-/// @throws InvalidOption. A scene of one point asks, so that a place is refused before an object has changed.
-void check(const RigidTransform& place) {
-  const std::array<Vec3d, 1> vertices{};
-  const std::array<std::uint32_t, 1> points{};
-  ProximityScene scene;
-  scene.update(scene.add({vertices, {}, {}, points}), place);
-}
-
 /// Pairs, and the vertices of their features.
 struct Pairs {
   std::vector<PrimitivePair> pairs;
@@ -54,83 +46,21 @@ struct Pairs {
   ProximityReport report;
 };
 
-/// A scene that knows which vertices its primitives have.
-class Scene {
- public:
-  explicit Scene(const SceneOptions& options) : scene_(options) {}
-
-  std::uint32_t add(const MeshView& mesh, const ObjectOptions& options, const RigidTransform& place,
-                    const Context& context) {
-    check(place);
-    corners_.reserve(corners_.size() + 1);
-    TriangleMesh corners = corners_of(mesh);
-    const ObjectId object = scene_.add(mesh, options, context);
-    scene_.update(object, place);
-    corners_.push_back(std::move(corners));
-    return object.value;
+/// Adds the vertices of features.
+Pairs with_features(const ProximityScene& scene, ProximityPairs found, const Context& context) {
+  constexpr std::size_t look_every = 65536;
+  const auto vertices = [&](ObjectId object, std::uint32_t primitive, const TriangleFeature& feature) {
+    return feature_vertices(primitive_vertices(scene.mesh(object), primitive), feature);
+  };
+  Pairs out{std::move(found.pairs), {}, std::move(found.report)};
+  out.features.reserve(out.pairs.size());
+  for (const PrimitivePair& pair : out.pairs) {
+    if (out.features.size() % look_every == 0) throw_if_cancelled(context);
+    out.features.push_back({vertices(pair.first_object, pair.first, pair.between.first_feature),
+                            vertices(pair.second_object, pair.second, pair.between.second_feature)});
   }
-  void remove(ObjectId object) {
-    scene_.remove(object);
-    corners_[object.value] = {};
-  }
-  void set_mesh(ObjectId object, const MeshView& mesh, const Context& context) {
-    TriangleMesh corners = corners_of(mesh);
-    scene_.update(object, mesh, context);
-    corners_[object.value] = std::move(corners);
-  }
-  void set_vertices(ObjectId object, std::span<const Vec3d> vertices, const Context& context) {
-    scene_.update(object, vertices, context);
-  }
-  void set_place(ObjectId object, const RigidTransform& place) { scene_.update(object, place); }
-  void exclude(ObjectId first, ObjectId second, bool excluded) { scene_.exclude(first, second, excluded); }
-
-  [[nodiscard]] Pairs separation(ObjectId first, ObjectId second, double most, const Context& context) const {
-    ProximityPairs found;
-    found.report.object_pairs = 1;
-    if (const auto pair = scene_.separation(first, second, most, context)) found.pairs.push_back(*pair);
-    return with_features(std::move(found), context);
-  }
-  [[nodiscard]] Pairs separations(double most, const Context& context) const {
-    return with_features(scene_.separation(most, context), context);
-  }
-  [[nodiscard]] Pairs closest_primitives(double most, const Context& context) const {
-    return with_features(scene_.closest_primitives(most, context), context);
-  }
-  [[nodiscard]] Pairs closer_than(double distance, const Context& context) const {
-    return with_features(scene_.closer_than(distance, context), context);
-  }
-  [[nodiscard]] Pairs collisions(const Context& context) const {
-    return with_features(scene_.collisions(context), context);
-  }
-  [[nodiscard]] const ProximityScene& asked() const { return scene_; }
-
- private:
-  static TriangleMesh corners_of(const MeshView& mesh) {
-    return {{},
-            {mesh.triangles.begin(), mesh.triangles.end()},
-            {mesh.segments.begin(), mesh.segments.end()},
-            {mesh.points.begin(), mesh.points.end()}};
-  }
-
-  [[nodiscard]] std::array<std::int32_t, 3> feature(ObjectId object, std::uint32_t primitive,
-                                                    const TriangleFeature& feature) const {
-    return feature_vertices(primitive_vertices(corners_[object.value], primitive), feature);
-  }
-  [[nodiscard]] Pairs with_features(ProximityPairs found, const Context& context) const {
-    constexpr std::size_t look_every = 65536;
-    Pairs out{std::move(found.pairs), {}, std::move(found.report)};
-    out.features.reserve(out.pairs.size());
-    for (const PrimitivePair& pair : out.pairs) {
-      if (out.features.size() % look_every == 0) throw_if_cancelled(context);
-      out.features.push_back({feature(pair.first_object, pair.first, pair.between.first_feature),
-                              feature(pair.second_object, pair.second, pair.between.second_feature)});
-    }
-    return out;
-  }
-
-  ProximityScene scene_;
-  std::vector<TriangleMesh> corners_;  ///< of each object, without vertices
-};
+  return out;
+}
 
 /// Numbers of every entry of a list, seen without a copy. @param of  the first of them of an entry, the others behind
 /// it.
@@ -195,80 +125,92 @@ nb::tuple arrays_of(std::vector<TriangleDistance> found) {
                         features_out(std::move(features)));
 }
 
-void bind_updates(nb::class_<Scene>& scene) {
+void bind_updates(nb::class_<ProximityScene>& scene) {
   scene.def(
       "add",
-      [](Scene& self, const MeshArrays& mesh, std::uint32_t layers, std::uint32_t meets, bool compare_self,
+      [](ProximityScene& self, const MeshArrays& mesh, std::uint32_t layers, std::uint32_t meets, bool compare_self,
          const PlaceIn& place, int threads, nb::object progress) {
         const MeshView view = mesh.view();
         const RigidTransform where = place_of(place);
+        check(where);
         return run({threads, std::move(progress)}, [&](const Context& context) {
-          return self.add(view, {layers, meets, compare_self}, where, context);
+          const ObjectId added = self.add(view, {layers, meets, compare_self}, context);
+          self.update(added, where);
+          return added.value;
         });
       },
       nb::arg("mesh"), nb::arg("layers"), nb::arg("meets"), nb::arg("compare_self"), nb::arg("place").noconvert(),
       nb::arg("threads"), nb::arg("progress").none());
-  scene.def("remove", [](Scene& self, std::uint32_t object) { self.remove(ObjectId(object)); }, nb::arg("object"));
+  scene.def(
+      "remove", [](ProximityScene& self, std::uint32_t object) { self.remove(ObjectId(object)); }, nb::arg("object"));
   scene.def(
       "set_mesh",
-      [](Scene& self, std::uint32_t object, const MeshArrays& mesh, int threads, nb::object progress) {
+      [](ProximityScene& self, std::uint32_t object, const MeshArrays& mesh, int threads, nb::object progress) {
         const MeshView view = mesh.view();
         run_call({threads, std::move(progress)},
-                 [&](const Context& context) { self.set_mesh(ObjectId(object), view, context); });
+                 [&](const Context& context) { self.update(ObjectId(object), view, context); });
       },
       nb::arg("object"), nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none());
   scene.def(
       "set_vertices",
-      [](Scene& self, std::uint32_t object, const PointsIn& vertices, int threads, nb::object progress) {
+      [](ProximityScene& self, std::uint32_t object, const PointsIn& vertices, int threads, nb::object progress) {
         run_call({threads, std::move(progress)},
-                 [&](const Context& context) { self.set_vertices(ObjectId(object), vectors(vertices), context); });
+                 [&](const Context& context) { self.update(ObjectId(object), vectors(vertices), context); });
       },
       nb::arg("object"), nb::arg("vertices").noconvert(), nb::arg("threads"), nb::arg("progress").none());
   scene.def_static("check_place", [](const PlaceIn& place) { check(place_of(place)); }, nb::arg("place").noconvert());
   scene.def(
       "set_place",
-      [](Scene& self, std::uint32_t object, const PlaceIn& place) {
-        self.set_place(ObjectId(object), place_of(place));
+      [](ProximityScene& self, std::uint32_t object, const PlaceIn& place) {
+        self.update(ObjectId(object), place_of(place));
       },
       nb::arg("object"), nb::arg("place").noconvert());
   scene.def(
       "exclude",
-      [](Scene& self, std::uint32_t first, std::uint32_t second, bool excluded) {
+      [](ProximityScene& self, std::uint32_t first, std::uint32_t second, bool excluded) {
         self.exclude(ObjectId(first), ObjectId(second), excluded);
       },
       nb::arg("first"), nb::arg("second"), nb::arg("excluded"));
 }
 
 /// A query of all of a scene that takes a distance.
-using Query = Pairs (Scene::*)(double, const Context&) const;
+using Query = ProximityPairs (ProximityScene::*)(double, const Context&) const;
 
-void bind_query(nb::class_<Scene>& scene, const char* name, Query query) {
+void bind_query(nb::class_<ProximityScene>& scene, const char* name, Query query) {
   scene.def(
       name,
-      [query](const Scene& self, double distance, int threads, nb::object progress) {
-        return arrays_of(run({threads, std::move(progress)},
-                             [&](const Context& context) { return (self.*query)(distance, context); }));
+      [query](const ProximityScene& self, double distance, int threads, nb::object progress) {
+        return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return with_features(self, (self.*query)(distance, context), context);
+        }));
       },
       nb::arg("distance"), nb::arg("threads"), nb::arg("progress").none());
 }
 
-void bind_queries(nb::class_<Scene>& scene) {
+void bind_queries(nb::class_<ProximityScene>& scene) {
   scene.def(
       "separation",
-      [](const Scene& self, std::uint32_t first, std::uint32_t second, double most, int threads, nb::object progress) {
+      [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, double most, int threads,
+         nb::object progress) {
         return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return self.separation(ObjectId(first), ObjectId(second), most, context);
+          ProximityPairs found;
+          found.report.object_pairs = 1;
+          if (const auto pair = self.separation(ObjectId(first), ObjectId(second), most, context)) {
+            found.pairs.push_back(*pair);
+          }
+          return with_features(self, std::move(found), context);
         }));
       },
       nb::arg("first"), nb::arg("second"), nb::arg("distance"), nb::arg("threads"), nb::arg("progress").none());
-  bind_query(scene, "separations", &Scene::separations);
-  bind_query(scene, "closest_primitives", &Scene::closest_primitives);
-  bind_query(scene, "closer_than", &Scene::closer_than);
+  bind_query(scene, "separations", &ProximityScene::separation);
+  bind_query(scene, "closest_primitives", &ProximityScene::closest_primitives);
+  bind_query(scene, "closer_than", &ProximityScene::closer_than);
   scene.def(
       "collisions",
-      [](const Scene& self, int threads, nb::object progress) {
-        return arrays_of(
-            run({threads, std::move(progress)}, [&](const Context& context) { return self.collisions(context); }));
+      [](const ProximityScene& self, int threads, nb::object progress) {
+        return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return with_features(self, self.collisions(context), context);
+        }));
       },
       nb::arg("threads"), nb::arg("progress").none());
 }
@@ -326,30 +268,30 @@ nb::tuple collisions_out(const SceneCollisions& found) {
 /// An object, and where its vertices and its place are at the end.
 using MotionIn = std::tuple<std::uint32_t, std::optional<PointsIn>, std::optional<PlaceIn>>;
 
-void bind_motions(nb::class_<Scene>& scene) {
+void bind_motions(nb::class_<ProximityScene>& scene) {
   scene.def(
       "penetration",
-      [](const Scene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
+      [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
          nb::object progress) {
         const auto options = options_from<PenetrationOptions>(given);
         return parts_out(run({threads, std::move(progress)}, [&](const Context& context) {
-          return self.asked().penetration(ObjectId(first), ObjectId(second), options, context);
+          return self.penetration(ObjectId(first), ObjectId(second), options, context);
         }));
       },
       nb::arg("first"), nb::arg("second"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   scene.def(
       "signed_separation",
-      [](const Scene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
+      [](const ProximityScene& self, std::uint32_t first, std::uint32_t second, const nb::dict& given, int threads,
          nb::object progress) {
         const auto options = options_from<PenetrationOptions>(given);
         return run({threads, std::move(progress)}, [&](const Context& context) {
-          return self.asked().signed_separation(ObjectId(first), ObjectId(second), options, context);
+          return self.signed_separation(ObjectId(first), ObjectId(second), options, context);
         });
       },
       nb::arg("first"), nb::arg("second"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
   scene.def(
       "continuous",
-      [](const Scene& self, const std::vector<MotionIn>& given_motions, const nb::dict& given, int threads,
+      [](const ProximityScene& self, const std::vector<MotionIn>& given_motions, const nb::dict& given, int threads,
          nb::object progress) {
         const auto options = options_from<ImpactOptions>(given);
         std::vector<ObjectMotion> motions;
@@ -359,9 +301,8 @@ void bind_motions(nb::class_<Scene>& scene) {
           if (vertices) motion.vertices = vectors(*vertices);
           if (place) motion.place = place_of(*place);
         }
-        return collisions_out(run({threads, std::move(progress)}, [&](const Context& context) {
-          return self.asked().continuous(motions, options, context);
-        }));
+        return collisions_out(run({threads, std::move(progress)},
+                                  [&](const Context& context) { return self.continuous(motions, options, context); }));
       },
       nb::arg("motions"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }
@@ -369,11 +310,12 @@ void bind_motions(nb::class_<Scene>& scene) {
 }  // namespace
 
 void bind_proximity_scene(nb::module_& m) {
-  nb::class_<Scene> scene(m, "ProximityScene");
+  nb::class_<ProximityScene> scene(m, "ProximityScene");
   bind_options<SceneOptions>(m);
   bind_options<PenetrationOptions>(m);
   scene.def(
-      "__init__", [](Scene* self, const nb::dict& given) { new (self) Scene(options_from<SceneOptions>(given)); },
+      "__init__",
+      [](ProximityScene* self, const nb::dict& given) { new (self) ProximityScene(options_from<SceneOptions>(given)); },
       nb::arg("options"));
   bind_updates(scene);
   bind_queries(scene);

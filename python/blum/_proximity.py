@@ -13,6 +13,7 @@ from ._errors import InvalidMesh
 from ._mesh import as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
+from ._proximity_results import earliest_of
 from ._structs import ImpactOptions
 
 
@@ -31,8 +32,7 @@ class ContinuousCollisions:
     @property
     def earliest(self) -> float | None:
         """The first time at which anything meets; None where nothing does."""
-        times = np.concatenate([self.vertex_face_time, self.edge_edge_time])
-        return float(times.min()) if len(times) else None
+        return earliest_of(self.vertex_face_time, self.edge_edge_time)
 
     def __repr__(self) -> str:
         return f"ContinuousCollisions({len(self.vertex_face)} vertex_face, {len(self.edge_edge)} edge_edge)"

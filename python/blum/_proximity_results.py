@@ -10,6 +10,12 @@ import numpy as np
 from ._arguments import FloatArray, IntArray, Integer
 
 
+def earliest_of(*times: FloatArray) -> float | None:
+    """The first of some times; None where there is none."""
+    every = np.concatenate(times)
+    return float(every.min()) if len(every) else None
+
+
 @dataclass(frozen=True, eq=False)
 class PrimitivePair:
     """Two primitives and their closest points. Primitives of a mesh are its triangles, then its segments, then its
@@ -94,8 +100,7 @@ class SceneCollisions:
     @property
     def earliest(self) -> float | None:
         """The first time at which anything meets; None where nothing does."""
-        times = np.concatenate([self.vertex_face_time, self.edge_edge_time])
-        return float(times.min()) if len(times) else None
+        return earliest_of(self.vertex_face_time, self.edge_edge_time)
 
     def __repr__(self) -> str:
         return f"SceneCollisions({len(self.vertex_face)} vertex_face, {len(self.edge_edge)} edge_edge)"

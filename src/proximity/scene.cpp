@@ -134,6 +134,10 @@ std::size_t ProximityScene::size() const {
   return data_->objects.size();
 }
 
+MeshView ProximityScene::mesh(ObjectId object) const {
+  return data_->at(object).mesh();
+}
+
 std::optional<PrimitivePair> ProximityScene::separation(ObjectId first, ObjectId second, double max_distance,
                                                         const Context& context) const {
   check_distance("max_distance", max_distance);

@@ -8,7 +8,7 @@
 #include "blum/geometry/primitives.hpp"
 #include "blum/geometry/weld.hpp"
 
-namespace blum::detail {
+namespace blum {
 namespace {
 
 /// Squares of squares of coordinates must stay finite.
@@ -17,17 +17,6 @@ constexpr double smallest_coordinate = 1e-140;
 
 double magnitude(const Vec3d& p) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-}
-
-void check(const MeshView& mesh) {
-  validate(mesh);
-  const double largest = bounds(mesh).largest_coordinate();
-  if (largest > largest_coordinate) {
-    throw InvalidMesh("a coordinate is beyond 1e70, which is the most that an object of a scene may have; scale it");
-  }
-  if (largest > 0 && largest < smallest_coordinate) {
-    throw InvalidMesh("no coordinate is above 1e-140: an object of a scene must be larger; scale it");
-  }
 }
 
 }  // namespace
@@ -48,6 +37,22 @@ void check(const RigidTransform& place) {
     throw InvalidOption("the translation of a transform is not finite, or beyond 1e70");
   }
 }
+
+namespace detail {
+namespace {
+
+void check(const MeshView& mesh) {
+  validate(mesh);
+  const double largest = bounds(mesh).largest_coordinate();
+  if (largest > largest_coordinate) {
+    throw InvalidMesh("a coordinate is beyond 1e70, which is the most that an object of a scene may have; scale it");
+  }
+  if (largest > 0 && largest < smallest_coordinate) {
+    throw InvalidMesh("no coordinate is above 1e-140: an object of a scene must be larger; scale it");
+  }
+}
+
+}  // namespace
 
 SceneObject::SceneObject(const MeshView& mesh, const ObjectOptions& options, const Context& context)
     : options_(options) {
@@ -127,4 +132,5 @@ std::vector<std::uint32_t> SceneObject::clusters() const {
   return is_placed_ ? weld_clusters(positions()) : weld_clusters(mesh_.vertices);
 }
 
-}  // namespace blum::detail
+}  // namespace detail
+}  // namespace blum

@@ -58,7 +58,4 @@ class SceneObject {
   std::optional<OrientedBvh> bvh_;
 };
 
-/// @throws InvalidOption where it turns nothing rigidly, or moves it beyond 1e70.
-void check(const RigidTransform& place);
-
 }  // namespace blum::detail

@@ -77,6 +77,10 @@ struct Description<SceneOptions> {
 /// @throws InvalidOption.
 void check(const SceneOptions& options);
 
+/// Whether a scene takes a transform: @throws InvalidOption for one that is not rigid to 1e-9, mirrors, or moves beyond
+/// 1e70.
+void check(const RigidTransform& place);
+
 /// Two primitives, and their closest points. Primitives of an object are the triangles of its mesh, then the segments,
 /// then the points, in its order.
 struct PrimitivePair {
@@ -145,6 +149,8 @@ class ProximityScene {
 
   /// How many objects were added, those that were removed included.
   [[nodiscard]] std::size_t size() const;
+  /// The mesh of an object, before its transform; until the object changes.
+  [[nodiscard]] MeshView mesh(ObjectId object) const;
 
   /// The closest pair of primitives of two objects, whatever their layers; of one object with itself, that of
   /// primitives that share no vertex. Its distance is 0 just where they meet.
