@@ -411,46 +411,23 @@ void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "geometry/kernel_tables.hpp"
+
 namespace blum {
 namespace {
 
-#if defined(BLUM_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1))
-/// Where the tables of functions have those of the best instruction set.
-std::size_t best_index() {
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return hwy::GetChosenTarget().GetIndex();
-}
-
-HWY_EXPORT(squared_distances);
-HWY_EXPORT(entries);
-HWY_EXPORT(may_cross);
-HWY_EXPORT(may_reach);
-HWY_EXPORT(may_meet_block);
-HWY_EXPORT(touching);
-HWY_EXPORT(touching_moving);
-HWY_EXPORT(may_meet);
-HWY_EXPORT(approximate_distances);
-HWY_EXPORT(add_clusters);
-HWY_EXPORT(add_clusters_beyond);
-HWY_EXPORT(add_triangles);
-#define BLUM_BEST(kernel) HWY_DISPATCH_TABLE(kernel)[best_index()]
-#else
-#define BLUM_BEST(kernel) (&HWY_NAMESPACE::kernel)
-#endif
-
-// Chosen once: the loops take tens of nanoseconds, and a look-up would be felt.
-const auto best_squared_distances = BLUM_BEST(squared_distances);
-const auto best_entries = BLUM_BEST(entries);
-const auto best_may_cross = BLUM_BEST(may_cross);
-const auto best_may_reach = BLUM_BEST(may_reach);
-const auto best_may_meet_block = BLUM_BEST(may_meet_block);
-const auto best_touching = BLUM_BEST(touching);
-const auto best_touching_moving = BLUM_BEST(touching_moving);
-const auto best_may_meet = BLUM_BEST(may_meet);
-const auto best_approximate_distances = BLUM_BEST(approximate_distances);
-const auto best_add_clusters = BLUM_BEST(add_clusters);
-const auto best_add_clusters_beyond = BLUM_BEST(add_clusters_beyond);
-const auto best_add_triangles = BLUM_BEST(add_triangles);
+BLUM_KERNEL(squared_distances);
+BLUM_KERNEL(entries);
+BLUM_KERNEL(may_cross);
+BLUM_KERNEL(may_reach);
+BLUM_KERNEL(may_meet_block);
+BLUM_KERNEL(touching);
+BLUM_KERNEL(touching_moving);
+BLUM_KERNEL(may_meet);
+BLUM_KERNEL(approximate_distances);
+BLUM_KERNEL(add_clusters);
+BLUM_KERNEL(add_clusters_beyond);
+BLUM_KERNEL(add_triangles);
 
 }  // namespace
 

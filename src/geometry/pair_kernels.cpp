@@ -185,32 +185,16 @@ void extent_along_axes(const FlatTriangleBlock& block, Box3& out) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "geometry/kernel_tables.hpp"
+
 namespace blum {
 namespace {
 
-#if defined(BLUM_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1))
-/// Where the tables of functions have those of the best instruction set.
-std::size_t best_index() {
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return hwy::GetChosenTarget().GetIndex();
-}
-
-HWY_EXPORT(squared_box_gaps);
-HWY_EXPORT(squared_triangle_gaps);
-HWY_EXPORT(set_normals);
-HWY_EXPORT(extent_along);
-HWY_EXPORT(extent_along_axes);
-#define BLUM_BEST(kernel) HWY_DISPATCH_TABLE(kernel)[best_index()]
-#else
-#define BLUM_BEST(kernel) (&HWY_NAMESPACE::kernel)
-#endif
-
-// Chosen once: the loops take tens of nanoseconds, and a look-up would be felt.
-const auto best_squared_box_gaps = BLUM_BEST(squared_box_gaps);
-const auto best_squared_triangle_gaps = BLUM_BEST(squared_triangle_gaps);
-const auto best_set_normals = BLUM_BEST(set_normals);
-const auto best_extent_along = BLUM_BEST(extent_along);
-const auto best_extent_along_axes = BLUM_BEST(extent_along_axes);
+BLUM_KERNEL(squared_box_gaps);
+BLUM_KERNEL(squared_triangle_gaps);
+BLUM_KERNEL(set_normals);
+BLUM_KERNEL(extent_along);
+BLUM_KERNEL(extent_along_axes);
 
 }  // namespace
 

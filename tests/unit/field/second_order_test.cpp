@@ -117,7 +117,7 @@ TriangleMesh sphere(int frequency = 6) {
 }
 
 TEST(SecondOrder, IsExactOnSoups) {
-  for (const std::size_t count : {1, 2, 5, 40, 400}) expect_exact(soup(count, count));
+  for (const std::size_t count : {1U, 2U, 5U, 40U, 400U}) expect_exact(soup(count, count));
   expect_exact(test::nasty_soup(1, 200));
 }
 
