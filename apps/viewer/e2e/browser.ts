@@ -109,3 +109,14 @@ export async function serve(...args: string[]): Promise<{ url: string; stop: () 
     });
   return { url, stop };
 }
+
+/** The controls of a page that have no name for those who do not see them. */
+export const nameless = (page: Page): Promise<string[]> =>
+  page.evaluate(() =>
+    [...document.querySelectorAll<HTMLElement>("button, input, select, canvas, summary")]
+      .filter((e) => {
+        const label = e.closest("label")?.textContent || (e instanceof HTMLInputElement && e.labels?.[0]?.textContent);
+        return !(e.getAttribute("aria-label") || label || e.textContent);
+      })
+      .map((e) => e.outerHTML),
+  );

@@ -4,7 +4,7 @@ import { rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { blum, colorAt, file, fileUrl, folder, launch, open, pixels, serve, settled } from "./browser.ts";
+import { blum, colorAt, file, fileUrl, folder, launch, nameless, open, pixels, serve, settled } from "./browser.ts";
 import { ballOnGround } from "./moving_scene.ts";
 
 let browser: Browser;
@@ -240,15 +240,7 @@ describe("a moving scene", () => {
 
   it("every control has a name", async () => {
     const { page } = await open(browser, fileUrl("moving.html"));
-    const nameless = await page.evaluate(() =>
-      [...document.querySelectorAll<HTMLElement>("button, input, select, canvas, summary")]
-        .filter((e) => {
-          const label = e.closest("label")?.textContent || (e instanceof HTMLInputElement && e.labels?.[0]?.textContent);
-          return !(e.getAttribute("aria-label") || label || e.textContent);
-        })
-        .map((e) => e.outerHTML),
-    );
-    expect(nameless).toEqual([]);
+    expect(await nameless(page)).toEqual([]);
     await page.close();
   });
 });

@@ -6,7 +6,7 @@ import { request } from "node:http";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import { blum, colorAt, demo, file, fileUrl, folder, launch, open, pixels, serve, settled } from "./browser.ts";
+import { blum, colorAt, demo, file, fileUrl, folder, launch, nameless, open, pixels, serve, settled } from "./browser.ts";
 import { readNpz } from "./npz.ts";
 
 const thetas = [10, 60, 120];
@@ -316,15 +316,7 @@ describe("a page in a file", () => {
 
   it("every control has a name, and the picture too", async () => {
     const { page } = await open(browser, fileUrl("all.html"));
-    const nameless = await page.evaluate(() =>
-      [...document.querySelectorAll<HTMLElement>("button, input, canvas, summary")]
-        .filter((e) => {
-          const label = e.closest("label")?.textContent || (e instanceof HTMLInputElement && e.labels?.[0]?.textContent);
-          return !(e.getAttribute("aria-label") || label || e.textContent);
-        })
-        .map((e) => e.outerHTML),
-    );
-    expect(nameless).toEqual([]);
+    expect(await nameless(page)).toEqual([]);
     await page.close();
   });
 });

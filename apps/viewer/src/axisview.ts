@@ -14,10 +14,9 @@ import {
   setColor,
   setStyle,
   surfaceMaterial,
-  type Style,
 } from "./shaders.ts";
 import type { Hit, Legend, Surroundings, View } from "./view.ts";
-import { checkbox, choice, element, Slider } from "./widgets.ts";
+import { checkbox, choice, element, Slider, styleChoice } from "./widgets.ts";
 
 type ColorBy = "radius" | "angle" | "sheet";
 const coloringOf = { radius: Coloring.scalar, angle: Coloring.angle, sheet: Coloring.region };
@@ -175,20 +174,11 @@ export class AxisView implements View {
         this.#applyColors();
         changed();
       }),
-      choice<Style>(
-        "Sheets",
-        [
-          ["solid", "solid"],
-          ["translucent", "translucent"],
-          ["wire", "wire"],
-        ],
-        "solid",
-        (style) => {
-          setStyle(this.#surface, style, 0.35);
-          surface.renderOrder = style === "translucent" ? 5 : 0;
-          changed();
-        },
-      ),
+      styleChoice("Sheets", "solid", (style) => {
+        setStyle(this.#surface, style, 0.35);
+        surface.renderOrder = style === "translucent" ? 5 : 0;
+        changed();
+      }),
     );
     const toggles = element("div", "toggles");
     const toggle = (label: string, objects: THREE.Object3D[], isOn: boolean) =>

@@ -11,7 +11,7 @@ import type { Fact, FramesItem, PairTable, Triple } from "./scene.ts";
 import { setColor, setStyle, surfaceMaterial, type Style } from "./shaders.ts";
 import { Timeline } from "./timeline.ts";
 import type { Hit, Legend, Surroundings, View } from "./view.ts";
-import { checkbox, choice, element } from "./widgets.ts";
+import { checkbox, choice, element, styleChoice } from "./widgets.ts";
 
 const light: Triple = [0.66, 0.72, 0.79];
 const dark: Triple = [0.62, 0.68, 0.76];
@@ -179,21 +179,12 @@ export class FramesView implements View {
     const { changed } = this.#around;
     this.controls.append(
       this.#counts,
-      choice<Style>(
-        "Surface",
-        [
-          ["solid", "solid"],
-          ["translucent", "translucent"],
-          ["wire", "wire"],
-        ],
-        this.#style,
-        (style) => {
-          this.#style = style;
-          setStyle(this.#material, style);
-          this.#surface.renderOrder = style === "translucent" ? 10 : 0;
-          changed();
-        },
-      ),
+      styleChoice("Surface", this.#style, (style) => {
+        this.#style = style;
+        setStyle(this.#material, style);
+        this.#surface.renderOrder = style === "translucent" ? 10 : 0;
+        changed();
+      }),
     );
     if (this.#pairs !== undefined && this.item.pairs !== undefined) this.#addPairControls(this.#pairs, this.item.pairs);
   }

@@ -7,7 +7,7 @@ import { Picker } from "./picker.ts";
 import type { Fact, MeshItem, Triple } from "./scene.ts";
 import { dotMaterial, lineGeometry, lineMaterial, setColor, setStyle, surfaceMaterial, type Style } from "./shaders.ts";
 import type { Hit, Legend, Surroundings, View } from "./view.ts";
-import { choice, element } from "./widgets.ts";
+import { element, styleChoice } from "./widgets.ts";
 
 const light: Triple = [0.66, 0.72, 0.79];
 const dark: Triple = [0.62, 0.68, 0.76];
@@ -37,21 +37,12 @@ export class MeshView implements View {
     this.controls = element("div", "controls");
     if (item.triangles.length > 0) {
       this.controls.append(
-        choice<Style>(
-          "Surface",
-          [
-            ["solid", "solid"],
-            ["translucent", "translucent"],
-            ["wire", "wire"],
-          ],
-          this.#style,
-          (style) => {
-            this.#style = style;
-            setStyle(this.#material, style);
-            this.#orderDrawing();
-            around.changed();
-          },
-        ),
+        styleChoice("Surface", this.#style, (style) => {
+          this.#style = style;
+          setStyle(this.#material, style);
+          this.#orderDrawing();
+          around.changed();
+        }),
       );
     }
     this.#orderDrawing();

@@ -7,11 +7,11 @@ import { nodeIndex, toWorld } from "./grid.ts";
 import { IsoSurfaces } from "./isosurface.ts";
 import { Picker } from "./picker.ts";
 import type { Fact, FieldItem, ImageItem, Triple } from "./scene.ts";
-import { setColor, setStyle, SliceMode, surfaceMaterial, type Style } from "./shaders.ts";
+import { setColor, setStyle, SliceMode, surfaceMaterial } from "./shaders.ts";
 import { Slice } from "./slice.ts";
 import type { Surface } from "./surfacenets.ts";
 import type { Hit, Legend, Surroundings, View } from "./view.ts";
-import { checkbox, choice, element, Slider } from "./widgets.ts";
+import { checkbox, choice, element, Slider, styleChoice } from "./widgets.ts";
 
 type Show = "distance" | "sites" | "labels" | "grey";
 const axes = ["x", "y", "z"] as const;
@@ -249,20 +249,11 @@ export class VolumeView implements View {
         }),
       );
     }
-    const style = choice<Style>(
-      "Surface",
-      [
-        ["solid", "solid"],
-        ["translucent", "translucent"],
-        ["wire", "wire"],
-      ],
-      "solid",
-      (value) => {
-        setStyle(this.#iso.material, value, 0.25);
-        this.#iso.renderOrder = value === "translucent" ? 8 : 0;
-        changed();
-      },
-    );
+    const style = styleChoice("Surface", "solid", (value) => {
+      setStyle(this.#iso.material, value, 0.25);
+      this.#iso.renderOrder = value === "translucent" ? 8 : 0;
+      changed();
+    });
     const inSurface = element("div", "group", this.#isoSlider.root, style);
     inSurface.hidden = true;
     this.controls.append(

@@ -1,4 +1,5 @@
 // Labelled controls.
+import type { Style } from "./shaders.ts";
 
 let nextId = 0;
 const newId = (): string => `c${++nextId}`;
@@ -46,6 +47,19 @@ export function choice<T extends string>(
   group.append(row);
   return group;
 }
+
+/** How a surface is drawn. */
+export const styleChoice = (label: string, style: Style, onChange: Setter<Style>): HTMLElement =>
+  choice<Style>(
+    label,
+    [
+      ["solid", "solid"],
+      ["translucent", "translucent"],
+      ["wire", "wire"],
+    ],
+    style,
+    onChange,
+  );
 
 /** A list of which one entry is chosen. */
 export function select(
