@@ -61,6 +61,12 @@ struct ProximityScene::Data {
 
   [[nodiscard]] bool uses_cells() const { return options.culling == Culling::voronoi; }
 
+  [[nodiscard]] std::optional<PrimitivePair> closest(const ObjectPair& pair, double max_distance,
+                                                     const Context& context, ProximityReport& report) const {
+    if (!uses_cells()) return detail::closest_pair(pair, max_distance, context, report);
+    return detail::closest_pair_by_cells(pair, objects.size(), options.cell_size, max_distance, context, report);
+  }
+
   /// The pairs of objects that are compared and whose boxes are no further apart than this.
   [[nodiscard]] std::vector<TwoObjects> compared(double distance, const Context& context) const {
     static_cast<void>(thread_count(context));  // refused also where there is nothing to do
@@ -144,8 +150,8 @@ std::optional<PrimitivePair> ProximityScene::separation(ObjectId first, ObjectId
   const SceneObject& a = data_->at(first);
   const SceneObject& b = data_->at(second);
   ProximityReport report;
-  if (first <= second) return detail::closest_pair(ObjectPair(first, a, second, b), max_distance, context, report);
-  auto found = detail::closest_pair(ObjectPair(second, b, first, a), max_distance, context, report);
+  if (first <= second) return data_->closest(ObjectPair(first, a, second, b), max_distance, context, report);
+  auto found = data_->closest(ObjectPair(second, b, first, a), max_distance, context, report);
   return found ? std::optional(detail::exchanged(*found)) : std::nullopt;
 }
 
@@ -156,11 +162,15 @@ ProximityPairs ProximityScene::separation(double max_distance, const Context& co
   PhaseTimer timer(out.report.phases);
   std::vector<std::optional<PrimitivePair>> found(pairs.size());
   std::vector<ProximityReport> reports(pairs.size());
-  parallel_for(context, pairs.size(), 1, "separation", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      found[k] = detail::closest_pair(pairs[k], max_distance, context, reports[k]);
-    }
-  });
+  const auto find = [&](std::size_t k) { found[k] = data_->closest(pairs[k], max_distance, context, reports[k]); };
+  if (data_->uses_cells()) {
+    for (std::size_t k = 0; k < pairs.size(); ++k) find(k);  // each runs on all threads
+    out.report.culling = Culling::voronoi;
+  } else {
+    parallel_for(context, pairs.size(), 1, "separation", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) find(k);
+    });
+  }
   for (const auto& one : found) {
     if (one) out.pairs.push_back(*one);
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -45,7 +47,70 @@ void add_all(const std::vector<ProximityReport>& parts, const VoronoiCells& cell
   for (const ProximityReport& part : parts) add(part, report);
 }
 
+/// A distance that the closest pair is not further apart than: at the middle of a cell, that of a primitive and that of
+/// the first one in the list that it is compared with, added.
+double bound_of_cells(const ScenePrimitives& primitives, const VoronoiCells& cells, std::uint32_t rows,
+                      double max_distance) {
+  double bound = max_distance;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    for (const std::uint32_t cell : cells.cells(row)) {
+      const auto entries = cells.entries(cell);
+      const auto own = std::find_if(entries.begin(), entries.end(), [&](const CellEntry& e) { return e.row == row; });
+      if (own == entries.end()) continue;
+      for (const CellEntry& other : entries) {
+        const double sum = own->distance + other.distance + cells.rounding();
+        if (sum >= bound) break;
+        if (primitives.are_compared(row, other.row)) bound = sum;
+      }
+    }
+  }
+  return bound;
+}
+
 }  // namespace
+
+std::optional<PrimitivePair> closest_pair_by_cells(const ObjectPair& pair, std::size_t objects, double cell_size,
+                                                   double max_distance, const Context& context,
+                                                   ProximityReport& report) {
+  const ScenePrimitives primitives(std::span(&pair, 1), objects);
+  const VoronoiCells cells(primitives, cell_size, max_distance, true, context);
+  if (cells.left_over() > 0) {
+    report.cells += cells.size();
+    report.left_over += primitives.size();
+    return closest_pair(pair, max_distance, context, report);
+  }
+  // Those of the first object come first.
+  const auto rows = static_cast<std::uint32_t>(pair.a().primitives());
+  const double bound = bound_of_cells(primitives, cells, rows, max_distance);
+  struct Part {
+    Closest best;
+    ProximityReport report;
+  };
+  std::vector<Part> parts((rows + grain - 1) / grain);
+  parallel_for(context, rows, grain, "separation", [&](const WorkRange& range) {
+    Part& part = parts[range.begin / grain];
+    part.best.limit = bound;
+    std::vector<std::uint32_t> seen;
+    for (auto row = static_cast<std::uint32_t>(range.begin); row < range.end; ++row) {
+      const Box3 box = primitives.box(row);
+      for_each_candidate(primitives, cells, row, part.best.limit, true, seen, [&](std::uint32_t other) {
+        if (other < row) return;  // each pair once
+        ++part.report.candidates;
+        if (box_gap(box, primitives.box(other)) > part.best.limit) return;
+        ++part.report.exact_tests;
+        part.best.offer(primitives.compare(row, other));
+      });
+    }
+  });
+  Closest best{std::nullopt, bound};
+  std::vector<ProximityReport> reports;
+  for (const Part& part : parts) {
+    if (part.best.pair) best.offer(*part.best.pair);
+    reports.push_back(part.report);
+  }
+  add_all(reports, cells, report);
+  return best.pair;
+}
 
 void closest_of_each_by_cells(std::span<const ObjectPair> pairs, std::size_t objects, double cell_size,
                               double max_distance, const Context& context, ProximityPairs& out) {

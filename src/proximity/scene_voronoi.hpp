@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "blum/core/context.hpp"
@@ -9,6 +10,12 @@
 #include "proximity/scene_pairs.hpp"
 
 namespace blum::detail {
+
+/// As closest_pair(): second-order distances of the cells tell how far apart the two may be, and which pairs may be
+/// that close.
+[[nodiscard]] std::optional<PrimitivePair> closest_pair_by_cells(const ObjectPair& pair, std::size_t objects,
+                                                                 double cell_size, double max_distance,
+                                                                 const Context& context, ProximityReport& report);
 
 /// As closest_of_each().
 void closest_of_each_by_cells(std::span<const ObjectPair> pairs, std::size_t objects, double cell_size,

@@ -40,6 +40,8 @@ class VoronoiCells {
   [[nodiscard]] std::span<const CellEntry> entries(std::uint32_t cell) const;
   /// Distances of entries are compared with those of the middle; they may be further by this for points of the cell.
   [[nodiscard]] double radius() const { return radius_; }
+  /// How wrong sums of distances may be.
+  [[nodiscard]] double rounding() const { return rounding_; }
   /// How many cells there are.
   [[nodiscard]] std::size_t size() const { return cell_first_.size(); }
 

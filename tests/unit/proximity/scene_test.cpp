@@ -317,6 +317,10 @@ TEST(ProximityScene, TellsHowItCulled) {
   EXPECT_LT(cells.left_over, mesh.triangles.size() / 10);
   EXPECT_GE(cells.exact_tests, mesh.triangles.size());
   EXPECT_LT(cells.exact_tests, 60 * mesh.triangles.size());
+  const ProximityReport closest = scene.separation().report;
+  EXPECT_EQ(closest.culling, Culling::voronoi);
+  EXPECT_GT(closest.cells, 100U);
+  EXPECT_LT(closest.exact_tests, mesh.triangles.size());
   ProximityScene automatic;
   automatic.add(mesh, {.self = true});
   EXPECT_EQ(automatic.closest_primitives().report.culling, Culling::bvh);
