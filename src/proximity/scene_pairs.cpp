@@ -69,6 +69,8 @@ PrimitivePair exchanged(const PrimitivePair& pair) {
 }
 
 void add(const ProximityReport& report, ProximityReport& to) {
+  to.cells += report.cells;
+  to.left_over += report.left_over;
   to.candidates += report.candidates;
   to.exact_tests += report.exact_tests;
 }
