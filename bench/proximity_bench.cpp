@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/proximity/scene.hpp"
@@ -195,11 +196,44 @@ void self_anew_case(benchmark::State& state) {
 }
 
 void cgal_self_case(benchmark::State& state) {
-  std::optional<std::size_t> pairs;
+  decltype(cgal_self_intersections(bodies().first)) pairs;
   const Times times = time_runs([&] { pairs = cgal_self_intersections(bodies().first); });
   if (!pairs) return state.SkipWithError("CGAL is not installed");
   tell(state, times, 1);
-  state.counters["pairs"] = static_cast<double>(*pairs);
+  state.counters["pairs"] = static_cast<double>(pairs->size());
+}
+
+/// The first body again, crossing itself: its points move by waves as long as a fifth of it.
+TriangleMesh crumpled(double height) {
+  TriangleMesh mesh = bodies().first;
+  for (Vec3d& p : mesh.vertices) {
+    p += Vec3d{std::sin(31 * p.y + 3 * p.z), std::sin(29 * p.z + 5 * p.x), std::sin(37 * p.x + 2 * p.y)} * height;
+  }
+  return mesh;
+}
+
+/// Both bodies in one mesh, lying in each other.
+TriangleMesh joined_bodies() {
+  TriangleMesh mesh = bodies().first;
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Vec3d& p : bodies().second.vertices) mesh.vertices.push_back(p + Vec3d{0.05, 0.02, 0.01});
+  for (const auto& [a, b, c] : bodies().second.triangles) mesh.triangles.push_back({base + a, base + b, base + c});
+  return mesh;
+}
+
+/// Meshes that cross themselves: the pairs of Blum and CGAL, which must be the same.
+void crossing_case(benchmark::State& state, const TriangleMesh& mesh) {
+  const auto expected = cgal_self_intersections(mesh);
+  if (!expected) return state.SkipWithError("CGAL is not installed");
+  ProximityScene scene;
+  scene.add(mesh, {.self = true});
+  std::vector<PrimitivePair> found;
+  tell(state, time_runs([&] { found = scene.collisions(with_threads(1)).pairs; }), 1);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const PrimitivePair& pair : found) pairs.emplace_back(pair.first, pair.second);
+  state.counters["pairs"] = static_cast<double>(pairs.size());
+  state.counters["pairs_of_cgal"] = static_cast<double>(expected->size());
+  if (pairs != *expected) state.SkipWithError("Blum and CGAL find other pairs");
 }
 
 void n_body_case(benchmark::State& state, int threads) {
@@ -290,6 +324,14 @@ const bool registered = [] {
   add("self-collision/blum-2-threads", [](benchmark::State& state) { self_case(state, 2); });
   add("self-collision/blum-anew", self_anew_case);
   add("self-collision/cgal", cgal_self_case);
+  for (const int height : {3, 5, 9}) {
+    add("self-collision-as-cgal/crumpled-0.0" + std::to_string(height),
+        [=](benchmark::State& state) { crossing_case(state, crumpled(0.01 * height)); });
+  }
+  add("self-collision-as-cgal/bodies", [](benchmark::State& state) { crossing_case(state, joined_bodies()); });
+  add("self-collision-as-cgal/soup", [](benchmark::State& state) {
+    crossing_case(state, make_soup({.triangles = 20000, .triangle_size = 0.03}));
+  });
   add("n-body/blum", [](benchmark::State& state) { n_body_case(state, 1); });
   add("n-body/blum-2-threads", [](benchmark::State& state) { n_body_case(state, 2); });
   add("closer-than/blum", [](benchmark::State& state) { closer_case(state, 1); });

@@ -6,9 +6,11 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <algorithm>
+
 namespace blum::bench {
 
-std::optional<std::size_t> cgal_self_intersections(const TriangleMesh& mesh) {
+std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> cgal_self_intersections(const TriangleMesh& mesh) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
   Mesh surface;
@@ -18,7 +20,11 @@ std::optional<std::size_t> cgal_self_intersections(const TriangleMesh& mesh) {
   }
   std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> found;
   CGAL::Polygon_mesh_processing::self_intersections(surface, std::back_inserter(found));
-  return found.size();
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
+  out.reserve(found.size());
+  for (const auto& [f, g] : found) out.push_back(std::minmax<std::uint32_t>(f.idx(), g.idx()));
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 }  // namespace blum::bench
@@ -27,7 +33,7 @@ std::optional<std::size_t> cgal_self_intersections(const TriangleMesh& mesh) {
 
 namespace blum::bench {
 
-std::optional<std::size_t> cgal_self_intersections(const TriangleMesh&) {
+std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> cgal_self_intersections(const TriangleMesh&) {
   return std::nullopt;
 }
 

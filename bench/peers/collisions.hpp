@@ -2,9 +2,11 @@
 // Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "blum/geometry/rigid_transform.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
@@ -32,8 +34,9 @@ enum class FclBodies {
 [[nodiscard]] std::unique_ptr<PeerBodies> fcl_bodies(const TriangleMesh& first, const TriangleMesh& second,
                                                      FclBodies kind);
 
-/// How many pairs of triangles CGAL's self_intersections() finds, with exact predicates; nullopt where it was not
-/// installed.
-[[nodiscard]] std::optional<std::size_t> cgal_self_intersections(const TriangleMesh& mesh);
+/// The pairs of triangles that CGAL's self_intersections() finds, with exact predicates: the smaller first, sorted;
+/// nullopt where it was not installed. @param mesh  an orientable manifold.
+[[nodiscard]] std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> cgal_self_intersections(
+    const TriangleMesh& mesh);
 
 }  // namespace blum::bench
