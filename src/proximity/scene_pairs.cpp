@@ -12,6 +12,7 @@
 #include "blum/core/radix_sort.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/triangle_contact.hpp"
+#include "proximity/heaps.hpp"
 
 namespace blum::detail {
 namespace {
@@ -84,10 +85,16 @@ ObjectPair::ObjectPair(ObjectId first, const SceneObject& a, ObjectId second, co
   if (!(a.place() == b.place())) place_ = a.place().inverse() * b.place();
 }
 
+std::array<std::uint32_t, 3> ObjectPair::places(std::uint32_t primitive) const {
+  const auto [a, b, c] = a_->vertices(primitive);
+  return {clusters_[a], clusters_[b], clusters_[c]};
+}
+
 bool ObjectPair::are_neighbours(std::uint32_t i, std::uint32_t j) const {
-  for (const std::uint32_t v : a_->vertices(i)) {
-    for (const std::uint32_t w : a_->vertices(j)) {
-      if (clusters_[v] == clusters_[w]) return true;
+  const std::array<std::uint32_t, 3> other = places(j);
+  for (const std::uint32_t v : places(i)) {
+    for (const std::uint32_t w : other) {
+      if (v == w) return true;
     }
   }
   return false;
@@ -96,9 +103,7 @@ bool ObjectPair::are_neighbours(std::uint32_t i, std::uint32_t j) const {
 bool ObjectPair::are_folded(std::uint32_t i, std::uint32_t j) const {
   if (i >= a_->triangles() || j >= a_->triangles()) return false;
   const auto triangle = [&](std::uint32_t primitive) {
-    ContactTriangle out{a_->corners(primitive), a_->vertices(primitive)};
-    for (std::uint32_t& corner : out.corners) corner = clusters_[corner];
-    return out;
+    return ContactTriangle{a_->corners(primitive), places(primitive)};
   };
   const ContactTriangle first = triangle(i);
   const ContactTriangle second = triangle(j);
@@ -122,6 +127,7 @@ std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_
                                           ProximityReport& report) {
   static_cast<void>(thread_count(context));
   throw_if_cancelled(context);
+  if (objects.is_self()) check_neighbours(objects);
   CandidateLimit candidates(context);
   Closest best{std::nullopt, max_distance};
   const auto visit = [&](std::uint32_t i, std::uint32_t j, double) {
@@ -230,6 +236,7 @@ ClosestRows closest_rows(std::span<const ObjectPair> pairs, std::size_t objects,
   std::vector<std::vector<Partner>> partners(objects);
   std::vector<const SceneObject*> scene(objects, nullptr);
   for (const ObjectPair& pair : pairs) {
+    if (pair.is_self()) check_neighbours(pair);
     scene[pair.first().value] = &pair.a();
     scene[pair.second().value] = &pair.b();
     partners[pair.first().value].push_back({&pair, true});
@@ -383,9 +390,11 @@ void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours n
   CandidateLimit candidates(context);
   for (const ObjectPair& objects : pairs) {
     if (neighbours == Neighbours::folded && objects.is_self() && !has_flat_primitives(objects.a())) {
+      check_equal_triangles(objects);
       add_self_intersections(objects, context, out);
       continue;
     }
+    if (objects.is_self()) check_neighbours(objects);
     const NearSearch search(objects, distance, neighbours, count, candidates);
     const std::size_t blocks = objects.a().bvh().block_count();
     std::vector<FoundPairs> parts((blocks + blocks_per_range - 1) / blocks_per_range);

@@ -1,6 +1,7 @@
 // Blum: close pairs of primitives of pairs of objects. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -60,6 +61,8 @@ class ObjectPair {
   /// How close they must be in the scene to be that close seen from the first, for rounding of positions.
   [[nodiscard]] double slack() const { return slack_; }
 
+  /// Of an object and itself: the places of a primitive's vertices, for each the smallest vertex there.
+  [[nodiscard]] std::array<std::uint32_t, 3> places(std::uint32_t primitive) const;
   /// Whether two primitives of one object have a vertex in common.
   [[nodiscard]] bool are_neighbours(std::uint32_t i, std::uint32_t j) const;
   /// Whether two primitives of one object that are neighbours have more in common than what they share.

@@ -36,6 +36,28 @@ TEST(HostileScene, SeesContactsOfStacks) {
   }
 }
 
+/// A heap of equal triangles, of which each two would be looked at: an error at once where these are too many, and the
+/// answer where they are not asked for.
+TEST(HostileScene, OfAMillionEqualTrianglesIsRefusedAtOnce) {
+  TriangleMesh heap;
+  for (std::uint32_t k = 0; k < 1000000; ++k) {
+    heap.vertices.insert(heap.vertices.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    heap.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  const TriangleMesh other{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 2}}};
+  for (const Culling culling : {Culling::bvh, Culling::voronoi}) {
+    ProximityScene scene({.culling = culling});
+    const ObjectId first = scene.add(heap, {.self = true});
+    const ObjectId second = scene.add(other);
+    EXPECT_EQ(scene.separation(first, second)->between.distance, 1);
+    EXPECT_THROW(static_cast<void>(scene.separation(first, first)), InvalidMesh);
+    EXPECT_THROW(static_cast<void>(scene.separation()), InvalidMesh);
+    EXPECT_THROW(static_cast<void>(scene.closest_primitives()), InvalidMesh);
+    EXPECT_THROW(static_cast<void>(scene.closer_than(0.5)), InvalidMesh);
+    EXPECT_THROW(static_cast<void>(scene.collisions()), OutOfMemory);
+  }
+}
+
 /// The rotation of one object is off by what is allowed, and so the other one is seen to be further away.
 TEST(HostileScene, AllowsForTransformsThatAreNotQuiteRigid) {
   ProximityScene scene;
