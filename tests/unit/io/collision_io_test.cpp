@@ -42,7 +42,7 @@ class CollisionFiles : public testing::Test {
 };
 
 template <class T>
-std::vector<T> array_of(volume_io::NpzReader& npz, const std::string& name, std::vector<std::uint64_t> shape) {
+std::vector<T> array_of(volume_io::NpzReader& npz, const std::string& name, const std::vector<std::uint64_t>& shape) {
   return npz.read(name, [&](volume_io::ByteStream& stream, const volume_io::NpyHeader& header) {
     EXPECT_EQ(header.shape, shape) << name;
     return std::get<std::vector<T>>(read_npy_values(stream, header));
