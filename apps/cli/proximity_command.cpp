@@ -27,6 +27,8 @@ constexpr const char* examples = R"(Examples:
                                          all pairs of a vertex and a face, or of two edges, that meet between two frames
   blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.csv --min-separation 1e-3
                                          all that come as close as that
+  blum proximity ball1.ply plate.ply --to ball2.ply plate.ply --query continuous -o pairs.npz
+                                         the same of objects: each file has one at the end; the plate rests
   blum proximity cloth*.ply --frames --self --query continuous -o pairs.json
                                          what meets between any frame and the next; blum view shows it)";
 
@@ -44,6 +46,7 @@ void run(const ProximityArguments& a) {
   if (query == queries.end()) {
     throw UsageError("--query is '" + a.query + "', but must be separation, nbody, collide, penetration or continuous");
   }
+  if (!a.ends.empty() && a.query != "continuous") throw UsageError("--to is for --query continuous alone");
   (a.frames ? run_frames : query->run)(a);
 }
 
@@ -54,15 +57,21 @@ void add_proximity_command(const CommandLine& line) {
   CLI::App* command = line.app.add_subcommand("proximity", "Distances and collisions of meshes, exactly");
   command
       ->add_option("SCENE", a->scene,
-                   "Objects, a file for each; with --query continuous two frames of one: " +
+                   "Objects, a file for each; with --query continuous two frames of one, or with --to objects: " +
                        extensions_help({FileContent::mesh}, FileAccess::read))
       ->required();
   command
       ->add_option("--query", a->query,
                    "separation: the closest pair of each two objects (default); nbody: for each primitive (triangle, "
                    "segment or point) the closest one; collide: all pairs that meet; penetration: what solids have in "
-                   "common, and how deep they lie in each other; continuous: what of a mesh meets between two frames")
+                   "common, and how deep they lie in each other; continuous: what of a mesh, or with --to of objects, "
+                   "meets between two frames")
       ->type_name("QUERY");
+  command
+      ->add_option("--to", a->ends,
+                   "continuous: where the objects are at the end, a file for each SCENE, in the same order; one that "
+                   "rests is named in both")
+      ->type_name("END");
   command->add_flag("--self", a->self, "Compare each object with itself, too: primitives that share no vertex");
   command->add_flag("--frames", a->frames,
                     "The files are frames of one object that moves; -o PAIRS.json tells the pairs of each, for `blum "
@@ -73,8 +82,9 @@ void add_proximity_command(const CommandLine& line) {
   add_text_option(
       *command, "-o,--output", a->output, "FILE",
       "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between "
-      "closest points); of continuous .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time), "
-      ".csv, .json. Of penetration the deepest point of each part and the closest one to it, with the depth as a "
+      "closest points); of continuous .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time; with --to "
+      "vertex_face_object, edge_edge_object), .csv, .json. Of penetration the deepest point of each part and the "
+      "closest one to it, with the depth as a "
       "negative distance. May be left out with separation and penetration");
   a->culling.add_to(*command, "separation, nbody, collide: ");
   a->penetration.add_to(*command, "penetration: ");

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -18,52 +19,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A mesh in two frames.
-struct Frames {
-  TriangleMesh start;
-  std::vector<Vec3d> end;
-};
-
-Frames read_frames(const fs::path& start, const fs::path& end) {
-  const Unattended reading;
-  Frames frames{read_mesh(start), {}};
-  TriangleMesh last = read_mesh(end);
-  const auto refuse = [&](const std::string& what) {
-    throw FormatError("'" + end.string() + "': " + what + " '" + start.string() +
-                      "': frames of one motion have the same " + "vertices and triangles, in the same order");
-  };
-  if (last.vertices.size() != frames.start.vertices.size()) {
-    refuse("it has " + count_text(last.vertices.size()) + " vertices, not " + count_text(frames.start.vertices.size()) +
-           " as");
-  }
-  if (last.triangles != frames.start.triangles || last.segments != frames.start.segments ||
-      last.points != frames.start.points) {
-    refuse("its triangles, segments or points name other vertices than those of");
-  }
-  frames.end = std::move(last.vertices);
-  return frames;
-}
-
 void check(const ProximityArguments& a) {
   if (a.scene.size() != 2) {
     throw UsageError("--query continuous takes two files, the mesh at the start and at the end of a motion, but " +
-                     plural(a.scene.size(), "is", "are") + " given");
+                     plural(a.scene.size(), "is", "are") +
+                     " given; for objects give where they are at the end by --to");
   }
-  if (!a.self) throw UsageError("one mesh has nothing to meet but itself: give --self");
-  if (a.within) throw UsageError("--within is not for --query continuous: --min-separation says how close is told");
-  if (const auto names = a.culling.given(); !names.empty()) {
-    throw UsageError(names.front() + " is not for --query continuous");
+  if (!a.self) {
+    throw UsageError(
+        "one mesh has nothing to meet but itself: give --self; or, where the files are objects, --to END...");
   }
-  if (const auto names = a.penetration.given(); !names.empty()) {
-    throw UsageError(names.front() + " is for --query penetration alone");
-  }
-  if (!a.output) throw UsageError("--query continuous tells its pairs in a file: give -o PAIRS");
-  check_extension("--output", *a.output, collision_extensions());
+  check_continuous_options(a);
 }
 
 /// What of a mesh collides between two frames.
 struct Answer {
-  Frames frames;
+  MovingMesh mesh;
   ImpactOptions options;
   ContinuousCollisions found;
   PhaseSummary spent;
@@ -74,8 +45,8 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
   const ContinuousCollisions& found = answer.found;
   return answer_json("proximity", {{"scene", a.scene},
                                    {"query", a.query},
-                                   {"vertices", answer.frames.start.vertices.size()},
-                                   {"triangles", answer.frames.start.triangles.size()},
+                                   {"vertices", answer.mesh.start.vertices.size()},
+                                   {"triangles", answer.mesh.start.triangles.size()},
                                    {"tolerance", answer.options.tolerance},
                                    {"min_separation", answer.options.min_separation},
                                    {"vertex_face", found.vertex_face.size()},
@@ -91,7 +62,7 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
 }
 
 std::string text_of(const ProximityArguments& a, const Answer& answer) {
-  const TriangleMesh& mesh = answer.frames.start;
+  const TriangleMesh& mesh = answer.mesh.start;
   const ContinuousCollisions& found = answer.found;
   const auto first = found.earliest();
   TextTable table;
@@ -109,7 +80,44 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
 
 }  // namespace
 
+MovingMesh read_moving_mesh(const fs::path& start, const fs::path& end) {
+  const Unattended reading;
+  MovingMesh mesh{read_mesh(start), {}};
+  if (end == start) return mesh;
+  TriangleMesh last = read_mesh(end);
+  const auto refuse = [&](const std::string& what) {
+    throw FormatError("'" + end.string() + "': " + what + " '" + start.string() +
+                      "': frames of one motion have the same vertices and triangles, in the same order");
+  };
+  if (last.vertices.size() != mesh.start.vertices.size()) {
+    refuse("it has " + count_text(last.vertices.size()) + " vertices, not " + count_text(mesh.start.vertices.size()) +
+           " as");
+  }
+  if (last.triangles != mesh.start.triangles || last.segments != mesh.start.segments ||
+      last.points != mesh.start.points) {
+    refuse("its triangles, segments or points name other vertices than those of");
+  }
+  mesh.end = std::move(last.vertices);
+  return mesh;
+}
+
+void check_continuous_options(const ProximityArguments& a) {
+  if (a.within) throw UsageError("--within is not for --query continuous: --min-separation says how close is told");
+  if (const auto names = a.culling.given(); !names.empty()) {
+    throw UsageError(names.front() + " is not for --query continuous");
+  }
+  if (const auto names = a.penetration.given(); !names.empty()) {
+    throw UsageError(names.front() + " is for --query penetration alone");
+  }
+  if (!a.output) throw UsageError("--query continuous tells its pairs in a file: give -o PAIRS");
+  check_extension("--output", *a.output, collision_extensions());
+}
+
 void run_continuous_query(const ProximityArguments& a) {
+  if (!a.ends.empty()) {
+    run_moving_scene(a);
+    return;
+  }
   check(a);
   const fs::path start = a.scene[0];
   const fs::path end = a.scene[1];
@@ -125,12 +133,13 @@ void run_continuous_query(const ProximityArguments& a) {
   const Context context = make_context(threads, progress, interrupt);
   Stopwatch watch;
   std::vector<PhaseTime> phases;
-  answer.frames = read_frames(start, end);
+  answer.mesh = read_moving_mesh(start, end);
   phases.push_back({"read", watch.lap()});
-  answer.found = continuous_collisions(answer.frames.start, answer.frames.end, answer.options, context);
+  const std::vector<Vec3d>& last = answer.mesh.end.empty() ? answer.mesh.start.vertices : answer.mesh.end;
+  answer.found = continuous_collisions(answer.mesh.start, last, answer.options, context);
   phases.insert(phases.end(), answer.found.phases.begin(), answer.found.phases.end());
   static_cast<void>(watch.lap());
-  write_collisions(*a.output, answer.found, answer.frames.start,
+  write_collisions(*a.output, answer.found, answer.mesh.start,
                    {{"content", "continuous collisions"},
                     {"blum_version", BLUM_VERSION},
                     {"start", start.filename().string()},

@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void check(const ProximityArguments& a) {
+  if (!a.ends.empty()) throw UsageError("--frames are those of one object, which --to does not go with");
   if (!a.self) throw UsageError("--frames are those of one object, which has nothing to meet but itself: give --self");
   if (a.scene.size() < 2) throw UsageError("--frames takes at least two files");
   if (!a.output) throw UsageError("--frames tells its pairs in a file: give -o PAIRS.json");

@@ -31,6 +31,7 @@ from ._errors import (
     OutOfMemory,
 )
 from ._extend import ExtendedAxis, extend_axis
+from ._features import FeaturePairs, close_features
 from ._field import (
     ClosestPointQuery,
     ClosestPoints,
@@ -95,6 +96,7 @@ __all__ = [
     "DeviceFieldSolver",
     "Error",
     "ExtendedAxis",
+    "FeaturePairs",
     "Field",
     "FieldSolver",
     "FileError",
@@ -130,6 +132,7 @@ __all__ = [
     "ball_union_field",
     "centreline",
     "certify",
+    "close_features",
     "closest_points",
     "closest_primitives",
     "collisions",

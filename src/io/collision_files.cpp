@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <utility>
 
 #include "blum/core/error.hpp"
@@ -11,82 +13,188 @@
 #include "io/field_sink.hpp"
 #include "io/json.hpp"
 #include "io/npz.hpp"
+#include "io/row_writer.hpp"
 
 namespace blum {
 namespace {
 
-/// Collisions of one kind as columns.
-struct Columns {
+using Four = std::array<std::uint32_t, 4>;
+using Two = std::array<std::uint32_t, 2>;
+
+/// Collisions of one kind, column by column.
+struct Kind {
   std::string name;
-  std::vector<std::array<std::uint32_t, 4>> vertices;
-  std::vector<double> times;
+  std::vector<Four> vertices = {};
+  std::vector<double> times = {};
+  std::vector<Two> objects = {};  ///< of a scene alone: those of the two features
 };
 
-Columns vertex_face_of(const ContinuousCollisions& collisions, const MeshView& mesh) {
-  Columns out{"vertex_face", {}, {}};
-  for (const VertexFaceCollision& one : collisions.vertex_face) {
+/// What a file holds.
+struct Contents {
+  bool is_scene = false;
+  Kind vertex_face{"vertex_face"};
+  Kind edge_edge{"edge_edge"};
+  std::vector<std::uint32_t> faces = {};  ///< of vertex_face
+
+  /// @param mesh  of the face.
+  void add(const VertexFaceCollision& one, const MeshView& mesh) {
     const auto& [a, b, c] = mesh.triangles[one.face.value];
-    out.vertices.push_back({one.vertex, a, b, c});
-    out.times.push_back(one.time);
+    vertex_face.vertices.push_back({one.vertex, a, b, c});
+    vertex_face.times.push_back(one.time);
+    faces.push_back(one.face.value);
+  }
+  void add(const EdgeEdgeCollision& one) {
+    edge_edge.vertices.push_back({one.first[0], one.first[1], one.second[0], one.second[1]});
+    edge_edge.times.push_back(one.time);
+  }
+
+  [[nodiscard]] std::array<const Kind*, 2> kinds() const { return {&vertex_face, &edge_edge}; }
+};
+
+Contents contents_of(const ContinuousCollisions& collisions, const MeshView& mesh) {
+  Contents out;
+  for (const VertexFaceCollision& one : collisions.vertex_face) out.add(one, mesh);
+  for (const EdgeEdgeCollision& one : collisions.edge_edge) out.add(one);
+  return out;
+}
+
+/// The objects of a scene, asked strictly.
+class Objects {
+ public:
+  explicit Objects(std::span<const MeshView> meshes) : meshes_(meshes) {}
+
+  [[nodiscard]] const MeshView& mesh(ObjectId object) const {
+    if (object.value < meshes_.size()) return meshes_[object.value];
+    throw InvalidOption("a collision is of object " + std::to_string(object.value) + ", but meshes of " +
+                        std::to_string(meshes_.size()) + " objects are given; give one for each object");
+  }
+  /// The mesh of a face.
+  [[nodiscard]] const MeshView& mesh(ObjectId object, TriangleId face) const {
+    const MeshView& out = mesh(object);
+    if (face.value < out.triangles.size()) return out;
+    throw InvalidOption("a collision is of face " + std::to_string(face.value) + " of object " +
+                        std::to_string(object.value) + ", whose mesh has " + std::to_string(out.triangles.size()) +
+                        "; give the meshes that the collisions were found on");
+  }
+
+ private:
+  std::span<const MeshView> meshes_;
+};
+
+Contents contents_of(const SceneCollisions& collisions, std::span<const MeshView> meshes) {
+  const Objects objects(meshes);
+  Contents out;
+  out.is_scene = true;
+  const auto add_faces = [&](ObjectId vertices, ObjectId faces, const std::vector<VertexFaceCollision>& all) {
+    for (const VertexFaceCollision& one : all) {
+      out.add(one, objects.mesh(faces, one.face));
+      out.vertex_face.objects.push_back({vertices.value, faces.value});
+    }
+  };
+  for (const ObjectCollisions& pair : collisions.objects) {
+    static_cast<void>(objects.mesh(std::max(pair.first, pair.second)));
+    add_faces(pair.first, pair.second, pair.vertex_face);
+    add_faces(pair.second, pair.first, pair.face_vertex);
+    for (const EdgeEdgeCollision& one : pair.edge_edge) {
+      out.add(one);
+      out.edge_edge.objects.push_back({pair.first.value, pair.second.value});
+    }
   }
   return out;
 }
 
-Columns edge_edge_of(const ContinuousCollisions& collisions) {
-  Columns out{"edge_edge", {}, {}};
-  for (const EdgeEdgeCollision& one : collisions.edge_edge) {
-    out.vertices.push_back({one.first[0], one.first[1], one.second[0], one.second[1]});
-    out.times.push_back(one.time);
-  }
-  return out;
-}
-
-void write_npz(AtomicFile& file, const ContinuousCollisions& collisions, const std::array<Columns, 2>& kinds,
-               const FileMetadata& metadata, const Context& context) {
-  std::vector<std::uint32_t> faces;
-  for (const VertexFaceCollision& one : collisions.vertex_face) faces.push_back(one.face.value);
-  const std::size_t bytes = 28 * kinds[0].times.size() + 24 * kinds[1].times.size();
+void write_npz(const std::filesystem::path& path, const Contents& contents, const FileMetadata& metadata,
+               const Context& context) {
+  AtomicFile file(path);
+  const std::size_t more = contents.is_scene ? sizeof(Two) : 0;
+  const std::size_t bytes =
+      (28 + more) * contents.vertex_face.times.size() + (24 + more) * contents.edge_edge.times.size();
   volume_io::FieldSink sink(bytes, context);
   volume_io::NpzWriter npz(file, sink, context);
-  for (const Columns& kind : kinds) {
-    const std::span vertices(kind.vertices);
-    npz.add(kind.name, "i4", {vertices.size(), 4}, vertices);
-    npz.add(kind.name + "_time", "f8", {vertices.size()}, std::span<const double>(kind.times));
+  for (const Kind* kind : contents.kinds()) {
+    const std::uint64_t rows = kind->times.size();
+    npz.add(kind->name, "i4", {rows, 4}, std::span<const Four>(kind->vertices));
+    npz.add(kind->name + "_time", "f8", {rows}, std::span<const double>(kind->times));
+    if (contents.is_scene) npz.add(kind->name + "_object", "i4", {rows, 2}, std::span<const Two>(kind->objects));
   }
-  npz.add("face", "i4", {faces.size()}, std::span<const std::uint32_t>(faces));
+  npz.add("face", "i4", {contents.faces.size()}, std::span<const std::uint32_t>(contents.faces));
   if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
   npz.finish();
+  file.commit();
 }
 
-void write_csv(AtomicFile& file, const std::array<Columns, 2>& kinds) {
-  file.write("kind,a,b,c,d,time\n");
-  for (const Columns& kind : kinds) {
-    for (std::size_t n = 0; n < kind.times.size(); ++n) {
-      std::string row = kind.name;
-      for (const std::uint32_t v : kind.vertices[n]) row += ',' + std::to_string(v);
-      file.write(row + ',' + exact_text(kind.times[n]) + '\n');
-    }
-  }
+/// Numbers with something between them.
+template <std::size_t count>
+std::string joined(const std::array<std::uint32_t, count>& values, const char* between) {
+  std::string out;
+  for (const std::uint32_t value : values) out += (out.empty() ? "" : between) + std::to_string(value);
+  return out;
 }
 
-void write_json(AtomicFile& file, const std::array<Columns, 2>& kinds, const FileMetadata& metadata) {
-  std::string head = metadata.empty() ? "{}" : volume_io::to_json(metadata);
-  file.write("{\"metadata\": " + head);
-  for (const Columns& kind : kinds) {
-    file.write(",\n\"" + kind.name + "\": [");
-    for (std::size_t n = 0; n < kind.times.size(); ++n) {
-      std::string row = n == 0 ? "\n[" : ",\n[";
-      for (const std::uint32_t v : kind.vertices[n]) row += std::to_string(v) + ", ";
-      row.resize(row.size() - 2);
-      file.write(row + "]");
+std::size_t rows_of(const Contents& contents) {
+  return contents.vertex_face.times.size() + contents.edge_edge.times.size();
+}
+
+void write_csv(const std::filesystem::path& path, const Contents& contents, const Context& context) {
+  RowWriter file(path, rows_of(contents), context);
+  file.text(contents.is_scene ? "kind,first_object,second_object,a,b,c,d,time\n" : "kind,a,b,c,d,time\n");
+  for (const Kind* kind : contents.kinds()) {
+    for (std::size_t n = 0; n < kind->times.size(); ++n) {
+      const std::string objects = contents.is_scene ? joined(kind->objects[n], ",") + ',' : "";
+      file.text(kind->name + ',' + objects + joined(kind->vertices[n], ",") + ',' + exact_text(kind->times[n]) + '\n');
+      file.end_row();
     }
-    file.write("],\n\"" + kind.name + "_time\": [");
-    for (std::size_t n = 0; n < kind.times.size(); ++n) {
-      file.write((n == 0 ? "" : ", ") + exact_text(kind.times[n]));
-    }
-    file.write("]");
   }
-  file.write("}\n");
+  file.finish();
+}
+
+template <std::size_t count>
+void write_list(RowWriter& file, const std::string& name, const std::vector<std::array<std::uint32_t, count>>& rows) {
+  file.text(",\n\"" + name + "\": [");
+  for (std::size_t n = 0; n < rows.size(); ++n) file.text((n == 0 ? "\n[" : ",\n[") + joined(rows[n], ", ") + ']');
+  file.text("]");
+}
+
+void write_json(const std::filesystem::path& path, const Contents& contents, const FileMetadata& metadata,
+                const Context& context) {
+  RowWriter file(path, rows_of(contents), context);
+  file.text("{\"metadata\": " + (metadata.empty() ? "{}" : volume_io::to_json(metadata)));
+  for (const Kind* kind : contents.kinds()) {
+    write_list(file, kind->name, kind->vertices);
+    if (contents.is_scene) write_list(file, kind->name + "_object", kind->objects);
+    file.text(",\n\"" + kind->name + "_time\": [");
+    for (std::size_t n = 0; n < kind->times.size(); ++n) {
+      file.text((n == 0 ? "" : ", ") + exact_text(kind->times[n]));
+      file.end_row();
+    }
+    file.text("]");
+  }
+  file.text(",\n\"face\": [");
+  for (std::size_t n = 0; n < contents.faces.size(); ++n) {
+    file.text((n == 0 ? "" : ", ") + std::to_string(contents.faces[n]));
+  }
+  file.text("]}\n");
+  file.finish();
+}
+
+/// @throws InvalidOption for an extension that is not known.
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = file_extension(path);
+  const auto& known = collision_extensions();
+  if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
+  throw InvalidOption("'" + path.string() +
+                      "': collisions are written to .npz, .csv, .json files; use one of these extensions");
+}
+
+void write(const std::filesystem::path& path, const std::string& extension, const Contents& contents,
+           const FileMetadata& metadata, const Context& context) {
+  if (extension == ".npz") {
+    write_npz(path, contents, metadata, context);
+  } else if (extension == ".csv") {
+    write_csv(path, contents, context);
+  } else {
+    write_json(path, contents, metadata, context);
+  }
 }
 
 }  // namespace
@@ -98,22 +206,14 @@ const std::vector<std::string>& collision_extensions() {
 
 void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshView& mesh,
                       const FileMetadata& metadata, const Context& context) {
-  const std::string extension = file_extension(path);
-  const auto& known = collision_extensions();
-  if (std::find(known.begin(), known.end(), extension) == known.end()) {
-    throw InvalidOption("'" + path.string() +
-                        "': collisions are written to .npz, .csv, .json files; use one of these " + "extensions");
-  }
-  const std::array<Columns, 2> kinds{vertex_face_of(collisions, mesh), edge_edge_of(collisions)};
-  AtomicFile file(path);
-  if (extension == ".npz") {
-    write_npz(file, collisions, kinds, metadata, context);
-  } else if (extension == ".csv") {
-    write_csv(file, kinds);
-  } else {
-    write_json(file, kinds, metadata);
-  }
-  file.commit();
+  const std::string extension = extension_of(path);
+  write(path, extension, contents_of(collisions, mesh), metadata, context);
+}
+
+void write_collisions(const std::filesystem::path& path, const SceneCollisions& collisions,
+                      std::span<const MeshView> objects, const FileMetadata& metadata, const Context& context) {
+  const std::string extension = extension_of(path);
+  write(path, extension, contents_of(collisions, objects), metadata, context);
 }
 
 }  // namespace blum

@@ -9,17 +9,24 @@
 
 namespace blum {
 
-std::optional<double> SceneCollisions::earliest() const {
+std::optional<double> ObjectCollisions::earliest() const {
   std::optional<double> first;
   const auto look_at = [&](const auto& collisions) {
     for (const auto& one : collisions) {
       if (!first || one.time < *first) first = one.time;
     }
   };
+  look_at(vertex_face);
+  look_at(face_vertex);
+  look_at(edge_edge);
+  return first;
+}
+
+std::optional<double> SceneCollisions::earliest() const {
+  std::optional<double> first;
   for (const ObjectCollisions& pair : objects) {
-    look_at(pair.vertex_face);
-    look_at(pair.face_vertex);
-    look_at(pair.edge_edge);
+    const std::optional<double> time = pair.earliest();
+    if (time && (!first || *time < *first)) first = time;
   }
   return first;
 }
@@ -33,6 +40,15 @@ struct Moving {
   std::vector<Vec3d> end;
   std::optional<MovingObject> object;
 };
+
+/// @throws InvalidMesh that names the object.
+void check_end(const SceneObject& object, const ObjectMotion& motion) {
+  try {
+    object.check_positions(motion.vertices);
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh("object " + std::to_string(motion.object.value) + " at the end: " + error.what());
+  }
+}
 
 Box3 box_around(std::span<const Vec3d> start, std::span<const Vec3d> end, const MeshView& mesh) {
   Box3 box;
@@ -49,7 +65,7 @@ void SceneMotion::add(const SceneObject& object, const ObjectMotion& motion) {
   std::optional<std::vector<Vec3d>>& end = ends_[motion.object.value];
   if (end) throw InvalidOption("object " + std::to_string(motion.object.value) + " is given two motions");
   if (motion.place) check(*motion.place);
-  if (!motion.vertices.empty()) object.check_positions(motion.vertices);
+  if (!motion.vertices.empty()) check_end(object, motion);
   const std::span<const Vec3d> vertices = motion.vertices.empty() ? object.mesh().vertices : motion.vertices;
   end = SceneObject::positions(vertices, motion.place.value_or(object.place()));
 }

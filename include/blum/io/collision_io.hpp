@@ -14,6 +14,7 @@
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/io/file_metadata.hpp"
 #include "blum/proximity/continuous_collisions.hpp"
+#include "blum/proximity/motion.hpp"
 
 namespace blum {
 
@@ -38,7 +39,7 @@ struct ImpactQueries {
 ///   .npz   `vertex_face` [n, 4]: the vertex, then the corners of the face; `vertex_face_time` [n]; `face` [n]: the
 ///          numbers of these faces; `edge_edge` [m, 4]: the ends of one edge, then those of the other;
 ///          `edge_edge_time` [m]. Indices are int32, those of the mesh.
-///   .csv   a row for each collision: kind (vertex_face or edge_edge), the four vertices, the time.
+///   .csv   a row for each collision: kind (vertex_face or edge_edge), the four vertices a, b, c, d, the time.
 ///   .json  an object with the metadata and the same lists.
 ///
 /// A file appears under its name only when it is complete.
@@ -46,6 +47,22 @@ struct ImpactQueries {
 /// @throws InvalidOption for another extension; FileError; Cancelled.
 void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshView& mesh,
                       const FileMetadata& metadata = {}, const Context& context = {});
+
+/// Writes what of the objects of a scene collides: as above, with the objects.
+///
+///   .npz   also `vertex_face_object` [n, 2]: the object of the vertex, then that of the face; `edge_edge_object` [m,
+///   2]:
+///          the object of one edge, then that of the other. Indices are those of the meshes of these objects.
+///   .csv   kind, first_object, second_object, a, b, c, d, time.
+///   .json  the same lists.
+///
+/// Pairs come by rising (first, second) object; of these first the vertices of the first object, then those of the
+/// second one.
+/// @param objects  the meshes of the scene, by object.
+/// @throws InvalidOption also for collisions of objects or faces that are not there.
+void write_collisions(const std::filesystem::path& path, const SceneCollisions& collisions,
+                      std::span<const MeshView> objects, const FileMetadata& metadata = {},
+                      const Context& context = {});
 
 /// The extensions that write_collisions() knows.
 [[nodiscard]] const std::vector<std::string>& collision_extensions();

@@ -32,6 +32,9 @@ struct ObjectCollisions {
   std::vector<VertexFaceCollision> vertex_face;  ///< a vertex of the first one, a face of the second
   std::vector<VertexFaceCollision> face_vertex;  ///< a vertex of the second, a face of the first; none of one object
   std::vector<EdgeEdgeCollision> edge_edge;      ///< an edge of the first one, then one of the second
+
+  /// The earliest time of impact; nullopt where nothing collides.
+  [[nodiscard]] std::optional<double> earliest() const;
 };
 
 struct SceneCollisions {

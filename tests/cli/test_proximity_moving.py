@@ -1,0 +1,264 @@
+"""`blum proximity --query continuous --to END...` tells what of several objects meets while they move: what Python says,
+in every format with the objects of each pair, at times that are known; it says what was wrong."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from tool import BLUM, names, run, run_json
+
+pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
+blum = pytest.importorskip("blum")
+
+KINDS = "vertex_face", "edge_edge"
+TOLERANCE = 1e-6
+
+
+def moved(mesh, *offset):
+    return blum.Mesh(mesh.vertices + np.array(offset, dtype=float), mesh.triangles)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A ball that falls through a plate, one that falls beside it, and a ring that turns inside out."""
+    folder = tmp_path_factory.mktemp("moving")
+    ball, plate = blum.generate("sphere", radius=0.5), blum.generate("box", size_x=4, size_y=4, size_z=0.2)
+    ring = blum.generate("torus", ring_segments=16, tube_segments=8)
+    for name, mesh in {
+        "ball1.ply": moved(ball, 0.01, 0.02, 2),
+        "ball2.ply": moved(ball, 0.01, 0.02, -2),
+        "beside1.ply": moved(ball, 5, 0, 2),
+        "beside2.ply": moved(ball, 5, 0, -2),
+        "plate.ply": plate,
+        "ring1.ply": moved(ring, 0, 0, 0.5),
+        "ring2.ply": blum.Mesh(ring.vertices * [-1, 1, 0.3], ring.triangles),
+    }.items():
+        mesh.write(folder / name)
+    return folder
+
+
+def continuous(folder, start, end, output, *options):
+    return run_json("proximity", *[folder / name for name in start], "--to", *[folder / name for name in end],
+                    "--query", "continuous", "-o", output, *options)  # fmt: skip
+
+
+def python_answer(folder, start, end, compare_self=False, **options):
+    """The arrays that files should hold, as the package finds them."""
+    scene = blum.ProximityScene()
+    meshes = [blum.read_mesh(folder / name) for name in start]
+    for mesh in meshes:
+        scene.add(mesh, compare_self=compare_self)
+    moves = {k: blum.read_mesh(folder / name).vertices for k, name in enumerate(end) if name != start[k]}
+    found = scene.continuous(moves, **options)
+    faces, edges = found.vertex_face, found.edge_edge
+    corners = [meshes[owner].triangles[face] for owner, face in faces[:, 2:].tolist()]
+    return {
+        "vertex_face": np.column_stack([faces[:, 1], np.reshape(corners, (-1, 3))]),
+        "vertex_face_object": faces[:, [0, 2]],
+        "vertex_face_time": found.vertex_face_time,
+        "face": faces[:, 3],
+        "edge_edge": edges[:, [1, 2, 4, 5]],
+        "edge_edge_object": edges[:, [0, 3]],
+        "edge_edge_time": found.edge_edge_time,
+    }, found
+
+
+def read_npz(path):
+    with np.load(path) as file:
+        return {name: file[name] for name in file.files}
+
+
+def read_csv(path):
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    out = {}
+    for kind in KINDS:
+        own = [row for row in rows if row["kind"] == kind]
+        out[kind] = np.array([[int(row[x]) for x in "abcd"] for row in own]).reshape(-1, 4)
+        out[f"{kind}_object"] = np.array([[int(row[f"{x}_object"]) for x in ("first", "second")] for row in own])
+        out[f"{kind}_time"] = np.array([float(row["time"]) for row in own])
+    return out
+
+
+def read_json(path):
+    return {name: value if name == "metadata" else np.array(value) for name, value in json.loads(path.read_text()).items()}
+
+
+READERS = {"npz": read_npz, "csv": read_csv, "json": read_json}
+SCENES = [
+    (["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"], {}),
+    (["plate.ply", "ball1.ply", "ring1.ply"], ["plate.ply", "ball2.ply", "ring2.ply"], {}),
+    (["plate.ply", "ball1.ply", "ring1.ply"], ["plate.ply", "ball2.ply", "ring2.ply"], {"min_separation": 0.01}),
+    (["ring1.ply", "plate.ply"], ["ring2.ply", "plate.ply"], {"compare_self": True, "tolerance": 1e-4}),
+    (["ring1.ply"], ["ring2.ply"], {"compare_self": True}),
+]
+
+
+def options_of(options):
+    named = {"compare_self": "--self", "min_separation": "--min-separation", "tolerance": "--tolerance"}
+    return [text for name, value in options.items() for text in ([named[name]] if value is True else [named[name], value])]
+
+
+@pytest.mark.parametrize(("start", "end", "options"), SCENES)
+def test_every_format_holds_what_python_says(folder, tmp_path, start, end, options):
+    wanted, found = python_answer(folder, start, end, **options)
+    assert len(wanted["vertex_face"]) > 0 and len(wanted["edge_edge"]) > 0
+    for extension, read in READERS.items():
+        output = tmp_path / f"p.{extension}"
+        answer = continuous(folder, start, end, output, *options_of(options))
+        arrays = read(output)
+        for name, array in wanted.items():
+            if name != "face" or extension != "csv":
+                assert arrays[name].tolist() == array.tolist(), (extension, name)
+        assert [answer[kind] for kind in KINDS] == [len(wanted[kind]) for kind in KINDS]
+        assert answer["earliest"] == found.earliest
+        assert [answer["box_pairs"], answer["exact_tests"]] == [found.box_pairs, found.exact_tests]
+    types = {name: array.dtype.str[1:] for name, array in read_npz(tmp_path / "p.npz").items() if name != "metadata"}
+    assert types == {name: "f8" if name.endswith("_time") else "i4" for name in wanted}
+    metadata = json.loads(str(read_npz(tmp_path / "p.npz")["metadata"]))
+    assert metadata == read_json(tmp_path / "p.json")["metadata"]
+    assert [metadata[f"object_{k}"] for k in range(len(start))] == start
+    assert [metadata[f"end_{k}"] for k in range(len(start))] == end
+
+
+@pytest.mark.parametrize(("start", "end", "options"), SCENES)
+def test_the_summary_tells_each_pair_of_objects(folder, tmp_path, start, end, options):
+    answer = continuous(folder, start, end, tmp_path / "p.npz", *options_of(options))
+    arrays = read_npz(tmp_path / "p.npz")
+    assert [pair["object"] for pair in answer["pairs"]] == sorted(pair["object"] for pair in answer["pairs"])
+    for pair in answer["pairs"]:
+        own = {kind: (np.sort(arrays[f"{kind}_object"], axis=1) == pair["object"]).all(axis=1) for kind in KINDS}
+        assert [pair[kind] for kind in KINDS] == [own[kind].sum() for kind in KINDS]
+        assert pair["earliest"] == min(arrays[f"{kind}_time"][own[kind]].min(initial=9) for kind in KINDS)
+    assert sum(pair["vertex_face"] for pair in answer["pairs"]) == answer["vertex_face"] == len(arrays["vertex_face"])
+    assert [one["moves"] for one in answer["objects"]] == [a != b for a, b in zip(start, end, strict=True)]
+    assert [one["file"] for one in answer["objects"]] == [str(folder / name) for name in start]
+    assert [one["end"] for one in answer["objects"]] == [str(folder / name) for name in end]
+    assert answer["query"] == "continuous" and answer["self"] is ("compare_self" in options)
+
+
+def test_a_ball_meets_a_plate_when_it_must(folder, tmp_path):
+    """Its lowest point is 1.4 above the plate and falls by 4."""
+    out = tmp_path / "p.npz"
+    answer = continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"], out)
+    assert 1.4 / 4 - TOLERANCE <= answer["earliest"] <= 1.4 / 4
+    arrays = read_npz(out)
+    first = arrays["vertex_face_time"].argmin()
+    assert arrays["vertex_face_object"][first].tolist() == [0, 1]
+    bottom = blum.read_mesh(folder / "ball1.ply").vertices[arrays["vertex_face"][first, 0]]
+    assert bottom[2] == pytest.approx(1.5)
+    close = continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"], out, "--min-separation", 0.4)
+    assert 1.0 / 4 - TOLERANCE <= close["earliest"] <= 1.0 / 4
+
+
+def test_two_balls_meet_in_the_middle(folder, tmp_path):
+    """Octahedra whose tips are 3 apart, and come closer by 4; or by 2."""
+    tips = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]) * 0.5
+    triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
+    for name, x in {"a1": -2, "a2": 0, "b1": 2, "b2": 0}.items():
+        blum.Mesh(tips + [x, 0, 0], triangles).write(tmp_path / f"{name}.ply")
+    answer = continuous(tmp_path, ["a1.ply", "b1.ply"], ["a2.ply", "b2.ply"], tmp_path / "p.json")
+    assert 3 / 4 - TOLERANCE <= answer["earliest"] <= 3 / 4
+    alone = continuous(tmp_path, ["a1.ply", "b1.ply"], ["a2.ply", "b1.ply"], tmp_path / "p.json")
+    assert [alone["earliest"], alone["pairs"]] == [None, []]
+
+
+@pytest.mark.parametrize("extension", READERS)
+def test_what_passes_by_is_a_file_too(folder, tmp_path, extension):
+    output = tmp_path / f"p.{extension}"
+    answer = continuous(folder, ["beside1.ply", "plate.ply"], ["beside2.ply", "plate.ply"], output)
+    assert [answer["vertex_face"], answer["edge_edge"], answer["earliest"], answer["pairs"]] == [0, 0, None, []]
+    assert {name: len(value) for name, value in READERS[extension](output).items() if name.endswith("_time")} == {
+        "vertex_face_time": 0, "edge_edge_time": 0}  # fmt: skip
+
+
+def test_a_file_that_says_the_same_rests_too(folder, tmp_path):
+    """Naming a copy of a file is the same as naming the file again."""
+    (tmp_path / "copy.ply").write_bytes((folder / "plate.ply").read_bytes())
+    one = continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"], tmp_path / "one.csv")
+    other = continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", tmp_path / "copy.ply"], tmp_path / "other.csv")
+    assert (tmp_path / "one.csv").read_bytes() == (tmp_path / "other.csv").read_bytes()
+    assert [one["objects"][1]["moves"], other["objects"][1]["moves"]] == [False, True]
+
+
+def test_it_is_told_in_words(folder, tmp_path):
+    files = ["--to", folder / "ball2.ply", folder / "plate.ply", "--query", "continuous", "-o", tmp_path / "p.csv"]
+    out = run("proximity", folder / "ball1.ply", folder / "plate.ply", *files)[0]
+    assert "2 objects, of which 1 moves; 5,132 triangles" in out
+    assert "ball1.ply, plate.ply  " in out and "the first at time 0.349999" in out and f"{tmp_path / 'p.csv'}\n" in out
+    names_of_self = run("proximity", folder / "ring1.ply", "--self", "--to", folder / "ring2.ply", *files[3:])[0]
+    assert "ring1.ply, itself  " in names_of_self
+    assert run("proximity", folder / "ball1.ply", folder / "plate.ply", *files, "--quiet")[0] == ""
+
+
+def test_many_pairs_of_objects_are_cut_short_in_words(folder, tmp_path):
+    files = [folder / "ball1.ply"] + [folder / "plate.ply"] * 7
+    ends = [folder / "ball2.ply"] + [folder / "plate.ply"] * 7
+    out = run("proximity", *files, "--to", *ends, "--query", "continuous", "-o", tmp_path / "p.csv")[0]
+    assert "8 pairs of objects more; --json FILE tells all" in out  # plates that rest in one place meet, too
+
+
+def test_files_do_not_depend_on_threads(folder, tmp_path):
+    start, end, _ = SCENES[1]
+    for extension in READERS:
+        files = []
+        for threads in (1, 2, 7):
+            output = tmp_path / f"{threads}.{extension}"
+            continuous(folder, start, end, output, "--threads", threads)
+            files.append(output.read_bytes())
+        assert files[0] == files[1] == files[2]
+
+
+def test_frames_of_one_mesh_say_what_they_said(folder, tmp_path):
+    """Without --to two files are frames of one mesh; the same as one object with an end."""
+    run("proximity", folder / "ring1.ply", folder / "ring2.ply", "--query", "continuous", "--self", "-o",
+        tmp_path / "frames.npz")  # fmt: skip
+    continuous(folder, ["ring1.ply"], ["ring2.ply"], tmp_path / "object.npz", "--self")
+    frames, objects = read_npz(tmp_path / "frames.npz"), read_npz(tmp_path / "object.npz")
+    assert list(frames) == ["vertex_face", "vertex_face_time", "edge_edge", "edge_edge_time", "face", "metadata"]
+    for name in set(frames) - {"metadata"}:
+        assert frames[name].dtype == objects[name].dtype and frames[name].tolist() == objects[name].tolist()
+    assert set(objects) - set(frames) == {"vertex_face_object", "edge_edge_object"}
+    run("proximity", folder / "ring1.ply", folder / "ring2.ply", "--query", "continuous", "--self", "-o",
+        tmp_path / "frames.json")  # fmt: skip
+    text = read_json(tmp_path / "frames.json")
+    assert list(text)[0] == "metadata" and set(text) == set(frames)
+    assert text["face"].tolist() == frames["face"].tolist()
+
+
+def test_what_is_no_motion_is_refused(folder, tmp_path):
+    ball, fallen, plate, ring = (folder / name for name in ("ball1.ply", "ball2.ply", "plate.ply", "ring1.ply"))
+    out = tmp_path / "p.npz"
+    mesh = blum.read_mesh(plate)
+    blum.Mesh(mesh.vertices, mesh.triangles[::-1]).write(tmp_path / "other.ply")
+    blum.Mesh(mesh.vertices * 1e72, mesh.triangles).write(tmp_path / "far.obj")
+    two = [ball, plate, "-o", out, "--to"]
+    for arguments, status, message in [
+        ([*two, fallen], 2, "--to names 1 file, but 2 objects are given: name one for each, in the same order"),
+        ([*two, fallen, plate, plate], 2, "--to names 3 files, but 2 objects are given"),
+        ([*two, plate, fallen], 1, f"'{plate}': it has 8 vertices, not 2,562 as '{ball}': frames of one motion have"),
+        ([*two, fallen, tmp_path / "other.ply"], 1, "other.ply': its triangles, segments or points name other vertices"),
+        ([*two, fallen, tmp_path / "far.obj"], 1, "object 1 at the end: a coordinate is beyond 1e70"),
+        ([tmp_path / "far.obj", "--self", "-o", out, "--to", plate], 1, "far.obj': a coordinate is beyond 1e70"),
+        ([*two, fallen, tmp_path / "absent.ply"], 1, "absent.ply"),
+        ([ball, "-o", out, "--to", fallen], 2, "give --self, or the files of more objects"),
+        ([ball, plate, "--to", fallen, plate], 2, "give -o PAIRS"),
+        ([*two, fallen, plate, "-o", tmp_path / "p.vtp"], 2, ""),
+        ([ball, plate, "-o", tmp_path / "p.vtp", "--to", fallen, plate], 2, "the extension must be .npz, .csv or .json"),
+        ([ball, plate, "-o", fallen, "--to", fallen, plate], 2, ""),
+        ([*two, fallen, plate, "--within", "1"], 2, "--min-separation says how close"),
+        ([*two, fallen, plate, "--culling", "bvh"], 2, "--culling is not for --query continuous"),
+        ([*two, fallen, plate, "--depth-tolerance", "0.1"], 2, "--depth-tolerance is for --query penetration alone"),
+        ([*two, fallen, plate, "--tolerance", "0"], 2, "tolerance"),
+        ([*two, fallen, plate, "--min-separation", "-1"], 2, "min"),
+        ([*two, fallen, plate, "--frames", "--self"], 2, "--frames are those of one object"),
+        ([ball, plate, ring, "--self", "-o", out], 2, "takes two files"),
+        ([ball, plate, ring, "--self", "-o", out], 2, "by --to"),
+        ([ball, plate, "-o", out], 2, "--to END"),
+    ]:
+        assert message in run("proximity", *arguments, "--query", "continuous", status=status)[1], arguments
+    for query in ("separation", "nbody", "collide", "penetration"):
+        error = run("proximity", *two, fallen, plate, "--query", query, status=2)[1]
+        assert "--to is for --query continuous alone" in error
+    assert names(tmp_path) == ["far.obj", "other.ply"]

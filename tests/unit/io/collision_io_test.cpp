@@ -1,0 +1,130 @@
+// Proves that files of what of the objects of a scene collides name these objects, in all formats, and that collisions
+// which are not of the meshes given are refused.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/io/collision_io.hpp"
+#include "io/byte_source.hpp"
+#include "io/npz.hpp"
+#include "unit/io/temporary_folder.hpp"
+
+namespace blum {
+namespace {
+
+const TriangleMesh first{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {3, 2, 1}}, {}, {}};
+const TriangleMesh second{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{2, 0, 1}}, {}, {}};
+
+class CollisionFiles : public testing::Test {
+ protected:
+  CollisionFiles() {
+    found_.objects.push_back({ObjectId(0), ObjectId(0), {{3, TriangleId(0), 0.5}}, {}, {}});
+    found_.objects.push_back(
+        {ObjectId(0), ObjectId(1), {{3, TriangleId(0), 0.25}}, {{2, TriangleId(1), 0.75}}, {{{0, 1}, {1, 2}, 0.125}}});
+  }
+  std::filesystem::path written(const char* name) {
+    write_collisions(folder_ / name, found_, meshes_, {{"source", "test"}});
+    return folder_ / name;
+  }
+
+  std::array<MeshView, 2> meshes_{first, second};
+  SceneCollisions found_;
+  test::TemporaryFolder folder_;
+};
+
+template <class T>
+std::vector<T> array_of(volume_io::NpzReader& npz, const std::string& name, const std::vector<std::uint64_t>& shape) {
+  return npz.read(name, [&](volume_io::ByteStream& stream, const volume_io::NpyHeader& header) {
+    EXPECT_EQ(header.shape, shape) << name;
+    return std::get<std::vector<T>>(read_npy_values(stream, header));
+  });
+}
+
+TEST_F(CollisionFiles, ArraysNameTheObjectsOfEachPair) {
+  const volume_io::FileSource source(written("c.npz"));
+  volume_io::NpzReader npz(source);
+  using Numbers = std::vector<std::int32_t>;
+  EXPECT_EQ(array_of<std::int32_t>(npz, "vertex_face", {3, 4}), (Numbers{3, 0, 1, 2, 3, 2, 0, 1, 2, 3, 2, 1}));
+  EXPECT_EQ(array_of<std::int32_t>(npz, "vertex_face_object", {3, 2}), (Numbers{0, 0, 0, 1, 1, 0}));
+  EXPECT_EQ(array_of<std::int32_t>(npz, "face", {3}), (Numbers{0, 0, 1}));
+  EXPECT_EQ(array_of<double>(npz, "vertex_face_time", {3}), (std::vector{0.5, 0.25, 0.75}));
+  EXPECT_EQ(array_of<std::int32_t>(npz, "edge_edge", {1, 4}), (Numbers{0, 1, 1, 2}));
+  EXPECT_EQ(array_of<std::int32_t>(npz, "edge_edge_object", {1, 2}), (Numbers{0, 1}));
+  EXPECT_EQ(array_of<double>(npz, "edge_edge_time", {1}), (std::vector{0.125}));
+  EXPECT_EQ(npz.text("metadata"), "{\"source\": \"test\"}");
+}
+
+TEST_F(CollisionFiles, RowsAndListsHoldTheSame) {
+  EXPECT_EQ(test::file_content(written("c.csv")),
+            "kind,first_object,second_object,a,b,c,d,time\n"
+            "vertex_face,0,0,3,0,1,2,0.5\nvertex_face,0,1,3,2,0,1,0.25\nvertex_face,1,0,2,3,2,1,0.75\n"
+            "edge_edge,0,1,0,1,1,2,0.125\n");
+  const auto json = nlohmann::json::parse(test::file_content(written("c.json")));
+  EXPECT_EQ(json, nlohmann::json::parse(R"({"metadata": {"source": "test"}, "face": [0, 0, 1],
+      "vertex_face": [[3, 0, 1, 2], [3, 2, 0, 1], [2, 3, 2, 1]], "vertex_face_object": [[0, 0], [0, 1], [1, 0]],
+      "vertex_face_time": [0.5, 0.25, 0.75], "edge_edge": [[0, 1, 1, 2]], "edge_edge_object": [[0, 1]],
+      "edge_edge_time": [0.125]})"));
+}
+
+TEST_F(CollisionFiles, OfOneMeshNameNoObject) {
+  ContinuousCollisions alone;
+  alone.vertex_face = found_.objects[0].vertex_face;
+  alone.edge_edge.push_back({{0, 1}, {2, 3}, 1});
+  write_collisions(folder_ / "c.csv", alone, first);
+  EXPECT_EQ(test::file_content(folder_ / "c.csv"), "kind,a,b,c,d,time\nvertex_face,3,0,1,2,0.5\nedge_edge,0,1,2,3,1\n");
+  write_collisions(folder_ / "c.json", alone, first);
+  EXPECT_EQ(nlohmann::json::parse(test::file_content(folder_ / "c.json")),
+            nlohmann::json::parse(R"({"metadata": {}, "vertex_face": [[3, 0, 1, 2]], "vertex_face_time": [0.5],
+      "edge_edge": [[0, 1, 2, 3]], "edge_edge_time": [1], "face": [0]})"));
+}
+
+TEST_F(CollisionFiles, TheEarliestTimeIsThatOfAllKinds) {
+  EXPECT_EQ(found_.objects[0].earliest(), 0.5);
+  EXPECT_EQ(found_.objects[1].earliest(), 0.125);
+  EXPECT_EQ(found_.earliest(), 0.125);
+  found_.objects[1].edge_edge.clear();
+  EXPECT_EQ(found_.earliest(), 0.25);
+  EXPECT_EQ(ObjectCollisions().earliest(), std::nullopt);
+}
+
+TEST_F(CollisionFiles, WhatIsNotOfTheMeshesIsRefused) {
+  const auto refused = [&](const char* name, std::span<const MeshView> meshes, const std::string& reason) {
+    try {
+      write_collisions(folder_ / name, found_, meshes);
+      ADD_FAILURE() << "it was written";
+    } catch (const InvalidOption& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+  };
+  refused("c.vtp", meshes_, "use one of these extensions");
+  refused("c.npz", std::span(meshes_).first(1), "a collision is of object 1, but meshes of 1 objects are given");
+  found_.objects[1].vertex_face[0].face = TriangleId(1);
+  refused("c.csv", meshes_, "a collision is of face 1 of object 1, whose mesh has 1");
+  EXPECT_EQ(folder_.entries(), 0);
+}
+
+TEST_F(CollisionFiles, ACancelledFileLeavesTheOldOne) {
+  std::stop_source stop;
+  stop.request_stop();
+  Context context;
+  context.cancel = stop.get_token();
+  for (const std::string& extension : collision_extensions()) {
+    const std::filesystem::path path = folder_ / ("c" + extension);
+    test::put_file(path, "old");
+    EXPECT_THROW(write_collisions(path, found_, meshes_, {}, context), Cancelled);
+    EXPECT_EQ(test::file_content(path), "old");
+  }
+  EXPECT_EQ(folder_.entries(), 3);
+}
+
+}  // namespace
+}  // namespace blum
