@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "proximity/heaps.hpp"
 #include "proximity/scene_primitives.hpp"
 #include "proximity/voronoi_cells.hpp"
 
@@ -72,6 +73,7 @@ double bound_of_cells(const ScenePrimitives& primitives, const VoronoiCells& cel
 std::optional<PrimitivePair> closest_pair_by_cells(const ObjectPair& pair, std::size_t objects, double cell_size,
                                                    double max_distance, const Context& context,
                                                    ProximityReport& report) {
+  if (pair.is_self()) check_neighbours(pair);
   const ScenePrimitives primitives(std::span(&pair, 1), objects);
   const VoronoiCells cells(primitives, cell_size, max_distance, true, context);
   if (cells.left_over() > 0) {
