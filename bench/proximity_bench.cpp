@@ -329,9 +329,8 @@ const bool registered = [] {
         [=](benchmark::State& state) { crossing_case(state, crumpled(0.01 * height)); });
   }
   add("self-collision-as-cgal/bodies", [](benchmark::State& state) { crossing_case(state, joined_bodies()); });
-  add("self-collision-as-cgal/soup", [](benchmark::State& state) {
-    crossing_case(state, make_soup({.triangles = 20000, .triangle_size = 0.03}));
-  });
+  add("self-collision-as-cgal/soup",
+      [](benchmark::State& state) { crossing_case(state, make_soup({.triangles = 20000, .triangle_size = 0.03})); });
   add("n-body/blum", [](benchmark::State& state) { n_body_case(state, 1); });
   add("n-body/blum-2-threads", [](benchmark::State& state) { n_body_case(state, 2); });
   add("closer-than/blum", [](benchmark::State& state) { closer_case(state, 1); });

@@ -1,5 +1,5 @@
-// Blum: objects with so many primitives in one place that all pairs of them cannot be looked at. SPDX-License-Identifier:
-// Apache-2.0
+// Blum: objects with so many primitives in one place that all pairs of them cannot be looked at.
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "proximity/scene_pairs.hpp"
