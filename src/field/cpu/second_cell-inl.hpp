@@ -7,6 +7,9 @@
 #endif
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
 
 #include "hwy/cache_control.h"
 
@@ -175,45 +178,78 @@ class CellSorter {
   std::span<const SecondLabels::OfSite> labels_;
 };
 
-/// Gives `lanes` nodes of a cell, from a place of its order on, the closest of some closed segments.
-/// @param middle  what positions are relative to.
+/// Vectors of nodes of a cell, from a place of its order on, and the closest of the closed segments offered to them.
+template <std::size_t vectors>
+struct LinkOffers {
+  Vec position[vectors];
+  V best[vectors];
+  V best_id[vectors];
+
+  LinkOffers(const CellPositions& positions, const SecondCell& cell, std::size_t at) {
+    for (std::size_t k = 0; k < vectors; ++k) {
+      position[k] = positions.of(hn::LoadU(di, cell.order.data() + at + k * lanes));
+      best[k] = set(no_distance);
+      best_id[k] = set_id(nobody);
+    }
+  }
+
+  /// @param middle  what positions are relative to.
+  HWY_INLINE void offer(const LinkSegment& segment, const Vec3f& middle) {
+    const Vec center = set(segment.middle - middle);
+    const Vec tangent = set(segment.tangent);
+    const V half_length = set(segment.half_length);
+    for (std::size_t k = 0; k < vectors; ++k) {
+      const Vec from = position[k] - center;
+      const V along = dot(from, tangent);
+      const V excess = hn::Sub(hn::Abs(along), half_length);
+      const V beyond = hn::Max(excess, hn::Zero(d));
+      const Vec across = {hn::NegMulAdd(along, tangent.x, from.x), hn::NegMulAdd(along, tangent.y, from.y),
+                          hn::NegMulAdd(along, tangent.z, from.z)};
+      const V squared = hn::MulAdd(beyond, beyond, dot(across, across));
+      const V end = hn::IfThenElse(hn::Gt(along, hn::Zero(d)), set_id(segment.end), set_id(segment.start));
+      const V id = hn::IfThenElse(hn::Ge(excess, hn::Zero(d)), end, set_id(segment.id));
+      const M wins = is_better(squared, id, best[k], best_id[k]);
+      best[k] = hn::IfThenElse(wins, squared, best[k]);
+      best_id[k] = hn::IfThenElse(wins, id, best_id[k]);
+    }
+  }
+
+  /// Writes what `count` nodes have got, in the order of nodes.
+  HWY_INLINE void store(std::size_t at, std::size_t count, SecondCell& cell) const {
+    alignas(64) std::array<float, vectors * lanes> squared;
+    alignas(64) std::array<std::uint32_t, vectors * lanes> id;
+    for (std::size_t k = 0; k < vectors; ++k) {
+      hn::Store(best[k], d, squared.data() + k * lanes);
+      hn::Store(hn::BitCast(di, best_id[k]), di, id.data() + k * lanes);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t node = cell.order[at + k];
+      cell.squared[node] = squared[k];
+      cell.id[node] = id[k];
+    }
+  }
+};
+
+template <std::size_t vectors>
 HWY_INLINE void offer_links_at(std::span<const std::uint32_t> links, const SecondLinks& all, const Vec3f& middle,
                                const CellPositions& positions, std::size_t at, std::size_t count, SecondCell& cell) {
-  const Vec position = positions.of(hn::LoadU(di, cell.order.data() + at));
-  V best = set(no_distance);
-  V best_id = set_id(nobody);
-  for (const std::uint32_t link : links) {
-    const LinkSegment& segment = all.segments[link];
-    const Vec from = position - set(segment.middle - middle);
-    const Vec tangent = set(segment.tangent);
-    const V along = dot(from, tangent);
-    const V excess = hn::Sub(hn::Abs(along), set(segment.half_length));
-    const V beyond = hn::Max(excess, hn::Zero(d));
-    const Vec across = {hn::NegMulAdd(along, tangent.x, from.x), hn::NegMulAdd(along, tangent.y, from.y),
-                        hn::NegMulAdd(along, tangent.z, from.z)};
-    const V squared = hn::MulAdd(beyond, beyond, dot(across, across));
-    const V end = hn::IfThenElse(hn::Gt(along, hn::Zero(d)), set_id(segment.end), set_id(segment.start));
-    const V id = hn::IfThenElse(hn::Ge(excess, hn::Zero(d)), end, set_id(segment.id));
-    const M wins = is_better(squared, id, best, best_id);
-    best = hn::IfThenElse(wins, squared, best);
-    best_id = hn::IfThenElse(wins, id, best_id);
-  }
-  alignas(64) std::array<float, lanes> squared;
-  alignas(64) std::array<std::uint32_t, lanes> id;
-  hn::Store(best, d, squared.data());
-  hn::Store(hn::BitCast(di, best_id), di, id.data());
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t node = cell.order[at + k];
-    cell.squared[node] = squared[k];
-    cell.id[node] = id[k];
-  }
+  LinkOffers<vectors> offers(positions, cell, at);
+  for (const std::uint32_t link : links) offers.offer(all.segments[link], middle);
+  offers.store(at, std::min(count, vectors * lanes), cell);
 }
 
 /// Gives the nodes of a group the closest of some closed segments.
 HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const SecondLinks& all, const Vec3f& middle,
                               const CellPositions& positions, const SecondCell::Group& group, SecondCell& cell) {
-  for (std::size_t at = group.begin; at < group.end; at += lanes) {
-    offer_links_at(links, all, middle, positions, at, std::min(lanes, group.end - at), cell);
+  for (std::size_t at = group.begin; at < group.end;) {
+    const std::size_t count = group.end - at;
+    if (count > lanes) {
+      offer_links_at<2>(links, all, middle, positions, at, count, cell);
+      at += 2 * lanes;
+    } else {
+      offer_links_at<1>(links, all, middle, positions, at, count, cell);
+      at += lanes;
+    }
   }
 }
 
@@ -338,24 +374,25 @@ struct SecondLeaf {
 struct SecondPass : LeafEvaluation<SecondPass, false> {
   const SecondLeaf& leaf;
   std::size_t first_node;
-  V* offered;  ///< squared distances; infinite outside of the candidate's domain
-  M is_close;  ///< in any vector
+  V* offered = nullptr;  ///< where squared distances go; infinite outside of the candidate's domain
+  M is_close{};          ///< in any vector
 
-  SecondPass(const LeafPattern::Pass& pattern, std::size_t node, const SecondLeaf& of_leaf, V* offers)
-      : LeafEvaluation<SecondPass, false>(pattern), leaf(of_leaf), first_node(node), offered(offers) {}
+  SecondPass(const LeafPattern::Pass& pattern, std::size_t node, const SecondLeaf& of_leaf)
+      : LeafEvaluation<SecondPass, false>(pattern), leaf(of_leaf), first_node(node) {}
 
   HWY_INLINE void take(std::size_t k, V inside, V squared, V id, V /*side*/) {
     const std::size_t node = first_node + k * lanes;
-    offered[k] = if_sign_bit(inside, squared, set(std::numeric_limits<float>::infinity()));
+    const V offer = if_sign_bit(inside, squared, set(std::numeric_limits<float>::infinity()));
+    offered[k] = offer;
     const M is_other = hn::RebindMask(d, hn::Ne(hn::BitCast(di, id), hn::Load(di, leaf.first + node)));
-    const M wins = hn::And(is_other, hn::Le(offered[k], hn::Load(d, leaf.squared + node)));
+    const M wins = hn::And(is_other, hn::Le(offer, hn::Load(d, leaf.squared + node)));
     is_close = k == 0 ? wins : hn::Or(is_close, wins);
   }
 };
 
 /// Lets a candidate win where it may be second, if it does.
 /// @param offered  its squared distances at the nodes of a pass, as SecondPass leaves them.
-HWY_NOINLINE void settle_second(const V* offered, std::size_t first_node, std::uint32_t candidate,
+HWY_INLINE void settle_second(const V* offered, std::size_t first_node, std::uint32_t candidate,
                                 std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
   const SecondLabels::OfSite own = labels[candidate];
   const V id = set_id(candidate);
@@ -380,32 +417,57 @@ HWY_NOINLINE void settle_second(const V* offered, std::size_t first_node, std::u
   }
 }
 
+/// Candidates of a pass that some node may take. They are put off, since whether a candidate is among them is hard to
+/// foresee, and known late: a branch for each would cost more than its evaluation.
+struct SecondOffers {
+  static constexpr std::size_t most = 24;
+
+  V squared[most][pass_vectors];  ///< as SecondPass leaves them
+  std::array<std::uint32_t, most> candidate;
+  std::size_t count = 0;
+
+  HWY_INLINE V* next() { return squared[count]; }
+  /// Keeps what next() holds where it is of use.
+  HWY_INLINE void add(const float* id, M is_close) {
+    std::memcpy(&candidate[count], id, sizeof(std::uint32_t));
+    count += static_cast<std::size_t>(!hn::AllFalse(d, is_close));
+  }
+  [[nodiscard]] bool is_full() const { return count == most; }
+
+  HWY_NOINLINE void settle(std::size_t first_node, std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
+    for (std::size_t k = 0; k < count; ++k) settle_second(squared[k], first_node, candidate[k], labels, leaf);
+    count = 0;
+  }
+};
+
 HWY_NOINLINE void evaluate_second(const LeafInput& input, const LeafPattern& pattern,
                                   std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
   const std::vector<Vec3f> no_sides;
-  V offered[pass_vectors];
+  SecondOffers offers;
   for (std::size_t index = 0; index < passes; ++index) {
     const std::size_t node = index * pass_nodes;
-    SecondPass pass(pattern.pass[index], node, leaf, offered);
-    const auto look = [&](const float* ids, std::size_t i) {
-      if (hn::AllFalse(d, pass.is_close)) return;
-      std::uint32_t candidate = 0;
-      std::memcpy(&candidate, ids + i, sizeof(candidate));
-      settle_second(offered, node, candidate, labels, leaf);
+    SecondPass pass(pattern.pass[index], node, leaf);
+    const auto keep = [&](const float* id) {
+      offers.add(id, pass.is_close);
+      if (HWY_UNLIKELY(offers.is_full())) offers.settle(node, labels, leaf);
     };
     const auto& columns = input.columns;
     for_each_candidate<vertex_kind>(input, [&](std::size_t i) {
+      pass.offered = offers.next();
       pass.vertex(columns[0], i, no_sides);
-      look(columns[0].column(LeafVertex::id), i);
+      keep(columns[0].column(LeafVertex::id) + i);
     });
     for_each_candidate<edge_kind>(input, [&](std::size_t i) {
+      pass.offered = offers.next();
       pass.edge(columns[1], i);
-      look(columns[1].column(LeafEdge::id), i);
+      keep(columns[1].column(LeafEdge::id) + i);
     });
     for_each_candidate<face_kind>(input, [&](std::size_t i) {
+      pass.offered = offers.next();
       pass.face(columns[2], i);
-      look(columns[2].column(LeafFace::id), i);
+      keep(columns[2].column(LeafFace::id) + i);
     });
+    offers.settle(node, labels, leaf);
   }
 }
 

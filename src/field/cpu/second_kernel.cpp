@@ -58,7 +58,9 @@ class SecondWorker {
     if (only_ != nullptr) {
       for (RecordList& list : scratch_.gathered) keep_others(list);
     }
-    divide(box, size, scratch_.gathered, bounds, 0);
+    for (std::size_t kind = 0; kind < sliver_kind; ++kind) mine_.all.places[kind].reset_to_all(scratch_.gathered[kind]);
+    std::swap(mine_.all.slivers, scratch_.gathered[sliver_kind]);
+    divide(box, size, mine_.all, bounds, 0);
   }
 
  private:
@@ -143,7 +145,7 @@ class SecondWorker {
   }
 
   /// Bounds for a child of a box, of the sites that the lanes have found closest to its centre; else the parent's.
-  [[nodiscard]] Bounds bounds_of_child(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
+  [[nodiscard]] Bounds bounds_of_child(const SecondCandidates& candidates, const ClosestAtCenters& closest, std::size_t child,
                                        const Vec3f& center, const Bounds& parent) const {
     alignas(64) std::array<float, lanes> squared;
     alignas(64) std::array<std::uint32_t, lanes> index;
@@ -181,28 +183,32 @@ class SecondWorker {
 
   // --- recursion
 
-  void divide(const NodeBox& box, std::int64_t size, const Candidates& candidates, const Bounds& bounds,
+  void divide(const NodeBox& box, std::int64_t size, const SecondCandidates& candidates, const Bounds& bounds,
               std::size_t level) {
     if (size == 2 * leaf_size) return divide_into_leaves(box, candidates, bounds);
     if (field_.cancel.stop_requested()) return;
     const Halving parts = halve(field_, box, size);
     const bool is_cell = size == SecondCell::side;
+    const bool has_cells = size == 2 * SecondCell::side;
+    if (has_cells) prefetch_firsts(parts.child[0]);
     if (is_cell) begin_cell(box, parts.middle);
-    TileScratch::Impl::Level& here = scratch_.levels[level];
+    std::array<ChildBits, kind_count>& child_bits = scratch_.levels[level].bits;
+    SecondCandidates& of_child = mine_.levels[level];
     ClosestAtCenters closest;
-    halve_kinds(test_of(parts, bounds, is_cell), candidates, here.bits, closest,
+    halve_kinds(test_of(parts, bounds, is_cell), candidates, child_bits, closest,
                 [](std::size_t) { return [](auto&&...) {}; });
     for (std::size_t c = 0; c < 8; ++c) {
       if (!parts.exists[c]) continue;
+      if (has_cells && c + 1 < 8 && parts.exists[c + 1]) prefetch_firsts(parts.child[c + 1]);
       for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
-        list_child(candidates[kind], here.bits[kind], c, here.child[kind]);
+        list_child(candidates[kind], child_bits[kind], c, of_child.places[kind]);
       }
       const CenteredBox place = centered(field_, parts.child[c]);
       // Within cells, links tell more.
       const bool needs_bounds = !is_cell || job_.links == nullptr;
-      const Bounds of_child = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
-      list_slivers(candidates[sliver_kind], place, of_child, here.child[sliver_kind]);
-      divide(parts.child[c], size / 2, here.child, of_child, level + 1);
+      const Bounds child_bounds = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
+      list_slivers(candidates.slivers, place, child_bounds, of_child.slivers);
+      divide(parts.child[c], size / 2, of_child, child_bounds, level + 1);
     }
     if (is_cell) write(box);
   }
@@ -245,7 +251,7 @@ class SecondWorker {
     if (job_.links != nullptr) cell_bound_ = offer_all_links(box, middle);
   }
 
-  void divide_into_leaves(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
+  void divide_into_leaves(const NodeBox& box, const SecondCandidates& candidates, const Bounds& bounds) {
     const Halving parts = halve(field_, box, 2 * leaf_size);
     TileScratch::Impl::Level& here = scratch_.levels.back();
     for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
@@ -259,7 +265,7 @@ class SecondWorker {
       if (!parts.exists[c]) continue;
       const LeafInput input{scratch_.leaf, here.bits, c};
       const LeafPattern& pattern = is_full ? full_patterns_[c] : (pattern_ = pattern_of(parts.child[c], parts.middle));
-      leaf(parts.child[c], input, candidates[sliver_kind], pattern, parts.middle);
+      leaf(parts.child[c], input, candidates.slivers, pattern, parts.middle);
     }
   }
 
@@ -283,6 +289,14 @@ class SecondWorker {
     }
     return bound_distances(
         SecondCell::nodes, [&](std::size_t node) { return places.following(node); }, cell_.squared.data());
+  }
+
+  /// Of a cell that comes soon: its rows lie all over memory.
+  void prefetch_firsts(const NodeBox& box) const {
+    (void)all_rows(box, [&](std::size_t node) {
+      hwy::Prefetch(job_.request.site + node);
+      return true;
+    });
   }
 
   void read_firsts(const NodeBox& box) {

@@ -1,8 +1,10 @@
 // Blum: what a tile of the second order keeps in memory. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "field/cpu/second_kernel.hpp"
@@ -17,7 +19,7 @@ struct SecondCell {
   static constexpr std::size_t row = 16;
   static constexpr std::size_t leaves = 64;
   static constexpr std::size_t nodes = 4096;
-  static constexpr std::size_t padding = 16;
+  static constexpr std::size_t padding = 32;
 
   /// Nodes of a leaf with the same first site.
   struct Item {
@@ -46,8 +48,54 @@ struct SecondCell {
   alignas(64) std::array<std::uint32_t, nodes + padding> order{};
 };
 
+/// Candidates of one kind, as places in the list of a tile's records. Children share that list: copies of records would
+/// cost more than all tests of them.
+class PlaceList {
+ public:
+  static constexpr std::size_t padding = 16;
+
+  /// Empties the list and makes room.
+  void reset(const RecordList& records, std::size_t capacity) {
+    records_ = &records;
+    if (places_.size() < capacity + 2 * padding) places_ = Buffer<std::uint32_t>(capacity + capacity / 2 + 4 * padding);
+    count_ = 0;
+  }
+  void reset_to_all(const RecordList& records) {
+    reset(records, records.count());
+    std::iota(places_.begin(), places_.begin() + records.count(), 0U);
+    finish(records.count());
+  }
+  /// Where up to `padding` places at a time are written, before finish() tells how many there are.
+  [[nodiscard]] std::uint32_t* places() { return places_.data(); }
+  [[nodiscard]] const std::uint32_t* places() const { return places_.data(); }
+  /// Makes the padding readable.
+  void finish(std::size_t count) {
+    count_ = count;
+    std::fill_n(places_.data() + count, padding, 0U);
+  }
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] const RecordList& records() const { return *records_; }
+  [[nodiscard]] const Record& operator[](std::size_t index) const { return (*records_)[places_[index]]; }
+
+ private:
+  const RecordList* records_ = nullptr;
+  Buffer<std::uint32_t> places_;
+  std::size_t count_ = 0;
+};
+
+/// Candidates of all kinds for one box.
+struct SecondCandidates {
+  std::array<PlaceList, sliver_kind> places;
+  RecordList slivers;
+
+  [[nodiscard]] const PlaceList& operator[](std::size_t kind) const { return places[kind]; }
+};
+
 struct SecondScratch::Impl {
   TileScratch tile;
+  SecondCandidates all;                    ///< of the tile at hand
+  std::array<SecondCandidates, 4> levels;  ///< of the child at hand, for each level of the tile's
   SecondCell cell;
   std::vector<std::uint32_t> links;  ///< of the first site at hand; as long as any have been
   std::vector<float> link_distances;
