@@ -145,8 +145,8 @@ class SecondWorker {
   }
 
   /// Bounds for a child of a box, of the sites that the lanes have found closest to its centre; else the parent's.
-  [[nodiscard]] Bounds bounds_of_child(const SecondCandidates& candidates, const ClosestAtCenters& closest, std::size_t child,
-                                       const Vec3f& center, const Bounds& parent) const {
+  [[nodiscard]] Bounds bounds_of_child(const SecondCandidates& candidates, const ClosestAtCenters& closest,
+                                       std::size_t child, const Vec3f& center, const Bounds& parent) const {
     alignas(64) std::array<float, lanes> squared;
     alignas(64) std::array<std::uint32_t, lanes> index;
     hn::Store(closest.squared[child], d, squared.data());
@@ -367,8 +367,8 @@ class SecondWorker {
     SecondLeaf state(cell_, index);
     const CenteredBox place = centered(field_, box);
     const Vec offset = set(place.center - middle);
-    const DistanceBound known = bound_distances(
-        leaf_nodes, [&](std::size_t at) { return positions_of(pattern, at) - offset; }, state.squared);
+    const DistanceBound known =
+        bound_distances(leaf_nodes, [&](std::size_t at) { return positions_of(pattern, at) - offset; }, state.squared);
     if (known.is_known) {
       const Vec3f half = place.half + Vec3f{box_slack, box_slack, box_slack};
       const LeafDomination domination{known.domination(place.center, half), offset};
@@ -503,9 +503,8 @@ class SecondWorker {
   template <class T>
   static HWY_INLINE void put_row(const NodeBox& box, const T* from, T* to, bool is_line) {
     if (!is_line) {
-      for_each_part(box, [&](std::size_t i, std::size_t part, std::size_t bytes) {
-        std::memcpy(to + i, from + part, bytes);
-      });
+      for_each_part(
+          box, [&](std::size_t i, std::size_t part, std::size_t bytes) { std::memcpy(to + i, from + part, bytes); });
       return;
     }
     constexpr hn::CappedTag<T, 4> quarter;

@@ -12,13 +12,13 @@
 
 namespace blum::cpu {
 
-/// A box of up to 16^3 nodes, leaf after leaf: node (i, j, k) of leaf (a, b, c) is i + 4 j + 16 k + 64 (a + 4 b + 16 c).
-/// With that, it is sorted by first sites.
+/// A box of up to 16^3 nodes, leaf after leaf: node (i, j, k) of leaf (a, b, c) is i + 4 j + 16 k + 64 (a + 4 b + 16
+/// c). With that, it is sorted by first sites.
 struct SecondCell {
   static constexpr std::int64_t side = 16;
   static constexpr std::size_t row = 16;
   static constexpr std::size_t leaves = 64;
-  static constexpr std::size_t nodes = 4096;
+  static constexpr std::uint32_t nodes = 4096;
   static constexpr std::size_t padding = 32;
 
   /// Nodes of a leaf with the same first site.
@@ -37,14 +37,14 @@ struct SecondCell {
 
   alignas(64) std::array<std::uint32_t, nodes> first;  ///< sites; dead_record: none, or no node
   /// The second sites so far; below 0 where nothing is first.
-  alignas(64) std::array<float, nodes> squared;
-  alignas(64) std::array<std::uint32_t, nodes> id;
+  alignas(64) std::array<float, nodes + padding> squared;
+  alignas(64) std::array<std::uint32_t, nodes + padding> id;
   std::array<Item, nodes> items;
   std::size_t item_count = 0;
   std::array<Group, nodes> groups;
   std::size_t group_count = 0;
   std::array<std::uint16_t, 8192> table;  ///< finds groups: their number and 1
-  /// Nodes that have a first site, group after group. Whole vectors may be read past the end.
+  /// Nodes that have a first site, group after group; past the end a node that is none, for whole vectors.
   alignas(64) std::array<std::uint32_t, nodes + padding> order{};
 };
 
