@@ -1,4 +1,4 @@
-// Blum: bounds on how far the second sites of a box are. SPDX-License-Identifier: Apache-2.0
+// Blum: bounds on how far the second sites of a box are, and lists of candidates. SPDX-License-Identifier: Apache-2.0
 #if defined(BLUM_FIELD_CPU_SECOND_BOUNDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef BLUM_FIELD_CPU_SECOND_BOUNDS_INL
 #undef BLUM_FIELD_CPU_SECOND_BOUNDS_INL
