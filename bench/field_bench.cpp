@@ -94,14 +94,13 @@ void simd_case(benchmark::State& state, const std::string& name, int n, const st
   state.SetLabel(input.note + ", against " + cpu::simd_targets().front());
 }
 
-/// The second site of every node, against the first alone, in turn.
-void second_case(benchmark::State& state, const std::string& name, int n, SecondRule rule, int threads) {
+/// The second site of every node, against the first alone, in turn, on one thread.
+void second_case(benchmark::State& state, const std::string& name, int n, SignMode sign) {
   const Shape& input = shape(name);
   const GridSpec grid = cube_grid(input.mesh, n);
   const auto with = [&](int order) {
     return [&, order] {
-      Field field = distance_field(input.mesh, grid, {.sign = SignMode::none, .order = order, .second = rule},
-                                   {.threads = threads});
+      Field field = distance_field(input.mesh, grid, {.sign = sign, .order = order}, {.threads = 1});
       benchmark::DoNotOptimize(field.distance.data());
     };
   };
@@ -122,8 +121,11 @@ const bool registered = [] {
     const std::string shape_name = name;
     add("threads/" + shape_name + "/256/blum", [=](benchmark::State& state) { thread_case(state, shape_name, 256); });
     for (const int n : {128, 256}) {
-      add("second/" + shape_name + "/" + std::to_string(n),
-          [=](benchmark::State& state) { second_case(state, shape_name, n, SecondRule::no_common_vertex, 0); });
+      for (const SignMode sign : {SignMode::none, SignMode::automatic}) {
+        const std::string kind = sign == SignMode::none ? "unsigned" : "signed";
+        add("second/" + shape_name + "/" + std::to_string(n) + "/" + kind,
+            [=](benchmark::State& state) { second_case(state, shape_name, n, sign); });
+      }
     }
     for (const std::string& target : cpu::simd_targets()) {
       add("simd/" + shape_name + "/256/" + target,

@@ -336,15 +336,20 @@ struct Lanes {
         valid(hn::RebindMask(d, hn::Lt(index, hn::Set(di, static_cast<std::uint32_t>(count))))) {}
 };
 
+HWY_INLINE void load_block(const RecordList& list, std::size_t b, Columns& out) {
+  load_columns(list.data() + b * lanes, out);
+}
+
 /// Tests all candidates of a kind against the eight children, and offers distances at their centres. `store` is called
 /// with each block that has a candidate left, for the leaves to read.
-template <Kind kind, class Test, class Closest, class Store>
-HWY_INLINE void halve_kind(const Test& test, const RecordList& parent, ChildBits& out, Closest& closest, Store store) {
+/// @param parent  list of records, or what else has a count() and load_block(it, number, columns).
+template <Kind kind, class Test, class List, class Closest, class Store>
+HWY_INLINE void halve_kind(const Test& test, const List& parent, ChildBits& out, Closest& closest, Store store) {
   const std::size_t count = parent.count();
   out.reset((count + lanes - 1) / lanes);
   for (std::size_t b = 0; b < out.blocks(); ++b) {
     Columns columns;
-    load_columns(parent.data() + b * lanes, columns);
+    load_block(parent, b, columns);
     const typename BlockOf<kind>::type block(columns, test.middle);
     const Lanes here(b * lanes, count);
     const M keep = hn::And(here.valid, test.keeps(block));
@@ -363,8 +368,8 @@ HWY_INLINE void halve_kind(const Test& test, const RecordList& parent, ChildBits
 }
 
 /// halve_kind for vertices, edges and faces. `store_of(kind)` makes each kind's store.
-template <class Test, class Closest, class StoreOf>
-HWY_INLINE void halve_kinds(const Test& test, const Candidates& parent, std::array<ChildBits, kind_count>& out,
+template <class Test, class Lists, class Closest, class StoreOf>
+HWY_INLINE void halve_kinds(const Test& test, const Lists& parent, std::array<ChildBits, kind_count>& out,
                             Closest& closest, StoreOf store_of) {
   halve_kind<vertex_kind>(test, parent[vertex_kind], out[vertex_kind], closest, store_of(vertex_kind));
   halve_kind<edge_kind>(test, parent[edge_kind], out[edge_kind], closest, store_of(edge_kind));

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "field/cpu/site_records.hpp"
 #include "hwy/highway.h"
@@ -79,40 +80,42 @@ struct Columns {
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// Four floats of `lanes / 4` records that lie four records apart.
-template <std::size_t lane_count = lanes>
-HWY_INLINE auto load_quarters(const float* first) {
+/// Four floats of `lanes / 4` records, of every fourth record from the first on. record_at(k): floats of record k.
+template <std::size_t lane_count = lanes, class RecordAt>
+HWY_INLINE auto load_quarters(RecordAt record_at, std::size_t first) {
   constexpr hn::FixedTag<float, 4> d4;
-  constexpr std::size_t stride = 4 * 16;  // floats between records that are four apart
   if constexpr (lane_count == 4) {
-    return hn::Load(d4, first);
+    return hn::Load(d4, record_at(first));
   } else if constexpr (lane_count == 8) {
     constexpr hn::FixedTag<float, lane_count> d8;
-    return hn::Combine(d8, hn::Load(d4, first + stride), hn::Load(d4, first));
+    return hn::Combine(d8, hn::Load(d4, record_at(first + 4)), hn::Load(d4, record_at(first)));
   } else {
     constexpr hn::FixedTag<float, lane_count / 2> d8;
     constexpr hn::FixedTag<float, lane_count> d16;
-    const auto lower = hn::Combine(d8, hn::Load(d4, first + stride), hn::Load(d4, first));
-    const auto upper = hn::Combine(d8, hn::Load(d4, first + 3 * stride), hn::Load(d4, first + 2 * stride));
+    const auto lower = hn::Combine(d8, hn::Load(d4, record_at(first + 4)), hn::Load(d4, record_at(first)));
+    const auto upper = hn::Combine(d8, hn::Load(d4, record_at(first + 12)), hn::Load(d4, record_at(first + 8)));
     return hn::Combine(d16, upper, lower);
   }
 }
 #endif
 
-/// Transposes `lanes` records.
-HWY_INLINE void load_columns(const Record* records, Columns& out) {
-  const float* base = records->column.data();
+/// Transposes `lanes` records. record_at(k): the floats of record k.
+template <class RecordAt>
+HWY_INLINE void load_columns_of(RecordAt record_at, Columns& out) {
 #if HWY_TARGET == HWY_SCALAR
+  const float* base = record_at(0);
   for (int c = 0; c < 15; ++c) out.column[c] = set(base[c]);
-  out.column[15] = hn::BitCast(d, hn::Set(di, records->id));
+  std::uint32_t id = 0;
+  std::memcpy(&id, base + 15, sizeof(id));
+  out.column[15] = hn::BitCast(d, hn::Set(di, id));
 #else
   constexpr hn::Repartition<double, D> dd;
   for (int quarter = 0; quarter < 4; ++quarter) {
-    const float* at = base + 4 * quarter;
-    const V r0 = load_quarters(at);
-    const V r1 = load_quarters(at + 16);
-    const V r2 = load_quarters(at + 32);
-    const V r3 = load_quarters(at + 48);
+    const auto at = [&](std::size_t k) { return record_at(k) + 4 * quarter; };
+    const V r0 = load_quarters(at, 0);
+    const V r1 = load_quarters(at, 1);
+    const V r2 = load_quarters(at, 2);
+    const V r3 = load_quarters(at, 3);
     const auto t0 = hn::BitCast(dd, hn::InterleaveLower(d, r0, r1));
     const auto t1 = hn::BitCast(dd, hn::InterleaveUpper(d, r0, r1));
     const auto t2 = hn::BitCast(dd, hn::InterleaveLower(d, r2, r3));
@@ -123,6 +126,12 @@ HWY_INLINE void load_columns(const Record* records, Columns& out) {
     out.column[4 * quarter + 3] = hn::BitCast(d, hn::InterleaveUpper(dd, t1, t3));
   }
 #endif
+}
+
+/// Transposes `lanes` consecutive records.
+HWY_INLINE void load_columns(const Record* records, Columns& out) {
+  const float* base = records->column.data();
+  load_columns_of([base](std::size_t k) { return base + 16 * k; }, out);
 }
 
 /// One bit per lane.

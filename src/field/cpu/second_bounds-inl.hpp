@@ -1,4 +1,4 @@
-// Blum: bounds on how far the second sites of a box are. SPDX-License-Identifier: Apache-2.0
+// Blum: bounds on how far the second sites of a box are, and lists of candidates. SPDX-License-Identifier: Apache-2.0
 #if defined(BLUM_FIELD_CPU_SECOND_BOUNDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef BLUM_FIELD_CPU_SECOND_BOUNDS_INL
 #undef BLUM_FIELD_CPU_SECOND_BOUNDS_INL
@@ -8,6 +8,7 @@
 
 #include "field/cpu/gather-inl.hpp"
 #include "field/cpu/second_kernel.hpp"
+#include "field/cpu/second_scratch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
@@ -70,6 +71,28 @@ struct BoundedTest : BlockTest<boxes> {
     return count == 1 ? keep : hn::Or(keep, block.keeps(other));
   }
 };
+
+HWY_INLINE void load_block(const PlaceList& list, std::size_t b, Columns& out) {
+  const float* base = list.records().data()->column.data();
+  const std::uint32_t* places = list.places() + b * lanes;
+  load_columns_of([&](std::size_t k) { return base + std::size_t{16} * places[k]; }, out);
+}
+
+/// Lists the candidates whose bit is set for a child.
+HWY_INLINE void list_child(const PlaceList& parent, const ChildBits& child_bits, std::size_t child, PlaceList& out) {
+  out.reset(parent.records(), parent.count());
+  const std::uint16_t* words = child_bits.child(child);
+  std::size_t count = 0;
+  for (std::size_t b = 0; b < child_bits.blocks(); ++b) {
+    // All lanes are written, of which the next block overwrites the rest.
+    alignas(8) const std::array<std::uint8_t, 8> word{static_cast<std::uint8_t>(words[b] & 0xff),
+                                                      static_cast<std::uint8_t>(words[b] >> 8)};
+    const auto mask = hn::LoadMaskBits(di, word.data());
+    hn::StoreU(hn::Compress(hn::LoadU(di, parent.places() + b * lanes), mask), di, out.places() + count);
+    count += static_cast<std::size_t>(std::popcount(words[b]));
+  }
+  out.finish(count);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace blum::cpu

@@ -7,6 +7,9 @@
 #endif
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
 
 #include "hwy/cache_control.h"
 
@@ -35,11 +38,6 @@ HWY_INLINE V set_id(std::uint32_t id) {
   return hn::BitCast(d, hn::Set(di, id));
 }
 
-/// Positions of `lanes` nodes of a cell.
-HWY_INLINE Vec positions_at(const SecondCell& cell, std::size_t at) {
-  return {hn::LoadU(d, cell.x.data() + at), hn::LoadU(d, cell.y.data() + at), hn::LoadU(d, cell.z.data() + at)};
-}
-
 /// Positions of `lanes` nodes of a leaf, from where its pattern is seen from.
 HWY_INLINE Vec positions_of(const LeafPattern& pattern, std::size_t node) {
   const LeafPattern::Pass& pass = pattern.pass[node / pass_nodes];
@@ -47,8 +45,55 @@ HWY_INLINE Vec positions_of(const LeafPattern& pattern, std::size_t node) {
   return {pass.x[k % planar], pass.y[k % planar], pass.z[k / planar]};
 }
 
-/// Of the nodes along each axis, from the cell's middle; whole vectors may be read from each.
-using CellPositions = std::array<std::array<float, 32>, 3>;
+/// Where the nodes of a cell are, from its middle.
+struct CellPositions {
+  alignas(64) std::array<std::array<float, SecondCell::row>, 3> axis;
+  /// x and y of the 16 nodes of a leaf's layer, for each of four leaves along the axis.
+  alignas(64) std::array<std::array<float, 16>, 4> x, y;
+
+  void find_layers() {
+    for (std::size_t leaf = 0; leaf < 4; ++leaf) {
+      for (std::size_t node = 0; node < 16; ++node) {
+        x[leaf][node] = axis[0][4 * leaf + node % 4];
+        y[leaf][node] = axis[1][4 * leaf + node / 4];
+      }
+    }
+  }
+
+  /// Of `lanes` nodes one after the other.
+  [[nodiscard]] HWY_INLINE Vec following(std::size_t node) const {
+    const std::size_t leaf = node / leaf_nodes;
+    return {hn::Load(d, x[leaf % 4].data() + node % 16), hn::Load(d, y[leaf / 4 % 4].data() + node % 16),
+            set(axis[2][leaf / 16 * 4 + node / 16 % 4])};
+  }
+
+  /// Of any nodes.
+  [[nodiscard]] HWY_INLINE Vec of(VI nodes) const {
+    const auto coordinate = [&](int in_leaf, int of_leaf) {
+      const VI low = hn::And(hn::ShiftRightSame(nodes, in_leaf), hn::Set(di, 3));
+      return hn::Or(low, hn::And(hn::ShiftRightSame(nodes, of_leaf), hn::Set(di, 12)));
+    };
+    return {look_up(axis[0], coordinate(0, 4)), look_up(axis[1], coordinate(2, 6)), look_up(axis[2], coordinate(4, 8))};
+  }
+
+ private:
+  static HWY_INLINE V look_up(const std::array<float, SecondCell::row>& table, VI index) {
+    if constexpr (lanes == 16) {
+      return hn::TableLookupLanes(hn::Load(d, table.data()), hn::IndicesFromVec(d, index));
+    } else if constexpr (lanes == 8) {
+      const auto at = hn::IndicesFromVec(d, hn::And(index, hn::Set(di, 7)));
+      const M is_high = hn::RebindMask(d, hn::Ne(hn::And(index, hn::Set(di, 8)), hn::Zero(di)));
+      return hn::IfThenElse(is_high, hn::TableLookupLanes(hn::Load(d, table.data() + 8), at),
+                            hn::TableLookupLanes(hn::Load(d, table.data()), at));
+    } else {
+      alignas(64) std::array<std::uint32_t, lanes> at;
+      alignas(64) std::array<float, lanes> value;
+      hn::Store(index, di, at.data());
+      for (std::size_t lane = 0; lane < lanes; ++lane) value[lane] = table[at[lane]];
+      return hn::Load(d, value.data());
+    }
+  }
+};
 
 /// Sorts the nodes of a cell into groups.
 class CellSorter {
@@ -56,22 +101,17 @@ class CellSorter {
   CellSorter(SecondCell& cell, std::span<const SecondLabels::OfSite> labels) : cell_(cell), labels_(labels) {}
 
   void find_groups() {
-    cell_.run_count = 0;
+    cell_.item_count = 0;
     cell_.group_count = 0;
     cell_.table.fill(0);
-    cell_.before_first[SecondCell::front - 1] = dead_record;
-    for (std::size_t node = 0; node < SecondCell::nodes; node += 64) {
-      std::uint64_t begins = 0x0001000100010001U;  // of rows
-      for (std::size_t k = 0; k < 64; k += lanes) {
-        const std::uint32_t* sites = cell_.first() + node + k;
-        const auto differs = hn::Ne(hn::Load(di, sites), hn::LoadU(di, sites - 1));
-        begins |= std::uint64_t{bits(hn::RebindMask(d, differs))} << k;
-      }
-      for (; begins != 0; begins &= begins - 1) {
-        const auto at = static_cast<std::size_t>(std::countr_zero(begins));
-        const std::uint64_t later = begins & (begins - 1);
-        const std::size_t end = later == 0 ? 64 : static_cast<std::size_t>(std::countr_zero(later));
-        add_run(node + at, end - at, cell_.first()[node + at]);
+    for (std::size_t leaf = 0; leaf < SecondCell::leaves; ++leaf) {
+      const std::uint32_t* sites = cell_.first.data() + leaf * leaf_nodes;
+      std::uint64_t left = ~nodes_of(sites, dead_record);
+      while (left != 0) {
+        const std::uint32_t site = sites[std::countr_zero(left)];
+        const std::uint64_t nodes = nodes_of(sites, site);
+        left &= ~nodes;
+        add_item(leaf, nodes, site);
       }
     }
   }
@@ -80,92 +120,141 @@ class CellSorter {
     for (std::size_t g = 0; g < cell_.group_count; ++g) cell_.groups[g].labels = labels_[cell_.groups[g].site];
   }
 
-  /// Writes the positions of all nodes, group after group; whole vectors, of which the next run overwrites the rest.
-  void place(const CellPositions& at) {
+  /// Orders all nodes, group after group.
+  void order() {
     std::size_t place = 0;
     for (std::size_t g = 0; g < cell_.group_count; ++g) {
       SecondCell::Group& group = cell_.groups[g];
       group.begin = static_cast<std::uint16_t>(place);
-      for (std::size_t r = group.first_run;; r = cell_.runs[r].next) {
-        SecondCell::Run& run = cell_.runs[r];
-        run.at = static_cast<std::uint16_t>(place);
-        put(at[0].data() + run.node % SecondCell::row, cell_.x.data() + place);
-        put(at[1][run.node / SecondCell::row % SecondCell::row], cell_.y.data() + place);
-        put(at[2][run.node / SecondCell::layer], cell_.z.data() + place);
-        place += run.length;
-        if (r == group.last_run) break;
+      for (std::size_t i = group.first_item;; i = cell_.items[i].next) {
+        const SecondCell::Item& item = cell_.items[i];
+        const std::uint32_t first = static_cast<std::uint32_t>(item.leaf * leaf_nodes);
+        // Four at a time, of which the next item overwrites the rest: so the number of turns is easier to foresee.
+        std::uint64_t nodes = item.nodes;
+        for (std::size_t at = place; nodes != 0; at += 4) {
+          for (std::size_t k = 0; k < 4; ++k, nodes &= nodes - 1) {
+            cell_.order[at + k] = first + static_cast<std::uint32_t>(std::countr_zero(nodes));
+          }
+        }
+        place += static_cast<std::size_t>(std::popcount(item.nodes));
+        if (i == group.last_item) break;
       }
       group.end = static_cast<std::uint16_t>(place);
     }
+    std::fill_n(cell_.order.data() + place, SecondCell::padding, SecondCell::nodes);
   }
 
  private:
-  static HWY_INLINE void put(const float* from, float* to) {
-    for (std::size_t k = 0; k < SecondCell::row; k += lanes) hn::StoreU(hn::LoadU(d, from + k), d, to + k);
-  }
-  static HWY_INLINE void put(float value, float* to) {
-    for (std::size_t k = 0; k < SecondCell::row; k += lanes) hn::StoreU(set(value), d, to + k);
+  /// A bit for each node of a leaf whose first site is this one.
+  static HWY_INLINE std::uint64_t nodes_of(const std::uint32_t* sites, std::uint32_t site) {
+    const VI wanted = hn::Set(di, site);
+    std::uint64_t found = 0;
+    for (std::size_t k = 0; k < leaf_nodes; k += lanes) {
+      found |= std::uint64_t{bits(hn::RebindMask(d, hn::Eq(hn::Load(di, sites + k), wanted)))} << k;
+    }
+    return found;
   }
 
-  void add_run(std::size_t node, std::size_t length, std::uint32_t site) {
-    const std::size_t r = cell_.run_count++;
-    SecondCell::Run& run = cell_.runs[r];
-    run = {static_cast<std::uint16_t>(node), static_cast<std::uint16_t>(length), SecondCell::no_group, 0, 0};
-    if (site == dead_record) return;
+  void add_item(std::size_t leaf, std::uint64_t nodes, std::uint32_t site) {
+    const std::size_t i = cell_.item_count++;
+    cell_.items[i] = {nodes, static_cast<std::uint16_t>(leaf), 0};
     const std::uint32_t hash = site * 0x9e3779b1U;
     for (std::size_t slot = hash >> 19;; slot = (slot + 1) % cell_.table.size()) {
       const std::uint16_t found = cell_.table[slot];
-      if (found == 0) return add_group(r, slot, site);
+      if (found == 0) return add_group(i, slot, site);
       SecondCell::Group& group = cell_.groups[found - 1U];
       if (group.site != site) continue;
-      run.group = static_cast<std::uint16_t>(found - 1);
-      cell_.runs[group.last_run].next = static_cast<std::uint16_t>(r);
-      group.last_run = static_cast<std::uint16_t>(r);
+      cell_.items[group.last_item].next = static_cast<std::uint16_t>(i);
+      group.last_item = static_cast<std::uint16_t>(i);
       return;
     }
   }
 
-  void add_group(std::size_t r, std::size_t slot, std::uint32_t site) {
+  void add_group(std::size_t i, std::size_t slot, std::uint32_t site) {
     const std::size_t g = cell_.group_count++;
     cell_.table[slot] = static_cast<std::uint16_t>(g + 1);
-    cell_.runs[r].group = static_cast<std::uint16_t>(g);
     SecondCell::Group& group = cell_.groups[g];
     group.site = site;
     hwy::Prefetch(&labels_[site]);  // read by find_labels()
-    group.first_run = group.last_run = static_cast<std::uint16_t>(r);
+    group.first_item = group.last_item = static_cast<std::uint16_t>(i);
   }
 
   SecondCell& cell_;
   std::span<const SecondLabels::OfSite> labels_;
 };
 
-/// Offers closed segments to the nodes of a group, which have nothing yet. It writes past the end of the group: groups
-/// are to be taken in their order.
-/// @param middle  what positions are relative to.
-HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const SecondLinks& all, const Vec3f& middle,
-                              const SecondCell::Group& group, SecondCell& cell) {
-  for (std::size_t at = group.begin; at < group.end; at += lanes) {
-    const Vec position = positions_at(cell, at);
-    V best = set(no_distance);
-    V best_id = set_id(nobody);
-    for (const std::uint32_t link : links) {
-      const LinkSegment& segment = all.segments[link];
-      const Vec from = position - set(segment.middle - middle);
-      const Vec tangent = set(segment.tangent);
+/// Vectors of nodes of a cell, from a place of its order on, and the closest of the closed segments offered to them.
+template <std::size_t vectors>
+struct LinkOffers {
+  Vec position[vectors];
+  V best[vectors];
+  V best_id[vectors];
+
+  LinkOffers(const CellPositions& positions, const SecondCell& cell, std::size_t at) {
+    for (std::size_t k = 0; k < vectors; ++k) {
+      position[k] = positions.of(hn::LoadU(di, cell.order.data() + at + k * lanes));
+      best[k] = set(no_distance);
+      best_id[k] = set_id(nobody);
+    }
+  }
+
+  /// @param middle  what positions are relative to.
+  HWY_INLINE void offer(const LinkSegment& segment, const Vec3f& middle) {
+    const Vec center = set(segment.middle - middle);
+    const Vec tangent = set(segment.tangent);
+    const V half_length = set(segment.half_length);
+    for (std::size_t k = 0; k < vectors; ++k) {
+      const Vec from = position[k] - center;
       const V along = dot(from, tangent);
-      const V excess = hn::Sub(hn::Abs(along), set(segment.half_length));
+      const V excess = hn::Sub(hn::Abs(along), half_length);
       const V beyond = hn::Max(excess, hn::Zero(d));
       const Vec across = {hn::NegMulAdd(along, tangent.x, from.x), hn::NegMulAdd(along, tangent.y, from.y),
                           hn::NegMulAdd(along, tangent.z, from.z)};
       const V squared = hn::MulAdd(beyond, beyond, dot(across, across));
       const V end = hn::IfThenElse(hn::Gt(along, hn::Zero(d)), set_id(segment.end), set_id(segment.start));
       const V id = hn::IfThenElse(hn::Ge(excess, hn::Zero(d)), end, set_id(segment.id));
-      const M wins = is_better(squared, id, best, best_id);
-      best = hn::IfThenElse(wins, squared, best);
-      best_id = hn::IfThenElse(wins, id, best_id);
+      const M wins = is_better(squared, id, best[k], best_id[k]);
+      best[k] = hn::IfThenElse(wins, squared, best[k]);
+      best_id[k] = hn::IfThenElse(wins, id, best_id[k]);
     }
-    hn::StoreU(best, d, cell.squared.data() + at);
-    hn::StoreU(hn::BitCast(di, best_id), di, cell.id.data() + at);
+  }
+
+  /// Writes what the nodes have got, in the order of nodes.
+  HWY_INLINE void store(std::size_t at, SecondCell& cell) const {
+    alignas(64) std::array<float, vectors * lanes> squared;
+    alignas(64) std::array<std::uint32_t, vectors * lanes> id;
+    for (std::size_t k = 0; k < vectors; ++k) {
+      hn::Store(best[k], d, squared.data() + k * lanes);
+      hn::Store(hn::BitCast(di, best_id[k]), di, id.data() + k * lanes);
+    }
+    for (std::size_t k = 0; k < vectors * lanes; ++k) {
+      const std::size_t node = cell.order[at + k];
+      cell.squared[node] = squared[k];
+      cell.id[node] = id[k];
+    }
+  }
+};
+
+template <std::size_t vectors>
+HWY_INLINE void offer_links_at(std::span<const std::uint32_t> links, const SecondLinks& all, const Vec3f& middle,
+                               const CellPositions& positions, std::size_t at, SecondCell& cell) {
+  LinkOffers<vectors> offers(positions, cell, at);
+  for (const std::uint32_t link : links) offers.offer(all.segments[link], middle);
+  offers.store(at, cell);
+}
+
+/// Gives the nodes of a group the closest of some closed segments. Whole vectors are written, also of nodes after the
+/// group: groups are to be taken in their order.
+HWY_NOINLINE void offer_links(std::span<const std::uint32_t> links, const SecondLinks& all, const Vec3f& middle,
+                              const CellPositions& positions, const SecondCell::Group& group, SecondCell& cell) {
+  for (std::size_t at = group.begin; at < group.end;) {
+    if (group.end - at > lanes) {
+      offer_links_at<2>(links, all, middle, positions, at, cell);
+      at += 2 * lanes;
+    } else {
+      offer_links_at<1>(links, all, middle, positions, at, cell);
+      at += lanes;
+    }
   }
 }
 
@@ -247,25 +336,33 @@ struct GroupBall {
   Vec3f center;
   float radius = 0;
 };
-HWY_INLINE GroupBall ball_of(const SecondCell& cell, const SecondCell::Group& group) {
+inline GroupBall ball_of(const SecondCell& cell, const SecondCell::Group& group, const CellPositions& positions) {
   Vec3f low{1e30F, 1e30F, 1e30F};
   Vec3f high = low * -1.0F;
   for (std::size_t at = group.begin; at < group.end; ++at) {
-    const Vec3f p{cell.x[at], cell.y[at], cell.z[at]};
+    const std::size_t node = cell.order[at];
+    const std::size_t leaf = node / leaf_nodes;
+    const Vec3f p{positions.axis[0][leaf % 4 * 4 + node % 4], positions.axis[1][leaf / 4 % 4 * 4 + node / 4 % 4],
+                  positions.axis[2][leaf / 16 * 4 + node / 16 % 4]};
     low = min(low, p);
     high = max(high, p);
   }
   return {(low + high) * 0.5F, length(high - low) * 0.50001F + box_slack};
 }
 
-/// The first sites of a leaf and its seconds so far.
+/// The first sites of a leaf and its seconds so far, which are part of the cell.
 struct SecondLeaf {
-  alignas(64) std::array<std::uint32_t, leaf_nodes> first;  ///< dead_record where there is none
-  alignas(64) std::array<float, leaf_nodes> squared;
-  alignas(64) std::array<std::uint32_t, leaf_nodes> id;
+  const std::uint32_t* first;  ///< dead_record where there is none
+  float* squared;              ///< below 0 where there is no first site, so that nothing can be second
+  std::uint32_t* id;
   /// Labels of the first sites, found when they are asked for.
   alignas(64) std::array<std::array<std::uint32_t, leaf_nodes>, 3> labels;
   std::uint64_t has_labels = 0;  ///< a bit for each node
+
+  SecondLeaf(SecondCell& cell, std::size_t leaf)
+      : first(cell.first.data() + leaf * leaf_nodes),
+        squared(cell.squared.data() + leaf * leaf_nodes),
+        id(cell.id.data() + leaf * leaf_nodes) {}
 
   /// Of `lanes` nodes.
   void find_labels(std::size_t begin, std::span<const SecondLabels::OfSite> of_site) {
@@ -277,65 +374,105 @@ struct SecondLeaf {
   }
 };
 
-/// Offers candidates to the nodes of a leaf. Mostly no candidate but a node's first site is as close as what the node
-/// has, so that labels are looked at only where one is.
+/// Evaluates candidates at the nodes of a leaf. What a candidate offers is kept, to be looked at closely where it is as
+/// close as what some node has: mostly none is, but at the nodes whose first site it is.
 struct SecondPass : LeafEvaluation<SecondPass, false> {
-  SecondLeaf& leaf;
+  const SecondLeaf& leaf;
   std::size_t first_node;
-  std::span<const SecondLabels::OfSite> labels;
+  V* offered = nullptr;  ///< where squared distances go; infinite outside of the candidate's domain
+  M is_close{};          ///< in any vector
 
-  SecondPass(const LeafPattern::Pass& pattern, std::size_t node, std::span<const SecondLabels::OfSite> of_site,
-             SecondLeaf& of_leaf)
-      : LeafEvaluation<SecondPass, false>(pattern), leaf(of_leaf), first_node(node), labels(of_site) {}
+  SecondPass(const LeafPattern::Pass& pattern, std::size_t node, const SecondLeaf& of_leaf)
+      : LeafEvaluation<SecondPass, false>(pattern), leaf(of_leaf), first_node(node) {}
 
   HWY_INLINE void take(std::size_t k, V inside, V squared, V id, V /*side*/) {
     const std::size_t node = first_node + k * lanes;
-    const M is_inside = hn::RebindMask(d, hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(ds, inside))));
-    const M is_close = hn::Le(squared, hn::Load(d, leaf.squared.data() + node));
-    const M is_other = hn::RebindMask(d, hn::Ne(hn::BitCast(di, id), hn::Load(di, leaf.first.data() + node)));
-    const M wins = hn::And(hn::And(is_inside, is_close), is_other);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, wins))) settle(node, wins, squared, id);
+    const V offer = if_sign_bit(inside, squared, set(std::numeric_limits<float>::infinity()));
+    offered[k] = offer;
+    const M is_other = hn::RebindMask(d, hn::Ne(hn::BitCast(di, id), hn::Load(di, leaf.first + node)));
+    const M wins = hn::And(is_other, hn::Le(offer, hn::Load(d, leaf.squared + node)));
+    is_close = k == 0 ? wins : hn::Or(is_close, wins);
   }
+};
 
-  /// Lets the candidate win where it may be second, if it does.
-  HWY_NOINLINE void settle(std::size_t node, M wins, V squared, V id) {
+/// Lets a candidate win where it may be second, if it does.
+/// @param offered  its squared distances at the nodes of a pass, as SecondPass leaves them.
+HWY_INLINE void settle_second(const V* offered, std::size_t first_node, std::uint32_t candidate,
+                              std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
+  const SecondLabels::OfSite own = labels[candidate];
+  const V id = set_id(candidate);
+  for (std::size_t k = 0; k < pass_vectors; ++k) {
+    const std::size_t node = first_node + k * lanes;
+    const V squared = offered[k];
+    const V best = hn::Load(d, leaf.squared + node);
+    const V best_id = hn::BitCast(d, hn::Load(di, leaf.id + node));
+    const M is_other = hn::RebindMask(d, hn::Ne(hn::BitCast(di, id), hn::Load(di, leaf.first + node)));
+    M wins = hn::And(is_other, is_better(squared, id, best, best_id));
+    if (hn::AllFalse(d, wins)) continue;
     if ((leaf.has_labels >> node & 1) == 0) leaf.find_labels(node, labels);
-    const SecondLabels::OfSite own = labels[hn::GetLane(hn::BitCast(di, id))];
-    for (const std::array<std::uint32_t, leaf_nodes>& of_first : leaf.labels) {
-      const VI label = hn::Load(di, of_first.data() + node);
-      for (const std::uint32_t one : own) wins = hn::AndNot(hn::RebindMask(d, hn::Eq(label, hn::Set(di, one))), wins);
+    for (std::size_t k_own = 0; k_own < 3; ++k_own) {
+      if (k_own > 0 && own[k_own] == own[0]) continue;
+      const VI one = hn::Set(di, own[k_own]);
+      for (const std::array<std::uint32_t, leaf_nodes>& of_first : leaf.labels) {
+        wins = hn::AndNot(hn::RebindMask(d, hn::Eq(hn::Load(di, of_first.data() + node), one)), wins);
+      }
     }
-    const V best = hn::Load(d, leaf.squared.data() + node);
-    const V best_id = hn::BitCast(d, hn::Load(di, leaf.id.data() + node));
-    wins = hn::And(wins, is_better(squared, id, best, best_id));
-    hn::Store(hn::IfThenElse(wins, squared, best), d, leaf.squared.data() + node);
-    hn::Store(hn::BitCast(di, hn::IfThenElse(wins, id, best_id)), di, leaf.id.data() + node);
+    hn::Store(hn::IfThenElse(wins, squared, best), d, leaf.squared + node);
+    hn::Store(hn::BitCast(di, hn::IfThenElse(wins, id, best_id)), di, leaf.id + node);
+  }
+}
+
+/// Candidates of a pass that some node may take. They are put off, since whether a candidate is among them is hard to
+/// foresee, and known late: a branch for each would cost more than its evaluation.
+struct SecondOffers {
+  static constexpr std::size_t most = 24;
+
+  V squared[most][pass_vectors];  ///< as SecondPass leaves them
+  std::array<std::uint32_t, most> candidate;
+  std::size_t count = 0;
+
+  HWY_INLINE V* next() { return squared[count]; }
+  /// Keeps what next() holds where it is of use.
+  HWY_INLINE void add(const float* id, M is_close) {
+    std::memcpy(&candidate[count], id, sizeof(std::uint32_t));
+    count += static_cast<std::size_t>(!hn::AllFalse(d, is_close));
+  }
+  [[nodiscard]] bool is_full() const { return count == most; }
+
+  HWY_NOINLINE void settle(std::size_t first_node, std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
+    for (std::size_t k = 0; k < count; ++k) settle_second(squared[k], first_node, candidate[k], labels, leaf);
+    count = 0;
   }
 };
 
 HWY_NOINLINE void evaluate_second(const LeafInput& input, const LeafPattern& pattern,
                                   std::span<const SecondLabels::OfSite> labels, SecondLeaf& leaf) {
   const std::vector<Vec3f> no_sides;
+  SecondOffers offers;
   for (std::size_t index = 0; index < passes; ++index) {
-    SecondPass pass(pattern.pass[index], index * pass_nodes, labels, leaf);
-    for_each_candidate<vertex_kind>(input, [&](std::size_t i) { pass.vertex(input.columns[0], i, no_sides); });
-    for_each_candidate<edge_kind>(input, [&](std::size_t i) { pass.edge(input.columns[1], i); });
-    for_each_candidate<face_kind>(input, [&](std::size_t i) { pass.face(input.columns[2], i); });
-  }
-}
-
-/// Brings what groups have back into the order of the nodes.
-HWY_INLINE void unsort(SecondCell& cell) {
-  for (std::size_t r = 0; r < cell.run_count; ++r) {
-    const SecondCell::Run& run = cell.runs[r];
-    if (run.group == SecondCell::no_group) {
-      std::fill_n(cell.distance.data() + run.node, run.length, no_distance);
-      std::fill_n(cell.site.data() + run.node, run.length, nobody);
-      continue;
-    }
-    // Whole vectors, of which the next run overwrites the rest.
-    std::memcpy(cell.distance.data() + run.node, cell.squared.data() + run.at, SecondCell::row * sizeof(float));
-    std::memcpy(cell.site.data() + run.node, cell.id.data() + run.at, SecondCell::row * sizeof(std::uint32_t));
+    const std::size_t node = index * pass_nodes;
+    SecondPass pass(pattern.pass[index], node, leaf);
+    const auto keep = [&](const float* id) {
+      offers.add(id, pass.is_close);
+      if (HWY_UNLIKELY(offers.is_full())) offers.settle(node, labels, leaf);
+    };
+    const auto& columns = input.columns;
+    for_each_candidate<vertex_kind>(input, [&](std::size_t i) {
+      pass.offered = offers.next();
+      pass.vertex(columns[0], i, no_sides);
+      keep(columns[0].column(LeafVertex::id) + i);
+    });
+    for_each_candidate<edge_kind>(input, [&](std::size_t i) {
+      pass.offered = offers.next();
+      pass.edge(columns[1], i);
+      keep(columns[1].column(LeafEdge::id) + i);
+    });
+    for_each_candidate<face_kind>(input, [&](std::size_t i) {
+      pass.offered = offers.next();
+      pass.face(columns[2], i);
+      keep(columns[2].column(LeafFace::id) + i);
+    });
+    offers.settle(node, labels, leaf);
   }
 }
 

@@ -58,7 +58,9 @@ class SecondWorker {
     if (only_ != nullptr) {
       for (RecordList& list : scratch_.gathered) keep_others(list);
     }
-    divide(box, size, scratch_.gathered, bounds, 0);
+    for (std::size_t kind = 0; kind < sliver_kind; ++kind) mine_.all.places[kind].reset_to_all(scratch_.gathered[kind]);
+    std::swap(mine_.all.slivers, scratch_.gathered[sliver_kind]);
+    divide(box, size, mine_.all, bounds, 0);
   }
 
  private:
@@ -143,8 +145,8 @@ class SecondWorker {
   }
 
   /// Bounds for a child of a box, of the sites that the lanes have found closest to its centre; else the parent's.
-  [[nodiscard]] Bounds bounds_of_child(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
-                                       const Vec3f& center, const Bounds& parent) const {
+  [[nodiscard]] Bounds bounds_of_child(const SecondCandidates& candidates, const ClosestAtCenters& closest,
+                                       std::size_t child, const Vec3f& center, const Bounds& parent) const {
     alignas(64) std::array<float, lanes> squared;
     alignas(64) std::array<std::uint32_t, lanes> index;
     hn::Store(closest.squared[child], d, squared.data());
@@ -181,28 +183,32 @@ class SecondWorker {
 
   // --- recursion
 
-  void divide(const NodeBox& box, std::int64_t size, const Candidates& candidates, const Bounds& bounds,
+  void divide(const NodeBox& box, std::int64_t size, const SecondCandidates& candidates, const Bounds& bounds,
               std::size_t level) {
     if (size == 2 * leaf_size) return divide_into_leaves(box, candidates, bounds);
     if (field_.cancel.stop_requested()) return;
     const Halving parts = halve(field_, box, size);
     const bool is_cell = size == SecondCell::side;
+    const bool has_cells = size == 2 * SecondCell::side;
+    if (has_cells) prefetch_firsts(parts.child[0]);
     if (is_cell) begin_cell(box, parts.middle);
-    TileScratch::Impl::Level& here = scratch_.levels[level];
+    std::array<ChildBits, kind_count>& child_bits = scratch_.levels[level].bits;
+    SecondCandidates& of_child = mine_.levels[level];
     ClosestAtCenters closest;
-    halve_kinds(test_of(parts, bounds, is_cell), candidates, here.bits, closest,
+    halve_kinds(test_of(parts, bounds, is_cell), candidates, child_bits, closest,
                 [](std::size_t) { return [](auto&&...) {}; });
     for (std::size_t c = 0; c < 8; ++c) {
       if (!parts.exists[c]) continue;
+      if (has_cells && c + 1 < 8 && parts.exists[c + 1]) prefetch_firsts(parts.child[c + 1]);
       for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
-        list_child(candidates[kind], here.bits[kind], c, here.child[kind]);
+        list_child(candidates[kind], child_bits[kind], c, of_child.places[kind]);
       }
       const CenteredBox place = centered(field_, parts.child[c]);
       // Within cells, links tell more.
       const bool needs_bounds = !is_cell || job_.links == nullptr;
-      const Bounds of_child = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
-      list_slivers(candidates[sliver_kind], place, of_child, here.child[sliver_kind]);
-      divide(parts.child[c], size / 2, here.child, of_child, level + 1);
+      const Bounds child_bounds = needs_bounds ? bounds_of_child(candidates, closest, c, place.center, bounds) : bounds;
+      list_slivers(candidates.slivers, place, child_bounds, of_child.slivers);
+      divide(parts.child[c], size / 2, of_child, child_bounds, level + 1);
     }
     if (is_cell) write(box);
   }
@@ -237,15 +243,15 @@ class SecondWorker {
     cell_middle_ = middle;
     cell_bound_ = {};
     read_firsts(box);
-    if (job_.links != nullptr) {
-      cell_bound_ = offer_all_links(box, middle);
-    } else {
-      cell_.distance.fill(no_distance);
-      cell_.site.fill(nobody);
+    for (std::size_t node = 0; node < SecondCell::nodes; node += lanes) {
+      const auto is_dead = hn::RebindMask(d, hn::Eq(hn::Load(di, cell_.first.data() + node), hn::Set(di, dead_record)));
+      hn::Store(hn::IfThenElse(is_dead, set(-1.0F), set(no_distance)), d, cell_.squared.data() + node);
+      hn::Store(hn::Set(di, nobody), di, cell_.id.data() + node);
     }
+    if (job_.links != nullptr) cell_bound_ = offer_all_links(box, middle);
   }
 
-  void divide_into_leaves(const NodeBox& box, const Candidates& candidates, const Bounds& bounds) {
+  void divide_into_leaves(const NodeBox& box, const SecondCandidates& candidates, const Bounds& bounds) {
     const Halving parts = halve(field_, box, 2 * leaf_size);
     TileScratch::Impl::Level& here = scratch_.levels.back();
     for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
@@ -259,7 +265,7 @@ class SecondWorker {
       if (!parts.exists[c]) continue;
       const LeafInput input{scratch_.leaf, here.bits, c};
       const LeafPattern& pattern = is_full ? full_patterns_[c] : (pattern_ = pattern_of(parts.child[c], parts.middle));
-      leaf(parts.child[c], input, candidates[sliver_kind], pattern, parts.middle);
+      leaf(parts.child[c], input, candidates.slivers, pattern, parts.middle);
     }
   }
 
@@ -272,53 +278,72 @@ class SecondWorker {
     CellSorter sorter(cell_, job_.labels);
     sorter.find_groups();
     sorter.find_labels();
-    sorter.place(positions(box, middle));
+    sorter.order();
+    const CellPositions places = positions(box, middle);
     for (std::size_t g = 0; g < cell_.group_count; ++g) {
       const SecondCell::Group& group = cell_.groups[g];
       prefetch_links(g);
       std::span<const std::uint32_t> links = find_links(group.labels);
-      if (links.size() > many_links) links = near_links(links, middle, group);
-      offer_links(links, *job_.links, middle, group, cell_);
+      if (links.size() > many_links) links = near_links(links, middle, ball_of(cell_, group, places));
+      offer_links(links, *job_.links, middle, places, group, cell_);
     }
-    const std::size_t count = cell_.group_count == 0 ? 0 : cell_.groups[cell_.group_count - 1].end;
-    const DistanceBound bound =
-        bound_distances(count, [&](std::size_t at) { return positions_at(cell_, at); }, cell_.squared.data());
-    unsort(cell_);
-    return bound;
+    return bound_distances(
+        SecondCell::nodes, [&](std::size_t node) { return places.following(node); }, cell_.squared.data());
   }
 
-  void read_firsts(const NodeBox& box) {
-    if (!is_cube(box, SecondCell::side)) std::fill_n(cell_.first(), SecondCell::nodes, dead_record);
-    std::size_t row = 0;
+  /// Of a cell that comes soon: its rows lie all over memory.
+  void prefetch_firsts(const NodeBox& box) const {
     (void)all_rows(box, [&](std::size_t node) {
-      copy_row(job_.request.site + node, cell_.first() + first_of_row(box, row++), box.count[0]);
+      hwy::Prefetch(job_.request.site + node);
       return true;
     });
   }
 
-  /// Of the rows of a box, in the cell.
-  static std::size_t first_of_row(const NodeBox& box, std::size_t row) {
-    const auto rows = static_cast<std::size_t>(box.count[1]);
-    return SecondCell::row * (row % rows) + SecondCell::layer * (row / rows);
+  void read_firsts(const NodeBox& box) {
+    if (!is_cube(box, SecondCell::side)) cell_.first.fill(dead_record);
+    for_each_row(box, [&](std::size_t at, std::size_t node) {
+      for_each_part(box, [&](std::size_t i, std::size_t part, std::size_t bytes) {
+        std::memcpy(cell_.first.data() + at + part, job_.request.site + node + i, bytes);
+      });
+    });
   }
 
-  template <class T>
-  static void copy_row(const T* from, T* to, std::int64_t count) {
-    if (count == SecondCell::side) {
-      std::memcpy(to, from, SecondCell::row * sizeof(T));
-    } else {
-      std::copy_n(from, count, to);
+  /// Calls visit(place of the row's first node in the cell, node index) for the rows of a cell.
+  template <class Visit>
+  void for_each_row(const NodeBox& box, Visit visit) const {
+    const auto rows = static_cast<std::size_t>(box.count[1]);
+    std::size_t row = 0;
+    (void)all_rows(box, [&](std::size_t node) {
+      const std::size_t j = row % rows;
+      const std::size_t k = row++ / rows;
+      visit(j % 4 * 4 + j / 4 * (4 * leaf_nodes) + k % 4 * 16 + k / 4 * (16 * leaf_nodes), node);
+      return true;
+    });
+  }
+
+  /// Calls visit(first node, its place from that of the row's first node, bytes) for the parts of a row that are in one
+  /// leaf each.
+  template <class Visit>
+  static HWY_INLINE void for_each_part(const NodeBox& box, Visit visit) {
+    if (box.count[0] == SecondCell::side) {
+      for (std::size_t part = 0; part < 4; ++part) visit(4 * part, part * leaf_nodes, 4 * sizeof(float));
+      return;
+    }
+    const auto count = static_cast<std::size_t>(box.count[0]);
+    for (std::size_t i = 0; i < count; i += 4) {
+      visit(i, i / 4 * leaf_nodes, std::min<std::size_t>(4, count - i) * sizeof(float));
     }
   }
 
   [[nodiscard]] CellPositions positions(const NodeBox& box, const Vec3f& middle) const {
-    CellPositions out{};
+    CellPositions out;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < SecondCell::row; ++k) {
         const double index = static_cast<double>(box.first[axis] + static_cast<std::int64_t>(k));
-        out[axis][k] = static_cast<float>(field_.first_node[axis] + index * field_.spacing[axis] - middle[axis]);
+        out.axis[axis][k] = static_cast<float>(field_.first_node[axis] + index * field_.spacing[axis] - middle[axis]);
       }
     }
+    out.find_layers();
     return out;
   }
 
@@ -335,26 +360,15 @@ class SecondWorker {
 
   void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, const LeafPattern& pattern,
             const Vec3f& middle) {
-    SecondLeaf state;
-    std::size_t begin = 0;
+    std::size_t index = 0;
     for (std::size_t axis = 3; axis-- > 0;) {
-      begin = SecondCell::row * begin + static_cast<std::size_t>(box.first[axis] - cell_box_.first[axis]);
+      index = 4 * index + static_cast<std::size_t>(box.first[axis] - cell_box_.first[axis]) / 4;
     }
-    const auto each_row = [&](auto use) {
-      for (std::size_t row = 0; row < 16; ++row) {
-        use(begin + SecondCell::row * (row % 4) + SecondCell::layer * (row / 4), 4 * row);
-      }
-    };
-    each_row([&](std::size_t from, std::size_t to) {
-      std::memcpy(state.first.data() + to, cell_.first() + from, 16);
-      std::memcpy(state.squared.data() + to, cell_.distance.data() + from, 16);
-      std::memcpy(state.id.data() + to, cell_.site.data() + from, 16);
-    });
-    forget_beyond(box, state);
+    SecondLeaf state(cell_, index);
     const CenteredBox place = centered(field_, box);
     const Vec offset = set(place.center - middle);
-    const DistanceBound known = bound_distances(
-        leaf_nodes, [&](std::size_t at) { return positions_of(pattern, at) - offset; }, state.squared.data());
+    const DistanceBound known =
+        bound_distances(leaf_nodes, [&](std::size_t at) { return positions_of(pattern, at) - offset; }, state.squared);
     if (known.is_known) {
       const Vec3f half = place.half + Vec3f{box_slack, box_slack, box_slack};
       const LeafDomination domination{known.domination(place.center, half), offset};
@@ -368,32 +382,13 @@ class SecondWorker {
       const Vec3d center = to_double(place.center);
       if (length(center - closest_on_sliver(slivers[k], center)) <= bound) offer_sliver(slivers[k], box, state);
     }
-    each_row([&](std::size_t to, std::size_t from) {
-      std::memcpy(cell_.distance.data() + to, state.squared.data() + from, 16);
-      std::memcpy(cell_.site.data() + to, state.id.data() + from, 16);
-    });
-  }
-
-  /// Where a leaf has no node, or the node is beyond the band, nothing is first and nothing can be second.
-  static void forget_beyond(const NodeBox& box, SecondLeaf& state) {
-    for (std::size_t node = 0; node < leaf_nodes && !is_cube(box, leaf_size); ++node) {
-      const bool is_node = static_cast<std::int64_t>(node % 4) < box.count[0] &&
-                           static_cast<std::int64_t>(node / 4 % 4) < box.count[1] &&
-                           static_cast<std::int64_t>(node / 16) < box.count[2];
-      if (!is_node) state.first[node] = dead_record;
-    }
-    for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
-      const M has_first = hn::RebindMask(d, hn::Ne(hn::Load(di, state.first.data() + node), hn::Set(di, dead_record)));
-      const V squared = hn::Load(d, state.squared.data() + node);
-      hn::Store(hn::IfThenElse(has_first, squared, set(-1.0F)), d, state.squared.data() + node);
-    }
   }
 
   /// The largest distance that a node has so far; without bound where one has none.
   static float furthest(const SecondLeaf& state) {
     V worst = hn::Zero(d);
     for (std::size_t node = 0; node < leaf_nodes; node += lanes) {
-      worst = hn::Max(worst, hn::Load(d, state.squared.data() + node));
+      worst = hn::Max(worst, hn::Load(d, state.squared + node));
     }
     const float squared = hn::GetLane(hn::MaxOfLanes(d, worst));
     return squared < no_distance ? std::sqrt(squared) * 1.00001F : 1e18F;
@@ -458,8 +453,7 @@ class SecondWorker {
 
   /// Of many links, those that any node of a group may be closest to; in their place.
   std::span<const std::uint32_t> near_links(std::span<const std::uint32_t> links, const Vec3f& middle,
-                                            const SecondCell::Group& group) {
-    const GroupBall ball = ball_of(cell_, group);
+                                            const GroupBall& ball) {
     const Vec3f center = middle + ball.center;
     mine_.link_distances.resize(links.size());
     float nearest = std::numeric_limits<float>::infinity();
@@ -482,38 +476,51 @@ class SecondWorker {
   HWY_NOINLINE void write(const NodeBox& box) {
     const V none = set(limit());
     M open = hn::FirstN(d, 0);
-    const std::size_t nodes = SecondCell::layer * static_cast<std::size_t>(box.count[2]);
-    for (std::size_t node = 0; node < nodes; node += lanes) {
-      const V squared = hn::Load(d, cell_.distance.data() + node);
+    for (std::size_t node = 0; node < SecondCell::nodes; node += lanes) {
+      const V squared = hn::Load(d, cell_.squared.data() + node);
       const V value = hn::Mul(hn::Sqrt(hn::Abs(squared)), set(field_.to_world));
       const M has_none = hn::Ge(squared, set(no_distance));
       const M has_no_first = hn::Lt(squared, hn::Zero(d));
       const M is_beyond = hn::Or(hn::Or(has_none, has_no_first), hn::Gt(value, none));
       open = hn::Or(open, has_none);
-      hn::Store(hn::IfThenElse(is_beyond, none, value), d, cell_.distance.data() + node);
-      const VI id = hn::Load(di, cell_.site.data() + node);
+      hn::Store(hn::IfThenElse(is_beyond, none, value), d, cell_.squared.data() + node);
+      const VI id = hn::Load(di, cell_.id.data() + node);
       // What nobody has claimed is looked at once more.
       const auto is_settled = hn::RebindMask(di, hn::AndNot(has_none, is_beyond));
-      hn::Store(hn::IfThenElse(is_settled, hn::Set(di, dead_record), id), di, cell_.site.data() + node);
+      hn::Store(hn::IfThenElse(is_settled, hn::Set(di, dead_record), id), di, cell_.id.data() + node);
     }
     const bool has_open = !hn::AllFalse(d, open);
-    std::size_t row = 0;
-    (void)all_rows(box, [&](std::size_t node) {
-      const std::size_t from = first_of_row(box, row++);
-      if (has_open) report_open(box, from, node);
-      copy_row(cell_.distance.data() + from, job_.request.distance2 + node, box.count[0]);
-      copy_row(cell_.site.data() + from, job_.request.site2 + node, box.count[0]);
-      return true;
+    const bool is_streamed = field_.is_streamed && box.count[0] == SecondCell::side;
+    for_each_row(box, [&](std::size_t at, std::size_t node) {
+      if (has_open) report_open(box, at, node);
+      const bool is_line = is_streamed && node % SecondCell::row == 0;
+      put_row(box, cell_.squared.data() + at, job_.request.distance2 + node, is_line);
+      put_row(box, cell_.id.data() + at, job_.request.site2 + node, is_line);
     });
   }
 
+  /// Writes a row of a cell to the field: past the caches where it is a whole line.
+  template <class T>
+  static HWY_INLINE void put_row(const NodeBox& box, const T* from, T* to, bool is_line) {
+    if (!is_line) {
+      for_each_part(
+          box, [&](std::size_t i, std::size_t part, std::size_t bytes) { std::memcpy(to + i, from + part, bytes); });
+      return;
+    }
+    constexpr hn::CappedTag<T, 4> quarter;
+    for (std::size_t i = 0; i < SecondCell::row; i += hn::MaxLanes(quarter)) {
+      hn::Stream(hn::Load(quarter, from + i / 4 * leaf_nodes + i % 4), quarter, to + i);
+    }
+  }
+
   /// Nodes that nothing has claimed, although there is something that may be second.
-  void report_open(const NodeBox& box, std::size_t from, std::size_t node) {
+  void report_open(const NodeBox& box, std::size_t at, std::size_t node) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(box.count[0]); ++i) {
-      const std::uint32_t first = cell_.first()[from + i];
-      if (first == dead_record || cell_.site[from + i] != nobody) continue;
+      const std::size_t place = at + i / 4 * leaf_nodes + i % 4;
+      const std::uint32_t first = cell_.first[place];
+      if (first == dead_record || cell_.id[place] != nobody) continue;
       if (job_.request.labels->has_second(job_.labels[first])) unsettled_.push_back(node + i);
-      cell_.site[from + i] = dead_record;
+      cell_.id[place] = dead_record;
     }
   }
 
@@ -533,6 +540,7 @@ class SecondWorker {
 
 void compute_second_tile_here(const SecondJob& job, const NodeBox& tile, SecondScratch& scratch) {
   SecondWorker(job, scratch).tile(tile, tile_size(job.field.request.grid.size));
+  hwy::FlushStream();
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 // Blum: what a tile of the second order keeps in memory. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "field/cpu/second_kernel.hpp"
@@ -10,53 +12,90 @@
 
 namespace blum::cpu {
 
-/// A box of up to 16^3 nodes, its nodes sorted by their first sites: node (i, j, k) is i + 16 j + 256 k.
-/// Whole vectors may be read and written past the end of all arrays.
+/// A box of up to 16^3 nodes, leaf after leaf: node (i, j, k) of leaf (a, b, c) is i + 4 j + 16 k + 64 (a + 4 b + 16
+/// c). With that, it is sorted by first sites.
 struct SecondCell {
   static constexpr std::int64_t side = 16;
   static constexpr std::size_t row = 16;
-  static constexpr std::size_t layer = 256;
-  static constexpr std::size_t nodes = 4096;
-  static constexpr std::size_t padding = 64;
-  static constexpr std::uint16_t no_group = 0xffff;
+  static constexpr std::size_t leaves = 64;
+  static constexpr std::uint32_t nodes = 4096;
+  static constexpr std::size_t padding = 32;
 
-  /// Nodes in a row (never of two rows) with the same first site.
-  struct Run {
-    std::uint16_t node = 0;
-    std::uint16_t length = 0;
-    std::uint16_t group = no_group;
-    std::uint16_t next = 0;  ///< run of the same group
-    std::uint16_t at = 0;    ///< where its nodes are in the arrays below
+  /// Nodes of a leaf with the same first site.
+  struct Item {
+    std::uint64_t nodes = 0;  ///< a bit for each
+    std::uint16_t leaf = 0;
+    std::uint16_t next = 0;  ///< item of the same group
   };
   /// Nodes with the same first site.
   struct Group {
     std::uint32_t site = 0;
     SecondLabels::OfSite labels{};
-    std::uint16_t first_run = 0, last_run = 0;
-    std::uint16_t begin = 0, end = 0;
+    std::uint16_t first_item = 0, last_item = 0;
+    std::uint16_t begin = 0, end = 0;  ///< in the order
   };
 
-  /// First sites by node; dead_record: none, or no node. Begins with room for one before the first.
-  static constexpr std::size_t front = 16;
-  alignas(64) std::array<std::uint32_t, front + nodes + padding> before_first;
-  [[nodiscard]] std::uint32_t* first() { return before_first.data() + front; }
-  [[nodiscard]] const std::uint32_t* first() const { return before_first.data() + front; }
-  std::array<Run, nodes> runs;
-  std::size_t run_count = 0;
+  alignas(64) std::array<std::uint32_t, nodes> first;  ///< sites; dead_record: none, or no node
+  /// The second sites so far; below 0 where nothing is first.
+  alignas(64) std::array<float, nodes + padding> squared;
+  alignas(64) std::array<std::uint32_t, nodes + padding> id;
+  std::array<Item, nodes> items;
+  std::size_t item_count = 0;
   std::array<Group, nodes> groups;
   std::size_t group_count = 0;
   std::array<std::uint16_t, 8192> table;  ///< finds groups: their number and 1
-  // By group:
-  alignas(64) std::array<float, nodes + padding> x, y, z;  ///< from the cell's middle
-  alignas(64) std::array<float, nodes + padding> squared;
-  alignas(64) std::array<std::uint32_t, nodes + padding> id;
-  // By node:
-  alignas(64) std::array<float, nodes + padding> distance;
-  alignas(64) std::array<std::uint32_t, nodes + padding> site;
+  /// Nodes that have a first site, group after group; past the end a node that is none, for whole vectors.
+  alignas(64) std::array<std::uint32_t, nodes + padding> order{};
+};
+
+/// Candidates of one kind, as places in the list of a tile's records. Children share that list: copies of records would
+/// cost more than all tests of them.
+class PlaceList {
+ public:
+  static constexpr std::size_t padding = 16;
+
+  /// Empties the list and makes room.
+  void reset(const RecordList& records, std::size_t capacity) {
+    records_ = &records;
+    if (places_.size() < capacity + 2 * padding) places_ = Buffer<std::uint32_t>(capacity + capacity / 2 + 4 * padding);
+    count_ = 0;
+  }
+  void reset_to_all(const RecordList& records) {
+    reset(records, records.count());
+    std::iota(places_.begin(), places_.begin() + records.count(), 0U);
+    finish(records.count());
+  }
+  /// Where up to `padding` places at a time are written, before finish() tells how many there are.
+  [[nodiscard]] std::uint32_t* places() { return places_.data(); }
+  [[nodiscard]] const std::uint32_t* places() const { return places_.data(); }
+  /// Makes the padding readable.
+  void finish(std::size_t count) {
+    count_ = count;
+    std::fill_n(places_.data() + count, padding, 0U);
+  }
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] const RecordList& records() const { return *records_; }
+  [[nodiscard]] const Record& operator[](std::size_t index) const { return (*records_)[places_[index]]; }
+
+ private:
+  const RecordList* records_ = nullptr;
+  Buffer<std::uint32_t> places_;
+  std::size_t count_ = 0;
+};
+
+/// Candidates of all kinds for one box.
+struct SecondCandidates {
+  std::array<PlaceList, sliver_kind> places;
+  RecordList slivers;
+
+  [[nodiscard]] const PlaceList& operator[](std::size_t kind) const { return places[kind]; }
 };
 
 struct SecondScratch::Impl {
   TileScratch tile;
+  SecondCandidates all;                    ///< of the tile at hand
+  std::array<SecondCandidates, 4> levels;  ///< of the child at hand, for each level of the tile's
   SecondCell cell;
   std::vector<std::uint32_t> links;  ///< of the first site at hand; as long as any have been
   std::vector<float> link_distances;
