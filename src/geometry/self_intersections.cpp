@@ -4,9 +4,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -21,7 +23,9 @@ namespace blum {
 namespace {
 
 /// Groups between two looks at the number of pairs: few enough that a search without end in sight stops soon.
-constexpr std::size_t batch = 512;
+constexpr std::size_t smallest_batch = 512;
+/// More where few pairs are found, so that threads seldom wait for each other.
+constexpr std::size_t largest_batch = 4096;
 constexpr std::size_t grain = 8;
 constexpr std::size_t build_grain = 64;
 
@@ -44,6 +48,24 @@ std::vector<std::uint32_t> order_in_space(const MeshView& mesh, double scale, co
   };
   return space_order(mesh.triangles.size(), middle, context);
 }
+
+/// Groups of triangles, each made where it is filled, and so on all threads: they take 200 bytes a triangle.
+class GroupArray {
+ public:
+  explicit GroupArray(std::size_t count) : count_(count), groups_(std::allocator<TriangleGroup>().allocate(count)) {}
+  ~GroupArray() { std::allocator<TriangleGroup>().deallocate(groups_, count_); }
+  GroupArray(const GroupArray&) = delete;
+  GroupArray& operator=(const GroupArray&) = delete;
+
+  [[nodiscard]] std::size_t size() const { return count_; }
+  TriangleGroup& make(std::size_t k) { return *std::construct_at(groups_ + k); }
+  [[nodiscard]] const TriangleGroup& operator[](std::size_t k) const { return groups_[k]; }
+
+ private:
+  static_assert(std::is_trivially_destructible_v<TriangleGroup>);  // those that were not made have nothing to end
+  std::size_t count_;
+  TriangleGroup* groups_;
+};
 
 /// Triangles in groups of eight, and a tree of the groups' boxes.
 class Search {
@@ -83,6 +105,7 @@ class Search {
   /// @returns the sum of the extents of the group's triangles.
   double make(const MeshView& mesh, double scale, std::span<const std::uint32_t> corners, std::size_t g) {
     double sum = 0;
+    TriangleGroup& group = groups_.make(g);
     for (std::size_t rank = g * lanes; rank < std::min((g + 1) * lanes, order_.size()); ++rank) {
       detail::ContactTriangle triangle;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -90,8 +113,8 @@ class Search {
         triangle.points[k] = mesh.vertices[v] * scale;
         triangle.corners[k] = corners.empty() ? v : corners[v];
       }
-      groups_[g].set(rank % lanes, triangle);
-      const Box3 box = box_at(groups_[g].box, rank % lanes);
+      group.set(rank % lanes, triangle);
+      const Box3 box = box_at(group.box, rank % lanes);
       boxes_[g].extend(box);
       sum += extent(box);
     }
@@ -124,7 +147,7 @@ class Search {
   }
 
   std::span<const std::uint32_t> order_;
-  std::vector<TriangleGroup> groups_;
+  GroupArray groups_;
   std::vector<Box3> boxes_;  ///< around each group
   BoxTree tree_;
   double looseness_ = 1;
@@ -145,13 +168,16 @@ std::vector<TrianglePair> find_in(const Search& search, std::size_t begin, std::
 
 std::vector<TrianglePair> find_all(const Search& search, std::size_t limit, const Context& context) {
   std::vector<TrianglePair> pairs;
-  for (std::size_t begin = 0; begin < search.group_count() && pairs.size() <= limit; begin += batch) {
+  std::size_t batch = smallest_batch;
+  for (std::size_t begin = 0; begin < search.group_count() && pairs.size() <= limit;) {
     const std::size_t end = std::min(begin + batch, search.group_count());
     const std::vector<TrianglePair> found = find_in(search, begin, end, limit, context);
     pairs.insert(pairs.end(), found.begin(), found.end());
     if (context.progress) {
       context.progress(static_cast<double>(end) / static_cast<double>(search.group_count()), "self-intersections");
     }
+    batch = found.size() < batch ? std::min(2 * batch, largest_batch) : smallest_batch;
+    begin = end;
   }
   return pairs;
 }
@@ -167,13 +193,18 @@ SelfIntersections find_self_intersections(const MeshView& mesh, std::size_t limi
 SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order, std::size_t limit,
                                           const Context& context) {
   validate(mesh);
+  return find_self_intersections(mesh, order, weld_clusters(mesh.vertices), limit, context);
+}
+
+SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order,
+                                          std::span<const std::uint32_t> corners, std::size_t limit,
+                                          const Context& context) {
   throw_if_cancelled(context);
   if (order.size() != mesh.triangles.size()) {
     throw InvalidOption("the order of " + std::to_string(order.size()) + " triangles is given, of a mesh with " +
                         std::to_string(mesh.triangles.size()));
   }
   const double scale = coordinate_scale(bounds(mesh));
-  const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
   SelfIntersections result;
   result.pairs = find_all(Search(mesh, scale, order, corners, context), limit, context);
   std::sort(result.pairs.begin(), result.pairs.end(), [](const TrianglePair& a, const TrianglePair& b) {

@@ -374,7 +374,8 @@ void add_self_intersections(const ObjectPair& objects, const Context& context, P
   const std::vector<Vec3d> positions = object.positions();
   MeshView mesh = object.mesh();
   mesh.vertices = positions;
-  const SelfIntersections found = find_self_intersections(mesh, object.bvh().order(), most_close_pairs, context);
+  const SelfIntersections found =
+      find_self_intersections(mesh, object.bvh().order(), objects.clusters(), most_close_pairs, context);
   if (!found.complete) check_count(most_close_pairs + 1);
   for (const TrianglePair& pair : found.pairs)
     out.pairs.push_back(objects.compare(pair.first.value, pair.second.value));

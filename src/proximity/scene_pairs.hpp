@@ -61,6 +61,8 @@ class ObjectPair {
   /// How close they must be in the scene to be that close seen from the first, for rounding of positions.
   [[nodiscard]] double slack() const { return slack_; }
 
+  /// Of an object and itself: for each vertex the smallest one in the same place.
+  [[nodiscard]] std::span<const std::uint32_t> clusters() const { return clusters_; }
   /// Of an object and itself: the places of a primitive's vertices, for each the smallest vertex there.
   [[nodiscard]] std::array<std::uint32_t, 3> places(std::uint32_t primitive) const;
   /// Whether two primitives of one object have a vertex in common.

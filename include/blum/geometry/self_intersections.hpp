@@ -52,6 +52,12 @@ struct SelfIntersections {
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order,
                                                         std::size_t limit, const Context& context = {});
 
+/// The same for a mesh that passes validate(mesh), where it is known which vertices are in one place.
+/// @param corners  weld_clusters(mesh.vertices).
+[[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order,
+                                                        std::span<const std::uint32_t> corners, std::size_t limit,
+                                                        const Context& context = {});
+
 /// Asks frame after frame whether a mesh that deforms crosses or touches itself. It keeps the order of the triangles in
 /// space, which takes as long to find as all the rest, for as long as groups of neighbours stay together; the answers
 /// do not depend on it.
