@@ -204,6 +204,10 @@ SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const 
     throw InvalidOption("the order of " + std::to_string(order.size()) + " triangles is given, of a mesh with " +
                         std::to_string(mesh.triangles.size()));
   }
+  if (corners.size() != mesh.vertices.size()) {
+    throw InvalidOption("the corners of " + std::to_string(corners.size()) + " vertices are given, of a mesh with " +
+                        std::to_string(mesh.vertices.size()));
+  }
   const double scale = coordinate_scale(bounds(mesh));
   SelfIntersections result;
   result.pairs = find_all(Search(mesh, scale, order, corners, context), limit, context);

@@ -53,7 +53,7 @@ struct SelfIntersections {
                                                         std::size_t limit, const Context& context = {});
 
 /// The same for a mesh that passes validate(mesh), where it is known which vertices are in one place.
-/// @param corners  weld_clusters(mesh.vertices).
+/// @param corners  weld_clusters(mesh.vertices). @throws InvalidOption where there are more or fewer.
 [[nodiscard]] SelfIntersections find_self_intersections(const MeshView& mesh, std::span<const std::uint32_t> order,
                                                         std::span<const std::uint32_t> corners, std::size_t limit,
                                                         const Context& context = {});

@@ -7,13 +7,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <stop_token>
 #include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
+#include "blum/geometry/oriented_bvh.hpp"
 #include "blum/geometry/triangle_contact.hpp"
+#include "blum/geometry/weld.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
 #include "support/mesh_places.hpp"
@@ -304,6 +308,29 @@ TEST(SelfIntersections, DoNotDependOnScaleAndPlaceOfTheMeshOrOnThreads) {
     for (Vec3d& v : scaled.vertices) v = v * scale;
     EXPECT_TRUE(same(find_self_intersections(scaled))) << scale;
   }
+}
+
+/// An order in space and the places of vertices may be given, and change nothing: enough triangles for several batches.
+TEST(SelfIntersections, AreTheSameWithWhatIsKnown) {
+  const TriangleMesh mesh = make_soup({.triangles = 60000, .triangle_size = 0.01});
+  const SelfIntersections expected = find_self_intersections(mesh);
+  ASSERT_GT(expected.pairs.size(), 100U);
+  const OrientedBvh bvh(mesh);
+  const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);
+  const auto is_same = [&](const SelfIntersections& found) {
+    return std::ranges::equal(found.pairs, expected.pairs, [](const TrianglePair& a, const TrianglePair& b) {
+      return a.first == b.first && a.second == b.second && a.crosses == b.crosses;
+    });
+  };
+  for (const int threads : {1, 2, 7}) {
+    Context context;
+    context.threads = threads;
+    EXPECT_TRUE(is_same(find_self_intersections(mesh, bvh.order(), 100000, context)));
+    EXPECT_TRUE(is_same(find_self_intersections(mesh, bvh.order(), corners, 100000, context)));
+  }
+  const std::span<const std::uint32_t> fewer = std::span(corners).first(5);
+  EXPECT_THROW((void)find_self_intersections(mesh, bvh.order(), fewer, 100000), InvalidOption);
+  EXPECT_THROW((void)find_self_intersections(mesh, fewer, corners, 100000), InvalidOption);
 }
 
 TEST(SelfIntersections, StopAtTheLimitAndWhenAsked) {
