@@ -276,22 +276,44 @@ void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, dou
   }
 }
 
-void sort_pairs(std::vector<PrimitivePair>& pairs) {
-  // Stable sorts by one number after the other, the last one first; most scenes have few objects.
+namespace {
+
+/// The order of pairs by their objects and primitives.
+std::vector<KeyedIndex> sorted_order(const std::vector<const PrimitivePair*>& pairs) {
+  std::vector<std::array<std::uint32_t, 4>> keys;
+  keys.reserve(pairs.size());
+  std::array<bool, 4> varies{};
+  for (const PrimitivePair* pair : pairs) {
+    keys.push_back({pair->first_object.value, pair->first, pair->second_object.value, pair->second});
+    for (std::size_t k = 0; k < 4; ++k) varies[k] = varies[k] || keys.back()[k] != keys.front()[k];
+  }
   std::vector<KeyedIndex> order(pairs.size());
   std::vector<KeyedIndex> scratch;
   for (std::uint32_t k = 0; k < order.size(); ++k) order[k].index = k;
-  const auto sort_by = [&](const auto& number) {
-    for (KeyedIndex& one : order) one.key = number(pairs[one.index]);
+  // Stable sorts by one number after the other, the last one first; most scenes have few objects.
+  for (std::size_t column = 4; column-- > 0;) {
+    if (!varies[column]) continue;
+    for (KeyedIndex& one : order) one.key = keys[one.index][column];
     radix_sort(order, scratch);
-  };
-  sort_by([](const PrimitivePair& pair) { return pair.second; });
-  sort_by([](const PrimitivePair& pair) { return pair.second_object.value; });
-  sort_by([](const PrimitivePair& pair) { return pair.first; });
-  sort_by([](const PrimitivePair& pair) { return pair.first_object.value; });
-  std::vector<PrimitivePair> sorted(pairs.size());
-  for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = pairs[order[k].index];
-  pairs = std::move(sorted);
+  }
+  return order;
+}
+
+}  // namespace
+
+void add_sorted(std::vector<std::vector<PrimitivePair>> parts, const Context& context,
+                std::vector<PrimitivePair>& pairs) {
+  constexpr std::size_t grain = 4096;
+  parts.push_back(std::move(pairs));
+  std::vector<const PrimitivePair*> all;
+  for (const std::vector<PrimitivePair>& part : parts) {
+    for (const PrimitivePair& pair : part) all.push_back(&pair);
+  }
+  const std::vector<KeyedIndex> order = sorted_order(all);
+  pairs = std::vector<PrimitivePair>(all.size());
+  parallel_for(context, pairs.size(), grain, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) pairs[k] = *all[order[k].index];
+  });
 }
 
 void check_count(std::size_t pairs) {
@@ -389,6 +411,7 @@ void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours n
                 ProximityPairs& out) {
   std::atomic<std::size_t> count = out.pairs.size();
   CandidateLimit candidates(context);
+  std::vector<std::vector<PrimitivePair>> all;
   for (const ObjectPair& objects : pairs) {
     if (neighbours == Neighbours::folded && objects.is_self() && !has_flat_primitives(objects.a())) {
       check_equal_triangles(objects);
@@ -404,12 +427,12 @@ void near_pairs(std::span<const ObjectPair> pairs, double distance, Neighbours n
     });
     candidates.check();  // parts that stopped have not found all
     check_count(count);
-    for (const FoundPairs& part : parts) {
-      out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
+    for (FoundPairs& part : parts) {
+      all.push_back(std::move(part.pairs));
       add(part.report, out.report);
     }
   }
-  sort_pairs(out.pairs);
+  add_sorted(std::move(all), context, out.pairs);
 }
 
 }  // namespace blum::detail

@@ -105,8 +105,10 @@ using ClosestRows = std::vector<std::vector<std::optional<PrimitivePair>>>;
 void closest_of_each(std::span<const ObjectPair> pairs, std::size_t objects, double max_distance,
                      const Context& context, ProximityPairs& out);
 
-/// Puts pairs into the order of objects and primitives.
-void sort_pairs(std::vector<PrimitivePair>& pairs);
+/// Adds the pairs of parts of a search to others, and puts all into the order of objects and primitives.
+/// @throws Cancelled.
+void add_sorted(std::vector<std::vector<PrimitivePair>> parts, const Context& context,
+                std::vector<PrimitivePair>& pairs);
 
 /// More candidates are not looked at by one query: a minute of them or more, as of a heap of equal triangles.
 inline constexpr std::size_t most_candidates = std::size_t{1} << 29;

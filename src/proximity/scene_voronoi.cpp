@@ -192,13 +192,14 @@ void near_pairs_by_cells(std::span<const ObjectPair> pairs, std::size_t objects,
     }
   });
   check_count(count);
+  std::vector<std::vector<PrimitivePair>> found;
   std::vector<ProximityReport> reports;
   for (Part& part : parts) {
-    out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
+    found.push_back(std::move(part.pairs));
     reports.push_back(std::move(part.report));
   }
   add_all(reports, cells, out.report);
-  sort_pairs(out.pairs);
+  add_sorted(std::move(found), context, out.pairs);
   timer.lap("exact tests");
 }
 
