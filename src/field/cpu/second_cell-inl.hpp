@@ -352,11 +352,11 @@ inline GroupBall ball_of(const SecondCell& cell, const SecondCell::Group& group,
 
 /// The first sites of a leaf and its seconds so far, which are part of the cell.
 struct SecondLeaf {
+  /// Labels of the first sites, found when they are asked for.
+  alignas(64) std::array<std::array<std::uint32_t, leaf_nodes>, 3> labels;
   const std::uint32_t* first;  ///< dead_record where there is none
   float* squared;              ///< below 0 where there is no first site, so that nothing can be second
   std::uint32_t* id;
-  /// Labels of the first sites, found when they are asked for.
-  alignas(64) std::array<std::array<std::uint32_t, leaf_nodes>, 3> labels;
   std::uint64_t has_labels = 0;  ///< a bit for each node
 
   SecondLeaf(SecondCell& cell, std::size_t leaf)
