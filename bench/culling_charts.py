@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Charts of culling, from what proximity_bench measured:
 
-    build/bench/bin/proximity_bench --benchmark_filter=culling --benchmark_out=culling.json --benchmark_out_format=json
+    build/bench/bin/proximity_bench --benchmark_filter=culling/ --benchmark_out=culling.json --benchmark_out_format=json
     bench/culling_charts.py culling.json -o docs/pictures/culling.svg
 
 For each scene: pairs left to the exact test per primitive, and the seconds of each stage, with the hierarchy and with
@@ -16,6 +16,7 @@ import sys
 import matplotlib
 
 matplotlib.use("svg")
+matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "blum"})
 import matplotlib.pyplot as plt
 
 TITLES = {"body": "a body with itself", "bodies": "two bodies in each other", "soup": "a soup"}
@@ -47,6 +48,11 @@ def draw_tests(axes, scene, cases):
                 axes.axhline(one[name], linestyle=style, color=COLORS[3], label=f"hierarchy: {label}")
     axes.set(title=TITLES.get(scene, scene), xscale="log", yscale="log", ylabel="per primitive")
     axes.set_xlabel("side of a cell, mean extents of a primitive")
+    sizes = [size for size, _ in cells]
+    axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
+    axes.set_xticks([], minor=True)
+    axes.set_yticks([5, 10, 20, 50, 100, 200], ["5", "10", "20", "50", "100", "200"])
+    axes.set_yticks([], minor=True)
     axes.legend(fontsize=7)
 
 
