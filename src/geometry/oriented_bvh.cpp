@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -18,21 +19,19 @@
 namespace blum {
 namespace {
 
-constexpr std::size_t build_grain = 64;
+/// Parts of a tree that threads fill on their own: what is below one block of this level.
+constexpr std::size_t level_of_parts = 2;
+constexpr std::size_t leaves_per_part = lanes * lanes * lanes;
 /// How much closer pairs may be than their boxes seem, relative to the largest coordinate.
 constexpr double rounding = 1e-13;
 
-/// A node of a tree: a leaf where the level is -1; else its children are the block of this index of this level.
-struct NodeRef {
-  std::uint32_t index = 0;
-  std::int32_t level = -1;
-  [[nodiscard]] bool is_leaf() const { return level < 0; }
-};
-
+using NodeRef = OrientedBvh::Node;
 /// Nodes of two trees that are still to be compared.
-struct NodePair {
-  double squared_gap = 0;
-  NodeRef here, there;
+using NodePair = OrientedBvh::NodePair;
+
+struct IndexRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
 };
 
 /// At most seven siblings wait for each of at most eleven levels of either tree.
@@ -64,25 +63,21 @@ struct NodeBoxes {
     boxes.resize(count);
     around.resize(count);
   }
+  [[nodiscard]] std::size_t size() const { return boxes.size(); }
 };
 
-/// The blocks of a level, and the boxes around them. @param count  boxes below.
-void fill_level(std::vector<OrientedBlock>& level, const NodeBoxes& below, std::size_t count, NodeBoxes& above,
-                const Context& context) {
-  level.resize((count + lanes - 1) / lanes);
-  above.resize(std::max(above.boxes.size(), level.size()));
-  parallel_for(context, level.size(), build_grain, "", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      const std::size_t first = k * lanes;
-      const std::size_t children = std::min(lanes, count - first);
-      const auto boxes = std::span<const OrientedBox>(below.boxes).subspan(first, children);
-      for (std::size_t lane = 0; lane < lanes; ++lane) level[k].set(lane, boxes[std::min(lane, children - 1)]);
-      Box3 around;
-      for (std::size_t i = first; i < first + children; ++i) around.extend(below.around[i]);
-      above.boxes[k] = box_around(boxes, around);
-      above.around[k] = around;
-    }
-  });
+/// Blocks of a level, and the boxes around them.
+void fill_level(std::vector<OrientedBlock>& level, const NodeBoxes& below, const IndexRange& range, NodeBoxes& above) {
+  for (std::size_t k = range.begin; k < range.end; ++k) {
+    const std::size_t first = k * lanes;
+    const std::size_t children = std::min(lanes, below.size() - first);
+    const auto boxes = std::span<const OrientedBox>(below.boxes).subspan(first, children);
+    for (std::size_t lane = 0; lane < lanes; ++lane) level[k].set(lane, boxes[std::min(lane, children - 1)]);
+    Box3 around;
+    for (std::size_t i = first; i < first + children; ++i) around.extend(below.around[i]);
+    above.boxes[k] = box_around(boxes, around);
+    above.around[k] = around;
+  }
 }
 
 }  // namespace
@@ -96,7 +91,7 @@ struct OrientedBvh::Data {
   BlockTree<OrientedBlock> tree;                      ///< its leaves are the blocks of primitives
   std::vector<std::vector<std::uint32_t>> first;      ///< smallest primitive of each block, and of each block of `tree`
   OrientedBox root;
-  NodeBoxes leaf_boxes, upper_boxes;  ///< only fill() uses them
+  std::vector<NodeBoxes> boxes;  ///< of the leaves and of each level; only fill() uses them
 
   [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }
   [[nodiscard]] std::size_t count_below(std::int32_t level) const {
@@ -114,8 +109,10 @@ struct OrientedBvh::Data {
     return first[static_cast<std::size_t>(node.level) + 1][node.index];
   }
 
-  void fill(std::span<const Vec3d> positions, const Context& context);
+  void make_room();
   void fill_first();
+  void fill(std::span<const Vec3d> positions, const Context& context);
+  void fill_leaves(std::span<const Vec3d> positions, const IndexRange& range);
 };
 
 /// What does not change with positions.
@@ -129,34 +126,45 @@ void OrientedBvh::Data::fill_first() {
   }
 }
 
-/// Positions of all primitives, and all boxes. What it fills is kept from one time to the next: making it anew, zeros
-/// and all, took a third of a refit, on one thread.
+void OrientedBvh::Data::make_room() {
+  boxes.emplace_back().resize(leaves.size());
+  do {
+    const std::size_t count = (boxes.back().size() + lanes - 1) / lanes;
+    tree.levels.emplace_back(count);
+    boxes.emplace_back().resize(count);
+  } while (boxes.back().size() > 1);
+}
+
+void OrientedBvh::Data::fill_leaves(std::span<const Vec3d> positions, const IndexRange& range) {
+  for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
+    const std::size_t count = lanes_of(leaf);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      // The last leaf repeats its last primitive.
+      const auto& v = corners[leaf * lanes + std::min(lane, count - 1)];
+      leaves[leaf].set(lane, {positions[v[0]], positions[v[1]], positions[v[2]]});
+    }
+    boxes[0].around[leaf] = {};
+    boxes[0].boxes[leaf] = box_around(leaves[leaf], boxes[0].around[leaf]);
+  }
+}
+
+/// Positions of all primitives, and all boxes: threads fill parts of the tree up to the level of parts, while these are
+/// in their caches; little is left above.
 void OrientedBvh::Data::fill(std::span<const Vec3d> positions, const Context& context) {
-  leaf_boxes.resize(leaves.size());
-  parallel_for(context, leaves.size(), build_grain, "", [&](const WorkRange& range) {
-    for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
-      const std::size_t count = lanes_of(leaf);
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        // The last leaf repeats its last primitive.
-        const auto& v = corners[leaf * lanes + std::min(lane, count - 1)];
-        leaves[leaf].set(lane, {positions[v[0]], positions[v[1]], positions[v[2]]});
-      }
-      leaf_boxes.around[leaf] = {};
-      leaf_boxes.boxes[leaf] = box_around(leaves[leaf], leaf_boxes.around[leaf]);
+  const std::size_t parts = (leaves.size() + leaves_per_part - 1) / leaves_per_part;
+  parallel_for(context, parts, 1, "", [&](const WorkRange& range) {
+    IndexRange part{range.begin * leaves_per_part, std::min(range.end * leaves_per_part, leaves.size())};
+    fill_leaves(positions, part);
+    for (std::size_t level = 0; level < std::min(level_of_parts + 1, tree.levels.size()); ++level) {
+      part = {part.begin / lanes, (part.end + lanes - 1) / lanes};
+      fill_level(tree.levels[level], boxes[level], part, boxes[level + 1]);
     }
   });
-  NodeBoxes* below = &leaf_boxes;
-  NodeBoxes* above = &upper_boxes;
-  std::size_t depth = 0;
-  std::size_t count = leaves.size();
-  do {
-    if (tree.levels.size() == depth) tree.levels.emplace_back();
-    fill_level(tree.levels[depth++], *below, count, *above, context);
-    count = (count + lanes - 1) / lanes;
-    std::swap(below, above);
-  } while (count > 1);
-  root = below->boxes.front();
-  bounds = below->around.front();
+  for (std::size_t level = level_of_parts + 1; level < tree.levels.size(); ++level) {
+    fill_level(tree.levels[level], boxes[level], {0, tree.levels[level].size()}, boxes[level + 1]);
+  }
+  root = boxes.back().boxes.front();
+  bounds = boxes.back().around.front();
 }
 
 OrientedBvh::OrientedBvh(const MeshView& mesh, const Context& context) : data_(std::make_unique<Data>()) {
@@ -174,6 +182,7 @@ OrientedBvh::OrientedBvh(const MeshView& mesh, const Context& context) : data_(s
   for (std::size_t rank = 0; rank < count; ++rank) data.corners[rank] = primitive_vertices(mesh, data.order[rank]);
   data.leaves.resize((count + lanes - 1) / lanes);
   data.fill_first();
+  data.make_room();
   data.fill(mesh.vertices, context);
 }
 
@@ -229,8 +238,9 @@ class PairSearch {
     is_self_ = true;
   }
 
-  void run(const NodeRef& here, const NodeRef& there) {
-    pending_.push_back({0, here, there});
+  void run(const NodeRef& here, const NodeRef& there) { run({0, here, there}); }
+  void run(const NodePair& first) {
+    pending_.push_back(first);
     while (!pending_.empty()) {
       const NodePair pair = pending_.pop_back();
       const double most = squared_limit(limit_, slack_);
@@ -241,6 +251,31 @@ class PairSearch {
         descend(pair, most);
       }
     }
+  }
+
+  /// Replaces pairs of nodes by those of their children until there are enough; those that seem closest come first.
+  [[nodiscard]] std::vector<NodePair> cut(std::size_t wanted) {
+    std::vector<NodePair> pairs{{0, here_.top(), there_.top()}};
+    const double most = squared_limit(limit_, slack_);
+    for (bool may_go_on = true; may_go_on && pairs.size() < wanted;) {
+      may_go_on = false;
+      std::vector<NodePair> below;
+      for (const NodePair& pair : pairs) {
+        if (pair.here.is_leaf() && pair.there.is_leaf()) {
+          below.push_back(pair);
+          continue;
+        }
+        may_go_on = true;
+        descend(pair, most);
+        while (!pending_.empty()) below.push_back(pending_.pop_back());
+      }
+      pairs = std::move(below);
+    }
+    std::sort(pairs.begin(), pairs.end(), [](const NodePair& a, const NodePair& b) {
+      const auto key = [](const NodePair& p) { return std::tuple(p.squared_gap, p.here.index, p.there.index); };
+      return key(a) < key(b);
+    });
+    return pairs;
   }
 
  private:
@@ -336,6 +371,16 @@ class PairSearch {
 void OrientedBvh::for_each_near_pair(const OrientedBvh& other, const RigidTransform& place, double limit,
                                      Visit visit) const {
   PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(data_->top(), other.data_->top());
+}
+
+std::vector<OrientedBvh::NodePair> OrientedBvh::near_node_pairs(const OrientedBvh& other, const RigidTransform& place,
+                                                                double limit, std::size_t wanted) const {
+  return PairSearch<Data>(*data_, *other.data_, place, limit, [](auto...) { return Wanted(-1); }).cut(wanted);
+}
+
+void OrientedBvh::for_each_near_pair(const NodePair& nodes, const OrientedBvh& other, const RigidTransform& place,
+                                     double limit, Visit visit) const {
+  PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(nodes);
 }
 
 void OrientedBvh::for_each_near_pair(std::size_t block, const OrientedBvh& other, const RigidTransform& place,

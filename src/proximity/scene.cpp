@@ -162,13 +162,17 @@ ProximityPairs ProximityScene::separation(double max_distance, const Context& co
   PhaseTimer timer(out.report.phases);
   std::vector<std::optional<PrimitivePair>> found(pairs.size());
   std::vector<ProximityReport> reports(pairs.size());
-  const auto find = [&](std::size_t k) { found[k] = data_->closest(pairs[k], max_distance, context, reports[k]); };
-  if (data_->uses_cells()) {
-    for (std::size_t k = 0; k < pairs.size(); ++k) find(k);  // each runs on all threads
-    out.report.culling = Culling::voronoi;
+  const auto find = [&](std::size_t k, const Context& of_pair) {
+    found[k] = data_->closest(pairs[k], max_distance, of_pair, reports[k]);
+  };
+  if (data_->uses_cells()) out.report.culling = Culling::voronoi;
+  if (data_->uses_cells() || pairs.size() < static_cast<std::size_t>(thread_count(context))) {
+    for (std::size_t k = 0; k < pairs.size(); ++k) find(k, context);
   } else {
+    Context alone = context;
+    alone.threads = 1;
     parallel_for(context, pairs.size(), 1, "separation", [&](const WorkRange& range) {
-      for (std::size_t k = range.begin; k < range.end; ++k) find(k);
+      for (std::size_t k = range.begin; k < range.end; ++k) find(k, alone);
     });
   }
   for (const auto& one : found) {
@@ -232,7 +236,7 @@ SceneCollisions ProximityScene::continuous(std::span<const ObjectMotion> motions
                                            const Context& context) const {
   check(options);
   detail::SceneMotion motion(data_->objects.size());
-  for (const ObjectMotion& one : motions) motion.add(data_->at(one.object), one);
+  for (const ObjectMotion& one : motions) motion.add(data_->at(one.object), one, context);
   return motion.collisions(data_->compared(std::numeric_limits<double>::infinity(), context), options, context);
 }
 

@@ -42,9 +42,9 @@ struct Moving {
 };
 
 /// @throws InvalidMesh that names the object.
-void check_end(const SceneObject& object, const ObjectMotion& motion) {
+void check_end(const SceneObject& object, const ObjectMotion& motion, const Context& context) {
   try {
-    object.check_positions(motion.vertices);
+    object.check_positions(motion.vertices, context);
   } catch (const InvalidMesh& error) {
     throw InvalidMesh("object " + std::to_string(motion.object.value) + " at the end: " + error.what());
   }
@@ -61,11 +61,11 @@ Box3 box_around(std::span<const Vec3d> start, std::span<const Vec3d> end, const 
 
 }  // namespace
 
-void SceneMotion::add(const SceneObject& object, const ObjectMotion& motion) {
+void SceneMotion::add(const SceneObject& object, const ObjectMotion& motion, const Context& context) {
   std::optional<std::vector<Vec3d>>& end = ends_[motion.object.value];
   if (end) throw InvalidOption("object " + std::to_string(motion.object.value) + " is given two motions");
   if (motion.place) check(*motion.place);
-  if (!motion.vertices.empty()) check_end(object, motion);
+  if (!motion.vertices.empty()) check_end(object, motion, context);
   const std::span<const Vec3d> vertices = motion.vertices.empty() ? object.mesh().vertices : motion.vertices;
   end = SceneObject::positions(vertices, motion.place.value_or(object.place()));
 }

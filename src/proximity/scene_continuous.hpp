@@ -19,7 +19,7 @@ class SceneMotion {
   explicit SceneMotion(std::size_t objects) : ends_(objects) {}
 
   /// @throws InvalidMesh, InvalidOption for an object that moves already.
-  void add(const SceneObject& object, const ObjectMotion& motion);
+  void add(const SceneObject& object, const ObjectMotion& motion, const Context& context);
 
   /// See ProximityScene::continuous(). @param pairs  that are compared.
   [[nodiscard]] SceneCollisions collisions(std::span<const TwoObjects> pairs, const ImpactOptions& options,

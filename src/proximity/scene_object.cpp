@@ -1,10 +1,12 @@
 #include "proximity/scene_object.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
 #include "blum/geometry/primitives.hpp"
 #include "blum/geometry/weld.hpp"
 
@@ -14,6 +16,7 @@ namespace {
 /// Squares of squares of coordinates must stay finite.
 constexpr double largest_coordinate = 1e70;
 constexpr double smallest_coordinate = 1e-140;
+constexpr std::size_t vertices_per_range = 8192;
 
 double magnitude(const Vec3d& p) {
   return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -70,17 +73,23 @@ void SceneObject::set_mesh(const MeshView& mesh, const Context& context) {
   bvh_ = std::move(bvh);
 }
 
-void SceneObject::check_positions(std::span<const Vec3d> vertices) const {
+void SceneObject::check_positions(std::span<const Vec3d> vertices, const Context& context) const {
   if (vertices.size() != mesh_.vertices.size()) {
     throw InvalidMesh("the object has " + std::to_string(mesh_.vertices.size()) + " vertices, but is updated with " +
                       std::to_string(vertices.size()) + "; give it another mesh where these change");
   }
-  const auto is_fine = [](const Vec3d& p) { return is_finite(p) && magnitude(p) <= largest_coordinate; };
-  const auto is_large = [](const Vec3d& p) { return magnitude(p) >= smallest_coordinate; };
-  if (std::all_of(vertices.begin(), vertices.end(), is_fine) &&
-      std::any_of(vertices.begin(), vertices.end(), is_large)) {
-    return;
-  }
+  std::atomic<bool> are_fine = true;
+  std::atomic<bool> is_any_large = false;
+  parallel_for(context, vertices.size(), vertices_per_range, "", [&](const WorkRange& range) {
+    double largest = 0;
+    for (std::size_t v = range.begin; v < range.end; ++v) {
+      if (!is_finite(vertices[v])) are_fine = false;
+      largest = std::max(largest, magnitude(vertices[v]));
+    }
+    if (largest > largest_coordinate) are_fine = false;
+    if (largest >= smallest_coordinate) is_any_large = true;
+  });
+  if (are_fine && is_any_large) return;
   // Vertices that nothing names may be anything.
   MeshView moved = mesh_;
   moved.vertices = vertices;
@@ -88,8 +97,10 @@ void SceneObject::check_positions(std::span<const Vec3d> vertices) const {
 }
 
 void SceneObject::set_positions(std::span<const Vec3d> vertices, const Context& context) {
-  check_positions(vertices);
-  std::copy(vertices.begin(), vertices.end(), mesh_.vertices.begin());
+  check_positions(vertices, context);
+  parallel_for(context, vertices.size(), vertices_per_range, "", [&](const WorkRange& range) {
+    std::copy_n(vertices.data() + range.begin, range.end - range.begin, mesh_.vertices.data() + range.begin);
+  });
   bvh_->refit(mesh_.vertices, context);
 }
 

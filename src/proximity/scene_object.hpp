@@ -22,7 +22,7 @@ class SceneObject {
 
   void set_positions(std::span<const Vec3d> vertices, const Context& context);
   /// @throws as it does, for vertices that it would not take.
-  void check_positions(std::span<const Vec3d> vertices) const;
+  void check_positions(std::span<const Vec3d> vertices, const Context& context) const;
   void set_place(const RigidTransform& place);
   void set_mesh(const MeshView& mesh, const Context& context);
 

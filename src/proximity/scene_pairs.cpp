@@ -123,37 +123,6 @@ void CandidateLimit::check() const {
                     " pairs of primitives lie on each other or next to it: take duplicates away");
 }
 
-std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance, const Context& context,
-                                          ProximityReport& report) {
-  static_cast<void>(thread_count(context));
-  throw_if_cancelled(context);
-  if (objects.is_self()) check_neighbours(objects);
-  CandidateLimit candidates(context);
-  Closest best{std::nullopt, max_distance};
-  const auto visit = [&](std::uint32_t i, std::uint32_t j, double) {
-    if (candidates.stops(++report.candidates)) return -1.0;
-    if (objects.is_self() && objects.are_neighbours(i, j)) return best.limit + objects.slack();
-    if (objects.is_self() && j < i) std::swap(i, j);
-    const bool is_after =
-        best.limit == 0 && best.pair && std::pair(i, j) > std::pair(best.pair->first, best.pair->second);
-    if (!is_after) {
-      ++report.exact_tests;
-      best.offer(objects.compare(i, j));
-    }
-    return best.limit + objects.slack();
-  };
-  const OrientedBvh& a = objects.a().bvh();
-  if (!objects.is_self()) {
-    a.for_each_near_pair(objects.b().bvh(), objects.place(), max_distance + objects.slack(), visit);
-  }
-  for (std::size_t block = 0; objects.is_self() && block < a.block_count(); ++block) {
-    if (candidates.stops(report.candidates)) break;
-    a.for_each_near_self_pair(block, best.limit + objects.slack(), visit);
-  }
-  candidates.check();
-  return best.pair;
-}
-
 namespace {
 
 /// An object that another one is compared with, as seen from that one.

@@ -125,6 +125,7 @@ class CandidateLimit {
     if (count % between_looks == 0) total_ += between_looks;
     return is_stopped_ || (count % between_looks == 0 && look());
   }
+  [[nodiscard]] bool is_stopped() const { return is_stopped_; }
   /// @throws Cancelled; InvalidMesh where there were too many.
   void check() const;
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "blum/core/context.hpp"
 #include "blum/core/function_ref.hpp"
@@ -59,6 +60,26 @@ class OrientedBvh {
   /// with a negative one.
   /// @param place  where the other hierarchy is, seen from this one.
   void for_each_near_pair(const OrientedBvh& other, const RigidTransform& place, double limit, Visit visit) const;
+
+  /// A node of a hierarchy: a block of primitives where the level is -1; else its children are a block of boxes.
+  struct Node {
+    std::uint32_t index = 0;
+    std::int32_t level = -1;
+    [[nodiscard]] bool is_leaf() const { return level < 0; }
+  };
+  /// A node of this hierarchy, one of another, and the squared distance that they are apart at least, but for rounding.
+  struct NodePair {
+    double squared_gap = 0;
+    Node here, there;
+  };
+  /// Cuts the search for pairs that are at most `limit` apart into parts that threads may share: about as many pairs of
+  /// nodes as wanted, or up to eight times as many, those that seem closest first. Fewer where there is less to look
+  /// at.
+  [[nodiscard]] std::vector<NodePair> near_node_pairs(const OrientedBvh& other, const RigidTransform& place,
+                                                      double limit, std::size_t wanted) const;
+  /// As for_each_near_pair() of the hierarchies, for primitives below a pair of nodes only.
+  void for_each_near_pair(const NodePair& nodes, const OrientedBvh& other, const RigidTransform& place, double limit,
+                          Visit visit) const;
 
   /// Primitives lie in blocks of eight, so that a loop over blocks can be shared by threads.
   [[nodiscard]] std::size_t block_count() const;

@@ -306,6 +306,65 @@ TEST_P(ProximitySceneOfThreads, IsTheSameForAnyNumber) {
 INSTANTIATE_TEST_SUITE_P(Cullings, ProximitySceneOfThreads, testing::Values(Culling::bvh, Culling::voronoi),
                          [](const auto& info) { return std::string(to_string(info.param)); });
 
+/// A plate of n x n squares at a height: as far from another one everywhere.
+TriangleMesh plate(std::uint32_t n, double height) {
+  TriangleMesh mesh;
+  for (std::uint32_t y = 0; y <= n; ++y) {
+    for (std::uint32_t x = 0; x <= n; ++x) mesh.vertices.emplace_back(x, y, height);
+  }
+  for (std::uint32_t y = 0; y < n; ++y) {
+    for (std::uint32_t x = 0; x < n; ++x) {
+      const std::uint32_t v = y * (n + 1) + x;
+      mesh.triangles.push_back({v, v + 1, v + n + 1});
+      mesh.triangles.push_back({v + 1, v + n + 2, v + n + 1});
+    }
+  }
+  return mesh;
+}
+
+/// The closest pair of two objects by looking at all.
+Row closest_of_all(const SlowScene& slow) {
+  const auto of_a = slow.primitives(0);
+  const auto of_b = slow.primitives(1);
+  Row best{0, 0, 1, 0, infinite};
+  for (std::uint32_t i = 0; i < of_a.size(); ++i) {
+    const Corners p = slow.corners(0, of_a[i]);
+    for (std::uint32_t j = 0; j < of_b.size(); ++j) {
+      const double distance = triangle_distance(p, slow.corners(1, of_b[j])).distance;
+      if (distance < std::get<4>(best)) best = {0, i, 1, j, distance};
+    }
+  }
+  return best;
+}
+
+/// Of objects so large that several threads share the work; pairs may be equally close everywhere.
+TEST(ProximityScene, SharesTheWorkOfLargeObjects) {
+  const TriangleMesh body = make_organic({.frequency = 12});
+  const TriangleMesh flat = plate(34, 0);
+  SlowScene apart{{{body, {}, {}}, {body, {}, {}}}, {}};
+  apart.objects[1].place.translation = {2.5, 0.3, -0.2};
+  SlowScene touching = apart;
+  touching.objects[1].place.translation = {0.4, 0.3, 0.2};
+  SlowScene parallel{{{flat, {}, {}}, {plate(34, 0.75), {}, {}}}, {}};
+  SlowScene equal{{{flat, {}, {}}, {flat, {}, {}}}, {}};
+  for (const SlowScene& slow : {apart, touching, parallel, equal}) {
+    ASSERT_GT(slow.objects[0].mesh.triangles.size(), 8 * 256U);
+    ProximityScene scene;
+    slow.add_to(scene);
+    const Row expected = closest_of_all(slow);
+    std::optional<ProximityReport> first;
+    for (const int threads : {1, 2, 7}) {
+      Context context;
+      context.threads = threads;
+      const ProximityPairs found = scene.separation(infinite, context);
+      ASSERT_EQ(rows(found.pairs), std::vector<Row>{expected});
+      if (!first) first = found.report;
+      EXPECT_EQ(found.report.candidates, first->candidates);
+      EXPECT_EQ(found.report.exact_tests, first->exact_tests);
+    }
+  }
+}
+
 /// Voronoi culling of N-body distances leaves fewer pairs to the exact test than there are, and says what it did.
 TEST(ProximityScene, TellsHowItCulled) {
   const TriangleMesh mesh = make_organic({.frequency = 10});

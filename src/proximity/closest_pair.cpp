@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "blum/core/parallel.hpp"
+#include "proximity/heaps.hpp"
+#include "proximity/scene_pairs.hpp"
+
+namespace blum::detail {
+namespace {
+
+/// Objects with fewer blocks of primitives than this are compared in one go: sharing the work would cost more.
+constexpr std::size_t worth_sharing = 256;
+/// How many candidates are looked at before work is cut into parts: they tell how far there is to look.
+constexpr std::size_t first_candidates = 16;
+constexpr std::size_t parts_of_two = 64;
+constexpr std::size_t blocks_per_part = 16;
+constexpr std::size_t parts_of_first_round = 4;
+
+/// Looks for a pair that is closer than the best one so far.
+class PartSearch {
+ public:
+  PartSearch(const ObjectPair& objects, CandidateLimit& candidates, const Closest& start)
+      : objects_(&objects), candidates_(&candidates), best_(start) {}
+
+  /// How close primitives must be to be of interest now, as the hierarchies see them.
+  [[nodiscard]] double limit() const { return best_.limit + objects_->slack(); }
+  [[nodiscard]] const Closest& best() const { return best_; }
+  [[nodiscard]] const ProximityReport& report() const { return report_; }
+
+  /// @return  the limit from now on; negative where the search is to stop.
+  double look_at(std::uint32_t i, std::uint32_t j) {
+    if (candidates_->stops(++report_.candidates)) return -1;
+    if (objects_->is_self() && objects_->are_neighbours(i, j)) return limit();
+    if (objects_->is_self() && j < i) std::swap(i, j);
+    const bool is_after =
+        best_.limit == 0 && best_.pair && std::pair(i, j) > std::pair(best_.pair->first, best_.pair->second);
+    if (!is_after) {
+      ++report_.exact_tests;
+      best_.offer(objects_->compare(i, j));
+    }
+    return limit();
+  }
+
+ private:
+  const ObjectPair* objects_;
+  CandidateLimit* candidates_;
+  Closest best_;
+  ProximityReport report_;
+};
+
+/// The search for the closest pair of two objects, or of an object and itself.
+class ClosestPairSearch {
+ public:
+  ClosestPairSearch(const ObjectPair& objects, double max_distance, const Context& context)
+      : objects_(objects), context_(context), candidates_(context), best_{std::nullopt, max_distance} {}
+
+  std::optional<PrimitivePair> run(ProximityReport& report) {
+    if (objects_.is_self()) {
+      search_self();
+    } else if (std::min(objects_.a().bvh().block_count(), objects_.b().bvh().block_count()) < worth_sharing) {
+      search_two(std::numeric_limits<std::size_t>::max());
+    } else if (!search_two(first_candidates)) {
+      search_parts_of_two();
+    }
+    candidates_.check();
+    add(report_, report);
+    return best_.pair;
+  }
+
+ private:
+  [[nodiscard]] PartSearch part() { return {objects_, candidates_, best_}; }
+
+  void take(const PartSearch& found) {
+    if (found.best().pair) best_.offer(*found.best().pair);
+    add(found.report(), report_);
+  }
+
+  /// @param most  how many candidates are looked at. @return  whether these were all.
+  bool search_two(std::size_t most) {
+    PartSearch search = part();
+    bool is_whole = true;
+    const auto visit = [&](std::uint32_t i, std::uint32_t j, double) {
+      const double limit = search.look_at(i, j);
+      is_whole = search.report().candidates < most;
+      return is_whole ? limit : -1.0;
+    };
+    objects_.a().bvh().for_each_near_pair(objects_.b().bvh(), objects_.place(), search.limit(), visit);
+    take(search);
+    return is_whole;
+  }
+
+  void search_parts_of_two() {
+    const OrientedBvh& a = objects_.a().bvh();
+    const OrientedBvh& b = objects_.b().bvh();
+    const auto parts = a.near_node_pairs(b, objects_.place(), part().limit(), parts_of_two);
+    search_in_rounds(parts.size(), [&](std::size_t k, PartSearch& search) {
+      const auto visit = [&](std::uint32_t i, std::uint32_t j, double) { return search.look_at(i, j); };
+      a.for_each_near_pair(parts[k], b, objects_.place(), search.limit(), visit);
+    });
+  }
+
+  void search_self() {
+    const OrientedBvh& bvh = objects_.a().bvh();
+    const std::size_t parts = (bvh.block_count() + blocks_per_part - 1) / blocks_per_part;
+    search_in_rounds(parts, [&](std::size_t k, PartSearch& search) {
+      const auto visit = [&](std::uint32_t i, std::uint32_t j, double) { return search.look_at(i, j); };
+      const std::size_t end = std::min((k + 1) * blocks_per_part, bvh.block_count());
+      for (std::size_t block = k * blocks_per_part; block < end && !candidates_.is_stopped(); ++block) {
+        bvh.for_each_near_self_pair(block, search.limit(), visit);
+      }
+    });
+  }
+
+  /// Each round has twice as many parts as the one before. Within a round all start from what earlier rounds have
+  /// found, so that not even counts of candidates depend on threads.
+  /// @param search_part  callable: index of a part, where to look from.
+  template <class SearchPart>
+  void search_in_rounds(std::size_t parts, const SearchPart& search_part) {
+    std::size_t size = parts_of_first_round;
+    for (std::size_t begin = 0; begin < parts; begin += size, size *= 2) {
+      std::vector<PartSearch> found(std::min(size, parts - begin), part());
+      parallel_for(context_, found.size(), 1, "", [&](const WorkRange& range) {
+        for (std::size_t k = range.begin; k < range.end; ++k) search_part(begin + k, found[k]);
+      });
+      for (const PartSearch& one : found) take(one);
+    }
+  }
+
+  const ObjectPair& objects_;
+  const Context& context_;
+  CandidateLimit candidates_;
+  Closest best_;
+  ProximityReport report_;
+};
+
+}  // namespace
+
+std::optional<PrimitivePair> closest_pair(const ObjectPair& objects, double max_distance, const Context& context,
+                                          ProximityReport& report) {
+  static_cast<void>(thread_count(context));
+  throw_if_cancelled(context);
+  if (objects.is_self()) check_neighbours(objects);
+  return ClosestPairSearch(objects, max_distance, context).run(report);
+}
+
+}  // namespace blum::detail
