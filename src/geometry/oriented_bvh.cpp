@@ -37,6 +37,12 @@ struct IndexRange {
 /// At most seven siblings wait for each of at most eleven levels of either tree.
 using PendingPairs = InlineList<NodePair, 256>;
 
+/// The closest pair comes first; of equally close ones, as of overlapping ones, that which is further down.
+bool comes_later(const NodePair& a, const NodePair& b) {
+  if (a.squared_gap != b.squared_gap) return a.squared_gap > b.squared_gap;
+  return a.here.level + a.there.level > b.here.level + b.there.level;
+}
+
 /// The squared limit that squares of gaps are compared with.
 double squared_limit(double limit, double slack) {
   if (!(limit >= 0)) return -1;
@@ -253,29 +259,33 @@ class PairSearch {
     }
   }
 
-  /// Replaces pairs of nodes by those of their children until there are enough; those that seem closest come first.
-  [[nodiscard]] std::vector<NodePair> cut(std::size_t wanted) {
-    std::vector<NodePair> pairs{{0, here_.top(), there_.top()}};
-    const double most = squared_limit(limit_, slack_);
-    for (bool may_go_on = true; may_go_on && pairs.size() < wanted;) {
-      may_go_on = false;
-      std::vector<NodePair> below;
-      for (const NodePair& pair : pairs) {
-        if (pair.here.is_leaf() && pair.there.is_leaf()) {
-          below.push_back(pair);
-          continue;
-        }
-        may_go_on = true;
-        descend(pair, most);
-        while (!pending_.empty()) below.push_back(pending_.pop_back());
+  /// Goes from the closest pair of nodes left down to primitives, always to the closest children, some times over.
+  /// @return  what is left, closest first.
+  [[nodiscard]] std::vector<NodePair> dive(std::size_t times) {
+    std::vector<NodePair> heap{{0, here_.top(), there_.top()}};
+    const auto push = [&](const NodePair& pair) {
+      heap.push_back(pair);
+      std::push_heap(heap.begin(), heap.end(), comes_later);
+    };
+    for (std::size_t k = 0; k < times && !heap.empty(); ++k) {
+      std::pop_heap(heap.begin(), heap.end(), comes_later);
+      NodePair pair = heap.back();
+      heap.pop_back();
+      if (!(pair.squared_gap <= squared_limit(limit_, slack_))) return {};
+      bool is_open = true;
+      while (is_open && !(pair.here.is_leaf() && pair.there.is_leaf())) {
+        descend(pair, squared_limit(limit_, slack_));
+        is_open = !pending_.empty();
+        if (is_open) pair = pending_.pop_back();
+        while (!pending_.empty()) push(pending_.pop_back());
       }
-      pairs = std::move(below);
+      if (is_open) compare_leaves(pair.here.index, pair.there.index);
     }
-    std::sort(pairs.begin(), pairs.end(), [](const NodePair& a, const NodePair& b) {
-      const auto key = [](const NodePair& p) { return std::tuple(p.squared_gap, p.here.index, p.there.index); };
-      return key(a) < key(b);
-    });
-    return pairs;
+    std::sort_heap(heap.begin(), heap.end(), comes_later);
+    std::reverse(heap.begin(), heap.end());
+    const double limit = squared_limit(limit_, slack_);
+    while (!heap.empty() && !(heap.back().squared_gap <= limit)) heap.pop_back();
+    return heap;
   }
 
  private:
@@ -373,9 +383,10 @@ void OrientedBvh::for_each_near_pair(const OrientedBvh& other, const RigidTransf
   PairSearch<Data>(*data_, *other.data_, place, limit, visit).run(data_->top(), other.data_->top());
 }
 
-std::vector<OrientedBvh::NodePair> OrientedBvh::near_node_pairs(const OrientedBvh& other, const RigidTransform& place,
-                                                                double limit, std::size_t wanted) const {
-  return PairSearch<Data>(*data_, *other.data_, place, limit, [](auto...) { return Wanted(-1); }).cut(wanted);
+std::vector<OrientedBvh::NodePair> OrientedBvh::dive_to_near_pairs(const OrientedBvh& other,
+                                                                   const RigidTransform& place, double limit,
+                                                                   std::size_t dives, Visit visit) const {
+  return PairSearch<Data>(*data_, *other.data_, place, limit, visit).dive(dives);
 }
 
 void OrientedBvh::for_each_near_pair(const NodePair& nodes, const OrientedBvh& other, const RigidTransform& place,

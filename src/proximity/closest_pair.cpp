@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,10 +10,8 @@
 namespace blum::detail {
 namespace {
 
-/// Objects with fewer blocks of primitives than this are compared in one go: sharing the work would cost more.
-constexpr std::size_t worth_sharing = 256;
-/// How many candidates are looked at before work is cut into parts: they tell how far there is to look.
-constexpr std::size_t first_candidates = 16;
+/// How many times the closest boxes are followed down to primitives before threads share the rest.
+constexpr std::size_t dives = 64;
 constexpr std::size_t parts_of_two = 64;
 constexpr std::size_t blocks_per_part = 16;
 constexpr std::size_t parts_of_first_round = 4;
@@ -60,10 +57,8 @@ class ClosestPairSearch {
   std::optional<PrimitivePair> run(ProximityReport& report) {
     if (objects_.is_self()) {
       search_self();
-    } else if (std::min(objects_.a().bvh().block_count(), objects_.b().bvh().block_count()) < worth_sharing) {
-      search_two(std::numeric_limits<std::size_t>::max());
-    } else if (!search_two(first_candidates)) {
-      search_parts_of_two();
+    } else {
+      search_two();
     }
     candidates_.check();
     add(report_, report);
@@ -78,27 +73,19 @@ class ClosestPairSearch {
     add(found.report(), report_);
   }
 
-  /// @param most  how many candidates are looked at. @return  whether these were all.
-  bool search_two(std::size_t most) {
-    PartSearch search = part();
-    bool is_whole = true;
-    const auto visit = [&](std::uint32_t i, std::uint32_t j, double) {
-      const double limit = search.look_at(i, j);
-      is_whole = search.report().candidates < most;
-      return is_whole ? limit : -1.0;
-    };
-    objects_.a().bvh().for_each_near_pair(objects_.b().bvh(), objects_.place(), search.limit(), visit);
-    take(search);
-    return is_whole;
-  }
-
-  void search_parts_of_two() {
+  void search_two() {
     const OrientedBvh& a = objects_.a().bvh();
     const OrientedBvh& b = objects_.b().bvh();
-    const auto parts = a.near_node_pairs(b, objects_.place(), part().limit(), parts_of_two);
-    search_in_rounds(parts.size(), [&](std::size_t k, PartSearch& search) {
-      const auto visit = [&](std::uint32_t i, std::uint32_t j, double) { return search.look_at(i, j); };
-      a.for_each_near_pair(parts[k], b, objects_.place(), search.limit(), visit);
+    PartSearch search = part();
+    const auto see = [&](std::uint32_t i, std::uint32_t j, double) { return search.look_at(i, j); };
+    const auto left = a.dive_to_near_pairs(b, objects_.place(), search.limit(), dives, see);
+    take(search);
+    const std::size_t size = std::max<std::size_t>(left.size() / parts_of_two, 1);
+    search_in_rounds((left.size() + size - 1) / size, [&](std::size_t k, PartSearch& of_part) {
+      const auto visit = [&](std::uint32_t i, std::uint32_t j, double) { return of_part.look_at(i, j); };
+      for (std::size_t n = k * size; n < std::min((k + 1) * size, left.size()); ++n) {
+        a.for_each_near_pair(left[n], b, objects_.place(), of_part.limit(), visit);
+      }
     });
   }
 

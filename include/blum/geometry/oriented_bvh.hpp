@@ -72,12 +72,12 @@ class OrientedBvh {
     double squared_gap = 0;
     Node here, there;
   };
-  /// Cuts the search for pairs that are at most `limit` apart into parts that threads may share: about as many pairs of
-  /// nodes as wanted, or up to eight times as many, those that seem closest first. Fewer where there is less to look
-  /// at.
-  [[nodiscard]] std::vector<NodePair> near_node_pairs(const OrientedBvh& other, const RigidTransform& place,
-                                                      double limit, std::size_t wanted) const;
-  /// As for_each_near_pair() of the hierarchies, for primitives below a pair of nodes only.
+  /// Begins for_each_near_pair(): goes some times from the closest pair of nodes that is left down to primitives. What
+  /// that finds is mostly next to the closest of all, and rules out most of the rest. Allocates memory.
+  /// @return  the pairs of nodes that are still to be looked at, closest first, for threads to share.
+  [[nodiscard]] std::vector<NodePair> dive_to_near_pairs(const OrientedBvh& other, const RigidTransform& place,
+                                                         double limit, std::size_t dives, Visit visit) const;
+  /// As for_each_near_pair(), for primitives below a pair of nodes only.
   void for_each_near_pair(const NodePair& nodes, const OrientedBvh& other, const RigidTransform& place, double limit,
                           Visit visit) const;
 
