@@ -9,8 +9,10 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/geometry/bvh.hpp"
 #include "blum/geometry/resolve_crossings.hpp"
 #include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/sites.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/geometry/winding_number.hpp"
 #include "proximity/deepest_point.hpp"
@@ -175,6 +177,50 @@ class Body {
   std::vector<std::uint32_t> triangles_;
 };
 
+/// Whether a vector comes before its opposite.
+bool is_backward(const Vec3d& v) {
+  if (v.x != 0) return v.x < 0;
+  if (v.y != 0) return v.y < 0;
+  return v.z < 0;
+}
+
+/// Where both surfaces are one, each part of the border could be either's; solids that are the same would all be the
+/// first one's surface, with nothing of the other to be deep in. There the border is shared out as if the first solid
+/// were moved by next to nothing along x, and by still less along y and z: what faces backward becomes the first's.
+void share_out_common_faces(const Surfaces& surfaces, const std::map<std::uint32_t, std::vector<std::uint32_t>>& bodies,
+                            Overlap& overlap) {
+  std::array<TriangleMesh, 2> mesh;
+  std::array<SiteTable, 2> sites;
+  std::array<std::optional<Bvh>, 2> bvh;
+  const auto first = surfaces.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(surfaces.of_first);
+  for (std::size_t k = 0; k < 2; ++k) mesh[k].vertices = surfaces.mesh.vertices;
+  mesh[0].triangles.assign(surfaces.mesh.triangles.begin(), first);
+  mesh[1].triangles.assign(first, surfaces.mesh.triangles.end());
+  const double rounding = 1e-14 * bounds(surfaces.mesh).largest_coordinate();
+  for (const auto& [body, triangles] : bodies) {
+    for (const std::uint32_t t : triangles) {
+      const std::uint32_t source = overlap.source[t];
+      const std::size_t other = surfaces.is_of_first(source) ? 1 : 0;
+      const auto [a, b, c] = triangle_corners(surfaces.mesh, source);
+      const Vec3d normal = cross(b - a, c - a);
+      if (is_backward(normal) == (other == 1)) continue;
+      if (!bvh[other]) {
+        sites[other] = SiteTable(mesh[other]);
+        bvh[other].emplace(mesh[other], sites[other]);
+      }
+      const auto [p, q, r] = triangle_corners(overlap.mesh, t);
+      const std::optional<NearestSite> near = bvh[other]->nearest((p + q + r) / 3, rounding);
+      if (!near || sites[other].site(near->site).kind != SiteKind::face) continue;
+      const std::uint32_t twin = sites[other].triangle(near->site).value;
+      const auto [u, v, w] = triangle_corners(mesh[other], twin);
+      const Vec3d twin_normal = cross(v - u, w - u);
+      const double along = dot(normal, twin_normal);
+      if (!(along > 0.999999 * length(normal) * length(twin_normal))) continue;
+      overlap.source[t] = twin + static_cast<std::uint32_t>(other == 1 ? surfaces.of_first : 0);
+    }
+  }
+}
+
 /// Which triangles of an overlap belong together: those of one object, or of one part of an object that meets itself.
 std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self) {
   if (!is_self) {
@@ -231,11 +277,14 @@ Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second,
   if (!is_self) add_surface(b, second, is_self, context, surfaces);
   timer.lap("surfaces");
   const std::string names = is_self ? "parts of " + name_of(first) : name_of(first) + " and " + name_of(second);
-  const Overlap overlap = overlap_of(surfaces.mesh, names, context);
+  Overlap overlap = overlap_of(surfaces.mesh, names, context);
   timer.lap("overlap");
   std::map<std::uint32_t, std::vector<std::uint32_t>> bodies;
   for (std::uint32_t t = 0; t < overlap.body_of.size(); ++t) bodies[overlap.body_of[t]].push_back(t);
-  if (!is_self) keep_common(surfaces, overlap, context, bodies);
+  if (!is_self) {
+    keep_common(surfaces, overlap, context, bodies);
+    share_out_common_faces(surfaces, bodies, overlap);
+  }
   const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self);
   for (const auto& [body, triangles] : bodies) {
     throw_if_cancelled(context);

@@ -16,7 +16,7 @@ namespace blum {
 
 struct PenetrationOptions {
   /// How much larger than the depth told the true one may be, as a part of it: 1e-6 to 1. Where 200,000 points are not
-  /// enough to show that, as of parts much wider than deep, the bound told is larger.
+  /// enough to show that, as of parts of curved surfaces much wider than deep, the bound told is larger.
   double depth_tolerance = 0.01;
 };
 
@@ -36,8 +36,9 @@ void check(const PenetrationOptions& options);
 /// A connected part of what two solids have in common.
 ///
 /// Its border consists of a part of the surface of each, that lies in the other one. The depth is the largest distance
-/// of a point of one of these parts from the other part (Sud 2006, ch. 4: local penetration depth). It is local and by
-/// translation: how far the deepest point is from where it would be out, if the rest stayed as it is.
+/// of a point of one of these parts from the other part (Sud 2006, ch. 4: local penetration depth). It is no least way
+/// apart: moving by it brings the deepest point to the other part, and others may still be inside; nor does it count
+/// what of the surfaces is not in the part. Where surfaces coincide, it is that of moving one by next to nothing.
 struct Penetration {
   double depth = 0;        ///< mesh units; that of deep_point and surface_point
   double depth_bound = 0;  ///< what it is at most: a bound for certain, but for rounding

@@ -304,24 +304,48 @@ TEST(Penetration, BoundHoldsWhatWasNotLookedAt) {
   }
 }
 
-/// A block that lies a little in a floor: wide for its depth. It takes no minutes, and the bound is one.
-TEST(Penetration, OfShallowContactsIsBounded) {
+/// A block that lies a little in a floor, and solids of many and long triangles that stand in each other's faces: wide
+/// for their depth. The tolerance is kept however shallow they are.
+TEST(Penetration, OfShallowContactsKeepsTheTolerance) {
   const TriangleMesh floor = box({-5, -5, -1}, {5, 5, 0});
-  for (const double deep : {1e-2, 1e-4, 1e-6}) {
+  for (const double deep : {1e-2, 1e-4, 1e-6, 1e-9}) {
+    SCOPED_TRACE(deep);
     const Penetration part = answer(floor, box({0.1, 0.2, -deep}, {1.1, 1.2, 1})).found.parts.at(0);
     EXPECT_NEAR(part.depth, deep, 1e-12);
-    EXPECT_GE(part.depth_bound, part.depth);
-    EXPECT_LT(part.depth_bound, 0.02);
+    expect_sound(part, floor, box({0.1, 0.2, -deep}, {1.1, 1.2, 1}), 0.01);
+    for (const TriangleMesh& solid : {make_cylinder({.sides = 50}), make_gear({}), make_sphere({.frequency = 4})}) {
+      const Vec3d size = bounds(solid).size();
+      const TriangleMesh above = moved(solid, {0.1 * size.x, 0.05 * size.y, size.z - deep});
+      const Penetrations found = answer(solid, above).found;
+      for (const Penetration& one : found.parts) expect_sound(one, solid, above, 0.01);
+    }
   }
 }
 
-/// The same solid twice: all of it is in common, and nothing of it is deep in the other's surface but its inside.
-TEST(Penetration, OfEqualSolidsIsTold) {
-  const TriangleMesh solid = box({0, 0, 0}, {1, 1, 1}, 2);
-  const Answer found = answer(solid, solid);
-  ASSERT_EQ(found.found.parts.size(), 1U);
-  EXPECT_NEAR(found.found.parts[0].volume, 1, 1e-12);
-  EXPECT_LE(found.separation, 0);
+/// Faces with more sides than are looked at within a reasonable time: the bound is one.
+TEST(Penetration, OfManySidedFacesIsBounded) {
+  const TriangleMesh solid = make_cylinder({.sides = 3000});
+  const TriangleMesh above = moved(solid, {0.2, 0.1, bounds(solid).size().z - 1e-3});
+  const Penetration part = answer(solid, above).found.parts.at(0);
+  EXPECT_NEAR(part.depth, 1e-3, 1e-9);
+  EXPECT_GE(part.depth_bound, part.depth);
+}
+
+/// The same solid twice: as deep as if one were moved by next to nothing.
+TEST(Penetration, OfEqualSolidsIsThatOfMovingOneALittle) {
+  for (const TriangleMesh& solid : {box({0, 0, 0}, {1, 1, 1}, 2), make_cylinder({.sides = 40}), make_gear({}),
+                                    make_torus({}), make_sphere({.frequency = 6})}) {
+    const Answer same = answer(solid, solid, 1e-3);
+    ASSERT_EQ(same.found.parts.size(), 1U);
+    const Answer beside = answer(solid, moved(solid, {-1e-7, -1e-9, -1e-11}), 1e-3);
+    EXPECT_NEAR(same.found.parts[0].volume, beside.found.parts[0].volume, 1e-5);
+    EXPECT_NEAR(same.separation, beside.separation, 2e-3 * std::abs(same.separation));
+    EXPECT_LT(same.separation, -0.1);
+    EXPECT_NEAR(same.found.parts[0].area[0], beside.found.parts[0].area[0], 1e-5);
+  }
+  // Solids that share some of their faces.
+  const Answer half = answer(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0.5}, {1, 1, 1.5}));
+  EXPECT_NEAR(half.separation, -0.5, 1e-12);
 }
 
 }  // namespace
