@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <string>
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/sites.hpp"
+#include "field/point_search.hpp"
 #include "field/sign/policy.hpp"
 #include "field/sign/sides.hpp"
 
@@ -28,6 +30,7 @@ double checked_limit(const ClosestPointOptions& options) {
 }  // namespace
 
 struct ClosestPointQuery::Data {
+  TriangleMesh mesh;  ///< what `search` is built of
   SiteTable sites;
   Bvh bvh;
   sign::Plan plan;
@@ -36,8 +39,12 @@ struct ClosestPointQuery::Data {
   double longest = 0;           ///< side of the mesh's box
   double coordinate_limit = 0;  ///< of queries, mesh units
 
-  Data(const MeshView& mesh, const ClosestPointOptions& options, const Context& context)
-      : sites(mesh, context),
+  Data(const MeshView& given, const ClosestPointOptions& options, const Context& context)
+      : mesh{{given.vertices.begin(), given.vertices.end()},
+             {given.triangles.begin(), given.triangles.end()},
+             {given.segments.begin(), given.segments.end()},
+             {given.points.begin(), given.points.end()}},
+        sites(mesh, context),
         bvh(mesh, sites, context),
         plan(sign::plan_signs(options.sign, mesh, sites, context)),
         sides(plan, mesh, sites, bvh, context),
@@ -50,6 +57,10 @@ struct ClosestPointQuery::Data {
   /// An upper bound on the distance, where one is known, spares work; it does not change the result.
   [[nodiscard]] ClosestPoint closest(const Vec3d& query, double upper_bound) const {
     const std::optional<NearestSite> nearest = bvh.nearest(query, std::min(max_distance, upper_bound));
+    return finished(query, nearest);
+  }
+
+  [[nodiscard]] ClosestPoint finished(const Vec3d& query, const std::optional<NearestSite>& nearest) const {
     if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
     // What lies on the surface is not inside.
     const bool is_negative = nearest->distance > 0 && sides.is_inside(query, *nearest);
@@ -62,9 +73,22 @@ struct ClosestPointQuery::Data {
     return bound * (1 + 1e-9) + 1e-12 * (longest + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
   }
 
+  /// The search for so many queries; null where they are not worth one. It is built by the first that are.
+  [[nodiscard]] const PointSearch* search_for(std::size_t queries, const Context& context) const {
+    const std::scoped_lock lock(search_mutex_);
+    const bool is_worth_it =
+        search_ ? PointSearch::is_worth_using(queries, sites) : PointSearch::is_worth_building(queries, sites);
+    if (is_worth_it && !search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
+    return is_worth_it ? search_.get() : nullptr;
+  }
+
   [[nodiscard]] bool is_in_range(const Vec3d& q) const {
     return std::abs(q.x) <= coordinate_limit && std::abs(q.y) <= coordinate_limit && std::abs(q.z) <= coordinate_limit;
   }
+
+ private:
+  mutable std::mutex search_mutex_;
+  mutable std::unique_ptr<const PointSearch> search_;
 };
 
 ClosestPointQuery::ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options, const Context& context) {
@@ -97,6 +121,13 @@ std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> quer
     }
   }
   std::vector<ClosestPoint> results(queries.size());
+  if (const PointSearch* search = data_->search_for(queries.size(), context)) {
+    search->nearest(queries, data_->max_distance, data_->bvh, context,
+                    [&](std::size_t i, const std::optional<NearestSite>& nearest) {
+                      results[i] = data_->finished(queries[i], nearest);
+                    });
+    return results;
+  }
   parallel_for(context, queries.size(), queries_per_range, "closest points", [&](const WorkRange& range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       // Queries often come in order: the last answer bounds the next one by the triangle inequality.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/site_feet.hpp"
 #include "geometry/triangle_frame.hpp"
 
 namespace blum {
@@ -14,17 +15,13 @@ constexpr double sliver_ratio = 1e-3;
 void offer_edge(const Vec3d& query, const Vec3d& a, const Vec3d& b, std::uint32_t vertex_a, std::uint32_t vertex_b,
                 std::uint32_t edge, SiteCandidate& best) {
   if (edge == SiteId::none().value) return;
-  const Vec3d direction = b - a;
-  const double squared = squared_length(direction);
-  const double t = squared == 0 ? 0.0 : dot(query - a, direction) / squared;
-  if (t <= 0) {
+  const EdgeFoot foot = foot_on_edge(query, a, b);
+  if (foot.t <= 0) {
     best.offer(length(query - a), a, vertex_a);
-  } else if (t >= 1) {
+  } else if (foot.t >= 1) {
     best.offer(length(query - b), b, vertex_b);
   } else {
-    // From the nearer end, so that rounding of t does not grow with the edge's length.
-    const Vec3d point = t <= 0.5 ? a + direction * t : b - direction * (1 - t);
-    best.offer(length(query - point), point, edge);
+    best.offer(length(query - foot.point), foot.point, edge);
   }
 }
 
@@ -58,13 +55,8 @@ void offer_closest(const PrimitiveBlock& block, std::size_t lane, const Vec3d& q
   if (block.face[lane] == SiteId::none().value) return;
   const TriangleFrame f = make_triangle_frame(p);
   if (f.is_flat()) return;
-  const Vec3d w = query - f.base;
-  const double s = dot(w, f.u);
-  const double t = dot(w, f.v);
-  const bool over_face = t > 0 && s * f.altitude > t * f.apex && (f.length - s) * f.altitude > t * (f.length - f.apex);
-  if (!over_face) return;
-  const Vec3d rest = w - f.u * s - f.v * t;
-  best.offer(length(rest), query - rest, block.face[lane]);
+  const FaceFoot foot(query, f);
+  if (foot.is_inside(f)) best.offer(length(foot.rest), query - foot.rest, block.face[lane]);
 }
 
 ProbeTriangle::ProbeTriangle(const std::array<Vec3d, 3>& triangle) : corners(triangle) {

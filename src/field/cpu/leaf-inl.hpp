@@ -135,11 +135,32 @@ struct LeafDomination {
   }
 };
 
+/// Positions of the nodes of a pass, relative to the middle of the leaf's parent: what affine functions are evaluated at.
+struct LatticeNodes {
+  static constexpr std::size_t vectors = pass_vectors;
+  V x[planar], y[planar], z[slabs];
+
+  HWY_INLINE void affine(V base, V gx, V gy, V gz, V out[vectors]) const {
+    for (std::size_t p = 0; p < planar; ++p) {
+      const V in_plane = hn::MulAdd(gx, x[p], hn::MulAdd(gy, y[p], base));
+      for (std::size_t s = 0; s < slabs; ++s) out[s * planar + p] = hn::MulAdd(gz, z[s], in_plane);
+    }
+  }
+  /// Squared lengths of positions + offset.
+  HWY_INLINE void squared_lengths(const Vec& offset, V out[vectors]) const {
+    for (std::size_t p = 0; p < planar; ++p) {
+      const V in_plane = hn::MulAdd(hn::Add(offset.x, x[p]), hn::Add(offset.x, x[p]), square(hn::Add(offset.y, y[p])));
+      for (std::size_t s = 0; s < slabs; ++s) {
+        const V dz = hn::Add(offset.z, z[s]);
+        out[s * planar + p] = hn::MulAdd(dz, dz, in_plane);
+      }
+    }
+  }
+};
+
 /// Positions of a leaf's nodes relative to the middle of its parent, for each pass.
 struct LeafPattern {
-  struct Pass {
-    V x[planar], y[planar], z[slabs];
-  };
+  using Pass = LatticeNodes;
   Pass pass[passes];
 
   LeafPattern() = default;
@@ -170,57 +191,47 @@ struct LeafPattern {
 };
 
 /// Evaluates candidates at the nodes of one pass, and has each offered to the winners, which the derived class keeps.
-template <class Winners, bool with_sides>
+template <class Winners, bool with_sides, class Nodes = LatticeNodes>
 struct LeafEvaluation {
-  V x[planar], y[planar], z[slabs];
+  static constexpr std::size_t vectors = Nodes::vectors;
+  Nodes nodes;
 
   HWY_INLINE void offer(std::size_t k, V inside, V candidate, V candidate_id, V candidate_side) {
     static_cast<Winners*>(this)->take(k, inside, candidate, candidate_id, candidate_side);
   }
 
-  HWY_INLINE void affine(const LeafColumns& in, int column, std::size_t at, V out[pass_vectors]) const {
+  HWY_INLINE void affine(const LeafColumns& in, int column, std::size_t at, V out[vectors]) const {
     const auto c = static_cast<std::size_t>(column);
-    affine(set(in.column(c)[at]), set(in.column(c + 1)[at]), set(in.column(c + 2)[at]), set(in.column(c + 3)[at]), out);
-  }
-  HWY_INLINE void affine(V base, V gx, V gy, V gz, V out[pass_vectors]) const {
-    for (std::size_t p = 0; p < planar; ++p) {
-      const V in_plane = hn::MulAdd(gx, x[p], hn::MulAdd(gy, y[p], base));
-      for (std::size_t s = 0; s < slabs; ++s) out[s * planar + p] = hn::MulAdd(gz, z[s], in_plane);
-    }
+    nodes.affine(set(in.column(c)[at]), set(in.column(c + 1)[at]), set(in.column(c + 2)[at]), set(in.column(c + 3)[at]),
+                 out);
   }
 
   HWY_INLINE void vertex(const LeafColumns& in, std::size_t at, const std::vector<Vec3f>& vertex_sides) {
-    V inside[pass_vectors];
-    V value[pass_vectors];
+    V inside[vectors];
+    V value[vectors];
     affine(in, LeafVertex::planes, at, inside);
     for (int plane = 1; plane < 4; ++plane) {
       affine(in, LeafVertex::planes + 4 * plane, at, value);
-      for (std::size_t k = 0; k < pass_vectors; ++k) inside[k] = hn::And(inside[k], value[k]);
+      for (std::size_t k = 0; k < vectors; ++k) inside[k] = hn::And(inside[k], value[k]);
     }
-    const V to_x = set(in.column(LeafVertex::to_site)[at]);
-    const V to_y = set(in.column(LeafVertex::to_site + 1)[at]);
-    const V to_z = set(in.column(LeafVertex::to_site + 2)[at]);
+    const Vec to_site{set(in.column(LeafVertex::to_site)[at]), set(in.column(LeafVertex::to_site + 1)[at]),
+                      set(in.column(LeafVertex::to_site + 2)[at])};
     if constexpr (with_sides) {
       std::uint32_t vertex_id = 0;
       std::memcpy(&vertex_id, in.column(LeafVertex::id) + at, sizeof(vertex_id));
       const Vec n = set(vertex_sides[vertex_id]);
-      affine(dot(Vec{to_x, to_y, to_z}, n), n.x, n.y, n.z, value);
+      nodes.affine(dot(to_site, n), n.x, n.y, n.z, value);
     }
     const V new_id = set(in.column(LeafVertex::id)[at]);
-    for (std::size_t p = 0; p < planar; ++p) {
-      const V in_plane = hn::MulAdd(hn::Add(to_x, x[p]), hn::Add(to_x, x[p]), square(hn::Add(to_y, y[p])));
-      for (std::size_t s = 0; s < slabs; ++s) {
-        const V dz = hn::Add(to_z, z[s]);
-        const std::size_t k = s * planar + p;
-        offer(k, inside[k], hn::MulAdd(dz, dz, in_plane), new_id, value[k]);
-      }
-    }
+    V squared[vectors];
+    nodes.squared_lengths(to_site, squared);
+    for (std::size_t k = 0; k < vectors; ++k) offer(k, inside[k], squared[k], new_id, value[k]);
   }
 
   HWY_INLINE void edge(const LeafColumns& in, std::size_t at) {
-    V across_b[pass_vectors];
-    V across_n[pass_vectors];
-    V along[pass_vectors];
+    V across_b[vectors];
+    V across_n[vectors];
+    V along[vectors];
     affine(in, LeafEdge::across_b, at, across_b);
     affine(in, LeafEdge::across_n, at, across_n);
     affine(in, LeafEdge::along, at, along);
@@ -230,7 +241,7 @@ struct LeafEvaluation {
     const V first_limit = set(in.column(LeafEdge::first_limit)[at]);
     const V new_id = set(in.column(LeafEdge::id)[at]);
     const V slack = set(plane_slack);
-    for (std::size_t k = 0; k < pass_vectors; ++k) {
+    for (std::size_t k = 0; k < vectors; ++k) {
       // Beyond its ends the edge is as far as its end: the excess keeps the distance exact within the slack.
       const V excess = hn::Sub(hn::Abs(along[k]), half_length);
       const V beyond = hn::Max(excess, hn::Zero(d));
@@ -248,15 +259,15 @@ struct LeafEvaluation {
   }
 
   HWY_INLINE void face(const LeafColumns& in, std::size_t at) {
-    V height[pass_vectors];
-    V minus_u[pass_vectors];
-    V minus_v[pass_vectors];
+    V height[vectors];
+    V minus_u[vectors];
+    V minus_v[vectors];
     affine(in, LeafFace::height, at, height);
     affine(in, LeafFace::minus_u, at, minus_u);
     affine(in, LeafFace::minus_v, at, minus_v);
     const V new_id = set(in.column(LeafFace::id)[at]);
     const V minus_one = set(-1.0F);
-    for (std::size_t k = 0; k < pass_vectors; ++k) {
+    for (std::size_t k = 0; k < vectors; ++k) {
       const V minus_w = hn::Sub(hn::Sub(minus_one, minus_u[k]), minus_v[k]);
       const V inside = hn::And(hn::And(minus_u[k], minus_v[k]), minus_w);
       offer(k, inside, hn::Mul(height[k], height[k]), new_id, height[k]);
@@ -265,24 +276,20 @@ struct LeafEvaluation {
 
  private:
   friend Winners;
-  explicit LeafEvaluation(const LeafPattern::Pass& pattern) {
-    for (std::size_t p = 0; p < planar; ++p) {
-      x[p] = pattern.x[p];
-      y[p] = pattern.y[p];
-    }
-    for (std::size_t s = 0; s < slabs; ++s) z[s] = pattern.z[s];
-  }
+  explicit LeafEvaluation(const Nodes& of_pass) : nodes(of_pass) {}
 };
 
 /// The running winners of one pass, in registers.
-template <bool with_sides>
-struct LeafPass : LeafEvaluation<LeafPass<with_sides>, with_sides> {
-  V squared[pass_vectors];
-  V id[pass_vectors];
-  V side[pass_vectors];
+template <bool with_sides, class Nodes = LatticeNodes>
+struct LeafPass : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes> {
+  static constexpr std::size_t vectors = Nodes::vectors;
+  V squared[vectors];
+  V id[vectors];
+  V side[vectors];
 
-  explicit LeafPass(const LeafPattern::Pass& pattern) : LeafEvaluation<LeafPass<with_sides>, with_sides>(pattern) {
-    for (std::size_t k = 0; k < pass_vectors; ++k) {
+  explicit LeafPass(const Nodes& of_pass)
+      : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes>(of_pass) {
+    for (std::size_t k = 0; k < vectors; ++k) {
       squared[k] = set(hwy::HighestValue<float>());
       id[k] = hn::BitCast(d, hn::Set(di, dead_record));
       side[k] = hn::Zero(d);

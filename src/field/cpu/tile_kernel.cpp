@@ -8,6 +8,7 @@
 // foreach_target.h must come before the headers that are compiled once per target.
 #include "field/cpu/gather-inl.hpp"
 #include "field/cpu/leaf-inl.hpp"
+#include "field/cpu/witness-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace blum::cpu {
@@ -189,7 +190,7 @@ class TileWorker {
       for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
         list_child(candidates[kind], here.bits[kind], c, here.child[kind]);
       }
-      list_slivers(candidates[sliver_kind], child, here.child[sliver_kind]);
+      list_slivers(candidates[sliver_kind], child.place, child.p0, here.child[sliver_kind]);
       divide(parts.child[c], size / 2, here.child, dominators_of(children, c), child.side, level + 1);
     }
     if (is_buffered_) flush(box);
@@ -224,7 +225,7 @@ class TileWorker {
       if (!child.is_open) continue;
       const LeafInput input{scratch_.leaf, here.bits, c};
       if (is_worth_culling) dominate_leaf(input, parts, child, dominators_of(children, c));
-      list_slivers(candidates[sliver_kind], child, here.child[sliver_kind]);
+      list_slivers(candidates[sliver_kind], child.place, child.p0, here.child[sliver_kind]);
       if (is_full) {
         leaf(parts.child[c], input, here.child[sliver_kind], child.side, full_patterns_[c]);
       } else {
@@ -269,45 +270,6 @@ class TileWorker {
     dominate<vertex_kind>(input, domination);
     dominate<edge_kind>(input, domination);
     dominate<face_kind>(input, domination);
-  }
-
-  /// The closest site at a child's centre, among those that the lanes have seen.
-  static Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
-                                   const Vec3f& center) {
-    alignas(64) std::array<std::uint32_t, lanes> index;
-    const float squared = hn::GetLane(hn::MinOfLanes(d, closest.squared[child]));
-    hn::Store(closest.index[child], di, index.data());
-    const auto best = static_cast<std::size_t>(std::countr_zero(bits(hn::Eq(closest.squared[child], set(squared)))));
-    Witness witness;
-    if (squared >= hwy::HighestValue<float>()) return witness;
-    witness.kind = static_cast<Kind>(index[best] >> 28);
-    witness.record = &candidates[witness.kind][index[best] & 0x0fffffffU];
-    if (!closest_on_record(witness.kind, *witness.record, center, witness.point)) {
-      // Rounding put the centre just outside of the prism: the point over it still lies on the face's plane, within it.
-      const Vec3f normal = vec_at(*witness.record, FaceColumns::normal);
-      witness.point = center - normal * dot(center - vec_at(*witness.record, FaceColumns::anchor), normal);
-    }
-    witness.squared_distance = squared;
-    return witness;
-  }
-
-  /// Slivers are rare: they are looked at one by one.
-  static void offer_slivers(const RecordList& slivers, const Vec3f& center, Witness& witness) {
-    for (std::size_t k = 0; k < slivers.count(); ++k) {
-      const Vec3d query = to_double(center);
-      const Vec3d point = closest_on_sliver(slivers[k], query);
-      const auto squared = static_cast<float>(squared_length(query - point));
-      if (squared < witness.squared_distance) witness = {to_float(point), sliver_kind, &slivers[k], squared};
-    }
-  }
-
-  static void list_slivers(const RecordList& slivers, const Child& child, RecordList& out) {
-    out.reset(slivers.count());
-    const Vec3d center = to_double(child.place.center);
-    const double reach = length(child.p0 - child.place.center) * 1.0001 + 2 * length(child.place.half) + 4 * box_slack;
-    for (std::size_t k = 0; k < slivers.count(); ++k) {
-      if (length(center - closest_on_sliver(slivers[k], center)) <= reach) out.append(slivers[k]);
-    }
   }
 
   void leaf(const NodeBox& box, const LeafInput& input, const RecordList& slivers, int side,

@@ -1,0 +1,60 @@
+#include "field/cpu/point_cells.hpp"
+
+#include <algorithm>
+
+namespace blum::cpu {
+namespace {
+
+/// Fewer have too many candidates in common with their neighbours; more do not stay in caches.
+constexpr std::size_t points_per_cell = 16384;
+
+void add_cells(const MortonPoints& points, const PointCell& cell, std::vector<PointCell>& out) {
+  if (cell.size() == 0) return;
+  if (cell.size() <= points_per_cell) return out.push_back(cell);
+  if (cell.level < MortonPoints::levels) {
+    for (const PointCell& child : children_of(points, cell)) add_cells(points, child, out);
+    return;
+  }
+  PointCell part = cell;
+  for (std::size_t begin = cell.begin; begin < cell.end; begin += points_per_cell) {
+    part.begin = begin;
+    part.end = std::min(begin + points_per_cell, cell.end);
+    out.push_back(part);
+  }
+}
+
+}  // namespace
+
+std::array<PointCell, 8> children_of(const MortonPoints& points, const PointCell& cell) {
+  std::array<PointCell, 8> out;
+  const unsigned shift = 3 * (MortonPoints::levels - 1 - cell.level);
+  const float half = cell.half / 2;
+  std::size_t begin = cell.begin;
+  for (std::uint32_t c = 0; c < 8; ++c) {
+    const auto first = points.code.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = points.code.begin() + static_cast<std::ptrdiff_t>(cell.end);
+    const auto is_in = [&](std::uint32_t code) { return (code >> shift & 7U) <= c; };
+    const auto end = static_cast<std::size_t>(std::partition_point(first, last, is_in) - points.code.begin());
+    out[c] = {begin, end, cell.level + 1, cell.center, half};
+    for (std::size_t axis = 0; axis < 3; ++axis) out[c].center[axis] += (c >> axis & 1U) != 0 ? half : -half;
+    begin = end;
+  }
+  return out;
+}
+
+std::vector<PointCell> point_cells(const MortonPoints& points) {
+  std::vector<PointCell> out;
+  const double half = points.side / 2;
+  const Vec3d center = points.lower + Vec3d{half, half, half};
+  const auto all = [&] {
+    return PointCell{0,
+                     points.size(),
+                     0,
+                     {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)},
+                     static_cast<float>(half)};
+  };
+  add_cells(points, all(), out);
+  return out;
+}
+
+}  // namespace blum::cpu

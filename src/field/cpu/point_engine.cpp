@@ -1,0 +1,167 @@
+#include "field/cpu/point_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "blum/core/parallel.hpp"
+#include "blum/core/radix_sort.hpp"
+#include "field/kernels/morton.hpp"
+
+namespace blum::cpu {
+namespace {
+
+constexpr std::size_t grain = std::size_t{1} << 13;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+/// What single precision may have taken from a distance, in the normalised frame.
+constexpr double slack = 2e-6;
+
+Vec3d clamped(const Vec3d& p, const Box3& box) {
+  Vec3d out;
+  for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = std::clamp(p[axis], box.lower[axis], box.upper[axis]);
+  return out;
+}
+
+/// A grid of two nodes a side whose box is a mesh's, wider by its longest side: most queries are that close.
+GridSpec frame_grid(const Box3& bounds) {
+  const Vec3d size = bounds.size();
+  const double margin = 0.25 * std::max({size.x, size.y, size.z});
+  GridSpec grid;
+  grid.origin = bounds.lower - Vec3d{margin, margin, margin};
+  grid.spacing = size + Vec3d{2 * margin, 2 * margin, 2 * margin};
+  grid.size = {2, 2, 2};
+  return grid;
+}
+
+}  // namespace
+
+PointEngine::PointEngine(const MeshView& mesh, const SiteTable& sites, const Context& context) {
+  Adjacency adjacency;
+  build_adjacency(mesh, sites, context, adjacency);
+  kernels::Bounds bounds;
+  for (const std::uint32_t v : adjacency.named_vertices) bounds.extend(mesh.vertices[v]);
+  if (adjacency.named_vertices.empty() || bounds.lower == bounds.upper) return;
+  const GridSpec grid = frame_grid({bounds.lower, bounds.upper});
+  box_ = {grid.origin, grid.origin + grid.spacing};
+  frame_ = kernels::make_normal_frame(bounds, grid);
+  if (frame_.fault != NormalFrame::Fault::none || !is_finite(box_.lower) || !is_finite(box_.upper)) return;
+  std::vector<Vec3d> positions(mesh.vertices.size());
+  parallel_for(context, adjacency.named_vertices.size(), grain, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const std::uint32_t v = adjacency.named_vertices[k];
+      positions[v] = frame_.to_normal(mesh.vertices[v]);
+    }
+  });
+  SiteOrder order;
+  order_sites(mesh, sites, adjacency, positions, context, order);
+  build_site_records(mesh, sites, adjacency, positions, order, context, records_);
+  build_cluster_forest(records_, context, forest_);
+  is_usable_ = true;
+}
+
+double PointEngine::margin() const {
+  return slack / frame_.scale;
+}
+
+/// Queries in the order of the curve.
+struct PointEngine::Ordered {
+  std::vector<detail::KeyedIndex> order;  ///< key: the code of the cell
+  MortonPoints points;
+};
+
+PointEngine::Ordered PointEngine::order(std::span<const Vec3d> queries, const Context& context) const {
+  Ordered out;
+  const std::size_t count = queries.size();
+  Buffer<Vec3f> positions(count);
+  std::vector<Box3> boxes((count + grain - 1) / grain);
+  parallel_for(context, count, grain, "", [&](const WorkRange& range) {
+    Box3 box;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      positions[i] = kernels::to_float(frame_.to_normal(clamped(queries[i], box_)));
+      box.extend(kernels::to_double(positions[i]));
+    }
+    boxes[range.begin / grain] = box;
+  });
+  Box3 box;
+  for (const Box3& one : boxes) box.extend(one);
+  const Vec3d size = box.size();
+  out.points.lower = box.lower;
+  out.points.side = std::max({size.x, size.y, size.z});
+  constexpr std::uint32_t cells = 1U << MortonPoints::levels;
+  const double scale = out.points.side > 0 ? cells / out.points.side : 0;
+  out.order.resize(count);
+  parallel_for(context, count, grain, "", [&](const WorkRange& range) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const Vec3d at = (kernels::to_double(positions[i]) - box.lower) * scale;
+      std::uint32_t code = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        code |= kernels::spread_bits(std::min(static_cast<std::uint32_t>(at[axis]), cells - 1)) << axis;
+      }
+      out.order[i] = {code, static_cast<std::uint32_t>(i)};
+    }
+  });
+  detail::radix_sort(out.order);
+  for (Buffer<float>& coordinate : out.points.coordinate) {
+    coordinate = Buffer<float>(count + MortonPoints::padding);
+    std::fill_n(coordinate.data() + count, MortonPoints::padding, 0.0F);
+  }
+  out.points.code.resize(count);
+  parallel_for(context, count, grain, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const Vec3f& at = positions[out.order[k].index];
+      out.points.code[k] = out.order[k].key;
+      for (std::size_t axis = 0; axis < 3; ++axis) out.points.coordinate[axis][k] = at[axis];
+    }
+  });
+  return out;
+}
+
+FoundSite PointEngine::found(const Vec3d& query, std::uint32_t index, float squared, std::uint32_t site) const {
+  if (!(squared < far_away)) return {index, SiteId::none(), infinite};
+  const double moved = length(query - clamped(query, box_));
+  const double normalised = std::sqrt(static_cast<double>(squared)) * (1 + 1e-6) + slack;
+  const bool is_known = moved == 0 && site != dead_record;
+  return {index, is_known ? SiteId(site) : SiteId::none(), normalised / frame_.scale + moved * (1 + 1e-12)};
+}
+
+void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& context,
+                                 FunctionRef<void(std::span<const FoundSite>)> use) const {
+  if (!is_usable_) {
+    parallel_for(context, queries.size(), grain, "closest points", [&](const WorkRange& range) {
+      std::vector<FoundSite> group;
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        group.push_back({static_cast<std::uint32_t>(k), SiteId::none(), infinite});
+      }
+      use(group);
+    });
+    return;
+  }
+  const Ordered ordered = order(queries, context);
+  PointResults results{Buffer<float>(queries.size()), Buffer<std::uint32_t>(queries.size())};
+  PointJob job;
+  job.field.sites = &records_;
+  job.field.forest = &forest_;
+  job.field.cancel = context.cancel;
+  job.points = &ordered.points;
+  job.results = &results;
+  const std::vector<PointCell> cells = point_cells(ordered.points);
+  struct Worker {
+    PointScratch scratch;
+    std::vector<FoundSite> group;
+  };
+  std::vector<Worker> workers(static_cast<std::size_t>(thread_count(context)));
+  parallel_for(context, cells.size(), 1, "closest points", [&](const WorkRange& range) {
+    Worker& mine = workers[static_cast<std::size_t>(range.worker)];
+    const PointCell& cell = cells[range.begin];
+    compute_point_cell(job, cell, mine.scratch);
+    if (context.cancel.stop_requested()) return;
+    mine.group.resize(cell.size());
+    for (std::size_t k = cell.begin; k < cell.end; ++k) {
+      const std::uint32_t index = ordered.order[k].index;
+      mine.group[k - cell.begin] = found(queries[index], index, results.squared[k], results.site[k]);
+    }
+    use(mine.group);
+  });
+}
+
+}  // namespace blum::cpu

@@ -1,0 +1,46 @@
+#include "field/point_search.hpp"
+
+#include <algorithm>
+
+namespace blum {
+namespace {
+
+/// More at once take more memory (50 bytes each), and no less time each.
+constexpr std::size_t queries_per_batch = std::size_t{1} << 23;
+
+}  // namespace
+
+bool PointSearch::is_worth_building(std::size_t queries, const SiteTable& sites) {
+  return queries >= 4096 && queries >= sites.face_count() / 2;
+}
+
+bool PointSearch::is_worth_using(std::size_t queries, const SiteTable& sites) {
+  return queries >= 1024 && queries >= sites.face_count() / 64;
+}
+
+std::optional<NearestSite> PointSearch::finished(const Vec3d& query, const cpu::FoundSite& found, double max_distance,
+                                                 const Bvh& bvh) const {
+  if (found.site.has_value()) {
+    const std::optional<NearestSite> projected = projection_.project(found.site, query, engine_.margin());
+    if (projected) return projected->distance <= max_distance ? projected : std::nullopt;
+  }
+  if (found.at_most < max_distance) {
+    const std::optional<NearestSite> near = bvh.nearest(query, found.at_most);
+    if (near) return near;
+  }
+  return bvh.nearest(query, max_distance);
+}
+
+void PointSearch::nearest(std::span<const Vec3d> queries, double max_distance, const Bvh& bvh, const Context& context,
+                          FunctionRef<void(std::size_t, const std::optional<NearestSite>&)> tell) const {
+  for (std::size_t first = 0; first < queries.size(); first += queries_per_batch) {
+    const auto batch = queries.subspan(first, std::min(queries_per_batch, queries.size() - first));
+    engine_.for_each_group(batch, context, [&](std::span<const cpu::FoundSite> group) {
+      for (const cpu::FoundSite& one : group) {
+        tell(first + one.query, finished(batch[one.query], one, max_distance, bvh));
+      }
+    });
+  }
+}
+
+}  // namespace blum

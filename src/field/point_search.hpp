@@ -1,0 +1,43 @@
+// Blum: the closest sites of many points, by the kernels of fields. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "blum/core/context.hpp"
+#include "blum/core/function_ref.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/site_projection.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "field/cpu/point_engine.hpp"
+
+namespace blum {
+
+/// Answers many queries at once: what Bvh::nearest() answers one by one, bit for bit. Kernels in single precision say
+/// which site is closest; where its domain holds the query by a margin, and no other site is as close but for rounding,
+/// its distance is computed in double; else a search of the hierarchy, which knows how far to look, decides.
+class PointSearch {
+ public:
+  PointSearch(const MeshView& mesh, const SiteTable& sites, const Context& context)
+      : engine_(mesh, sites, context), projection_(mesh, sites, context) {}
+
+  /// Whether building a search pays for so many queries; a search that was built anyway pays for a thirtieth of that.
+  [[nodiscard]] static bool is_worth_building(std::size_t queries, const SiteTable& sites);
+  [[nodiscard]] static bool is_worth_using(std::size_t queries, const SiteTable& sites);
+
+  /// Calls tell(index of the query, its closest site) for every query, on many threads at once; nullopt where nothing
+  /// lies within max_distance.
+  /// @param queries  finite. @param bvh  of the same mesh. @throws Cancelled.
+  void nearest(std::span<const Vec3d> queries, double max_distance, const Bvh& bvh, const Context& context,
+               FunctionRef<void(std::size_t, const std::optional<NearestSite>&)> tell) const;
+
+ private:
+  [[nodiscard]] std::optional<NearestSite> finished(const Vec3d& query, const cpu::FoundSite& found,
+                                                    double max_distance, const Bvh& bvh) const;
+
+  cpu::PointEngine engine_;
+  SiteProjection projection_;
+};
+
+}  // namespace blum
