@@ -27,6 +27,13 @@ double checked_limit(const ClosestPointOptions& options) {
   return options.max_distance.value_or(no_limit);
 }
 
+/// Answers come in another order than queries.
+void prefetch_to_write([[maybe_unused]] const ClosestPoint* point) {
+#if defined(__GNUC__)
+  __builtin_prefetch(point, 1);
+#endif
+}
+
 }  // namespace
 
 struct ClosestPointQuery::Data {
@@ -122,10 +129,13 @@ std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> quer
   }
   std::vector<ClosestPoint> results(queries.size());
   if (const PointSearch* search = data_->search_for(queries.size(), context)) {
-    search->nearest(queries, data_->max_distance, data_->bvh, context,
-                    [&](std::size_t i, const std::optional<NearestSite>& nearest) {
-                      results[i] = data_->finished(queries[i], nearest);
-                    });
+    search->nearest(queries, data_->max_distance, data_->bvh, context, [&](std::span<const PointSearch::Answer> group) {
+      for (std::size_t k = 0; k < group.size(); ++k) {
+        if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
+        const auto& [query, nearest] = group[k];
+        results[query] = data_->finished(queries[query], nearest);
+      }
+    });
     return results;
   }
   parallel_for(context, queries.size(), queries_per_range, "closest points", [&](const WorkRange& range) {

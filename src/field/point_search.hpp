@@ -1,6 +1,7 @@
 // Blum: the closest sites of many points, by the kernels of fields. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -22,17 +23,25 @@ class PointSearch {
   PointSearch(const MeshView& mesh, const SiteTable& sites, const Context& context)
       : engine_(mesh, sites, context), projection_(mesh, sites, context) {}
 
-  /// Whether building a search pays for so many queries; a search that was built anyway pays for a thirtieth of that.
+  /// Whether so many queries are worth building a search: as many as there are faces are (docs/performance.md).
   [[nodiscard]] static bool is_worth_building(std::size_t queries, const SiteTable& sites);
+  /// Whether they are worth a search that is there.
   [[nodiscard]] static bool is_worth_using(std::size_t queries, const SiteTable& sites);
 
-  /// Calls tell(index of the query, its closest site) for every query, on many threads at once; nullopt where nothing
-  /// lies within max_distance.
+  /// What is closest to a query; nullopt where nothing lies within max_distance.
+  struct Answer {
+    std::size_t query = 0;  ///< its index
+    std::optional<NearestSite> nearest;
+  };
+
+  /// Calls tell(answers) for groups of queries, on many threads at once; over all groups, each query is told once.
   /// @param queries  finite. @param bvh  of the same mesh. @throws Cancelled.
   void nearest(std::span<const Vec3d> queries, double max_distance, const Bvh& bvh, const Context& context,
-               FunctionRef<void(std::size_t, const std::optional<NearestSite>&)> tell) const;
+               FunctionRef<void(std::span<const Answer>)> tell) const;
 
  private:
+  /// By the sites that the kernels have found; nullopt where that is not certain.
+  [[nodiscard]] std::optional<NearestSite> projection(const Vec3d& query, const cpu::FoundSite& found) const;
   [[nodiscard]] std::optional<NearestSite> finished(const Vec3d& query, const cpu::FoundSite& found,
                                                     double max_distance, const Bvh& bvh) const;
 

@@ -135,7 +135,8 @@ struct LeafDomination {
   }
 };
 
-/// Positions of the nodes of a pass, relative to the middle of the leaf's parent: what affine functions are evaluated at.
+/// Positions of the nodes of a pass, relative to the middle of the leaf's parent: what affine functions are evaluated
+/// at.
 struct LatticeNodes {
   static constexpr std::size_t vectors = pass_vectors;
   V x[planar], y[planar], z[slabs];
@@ -287,8 +288,7 @@ struct LeafPass : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes>
   V id[vectors];
   V side[vectors];
 
-  explicit LeafPass(const Nodes& of_pass)
-      : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes>(of_pass) {
+  explicit LeafPass(const Nodes& of_pass) : LeafEvaluation<LeafPass<with_sides, Nodes>, with_sides, Nodes>(of_pass) {
     for (std::size_t k = 0; k < vectors; ++k) {
       squared[k] = set(hwy::HighestValue<float>());
       id[k] = hn::BitCast(d, hn::Set(di, dead_record));

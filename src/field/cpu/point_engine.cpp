@@ -7,14 +7,21 @@
 #include "blum/core/parallel.hpp"
 #include "blum/core/radix_sort.hpp"
 #include "field/kernels/morton.hpp"
+#include "hwy/cache_control.h"
 
 namespace blum::cpu {
 namespace {
 
 constexpr std::size_t grain = std::size_t{1} << 13;
+/// Queries lie all over memory: they are asked for this many steps before.
+constexpr std::size_t ahead = 16;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 /// What single precision may have taken from a distance, in the normalised frame.
 constexpr double slack = 2e-6;
+
+void prefetch(const void* address) {
+  hwy::Prefetch(static_cast<const char*>(address));
+}
 
 Vec3d clamped(const Vec3d& p, const Box3& box) {
   Vec3d out;
@@ -116,28 +123,34 @@ PointEngine::Ordered PointEngine::order(std::span<const Vec3d> queries, const Co
   return out;
 }
 
-FoundSite PointEngine::found(const Vec3d& query, std::uint32_t index, float squared, std::uint32_t site) const {
-  if (!(squared < far_away)) return {index, SiteId::none(), infinite};
+FoundSite PointEngine::found(const Vec3d& query, std::uint32_t index, const PointResults& results,
+                             std::size_t at) const {
+  FoundSite out{index, SiteId::none(), SiteId::none(), infinite};
+  if (!(results.squared[at] < far_away)) return out;
   const double moved = length(query - clamped(query, box_));
-  const double normalised = std::sqrt(static_cast<double>(squared)) * (1 + 1e-6) + slack;
-  const bool is_known = moved == 0 && site != dead_record;
-  return {index, is_known ? SiteId(site) : SiteId::none(), normalised / frame_.scale + moved * (1 + 1e-12)};
+  const double normalised = std::sqrt(static_cast<double>(results.squared[at])) * (1 + 1e-6) + slack;
+  out.at_most = normalised / frame_.scale + moved * (1 + 1e-12);
+  if (moved > 0) return out;
+  if (results.site[at] != dead_record) out.site = SiteId(results.site[at]);
+  if (results.other[at] != dead_record) out.other = SiteId(results.other[at]);
+  return out;
 }
 
 void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& context,
                                  FunctionRef<void(std::span<const FoundSite>)> use) const {
   if (!is_usable_) {
-    parallel_for(context, queries.size(), grain, "closest points", [&](const WorkRange& range) {
+    parallel_for(context, queries.size(), most_per_group, "closest points", [&](const WorkRange& range) {
       std::vector<FoundSite> group;
       for (std::size_t k = range.begin; k < range.end; ++k) {
-        group.push_back({static_cast<std::uint32_t>(k), SiteId::none(), infinite});
+        group.push_back({static_cast<std::uint32_t>(k), SiteId::none(), SiteId::none(), infinite});
       }
       use(group);
     });
     return;
   }
   const Ordered ordered = order(queries, context);
-  PointResults results{Buffer<float>(queries.size()), Buffer<std::uint32_t>(queries.size())};
+  const std::size_t count = queries.size();
+  PointResults results{Buffer<float>(count), Buffer<std::uint32_t>(count), Buffer<std::uint32_t>(count)};
   PointJob job;
   job.field.sites = &records_;
   job.field.forest = &forest_;
@@ -155,12 +168,16 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
     const PointCell& cell = cells[range.begin];
     compute_point_cell(job, cell, mine.scratch);
     if (context.cancel.stop_requested()) return;
-    mine.group.resize(cell.size());
-    for (std::size_t k = cell.begin; k < cell.end; ++k) {
-      const std::uint32_t index = ordered.order[k].index;
-      mine.group[k - cell.begin] = found(queries[index], index, results.squared[k], results.site[k]);
+    for (std::size_t begin = cell.begin; begin < cell.end; begin += most_per_group) {
+      const std::size_t end = std::min(begin + most_per_group, cell.end);
+      mine.group.resize(end - begin);
+      for (std::size_t k = begin; k < end; ++k) {
+        if (k + ahead < end) prefetch(&queries[ordered.order[k + ahead].index]);
+        const std::uint32_t index = ordered.order[k].index;
+        mine.group[k - begin] = found(queries[index], index, results, k);
+      }
+      use(mine.group);
     }
-    use(mine.group);
   });
 }
 

@@ -1,6 +1,7 @@
 // Blum: closest sites of many scattered points. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,7 +20,8 @@ namespace blum::cpu {
 /// What is found of a query.
 struct FoundSite {
   std::uint32_t query = 0;  ///< its index
-  SiteId site;              ///< the closest one, or one that touches it; none where others come as close
+  SiteId site;              ///< the closest one, or one that touches it; none where that is not known
+  SiteId other;             ///< for the site, where two are as close but for rounding
   double at_most = 0;       ///< how far the surface is, with room for rounding, mesh units; infinite where not known
 };
 
@@ -31,6 +33,9 @@ class PointEngine {
   /// @param mesh, sites  are not looked at later. Cost: that of the records of a field, 0.5 us per triangle and core.
   /// @throws Cancelled.
   PointEngine(const MeshView& mesh, const SiteTable& sites, const Context& context);
+
+  /// Groups are so small that what is looked up of their queries stays in the nearest cache.
+  static constexpr std::size_t most_per_group = 256;
 
   /// Calls use(what is found) for groups of queries that lie close together, on many threads at once; over all groups,
   /// each query is found once.
@@ -45,7 +50,8 @@ class PointEngine {
  private:
   struct Ordered;
   [[nodiscard]] Ordered order(std::span<const Vec3d> queries, const Context& context) const;
-  [[nodiscard]] FoundSite found(const Vec3d& query, std::uint32_t index, float squared, std::uint32_t site) const;
+  [[nodiscard]] FoundSite found(const Vec3d& query, std::uint32_t index, const PointResults& results,
+                                std::size_t at) const;
 
   bool is_usable_ = false;  ///< false for meshes without extent, or too large or small for single precision
   Box3 box_;                ///< of the frame, mesh units: queries beyond are moved to its border

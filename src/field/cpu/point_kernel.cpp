@@ -25,6 +25,10 @@ constexpr std::size_t few_candidates = 16;
 constexpr float tie = 2e-6F;
 constexpr std::array<std::size_t, 3> leaf_columns{LeafVertex::count, LeafEdge::count, LeafFace::count};
 
+HWY_INLINE V nobody() {
+  return hn::BitCast(d, hn::Set(di, dead_record));
+}
+
 /// Points of a pass, relative to a middle.
 template <std::size_t count>
 struct PointNodes {
@@ -52,26 +56,32 @@ struct PointNodes {
   }
 };
 
-/// The winners of a pass, and how close another site comes.
+/// The winners of a pass, the next best, and how close a third site comes.
 template <std::size_t count>
 struct PointPass : LeafEvaluation<PointPass<count>, false, PointNodes<count>> {
   V squared[count];
   V id[count];
-  V other[count];  ///< squared distance to the second best
+  V second[count];  ///< squared distance
+  V second_id[count];
+  V third[count];  ///< squared distance
 
-  explicit PointPass(const PointNodes<count>& nodes) : LeafEvaluation<PointPass<count>, false, PointNodes<count>>(nodes) {
+  explicit PointPass(const PointNodes<count>& nodes)
+      : LeafEvaluation<PointPass<count>, false, PointNodes<count>>(nodes) {
     for (std::size_t k = 0; k < count; ++k) {
-      squared[k] = other[k] = set(hwy::HighestValue<float>());
-      id[k] = hn::BitCast(d, hn::Set(di, dead_record));
+      squared[k] = second[k] = third[k] = set(hwy::HighestValue<float>());
+      id[k] = second_id[k] = nobody();
     }
   }
 
   HWY_INLINE void take(std::size_t k, V inside, V candidate, V candidate_id, V /*side*/) {
     const V offer = if_sign_bit(inside, candidate, set(hwy::HighestValue<float>()));
-    const V gain = hn::Sub(offer, squared[k]);
-    other[k] = hn::Min(other[k], hn::Max(offer, squared[k]));
+    const V over_first = hn::Sub(offer, squared[k]);
+    const V over_second = hn::Sub(offer, second[k]);
+    third[k] = hn::Min(third[k], hn::Max(offer, second[k]));
+    second_id[k] = if_sign_bit(over_first, id[k], if_sign_bit(over_second, candidate_id, second_id[k]));
+    second[k] = hn::Min(second[k], hn::Max(offer, squared[k]));
+    id[k] = if_sign_bit(over_first, candidate_id, id[k]);
     squared[k] = hn::Min(offer, squared[k]);
-    id[k] = if_sign_bit(gain, candidate_id, id[k]);
   }
 };
 
@@ -114,33 +124,24 @@ class PointWorker {
     for (std::size_t at = cell.begin; at < cell.end; at += lanes) {
       const PointNodes<1> node(points_, at, {});
       const Vec from = node.at[0] - p0;
-      put(at, cell.end, dot(from, from), hn::BitCast(d, hn::Set(di, dead_record)));
+      put(at, cell.end, dot(from, from), nobody(), nobody());
     }
   }
 
-  void put(std::size_t at, std::size_t end, V squared, V site) {
-    float* squared_out = job_.results->squared.data() + at;
-    std::uint32_t* site_out = job_.results->site.data() + at;
-    const VI id = hn::BitCast(di, site);
-    if (end - at >= lanes) {
-      hn::StoreU(squared, d, squared_out);
-      hn::StoreU(id, di, site_out);
-      return;
-    }
+  void put(std::size_t at, std::size_t end, V squared, V site, V other) const {
+    PointResults& out = *job_.results;
+    put(at, end, d, squared, out.squared);
+    put(at, end, di, hn::BitCast(di, site), out.site);
+    put(at, end, di, hn::BitCast(di, other), out.other);
+  }
+  template <class Tag, class Vector, class T>
+  static void put(std::size_t at, std::size_t end, Tag tag, Vector values, Buffer<T>& out) {
+    if (end - at >= lanes) return hn::StoreU(values, tag, out.data() + at);
     // What lies behind belongs to other threads.
-    alignas(64) std::array<float, lanes> squared_here;
-    alignas(64) std::array<std::uint32_t, lanes> id_here;
-    hn::Store(squared, d, squared_here.data());
-    hn::Store(id, di, id_here.data());
-    std::copy_n(squared_here.data(), end - at, squared_out);
-    std::copy_n(id_here.data(), end - at, site_out);
+    alignas(64) std::array<T, lanes> here;
+    hn::Store(values, tag, here.data());
+    std::copy_n(here.data(), end - at, out.data() + at);
   }
-
-  /// What is known of a child before its candidates are listed.
-  struct Child {
-    PointCell cell;
-    Vec3f p0;
-  };
 
   void divide(const PointCell& cell, const Candidates& candidates, const Dominators& dominators, std::size_t depth) {
     if (job_.field.cancel.stop_requested()) return;
@@ -260,10 +261,11 @@ class PointWorker {
     for_each_candidate<face_kind>(input, [&](std::size_t i) { pass.face(input.columns[2], i); });
     for (std::size_t k = 0; k < vectors; ++k) {
       // Two distances x, y are too close to tell where y^2 <= (x + tie)^2.
-      const V reach = hn::Add(hn::Sqrt(pass.squared[k]), set(tie));
-      const M is_tie = hn::Le(pass.other[k], square(reach));
-      const V nobody = hn::BitCast(d, hn::Set(di, dead_record));
-      put(begin + k * lanes, end, pass.squared[k], hn::IfThenElse(is_tie, nobody, pass.id[k]));
+      const V reach = square(hn::Add(hn::Sqrt(pass.squared[k]), set(tie)));
+      const M has_other = hn::Le(pass.second[k], reach);
+      const M has_third = hn::Le(pass.third[k], reach);
+      put(begin + k * lanes, end, pass.squared[k], hn::IfThenElse(has_third, nobody(), pass.id[k]),
+          hn::IfThenElse(has_other, pass.second_id[k], nobody()));
     }
   }
 

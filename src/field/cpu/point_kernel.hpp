@@ -42,7 +42,8 @@ struct PointCell {
 struct PointResults {
   /// Squared distance to a point of the surface, normalised: the closest one but for rounding, where the site is known.
   Buffer<float> squared;
-  Buffer<std::uint32_t> site;  ///< dead_record where it is left to a search of its own
+  Buffer<std::uint32_t> site;   ///< dead_record where it is left to a search of its own
+  Buffer<std::uint32_t> other;  ///< as close but for rounding; dead_record where there is none
 };
 
 /// Everything that cells read, and where they write.

@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 
 /// The closest site at a child's centre, among those that the lanes have seen.
 HWY_INLINE Witness closest_candidate(const Candidates& candidates, const ClosestAtCenters& closest, std::size_t child,
-                                 const Vec3f& center) {
+                                     const Vec3f& center) {
   alignas(64) std::array<std::uint32_t, lanes> index;
   const float squared = hn::GetLane(hn::MinOfLanes(d, closest.squared[child]));
   hn::Store(closest.index[child], di, index.data());
