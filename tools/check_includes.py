@@ -24,6 +24,7 @@ LOWER = {
     "complex": {"core"},
     "solid": {"core", "geometry", "grid", "complex"},
     "field": {"core", "geometry", "grid"},
+    "points": {"core", "geometry", "grid", "field"},
     "medial_axis": {"core", "geometry", "grid", "complex", "solid", "field"},
     "proximity": {"core", "geometry"},
     "certificate": {"core", "complex"},

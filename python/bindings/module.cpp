@@ -66,6 +66,7 @@ NB_MODULE(_core, m) {
   bind_field(m);
   bind_device_field(m);
   bind_closest_points(m);
+  bind_points(m);
   bind_images(m);
   bind_complex(m);
   bind_solid(m);

@@ -61,6 +61,7 @@ from ._mesh import (
     weld,
     weld_clusters,
 )
+from ._points import NearSamples, SignedDistances, SurfaceSamples, sample_near, sample_surface, signed_distance
 from ._proximity import ContinuousCollisions, continuous_collisions, edge_edge_impacts, vertex_face_impacts
 from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
 from ._proximity_scene import (
@@ -111,6 +112,7 @@ __all__ = [
     "MedialAxis",
     "MedialComplex",
     "Mesh",
+    "NearSamples",
     "NestedComplex",
     "OutOfMemory",
     "Penetration",
@@ -122,9 +124,11 @@ __all__ = [
     "SelfIntersections",
     "ShapeInfo",
     "ShapeParameter",
+    "SignedDistances",
     "Sites",
     "Solid",
     "SolidBody",
+    "SurfaceSamples",
     "TriangleDistances",
     "WindingNumber",
     "__version__",
@@ -156,10 +160,13 @@ __all__ = [
     "read_medial",
     "read_mesh",
     "reference",
+    "sample_near",
+    "sample_surface",
     "selected_voxels",
     "self_intersections",
     "separation",
     "shapes",
+    "signed_distance",
     "smooth_surface",
     "solid_rule",
     "subdivided",

@@ -1,0 +1,164 @@
+"""Any points: signed distances, samples of surfaces and near them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Unpack
+
+import numpy as np
+
+from . import _core
+from ._arguments import FloatArray, IntArray, Integer, Real, as_array, integer
+from ._errors import InvalidOption
+from ._field import closest_points
+from ._mesh import as_mesh
+from ._options import takes
+from ._progress import Progress, reporting
+from ._structs import ClosestPointOptions, NearSampleOptions, SampleOptions
+
+
+@dataclass(frozen=True, eq=False)
+class SignedDistances:
+    """What :func:`signed_distance` finds; all arrays have the shape of the queries without the last axis."""
+
+    distance: FloatArray  #: mesh units, negative inside; infinite where nothing is within max_distance
+    #: (..., 3): where the distance grows, of length 1: away from the surface outside, towards it inside. Not a number
+    #: on the surface, and where nothing is within max_distance. On the medial axis one of several directions.
+    gradient: FloatArray
+    point: FloatArray  #: (..., 3): the closest point of the mesh
+    site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
+    triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
+
+
+@takes("ClosestPointOptions")
+def signed_distance(
+    mesh: Any,
+    points: Any,
+    *,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+    **options: Unpack[ClosestPointOptions],
+) -> SignedDistances:
+    """Exact signed distances of any points, with their gradients, closest points, sites and triangles.
+
+    For many calls with one mesh see :class:`ClosestPointQuery`.
+
+    Parameters
+    ----------
+    mesh, weld, threads, progress
+        As for :func:`distance_field`.
+    points : array of the shape (..., 3)
+    **options
+
+    >>> import blum
+    >>> found = blum.signed_distance(blum.generate("box"), [[0, 0, 2], [0.3, 0, 0]])
+    >>> found.distance.round(6).tolist(), found.gradient.round(6).tolist()
+    ([1.5, -0.2], [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    """
+    queries = as_array(points, "points")
+    found = closest_points(mesh, queries, weld=weld, threads=threads, progress=progress, **options)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        gradient = (queries - found.points) / found.distance[..., None] + 0.0  # no -0
+    gradient[~np.isfinite(found.distance)] = np.nan
+    return SignedDistances(found.distance, gradient, found.points, found.site, found.triangle)
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceSamples:
+    """What :func:`sample_surface` makes; row k of each array belongs to point k."""
+
+    points: FloatArray  #: (n, 3): mesh units
+    normals: FloatArray  #: (n, 3): of the triangle, of length 1
+    triangle: IntArray  #: (n,): that the point lies on
+
+    def __repr__(self) -> str:
+        return f"SurfaceSamples({len(self.points):,} points)"
+
+
+@takes("SampleOptions")
+def sample_surface(
+    mesh: Any,
+    count: Integer,
+    *,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+    **options: Unpack[SampleOptions],
+) -> SurfaceSamples:
+    """Random points of a surface, uniform by area: the same for the same mesh and seed.
+
+    Parameters
+    ----------
+    mesh, weld, threads, progress
+        As for :func:`distance_field`.
+    count : int
+        Of points.
+    **options
+
+    >>> import blum
+    >>> found = blum.sample_surface(blum.generate("box"), 1000, seed=1)
+    >>> found, float(abs(found.points).max())
+    (SurfaceSamples(1,000 points), 0.5)
+    """
+    of = as_mesh(mesh, weld=weld)
+    number = _count(count)
+    with reporting(progress) as report:
+        found = _core.sample_surface(of._arrays, number, dict(options), integer(threads, "threads"), report)
+    return SurfaceSamples(*found)
+
+
+@dataclass(frozen=True, eq=False)
+class NearSamples:
+    """What :func:`sample_near` makes; row k of each array belongs to point k."""
+
+    points: FloatArray  #: (n, 3): mesh units
+    distance: FloatArray  #: (n,): exact, negative inside
+    closest: FloatArray  #: (n, 3): the closest point of the mesh
+    site: IntArray  #: (n,)
+    triangle: IntArray  #: (n,)
+
+    def __repr__(self) -> str:
+        return f"NearSamples({len(self.points):,} points)"
+
+
+@takes("NearSampleOptions")
+def sample_near(
+    mesh: Any,
+    count: Integer,
+    *,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+    **options: Unpack[NearSampleOptions],
+) -> NearSamples:
+    """Points near a surface with their exact signed distances: what learning signed distances needs. First come those
+    near the surface, then those in the box.
+
+    Parameters
+    ----------
+    mesh, weld, threads, progress
+        As for :func:`distance_field`.
+    count : int
+        Of points.
+    **options
+
+    >>> import blum
+    >>> found = blum.sample_near(blum.generate("sphere"), 500, sigma=0.01, in_box=0.5)
+    >>> found, bool(abs(found.distance[:250]).max() < 0.06)
+    (NearSamples(500 points), True)
+    """
+    of = as_mesh(mesh, weld=weld)
+    number = _count(count)
+    with reporting(progress) as report:
+        points, closest, distance, site, triangle = _core.sample_near(
+            of._arrays, number, dict(options), integer(threads, "threads"), report
+        )
+    return NearSamples(points, distance, closest, site, triangle)
+
+
+def _count(value: Integer) -> int:
+    count = integer(value, "count", 64)
+    if count < 0:
+        raise InvalidOption(f"count is {count}, but must be 0 or more")
+    return count

@@ -1,0 +1,80 @@
+"""Signed distances with gradients, and samples, through the package."""
+
+import blum
+import numpy as np
+import pytest
+
+
+def test_signed_distances_are_those_of_closest_points():
+    mesh = blum.generate("organic", frequency=10)
+    queries = np.random.default_rng(1).normal(size=(40, 100, 3))
+    found = blum.signed_distance(mesh, queries)
+    expected = blum.closest_points(mesh, queries)
+    assert np.array_equal(found.distance, expected.distance) and np.array_equal(found.site, expected.site)
+    assert np.array_equal(found.point, expected.points) and np.array_equal(found.triangle, expected.triangle)
+    assert found.gradient.shape == (40, 100, 3)
+    assert np.allclose(np.linalg.norm(found.gradient, axis=-1), 1)
+    assert np.allclose(found.point + found.gradient * found.distance[..., None], queries)
+    # The distance grows along the gradient, by as much as one goes.
+    step = 1e-6
+    there = blum.signed_distance(mesh, queries + step * found.gradient)
+    grown = (there.distance - found.distance) / step
+    assert np.mean(np.abs(grown - 1) < 1e-3) > 0.99
+
+
+def test_gradients_are_no_numbers_where_they_are_not_defined():
+    box = blum.generate("box")
+    found = blum.signed_distance(box, [[0, 0, 0.5], [0, 0, 2], [0, 0, 9]], max_distance=3)
+    assert np.isnan(found.gradient[0]).all() and found.distance[0] == 0
+    assert found.gradient[1].tolist() == [0, 0, 1]
+    assert np.isnan(found.gradient[2]).all() and found.distance[2] == np.inf and found.site[2] == -1
+    with pytest.raises(blum.InvalidOption, match="query 1"):
+        blum.signed_distance(box, [[0, 0, 0], [0, np.nan, 0]])
+    assert blum.signed_distance(box, np.zeros((0, 3))).distance.shape == (0,)
+
+
+def test_many_queries_get_what_few_get():
+    mesh = blum.generate("organic", frequency=20)
+    queries = np.random.default_rng(2).normal(size=(30000, 3))
+    many = blum.closest_points(mesh, queries)
+    query = blum.ClosestPointQuery(mesh)
+    few = [query(part) for part in np.split(queries[:5000], 50)]
+    for name in ("distance", "site", "triangle", "points"):
+        assert np.array_equal(getattr(many, name)[:5000], np.concatenate([getattr(part, name) for part in few]))
+
+
+@pytest.mark.parametrize("blue_noise", [False, True])
+def test_samples_lie_on_the_surface(blue_noise):
+    mesh = blum.generate("torus")
+    found = blum.sample_surface(mesh, 3000, seed=7, blue_noise=blue_noise)
+    assert found.points.shape == found.normals.shape == (3000, 3) and found.triangle.dtype == np.int32
+    assert np.abs(blum.closest_points(mesh, found.points, sign="none").distance).max() < 1e-15
+    corners = mesh.vertices[mesh.triangles[found.triangle]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.allclose(found.normals, normals / np.linalg.norm(normals, axis=1)[:, None])
+    again = blum.sample_surface(mesh, 3000, seed=7, blue_noise=blue_noise, threads=1)
+    assert np.array_equal(found.points, again.points)
+
+
+def test_samples_near_have_exact_distances():
+    mesh = blum.generate("organic", frequency=8)
+    found = blum.sample_near(mesh, 4000, sigma=0.05, in_box=0.5, seed=3)
+    expected = blum.closest_points(mesh, found.points)
+    assert np.array_equal(found.distance, expected.distance) and np.array_equal(found.site, expected.site)
+    assert (found.distance < 0).any() and np.abs(found.distance[:2000]).max() < 0.4
+
+
+def test_bad_input_is_refused():
+    box = blum.generate("box")
+    for call, match in (
+        (lambda: blum.sample_surface(box, -1), "count is -1"),
+        (lambda: blum.sample_near(box, 10, sigma=0), "sigma"),
+        (lambda: blum.sample_near(box, 10, in_box=2), "in_box"),
+        (lambda: blum.sample_surface(([[0, 0, 0], [1, 1, 1]], [[0, 1, 1]]), 5), "no triangle"),
+    ):
+        with pytest.raises(ValueError, match=match):
+            call()
+    with pytest.raises(TypeError, match="count"):
+        blum.sample_surface(box, 1.5)
+    with pytest.raises(TypeError, match="colour"):
+        blum.sample_surface(box, 5, colour="red")
