@@ -83,9 +83,8 @@ class Cells {
 /// What a neighbour weighs.
 class Weight {
  public:
-  Weight(double width, double share) : width_(width) {
-    floor_ = width * (1 - std::pow(share, floor_power)) * floor_share;
-  }
+  Weight(double width, double share)
+      : width_(width), floor_(width * (1 - std::pow(share, floor_power)) * floor_share) {}
   double operator()(double squared) const {
     const double distance = std::max(std::sqrt(squared), floor_);
     return std::pow(1 - distance / width_, steepness);
@@ -93,7 +92,7 @@ class Weight {
 
  private:
   double width_;
-  double floor_ = 0;
+  double floor_;
 };
 
 }  // namespace
