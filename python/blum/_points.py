@@ -23,7 +23,8 @@ class SignedDistances:
 
     distance: FloatArray  #: mesh units, negative inside; infinite where nothing is within max_distance
     #: (..., 3): where the distance grows, of length 1: away from the surface outside, towards it inside. Not a number
-    #: on the surface, and where nothing is within max_distance. On the medial axis one of several directions.
+    #: on the surface, where rounding would tell, and where nothing is within max_distance. On the medial axis one of
+    #: several directions.
     gradient: FloatArray
     point: FloatArray  #: (..., 3): the closest point of the mesh
     site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
@@ -60,7 +61,8 @@ def signed_distance(
     found = closest_points(mesh, queries, weld=weld, threads=threads, progress=progress, **options)
     with np.errstate(divide="ignore", invalid="ignore"):
         gradient = (queries - found.points) / found.distance[..., None] + 0.0  # no -0
-    gradient[~np.isfinite(found.distance)] = np.nan
+    rounding = 1e-13 * (np.linalg.norm(queries, axis=-1) + np.linalg.norm(found.points, axis=-1))
+    gradient[~np.isfinite(found.distance) | (np.abs(found.distance) <= rounding)] = np.nan
     return SignedDistances(found.distance, gradient, found.points, found.site, found.triangle)
 
 

@@ -1,0 +1,269 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include "blum/core/error.hpp"
+#include "blum/io/atomic_file.hpp"
+#include "blum/io/complex_io.hpp"
+#include "blum/io/formats.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/io/point_io.hpp"
+#include "io/byte_source.hpp"
+#include "io/field_sink.hpp"
+#include "io/file_columns.hpp"
+#include "io/json.hpp"
+#include "io/npy.hpp"
+#include "io/npz.hpp"
+#include "io/row_writer.hpp"
+#include "io/text_cursor.hpp"
+#include "io/text_scan.hpp"
+#include "io/whole_file.hpp"
+
+namespace blum {
+namespace {
+
+std::string quoted(const std::filesystem::path& path) {
+  return "'" + path.string() + "'";
+}
+
+void refuse_extension(const std::filesystem::path& path, const std::vector<std::string>& known, const char* how) {
+  std::string all;
+  for (const std::string& extension : known) all += (all.empty() ? "" : " ") + extension;
+  throw InvalidOption(quoted(path) + ": points are " + how + " " + all + " files; use one of these extensions");
+}
+
+/// @param name  of the file, for messages.
+void check_finite(const std::vector<Vec3d>& points, const std::string& name) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (!is_finite(points[k])) {
+      throw FormatError(name + ": point " + std::to_string(k) + " has a coordinate that is not finite");
+    }
+  }
+}
+
+std::vector<Vec3d> points_of_array(volume_io::ByteStream& stream, const volume_io::NpyHeader& header) {
+  using Kind = volume_io::NpyHeader::Kind;
+  if (header.kind != Kind::scalar || header.shape.size() != 2 || header.shape[1] != 3) {
+    throw FormatError(stream.name() + ": points are an array of numbers [n, 3], a row for each");
+  }
+  std::vector<Vec3d> points(header.shape[0]);
+  std::visit(
+      [&](const auto& values) {
+        for (std::size_t i = 0; i < values.size(); ++i) points[i / 3][i % 3] = static_cast<double>(values[i]);
+      },
+      volume_io::read_npy_values(stream, header));
+  return points;
+}
+
+std::vector<Vec3d> read_npy(const std::filesystem::path& path) {
+  const volume_io::FileSource source(path);
+  volume_io::PlainStream stream(source);
+  std::vector<Vec3d> points = points_of_array(stream, volume_io::read_npy_header(stream));
+  stream.check_end();
+  return points;
+}
+
+std::vector<Vec3d> read_npz(const std::filesystem::path& path) {
+  const volume_io::FileSource source(path);
+  volume_io::NpzReader npz(source);
+  const std::string array = npz.has("points") ? "points" : "vertices";
+  if (!npz.has(array)) throw FormatError(quoted(path) + ": it has no array 'points' and no 'vertices'");
+  return npz.read(array, points_of_array);
+}
+
+/// Rows of numbers.
+class RowReader {
+ public:
+  RowReader(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
+  }
+
+  std::vector<Vec3d> read() {
+    std::vector<Vec3d> points;
+    bool may_be_names = true;
+    while (next_row()) {
+      if (row_.empty() || row_.front() == '#') continue;
+      const bool is_names = may_be_names && !volume_io::parse_number<double>(take_word());
+      may_be_names = false;
+      if (is_names) continue;
+      row_ = whole_row_;
+      Vec3d& point = points.emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = number(axis);
+    }
+    return points;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw FormatError(name_ + ", line " + std::to_string(line_) + ": " + what);
+  }
+
+  bool next_row() {
+    if (text_.empty()) return false;
+    const std::size_t end = std::min(text_.find_first_of("\r\n"), text_.size());
+    whole_row_ = row_ = volume_io::trim(text_.substr(0, end));
+    const bool is_pair = text_.substr(end).starts_with("\r\n");
+    text_.remove_prefix(std::min(end + (is_pair ? 2 : 1), text_.size()));
+    ++line_;
+    return true;
+  }
+
+  /// What stands up to the next comma, semicolon or blank.
+  std::string_view take_word() {
+    const std::size_t end = std::min(row_.find_first_of(",; \t"), row_.size());
+    const std::string_view word = row_.substr(0, end);
+    row_.remove_prefix(end);
+    const bool has_blank = !row_.empty() && row_.front() != ',' && row_.front() != ';';
+    row_ = volume_io::trim(row_);
+    if (!has_blank || row_.starts_with(',') || row_.starts_with(';')) {
+      if (!row_.empty()) row_ = volume_io::trim(row_.substr(1));
+    }
+    return word;
+  }
+
+  double number(std::size_t axis) {
+    const std::string coordinate(1, "xyz"[axis]);
+    if (row_.empty()) fail("there is no " + coordinate + ": a row has three numbers or more");
+    const std::string_view word = take_word();
+    const auto value = volume_io::parse_number<double>(word);
+    if (!value) fail(coordinate + " is no number: " + in_quotes(word));
+    if (!std::isfinite(*value)) fail(coordinate + " is not finite: " + in_quotes(word));
+    return *value;
+  }
+
+  std::string_view text_;
+  std::string name_;
+  std::string_view whole_row_, row_;
+  std::size_t line_ = 0;
+};
+
+std::vector<Vec3d> read_text(const std::filesystem::path& path) {
+  const FileBytes bytes = read_whole_file(path);
+  const std::span<const std::byte> data = bytes.span();
+  return RowReader({reinterpret_cast<const char*>(data.data()), data.size()}, quoted(path)).read();
+}
+
+/// An array `points`, one for each column, and the metadata.
+void write_npz(const std::filesystem::path& path, const Complex& points, const FileMetadata& metadata,
+               const Context& context) {
+  const std::size_t count = points.positions.size();
+  std::uint64_t bytes = 3 * sizeof(double) * count;
+  for (const Column& column : points.vertex_columns) {
+    if (column.name == "points" || column.name == "metadata") {
+      throw InvalidOption(quoted(path) + ": a column is called '" + column.name +
+                          "', which is what else is in the file");
+    }
+    bytes += sizeof(double) * column.components * count;
+  }
+  AtomicFile file(path);
+  volume_io::FieldSink sink(bytes, context);
+  volume_io::NpzWriter npz(file, sink, context);
+  npz.add("points", "f8", {count, 3}, std::span<const Vec3d>(points.positions));
+  for (const Column& column : points.vertex_columns) {
+    std::vector<std::uint64_t> shape{count};
+    if (column.components > 1) shape.push_back(column.components);
+    std::visit(
+        [&]<class T>(const std::vector<T>& values) {
+          npz.add(column.name, volume_io::npy_dtype(complex_files::scalar_type(column)), shape,
+                  std::span<const T>(values));
+        },
+        column.values);
+  }
+  if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
+  npz.finish();
+  file.commit();
+}
+
+/// The names of the columns of a row, as of .ply files.
+std::string names_of(const Column& column) {
+  std::string out;
+  for (std::size_t k = 0; k < column.components; ++k) {
+    out += "," + column.name;
+    if (column.components == 3) {
+      out += std::string("_") + "xyz"[k];
+    } else if (column.components > 1) {
+      out += "_" + std::to_string(k);
+    }
+  }
+  return out;
+}
+
+void write_csv(const std::filesystem::path& path, const Complex& points, const Context& context) {
+  RowWriter rows(path, points.positions.size(), context);
+  rows.text("x,y,z");
+  for (const Column& column : points.vertex_columns) rows.text(names_of(column));
+  rows.text("\n");
+  const auto number = [&](auto value, bool is_first) {
+    std::array<char, 40> digits{};
+    const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    if (!is_first) rows.text(",");
+    rows.text({digits.data(), static_cast<std::size_t>(result.ptr - digits.data())});
+  };
+  for (std::size_t k = 0; k < points.positions.size(); ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) number(points.positions[k][axis], axis == 0);
+    for (const Column& column : points.vertex_columns) {
+      std::visit(
+          [&](const auto& values) {
+            for (std::size_t c = 0; c < column.components; ++c) number(values[k * column.components + c], false);
+          },
+          column.values);
+    }
+    rows.text("\n");
+    rows.end_row();
+  }
+  rows.finish();
+}
+
+}  // namespace
+
+const std::vector<std::string>& readable_point_extensions() {
+  static const std::vector<std::string> all{".npy", ".npz", ".csv", ".xyz", ".txt",
+                                            ".ply", ".vtp", ".obj", ".off", ".stl"};
+  return all;
+}
+
+const std::vector<std::string>& written_point_extensions() {
+  static const std::vector<std::string> all{".npz", ".ply", ".vtp", ".csv"};
+  return all;
+}
+
+std::vector<Vec3d> read_points(const std::filesystem::path& path) {
+  const std::string extension = file_extension(path);
+  const auto& known = readable_point_extensions();
+  if (std::find(known.begin(), known.end(), extension) == known.end()) refuse_extension(path, known, "read from");
+  std::vector<Vec3d> points;
+  if (extension == ".npy") {
+    points = read_npy(path);
+  } else if (extension == ".npz") {
+    points = read_npz(path);
+  } else if (extension == ".csv" || extension == ".xyz" || extension == ".txt") {
+    points = read_text(path);
+  } else if (extension == ".ply" || extension == ".vtp") {
+    points = read_complex(path).complex.positions;
+  } else {
+    points = read_mesh(path).vertices;
+  }
+  check_finite(points, quoted(path));
+  return points;
+}
+
+void write_points(const std::filesystem::path& path, const Complex& points, const FileMetadata& metadata,
+                  const Context& context) {
+  const auto& known = written_point_extensions();
+  const std::string extension = file_extension(path);
+  if (std::find(known.begin(), known.end(), extension) == known.end()) refuse_extension(path, known, "written to");
+  validate(points);
+  if (!points.edges.empty() || !points.triangles.empty()) {
+    throw InvalidMesh("points have edges or triangles: write them with write_complex()");
+  }
+  if (extension == ".csv") return write_csv(path, points, context);
+  if (extension == ".npz") return write_npz(path, points, metadata, context);
+  write_complex(path, points, metadata, {}, context);
+}
+
+}  // namespace blum
