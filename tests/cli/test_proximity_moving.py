@@ -243,7 +243,6 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
         ([tmp_path / "far.obj", "--self", "-o", out, "--to", plate], 1, "far.obj': a coordinate is beyond 1e70"),
         ([*two, fallen, tmp_path / "absent.ply"], 1, "absent.ply"),
         ([ball, "-o", out, "--to", fallen], 2, "give --self, or the files of more objects"),
-        ([ball, plate, "--to", fallen, plate], 2, "give -o PAIRS"),
         ([*two, fallen, plate, "-o", tmp_path / "p.vtp"], 2, ""),
         ([ball, plate, "-o", tmp_path / "p.vtp", "--to", fallen, plate], 2, "the extension must be .npz, .csv or .json"),
         ([ball, plate, "-o", fallen, "--to", fallen, plate], 2, ""),
