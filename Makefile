@@ -27,10 +27,10 @@ demo: setup ## Build the tool and run the main job on a generated shape: a field
 	@tools/build.sh release $(configure_options) -- blum
 	@tools/demo.sh build/release/bin/blum $(DEMO_DIR)
 
-simulate: ## Run a simulation without a missed collision, and make a page of it in out/simulations: make simulate S=cloth (or bodies, breaking, large)
+simulate: ## Run a simulation without a missed collision, and make a page of it in out/simulations: make simulate S=cloth (or bodies, breaking, large) FRAMES=60
 	@tools/setup.sh --tests
 	@tools/build.sh release $(configure_options) -- blum simulations
-	@tools/simulate.sh '$(or $(S),cloth)' out/simulations
+	@tools/simulate.sh '$(or $(S),cloth)' out/simulations $(if $(FRAMES),--frames '$(FRAMES)')
 
 python: ## Build the Python package alone: build/release/python, for PYTHONPATH, with the Python of build/venv
 	@tools/setup.sh --tests

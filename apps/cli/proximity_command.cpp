@@ -17,6 +17,8 @@ constexpr const char* examples = R"(Examples:
   blum proximity *.stl -o pairs.csv      the same for all pairs of files
   blum proximity cloth.ply --self --query nbody --within 0.01 -o pairs.vtp
                                          for each triangle the closest one, within 0.01, that shares no vertex with it
+  blum proximity a.ply b.ply --query collide
+                                         how many triangles meet
   blum proximity a.ply b.ply --query collide -o pairs.npz
                                          all pairs of triangles that meet
   blum proximity a.ply b.ply --query collide --within 0.01 -o pairs.npz
@@ -45,6 +47,12 @@ void run(const ProximityArguments& a) {
       std::find_if(queries.begin(), queries.end(), [&](const Query& one) { return a.query == one.name; });
   if (query == queries.end()) {
     throw UsageError("--query is '" + a.query + "', but must be separation, nbody, collide, penetration or continuous");
+  }
+  if (!a.ends.empty() && a.ends.front().starts_with('-')) {
+    throw UsageError("--to names no file: '" + a.ends.front() + "' follows it; name one for each SCENE");
+  }
+  if (a.skip_changed && !(a.frames && a.query == "continuous")) {
+    throw UsageError("--skip-changed is for --frames with --query continuous alone");
   }
   if (!a.ends.empty() && a.query != "continuous") throw UsageError("--to is for --query continuous alone");
   (a.frames ? run_frames : query->run)(a);
@@ -76,6 +84,9 @@ void add_proximity_command(const CommandLine& line) {
   command->add_flag("--frames", a->frames,
                     "The files are frames of one object that moves; -o PAIRS.json tells the pairs of each, for `blum "
                     "view --frames --pairs`");
+  command->add_flag("--skip-changed", a->skip_changed,
+                    "continuous with --frames: leave out steps between frames of different triangles or vertices, and "
+                    "tell which, instead of an error");
   add_text_option(*command, "--within", a->within, "D",
                   "separation, nbody: only pairs no further apart than D, mesh units (default: all); collide: all of "
                   "these instead of those that meet");
@@ -85,7 +96,10 @@ void add_proximity_command(const CommandLine& line) {
       "closest points); of continuous .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time; with --to "
       "vertex_face_object, edge_edge_object), .csv, .json. Of penetration the deepest point of each part and the "
       "closest one to it, with the depth as a "
-      "negative distance. May be left out with separation and penetration");
+      "negative distance. Without it the pairs are counted");
+  add_text_option(*command, "--limit", a->limit, "N",
+                  "Write at most N pairs, of --frames of each frame; all are counted (default: all)");
+  add_weld_option(*command, a->weld);
   a->culling.add_to(*command, "separation, nbody, collide: ");
   a->penetration.add_to(*command, "penetration: ");
   a->impact.add_to(*command, "continuous: ");

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,7 +40,20 @@ struct Answer {
   ContinuousCollisions found;
   PhaseSummary spent;
   int threads = 0;
+  std::size_t limit = 0;
 };
+
+void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
+  const ContinuousCollisions& found = answer.found;
+  const FileMetadata metadata{{"content", "continuous collisions"},
+                              {"blum_version", BLUM_VERSION},
+                              {"start", fs::path(a.scene[0]).filename().string()},
+                              {"end", fs::path(a.scene[1]).filename().string()},
+                              {"tolerance", exact_text(answer.options.tolerance)},
+                              {"min_separation", exact_text(answer.options.min_separation)}};
+  const bool is_all = found.vertex_face.size() + found.edge_edge.size() <= answer.limit;
+  write_collisions(*a.output, is_all ? found : first_of(found, answer.limit), answer.mesh.start, metadata, context);
+}
 
 Json json_of(const ProximityArguments& a, const Answer& answer) {
   const ContinuousCollisions& found = answer.found;
@@ -58,44 +72,56 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"total_seconds", answer.spent.total},
                                    {"peak_memory_bytes", peak_memory()},
                                    {"threads", answer.threads},
-                                   {"outputs", {*a.output}}});
+                                   {"limit", limit_json(a)},
+                                   {"outputs", outputs_json(a)}});
 }
 
 std::string text_of(const ProximityArguments& a, const Answer& answer) {
   const TriangleMesh& mesh = answer.mesh.start;
   const ContinuousCollisions& found = answer.found;
   const auto first = found.earliest();
+  const std::size_t count = found.vertex_face.size() + found.edge_edge.size();
   TextTable table;
   table.add("scene", a.scene[0] + " to " + a.scene[1] + ": " + plural(mesh.vertices.size(), "vertex", "vertices") +
                          ", " + plural(mesh.triangles.size(), "triangle", "triangles"));
   table.add("collisions", plural(found.vertex_face.size(), "vertex and face", "of a vertex and a face") + ", " +
                               plural(found.edge_edge.size(), "of two edges", "of two edges") +
-                              (first ? "; the first at time " + rounded_text(*first) : ""));
+                              (first ? "; the first at time " + rounded_text(*first) : "") +
+                              (a.output ? limit_text(count, answer.limit) : ""));
   table.add("tests", count_text(found.exact_tests) + " exact ones, of " + count_text(found.box_pairs) +
                          " pairs whose moving boxes touch");
-  table.add("wrote", *a.output);
+  if (a.output) table.add("wrote", *a.output);
   table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   return table.text();
 }
 
 }  // namespace
 
-MovingMesh read_moving_mesh(const fs::path& start, const fs::path& end) {
+std::string difference(const MeshView& start, const MeshView& end) {
+  const auto other_count = [](std::size_t one, std::size_t other, const char* what) {
+    return "it has " + count_text(other) + " " + what + ", not " + count_text(one) + " as";
+  };
+  if (start.vertices.size() != end.vertices.size()) {
+    return other_count(start.vertices.size(), end.vertices.size(), "vertices");
+  }
+  if (start.triangles.size() != end.triangles.size()) {
+    return other_count(start.triangles.size(), end.triangles.size(), "triangles");
+  }
+  const bool is_same =
+      std::equal(start.triangles.begin(), start.triangles.end(), end.triangles.begin()) &&
+      std::equal(start.segments.begin(), start.segments.end(), end.segments.begin(), end.segments.end()) &&
+      std::equal(start.points.begin(), start.points.end(), end.points.begin(), end.points.end());
+  return is_same ? "" : "its triangles, segments or points name other vertices than those of";
+}
+
+MovingMesh read_moving_mesh(const fs::path& start, const fs::path& end, std::optional<double> weld) {
   const Unattended reading;
-  MovingMesh mesh{read_mesh(start), {}};
+  MovingMesh mesh{read_mesh(start, {weld}), {}};
   if (end == start) return mesh;
-  TriangleMesh last = read_mesh(end);
-  const auto refuse = [&](const std::string& what) {
+  TriangleMesh last = read_mesh(end, {weld});
+  if (const std::string what = difference(mesh.start, last); !what.empty()) {
     throw FormatError("'" + end.string() + "': " + what + " '" + start.string() +
                       "': frames of one motion have the same vertices and triangles, in the same order");
-  };
-  if (last.vertices.size() != mesh.start.vertices.size()) {
-    refuse("it has " + count_text(last.vertices.size()) + " vertices, not " + count_text(mesh.start.vertices.size()) +
-           " as");
-  }
-  if (last.triangles != mesh.start.triangles || last.segments != mesh.start.segments ||
-      last.points != mesh.start.points) {
-    refuse("its triangles, segments or points name other vertices than those of");
   }
   mesh.end = std::move(last.vertices);
   return mesh;
@@ -109,8 +135,7 @@ void check_continuous_options(const ProximityArguments& a) {
   if (const auto names = a.penetration.given(); !names.empty()) {
     throw UsageError(names.front() + " is for --query penetration alone");
   }
-  if (!a.output) throw UsageError("--query continuous tells its pairs in a file: give -o PAIRS");
-  check_extension("--output", *a.output, collision_extensions());
+  if (a.output) check_extension("--output", *a.output, collision_extensions());
 }
 
 void run_continuous_query(const ProximityArguments& a) {
@@ -124,30 +149,27 @@ void run_continuous_query(const ProximityArguments& a) {
   Answer answer;
   answer.options = a.impact.read();
   check(answer.options);
+  answer.limit = read_limit(a);
+  const std::optional<double> weld = parse_weld(a.weld);
   const int threads = parse_threads(a.threads);
   std::vector<fs::path> outputs = a.report.files();
-  outputs.emplace_back(*a.output);
+  if (a.output) outputs.emplace_back(*a.output);
   check_outputs(outputs, {start, end});
   Progress progress(!a.report.quiet);
   const Interrupt interrupt;
   const Context context = make_context(threads, progress, interrupt);
   Stopwatch watch;
   std::vector<PhaseTime> phases;
-  answer.mesh = read_moving_mesh(start, end);
+  answer.mesh = read_moving_mesh(start, end, weld);
   phases.push_back({"read", watch.lap()});
   const std::vector<Vec3d>& last = answer.mesh.end.empty() ? answer.mesh.start.vertices : answer.mesh.end;
   answer.found = continuous_collisions(answer.mesh.start, last, answer.options, context);
   phases.insert(phases.end(), answer.found.phases.begin(), answer.found.phases.end());
   static_cast<void>(watch.lap());
-  write_collisions(*a.output, answer.found, answer.mesh.start,
-                   {{"content", "continuous collisions"},
-                    {"blum_version", BLUM_VERSION},
-                    {"start", start.filename().string()},
-                    {"end", end.filename().string()},
-                    {"tolerance", exact_text(answer.options.tolerance)},
-                    {"min_separation", exact_text(answer.options.min_separation)}},
-                   context);
-  phases.push_back({"write", watch.lap()});
+  if (a.output) {
+    write(a, answer, context);
+    phases.push_back({"write", watch.lap()});
+  }
   progress.clear();
   answer.spent = summarize(phases);
   answer.threads = thread_count(context);

@@ -39,8 +39,10 @@ struct Answer {
   std::vector<MovingMesh> meshes;
   ImpactOptions options;
   SceneCollisions found;
+  std::vector<std::string> names;  ///< of the objects
   PhaseSummary spent;
   int threads = 0;
+  std::size_t limit = 0;
 
   [[nodiscard]] std::size_t moving() const {
     return static_cast<std::size_t>(
@@ -51,7 +53,8 @@ struct Answer {
 std::vector<MovingMesh> read_objects(const ProximityArguments& a) {
   std::vector<MovingMesh> meshes;
   meshes.reserve(a.scene.size());
-  for (std::size_t k = 0; k < a.scene.size(); ++k) meshes.push_back(read_moving_mesh(a.scene[k], a.ends[k]));
+  const std::optional<double> weld = parse_weld(a.weld);
+  for (std::size_t k = 0; k < a.scene.size(); ++k) meshes.push_back(read_moving_mesh(a.scene[k], a.ends[k], weld));
   return meshes;
 }
 
@@ -85,6 +88,8 @@ struct PairSummary {
   std::size_t vertex_face = 0;
   std::size_t edge_edge = 0;
   std::optional<double> earliest;
+
+  [[nodiscard]] std::size_t count() const { return vertex_face + edge_edge; }
 };
 
 PairSummary summary_of(const ObjectCollisions& pair) {
@@ -107,9 +112,10 @@ FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
                    {"self", a.self ? "true" : "false"},
                    {"tolerance", exact_text(answer.options.tolerance)},
                    {"min_separation", exact_text(answer.options.min_separation)}};
+  const std::vector<std::string> ends = told_apart(a.ends);
   for (std::size_t k = 0; k < a.scene.size(); ++k) {
-    out.emplace_back("object_" + std::to_string(k), fs::path(a.scene[k]).filename().string());
-    out.emplace_back("end_" + std::to_string(k), fs::path(a.ends[k]).filename().string());
+    out.emplace_back("object_" + std::to_string(k), answer.names[k]);
+    out.emplace_back("end_" + std::to_string(k), ends[k]);
   }
   return out;
 }
@@ -158,19 +164,14 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"total_seconds", answer.spent.total},
                                    {"peak_memory_bytes", peak_memory()},
                                    {"threads", answer.threads},
-                                   {"outputs", {*a.output}}});
+                                   {"limit", limit_json(a)},
+                                   {"outputs", outputs_json(a)}});
 }
 
 std::string collisions_text(const PairSummary& pair) {
   return plural(pair.vertex_face, "of a vertex and a face", "of a vertex and a face") + ", " +
          plural(pair.edge_edge, "of two edges", "of two edges") +
          (pair.earliest ? "; the first at time " + rounded_text(*pair.earliest) : "");
-}
-
-std::string object_text(const ProximityArguments& a, const ObjectCollisions& pair) {
-  const std::string first = fs::path(a.scene[pair.first.value]).filename().string();
-  if (pair.first == pair.second) return first + ", itself";
-  return first + ", " + fs::path(a.scene[pair.second.value]).filename().string();
 }
 
 std::string text_of(const ProximityArguments& a, const Answer& answer) {
@@ -180,16 +181,17 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
   TextTable table;
   table.add("scene", plural(answer.meshes.size(), "object", "objects") + ", of which " +
                          plural(answer.moving(), "moves", "move") + "; " + plural(triangles, "triangle", "triangles"));
-  table.add("collisions", collisions_text(summary_of(answer.found)));
+  const PairSummary all = summary_of(answer.found);
+  table.add("collisions", collisions_text(all) + (a.output ? limit_text(all.count(), answer.limit) : ""));
   for (std::size_t k = 0; k < std::min(pairs.size(), most_rows); ++k) {
-    table.add(object_text(a, pairs[k]), collisions_text(summary_of(pairs[k])));
+    table.add(objects_text(answer.names, pairs[k].first, pairs[k].second), collisions_text(summary_of(pairs[k])));
   }
   if (pairs.size() > most_rows) {
     table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " of objects more; --json FILE tells all");
   }
   table.add("tests", count_text(answer.found.exact_tests) + " exact ones, of " + count_text(answer.found.box_pairs) +
                          " pairs whose moving boxes touch");
-  table.add("wrote", *a.output);
+  if (a.output) table.add("wrote", *a.output);
   table.add("time", answer.spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   return table.text();
 }
@@ -197,7 +199,9 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
 void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
   std::vector<MeshView> objects;
   for (const MovingMesh& mesh : answer.meshes) objects.emplace_back(mesh.start);
-  write_collisions(*a.output, answer.found, objects, metadata_of(a, answer), context);
+  const bool is_all = summary_of(answer.found).count() <= answer.limit;
+  write_collisions(*a.output, is_all ? answer.found : first_of(answer.found, answer.limit), objects,
+                   metadata_of(a, answer), context);
 }
 
 }  // namespace
@@ -207,9 +211,11 @@ void run_moving_scene(const ProximityArguments& a) {
   Answer answer;
   answer.options = a.impact.read();
   check(answer.options);
+  answer.limit = read_limit(a);
+  answer.names = told_apart(a.scene);
   const int threads = parse_threads(a.threads);
   std::vector<fs::path> outputs = a.report.files();
-  outputs.emplace_back(*a.output);
+  if (a.output) outputs.emplace_back(*a.output);
   std::vector<fs::path> inputs(a.scene.begin(), a.scene.end());
   inputs.insert(inputs.end(), a.ends.begin(), a.ends.end());
   check_outputs(outputs, inputs);
@@ -224,8 +230,10 @@ void run_moving_scene(const ProximityArguments& a) {
   answer.found = scene.continuous(motions_of(answer.meshes), answer.options, context);
   phases.insert(phases.end(), answer.found.phases.begin(), answer.found.phases.end());
   static_cast<void>(watch.lap());
-  write(a, answer, context);
-  phases.push_back({"write", watch.lap()});
+  if (a.output) {
+    write(a, answer, context);
+    phases.push_back({"write", watch.lap()});
+  }
   progress.clear();
   answer.spent = summarize(phases);
   answer.threads = thread_count(context);

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,9 +44,6 @@ void check(const ProximityArguments& a) {
   if (const auto names = a.culling.given(); is_penetration && !names.empty()) {
     throw UsageError(names.front() + " is not for --query penetration");
   }
-  if (!a.output && a.query != "separation" && !is_penetration) {
-    throw UsageError("--query " + a.query + " tells its pairs in a file: give -o PAIRS");
-  }
   if (a.output) check_extension("--output", *a.output, proximity_extensions());
 }
 
@@ -53,8 +53,10 @@ struct Answer {
   std::optional<double> within;
   ProximityPairs found;
   std::vector<ScenePenetration> parts;  ///< of --query penetration: what `found` tells
+  std::vector<std::string> names;       ///< of the objects
   PhaseSummary spent;
   int threads = 0;
+  std::size_t limit = 0;
 
   [[nodiscard]] std::vector<MeshView> views() const { return {meshes.begin(), meshes.end()}; }
   /// Of those equally close the first; nullptr where there is none.
@@ -71,11 +73,11 @@ struct Answer {
   }
 };
 
-std::vector<TriangleMesh> read_objects(const std::vector<std::string>& files) {
+std::vector<TriangleMesh> read_objects(const std::vector<std::string>& files, std::optional<double> weld) {
   const Unattended reading;
   std::vector<TriangleMesh> meshes;
   meshes.reserve(files.size());
-  for (const std::string& file : files) meshes.push_back(read_mesh(file));
+  for (const std::string& file : files) meshes.push_back(read_mesh(file, {weld}));
   return meshes;
 }
 
@@ -95,7 +97,11 @@ ProximityScene scene_of(const std::vector<TriangleMesh>& meshes, const Proximity
 }
 
 void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
-  answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
+  try {
+    answer.parts = all_penetrations(scene, a.self, a.penetration.read(), context, answer.found.report.phases);
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh(with_names(error.what(), a.scene));
+  }
   answer.found.report.object_pairs = scene.size() * (scene.size() - 1) / 2 + (a.self ? scene.size() : 0);
   for (const ScenePenetration& part : answer.parts) answer.found.pairs.push_back(pair_of(part));
 }
@@ -113,7 +119,7 @@ FileMetadata metadata_of(const ProximityArguments& a, const Answer& answer) {
   if (answer.within) out.emplace_back("within", exact_text(*answer.within));
   out.emplace_back("self", a.self ? "true" : "false");
   for (std::size_t k = 0; k < a.scene.size(); ++k) {
-    out.emplace_back("object_" + std::to_string(k), fs::path(a.scene[k]).filename().string());
+    out.emplace_back("object_" + std::to_string(k), answer.names[k]);
   }
   return out;
 }
@@ -141,8 +147,6 @@ Json closest_json(const Answer& answer) {
 }
 
 Json json_of(const ProximityArguments& a, const Answer& answer) {
-  Json outputs = Json::array();
-  if (a.output) outputs.push_back(*a.output);
   Json parts = Json::array();
   for (const ScenePenetration& part : answer.parts) parts.push_back(json_of(part));
   return answer_json("proximity", {{"query", a.query},
@@ -163,32 +167,43 @@ Json json_of(const ProximityArguments& a, const Answer& answer) {
                                    {"total_seconds", answer.spent.total},
                                    {"peak_memory_bytes", peak_memory()},
                                    {"threads", answer.threads},
-                                   {"outputs", outputs}});
+                                   {"limit", limit_json(a)},
+                                   {"outputs", outputs_json(a)}});
 }
 
-std::string distance_text(const PrimitivePair& pair) {
+/// The largest coordinate, mesh units.
+double largest(const std::vector<TriangleMesh>& meshes) {
+  double out = 0;
+  for (const TriangleMesh& mesh : meshes) {
+    for (const Vec3d& p : mesh.vertices) out = std::max({out, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  return out;
+}
+
+std::string distance_text(const PrimitivePair& pair, double size) {
   const TriangleDistance& between = pair.between;
-  if (between.distance == 0) return "they meet, near " + vector_text(between.first_point);
-  return rounded_text(between.distance) + ", from " + vector_text(between.first_point) + " to " +
-         vector_text(between.second_point);
+  if (between.distance == 0) return "they meet, near " + point_text(between.first_point, size);
+  return rounded_text(between.distance) + ", from " + point_text(between.first_point, size) + " to " +
+         point_text(between.second_point, size);
 }
 
-std::string penetration_text(const Penetration& part) {
+std::string penetration_text(const Penetration& part, double size) {
+  // The direction is the difference of two points that are rounded, by their distance.
+  const double blur = std::clamp(size / part.depth, 1.0, 1e6);
   return "depth " + rounded_text(part.depth) + " (at most " + rounded_text(part.depth_bound) + ") at " +
-         vector_text(part.deep_point) + ", out along " + vector_text(part.direction) + "; volume " +
+         point_text(part.deep_point, size) + ", out along " + point_text(part.direction, blur) + "; volume " +
          rounded_text(part.volume);
 }
 
-std::string object_text(const ProximityArguments& a, const PrimitivePair& pair) {
-  const std::string first = fs::path(a.scene[pair.first_object.value]).filename().string();
-  if (pair.first_object == pair.second_object) return first + ", itself";
-  return first + ", " + fs::path(a.scene[pair.second_object.value]).filename().string();
+std::string object_text(const Answer& answer, const PrimitivePair& pair) {
+  return objects_text(answer.names, pair.first_object, pair.second_object);
 }
 
 /// A row for each part of what two objects have in common.
-void add_penetrations(const ProximityArguments& a, const Answer& answer, TextTable& table) {
+void add_penetrations(const Answer& answer, TextTable& table) {
+  const double size = largest(answer.meshes);
   for (std::size_t k = 0; k < std::min(answer.parts.size(), most_rows); ++k) {
-    table.add(object_text(a, answer.found.pairs[k]), penetration_text(answer.parts[k].part));
+    table.add(object_text(answer, answer.found.pairs[k]), penetration_text(answer.parts[k].part, size));
   }
   if (answer.parts.size() > most_rows) {
     table.add("...", plural(answer.parts.size() - most_rows, "part", "parts") + " more; --json FILE tells all");
@@ -196,10 +211,11 @@ void add_penetrations(const ProximityArguments& a, const Answer& answer, TextTab
 }
 
 /// A row for each pair of objects.
-void add_separations(const ProximityArguments& a, const Answer& answer, TextTable& table) {
+void add_separations(const Answer& answer, TextTable& table) {
+  const double size = largest(answer.meshes);
   const auto& pairs = answer.found.pairs;
   for (std::size_t k = 0; k < std::min(pairs.size(), most_rows); ++k) {
-    table.add(object_text(a, pairs[k]), distance_text(pairs[k]));
+    table.add(object_text(answer, pairs[k]), distance_text(pairs[k], size));
   }
   if (pairs.size() > most_rows) {
     table.add("...", plural(pairs.size() - most_rows, "pair", "pairs") + " more; -o PAIRS tells all");
@@ -230,13 +246,13 @@ std::string pairs_text(const ProximityArguments& a, const Answer& answer) {
 std::string text_of(const ProximityArguments& a, const Answer& answer) {
   TextTable table;
   table.add("scene", scene_text(answer));
-  table.add("pairs", pairs_text(a, answer));
+  table.add("pairs", pairs_text(a, answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
   if (a.query == "penetration") {
-    add_penetrations(a, answer, table);
+    add_penetrations(answer, table);
   } else if (a.query == "separation") {
-    add_separations(a, answer, table);
+    add_separations(answer, table);
   } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
-    table.add("closest", object_text(a, *closest) + ": " + distance_text(*closest));
+    table.add("closest", object_text(answer, *closest) + ": " + distance_text(*closest, largest(answer.meshes)));
   }
   if (a.query != "penetration")
     table.add("tests", count_text(answer.found.report.exact_tests) + " exact ones, of " +
@@ -256,6 +272,9 @@ void run_scene_query(const ProximityArguments& a) {
   check(culling);
   check(a.penetration.read());
   if (a.within) answer.within = parse_non_negative("--within", *a.within);
+  answer.limit = read_limit(a);
+  answer.names = told_apart(a.scene);
+  const std::optional<double> weld = parse_weld(a.weld);
   const int threads = parse_threads(a.threads);
   std::vector<fs::path> outputs = a.report.files();
   if (a.output) outputs.emplace_back(*a.output);
@@ -264,7 +283,7 @@ void run_scene_query(const ProximityArguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(threads, progress, interrupt);
   Stopwatch watch;
-  answer.meshes = read_objects(a.scene);
+  answer.meshes = read_objects(a.scene, weld);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const ProximityScene scene = scene_of(answer.meshes, a, culling, context);
   phases.push_back({"build", watch.lap()});
@@ -276,7 +295,9 @@ void run_scene_query(const ProximityArguments& a) {
   phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {
-    write_proximity_pairs(*a.output, answer.found.pairs, answer.views(), metadata_of(a, answer), context);
+    const std::span<const PrimitivePair> pairs = answer.found.pairs;
+    write_proximity_pairs(*a.output, pairs.first(std::min(pairs.size(), answer.limit)), answer.views(),
+                          metadata_of(a, answer), context);
     phases.push_back({"write", watch.lap()});
   }
   progress.clear();

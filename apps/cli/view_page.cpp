@@ -63,14 +63,47 @@ class SceneElements {
   std::string waiting_;
 };
 
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string title_of(const Scene& scene) {
+  const Json& items = scene.header["items"];
+  if (items.empty()) return "Blum";
+  std::string title = escaped(items.front()["name"].get<std::string>());
+  if (items.size() > 1) title += " and " + std::to_string(items.size() - 1) + " more";
+  return title + " - Blum";
+}
+
 }  // namespace
 
 std::string_view viewer_page() {
   return {reinterpret_cast<const char*>(viewer_page_bytes), viewer_page_size};
 }
 
+std::string titled_page(const Scene& scene) {
+  constexpr std::string_view plain = "<title>Blum</title>";
+  std::string page(viewer_page());
+  const std::size_t at = page.find(plain);
+  if (at != std::string::npos) page.replace(at, plain.size(), "<title>" + title_of(scene) + "</title>");
+  return page;
+}
+
 void write_page(const std::filesystem::path& path, const Scene& scene) {
-  const std::string_view page = viewer_page();
+  const std::string titled = titled_page(scene);
+  const std::string_view page = titled;
   const std::size_t at = page.find(mark);
   if (at == std::string_view::npos) throw Error("the viewer's page has no place for a scene");
   AtomicFile file(path);

@@ -216,6 +216,11 @@ Scene make_scene(const std::vector<fs::path>& files, std::optional<double> weld,
       message = "'" + path.string() + "': not enough memory";
     } catch (const std::exception& error) {
       message = error.what();
+      if (message.find("'pairs of primitives'") != std::string::npos) {
+        message +=
+            "; close pairs are shown with the frames of a moving object: blum proximity FRAME... --frames --self -o "
+            "PAIRS.json, then blum view FRAME... --frames --pairs PAIRS.json";
+      }
     }
     scene.problems.push_back(message);
     items.push_back({{"kind", "error"}, {"name", path.filename().string()}, {"message", message}});

@@ -109,7 +109,10 @@ struct Connection {
 class Session {
  public:
   Session(const Scene& scene, std::uint16_t port)
-      : port_(std::to_string(port)), scene_head_(SceneBlob::head(scene.header)), scene_{scene_head_} {
+      : port_(std::to_string(port)),
+        page_(titled_page(scene)),
+        scene_head_(SceneBlob::head(scene.header)),
+        scene_{scene_head_} {
     for (const std::string_view array : scene.blob.arrays()) scene_.push_back(array);
     for (const std::string_view part : scene_) scene_size_ += part.size();
   }
@@ -150,8 +153,8 @@ class Session {
     const bool is_head = request.method == "HEAD";
     if (request.method != "GET" && !is_head) return refuse(connection, "405 Method Not Allowed");
     if (request.path == "/") {
-      connection.answer = {viewer_page()};
-      connection.head = head("200 OK", "text/html; charset=utf-8", viewer_page().size());
+      connection.answer = {page_};
+      connection.head = head("200 OK", "text/html; charset=utf-8", page_.size());
     } else if (request.path == "/scene.bin") {
       connection.answer = scene_;
       connection.head = head("200 OK", "application/octet-stream", scene_size_);
@@ -187,6 +190,7 @@ class Session {
   }
 
   std::string port_;
+  std::string page_;
   std::string scene_head_;
   std::vector<std::string_view> scene_;
   std::size_t scene_size_ = 0;

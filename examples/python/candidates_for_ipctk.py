@@ -10,6 +10,7 @@ ipctk is not needed by Blum: pip install ipctk. Without it, this program says so
 """
 
 import argparse
+import os
 import pathlib
 import sys
 import time
@@ -142,6 +143,11 @@ def main() -> None:
     arguments = parser.parse_args()
     if len(arguments.frames) not in (0, 2):
         parser.error("give two frames of one mesh, or none")
+    if not (arguments.dhat > 0 and np.isfinite(arguments.dhat)):
+        parser.error(f"--dhat is {arguments.dhat}, but must be a distance above 0")
+    output = pathlib.Path(arguments.output)
+    if output.is_dir() or not os.access(output.resolve().parent, os.W_OK):
+        parser.error(f"-o {output}: its folder is not there or may not be written, or it is a folder itself")
     if ipctk is None:
         print("skipped: ipctk is not installed; pip install ipctk")
         sys.exit()
@@ -163,9 +169,12 @@ def main() -> None:
 
     rows = np.column_stack([mesh.vertices, forces])
     lines = ["x,y,z,force x,force y,force z", *(",".join(f"{value:.9g}" for value in row) for row in rows)]
-    pathlib.Path(arguments.output).write_text("\n".join(lines) + "\n")
+    output.write_text("\n".join(lines) + "\n")
     print(f"wrote {arguments.output}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (OSError, blum.Error) as error:
+        sys.exit(f"candidates_for_ipctk: error: {error}")

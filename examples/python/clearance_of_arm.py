@@ -7,7 +7,9 @@ step costs no more than the query.
 """
 
 import argparse
+import os
 import pathlib
+import sys
 from itertools import pairwise
 
 import blum
@@ -58,6 +60,11 @@ def main() -> None:
     parser.add_argument("-o", "--output", default="clearance.csv")
     parser.add_argument("--steps", type=int, default=200)
     arguments = parser.parse_args()
+    if arguments.steps < 1:
+        parser.error(f"--steps is {arguments.steps}, but must be at least 1")
+    output = pathlib.Path(arguments.output)
+    if output.is_dir() or not os.access(output.resolve().parent, os.W_OK):
+        parser.error(f"-o {output}: its folder is not there or may not be written, or it is a folder itself")
 
     obstacle = blum.read_mesh(arguments.obstacle) if arguments.obstacle else blum.generate("bracket")
     scene = blum.ProximityScene()
@@ -85,9 +92,12 @@ def main() -> None:
         f"{np.mean(table[:, 1] == 0):.1%} of the steps meet the obstacle"
     )
     lines = ["part,clearance,own clearance,link,x,y,z", *(",".join(f"{value:.9g}" for value in row) for row in rows)]
-    pathlib.Path(arguments.output).write_text("\n".join(lines) + "\n")
+    output.write_text("\n".join(lines) + "\n")
     print(f"wrote {arguments.output}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (OSError, blum.Error) as error:
+        sys.exit(f"clearance_of_arm: error: {error}")

@@ -6,7 +6,9 @@ Without a mesh, a chain of linked rings that Blum generates. The way is a helix 
 """
 
 import argparse
+import os
 import pathlib
+import sys
 
 import blum
 import numpy as np
@@ -32,6 +34,11 @@ def main() -> None:
     parser.add_argument("-o", "--output", default="clearance.csv")
     parser.add_argument("--steps", type=int, default=1000)
     arguments = parser.parse_args()
+    if arguments.steps < 1:
+        parser.error(f"--steps is {arguments.steps}, but must be at least 1")
+    output = pathlib.Path(arguments.output)
+    if output.is_dir() or not os.access(output.resolve().parent, os.W_OK):
+        parser.error(f"-o {output}: its folder is not there or may not be written, or it is a folder itself")
 
     scene = blum.read_mesh(arguments.mesh) if arguments.mesh else blum.generate("linked_tori", count=3)
     way = helix(scene.bounds, arguments.steps)
@@ -44,9 +51,12 @@ def main() -> None:
     header = "x,y,z,clearance,closest x,closest y,closest z,triangle"
     rows = np.column_stack([way, found.distance, found.points, found.triangle])
     lines = [header, *(",".join(f"{value:.9g}" for value in row) for row in rows)]
-    pathlib.Path(arguments.output).write_text("\n".join(lines) + "\n")
+    output.write_text("\n".join(lines) + "\n")
     print(f"wrote {arguments.output}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (OSError, blum.Error) as error:
+        sys.exit(f"clearance_of_scene: error: {error}")

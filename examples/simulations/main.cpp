@@ -1,17 +1,17 @@
-// Simulations that end with no missed collision, by the library's own continuous check:
-//
-//   simulations cloth|bodies|breaking|large [FOLDER] [--frames N]
-//
-// writes FOLDER/frame_000.ply and so on, and FOLDER/pairs.json, which `blum view FOLDER/frame_*.ply --frames --pairs
-// FOLDER/pairs.json -o page.html` shows. Without arguments it runs a few frames of each, and writes nothing.
+// Simulations that end with no missed collision, by the library's own continuous check: simulations --help.
+#include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -25,6 +25,57 @@ using simulations::Scene;
 using simulations::StepReport;
 
 constexpr double frame_seconds = 1.0 / 30;
+constexpr int most_frames = 1000;
+
+constexpr const char* help = R"(simulations cloth|bodies|breaking|large [FOLDER] [--frames N]
+
+Runs N frames (1 to 1000, default 60) of a simulation, and writes FOLDER/frame_000.ply and so on, and FOLDER/pairs.json,
+which `blum view FOLDER/frame_*.ply --frames --pairs FOLDER/pairs.json -o page.html` shows. FOLDER is named as the
+simulation by default. Results are written to FOLDER.part, and take the place of earlier ones when all is done, or when
+Ctrl-C ends the run after the frame at hand. Without arguments it runs a few frames of each, and writes nothing.
+
+Each step is asked about with continuous collisions, among all objects and of each that is not rigid with itself, and
+shortened where something would meet. Exit status: 0 where no collision was missed, 2 bad usage, 1 any other failure.
+)";
+
+volatile std::sig_atomic_t is_stopped = 0;
+
+/// The command line makes no sense: exit status 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Arguments {
+  std::vector<std::string> words;
+  int frames = 60;
+};
+
+int frames_of(const std::string& text) {
+  int frames = 0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, frames);
+  if (error != std::errc{} || at != end || frames < 1 || frames > most_frames) {
+    throw UsageError("--frames '" + text + "': must be a whole number from 1 to " + std::to_string(most_frames));
+  }
+  return frames;
+}
+
+Arguments read(const std::vector<std::string>& given) {
+  Arguments out;
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    if (given[k] == "--frames") {
+      if (k + 1 == given.size()) throw UsageError("--frames takes a number");
+      out.frames = frames_of(given[++k]);
+    } else if (given[k].starts_with("-")) {
+      throw UsageError("there is no option " + given[k]);
+    } else {
+      out.words.push_back(given[k]);
+    }
+  }
+  if (out.words.size() > 2) throw UsageError("'" + out.words[2] + "' was not expected: one folder holds all");
+  return out;
+}
 
 std::unique_ptr<Scene> make(const std::string& name) {
   if (name == "cloth") return simulations::make_cloth_scene();
@@ -33,6 +84,54 @@ std::unique_ptr<Scene> make(const std::string& name) {
   if (name == "large") return simulations::make_bowl_scene(16, 40);
   return nullptr;
 }
+
+/// Results in a folder, under draft names until all of them are there.
+class Results {
+ public:
+  /// @throws FileError where the folder cannot be made, before any work is done.
+  explicit Results(fs::path folder) : folder_(std::move(folder)), draft_(folder_.string() + ".part") {
+    guarded([&] {
+      if (fs::exists(folder_) && !fs::is_directory(folder_)) {
+        throw blum::FileError("'" + folder_.string() + "' is no folder; name another one");
+      }
+      fs::create_directories(folder_);
+      fs::remove_all(draft_);
+      fs::create_directory(draft_);
+    });
+  }
+  [[nodiscard]] const fs::path& draft() const { return draft_; }
+  /// Takes the place of earlier results.
+  void publish() const {
+    guarded([&] {
+      for (const fs::path& old : results_in(folder_)) fs::remove(old);
+      for (const fs::path& file : results_in(draft_)) fs::rename(file, folder_ / file.filename());
+      fs::remove(draft_);
+    });
+  }
+
+ private:
+  static std::vector<fs::path> results_in(const fs::path& folder) {
+    std::vector<fs::path> out;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      const bool is_frame = name.starts_with("frame_") && name.ends_with(".ply");
+      if (is_frame || name == "pairs.json") out.push_back(entry.path());
+    }
+    return out;
+  }
+  template <class Work>
+  static void guarded(const Work& work) {
+    try {
+      work();
+    } catch (const fs::filesystem_error& error) {
+      throw blum::FileError("cannot write '" + error.path1().string() + "': " + error.code().message() +
+                            "; name a folder that may be written");
+    }
+  }
+
+  fs::path folder_;
+  fs::path draft_;
+};
 
 /// What the viewer draws and charts of a frame.
 class Record {
@@ -54,7 +153,12 @@ class Record {
     file_ << "], \"stages\": {\"boxes\": " << sum.hierarchy_seconds << ", \"close pairs\": " << sum.close_seconds
           << ", \"continuous collisions\": " << sum.impact_seconds << "}}";
   }
-  void finish() { file_ << "\n]}\n"; }
+  /// @throws FileError where not all of it could be written.
+  void finish() {
+    file_ << "\n]}\n";
+    file_.close();
+    if (!file_) throw blum::FileError("cannot write pairs.json to its end: is the disk full?");
+  }
 
  private:
   void tell(bool& is_next, const char* kind, const blum::Vec3d& a, const blum::Vec3d& b, double distance,
@@ -82,15 +186,17 @@ void add(const StepReport& step, StepReport& sum) {
 /// @return whether no step passed anything through anything.
 bool run(const std::string& name, int frames, const std::optional<fs::path>& folder) {
   const std::unique_ptr<Scene> scene = make(name);
+  std::optional<Results> results;
   std::optional<Record> record;
   if (folder) {
-    fs::create_directories(*folder);
-    record.emplace(*folder / "pairs.json");
+    results.emplace(*folder);
+    record.emplace(results->draft() / "pairs.json");
   }
   std::size_t prevented = 0;
   double time = 0;
   StepReport last;
-  for (int frame = 0; frame < frames; ++frame) {
+  int frame = 0;
+  for (; frame < frames && is_stopped == 0; ++frame) {
     StepReport sum;
     for (int step = 0; step < std::lround(frame_seconds / scene->step); ++step) {
       time += scene->step;
@@ -102,14 +208,17 @@ bool run(const std::string& name, int frames, const std::optional<fs::path>& fol
     if (!folder) continue;
     char file[32];
     std::snprintf(file, sizeof file, "frame_%03d.ply", frame);
-    blum::write_mesh(*folder / file, scene->world.mesh());
+    blum::write_mesh(results->draft() / file, scene->world.mesh());
     record->add(*scene, sum);
     std::cerr << name << " frame " << frame << ": " << sum.close_pairs << " close pairs, " << sum.impacts
               << " collisions prevented\n";
   }
-  if (record) record->finish();
+  if (record) {
+    record->finish();
+    results->publish();
+  }
   const std::size_t missed = scene->world.collisions_in_steps() + scene->world.scene().collisions().pairs.size();
-  std::cout << name << ": " << frames << " frames, " << scene->world.mesh().triangles.size() << " triangles, "
+  std::cout << name << ": " << frame << " frames, " << scene->world.mesh().triangles.size() << " triangles, "
             << prevented << " collisions prevented, " << missed << " missed\n";
   return missed == 0;
 }
@@ -117,25 +226,31 @@ bool run(const std::string& name, int frames, const std::optional<fs::path>& fol
 }  // namespace
 
 int main(int argc, char** argv) try {
-  std::vector<std::string> words(argv + 1, argv + argc);
-  int frames = 60;
-  for (std::size_t k = 0; k + 1 < words.size(); ++k) {
-    if (words[k] != "--frames") continue;
-    frames = std::stoi(words[k + 1]);
-    words.erase(words.begin() + static_cast<std::ptrdiff_t>(k), words.begin() + static_cast<std::ptrdiff_t>(k) + 2);
-    break;
+  const std::vector<std::string> given(argv + 1, argv + argc);
+  for (const std::string& word : given) {
+    if (word != "--help" && word != "-h") continue;
+    std::cout << help;
+    return 0;
   }
+  const Arguments arguments = read(given);
+  const std::vector<std::string>& words = arguments.words;
   if (words.empty()) {
     bool is_fine = true;
     for (const char* name : {"cloth", "bodies", "breaking"}) is_fine = run(name, 6, std::nullopt) && is_fine;
     return is_fine ? 0 : 1;
   }
-  if (words.size() > 2 || make(words[0]) == nullptr) {
-    std::cerr << "simulations cloth|bodies|breaking|large [FOLDER] [--frames N]\n";
-    return 2;
+  if (make(words[0]) == nullptr) {
+    throw UsageError("there is no simulation '" + words[0] + "': it must be cloth, bodies, breaking or large");
   }
-  return run(words[0], frames, words.size() == 2 ? fs::path(words[1]) : fs::path(words[0])) ? 0 : 1;
+  std::signal(SIGINT, [](int) { is_stopped = 1; });
+  return run(words[0], arguments.frames, fs::path(words.back())) ? 0 : 1;
+} catch (const UsageError& error) {
+  std::cerr << "simulations: error: " << error.what() << "; see simulations --help\n";
+  return 2;
 } catch (const blum::Error& error) {
-  std::cerr << error.what() << "\n";
+  std::cerr << "simulations: error: " << error.what() << "\n";
+  return 1;
+} catch (const std::exception& error) {
+  std::cerr << "simulations: error: " << error.what() << "\n";
   return 1;
 }

@@ -73,8 +73,8 @@ class Cloth : public Scene {
 
   void drive(double time, const StepReport&) override {
     const double ease = std::min(1.0, 2 * time);
-    const double angle = ease * 0.9 * std::sin(3.5 * time);
-    const Vec3d by{ease * 0.25 * std::sin(2.2 * time), 0, ease * 0.1 * std::sin(4.4 * time)};
+    const double angle = ease * 1.0 * std::sin(5 * time);
+    const Vec3d by{ease * 0.25 * std::sin(3.2 * time), 0, ease * 0.1 * std::sin(6.4 * time)};
     world.object(0).goal = placed(body_, angle, by);
     world.object(1).goal = placed({skirt_}, angle, by);
   }

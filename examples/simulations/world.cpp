@@ -55,7 +55,7 @@ struct World::Contact {
 std::size_t World::add(Object object) {
   object.velocity.resize(object.mesh.vertices.size());
   if (object.kind == Kind::body && object.rest.empty()) object.rest = object.mesh.vertices;
-  object.id = scene_.add(object.mesh, {.self = object.self});
+  object.id = scene_.add(object.mesh, {.self = object.kind != Kind::driven});
   objects_.emplace_back(std::move(object));
   return objects_.size() - 1;
 }
@@ -109,10 +109,19 @@ World::Positions World::predicted() const {
   return to;
 }
 
+/// Whether bodies are compared with themselves: triangles beside each other are always close, and no contacts.
+void World::compare_selves(bool all) {
+  for (const auto& object : objects_) {
+    if (object && object->kind != Kind::driven && !object->self) scene_.exclude(object->id, object->id, !all);
+  }
+}
+
 /// Pairs that are close now: whatever they do, they are to stay on their sides.
-std::vector<World::Contact> World::contacts(StepReport& report) const {
+std::vector<World::Contact> World::contacts(StepReport& report) {
   Stopwatch watch;
+  compare_selves(false);
   const blum::ProximityPairs close = scene_.closer_than(2 * options_.thickness);
+  compare_selves(true);
   report.close_seconds += watch.lap();
   report.close_pairs += close.pairs.size();
   std::vector<Contact> out;

@@ -32,7 +32,9 @@ enum class Kind {
 struct Object {
   blum::TriangleMesh mesh;  ///< where it is
   Kind kind = Kind::body;
-  bool self = false;              ///< whether it is kept from passing through itself
+  /// Whether parts of it push each other apart. All but driven ones, which are rigid, are kept from passing through
+  /// themselves.
+  bool self = false;
   double mass = 1;                ///< of each particle; driven objects give way to nothing
   std::vector<bool> pinned = {};  ///< particles that stay; none where empty
   std::vector<Spring> springs = {};
@@ -97,7 +99,8 @@ class World {
 
   struct Contact;
   [[nodiscard]] Positions predicted() const;
-  [[nodiscard]] std::vector<Contact> contacts(StepReport& report) const;
+  [[nodiscard]] std::vector<Contact> contacts(StepReport& report);
+  void compare_selves(bool all);
   void satisfy(const std::vector<Contact>& contacts, Positions& to) const;
   void pull_springs(std::size_t object, std::vector<blum::Vec3d>& to) const;
   void push_apart(const Contact& contact, Positions& to) const;

@@ -321,6 +321,18 @@ void bind_proximity_scene(nb::module_& m) {
   bind_queries(scene);
   bind_motions(scene);
   m.def(
+      "closest_rotation",
+      [](const In<double, nb::shape<3, 3>>& rows) {
+        Mat3 matrix;
+        for (std::size_t row = 0; row < 3; ++row) {
+          for (std::size_t k = 0; k < 3; ++k) matrix.columns[k][row] = rows(row, k);
+        }
+        const Mat3 out = closest_rotation(matrix);
+        const auto& c = out.columns;
+        return nb::make_tuple(c[0].x, c[1].x, c[2].x, c[0].y, c[1].y, c[2].y, c[0].z, c[1].z, c[2].z);
+      },
+      nb::arg("matrix").noconvert());
+  m.def(
       "triangle_distances",
       [](const TrianglesOfPointsIn& a, const TrianglesOfPointsIn& b, int threads, nb::object progress) {
         return arrays_of(run({threads, std::move(progress)}, [&](const Context& context) {

@@ -29,7 +29,7 @@ from ._arguments import (
     points_and_shape,
     source_name,
 )
-from ._errors import InputWarning
+from ._errors import InputWarning, InvalidMesh
 from ._progress import Progress, reporting
 from ._structs import Bounds, Topology
 
@@ -184,6 +184,21 @@ def as_mesh(mesh: Any, triangles: Any = None, name: str = "mesh", *, weld: Any =
     welded = mesh_of_arrays(_core.weld(given._arrays, tolerance))
     welded.source, welded._weld = given.source, tolerance
     return welded
+
+
+def end_vertices(end: Any, name: str, triangles: Any = None) -> FloatArray:
+    """Where vertices are at the end of a motion: an (n, 3) array, or what stands for the mesh there.
+
+    With `triangles`, a mesh must have the same ones.
+    """
+    is_pair = isinstance(end, (tuple, list)) and len(end) == 2 and np.ndim(end[0]) == 2
+    words = ("vertices", "vertex", "extract_surface", "points")
+    if not (is_pair or isinstance(end, (str, os.PathLike)) or any(hasattr(end, word) for word in words)):
+        return float_rows(end, name)
+    mesh = as_mesh(end, name=name)
+    if triangles is not None and not np.array_equal(mesh.triangles, triangles):
+        raise InvalidMesh(f"{name} has other triangles than the mesh at the start: give frames of one mesh")
+    return float_rows(mesh.vertices, name)
 
 
 def _tell_of_seams(mesh: Mesh, name: str) -> None:

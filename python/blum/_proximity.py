@@ -8,9 +8,9 @@ from typing import Any, Unpack
 import numpy as np
 
 from . import _core
-from ._arguments import FloatArray, IntArray, as_array, float_rows, integer
+from ._arguments import FloatArray, IntArray, as_array, integer
 from ._errors import InvalidMesh
-from ._mesh import as_mesh
+from ._mesh import as_mesh, end_vertices
 from ._options import takes
 from ._progress import Progress, reporting
 from ._proximity_results import earliest_of
@@ -56,8 +56,9 @@ def continuous_collisions(
     ----------
     mesh : anything that stands for a mesh
         At time 0.
-    end : (n, 3) array
-        Its vertices at time 1. Arrays of doubles are used as they are, without a copy.
+    end : (n, 3) array, or anything that stands for a mesh
+        Its vertices at time 1, or the mesh then, with the same triangles. Arrays of doubles are used as they are,
+        without a copy.
     **options
 
     Returns
@@ -72,7 +73,7 @@ def continuous_collisions(
     ([3, 0, 1, 2], 0.25)
     """
     start = as_mesh(mesh)
-    last = float_rows(end, "end")
+    last = end_vertices(end, "end", start.triangles)
     with reporting(progress) as report:
         found = _core.continuous_collisions(start._arrays, last, dict(options), integer(threads, "threads"), report)
     return ContinuousCollisions(*found)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import overload
 
 import numpy as np
 
-from ._arguments import FloatArray, IntArray, Integer
+from ._arguments import FloatArray, IntArray, Integer, integer
 
 
 def earliest_of(*times: FloatArray) -> float | None:
@@ -30,7 +31,8 @@ class PrimitivePair:
 
 @dataclass(frozen=True, eq=False)
 class ProximityPairs:
-    """Pairs of primitives and their closest points, as arrays; `pairs[k]` is one, and false is what has none."""
+    """Pairs of primitives and their closest points, as arrays; `pairs[k]` is one, `pairs[1:5]` are some, and false is
+    what has none."""
 
     object: IntArray  #: (n, 2): the objects
     primitive: IntArray  #: (n, 2): the primitive of each: a triangle, or behind these a segment, then a point
@@ -47,8 +49,18 @@ class ProximityPairs:
     def __len__(self) -> int:
         return len(self.distance)
 
-    def __getitem__(self, index: Integer) -> PrimitivePair:
-        k = range(len(self))[int(index)]
+    @overload
+    def __getitem__(self, index: Integer) -> PrimitivePair: ...
+    @overload
+    def __getitem__(self, index: slice) -> ProximityPairs: ...
+    def __getitem__(self, index: Integer | slice) -> PrimitivePair | ProximityPairs:
+        if isinstance(index, slice):
+            columns = ("object", "primitive", "distance", "point", "feature")
+            return replace(self, **{name: getattr(self, name)[index] for name in columns})
+        number = integer(index, "the number of a pair")
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"there is no pair {number}: these are {self!r}, which count from 0")
+        k = number % len(self)
         (first_object, second_object), (first, second) = self.object[k].tolist(), self.primitive[k].tolist()
         return PrimitivePair(
             (first_object, second_object), (first, second), float(self.distance[k]), self.point[k], self.feature[k]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Unpack, overload
@@ -25,7 +25,7 @@ from ._arguments import (
     truth,
 )
 from ._errors import InvalidMesh, InvalidOption
-from ._mesh import as_mesh
+from ._mesh import as_mesh, end_vertices
 from ._options import takes
 from ._progress import Progress, ProgressCallback, reporting
 from ._proximity_results import Penetration, PrimitivePair, ProximityPairs, SceneCollisions
@@ -127,7 +127,7 @@ class ProximityScene:
             New positions before the transform, as many as there are.
         transform : (4, 4) or (3, 4) array, or a pair (rotation (3, 3), translation (3,)), optional
             Where the object is, from the positions of its vertices: not relative to where it was. Rigid to 1e-9, so in
-            doubles.
+            doubles: of others :func:`closest_rotation`.
         mesh : anything that stands for a mesh, optional
             Another mesh for the object. It stays where it is, and is compared with what it was.
         """
@@ -271,7 +271,7 @@ class ProximityScene:
     @takes("ImpactOptions")
     def continuous(
         self,
-        motions: dict[int, Any],
+        motions: Mapping[int, Any],
         *,
         threads: int = 0,
         progress: Progress = False,
@@ -284,7 +284,8 @@ class ProximityScene:
         ----------
         motions : dict
             For each object that moves where it is at the end: vertices (n, 3) before its transform, or
-            ``{"vertices": ..., "transform": ...}`` with either or both, as :meth:`update` takes them.
+            ``{"vertices": ..., "transform": ...}`` with either or both, as :meth:`update` takes them. In place of
+            vertices also what stands for the mesh at the end, with as many.
         **options
 
         >>> import blum
@@ -295,7 +296,7 @@ class ProximityScene:
         >>> found.earliest
         0.5
         """
-        rows = [_motion(which, end) for which, end in motions.items()]
+        rows = [_motion(which, end) for which, end in _motions_of(motions)]
         count = integer(threads, "threads")
         with self._alone(progress) as report:
             return SceneCollisions(*self._scene.continuous(rows, dict(options), count, report))
@@ -444,6 +445,15 @@ def _penetration(
     return Penetration(depth, bound, np.array(direction), np.array(deep), np.array(surface), is_first, *rest)
 
 
+def _motions_of(motions: Any) -> list[tuple[Any, Any]]:
+    if isinstance(motions, Mapping):
+        return list(motions.items())
+    raise TypeError(
+        f"motions must be a dict from the number of an object to its vertices at the end, {{number: vertices}}, not "
+        f"{type(motions).__name__}"
+    )
+
+
 def _motion(which: Any, end: Any) -> tuple[int, FloatArray | None, FloatArray | None]:
     given = end if isinstance(end, dict) else {"vertices": end}
     if unknown := set(given) - {"vertices", "transform"}:
@@ -451,9 +461,35 @@ def _motion(which: Any, end: Any) -> tuple[int, FloatArray | None, FloatArray | 
     vertices, transform = given.get("vertices"), given.get("transform")
     return (
         _object(which, "motions"),
-        None if vertices is None else float_rows(vertices, f"motions[{which}]"),
+        None if vertices is None else end_vertices(vertices, f"motions[{which}]"),
         None if transform is None else _place(transform),
     )
+
+
+def closest_rotation(matrix: Any) -> FloatArray:
+    """The rotation that is closest to a matrix that is one but for rounding, in doubles: of poses in float32, for
+    :meth:`ProximityScene.update`.
+
+    Parameters
+    ----------
+    matrix : (3, 3), (3, 4) or (4, 4) array
+        A rotation, or a transform, of which only the rotation changes. Its columns have length 1 and are at right
+        angles to 0.1.
+
+    >>> import blum, numpy as np
+    >>> turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]], dtype=np.float32)
+    >>> rotation = blum.closest_rotation(turn)
+    >>> bool(np.abs(rotation.T @ rotation - np.eye(3)).max() < 1e-15)
+    True
+    """
+    rows = as_array(matrix, "matrix")
+    if rows.dtype.kind not in "fiu":
+        raise TypeError(f"matrix must hold real numbers, not {rows.dtype}")
+    if rows.shape not in ((3, 3), (3, 4), (4, 4)):
+        raise ValueError(f"matrix has the shape {rows.shape}, but must have (3, 3), (3, 4) or (4, 4)")
+    out: FloatArray = np.array(rows, dtype=np.float64)
+    out[:3, :3] = np.reshape(_core.closest_rotation(np.ascontiguousarray(out[:3, :3])), (3, 3))
+    return out
 
 
 def _is_several(meshes: Any) -> bool:

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "blum/core/error.hpp"
@@ -103,6 +104,9 @@ Contents contents_of(const SceneCollisions& collisions, std::span<const MeshView
   return out;
 }
 
+/// Metadata that are numbers, true or false in .json.
+constexpr std::array<std::string_view, 3> typed_keys{"self", "tolerance", "min_separation"};
+
 void write_npz(const std::filesystem::path& path, const Contents& contents, const FileMetadata& metadata,
                const Context& context) {
   AtomicFile file(path);
@@ -137,11 +141,13 @@ std::size_t rows_of(const Contents& contents) {
 
 void write_csv(const std::filesystem::path& path, const Contents& contents, const Context& context) {
   RowWriter file(path, rows_of(contents), context);
-  file.text(contents.is_scene ? "kind,first_object,second_object,a,b,c,d,time\n" : "kind,a,b,c,d,time\n");
+  file.text(contents.is_scene ? "kind,first_object,second_object,a,b,c,d,time,face\n" : "kind,a,b,c,d,time,face\n");
   for (const Kind* kind : contents.kinds()) {
     for (std::size_t n = 0; n < kind->times.size(); ++n) {
+      const std::string face = kind == &contents.vertex_face ? std::to_string(contents.faces[n]) : "";
       const std::string objects = contents.is_scene ? joined(kind->objects[n], ",") + ',' : "";
-      file.text(kind->name + ',' + objects + joined(kind->vertices[n], ",") + ',' + exact_text(kind->times[n]) + '\n');
+      file.text(kind->name + ',' + objects + joined(kind->vertices[n], ",") + ',' + exact_text(kind->times[n]) + ',' +
+                face + '\n');
       file.end_row();
     }
   }
@@ -158,7 +164,7 @@ void write_list(RowWriter& file, const std::string& name, const std::vector<std:
 void write_json(const std::filesystem::path& path, const Contents& contents, const FileMetadata& metadata,
                 const Context& context) {
   RowWriter file(path, rows_of(contents), context);
-  file.text("{\"metadata\": " + (metadata.empty() ? "{}" : volume_io::to_json(metadata)));
+  file.text("{\"metadata\": " + volume_io::to_typed_json(metadata, typed_keys));
   for (const Kind* kind : contents.kinds()) {
     write_list(file, kind->name, kind->vertices);
     if (contents.is_scene) write_list(file, kind->name + "_object", kind->objects);

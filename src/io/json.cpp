@@ -70,6 +70,16 @@ std::string to_json(const FileMetadata& metadata) {
   return out + "}";
 }
 
+std::string to_typed_json(const FileMetadata& metadata, std::span<const std::string_view> typed) {
+  std::string out = "{";
+  for (const auto& [key, value] : metadata) {
+    if (out.size() > 1) out += ", ";
+    const bool is_typed = std::find(typed.begin(), typed.end(), key) != typed.end() && json::accept(value);
+    out += json_string(key) + ": " + (is_typed ? value : json_string(value));
+  }
+  return out + "}";
+}
+
 FileMetadata from_json(std::string_view text, const std::string& name) {
   FlatObject object;
   if (json::sax_parse(text.begin(), text.end(), &object)) return std::move(object.pairs);

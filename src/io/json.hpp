@@ -1,6 +1,7 @@
 // Blum: metadata as JSON. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,9 @@ namespace blum::volume_io {
 /// One JSON object whose values are all strings, in ASCII (other characters are escaped; bytes that are not UTF-8
 /// become U+FFFD).
 [[nodiscard]] std::string to_json(const FileMetadata& metadata);
+
+/// The same where the values of some keys are numbers, true or false: those that read as such.
+[[nodiscard]] std::string to_typed_json(const FileMetadata& metadata, std::span<const std::string_view> typed);
 
 /// Reads back what to_json writes. @throws FormatError with `name` for anything else.
 [[nodiscard]] FileMetadata from_json(std::string_view text, const std::string& name);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 
 #include "blum/complex/complex.hpp"
@@ -90,6 +91,9 @@ class PairColumns {
   const Context& context_;
 };
 
+/// Metadata that are numbers, true or false in .json.
+constexpr std::array<std::string_view, 2> typed_keys{"within", "self"};
+
 /// Bytes of a pair in .npz.
 constexpr std::size_t row_size = 8 * sizeof(std::int32_t) + 7 * sizeof(double) + 2 * sizeof(std::int32_t);
 
@@ -155,7 +159,7 @@ std::string json_text(const std::array<T, count>& values) {
 void write_json(const std::filesystem::path& path, const PairColumns& pairs, const FileMetadata& metadata,
                 const Context& context) {
   RowWriter rows(path, 5 * pairs.size(), context);
-  rows.text("{\"metadata\": " + (metadata.empty() ? "{}" : volume_io::to_json(metadata)));
+  rows.text("{\"metadata\": " + volume_io::to_typed_json(metadata, typed_keys));
   const auto add = [&](const char* name, const auto& row_of) {
     rows.text(",\n\"" + std::string(name) + "\": [");
     for (std::size_t n = 0; n < pairs.size(); ++n) {

@@ -74,18 +74,15 @@ class Chains {
 
 }  // namespace
 
-Overlap overlap_of(const MeshView& surfaces, const std::string& names, const Context& context) {
+Overlap overlap_of(const MeshView& surfaces, const Context& context) {
   ResolveOptions options;
   options.least_winding = 2;
   options.most_rounds = 0;  // distances are rounded anyway
   options.most_pairs = std::size_t{1} << 22;
   ResolvedMesh resolved = resolve_crossings(surfaces, options, context);
   if (!resolved.has_inside) return {};
-  if (!resolved.is_resolved()) {
-    throw InvalidMesh("what " + names + " have in common cannot be told: " + resolved.obstacle +
-                      "; penetration is that of closed surfaces that face outwards");
-  }
-  return {std::move(resolved.mesh), std::move(resolved.triangle_of), std::move(resolved.body_of)};
+  if (!resolved.is_resolved()) return {{}, {}, {}, resolved.obstacle};
+  return {std::move(resolved.mesh), std::move(resolved.triangle_of), std::move(resolved.body_of), {}};
 }
 
 std::vector<std::uint32_t> patches_of(const Overlap& overlap,

@@ -17,14 +17,14 @@ struct Overlap {
   TriangleMesh mesh;
   std::vector<std::uint32_t> source;   ///< of each triangle, in the surfaces
   std::vector<std::uint32_t> body_of;  ///< the connected part that it bounds
+  std::string obstacle;                ///< why it cannot be told; empty where it is
 };
 
 /// The points around which the surfaces wind twice or more.
 /// @param surfaces  of one solid or of two, closed, facing outwards. Those that cross themselves count where they wind
 ///                  twice.
-/// @param names     what messages call them.
-/// @throws InvalidMesh where that cannot be told: the surfaces are not closed; Cancelled.
-[[nodiscard]] Overlap overlap_of(const MeshView& surfaces, const std::string& names, const Context& context);
+/// @throws Cancelled.
+[[nodiscard]] Overlap overlap_of(const MeshView& surfaces, const Context& context);
 
 /// For each triangle a number of the patch that it lies in: patches end where triangles meet whose sources are no
 /// neighbours.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/primitives.hpp"
 #include "blum/geometry/weld.hpp"
@@ -27,10 +28,18 @@ double magnitude(const Vec3d& p) {
 void check(const RigidTransform& place) {
   constexpr double tolerance = 1e-9;
   const auto& c = place.rotation.columns;
-  if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2]) || !(place.rotation_error() <= tolerance)) {
+  if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2])) {
+    throw InvalidOption("the rotation of a transform holds numbers that are not finite");
+  }
+  if (const double error = place.rotation_error(); !(error <= tolerance)) {
+    constexpr double rounding = 1e-5;  // of single precision, and of some products of it
     throw InvalidOption(
-        "a transform is not rigid: the columns of its rotation must have length 1 and be at right "
-        "angles; scale vertices instead");
+        "a transform is not rigid: the columns of its rotation must have length 1 and be at right angles to 1e-9, but "
+        "are so to " +
+        rounded_text(error) +
+        (error <= rounding ? ": it was rounded to single precision, it seems; give the closest rotation, "
+                             "closest_rotation(matrix)"
+                           : ": it scales or shears; scale vertices instead"));
   }
   if (dot(cross(c[0], c[1]), c[2]) < 0) {
     throw InvalidOption(

@@ -61,6 +61,35 @@ double signed_volume(const TriangleMesh& surface) {
   return sum / 6;
 }
 
+/// How many edges of a surface have no two triangles on them in opposite directions.
+std::size_t open_edges(const MeshView& surface) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> sums;
+  for (const Triangle& t : surface.triangles) {
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k];
+      const std::uint32_t b = t[(k + 1) % 3];
+      sums[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  }
+  const auto is_open = [](const auto& edge) { return edge.second != 0; };
+  return static_cast<std::size_t>(std::count_if(sums.begin(), sums.end(), is_open));
+}
+
+/// @throws InvalidMesh where a surface is not closed, with what to do.
+void check_is_closed(const MeshView& surface, ObjectId id) {
+  const std::size_t open = open_edges(surface);
+  if (open == 0) return;
+  const std::string edges = count_text(open) + (open == 1 ? " edge" : " edges");
+  if (open_edges(weld(surface)) == 0) {
+    throw InvalidMesh(name_of(id) + " is not closed: at " + edges +
+                      " its triangles lie side by side, but share no vertices; weld it, which merges equal vertices");
+  }
+  throw InvalidMesh(name_of(id) + " is not closed, or its triangles do not all face the same way: at " + edges +
+                    " they do not meet in opposite directions; close its holes, turn triangles to face outwards, or "
+                    "weld its vertices within a tolerance");
+}
+
 /// Adds the surface of a solid; without what lies in it twice, where it crosses itself.
 void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Context& context, Surfaces& out) {
   TriangleMesh surface{object.positions(), object.mesh().triangles};
@@ -73,6 +102,7 @@ void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Con
   if (!is_self && SelfIntersectionSearch().finds_any(surface, context)) {
     ResolvedMesh resolved = resolve_crossings(surface, {}, context);
     if (!resolved.is_resolved()) {
+      check_is_closed(surface, id);
       throw InvalidMesh(name_of(id) +
                         " crosses or touches itself, and what lies in it cannot be told: " + resolved.obstacle);
     }
@@ -276,8 +306,14 @@ Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second,
   surfaces.of_first = surfaces.mesh.triangles.size();
   if (!is_self) add_surface(b, second, is_self, context, surfaces);
   timer.lap("surfaces");
-  const std::string names = is_self ? "parts of " + name_of(first) : name_of(first) + " and " + name_of(second);
-  Overlap overlap = overlap_of(surfaces.mesh, names, context);
+  Overlap overlap = overlap_of(surfaces.mesh, context);
+  if (!overlap.obstacle.empty()) {
+    check_is_closed(a.mesh(), first);
+    check_is_closed(b.mesh(), second);
+    throw InvalidMesh("what " + (is_self ? "parts of " + name_of(first) : name_of(first) + " and " + name_of(second)) +
+                      " have in common cannot be told: " + overlap.obstacle +
+                      "; penetration is that of closed surfaces that face outwards");
+  }
   timer.lap("overlap");
   std::map<std::uint32_t, std::vector<std::uint32_t>> bodies;
   for (std::uint32_t t = 0; t < overlap.body_of.size(); ++t) bodies[overlap.body_of[t]].push_back(t);

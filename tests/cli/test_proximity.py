@@ -161,7 +161,6 @@ def test_what_is_no_motion_is_refused(frames):
         ([start, frames / "less.obj", "--self", "-o", out], 1, "it has 3 vertices, not 6"),
         ([start, frames / "other.obj", "--self", "-o", out], 1, "name other vertices"),
         ([start, end, "-o", out], 2, "give --self"),
-        ([start, end, "--self"], 2, "give -o PAIRS"),
         ([start, "--self", "-o", out], 2, "takes two files"),
         ([start, end, "--self", "-o", frames / "p.txt"], 2, "the extension must be .npz"),
         ([start, end, "--self", "-o", frames / "p.vtp"], 2, "the extension must be .npz"),

@@ -117,7 +117,14 @@ def test_every_format_holds_what_python_says(folder, tmp_path, start, end, optio
     types = {name: array.dtype.str[1:] for name, array in read_npz(tmp_path / "p.npz").items() if name != "metadata"}
     assert types == {name: "f8" if name.endswith("_time") else "i4" for name in wanted}
     metadata = json.loads(str(read_npz(tmp_path / "p.npz")["metadata"]))
-    assert metadata == read_json(tmp_path / "p.json")["metadata"]
+    typed = read_json(tmp_path / "p.json")["metadata"]
+    assert isinstance(typed["self"], bool)
+    assert all(isinstance(typed[key], (int, float)) for key in ("tolerance", "min_separation"))
+    assert metadata == {**typed, **{key: metadata[key] for key in ("self", "tolerance", "min_separation")}}
+    with (tmp_path / "p.csv").open() as file:
+        faces = [row["face"] for row in csv.DictReader(file)]
+    told = wanted["face"].tolist()
+    assert faces == [str(face) for face in told] + [""] * (len(faces) - len(told))
     assert [metadata[f"object_{k}"] for k in range(len(start))] == start
     assert [metadata[f"end_{k}"] for k in range(len(start))] == end
 
@@ -243,7 +250,6 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
         ([tmp_path / "far.obj", "--self", "-o", out, "--to", plate], 1, "far.obj': a coordinate is beyond 1e70"),
         ([*two, fallen, tmp_path / "absent.ply"], 1, "absent.ply"),
         ([ball, "-o", out, "--to", fallen], 2, "give --self, or the files of more objects"),
-        ([ball, plate, "--to", fallen, plate], 2, "give -o PAIRS"),
         ([*two, fallen, plate, "-o", tmp_path / "p.vtp"], 2, ""),
         ([ball, plate, "-o", tmp_path / "p.vtp", "--to", fallen, plate], 2, "the extension must be .npz, .csv or .json"),
         ([ball, plate, "-o", fallen, "--to", fallen, plate], 2, ""),

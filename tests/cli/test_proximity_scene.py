@@ -113,7 +113,10 @@ def test_every_format_holds_what_python_says(objects, tmp_path, query, options, 
     types = {name: array.dtype.str[1:] for name, array in read_npz(tmp_path / "p.npz").items() if name != "metadata"}
     assert types == {"object": "i4", "primitive": "i4", "distance": "f8", "point": "f8", "feature": "i4"}
     metadata = json.loads(str(read_npz(tmp_path / "p.npz")["metadata"]))
-    assert metadata == read_json(tmp_path / "p.json")["metadata"]
+    typed = read_json(tmp_path / "p.json")["metadata"]
+    within = [float(options[k + 1]) for k, word in enumerate(options) if word == "--within"]
+    assert typed["self"] is ("--self" in options) and [typed[key] for key in ("within",) if key in typed] == within
+    assert metadata == {**typed, **{key: metadata[key] for key in ("self", "within") if key in metadata}}
     assert metadata["query"] == query and metadata["object_2"] == "soup.obj"
     assert metadata["self"] == ("true" if "--self" in options else "false")
 
@@ -181,8 +184,6 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
     for arguments, status, message in [
         ([torus], 2, "give --self, or the files of more objects"),
         ([torus, "--query", "nbody", "-o", out], 2, "give --self"),
-        ([torus, moved, "--query", "nbody"], 2, "give -o PAIRS"),
-        ([torus, moved, "--query", "collide"], 2, "give -o PAIRS"),
         ([torus, moved, "--query", "near"], 2, "must be separation, nbody, collide, penetration or continuous"),
         ([torus, moved, "--within", "-0.5"], 2, "--within '-0.5': must not be negative"),
         ([torus, moved, "--within", "nan"], 2, "--within 'nan'"),

@@ -43,6 +43,24 @@ def test_a_page_holds_a_mesh_and_a_field_exactly(tmp_path, shapes):
     assert image["labels"] and set(np.unique(scene.array(image["values"]))) == {0, 1}
 
 
+def test_pages_are_named_by_what_they_show(tmp_path):
+    strange = tmp_path / "a&b<c>.ply"
+    for file in (strange, tmp_path / "box.ply"):
+        run("make", "box", "-o", file)
+    run("view", strange, "-o", tmp_path / "one.html")
+    run("view", strange, tmp_path / "box.ply", "-o", tmp_path / "two.html")
+    assert "<title>a&amp;b&lt;c&gt;.ply - Blum</title>" in (tmp_path / "one.html").read_text()
+    assert "<title>a&amp;b&lt;c&gt;.ply and 1 more - Blum</title>" in (tmp_path / "two.html").read_text()
+
+
+def test_files_of_pairs_say_how_they_are_shown(tmp_path):
+    for name in ("box.ply", "other.ply"):
+        run("make", "box", "-o", tmp_path / name)
+    run("proximity", tmp_path / "box.ply", tmp_path / "other.ply", "-o", tmp_path / "s.vtp")
+    _, err = run("view", tmp_path / "box.ply", tmp_path / "s.vtp", "-o", tmp_path / "page.html", warns=True)
+    assert "blum view FRAME... --frames --pairs PAIRS.json" in err
+
+
 def test_field_without_a_band_from_nrrd_and_its_sites_alone(tmp_path, shapes):
     run("view", shapes / "sphere.nrrd", shapes / "sphere.site.nrrd", "-o", tmp_path / "page.html")
     scene = scene_of_page(tmp_path / "page.html")
@@ -224,6 +242,7 @@ def ask(port, path, method="GET", host=None):
 def test_the_server_serves_the_page_and_the_scene(server):
     answer, page = ask(server, "/")
     assert answer.status == 200 and page.startswith(b"<!doctype html>")
+    assert b"<title>sphere.ply" in page and int(answer.headers["Content-Length"]) == len(page)
     assert answer.headers["Content-Type"].startswith("text/html")
     assert "default-src 'none'" in answer.headers["Content-Security-Policy"]
     answer, data = ask(server, "/scene.bin?again", host=f"localhost:{server}")

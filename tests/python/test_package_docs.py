@@ -70,6 +70,27 @@ def test_examples_run(example, tmp_path):
     assert out.stat().st_size > 1000 and f"wrote {out}" in done.stdout
 
 
+@pytest.mark.parametrize(
+    ("example", "arguments", "message"),
+    [
+        ("clearance_of_arm.py", ["--steps", "0"], "--steps is 0, but must be at least 1"),
+        ("clearance_of_scene.py", ["--steps", "-1"], "--steps is -1, but must be at least 1"),
+        ("candidates_for_ipctk.py", ["--dhat", "-1"], "--dhat is -1.0, but must be a distance above 0"),
+        *((f"clearance_of_{what}.py", ["absent.ply"], "error: [Errno 2]") for what in ("arm", "scene")),
+        *(
+            (f"{name}.py", ["-o", "absent/out.csv"], "-o absent/out.csv: its folder is not there")
+            for name in ("clearance_of_arm", "clearance_of_scene", "candidates_for_ipctk")
+        ),
+    ],
+)
+def test_examples_say_what_was_wrong(example, arguments, message, tmp_path):
+    command = [sys.executable, ROOT / "examples/python" / example, *arguments]
+    package = {**os.environ, "PYTHONPATH": str(pathlib.Path(blum.__file__).parents[1].resolve())}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path, env=package)
+    assert done.returncode in (1, 2) and message in done.stderr and "Traceback" not in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
 def test_the_code_of_the_guide_runs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     pieces = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs/guide/python.md").read_text(), re.MULTILINE | re.DOTALL)

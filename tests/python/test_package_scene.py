@@ -492,3 +492,72 @@ def test_motions_and_penetrations_say_what_was_wrong():
         scene.continuous({9: box.vertices})
     with pytest.raises(blum.InvalidOption):
         scene.continuous({1: {"transform": np.diag([1, 1, -1, 1.0])}})
+
+
+def test_pairs_can_be_cut_and_say_what_is_not_there():
+    torus = blum.generate("torus")
+    pairs = blum.closest_primitives(torus)
+    few = pairs[1:7:2]
+    assert isinstance(few, blum.ProximityPairs) and len(few) == 3
+    assert few.primitive.tolist() == pairs.primitive[1:7:2].tolist() and few.exact_tests == pairs.exact_tests
+    assert few[0].primitive == pairs[1].primitive and pairs[-1].primitive == pairs[len(pairs) - 1].primitive
+    assert len(list(few)) == 3 and not pairs[0:0]
+    with pytest.raises(IndexError, match=r"there is no pair 9999: these are ProximityPairs\(6,144 pairs\)"):
+        pairs[9999]
+    with pytest.raises(TypeError, match="the number of a pair must be an integer, not str"):
+        pairs["first"]
+
+
+def test_motions_that_are_no_dict_say_what_they_must_be():
+    box = blum.generate("box")
+    scene = blum.ProximityScene()
+    scene.add(box, compare_self=True)
+    with pytest.raises(TypeError, match="motions must be a dict from the number of an object"):
+        scene.continuous([box.vertices, box.vertices])
+
+
+def test_ends_may_be_meshes(tmp_path):
+    cloth = blum.generate("sphere", frequency=4)
+    end = blum.Mesh(cloth.vertices * [1, 1, -0.3], cloth.triangles)
+    end.write(tmp_path / "end.ply")
+    wanted = blum.continuous_collisions(cloth, end.vertices)
+    assert len(wanted.vertex_face) > 0
+    scene = blum.ProximityScene()
+    scene.add(cloth, compare_self=True)
+    for given in (end, tmp_path / "end.ply", str(tmp_path / "end.ply"), (end.vertices, end.triangles)):
+        found = blum.continuous_collisions(cloth, given)
+        assert found.vertex_face.tolist() == wanted.vertex_face.tolist()
+        moved = scene.continuous({0: given})
+        assert moved.vertex_face_time.tolist() == scene.continuous({0: end.vertices}).vertex_face_time.tolist()
+    with pytest.raises(blum.InvalidMesh, match="end has other triangles than the mesh at the start"):
+        blum.continuous_collisions(cloth, blum.Mesh(end.vertices, cloth.triangles[::-1]))
+
+
+def test_poses_in_single_precision_can_be_made_rotations():
+    angle = 0.3
+    turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+    pose = np.eye(4, dtype=np.float32)
+    pose[:3, :3] = turn
+    pose[:3, 3] = [1, 2, 3]
+    scene = blum.ProximityScene()
+    scene.add(blum.generate("box"))
+    with pytest.raises(
+        blum.InvalidOption, match=r"are so to \d\.\d+e-08: it was rounded to single precision.*closest_"
+    ):
+        scene.update(0, transform=pose)
+    with pytest.raises(blum.InvalidOption, match="are so to 3: it scales or shears; scale vertices instead"):
+        scene.update(0, transform=(2 * np.eye(3), [0, 0, 0]))
+    fine = blum.closest_rotation(pose)
+    scene.update(0, transform=fine)
+    assert fine.shape == (4, 4) and fine.dtype == np.float64 and fine[:3, 3].tolist() == [1, 2, 3]
+    assert np.abs(fine[:3, :3] - turn).max() < 1e-7
+    u, _, v = np.linalg.svd(pose[:3, :3].astype(float))
+    assert np.abs(blum.closest_rotation(pose[:3, :3]) - u @ v).max() < 1e-15
+    rough = turn + 0.01 * np.arange(9).reshape(3, 3) / 8
+    u, _, v = np.linalg.svd(rough)
+    assert np.abs(blum.closest_rotation(rough) - u @ v).max() < 1e-14
+    for wrong in (np.diag([1.0, 1, -1]), 2 * np.eye(3), np.full((3, 3), np.nan), np.zeros((3, 3))):
+        with pytest.raises(blum.InvalidOption, match="no rotation, not even roughly"):
+            blum.closest_rotation(wrong)
+    with pytest.raises(ValueError, match="shape"):
+        blum.closest_rotation([1, 2, 3])

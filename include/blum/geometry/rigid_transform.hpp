@@ -47,4 +47,8 @@ struct RigidTransform {
   [[nodiscard]] friend constexpr bool operator==(const RigidTransform&, const RigidTransform&) = default;
 };
 
+/// The rotation that is closest to a matrix that is one but for rounding, as of poses in single precision.
+/// @throws InvalidOption for one whose error (RigidTransform::rotation_error) is above 0.1, or that mirrors.
+[[nodiscard]] Mat3 closest_rotation(const Mat3& matrix);
+
 }  // namespace blum

@@ -39,8 +39,10 @@ struct ImpactQueries {
 ///   .npz   `vertex_face` [n, 4]: the vertex, then the corners of the face; `vertex_face_time` [n]; `face` [n]: the
 ///          numbers of these faces; `edge_edge` [m, 4]: the ends of one edge, then those of the other;
 ///          `edge_edge_time` [m]. Indices are int32, those of the mesh.
-///   .csv   a row for each collision: kind (vertex_face or edge_edge), the four vertices a, b, c, d, the time.
-///   .json  an object with the metadata and the same lists.
+///   .csv   a row for each collision: kind (vertex_face or edge_edge), the four vertices a, b, c, d, the time, the
+///          number of the face (of edge_edge nothing).
+///   .json  an object with the metadata (self, tolerance, min_separation as true, false and numbers) and the same
+///          lists.
 ///
 /// A file appears under its name only when it is complete.
 /// @param mesh  whose collisions they are.
@@ -53,7 +55,7 @@ void write_collisions(const std::filesystem::path& path, const ContinuousCollisi
 ///   .npz   also `vertex_face_object` [n, 2]: the object of the vertex, then that of the face; `edge_edge_object` [m,
 ///   2]:
 ///          the object of one edge, then that of the other. Indices are those of the meshes of these objects.
-///   .csv   kind, first_object, second_object, a, b, c, d, time.
+///   .csv   kind, first_object, second_object, a, b, c, d, time, face.
 ///   .json  the same lists.
 ///
 /// Pairs come by rising (first, second) object; of these first the vertices of the first object, then those of the

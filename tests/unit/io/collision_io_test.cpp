@@ -65,9 +65,9 @@ TEST_F(CollisionFiles, ArraysNameTheObjectsOfEachPair) {
 
 TEST_F(CollisionFiles, RowsAndListsHoldTheSame) {
   EXPECT_EQ(test::file_content(written("c.csv")),
-            "kind,first_object,second_object,a,b,c,d,time\n"
-            "vertex_face,0,0,3,0,1,2,0.5\nvertex_face,0,1,3,2,0,1,0.25\nvertex_face,1,0,2,3,2,1,0.75\n"
-            "edge_edge,0,1,0,1,1,2,0.125\n");
+            "kind,first_object,second_object,a,b,c,d,time,face\n"
+            "vertex_face,0,0,3,0,1,2,0.5,0\nvertex_face,0,1,3,2,0,1,0.25,0\nvertex_face,1,0,2,3,2,1,0.75,1\n"
+            "edge_edge,0,1,0,1,1,2,0.125,\n");
   const auto json = nlohmann::json::parse(test::file_content(written("c.json")));
   EXPECT_EQ(json, nlohmann::json::parse(R"({"metadata": {"source": "test"}, "face": [0, 0, 1],
       "vertex_face": [[3, 0, 1, 2], [3, 2, 0, 1], [2, 3, 2, 1]], "vertex_face_object": [[0, 0], [0, 1], [1, 0]],
@@ -80,7 +80,8 @@ TEST_F(CollisionFiles, OfOneMeshNameNoObject) {
   alone.vertex_face = found_.objects[0].vertex_face;
   alone.edge_edge.push_back({{0, 1}, {2, 3}, 1});
   write_collisions(folder_ / "c.csv", alone, first);
-  EXPECT_EQ(test::file_content(folder_ / "c.csv"), "kind,a,b,c,d,time\nvertex_face,3,0,1,2,0.5\nedge_edge,0,1,2,3,1\n");
+  EXPECT_EQ(test::file_content(folder_ / "c.csv"),
+            "kind,a,b,c,d,time,face\nvertex_face,3,0,1,2,0.5,0\nedge_edge,0,1,2,3,1,\n");
   write_collisions(folder_ / "c.json", alone, first);
   EXPECT_EQ(nlohmann::json::parse(test::file_content(folder_ / "c.json")),
             nlohmann::json::parse(R"({"metadata": {}, "vertex_face": [[3, 0, 1, 2]], "vertex_face_time": [0.5],

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -346,6 +347,30 @@ TEST(Penetration, OfEqualSolidsIsThatOfMovingOneALittle) {
   // Solids that share some of their faces.
   const Answer half = answer(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0.5}, {1, 1, 1.5}));
   EXPECT_NEAR(half.separation, -0.5, 1e-12);
+}
+
+/// Errors say which object is no solid, and what to do.
+TEST(Penetration, SaysWhichObjectIsOpen) {
+  const TriangleMesh solid = box({0, 0, 0}, {1, 1, 1});
+  const auto message = [&](const TriangleMesh& other) -> std::string {
+    try {
+      static_cast<void>(answer(solid, other));
+    } catch (const InvalidMesh& error) {
+      return error.what();
+    }
+    return {};
+  };
+  TriangleMesh open = moved(solid, {0.5, 0.25, 0.25});
+  TriangleMesh loose;
+  for (const Triangle& t : open.triangles) {
+    const auto first = static_cast<std::uint32_t>(loose.vertices.size());
+    for (const std::uint32_t v : t) loose.vertices.push_back(open.vertices[v]);
+    loose.triangles.push_back({first, first + 1, first + 2});
+  }
+  open.triangles.pop_back();
+  EXPECT_TRUE(message(open).starts_with("object 1 is not closed, or its triangles do not all face the same way: at 3"));
+  EXPECT_TRUE(message(loose).starts_with("object 1 is not closed: at 36 edges its triangles lie side by side"));
+  EXPECT_NE(message(loose).find("weld"), std::string::npos);
 }
 
 }  // namespace
