@@ -92,7 +92,8 @@ class Cloth : public Scene {
 
 class Bowl : public Scene {
  public:
-  Bowl(int bodies, int frequency) : Scene({.thickness = 0.012}) {
+  // Contacts are no wider than some edge lengths: else each triangle would touch dozens of others.
+  Bowl(int bodies, int frequency) : Scene({.thickness = std::min(0.012, 0.12 / frequency)}) {
     Object bowl;
     bowl.mesh = bowl_mesh();
     bowl.kind = Kind::driven;

@@ -142,12 +142,6 @@ class RowReader {
   std::size_t line_ = 0;
 };
 
-std::vector<Vec3d> read_text(const std::filesystem::path& path) {
-  const FileBytes bytes = read_whole_file(path);
-  const std::span<const std::byte> data = bytes.span();
-  return RowReader({reinterpret_cast<const char*>(data.data()), data.size()}, quoted(path)).read();
-}
-
 /// An array `points`, one for each column, and the metadata.
 void write_npz(const std::filesystem::path& path, const Complex& points, const FileMetadata& metadata,
                const Context& context) {
@@ -232,6 +226,10 @@ const std::vector<std::string>& written_point_extensions() {
   return all;
 }
 
+std::vector<Vec3d> read_point_rows(std::span<const std::byte> text, const std::string& name) {
+  return RowReader({reinterpret_cast<const char*>(text.data()), text.size()}, name).read();
+}
+
 std::vector<Vec3d> read_points(const std::filesystem::path& path) {
   const std::string extension = file_extension(path);
   const auto& known = readable_point_extensions();
@@ -242,7 +240,7 @@ std::vector<Vec3d> read_points(const std::filesystem::path& path) {
   } else if (extension == ".npz") {
     points = read_npz(path);
   } else if (extension == ".csv" || extension == ".xyz" || extension == ".txt") {
-    points = read_text(path);
+    points = read_point_rows(read_whole_file(path).span(), quoted(path));
   } else if (extension == ".ply" || extension == ".vtp") {
     points = read_complex(path).complex.positions;
   } else {

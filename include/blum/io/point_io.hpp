@@ -1,7 +1,9 @@
 // Blum: files of points with attributes. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,9 @@ namespace blum {
 /// @throws FileError; FormatError naming the file, the line and the reason, also for what is not finite; InvalidOption
 /// for another extension; OutOfMemory.
 [[nodiscard]] std::vector<Vec3d> read_points(const std::filesystem::path& path);
+
+/// The rows of a .csv, .xyz or .txt file from memory. @param name  what stands for the file in messages.
+[[nodiscard]] std::vector<Vec3d> read_point_rows(std::span<const std::byte> text, const std::string& name = "points");
 
 /// Writes points with their columns: .ply, .vtp as write_complex() does; .npz as an array `points` [n, 3], one for each
 /// column under its name, and `metadata`, a JSON object; .csv with a first row of names: x, y, z, then the columns;

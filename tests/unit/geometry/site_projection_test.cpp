@@ -1,0 +1,80 @@
+// Closest points of single sites: those of the hierarchy, bit for bit, where a query is well within a site's domain;
+// none where it is not.
+#include "blum/geometry/site_projection.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "blum/core/random.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/shapes/generators.hpp"
+
+namespace blum {
+namespace {
+
+TEST(SiteProjection, IsTheClosestPointOfTheHierarchy) {
+  for (const double scale : {1e-30, 1.0, 1e20}) {
+    TriangleMesh mesh = make_organic({.frequency = 8});
+    for (Vec3d& v : mesh.vertices) v = v * scale + Vec3d{3, -2, 1} * scale;
+    const SiteTable sites(mesh);
+    const Bvh bvh(mesh, sites);
+    const SiteProjection projection(mesh, sites);
+    const Box3 box = bounds(mesh);
+    Random random(1);
+    std::size_t counts[3] = {};
+    for (int k = 0; k < 20000; ++k) {
+      const Vec3d query = box.center() + random.in_ball() * box.diagonal();
+      const NearestSite expected = *bvh.nearest(query);
+      const auto found = projection.project(expected.site, query, 1e-9 * scale);
+      if (!found) continue;
+      ++counts[static_cast<std::size_t>(sites.site(expected.site).kind)];
+      ASSERT_EQ(found->site, expected.site);
+      ASSERT_EQ(found->point, expected.point);
+      ASSERT_EQ(found->distance, expected.distance);
+    }
+    EXPECT_GT(counts[0] + counts[1] + counts[2], 19900U);  // hardly any is next to a border
+    for (const std::size_t count : counts) EXPECT_GT(count, 500U);
+  }
+}
+
+TEST(SiteProjection, IsNoneOutsideOfTheDomainAndNextToItsBorder) {
+  const TriangleMesh box = make_box({});  // from -1/2 to 1/2
+  const SiteTable sites(box);
+  const SiteProjection projection(box, sites);
+  const Bvh bvh(box, sites);
+  const auto site_at = [&](const Vec3d& query) { return bvh.nearest(query)->site; };
+  const SiteId corner = site_at({2, 2, 2});
+  const SiteId edge = site_at({2, 2, 0.1});
+  const SiteId face = site_at({2, 0.1, 0.3});
+  ASSERT_EQ(sites.site(corner).kind, SiteKind::vertex);
+  ASSERT_EQ(sites.site(edge).kind, SiteKind::edge);
+  ASSERT_EQ(sites.site(face).kind, SiteKind::face);
+  constexpr double margin = 1e-3;
+  EXPECT_TRUE(projection.project(corner, {0.502, 0.502, 0.502}, margin));
+  EXPECT_FALSE(projection.project(corner, {0.502, 0.502, 0.5005}, margin));
+  EXPECT_FALSE(projection.project(corner, {0.502, 0.502, 0.4}, margin));
+  EXPECT_TRUE(projection.project(edge, {0.502, 0.502, 0.498}, margin));
+  EXPECT_FALSE(projection.project(edge, {0.502, 0.502, 0.4995}, margin));
+  EXPECT_FALSE(projection.project(edge, {0.502, 0.5005, 0.1}, margin));
+  EXPECT_FALSE(projection.project(edge, {0.4, 0.6, 0.1}, margin));
+  EXPECT_TRUE(projection.project(face, {2, 0.1, 0.3}, margin));
+  EXPECT_FALSE(projection.project(face, {2, 0.1, 0.4995}, margin));
+  EXPECT_FALSE(projection.project(face, {2, 0.1, 0.6}, margin));
+}
+
+/// Of an edge with three triangles one is not looked at, and triangles without a plane have no domain.
+TEST(SiteProjection, IsNoneWhereDomainsAreNotKnown) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, -1, 0}, {0.5, 0, -1}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {5, 6, 7}};
+  const SiteTable sites(mesh);
+  const SiteProjection projection(mesh, sites);
+  EXPECT_FALSE(projection.project(sites.id({SiteKind::edge, 0}), {0.5, 0, 1}, 1e-6));
+  EXPECT_FALSE(projection.project(sites.id({SiteKind::face, 3}), {4, 1, 0}, 1e-6));
+  mesh.points = {5};
+  EXPECT_TRUE(projection.project(SiteId(2), {0.5, 3, 0}, 1e-6));
+}
+
+}  // namespace
+}  // namespace blum
