@@ -29,7 +29,7 @@ constexpr int most_frames = 1000;
 
 constexpr const char* help = R"(simulations cloth|bodies|breaking|large [FOLDER] [--frames N]
 
-Runs N frames (1 to 1000, default 60) of a simulation, and writes FOLDER/frame_000.ply and so on, and FOLDER/pairs.json,
+Runs N frames (1 to 1000, default 60; of large 12) of a simulation, and writes FOLDER/frame_000.ply and so on, and FOLDER/pairs.json,
 which `blum view FOLDER/frame_*.ply --frames --pairs FOLDER/pairs.json -o page.html` shows. FOLDER is named as the
 simulation by default. Results are written to FOLDER.part, and take the place of earlier ones when all is done, or when
 Ctrl-C ends the run after the frame at hand. Without arguments it runs a few frames of each, and writes nothing.
@@ -48,7 +48,7 @@ class UsageError : public std::runtime_error {
 
 struct Arguments {
   std::vector<std::string> words;
-  int frames = 60;
+  std::optional<int> frames;
 };
 
 int frames_of(const std::string& text) {
@@ -243,7 +243,10 @@ int main(int argc, char** argv) try {
     throw UsageError("there is no simulation '" + words[0] + "': it must be cloth, bodies, breaking or large");
   }
   std::signal(SIGINT, [](int) { is_stopped = 1; });
-  return run(words[0], arguments.frames, fs::path(words.back())) ? 0 : 1;
+  constexpr int usual_frames = 60;
+  constexpr int frames_of_large = 12;  // 500,000 triangles: minutes
+  const int frames = arguments.frames.value_or(words[0] == "large" ? frames_of_large : usual_frames);
+  return run(words[0], frames, fs::path(words.back())) ? 0 : 1;
 } catch (const UsageError& error) {
   std::cerr << "simulations: error: " << error.what() << "; see simulations --help\n";
   return 2;
