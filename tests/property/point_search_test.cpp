@@ -117,8 +117,9 @@ TEST(PointSearch, TellsSignsAsEachQueryAlone) {
 TEST(PointSearch, FindsWhatEachQueryFindsAloneInSoups) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     SCOPED_TRACE(seed);
-    expect_as_alone(test::nasty_soup(seed, 40 << seed), is_unsigned, seed);
-    expect_as_alone(test::awkward_soup(40 << seed, seed), is_unsigned, seed);
+    const std::size_t triangles = std::size_t{40} << seed;
+    expect_as_alone(test::nasty_soup(seed, triangles), is_unsigned, seed);
+    expect_as_alone(test::awkward_soup(triangles, seed), is_unsigned, seed);
   }
   expect_as_alone(test::unwelded(make_sphere({.frequency = 10})), is_unsigned, 7);
 }
