@@ -22,6 +22,6 @@ def test_formats_are_listed_for_people_and_programs():
 
 def test_each_format_is_fuzzed():
     wanted = {f"fuzz_{one['content']}_{one['name'].lower()}" for one in run_json("formats")["formats"]}
-    wanted.add("fuzz_queries_csv")  # what `blum ccd` reads
+    wanted |= {"fuzz_queries_csv", "fuzz_points_csv"}  # what `blum ccd` and `blum query` read
     assert wanted == {folder.name for folder in CORPUS.iterdir()}
     assert all(any(folder.iterdir()) for folder in CORPUS.iterdir())
