@@ -70,14 +70,26 @@ void refuse_others(const Arguments& a) {
   }
 }
 
-Complex points_for(const Arguments& a, const MeshView& mesh, std::size_t count, const Context& context) {
+/// What is asked for.
+struct Request {
+  std::size_t count = 0;
+  SampleOptions options;
+  NearSampleOptions near;
+};
+
+Request read(const Arguments& a) {
+  Request out{static_cast<std::size_t>(parse_integer("-n", a.count, 0, std::numeric_limits<std::int32_t>::max())),
+              a.options.read(), a.near_options.read()};
+  out.near.seed = out.options.seed;
+  return out;
+}
+
+Complex points_for(const Arguments& a, const Request& asked, const MeshView& mesh, const Context& context) {
   if (!a.near) {
     const bool is_ply = file_extension(a.output) == ".ply";
-    return points_of_surface(sample_surface(mesh, count, a.options.read(), context), is_ply);
+    return points_of_surface(sample_surface(mesh, asked.count, asked.options, context), is_ply);
   }
-  NearSampleOptions options = a.near_options.read();
-  options.seed = a.options.read().seed;
-  const NearSamples samples = sample_near(mesh, count, options, context);
+  const NearSamples samples = sample_near(mesh, asked.count, asked.near, context);
   return points_with_distances(samples.points, samples.closest);
 }
 
@@ -86,10 +98,7 @@ void run(const Arguments& a) {
   const fs::path output = a.output;
   check_extension("--output", output, written_point_extensions());
   refuse_others(a);
-  const auto count = static_cast<std::size_t>(
-      parse_integer("-n", a.count, 0, static_cast<std::int64_t>(std::numeric_limits<std::int32_t>::max())));
-  static_cast<void>(a.options.read());
-  static_cast<void>(a.near_options.read());
+  const Request asked = read(a);
   const std::optional<double> weld = parse_weld(a.weld);
   const int threads = parse_threads(a.threads);
   std::vector<fs::path> outputs = a.report.files();
@@ -105,7 +114,7 @@ void run(const Arguments& a) {
     file = read_mesh_of_any_name(input, {weld});
   }
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  const Complex points = points_for(a, file.mesh, count, context);
+  const Complex points = points_for(a, asked, file.mesh, context);
   phases.push_back({"sample", watch.lap()});
   write_points(output, points, {{"tool", "blum sample"}, {"source", input.filename().string()}}, context);
   phases.push_back({"write", watch.lap()});
@@ -115,7 +124,7 @@ void run(const Arguments& a) {
                                            {"triangles", file.mesh.triangles.size()},
                                            {"points", points.positions.size()},
                                            {"near", a.near},
-                                           {"seed", a.options.read().seed},
+                                           {"seed", asked.options.seed},
                                            {"seconds", spent.seconds},
                                            {"total_seconds", spent.total},
                                            {"peak_memory_bytes", peak_memory()},

@@ -13,6 +13,7 @@
 #include "blum/io/mesh_io.hpp"
 #include "blum/io/point_io.hpp"
 #include "io/byte_source.hpp"
+#include "io/complex_ply_names.hpp"
 #include "io/field_sink.hpp"
 #include "io/file_columns.hpp"
 #include "io/json.hpp"
@@ -173,24 +174,11 @@ void write_npz(const std::filesystem::path& path, const Complex& points, const F
   file.commit();
 }
 
-/// The names of the columns of a row, as of .ply files.
-std::string names_of(const Column& column) {
-  std::string out;
-  for (std::size_t k = 0; k < column.components; ++k) {
-    out += "," + column.name;
-    if (column.components == 3) {
-      out += std::string("_") + "xyz"[k];
-    } else if (column.components > 1) {
-      out += "_" + std::to_string(k);
-    }
-  }
-  return out;
-}
-
 void write_csv(const std::filesystem::path& path, const Complex& points, const Context& context) {
   RowWriter rows(path, points.positions.size(), context);
   rows.text("x,y,z");
-  for (const Column& column : points.vertex_columns) rows.text(names_of(column));
+  const auto names = complex_files::property_names(points.vertex_columns, "vertex", {"x", "y", "z"}).properties;
+  for (const std::string& name : names) rows.text("," + name);
   rows.text("\n");
   const auto number = [&](auto value, bool is_first) {
     std::array<char, 40> digits{};

@@ -2,24 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <numeric>
 #include <utility>
+
+#include "proximity/overlap.hpp"
 
 namespace blum::detail {
 namespace {
 
 constexpr std::uint32_t no_facet = 0xffffffffU;
-
-/// Triangles by their edges, the smaller end first.
-std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> triangles_by_edge(const MeshView& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> out;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      out[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back(t);
-    }
-  }
-  return out;
-}
 
 /// Positive left of the line from a to b, by the distance from it; 0 where a and b are one point.
 double left_of(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& p) {
@@ -46,7 +37,9 @@ void keep_left(double from, double to, double margin, double& begin, double& end
 
 Facets::Facets(const MeshView& mesh, double rounding)
     : rounding_(rounding), facet_of_(mesh.triangles.size(), no_facet) {
-  const auto by_edge = triangles_by_edge(mesh);
+  std::vector<std::uint32_t> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const auto by_edge = triangles_at_edges(mesh, all);
   for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
     if (facet_of_[seed] != no_facet) continue;
     const auto number = static_cast<std::uint32_t>(facets_.size());

@@ -13,21 +13,6 @@
 namespace blum::detail {
 namespace {
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-/// The triangles at each edge, the smaller end first.
-std::map<Edge, std::vector<std::uint32_t>> triangles_at_edges(const TriangleMesh& mesh,
-                                                              const std::vector<std::uint32_t>& triangles) {
-  std::map<Edge, std::vector<std::uint32_t>> out;
-  for (const std::uint32_t t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-      out[{low, high}].push_back(t);
-    }
-  }
-  return out;
-}
-
 /// Edges that lead on from each other.
 class Chains {
  public:
@@ -73,6 +58,18 @@ class Chains {
 };
 
 }  // namespace
+
+std::map<Edge, std::vector<std::uint32_t>> triangles_at_edges(const MeshView& mesh,
+                                                              std::span<const std::uint32_t> triangles) {
+  std::map<Edge, std::vector<std::uint32_t>> out;
+  for (const std::uint32_t t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+      out[{low, high}].push_back(t);
+    }
+  }
+  return out;
+}
 
 Overlap overlap_of(const MeshView& surfaces, const Context& context) {
   ResolveOptions options;

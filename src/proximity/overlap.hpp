@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -11,6 +14,12 @@
 #include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum::detail {
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The triangles at each edge, the smaller end first. @param triangles  those that are looked at.
+[[nodiscard]] std::map<Edge, std::vector<std::uint32_t>> triangles_at_edges(const MeshView& mesh,
+                                                                            std::span<const std::uint32_t> triangles);
 
 /// The border of what solids have in common: each of its triangles is a part of one of theirs.
 struct Overlap {

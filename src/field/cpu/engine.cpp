@@ -66,16 +66,7 @@ void Engine::set_mesh(const MeshView& mesh, const Context& context) {
 
 void Engine::build_records(const FieldRequest& request, const Context& context) {
   frame_ = make_normal_frame(mesh_, adjacency_.named_vertices, request.grid);
-  positions_.resize(mesh_.vertices.size());
-  const auto& named = adjacency_.named_vertices;
-  parallel_for(context, named.size(), 1 << 14, "", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      positions_[named[k]] = frame_.to_normal(mesh_.vertices[named[k]]);
-    }
-  });
-  order_sites(mesh_, sites_, adjacency_, positions_, context, order_);
-  build_site_records(mesh_, sites_, adjacency_, positions_, order_, context, records_);
-  build_cluster_forest(records_, context, forest_);
+  placed_.build(mesh_, sites_, adjacency_, frame_, context);
 }
 
 FieldJob Engine::make_job(const GridSpec& grid, const Context& context) const {
@@ -94,8 +85,8 @@ FieldResult Engine::compute(const FieldRequest& request, const Context& context,
   build_records(request, context);
   FieldJob job = make_job(request.grid, context);
   job.request = request;
-  job.sites = &records_;
-  job.forest = &forest_;
+  job.sites = &placed_.records;
+  job.forest = &placed_.forest;
   if (request.has_band()) job.band = static_cast<float>(request.band * frame_.scale);
   const bool by_normals = request.sign == sign::Method::pseudonormals;
   if (by_normals) job.vertex_sides = vertex_sides(mesh_, sites_, frame_, context);
@@ -121,7 +112,8 @@ FieldResult Engine::compute(const FieldRequest& request, const Context& context,
 }
 
 std::vector<std::size_t> Engine::compute_second(const SecondRequest& request, const Context& context) {
-  second_.build({mesh_, sites_, adjacency_, positions_, order_, records_}, *request.labels, context);
+  second_.build({mesh_, sites_, adjacency_, placed_.positions, placed_.order, placed_.records}, *request.labels,
+                context);
   SecondJob job = second_.job();
   job.field = make_job(request.grid, context);
   job.field.sites = &second_.records();

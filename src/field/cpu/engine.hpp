@@ -8,10 +8,9 @@
 #include "field/backend.hpp"
 #include "field/connectivity_cache.hpp"
 #include "field/cpu/adjacency.hpp"
-#include "field/cpu/cluster_forest.hpp"
 #include "field/cpu/normal_frame.hpp"
+#include "field/cpu/placed_sites.hpp"
 #include "field/cpu/second_sites.hpp"
-#include "field/cpu/site_records.hpp"
 #include "field/cpu/tile_kernel.hpp"
 
 namespace blum::cpu {
@@ -38,10 +37,7 @@ class Engine final : public FieldBackend {
   SiteTable sites_;
   Adjacency adjacency_;
   NormalFrame frame_;
-  std::vector<Vec3d> positions_;
-  SiteOrder order_;
-  SiteRecords records_;
-  ClusterForest forest_;
+  PlacedSites placed_;
   std::vector<TileScratch> scratch_;
   SecondSites second_;
 };

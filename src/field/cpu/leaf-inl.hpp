@@ -322,6 +322,18 @@ struct LeafInput {
   std::size_t child;
 };
 
+/// How many candidates the leaf has.
+HWY_INLINE std::size_t candidate_count(const LeafInput& input) {
+  std::size_t count = 0;
+  for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
+    const std::uint16_t* words = input.bits[kind].child(input.child);
+    for (std::size_t b = 0; b < input.bits[kind].blocks(); ++b) {
+      count += static_cast<std::size_t>(std::popcount(words[b]));
+    }
+  }
+  return count;
+}
+
 /// Clears the bits of candidates that the leaf's dominators beat.
 template <Kind kind>
 HWY_INLINE void dominate(const LeafInput& input, const LeafDomination& domination) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "field/cpu/record_geometry.hpp"
+
 namespace blum::cpu {
 namespace {
 
@@ -43,17 +45,10 @@ std::array<PointCell, 8> children_of(const MortonPoints& points, const PointCell
 }
 
 std::vector<PointCell> point_cells(const MortonPoints& points) {
-  std::vector<PointCell> out;
   const double half = points.side / 2;
   const Vec3d center = points.lower + Vec3d{half, half, half};
-  const auto all = [&] {
-    return PointCell{0,
-                     points.size(),
-                     0,
-                     {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)},
-                     static_cast<float>(half)};
-  };
-  add_cells(points, all(), out);
+  std::vector<PointCell> out;
+  add_cells(points, {0, points.size(), 0, to_float(center), static_cast<float>(half)}, out);
   return out;
 }
 

@@ -19,10 +19,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// What single precision may have taken from a distance, in the normalised frame.
 constexpr double slack = 2e-6;
 
-void prefetch(const void* address) {
-  hwy::Prefetch(static_cast<const char*>(address));
-}
-
 Vec3d clamped(const Vec3d& p, const Box3& box) {
   Vec3d out;
   for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = std::clamp(p[axis], box.lower[axis], box.upper[axis]);
@@ -52,17 +48,7 @@ PointEngine::PointEngine(const MeshView& mesh, const SiteTable& sites, const Con
   box_ = {grid.origin, grid.origin + grid.spacing};
   frame_ = kernels::make_normal_frame(bounds, grid);
   if (frame_.fault != NormalFrame::Fault::none || !is_finite(box_.lower) || !is_finite(box_.upper)) return;
-  std::vector<Vec3d> positions(mesh.vertices.size());
-  parallel_for(context, adjacency.named_vertices.size(), grain, "", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      const std::uint32_t v = adjacency.named_vertices[k];
-      positions[v] = frame_.to_normal(mesh.vertices[v]);
-    }
-  });
-  SiteOrder order;
-  order_sites(mesh, sites, adjacency, positions, context, order);
-  build_site_records(mesh, sites, adjacency, positions, order, context, records_);
-  build_cluster_forest(records_, context, forest_);
+  placed_.build(mesh, sites, adjacency, frame_, context);
   is_usable_ = true;
 }
 
@@ -152,8 +138,8 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
   const std::size_t count = queries.size();
   PointResults results{Buffer<float>(count), Buffer<std::uint32_t>(count), Buffer<std::uint32_t>(count)};
   PointJob job;
-  job.field.sites = &records_;
-  job.field.forest = &forest_;
+  job.field.sites = &placed_.records;
+  job.field.forest = &placed_.forest;
   job.field.cancel = context.cancel;
   job.points = &ordered.points;
   job.results = &results;
@@ -172,7 +158,7 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
       const std::size_t end = std::min(begin + most_per_group, cell.end);
       mine.group.resize(end - begin);
       for (std::size_t k = begin; k < end; ++k) {
-        if (k + ahead < end) prefetch(&queries[ordered.order[k + ahead].index]);
+        if (k + ahead < end) hwy::Prefetch(&queries[ordered.order[k + ahead].index]);
         const std::uint32_t index = ordered.order[k].index;
         mine.group[k - begin] = found(queries[index], index, results, k);
       }

@@ -13,6 +13,7 @@
 #include "blum/geometry/triangle_mesh.hpp"
 #include "field/cpu/adjacency.hpp"
 #include "field/cpu/normal_frame.hpp"
+#include "field/cpu/placed_sites.hpp"
 #include "field/cpu/point_kernel.hpp"
 
 namespace blum::cpu {
@@ -56,8 +57,7 @@ class PointEngine {
   bool is_usable_ = false;  ///< false for meshes without extent, or too large or small for single precision
   Box3 box_;                ///< of the frame, mesh units: queries beyond are moved to its border
   NormalFrame frame_;
-  SiteRecords records_;
-  ClusterForest forest_;
+  PlacedSites placed_;
 };
 
 }  // namespace blum::cpu

@@ -188,18 +188,8 @@ class PointWorker {
     return out;
   }
 
-  static std::size_t count_of(const LeafInput& input) {
-    std::size_t count = 0;
-    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
-      const std::uint16_t* words = input.bits[kind].child(input.child);
-      for (std::size_t b = 0; b < input.bits[kind].blocks(); ++b) {
-        count += static_cast<std::size_t>(std::popcount(words[b]));
-      }
-    }
-    return count;
-  }
   static bool is_leaf(const PointCell& cell, const LeafInput& input) {
-    return !can_divide(cell) || count_of(input) <= few_candidates;
+    return !can_divide(cell) || candidate_count(input) <= few_candidates;
   }
 
   /// A box around points, not widened.
@@ -223,7 +213,7 @@ class PointWorker {
 
   void leaf(const PointCell& cell, const LeafInput& input, const RecordList& slivers, const Dominators& dominators,
             const Vec3f& middle) {
-    const std::size_t count = count_of(input);
+    const std::size_t count = candidate_count(input);
     if (count > cell.size() * candidates_per_point) return give_up(cell, dominators.point[0]);
     if (count > few_candidates) {
       const CenteredBox box = box_around(cell);

@@ -257,13 +257,7 @@ class TileWorker {
   /// Drops candidates that a leaf's dominators beat, where there are enough of them to pay for looking.
   void dominate_leaf(const LeafInput& input, const Halving& parts, const Child& child,
                      const Dominators& dominators) const {
-    std::size_t count = 0;
-    for (std::size_t kind = 0; kind < sliver_kind; ++kind) {
-      const std::uint16_t* words = input.bits[kind].child(input.child);
-      for (std::size_t b = 0; b < input.bits[kind].blocks(); ++b)
-        count += static_cast<std::size_t>(std::popcount(words[b]));
-    }
-    if (count < fewest_worth_culling) return;
+    if (candidate_count(input) < fewest_worth_culling) return;
     const Vec3f half = child.place.half + Vec3f{box_slack, box_slack, box_slack};
     const LeafDomination domination{Domination(child.place.center, dominators, half),
                                     set(child.place.center - parts.middle)};
