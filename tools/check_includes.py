@@ -25,6 +25,7 @@ LOWER = {
     "solid": {"core", "geometry", "grid", "complex"},
     "field": {"core", "geometry", "grid"},
     "points": {"core", "geometry", "grid", "field"},
+    "surface_map": {"core", "geometry", "grid", "field"},
     "medial_axis": {"core", "geometry", "grid", "complex", "solid", "field"},
     "proximity": {"core", "geometry"},
     "certificate": {"core", "complex"},

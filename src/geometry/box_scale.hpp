@@ -5,15 +5,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "blum/core/scale.hpp"
 #include "blum/core/vec3.hpp"
 
 namespace blum {
-
-/// A power of two that brings a length to 1 to 2; 1 for 0 and what is not finite.
-[[nodiscard]] inline double scale_to_one(double length) {
-  if (!(length > 0) || !std::isfinite(length)) return 1;
-  return std::ldexp(1.0, std::clamp(-std::ilogb(length), -1000, 1000));
-}
 
 /// A power of two that brings the box's longest side to about 1, so that products neither overflow nor underflow.
 [[nodiscard]] inline double unit_scale(const Box3& box) {

@@ -259,6 +259,10 @@ void Bvh::refit(std::span<const Vec3d> vertices, const Context& context) {
   data.fill_tree(context);
 }
 
+std::span<const std::uint32_t> Bvh::order() const {
+  return data_->order;
+}
+
 const Box3& Bvh::bounds() const {
   return data_->bounds;
 }
@@ -300,6 +304,24 @@ bool is_earlier(const RayCrossing& a, const RayCrossing& b) {
 }
 
 }  // namespace
+
+std::optional<NearestPrimitive> Bvh::nearest_wanted(const Vec3d& query, FunctionRef<bool(std::uint32_t)> is_wanted,
+                                                    double max_distance) const {
+  const Data& data = *data_;
+  std::optional<NearestPrimitive> best;
+  const std::optional<Data::Query> q = data.prepare(query);
+  if (!q) return best;
+  const double furthest = max_distance * data.scale + q->slack;
+  data.for_each_candidate(*q, furthest, [&](std::size_t leaf, std::size_t lane, double limit) {
+    if (lane >= data.lanes_of(leaf)) return limit;
+    const NearestPrimitive found = data.closest(leaf, lane, q->point);
+    const bool is_better = found.distance <= max_distance && (!best || is_nearer(found, *best));
+    if (!is_better || !is_wanted(found.primitive)) return limit;
+    best = found;
+    return std::min(limit, found.distance * data.scale + q->slack);
+  });
+  return best;
+}
 
 std::vector<NearestPrimitive> Bvh::nearest_primitives(const Vec3d& query, std::size_t k, double max_distance) const {
   const Data& data = *data_;

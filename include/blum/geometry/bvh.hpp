@@ -95,6 +95,12 @@ class Bvh {
       std::span<const Vec3d> queries, double max_distance = std::numeric_limits<double>::infinity(),
       const Context& context = {}) const;
 
+  /// The closest one of the primitives that are wanted; of several at the same computed distance the first.
+  /// @param is_wanted  asked of primitives that are closer than those found before.
+  [[nodiscard]] std::optional<NearestPrimitive> nearest_wanted(
+      const Vec3d& query, FunctionRef<bool(std::uint32_t)> is_wanted,
+      double max_distance = std::numeric_limits<double>::infinity()) const;
+
   /// The k closest primitives (fewer, where there are fewer within max_distance), by rising distance, then index.
   [[nodiscard]] std::vector<NearestPrimitive> nearest_primitives(
       const Vec3d& query, std::size_t k, double max_distance = std::numeric_limits<double>::infinity()) const;
@@ -136,6 +142,9 @@ class Bvh {
 
   /// Whether the box of a primitive may touch this box: false only if the box is free of the mesh.
   [[nodiscard]] bool may_touch(const Box3& box) const;
+
+  /// All primitives, in an order in which every aligned run of 8, 64, 512, ... lies in a compact box of its own.
+  [[nodiscard]] std::span<const std::uint32_t> order() const;
 
   /// The box around all primitives, mesh units.
   [[nodiscard]] const Box3& bounds() const;

@@ -1,0 +1,16 @@
+// Blum: powers of two that bring lengths to about 1. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace blum {
+
+/// A power of two that brings a length to 1 to 2, so that products neither overflow nor underflow; 1 for 0 and what is
+/// not finite.
+[[nodiscard]] inline double scale_to_one(double length) {
+  if (!(length > 0) || !std::isfinite(length)) return 1;
+  return std::ldexp(1.0, std::clamp(-std::ilogb(length), -1000, 1000));
+}
+
+}  // namespace blum

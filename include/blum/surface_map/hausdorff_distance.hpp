@@ -1,0 +1,76 @@
+// Blum: certain bounds on the Hausdorff distance of meshes. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <tuple>
+
+#include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
+#include "blum/core/error.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum {
+
+struct HausdorffOptions {
+  /// How wide the interval may be, > 0, mesh units. Unset: a ten-thousandth of the diagonal of the box around both.
+  std::optional<double> tolerance = {};
+  /// The search stops, with a wider interval, once the distance has been computed at this many points of a mesh.
+  std::size_t max_points = 200'000'000;
+};
+
+template <>
+struct Description<HausdorffOptions> {
+  static constexpr std::string_view name = "HausdorffOptions";
+  static constexpr std::string_view doc = "How well a Hausdorff distance is to be known";
+  static constexpr std::tuple members{
+      Member{"tolerance", &HausdorffOptions::tolerance, "mesh units",
+             "how wide the interval may be; else a ten-thousandth of the diagonal of the box around both meshes",
+             Range::positive()},
+      Member{"max_points", &HausdorffOptions::max_points, "",
+             "the search stops, with a wider interval, after so many points of a mesh"},
+  };
+};
+
+/// How far a mesh is, at most, from another one: the largest distance of any of its points to the closest point of the
+/// other. An interval that holds it.
+struct DirectedHausdorff {
+  double lower = 0;  ///< mesh units
+  double upper = 0;
+  /// A point of the mesh whose distance is at least `lower`, and the point of the other mesh that is closest to it.
+  std::array<Vec3d, 2> points;
+  std::size_t primitive = 0;    ///< of the mesh, that the first point lies on: triangles, then segments, then points
+  SiteId site;                  ///< of the other mesh, that the second point lies on
+  std::size_t evaluations = 0;  ///< points of the mesh at which the distance was computed
+};
+
+/// The Hausdorff distance of two meshes: the larger one of both directions.
+struct HausdorffDistance {
+  double lower = 0;  ///< mesh units
+  double upper = 0;
+  std::array<Vec3d, 2> points;  ///< of the first mesh and of the second, at least `lower` apart; witnesses of it
+  DirectedHausdorff forward;    ///< of the first mesh from the second
+  DirectedHausdorff backward;   ///< of the second mesh from the first
+};
+
+/// The one-sided Hausdorff distance, from `mesh` to `other`.
+///
+/// @param mesh, other  any soups of triangles, segments and points.
+/// @return             an interval that holds the distance, rounding included, no wider than the tolerance (which is
+///                     taken to be at least 1e-13 of the largest coordinate) unless max_points has ended the search.
+///                     The same for any number of threads.
+/// @throws InvalidMesh, InvalidOption, Cancelled. Cost: two hierarchies and one search per vertex, then as many
+/// searches as the tolerance asks for near the furthest places. Method: docs/theory/surface-maps.md.
+[[nodiscard]] DirectedHausdorff directed_hausdorff_distance(const MeshView& mesh, const MeshView& other,
+                                                            const HausdorffOptions& options = {},
+                                                            const Context& context = {});
+
+/// The Hausdorff distance of two meshes as sets of points: both directions.
+[[nodiscard]] HausdorffDistance hausdorff_distance(const MeshView& a, const MeshView& b,
+                                                   const HausdorffOptions& options = {}, const Context& context = {});
+
+}  // namespace blum

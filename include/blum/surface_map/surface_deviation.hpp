@@ -1,0 +1,66 @@
+// Blum: how a surface deviates from another one, over all of its area. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "blum/core/context.hpp"
+#include "blum/core/describe.hpp"
+#include "blum/core/error.hpp"
+#include "blum/field/field.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+
+namespace blum {
+
+struct DeviationOptions {
+  /// The surface is cut into about so many pieces, and more where triangles are long; at least 1.
+  std::size_t pieces = 1'000'000;
+  /// How signs are found, as for closest_points(); deviations are then negative where the surface is inside of the
+  /// other mesh.
+  SignMode sign = SignMode::none;
+};
+
+template <>
+struct Description<DeviationOptions> {
+  static constexpr std::string_view name = "DeviationOptions";
+  static constexpr std::string_view doc = "How well deviations are to be known";
+  static constexpr std::tuple members{
+      Member{"pieces", &DeviationOptions::pieces, "", "that the surface is cut into; errors fall with their size",
+             Range::at_least(1)},
+      Member{"sign", &DeviationOptions::sign, "", "how signs are found: negative inside of the other mesh"},
+  };
+};
+
+/// The distances of all points of a surface from another mesh, by area: each of many small pieces stands with the exact
+/// distance at its centroid. Errors are certain, not estimates, and far above what is likely: distances change by no
+/// more than one moves, so those of a piece are known to within its size.
+struct SurfaceDeviation {
+  static constexpr std::array<double, 7> percents{1, 5, 25, 50, 75, 95, 99};
+
+  double mean = 0;        ///< mesh units; signed where signs are asked for
+  double mean_error = 0;  ///< the true mean is no further from it
+  double rms = 0;         ///< root of the mean square
+  double rms_error = 0;
+  double smallest = 0;  ///< of the centroids
+  double largest = 0;
+  std::array<double, 7> percentiles{};  ///< so many percent of the area are below: see `percents`
+  double percentile_error = 0;          ///< of each of them, and of smallest and largest
+  double area = 0;                      ///< of the surface, square mesh units
+  std::size_t pieces = 0;
+  SignRule sign_rule = SignRule::none;
+  std::string sign_reason;
+};
+
+/// Mean, root mean square and percentiles of the distance of a surface from another mesh.
+///
+/// @param mesh   with a triangle that has an area; its segments and points do not count.
+/// @param other  any soup of triangles, segments and points.
+/// @return       the same for any number of threads.
+/// @throws InvalidMesh, InvalidOption, OutOfMemory, Cancelled. Cost: one closest point for each piece.
+[[nodiscard]] SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other,
+                                                 const DeviationOptions& options = {}, const Context& context = {});
+
+}  // namespace blum

@@ -1,0 +1,108 @@
+// Blum: charts of triangles in textures. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/closest_point.hpp"
+#include "blum/surface_map/surface_atlas.hpp"
+
+namespace blum::surface {
+
+using ChartCorners = std::array<TexturePlace, 3>;
+
+/// Twice the signed area of a chart, square texels.
+[[nodiscard]] inline double twice_area(const ChartCorners& c) {
+  return (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
+}
+
+/// The map from a texture to the plane of a triangle that it shows: affine.
+class Chart {
+ public:
+  /// @param places  where the triangle's corners are; their triangle has an area.
+  Chart(const std::array<Vec3d, 3>& corners, const ChartCorners& places) : corners_(corners), places_(places) {
+    const double inverse = 1 / twice_area(places);
+    const Vec3d u = corners[1] - corners[0];
+    const Vec3d v = corners[2] - corners[0];
+    along_x_ = u * ((places[2].y - places[0].y) * inverse) - v * ((places[1].y - places[0].y) * inverse);
+    along_y_ = v * ((places[1].x - places[0].x) * inverse) - u * ((places[2].x - places[0].x) * inverse);
+  }
+
+  /// A point of the triangle's plane.
+  [[nodiscard]] Vec3d in_plane(const TexturePlace& at) const {
+    return corners_[0] + along_x_ * (at.x - places_[0].x) + along_y_ * (at.y - places_[0].y);
+  }
+  /// Whether a place lies in the chart, border included.
+  [[nodiscard]] bool contains(const TexturePlace& at) const {
+    const double sign = twice_area(places_) > 0 ? 1 : -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sign * twice_area({places_[k], places_[(k + 1) % 3], at}) < 0) return false;
+    }
+    return true;
+  }
+  /// The point of the triangle for a place: of those beyond the border, the closest one to where the plane has them.
+  [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
+    const Vec3d point = in_plane(at);
+    return contains(at) ? point : closest_point_on_triangle(point, corners_);
+  }
+  /// The most that the map stretches: mesh units per texel (the largest singular value).
+  [[nodiscard]] double stretch() const {
+    const double xx = squared_length(along_x_);
+    const double yy = squared_length(along_y_);
+    const double xy = dot(along_x_, along_y_);
+    return std::sqrt((xx + yy + std::hypot(xx - yy, 2 * xy)) / 2);
+  }
+
+ private:
+  std::array<Vec3d, 3> corners_;
+  ChartCorners places_;
+  Vec3d along_x_, along_y_;  ///< steps of one texel
+};
+
+/// The middle of a texel.
+[[nodiscard]] inline TexturePlace middle_of(std::size_t x, std::size_t y) {
+  return {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
+}
+
+/// Calls visit(x, y, outside) for the texels that reading within a chart looks at, by the nearest one or bilinearly:
+/// whose middles are within one texel along x and along y of a place of the chart. `outside` is how far the middle is
+/// beyond the side that it is furthest beyond, in texels: 0 or less within the chart.
+/// @param places  with an area. Texels beyond a texture of this size are left out.
+template <class Visit>
+void for_each_texel(const ChartCorners& places, std::uint32_t width, std::uint32_t height, Visit visit) {
+  const double sign = twice_area(places) < 0 ? -1 : 1;
+  std::array<double, 3> side{};   ///< lengths
+  std::array<double, 3> reach{};  ///< of a square of two texels a side, across the sides
+  for (std::size_t k = 0; k < 3; ++k) {
+    const TexturePlace& a = places[k];
+    const TexturePlace& b = places[(k + 1) % 3];
+    side[k] = std::hypot(b.x - a.x, b.y - a.y);
+    reach[k] = (std::abs(b.x - a.x) + std::abs(b.y - a.y)) / side[k];
+  }
+  const auto [left, right] = std::minmax({places[0].x, places[1].x, places[2].x});
+  const auto [top, bottom] = std::minmax({places[0].y, places[1].y, places[2].y});
+  // Middles in the open square around a place: 0.5 + i > left - 1.
+  const auto first = [](double from) { return static_cast<std::size_t>(std::max(std::floor(from - 1.5) + 1, 0.0)); };
+  const auto end = [](double to, std::uint32_t size) {
+    return static_cast<std::size_t>(std::clamp(std::ceil(to + 0.5), 0.0, static_cast<double>(size)));
+  };
+  for (std::size_t y = first(top); y < end(bottom, height); ++y) {
+    for (std::size_t x = first(left); x < end(right, width); ++x) {
+      const TexturePlace at = middle_of(x, y);
+      double outside = -HUGE_VAL;
+      bool is_near = true;
+      for (std::size_t k = 0; k < 3 && is_near; ++k) {
+        const double beyond = -sign * twice_area({places[k], places[(k + 1) % 3], at}) / side[k];
+        outside = std::max(outside, beyond);
+        is_near = beyond < reach[k];
+      }
+      if (is_near) visit(x, y, outside);
+    }
+  }
+}
+
+}  // namespace blum::surface

@@ -1,0 +1,133 @@
+#include "surface_map/distance_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "blum/core/inline_list.hpp"
+#include "blum/geometry/closest_point.hpp"
+
+namespace blum::surface {
+namespace {
+
+/// No more primitives at a vertex are looked at.
+constexpr std::size_t most_primitives = 16;
+using Primitives = std::span<const std::uint32_t>;
+using Corners = std::array<const FacingPoint*, 3>;
+
+Primitives primitives_at(const FacingSurface& surface, SiteId site) {
+  const Primitives all = surface.primitives_at(site);
+  return all.first(std::min(all.size(), most_primitives));
+}
+
+bool contains(Primitives list, std::uint32_t primitive) {
+  return std::find(list.begin(), list.end(), primitive) != list.end();
+}
+
+double longest_side(const Corners& corners) {
+  double squared = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    squared = std::max(squared, squared_length(corners[k]->point - corners[(k + 1) % 3]->point));
+  }
+  return std::sqrt(squared);
+}
+
+/// The distance from a primitive is a convex function, and so is largest at a corner.
+double bound_by_primitive(const Corners& corners, const std::array<Primitives, 3>& lists, const FacingSurface& surface,
+                          std::uint32_t primitive) {
+  const std::array<Vec3d, 3> facing = surface.corners_of(primitive);
+  double squared = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d& at = corners[k]->point;
+    const bool is_closest = contains(lists[k], primitive);
+    const Vec3d closest = is_closest ? corners[k]->closest : closest_point_on_triangle(at, facing);
+    squared = std::max(squared, squared_length(at - closest));
+  }
+  return std::sqrt(squared);
+}
+
+/// What two primitives have in common: an edge, a vertex twice, or nothing.
+bool common_part(const FacingSurface& surface, std::uint32_t a, std::uint32_t b, std::array<Vec3d, 2>& part) {
+  const Triangle of_a = surface.vertices_of(a);
+  const Triangle of_b = surface.vertices_of(b);
+  InlineList<std::uint32_t, 3> common;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const bool is_repeated = std::find(of_a.begin(), of_a.begin() + static_cast<std::ptrdiff_t>(k), of_a[k]) !=
+                             of_a.begin() + static_cast<std::ptrdiff_t>(k);
+    if (!is_repeated && std::find(of_b.begin(), of_b.end(), of_a[k]) != of_b.end()) common.push_back(of_a[k]);
+  }
+  if (common.size() == 0) return false;
+  part = {surface.position(common[0]), surface.position(common[common.size() > 1 ? 1 : 0])};
+  return true;
+}
+
+/// A corner whose closest point lies on another primitive than the middle one is cut off, where the sides from it come
+/// closest to what both primitives have in common: then its piece faces the one, and what is left the other.
+double bound_by_cut(const Corners& corners, std::size_t corner, const std::array<Vec3d, 2>& common) {
+  double squared = 0;
+  for (const std::size_t other : {(corner + 1) % 3, (corner + 2) % 3}) {
+    const auto [here, there] = closest_points_of_segments({corners[corner]->point, corners[other]->point}, common);
+    squared = std::max(squared, squared_length(here - there));
+  }
+  return std::sqrt(squared);
+}
+
+/// The triangle is cut into pieces, each of which is a convex set that one primitive faces, with known distances at its
+/// corners: the middle one, and those of closest points that are not on it, which must touch it.
+double bound_around(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
+                    std::uint32_t middle, double enough) {
+  double bound = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (contains(lists[k], middle)) continue;
+    double best = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t own : lists[k]) {
+      std::array<Vec3d, 2> common;
+      if (common_part(surface, own, middle, common)) best = std::min(best, bound_by_cut(corners, k, common));
+      if (best <= enough) break;
+    }
+    bound = std::max(bound, best);
+    if (std::isinf(bound)) break;
+  }
+  return bound;
+}
+
+/// The same with each primitive of a closest point in the middle.
+double bound_by_cuts(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
+                     double enough) {
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const std::uint32_t middle : lists[k]) {
+      const bool is_again = (k > 0 && contains(lists[0], middle)) || (k > 1 && contains(lists[1], middle));
+      if (!is_again) best = std::min(best, bound_around(corners, surface, lists, middle, enough));
+      if (best <= enough) return best;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+double distance_bound(const Corners& corners, const FacingSurface& surface, double enough) {
+  const double largest = std::max({corners[0]->distance, corners[1]->distance, corners[2]->distance});
+  // Distances change by no more than one moves, and no point of a triangle is further from its nearest corner than
+  // that.
+  double best = largest + longest_side(corners) / std::numbers::sqrt3;
+  if (best <= enough) return best;
+  std::array<Primitives, 3> lists;
+  for (std::size_t k = 0; k < 3; ++k) lists[k] = primitives_at(surface, corners[k]->site);
+  for (const std::uint32_t primitive : lists[0]) {
+    if (contains(lists[1], primitive) && contains(lists[2], primitive)) return largest;
+  }
+  best = std::min(best, std::max(largest, bound_by_cuts(corners, surface, lists, enough)));
+  if (best <= enough) return best;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t primitive = lists[k][0];
+    const bool is_again = (k > 0 && primitive == lists[0][0]) || (k > 1 && primitive == lists[1][0]);
+    if (!is_again) best = std::min(best, bound_by_primitive(corners, lists, surface, primitive));
+  }
+  return best;
+}
+
+}  // namespace blum::surface

@@ -1,0 +1,395 @@
+#include "blum/surface_map/hausdorff_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/core/scale.hpp"
+#include "blum/geometry/primitives.hpp"
+#include "surface_map/distance_bound.hpp"
+#include "surface_map/facing_surface.hpp"
+
+namespace blum {
+namespace {
+
+using surface::distance_bound;
+using surface::FacingPoint;
+using surface::FacingSurface;
+
+constexpr std::size_t points_per_range = 512;
+constexpr std::size_t pieces_per_range = 64;
+/// Primitives are ruled out together by so many, or more.
+constexpr std::size_t smallest_run = 8;
+/// Pieces that are divided at once: few enough that what is found in one round spares work in the next.
+constexpr std::size_t most_per_round = std::size_t{1} << 16;
+
+/// A part of a primitive: a triangle of evaluated points.
+struct Piece {
+  std::array<std::uint32_t, 3> corners{};
+  std::uint32_t primitive = 0;
+  double bound = 0;  ///< no point of it is further from the other mesh
+};
+
+void check(const HausdorffOptions& options) {
+  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
+    throw InvalidOption("tolerance is " + exact_text(*options.tolerance) + ", but must be above 0");
+  }
+}
+
+/// A copy in which the largest coordinate of both meshes is about 1: products of coordinates are then numbers.
+std::vector<Vec3d> scaled(std::span<const Vec3d> vertices, double scale) {
+  std::vector<Vec3d> out(vertices.begin(), vertices.end());
+  for (Vec3d& v : out) v *= scale;
+  return out;
+}
+
+/// Divides the pieces of a mesh that may be furthest from another, until they cannot be much further than a point that
+/// is known.
+class FurthestPoint {
+ public:
+  FurthestPoint(const FacingSurface& mesh, const FacingSurface& other, double tolerance, double rounding,
+                std::size_t max_points, const Context& context)
+      : mesh_(mesh),
+        other_(other),
+        tolerance_(std::max(tolerance - 2 * rounding, 0.0)),
+        rounding_(rounding),
+        max_points_(max_points),
+        context_(context) {}
+
+  /// All in the units of the meshes as they are given to it.
+  DirectedHausdorff find() {
+    const std::size_t count = mesh_.mesh().vertices.size();
+    points_.resize(count);
+    is_known_.assign(count, 0);
+    furthest_ = primitive_vertices(mesh_.mesh(), mesh_.hierarchy().order()[0])[0];
+    primitive_of_furthest_ = mesh_.hierarchy().order()[0];
+    evaluate_vertices({{furthest_, primitive_of_furthest_}});
+    const std::vector<std::uint32_t> primitives = far_primitives();
+    evaluate_vertices_of(primitives);
+    make_pieces(primitives);
+    while (!pieces_.empty() && points_.size() < max_points_) divide_furthest();
+    for (const Piece& piece : pieces_) settled_ = std::max(settled_, piece.bound);
+    return result();
+  }
+
+ private:
+  [[nodiscard]] double furthest() const { return points_[furthest_].distance; }
+
+  /// What is closest to a point; it is known to be within a bound.
+  [[nodiscard]] FacingPoint evaluated(const Vec3d& point, double bound) const {
+    std::optional<NearestSite> nearest = other_.hierarchy().nearest(point, bound * (1 + 1e-9) + 1e-12);
+    if (!nearest) nearest = other_.hierarchy().nearest(point);
+    return {point, nearest->point, nearest->distance, nearest->site};
+  }
+
+  /// A vertex, and a primitive that it is one of.
+  struct VertexOf {
+    std::uint32_t vertex = 0;
+    std::uint32_t primitive = 0;
+  };
+  void evaluate_vertices(const std::vector<VertexOf>& vertices) {
+    parallel_for(context_, vertices.size(), points_per_range, "", [&](const WorkRange& range) {
+      const FacingPoint* last = nullptr;
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        const std::uint32_t v = vertices[k].vertex;
+        const Vec3d& at = mesh_.mesh().vertices[v];
+        points_[v] = evaluated(at, last != nullptr ? length(at - last->closest) : HUGE_VAL);
+        last = &points_[v];
+      }
+    });
+    evaluations_ += vertices.size();
+    for (const VertexOf& one : vertices) {
+      is_known_[one.vertex] = 1;
+      offer(one.vertex, one.primitive);
+    }
+  }
+
+  void evaluate_vertices_of(const std::vector<std::uint32_t>& primitives) {
+    std::vector<VertexOf> unknown;
+    for (const std::uint32_t p : primitives) {
+      for (const std::uint32_t v : primitive_vertices(mesh_.mesh(), p)) {
+        if (is_known_[v] != 0) continue;
+        is_known_[v] = 1;
+        unknown.push_back({v, p});
+      }
+    }
+    evaluate_vertices(unknown);
+  }
+
+  /// Primitives that follow each other in the hierarchy's order, and a box around them.
+  struct Run {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    Box3 box;
+    Vec3d center_closest;  ///< to the middle of the box
+    double center_distance = 0;
+  };
+
+  /// The primitives that may be further than what is known: whole runs of others are ruled out by what is closest to
+  /// the middle of their boxes.
+  std::vector<std::uint32_t> far_primitives() {
+    const std::span<const std::uint32_t> order = mesh_.hierarchy().order();
+    std::vector<std::uint32_t> out;
+    std::vector<Run> runs{{0, order.size(), {}, {}, 0}};
+    std::size_t size = 1;
+    while (size < order.size()) size *= 8;
+    while (!runs.empty()) {
+      size /= 8;
+      runs = children(runs, order, std::max(size, smallest_run));
+      if (size <= smallest_run) break;
+      evaluate(runs, order);
+      std::vector<Run> further;
+      for (const Run& run : runs) {
+        const double half = run.box.diagonal() / 2;
+        const double bound = run.center_distance + half;
+        if (bound <= furthest() + tolerance_) {
+          settled_ = std::max(settled_, bound);
+        } else if (run.center_distance +
+                       half * std::sqrt(static_cast<double>(smallest_run) / static_cast<double>(size)) >
+                   furthest() + tolerance_) {
+          // Its parts will most likely not be ruled out either.
+          out.insert(out.end(), order.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                     order.begin() + static_cast<std::ptrdiff_t>(run.end));
+        } else {
+          further.push_back(run);
+        }
+      }
+      runs = std::move(further);
+    }
+    for (const Run& run : runs) {
+      out.insert(out.end(), order.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                 order.begin() + static_cast<std::ptrdiff_t>(run.end));
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::vector<Run> children(const std::vector<Run>& runs, std::span<const std::uint32_t> order,
+                                          std::size_t size) const {
+    std::vector<Run> out;
+    for (const Run& run : runs) {
+      for (std::size_t begin = run.begin; begin < run.end; begin += size) {
+        out.push_back({begin, std::min(begin + size, run.end), {}, run.center_closest, 0});
+      }
+    }
+    (void)order;
+    return out;
+  }
+
+  /// Looks up what is closest to the middles of runs, and to a vertex of each.
+  void evaluate(std::vector<Run>& runs, std::span<const std::uint32_t> order) {
+    parallel_for(context_, runs.size(), 1, "", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        Run& run = runs[k];
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+          for (const std::uint32_t v : primitive_vertices(mesh_.mesh(), order[i])) {
+            run.box.extend(mesh_.mesh().vertices[v]);
+          }
+        }
+        const FacingPoint middle = evaluated(run.box.center(), length(run.box.center() - run.center_closest));
+        run.center_closest = middle.closest;
+        run.center_distance = middle.distance;
+      }
+    });
+    evaluations_ += runs.size();
+    std::vector<VertexOf> samples;
+    for (const Run& run : runs) {
+      const std::uint32_t primitive = order[(run.begin + run.end) / 2];
+      const std::uint32_t v = primitive_vertices(mesh_.mesh(), primitive)[0];
+      if (is_known_[v] == 0) samples.push_back({v, primitive});
+    }
+    evaluate_vertices(samples);
+  }
+
+  void offer(std::uint32_t point, std::uint32_t primitive) {
+    if (!(points_[point].distance > furthest())) return;
+    furthest_ = point;
+    primitive_of_furthest_ = primitive;
+  }
+
+  [[nodiscard]] double bound(const Piece& piece, double enough) const {
+    const auto& [a, b, c] = piece.corners;
+    return distance_bound({&points_[a], &points_[b], &points_[c]}, other_, enough);
+  }
+
+  void make_pieces(const std::vector<std::uint32_t>& primitives) {
+    std::vector<Piece> all(primitives.size());
+    const double enough = furthest() + tolerance_;
+    parallel_for(context_, primitives.size(), pieces_per_range, "", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        all[k] = {primitive_vertices(mesh_.mesh(), primitives[k]), primitives[k], 0};
+        all[k].bound = bound(all[k], enough);
+      }
+    });
+    for (const Piece& piece : all) keep(piece);
+  }
+
+  /// Pieces that are not worth dividing are done with.
+  void keep(const Piece& piece) {
+    if (piece.bound > furthest() + tolerance_) return pieces_.push_back(piece);
+    settled_ = std::max(settled_, piece.bound);
+  }
+
+  /// Moves the pieces with the largest bounds out of the list.
+  std::vector<Piece> take_furthest() {
+    double largest = 0;
+    for (const Piece& piece : pieces_) largest = std::max(largest, piece.bound);
+    // What is found of those may settle the others.
+    const double least = furthest() + (largest - furthest()) / 2;
+    const auto middle = std::partition(pieces_.begin(), pieces_.end(), [&](const Piece& p) { return p.bound < least; });
+    const auto rank = [](const Piece& p) { return std::pair(-p.bound, p.corners); };
+    if (pieces_.end() - middle > static_cast<std::ptrdiff_t>(most_per_round)) {
+      std::nth_element(middle, middle + most_per_round, pieces_.end(),
+                       [&](const Piece& p, const Piece& q) { return rank(p) < rank(q); });
+    }
+    const std::ptrdiff_t count = std::min(pieces_.end() - middle, static_cast<std::ptrdiff_t>(most_per_round));
+    std::vector<Piece> taken(middle, middle + count);
+    pieces_.erase(middle, middle + count);
+    return taken;
+  }
+
+  /// Halves pieces at the middle of their longest sides.
+  void divide_furthest() {
+    const std::vector<Piece> taken = take_furthest();
+    const std::size_t first = points_.size();
+    points_.resize(first + taken.size());
+    std::vector<std::array<Piece, 2>> halves(taken.size());
+    const double enough = furthest() + tolerance_;
+    parallel_for(context_, taken.size(), pieces_per_range, "", [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        halves[k] = divided(taken[k], static_cast<std::uint32_t>(first + k));
+        for (Piece& half : halves[k]) half.bound = std::min(bound(half, enough), taken[k].bound);
+      }
+    });
+    evaluations_ += taken.size();
+    for (std::size_t k = 0; k < taken.size(); ++k) {
+      offer(static_cast<std::uint32_t>(first + k), taken[k].primitive);
+    }
+    for (const std::array<Piece, 2>& both : halves) {
+      for (const Piece& half : both) keep(half);
+    }
+    settle_pieces();
+  }
+
+  [[nodiscard]] std::array<Piece, 2> divided(const Piece& piece, std::uint32_t middle) {
+    std::size_t longest = 0;
+    double squared = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double here = squared_length(points_[piece.corners[k]].point - points_[piece.corners[(k + 1) % 3]].point);
+      if (here > squared) {
+        squared = here;
+        longest = k;
+      }
+    }
+    const std::uint32_t a = piece.corners[longest];
+    const std::uint32_t b = piece.corners[(longest + 1) % 3];
+    const std::uint32_t c = piece.corners[(longest + 2) % 3];
+    const Vec3d at = (points_[a].point + points_[b].point) * 0.5;
+    double nearest = HUGE_VAL;
+    for (const std::uint32_t corner : piece.corners) {
+      nearest = std::min(nearest, squared_length(at - points_[corner].closest));
+    }
+    points_[middle] = evaluated(at, std::sqrt(nearest));
+    return {Piece{{a, middle, c}, piece.primitive, piece.bound}, Piece{{middle, b, c}, piece.primitive, piece.bound}};
+  }
+
+  void settle_pieces() {
+    std::vector<Piece> before;
+    before.swap(pieces_);
+    for (const Piece& piece : before) keep(piece);
+  }
+
+  [[nodiscard]] DirectedHausdorff result() const {
+    const FacingPoint& at = points_[furthest_];
+    DirectedHausdorff out;
+    out.lower = std::max(at.distance - rounding_, 0.0);
+    out.upper = std::max(at.distance, settled_) + rounding_;
+    out.points = {at.point, at.closest};
+    out.primitive = primitive_of_furthest_;
+    out.site = at.site;
+    out.evaluations = evaluations_;
+    return out;
+  }
+
+  const FacingSurface& mesh_;
+  const FacingSurface& other_;
+  double tolerance_;
+  double rounding_;
+  std::size_t max_points_;
+  const Context& context_;
+  std::vector<FacingPoint> points_;     ///< the vertices, then points inside of primitives
+  std::vector<std::uint8_t> is_known_;  ///< for each vertex
+  std::vector<Piece> pieces_;           ///< those that may be further than is known, by more than the tolerance
+  double settled_ = 0;                  ///< the largest bound of all other pieces
+  std::uint32_t furthest_ = 0;
+  std::uint32_t primitive_of_furthest_ = 0;
+  std::size_t evaluations_ = 0;
+};
+
+/// Two meshes, brought to about 1, and how well the answer is to be known there.
+class MeshPair {
+ public:
+  MeshPair(const MeshView& a, const MeshView& b, const HausdorffOptions& options, const Context& context)
+      : max_points_(std::min<std::size_t>(options.max_points, max_id_count)), context_(context) {
+    check(options);
+    validate(a);
+    validate(b);
+    Box3 box = bounds(a);
+    box.extend(bounds(b).lower);
+    box.extend(bounds(b).upper);
+    scale_ = scale_to_one(box.largest_coordinate());
+    vertices_ = {scaled(a.vertices, scale_), scaled(b.vertices, scale_)};
+    meshes_ = {a, b};
+    for (std::size_t k = 0; k < 2; ++k) meshes_[k].vertices = vertices_[k];
+    for (std::size_t k = 0; k < 2; ++k) surfaces_[k].emplace(meshes_[k], context);
+    const double largest = box.largest_coordinate() * scale_;
+    rounding_ = 16e-16 * largest;
+    tolerance_ = std::max(options.tolerance.value_or(1e-4 * box.diagonal()) * scale_, 1e-13 * largest);
+  }
+
+  /// How far mesh `which` is from the other one.
+  [[nodiscard]] DirectedHausdorff directed(std::size_t which) const {
+    FurthestPoint search(*surfaces_[which], *surfaces_[1 - which], tolerance_, rounding_, max_points_, context_);
+    DirectedHausdorff out = search.find();
+    out.lower /= scale_;
+    out.upper /= scale_;
+    for (Vec3d& point : out.points) point = point / scale_;
+    return out;
+  }
+
+ private:
+  std::size_t max_points_;
+  const Context& context_;
+  double scale_ = 1;
+  std::array<std::vector<Vec3d>, 2> vertices_;
+  std::array<MeshView, 2> meshes_;
+  std::array<std::optional<FacingSurface>, 2> surfaces_;
+  double tolerance_ = 0;
+  double rounding_ = 0;
+};
+
+}  // namespace
+
+DirectedHausdorff directed_hausdorff_distance(const MeshView& mesh, const MeshView& other,
+                                              const HausdorffOptions& options, const Context& context) {
+  return MeshPair(mesh, other, options, context).directed(0);
+}
+
+HausdorffDistance hausdorff_distance(const MeshView& a, const MeshView& b, const HausdorffOptions& options,
+                                     const Context& context) {
+  const MeshPair pair(a, b, options, context);
+  HausdorffDistance out;
+  out.forward = pair.directed(0);
+  out.backward = pair.directed(1);
+  out.lower = std::max(out.forward.lower, out.backward.lower);
+  out.upper = std::max(out.forward.upper, out.backward.upper);
+  const bool is_forward = out.forward.lower >= out.backward.lower;
+  out.points = is_forward ? out.forward.points : std::array{out.backward.points[1], out.backward.points[0]};
+  return out;
+}
+
+}  // namespace blum

@@ -1,0 +1,122 @@
+#include "surface_map/map_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "surface_map/chart.hpp"
+
+namespace blum::surface {
+namespace {
+
+constexpr std::size_t texels_per_range = 512;
+constexpr std::size_t triangles_per_range = 256;
+constexpr std::size_t default_texels = 1'000'000;
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+SurfaceMap::FaceSummary summary_of(const SurfaceMap& map, std::uint32_t triangle) {
+  const SurfaceAtlas& atlas = *map.atlas;
+  SurfaceMap::FaceSummary out{nan, nan, nan};
+  if (twice_area(atlas.corners[triangle]) == 0) return out;
+  double sum = 0;
+  std::size_t count = 0;
+  for_each_texel(atlas.corners[triangle], atlas.width, atlas.height,
+                 [&](std::size_t x, std::size_t y, double /*outside*/) {
+                   const std::size_t at = y * atlas.width + x;
+                   if (atlas.triangle[at] != TriangleId(triangle)) return;
+                   const float value = map.distance[at];
+                   out.smallest = std::isnan(out.smallest) ? value : std::min(out.smallest, value);
+                   out.largest = std::isnan(out.largest) ? value : std::max(out.largest, value);
+                   if (!std::isfinite(value)) return;
+                   sum += value;
+                   ++count;
+                 });
+  if (count > 0) out.mean = static_cast<float>(sum / static_cast<double>(count));
+  return out;
+}
+
+}  // namespace
+
+std::vector<TriangleId> triangles_at_vertices(const MeshView& mesh) {
+  std::vector<TriangleId> out(mesh.vertices.size(), TriangleId::none());
+  for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
+    for (const std::uint32_t v : mesh.triangles[t]) out[v] = TriangleId(static_cast<std::uint32_t>(t));
+  }
+  return out;
+}
+
+SurfaceMap empty_map(std::shared_ptr<const SurfaceAtlas> atlas, SurfaceQuantity quantity) {
+  SurfaceMap out;
+  const std::size_t size = atlas->size();
+  out.distance = Buffer<float>(size, nan);
+  out.vector = Buffer<Vec3f>(size, Vec3f{});
+  out.site = Buffer<SiteId>(size, SiteId::none());
+  out.quantity = quantity;
+  out.atlas = std::move(atlas);
+  return out;
+}
+
+void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceValue& value) {
+  const Vec3d way = value.closest - point;
+  map.distance[texel] = static_cast<float>(value.distance);
+  map.vector[texel] = {static_cast<float>(way.x), static_cast<float>(way.y), static_cast<float>(way.z)};
+  map.site[texel] = value.site;
+}
+
+void fill(SurfaceMap& map, const MeshView& mesh, ValueAt value_at, const Context& context) {
+  const SurfaceAtlas& atlas = *map.atlas;
+  const SurfaceTexels all = surface_texels(mesh, atlas, context);
+  parallel_for(context, all.texels.size(), texels_per_range, "surface map", [&](const WorkRange& range) {
+    SurfaceValue last;
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const std::uint32_t texel = all.texels[k];
+      last = value_at(all.points[k], atlas.triangle[texel], k > range.begin ? &last : nullptr);
+      put(map, texel, all.points[k], last);
+    }
+  });
+  const std::vector<TriangleId> triangles = triangles_at_vertices(mesh);
+  map.vertex_distance.assign(mesh.vertices.size(), std::numeric_limits<double>::quiet_NaN());
+  parallel_for(context, mesh.vertices.size(), texels_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t v = range.begin; v < range.end; ++v) {
+      if (!triangles[v].has_value()) continue;
+      map.vertex_distance[v] = value_at(mesh.vertices[v], triangles[v], nullptr).distance;
+    }
+  });
+}
+
+void summarize_faces(SurfaceMap& map, const MeshView& mesh, const Context& context) {
+  map.faces.resize(mesh.triangles.size());
+  parallel_for(context, map.faces.size(), triangles_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t t = range.begin; t < range.end; ++t) map.faces[t] = summary_of(map, static_cast<std::uint32_t>(t));
+  });
+}
+
+void bound_errors(SurfaceMap& map, const MeshView& mesh, const Context& context) {
+  const std::vector<double> reaches = texel_reaches(mesh, *map.atlas, context);
+  map.error.resize(reaches.size());
+  for (std::size_t t = 0; t < reaches.size(); ++t) {
+    // Texels hold float32.
+    const float largest = std::max(std::abs(map.faces[t].smallest), std::abs(map.faces[t].largest));
+    const double rounding = std::isfinite(largest) ? 1.2e-7 * largest : 0;
+    map.error[t] = static_cast<float>((reaches[t] + rounding) * (1 + 1e-6));
+  }
+}
+
+std::shared_ptr<const SurfaceAtlas> make_atlas(const MeshView& mesh, const SurfaceMapOptions& options,
+                                               const Context& context) {
+  return std::make_shared<const SurfaceAtlas>(options.texel ? surface_atlas(mesh, *options.texel, context)
+                                                            : surface_atlas_of_size(mesh, default_texels, context));
+}
+
+void check(const SurfaceMapOptions& options) {
+  if (options.texel && !(*options.texel > 0 && std::isfinite(*options.texel))) {
+    throw InvalidOption("texel is " + exact_text(*options.texel) + ", but must be above 0");
+  }
+  if (options.max_distance && !(*options.max_distance >= 0)) {
+    throw InvalidOption("max_distance is " + exact_text(*options.max_distance) + ", but must be at least 0");
+  }
+}
+
+}  // namespace blum::surface

@@ -1,0 +1,49 @@
+// Blum: what surface maps are filled with. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "blum/core/context.hpp"
+#include "blum/core/function_ref.hpp"
+#include "blum/core/ids.hpp"
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/surface_map/surface_distance_map.hpp"
+
+namespace blum::surface {
+
+/// The value at a point of a surface.
+struct SurfaceValue {
+  double distance = 0;  ///< mesh units; infinite where there is nothing
+  Vec3d closest;        ///< the point itself where there is nothing
+  SiteId site;
+};
+
+/// The smallest triangle at each vertex; none() where there is none.
+[[nodiscard]] std::vector<TriangleId> triangles_at_vertices(const MeshView& mesh);
+
+/// A map with places for values.
+[[nodiscard]] SurfaceMap empty_map(std::shared_ptr<const SurfaceAtlas> atlas, SurfaceQuantity quantity);
+/// Writes the value of a texel. The distance is signed.
+void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceValue& value);
+
+/// Finds values that depend on a point and the triangle that it lies on. @param last  the value of a point that is
+/// probably close by, or null: it may bound the search, but must not change its result.
+using ValueAt = FunctionRef<SurfaceValue(const Vec3d& point, TriangleId triangle, const SurfaceValue* last)>;
+/// Fills texels and vertices with such values.
+void fill(SurfaceMap& map, const MeshView& mesh, ValueAt value_at, const Context& context);
+
+/// Sums up the texels of each triangle.
+void summarize_faces(SurfaceMap& map, const MeshView& mesh, const Context& context);
+/// Fills `error`.
+void bound_errors(SurfaceMap& map, const MeshView& mesh, const Context& context);
+
+/// The atlas that options ask for.
+[[nodiscard]] std::shared_ptr<const SurfaceAtlas> make_atlas(const MeshView& mesh, const SurfaceMapOptions& options,
+                                                             const Context& context);
+/// @throws InvalidOption.
+void check(const SurfaceMapOptions& options);
+
+}  // namespace blum::surface

@@ -1,0 +1,192 @@
+#include "blum/surface_map/thickness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "blum/core/exact_text.hpp"
+#include "blum/core/parallel.hpp"
+#include "blum/core/scale.hpp"
+#include "blum/field/closest_points.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/primitives.hpp"
+#include "blum/geometry/sites.hpp"
+#include "surface_map/map_values.hpp"
+
+namespace blum {
+namespace {
+
+using surface::SurfaceValue;
+
+constexpr double nothing = std::numeric_limits<double>::infinity();
+/// Points move by this part of the way to the centroid of their triangle: at its border, rays would run along
+/// neighbours.
+constexpr double towards_centroid = 1e-7;
+/// A ball that another one would make smaller by no more than this part has been found.
+constexpr double settled = 1e-12;
+/// Balls shrink to their end in 3 to 10 steps.
+constexpr int most_steps = 200;
+constexpr std::size_t points_per_range = 256;
+
+void check(const ThicknessOptions& options) {
+  if (!(options.separation >= 0 && options.separation <= 180)) {
+    throw InvalidOption("separation is " + exact_text(options.separation) + ", but must be 0 to 180 degrees");
+  }
+}
+
+/// Finds thicknesses of a solid, brought to about 1.
+class ThicknessSearch {
+ public:
+  ThicknessSearch(const MeshView& solid, const ThicknessOptions& options, const Context& context)
+      : options_(options),
+        scale_(scale_to_one(bounds(solid).largest_coordinate())),
+        vertices_(solid.vertices.begin(), solid.vertices.end()),
+        cosine_(std::cos(options.separation * std::numbers::pi / 180)) {
+    for (Vec3d& v : vertices_) v *= scale_;
+    mesh_ = solid;
+    mesh_.vertices = vertices_;
+    // Only triangles make a solid.
+    mesh_.segments = {};
+    mesh_.points = {};
+    sites_ = SiteTable(mesh_, context);
+    bvh_.emplace(mesh_, sites_, context);
+    normals_.resize(mesh_.triangles.size());
+    for (std::size_t t = 0; t < normals_.size(); ++t) {
+      const auto [a, b, c] = triangle_corners(mesh_, t);
+      const Vec3d normal = cross(b - a, c - a);
+      const double size = length(normal);
+      normals_[t] = size > 0 ? normal / size : Vec3d{};
+    }
+  }
+
+  [[nodiscard]] const SiteTable& sites() const { return sites_; }
+
+  /// At a point of a triangle.
+  [[nodiscard]] Thickness at(const Vec3d& given, TriangleId triangle) const {
+    const auto [a, b, c] = triangle_corners(mesh_, triangle.value);
+    const Vec3d scaled = given * scale_;
+    const Vec3d point = scaled + ((a + b + c) / 3.0 - scaled) * towards_centroid;
+    const Vec3d& normal = normals_[triangle.value];
+    Thickness out{nothing, given, TriangleId::none()};
+    if (normal == Vec3d{}) return out;
+    const Thickness found = options_.kind == ThicknessKind::ray ? along_ray(point, normal, triangle.value)
+                                                                : of_ball(point, normal, triangle.value);
+    if (!found.triangle.has_value()) return out;
+    return {found.thickness / scale_, found.opposite / scale_, found.triangle};
+  }
+
+ private:
+  [[nodiscard]] Thickness along_ray(const Vec3d& point, const Vec3d& normal, std::uint32_t own) const {
+    Thickness out{nothing, point, TriangleId::none()};
+    bvh_->for_each_crossing({point, -normal}, nothing, [&](const RayCrossing& crossing) {
+      const bool leaves = crossing.side > 0 && crossing.triangle.value != own;
+      const bool is_first =
+          crossing.t < out.thickness || (crossing.t == out.thickness && crossing.triangle < out.triangle);
+      if (leaves && is_first) out = {crossing.t, point - normal * crossing.t, crossing.triangle};
+      return out.thickness;
+    });
+    return out;
+  }
+
+  /// Shrinks a ball until nothing that counts is left in it. Each step takes the closest point to the centre, and the
+  /// ball that touches both it and the plane.
+  [[nodiscard]] Thickness of_ball(const Vec3d& point, const Vec3d& normal, std::uint32_t own) const {
+    const auto counts = [&](std::uint32_t triangle) {
+      return triangle != own && dot(normals_[triangle], normal) <= cosine_;
+    };
+    Thickness out{nothing, point, TriangleId::none()};
+    // No ball inside of the mesh's box is larger, if it touches something.
+    double radius = 4 * bvh_->bounds().diagonal();
+    for (int step = 0; step < most_steps; ++step) {
+      const Vec3d center = point - normal * radius;
+      const std::optional<NearestPrimitive> found = bvh_->nearest_wanted(center, counts, radius * (1 - settled));
+      if (!found) break;
+      const Vec3d way = point - found->point;
+      const double below = dot(way, normal);
+      const double next = below > 0 ? squared_length(way) / (2 * below) : 0;
+      if (!(next < radius)) break;
+      out = {2 * next, found->point, TriangleId(found->primitive)};
+      const bool is_settled = next >= radius * (1 - settled);
+      radius = next;
+      if (is_settled || !(radius > 0)) break;
+    }
+    return out;
+  }
+
+  ThicknessOptions options_;
+  double scale_ = 1;
+  std::vector<Vec3d> vertices_;
+  double cosine_ = 1;
+  MeshView mesh_;
+  SiteTable sites_;
+  std::optional<Bvh> bvh_;
+  std::vector<Vec3d> normals_;  ///< of triangles, of length 1; 0 where they have no area
+};
+
+void check_solid(const MeshView& solid) {
+  validate(solid);
+  if (solid.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so there is no solid to be thick");
+}
+
+}  // namespace
+
+std::vector<Thickness> thickness(const MeshView& solid, std::span<const Vec3d> points, const ThicknessOptions& options,
+                                 const Context& context) {
+  check(options);
+  check_solid(solid);
+  MeshView surface = solid;
+  surface.segments = {};
+  surface.points = {};
+  const ClosestPointQuery query(surface, {SignMode::none, {}}, context);
+  const std::vector<ClosestPoint> places = query.nearest(points, context);
+  const ThicknessSearch search(solid, options, context);
+  std::vector<Thickness> out(points.size());
+  parallel_for(context, out.size(), points_per_range, "thickness", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) out[k] = search.at(places[k].point, places[k].triangle);
+  });
+  return out;
+}
+
+std::vector<Thickness> thickness(const MeshView& solid, const ThicknessOptions& options, const Context& context) {
+  check(options);
+  check_solid(solid);
+  const ThicknessSearch search(solid, options, context);
+  std::vector<Thickness> out(solid.triangles.size());
+  parallel_for(context, out.size(), points_per_range, "thickness", [&](const WorkRange& range) {
+    for (std::size_t t = range.begin; t < range.end; ++t) {
+      const auto [a, b, c] = triangle_corners(solid, t);
+      out[t] = search.at((a + b + c) / 3.0, TriangleId(static_cast<std::uint32_t>(t)));
+    }
+  });
+  return out;
+}
+
+SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map, const ThicknessOptions& options,
+                         const Context& context) {
+  check(options);
+  surface::check(map);
+  check_solid(solid);
+  const bool is_ray = options.kind == ThicknessKind::ray;
+  SurfaceMap out = surface::empty_map(surface::make_atlas(solid, map, context),
+                                      is_ray ? SurfaceQuantity::ray_thickness : SurfaceQuantity::ball_thickness);
+  PhaseTimer timer(out.phases);
+  const ThicknessSearch search(solid, options, context);
+  timer.lap("hierarchy");
+  const double limit = map.max_distance.value_or(nothing);
+  const auto value_at = [&](const Vec3d& point, TriangleId triangle, const SurfaceValue* /*last*/) {
+    const Thickness found = search.at(point, triangle);
+    if (!found.triangle.has_value() || found.thickness > limit) return SurfaceValue{nothing, point, SiteId::none()};
+    const SiteId site = search.sites().id({SiteKind::face, found.triangle.value});
+    return SurfaceValue{found.thickness, found.opposite, site};
+  };
+  surface::fill(out, solid, value_at, context);
+  timer.lap("texels");
+  surface::summarize_faces(out, solid, context);
+  timer.lap("summaries");
+  return out;
+}
+
+}  // namespace blum

@@ -1,0 +1,215 @@
+// Surface maps: texels hold exact distances, what is read between them is within the stated error, also of meshes that
+// move; summaries are those of the texels.
+#include "blum/surface_map/surface_distance_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/random.hpp"
+#include "blum/field/closest_points.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/geometry/primitives.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/points/sample_surface.hpp"
+#include "blum/shapes/generators.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+/// Where a point of a triangle is in the texture.
+TexturePlace place_of(const MeshView& mesh, const SurfaceAtlas& atlas, std::uint32_t t, const Vec3d& point) {
+  const auto [a, b, c] = triangle_corners(mesh, t);
+  const Vec3d normal = cross(b - a, c - a);
+  const double whole = squared_length(normal);
+  const double u = dot(cross(point - a, c - a), normal) / whole;
+  const double v = dot(cross(b - a, point - a), normal) / whole;
+  const auto& [pa, pb, pc] = atlas.corners[t];
+  return {pa.x + (pb.x - pa.x) * u + (pc.x - pa.x) * v, pa.y + (pb.y - pa.y) * u + (pc.y - pa.y) * v};
+}
+
+double read_nearest(const SurfaceMap& map, const TexturePlace& at) {
+  const auto x = static_cast<std::size_t>(std::clamp(std::floor(at.x), 0.0, map.atlas->width - 1.0));
+  const auto y = static_cast<std::size_t>(std::clamp(std::floor(at.y), 0.0, map.atlas->height - 1.0));
+  return map.distance[y * map.atlas->width + x];
+}
+
+double read_bilinear(const SurfaceMap& map, const TexturePlace& at) {
+  const double x = std::floor(at.x - 0.5);
+  const double y = std::floor(at.y - 0.5);
+  double sum = 0;
+  for (const double i : {x, x + 1}) {
+    for (const double j : {y, y + 1}) {
+      const double weight = (1 - std::abs(at.x - 0.5 - i)) * (1 - std::abs(at.y - 0.5 - j));
+      if (weight > 1e-9) sum += weight * read_nearest(map, {i + 0.5, j + 0.5});
+    }
+  }
+  return sum;
+}
+
+/// Errors at random points of the surface stay within the bounds; some come near them.
+void expect_errors(const SurfaceMap& map, const TriangleMesh& target, const TriangleMesh& other, SignMode sign,
+                   std::size_t count) {
+  const SurfaceSamples samples = sample_surface(target, count, {.seed = 7});
+  const std::vector<ClosestPoint> exact = closest_points(other, samples.points, {sign, {}});
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t t = samples.triangles[k].value;
+    const TexturePlace at = place_of(target, *map.atlas, t, samples.points[k]);
+    ASSERT_LE(std::abs(read_nearest(map, at) - exact[k].distance), map.error[t]) << k;
+    ASSERT_LE(std::abs(read_bilinear(map, at) - exact[k].distance), map.error[t]) << k;
+  }
+}
+
+void expect_exact_texels(const SurfaceMap& map, const TriangleMesh& target, const TriangleMesh& other, SignMode sign) {
+  const ClosestPointQuery query(other, {sign, {}});
+  const SurfaceTexels all = surface_texels(target, *map.atlas);
+  ASSERT_GT(all.texels.size(), target.triangles.size());
+  for (std::size_t k = 0; k < all.texels.size(); k += 7) {
+    const ClosestPoint found = query.nearest(all.points[k]);
+    const std::uint32_t texel = all.texels[k];
+    ASSERT_EQ(map.distance[texel], static_cast<float>(found.distance));
+    ASSERT_EQ(map.site[texel], found.site);
+    ASSERT_NEAR(map.vector[texel].x, found.point.x - all.points[k].x, 1e-6);
+    ASSERT_NEAR(map.vector[texel].z, found.point.z - all.points[k].z, 1e-6);
+  }
+}
+
+TEST(SurfaceDistanceMap, HoldsExactDistancesWithinItsErrors) {
+  const TriangleMesh target = make_organic({.frequency = 8, .seed = 1});
+  const TriangleMesh other = make_torus();
+  for (const SignMode sign : {SignMode::none, SignMode::automatic}) {
+    const SurfaceMap map = surface_distance_map(target, other, {.texel = 0.02, .sign = sign});
+    expect_exact_texels(map, target, other, sign);
+    expect_errors(map, target, other, sign, 20000);
+    ASSERT_EQ(map.vertex_distance.size(), target.vertices.size());
+    const std::vector<ClosestPoint> at_vertices = closest_points(other, target.vertices, {sign, {}});
+    for (std::size_t v = 0; v < at_vertices.size(); ++v) EXPECT_EQ(map.vertex_distance[v], at_vertices[v].distance);
+  }
+}
+
+TEST(SurfaceDistanceMap, HoldsOfSoups) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE(seed);
+    TriangleMesh target = make_soup({.triangles = 20, .awkward = 0.5, .seed = seed});
+    const TriangleMesh other = test::awkward_soup(20, seed + 100);
+    const SurfaceMap map = surface_distance_map(target, other, {.texel = 0.03});
+    expect_errors(map, target, other, SignMode::none, 2000);
+  }
+}
+
+TEST(SurfaceDistanceMap, FollowsMeshesThatMove) {
+  TriangleMesh target = make_organic({.frequency = 6, .seed = 1});
+  TriangleMesh other = make_sphere({.frequency = 6});
+  SurfaceMapper mapper(target, other, {.texel = 0.03});
+  const std::shared_ptr<const SurfaceAtlas> atlas = mapper.map().atlas;
+  for (int frame = 0; frame < 4; ++frame) {
+    target = make_noisy(target, 0.02, static_cast<std::uint64_t>(frame));
+    other = make_noisy(other, 0.05, static_cast<std::uint64_t>(frame));
+    mapper.move_target(target.vertices);
+    mapper.move_other(other.vertices);
+    const SurfaceMap map = mapper.map();
+    EXPECT_EQ(map.atlas, atlas);
+    expect_exact_texels(map, target, other, SignMode::none);
+    expect_errors(map, target, other, SignMode::none, 3000);
+  }
+  other = make_torus();
+  mapper.replace_other(other);
+  expect_exact_texels(mapper.map(), target, other, SignMode::none);
+  EXPECT_THROW(mapper.move_target(other.vertices), InvalidMesh);
+}
+
+TEST(SurfaceDistanceMap, SumsUpTriangles) {
+  const TriangleMesh target = make_organic({.frequency = 5});
+  const SurfaceMap map = surface_distance_map(target, make_torus(), {.texel = 0.05});
+  std::vector<float> smallest(target.triangles.size(), HUGE_VALF);
+  std::vector<float> largest(target.triangles.size(), -HUGE_VALF);
+  std::vector<double> sum(target.triangles.size(), 0);
+  std::vector<double> count(target.triangles.size(), 0);
+  for (std::size_t k = 0; k < map.distance.size(); ++k) {
+    const TriangleId t = map.atlas->triangle[k];
+    EXPECT_EQ(std::isnan(map.distance[k]), !t.has_value());
+    if (!t.has_value()) continue;
+    smallest[t.value] = std::min(smallest[t.value], map.distance[k]);
+    largest[t.value] = std::max(largest[t.value], map.distance[k]);
+    sum[t.value] += map.distance[k];
+    count[t.value] += 1;
+  }
+  for (std::size_t t = 0; t < smallest.size(); ++t) {
+    EXPECT_EQ(map.faces[t].smallest, smallest[t]);
+    EXPECT_EQ(map.faces[t].largest, largest[t]);
+    EXPECT_NEAR(map.faces[t].mean, sum[t] / count[t], 1e-6);
+  }
+}
+
+TEST(SurfaceDistanceMap, AnswersWhatIsClose) {
+  const TriangleMesh target = make_organic({.frequency = 5});
+  const SurfaceMap map = surface_distance_map(target, make_torus(), {.texel = 0.05, .max_distance = 0.3});
+  const std::size_t closest = map.closest_texel().value();
+  const std::vector<std::uint32_t> within = map.texels_within(0.2);
+  std::size_t next = 0;
+  for (std::uint32_t k = 0; k < map.distance.size(); ++k) {
+    EXPECT_FALSE(map.distance[k] < map.distance[closest]);
+    EXPECT_EQ(map.site[k].has_value(), map.distance[k] <= 0.3F);
+    if (map.distance[k] <= 0.2F) {
+      ASSERT_LT(next, within.size());
+      EXPECT_EQ(within[next++], k);
+    }
+  }
+  EXPECT_EQ(next, within.size());
+  EXPECT_FALSE(surface_distance_map(target, test::moved(make_torus(), 1, {9, 0, 0}), {.max_distance = 1})
+                   .closest_texel()
+                   .has_value());
+}
+
+TEST(SelfDistanceMap, LeavesOutNeighbours) {
+  const TriangleMesh target = make_organic({.frequency = 5});
+  const SurfaceMap map = self_distance_map(target, {.texel = 0.05});
+  const SiteTable sites(target);
+  const SurfaceTexels all = surface_texels(target, *map.atlas);
+  for (std::size_t k = 0; k < all.texels.size(); k += 5) {
+    const TriangleId own = map.atlas->triangle[all.texels[k]];
+    TriangleMesh others = target;
+    std::erase_if(others.triangles, [&](const Triangle& t) {
+      return std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
+        const Triangle& of = target.triangles[own.value];
+        return std::find(of.begin(), of.end(), v) != of.end();
+      });
+    });
+    const SiteTable table(others);
+    const std::optional<NearestSite> slow = Bvh(others, table).nearest(all.points[k]);
+    ASSERT_EQ(map.distance[all.texels[k]], static_cast<float>(slow->distance));
+  }
+}
+
+TEST(SurfaceDistanceMap, IsTheSameForAnyThreads) {
+  const TriangleMesh target = make_organic({.frequency = 8});
+  const TriangleMesh other = make_torus();
+  const SurfaceMap one = surface_distance_map(target, other, {.texel = 0.02}, {.threads = 1});
+  const SurfaceMap many = surface_distance_map(target, other, {.texel = 0.02}, {.threads = 7});
+  const SurfaceMap self_one = self_distance_map(target, {.texel = 0.02}, {.threads = 1});
+  const SurfaceMap self_many = self_distance_map(target, {.texel = 0.02}, {.threads = 7});
+  for (std::size_t k = 0; k < one.distance.size(); ++k) {
+    ASSERT_EQ(one.site[k], many.site[k]);
+    ASSERT_EQ(self_one.site[k], self_many.site[k]);
+    if (!one.site[k].has_value()) continue;
+    ASSERT_EQ(one.distance[k], many.distance[k]);
+    ASSERT_EQ(self_one.distance[k], self_many.distance[k]);
+  }
+  EXPECT_EQ(one.error, many.error);
+}
+
+TEST(SurfaceDistanceMap, SaysWhatIsWrong) {
+  const TriangleMesh box = make_box();
+  EXPECT_THROW((void)surface_distance_map(box, box, {.texel = -1}), InvalidOption);
+  EXPECT_THROW((void)surface_distance_map(box, box, {.max_distance = -1}), InvalidOption);
+  EXPECT_THROW((void)surface_distance_map(box, {}), InvalidMesh);
+  EXPECT_THROW((void)surface_distance_map(make_points({.points = 4}), box), InvalidMesh);
+  EXPECT_THROW((void)SurfaceMapper(make_torus(), surface_atlas(box, 0.5), box), InvalidMesh);
+}
+
+}  // namespace
+}  // namespace blum

@@ -1,0 +1,197 @@
+// Thickness by rays and by balls, of plates, tubes, spheres and wedges: known values; against brute force.
+#include "blum/surface_map/thickness.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/geometry/closest_point.hpp"
+#include "blum/points/sample_surface.hpp"
+#include "blum/shapes/generators.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+TriangleMesh turned_box(const Vec3d& size) {
+  TriangleMesh out = test::box_between({0, 0, 0}, size);
+  for (Vec3d& v : out.vertices) v = test::turned(v);
+  return out;
+}
+
+TEST(RayThickness, OfPlatesIsTheirs) {
+  const Vec3d size{5, 3, 0.25};
+  for (const TriangleMesh& plate : {test::box_between({0, 0, 0}, size), turned_box(size)}) {
+    const SurfaceSamples samples = sample_surface(plate, 4000);
+    const std::vector<Thickness> found = thickness(plate, samples.points);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      // One of the three sizes: that along the normal.
+      const double nearest = std::min({std::abs(found[k].thickness - size.x), std::abs(found[k].thickness - size.y),
+                                       std::abs(found[k].thickness - size.z)});
+      ASSERT_LT(nearest, 1e-12);
+      const Vec3d way = samples.points[k] - found[k].opposite;
+      ASSERT_NEAR(dot(way, samples.normals[k]), found[k].thickness, 1e-12);
+    }
+  }
+}
+
+/// Also on edges and at vertices, where rays run along neighbours.
+TEST(RayThickness, OnBorders) {
+  const TriangleMesh plate = turned_box({5, 3, 0.25});
+  std::vector<Vec3d> points = plate.vertices;
+  for (const Triangle& t : plate.triangles) points.push_back((plate.vertices[t[0]] + plate.vertices[t[1]]) * 0.5);
+  for (const Thickness& one : thickness(plate, points)) {
+    const double nearest =
+        std::min({std::abs(one.thickness - 5), std::abs(one.thickness - 3), std::abs(one.thickness - 0.25)});
+    EXPECT_LT(nearest, 1e-6) << one.thickness;
+  }
+}
+
+TEST(BallThickness, OfPlatesIsThatOrTwiceTheWayToAnEdge) {
+  const Vec3d size{5, 3, 0.25};
+  const TriangleMesh plate = test::box_between({0, 0, 0}, size);
+  const SurfaceSamples samples = sample_surface(plate, 4000);
+  const std::vector<Thickness> found = thickness(plate, samples.points, {.kind = ThicknessKind::ball});
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Vec3d& p = samples.points[k];
+    double known = HUGE_VAL;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool is_normal = std::abs(samples.normals[k][axis]) > 0.5;
+      known = std::min(known, is_normal ? size[axis] : 2 * std::min(p[axis], size[axis] - p[axis]));
+    }
+    ASSERT_NEAR(found[k].thickness, known, 2e-6) << "the point moves by 1e-7 of the triangle";
+  }
+}
+
+/// A wedge whose sides open by an angle: at a way s from its edge the ray goes s tan(angle), the ball has a diameter of
+/// 2 s tan(angle / 2).
+TEST(Thickness, OfWedges) {
+  for (const double angle : {10.0, 45.0, 80.0}) {
+    const double a = angle * std::numbers::pi / 180;
+    TriangleMesh wedge;
+    for (const double z : {-50.0, 50.0}) {
+      wedge.vertices.insert(wedge.vertices.end(), {{0, 0, z}, {10, 0, z}, {10 * std::cos(a), 10 * std::sin(a), z}});
+    }
+    wedge.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+    std::vector<Vec3d> points;
+    for (double s = 0.125; s < 3; s += 0.25) points.push_back({s, 0, 0.1});
+    const std::vector<Thickness> rays = thickness(wedge, points);
+    const std::vector<Thickness> balls = thickness(wedge, points, {.kind = ThicknessKind::ball});
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double s = points[k].x;
+      if (s / std::cos(a) < 10) {
+        EXPECT_NEAR(rays[k].thickness, s * std::tan(a), 1e-4 * s * std::tan(a)) << angle;
+      }
+      EXPECT_NEAR(balls[k].thickness, 2 * s * std::tan(a / 2), 1e-4 * s) << angle;
+    }
+  }
+}
+
+TEST(Thickness, OfSpheresNearsTheDiameter) {
+  // Balls feel that the normals of triangles are not those of the sphere, which falls with the length of edges; rays
+  // only where the surface is, which falls with its square.
+  struct Case {
+    ThicknessKind kind;
+    double at_least;
+  };
+  for (const auto& [kind, at_least] : {Case{ThicknessKind::ray, 3.0}, Case{ThicknessKind::ball, 1.8}}) {
+    double last = 1;
+    for (const int frequency : {5, 10, 20}) {
+      const TriangleMesh sphere = make_sphere({.frequency = frequency});
+      const double diameter = 2 * length(sphere.vertices[0]);
+      double worst = 0;
+      for (const Thickness& one : thickness(sphere, {.kind = kind})) {
+        worst = std::max(worst, std::abs(one.thickness / diameter - 1));
+      }
+      EXPECT_LT(worst, last / at_least);
+      last = worst;
+    }
+    EXPECT_LT(last, 0.03);
+  }
+}
+
+/// Two round walls: inside of a tube the thickness is that of its wall, by both definitions.
+TEST(Thickness, OfTubesIsThatOfTheirWalls) {
+  TriangleMesh tube = make_sphere({.frequency = 24});
+  const double outer = length(tube.vertices[0]);
+  TriangleMesh inner = test::moved(tube, 0.8);
+  inner.triangles = reversed_triangles(inner.triangles);
+  append(tube, inner);
+  for (const ThicknessKind kind : {ThicknessKind::ray, ThicknessKind::ball}) {
+    for (const Thickness& one : thickness(tube, {.kind = kind})) {
+      EXPECT_NEAR(one.thickness, 0.2 * outer, 0.004 * outer);
+    }
+  }
+}
+
+/// The ball of a polyhedron itself, by going through all triangles: the smallest ball of those that touch one.
+TEST(BallThickness, AgreesWithBruteForce) {
+  const TriangleMesh mesh = make_organic({.frequency = 5});
+  const SurfaceSamples samples = sample_surface(mesh, 150);
+  for (const double separation : {20.0, 60.0}) {
+    const std::vector<Thickness> found =
+        thickness(mesh, samples.points, {.kind = ThicknessKind::ball, .separation = separation});
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const auto [a, b, c] = triangle_corners(mesh, samples.triangles[k].value);
+      const Vec3d p = samples.points[k] + ((a + b + c) / 3.0 - samples.points[k]) * 1e-7;
+      const Vec3d& n = samples.normals[k];
+      double radius = 100;
+      for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const std::array<Vec3d, 3> corners = triangle_corners(mesh, t);
+        Vec3d m = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        m = m / length(m);
+        if (dot(m, n) > std::cos(separation * std::numbers::pi / 180)) continue;
+        for (int step = 0; step < 100; ++step) {
+          const Vec3d q = closest_point_on_triangle(p - n * radius, corners);
+          if (length(q - (p - n * radius)) >= radius * (1 - 1e-13)) break;
+          radius = std::min(radius, squared_length(p - q) / (2 * dot(p - q, n)));
+        }
+      }
+      if (radius == 100) {
+        EXPECT_TRUE(std::isinf(found[k].thickness));
+      } else {
+        EXPECT_NEAR(found[k].thickness, 2 * radius, 1e-8);
+      }
+    }
+  }
+}
+
+TEST(ThicknessMap, HoldsThicknesses) {
+  const TriangleMesh plate = test::box_between({0, 0, 0}, {4, 3, 0.5});
+  const SurfaceMap map = thickness_map(plate, {.texel = 0.1});
+  EXPECT_EQ(map.quantity, SurfaceQuantity::ray_thickness);
+  EXPECT_TRUE(map.error.empty());
+  for (std::size_t k = 0; k < map.distance.size(); ++k) {
+    if (!map.atlas->triangle[k].has_value()) continue;
+    const float value = map.distance[k];
+    EXPECT_TRUE(std::abs(value - 4) < 1e-5 || std::abs(value - 3) < 1e-5 || std::abs(value - 0.5) < 1e-5) << value;
+    EXPECT_NEAR(length(map.vector[k]), value, 1e-5);
+  }
+}
+
+TEST(Thickness, WithoutAFarSideIsInfinite) {
+  const TriangleMesh open{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}, {}};
+  for (const ThicknessKind kind : {ThicknessKind::ray, ThicknessKind::ball}) {
+    const std::vector<Thickness> found = thickness(open, {.kind = kind});
+    EXPECT_TRUE(std::isinf(found[0].thickness));
+    EXPECT_FALSE(found[0].triangle.has_value());
+  }
+  TriangleMesh inwards = make_sphere();
+  inwards.triangles = reversed_triangles(inwards.triangles);
+  EXPECT_TRUE(std::isinf(thickness(inwards, ThicknessOptions{})[0].thickness));
+}
+
+TEST(Thickness, SaysWhatIsWrong) {
+  const TriangleMesh box = make_box();
+  EXPECT_THROW((void)thickness(box, {.separation = 190}), InvalidOption);
+  EXPECT_THROW((void)thickness(make_points({.points = 3}), ThicknessOptions{}), InvalidMesh);
+  const std::vector<Vec3d> points{{0, 0, 0}, {NAN, 0, 0}};
+  EXPECT_THROW((void)thickness(box, points), InvalidOption);
+}
+
+}  // namespace
+}  // namespace blum
