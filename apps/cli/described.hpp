@@ -17,6 +17,7 @@
 
 #include "blum/core/describe.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/core/ids.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/grid/label_selection.hpp"
@@ -31,6 +32,11 @@ using Json = nlohmann::ordered_json;
 /// null where the box is empty.
 [[nodiscard]] Json to_json(const Box3& box);
 [[nodiscard]] Json to_json(const Mat3& columns);
+/// -1 where there is none.
+template <class Tag>
+[[nodiscard]] Json to_json(const Id<Tag>& id) {
+  return id.to_file();
+}
 
 /// A value of a described struct, and what it consists of. null where there is no value.
 template <class T>

@@ -13,6 +13,7 @@ void bind_field(nb::module_& m);
 void bind_device_field(nb::module_& m);
 void bind_closest_points(nb::module_& m);
 void bind_points(nb::module_& m);
+void bind_surface_map(nb::module_& m);
 void bind_images(nb::module_& m);
 void bind_complex(nb::module_& m);
 void bind_solid(nb::module_& m);

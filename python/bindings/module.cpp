@@ -67,6 +67,7 @@ NB_MODULE(_core, m) {
   bind_device_field(m);
   bind_closest_points(m);
   bind_points(m);
+  bind_surface_map(m);
   bind_images(m);
   bind_complex(m);
   bind_solid(m);

@@ -18,6 +18,7 @@
 
 #include "arrays.hpp"
 #include "blum/core/describe.hpp"
+#include "blum/core/ids.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/grid/grid_spec.hpp"
@@ -60,6 +61,10 @@ template <class T>
 struct IsArray : std::false_type {};
 template <class T, std::size_t count>
 struct IsArray<std::array<T, count>> : std::true_type {};
+template <class T>
+struct IsId : std::false_type {};
+template <class Tag>
+struct IsId<Id<Tag>> : std::true_type {};
 template <class T>
 struct IsOptional : std::false_type {};
 template <class T>
@@ -110,6 +115,8 @@ nb::object to_python(const T& value) {
     return nb::cast(std::string(to_string(value)));
   } else if constexpr (IsOptional<T>::value) {
     return value ? to_python(*value) : nb::none();
+  } else if constexpr (IsId<T>::value) {
+    return nb::cast(value.to_file());
   } else if constexpr (std::same_as<T, Vec3d>) {
     return nb::make_tuple(value.x, value.y, value.z);
   } else if constexpr (std::same_as<T, Box3>) {
@@ -198,6 +205,8 @@ template <class T>
     return std::string(Description<T>::name);
   } else if constexpr (IsOptional<T>::value) {
     return type_name<typename T::value_type>(m, is_options) + " | None";
+  } else if constexpr (IsId<T>::value) {
+    return "int";
   } else if constexpr (std::same_as<T, Vec3d>) {
     return "tuple[float, float, float]";
   } else if constexpr (std::same_as<T, Box3>) {

@@ -77,6 +77,17 @@ from ._shapes import ShapeInfo, ShapeParameter, extrusion, generate, known_betti
 from ._smooth import smooth_surface
 from ._solid import CellularModel, Solid, SolidBody
 from ._structs import *  # noqa: F403
+from ._surface_map import (
+    SurfaceMap,
+    Thickness,
+    directed_hausdorff_distance,
+    hausdorff_distance,
+    self_distance_map,
+    surface_deviation,
+    surface_distance_map,
+    thickness,
+    thickness_map,
+)
 from ._transform import distance_transform, distance_transforms
 from ._view import view
 
@@ -129,7 +140,9 @@ __all__ = [
     "Sites",
     "Solid",
     "SolidBody",
+    "SurfaceMap",
     "SurfaceSamples",
+    "Thickness",
     "TriangleDistances",
     "WindingNumber",
     "__version__",
@@ -144,6 +157,7 @@ __all__ = [
     "collisions",
     "continuous_collisions",
     "cuda_devices",
+    "directed_hausdorff_distance",
     "distance_field",
     "distance_transform",
     "distance_transforms",
@@ -152,6 +166,7 @@ __all__ = [
     "extrusion",
     "file_formats",
     "generate",
+    "hausdorff_distance",
     "homology",
     "known_betti",
     "medial_axis",
@@ -165,6 +180,7 @@ __all__ = [
     "sample_near",
     "sample_surface",
     "selected_voxels",
+    "self_distance_map",
     "self_intersections",
     "separation",
     "shapes",
@@ -172,6 +188,10 @@ __all__ = [
     "smooth_surface",
     "solid_rule",
     "subdivided",
+    "surface_deviation",
+    "surface_distance_map",
+    "thickness",
+    "thickness_map",
     "thread_count",
     "topology",
     "triangle_distances",

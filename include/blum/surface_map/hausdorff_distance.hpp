@@ -48,6 +48,22 @@ struct DirectedHausdorff {
   std::size_t evaluations = 0;  ///< points of the mesh at which the distance was computed
 };
 
+template <>
+struct Description<DirectedHausdorff> {
+  static constexpr std::string_view name = "DirectedHausdorff";
+  static constexpr std::string_view doc = "How far a mesh is, at most, from another one";
+  static constexpr std::tuple members{
+      Member{"lower", &DirectedHausdorff::lower, "mesh units", "the distance is at least this"},
+      Member{"upper", &DirectedHausdorff::upper, "mesh units", "the distance is at most this"},
+      Member{"points", &DirectedHausdorff::points, "mesh units",
+             "a point of the mesh that is at least 'lower' away, and the closest point of the other mesh"},
+      Member{"primitive", &DirectedHausdorff::primitive, "",
+             "of the mesh, that the first point lies on: triangles, then segments, then points"},
+      Member{"site", &DirectedHausdorff::site, "", "of the other mesh, that the second point lies on"},
+      Member{"evaluations", &DirectedHausdorff::evaluations, "", "points at which the distance was computed"},
+  };
+};
+
 /// The Hausdorff distance of two meshes: the larger one of both directions.
 struct HausdorffDistance {
   double lower = 0;  ///< mesh units
@@ -55,6 +71,22 @@ struct HausdorffDistance {
   std::array<Vec3d, 2> points;  ///< of the first mesh and of the second, at least `lower` apart; witnesses of it
   DirectedHausdorff forward;    ///< of the first mesh from the second
   DirectedHausdorff backward;   ///< of the second mesh from the first
+};
+
+template <>
+struct Description<HausdorffDistance> {
+  static constexpr std::string_view name = "HausdorffDistance";
+  static constexpr std::string_view doc = "The Hausdorff distance of two meshes";
+  static constexpr std::tuple members{
+      Member{"lower", &HausdorffDistance::lower, "mesh units", "the distance is at least this"},
+      Member{"upper", &HausdorffDistance::upper, "mesh units", "the distance is at most this"},
+      Member{
+          "points", &HausdorffDistance::points, "mesh units",
+          "of the first mesh and of the second: one is at least 'lower' from the other mesh, whose closest point the "
+          "other one is"},
+      Member{"forward", &HausdorffDistance::forward, "", "of the first mesh from the second"},
+      Member{"backward", &HausdorffDistance::backward, "", "of the second mesh from the first"},
+  };
 };
 
 /// The one-sided Hausdorff distance, from `mesh` to `other`.

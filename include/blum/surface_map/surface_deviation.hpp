@@ -54,6 +54,30 @@ struct SurfaceDeviation {
   std::string sign_reason;
 };
 
+template <>
+struct Description<SurfaceDeviation> {
+  static constexpr std::string_view name = "SurfaceDeviation";
+  static constexpr std::string_view doc = "The distances of all points of a surface from another mesh, by area";
+  static constexpr std::tuple members{
+      Member{"mean", &SurfaceDeviation::mean, "mesh units", "signed where signs are asked for"},
+      Member{"mean_error", &SurfaceDeviation::mean_error, "mesh units",
+             "the true mean is no further from it, for certain"},
+      Member{"rms", &SurfaceDeviation::rms, "mesh units", "root of the mean square"},
+      Member{"rms_error", &SurfaceDeviation::rms_error, "mesh units",
+             "the true one is no further from it, for certain"},
+      Member{"smallest", &SurfaceDeviation::smallest, "mesh units", "of the centroids of the pieces"},
+      Member{"largest", &SurfaceDeviation::largest, "mesh units", "of the centroids of the pieces"},
+      Member{"percentiles", &SurfaceDeviation::percentiles, "mesh units",
+             "1, 5, 25, 50, 75, 95 and 99 percent of the area are below"},
+      Member{"percentile_error", &SurfaceDeviation::percentile_error, "mesh units",
+             "of each of them, and of smallest and largest, for certain"},
+      Member{"area", &SurfaceDeviation::area, "square mesh units", "of the surface"},
+      Member{"pieces", &SurfaceDeviation::pieces, "", "that the surface was cut into"},
+      Member{"sign_rule", &SurfaceDeviation::sign_rule, "", "how signs were found"},
+      Member{"sign_reason", &SurfaceDeviation::sign_reason, "", "why by this rule"},
+  };
+};
+
 /// Mean, root mean square and percentiles of the distance of a surface from another mesh.
 ///
 /// @param mesh   with a triangle that has an area; its segments and points do not count.

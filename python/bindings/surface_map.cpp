@@ -1,0 +1,153 @@
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "blum/surface_map/hausdorff_distance.hpp"
+#include "blum/surface_map/surface_deviation.hpp"
+#include "blum/surface_map/surface_distance_map.hpp"
+#include "blum/surface_map/thickness.hpp"
+#include "call.hpp"
+#include "columns.hpp"
+#include "structs.hpp"
+
+namespace blum::python {
+namespace {
+
+/// (thickness, opposite points, triangles), views of one block of memory.
+nb::tuple columns_of(std::vector<Thickness> found) {
+  const Held<Thickness> kept = held(std::move(found));
+  const auto shown = [&](auto member) { return column(*kept.entries, member, kept.owner); };
+  return nb::make_tuple(shown(&Thickness::thickness), shown(&Thickness::opposite), shown(&Thickness::triangle));
+}
+
+/// A map that Python keeps alive while an array shows a part of it.
+nb::dict dict_of(SurfaceMap found) {
+  auto kept = std::make_unique<SurfaceMap>(std::move(found));
+  SurfaceMap& map = *kept;
+  const nb::capsule owner(kept.get(), [](void* memory) noexcept { delete static_cast<SurfaceMap*>(memory); });
+  (void)kept.release();  // the capsule's from here on
+  const SurfaceAtlas& atlas = *map.atlas;
+  const std::size_t h = atlas.height;
+  const std::size_t w = atlas.width;
+  static_assert(sizeof(TexturePlace) == 2 * sizeof(double) && sizeof(SurfaceMap::FaceSummary) == 3 * sizeof(float));
+  nb::dict out;
+  out["quantity"] = std::string(to_string(map.quantity));
+  out["distance"] = view_of<float>(map.distance.data(), {h, w}, owner);
+  out["vector"] = view_of<float>(reinterpret_cast<float*>(map.vector.data()), {h, w, 3}, owner);
+  out["site"] = view_of<std::int32_t>(reinterpret_cast<std::int32_t*>(map.site.data()), {h, w}, owner);
+  out["triangle"] =
+      view_of<const std::int32_t>(reinterpret_cast<const std::int32_t*>(atlas.triangle.data()), {h, w}, owner);
+  out["corners"] =
+      view_of<const double>(reinterpret_cast<const double*>(atlas.corners.data()), {atlas.corners.size(), 3, 2}, owner);
+  out["error"] = map.error.empty() ? nb::none() : nb::cast(view_of<float>(map.error.data(), {map.error.size()}, owner));
+  out["vertex_distance"] = view_of<double>(map.vertex_distance.data(), {map.vertex_distance.size()}, owner);
+  out["faces"] = view_of<float>(reinterpret_cast<float*>(map.faces.data()), {map.faces.size(), 3}, owner);
+  out["sign_rule"] = std::string(to_string(map.sign_rule));
+  out["sign_reason"] = map.sign_reason;
+  out["seconds"] = seconds_of(map.phases);
+  return out;
+}
+
+void bind_maps(nb::module_& m) {
+  m.def(
+      "surface_distance_map",
+      [](const MeshArrays& target, const MeshArrays& other, const nb::dict& given, int threads, nb::object progress) {
+        const MeshView view = target.view();
+        const MeshView facing = other.view();
+        const auto options = options_from<SurfaceMapOptions>(given);
+        return dict_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return surface_distance_map(view, facing, options, context);
+        }));
+      },
+      nb::arg("target"), nb::arg("other"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "self_distance_map",
+      [](const MeshArrays& target, const nb::dict& given, int threads, nb::object progress) {
+        const MeshView view = target.view();
+        const auto options = options_from<SurfaceMapOptions>(given);
+        return dict_of(run({threads, std::move(progress)},
+                           [&](const Context& context) { return self_distance_map(view, options, context); }));
+      },
+      nb::arg("target"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "thickness_map",
+      [](const MeshArrays& solid, const nb::dict& given, const nb::dict& how, int threads, nb::object progress) {
+        const MeshView view = solid.view();
+        const auto options = options_from<SurfaceMapOptions>(given);
+        const auto meaning = options_from<ThicknessOptions>(how);
+        return dict_of(run({threads, std::move(progress)},
+                           [&](const Context& context) { return thickness_map(view, options, meaning, context); }));
+      },
+      nb::arg("solid"), nb::arg("options"), nb::arg("thickness"), nb::arg("threads"), nb::arg("progress").none());
+}
+
+void bind_distances(nb::module_& m) {
+  m.def(
+      "hausdorff_distance",
+      [](const MeshArrays& a, const MeshArrays& b, const nb::dict& given, int threads, nb::object progress) {
+        const MeshView first = a.view();
+        const MeshView second = b.view();
+        const auto options = options_from<HausdorffOptions>(given);
+        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return hausdorff_distance(first, second, options, context);
+        }));
+      },
+      nb::arg("a"), nb::arg("b"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "directed_hausdorff_distance",
+      [](const MeshArrays& a, const MeshArrays& b, const nb::dict& given, int threads, nb::object progress) {
+        const MeshView first = a.view();
+        const MeshView second = b.view();
+        const auto options = options_from<HausdorffOptions>(given);
+        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return directed_hausdorff_distance(first, second, options, context);
+        }));
+      },
+      nb::arg("mesh"), nb::arg("other"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "surface_deviation",
+      [](const MeshArrays& a, const MeshArrays& b, const nb::dict& given, int threads, nb::object progress) {
+        const MeshView first = a.view();
+        const MeshView second = b.view();
+        const auto options = options_from<DeviationOptions>(given);
+        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return surface_deviation(first, second, options, context);
+        }));
+      },
+      nb::arg("mesh"), nb::arg("other"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+}
+
+}  // namespace
+
+void bind_surface_map(nb::module_& m) {
+  bind_options<SurfaceMapOptions>(m);
+  bind_options<ThicknessOptions>(m);
+  bind_options<HausdorffOptions>(m);
+  bind_options<DeviationOptions>(m);
+  bind_struct<HausdorffDistance>(m);
+  bind_struct<SurfaceDeviation>(m);
+  bind_maps(m);
+  bind_distances(m);
+  m.def(
+      "thickness",
+      [](const MeshArrays& solid, const std::optional<PointsIn>& points, const nb::dict& given, int threads,
+         nb::object progress) {
+        const MeshView view = solid.view();
+        const auto options = options_from<ThicknessOptions>(given);
+        const std::span<const Vec3d> places = points ? vectors(*points) : std::span<const Vec3d>{};
+        return columns_of(run({threads, std::move(progress)}, [&](const Context& context) {
+          return points ? thickness(view, places, options, context) : thickness(view, options, context);
+        }));
+      },
+      nb::arg("solid"), nb::arg("points").none(), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+}
+
+}  // namespace blum::python

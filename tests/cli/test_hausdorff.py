@@ -1,0 +1,45 @@
+"""`blum hausdorff` tells an interval, witnesses, and means by area."""
+
+import numpy as np
+import pytest
+from tool import BLUM, run, run_json
+
+pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
+
+
+@pytest.fixture(scope="module")
+def boxes(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("boxes")
+    run("make", "box", "-o", folder / "small.ply")
+    run("make", "box", "--size-x", 2, "--size-y", 2, "--size-z", 2, "-o", folder / "large.ply")
+    return folder / "small.ply", folder / "large.ply"
+
+
+def test_an_interval_and_its_sides(boxes):
+    found = run_json("hausdorff", *boxes, "--tolerance", "1e-5")
+    assert found["lower"] <= 3**0.5 / 2 <= found["upper"] <= found["lower"] + 1e-5
+    assert found["forward"]["lower"] <= 0.5 <= found["forward"]["upper"]
+    assert found["backward"]["upper"] == found["upper"]
+    assert np.isclose(np.linalg.norm(np.subtract(*found["points"])), found["lower"])
+    deviation = found["forward"]["deviation"]
+    assert np.isclose(deviation["mean"], 0.5) and np.isclose(deviation["area"], 6)
+    assert all(np.isclose(value, 0.5) for value in deviation["percentiles"])
+
+
+def test_one_side_and_where(boxes, tmp_path):
+    out = tmp_path / "where.vtp"
+    found = run_json("hausdorff", *boxes, "--one-sided", "--only-distance", "-o", out)
+    assert "backward" not in found and "deviation" not in found["forward"] and found["one_sided"]
+    assert found["lower"] <= 0.5 <= found["upper"] and found["outputs"] == [str(out)]
+    assert out.read_bytes().startswith(b"<?xml")
+
+
+def test_text_says_both_directions(boxes):
+    text, _ = run("hausdorff", *boxes, "--pieces", "1000")
+    assert "a to b" in text and "b to a" in text and "mean 0.5 +- " in text
+
+
+def test_what_is_wrong_is_said(boxes, tmp_path):
+    assert "tolerance" in run("hausdorff", *boxes, "--tolerance", "0", status=2)[1]
+    assert "none.ply" in run("hausdorff", boxes[0], tmp_path / "none.ply", status=1)[1]
+    assert "--output" in run("hausdorff", *boxes, "-o", tmp_path / "a.xyz", status=2)[1]
