@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "blum/core/inline_list.hpp"
@@ -107,6 +108,25 @@ double bound_by_cuts(const Corners& corners, const FacingSurface& surface, const
   return best;
 }
 
+/// With what the centroid is closest to in the middle: the corners may all lie next to it.
+double bound_by_centroid(const Corners& corners, const FacingSurface& surface, const std::array<Primitives, 3>& lists,
+                         double largest, double enough) {
+  const Vec3d centroid = (corners[0]->point + corners[1]->point + corners[2]->point) / 3.0;
+  double within = std::numeric_limits<double>::infinity();
+  for (const FacingPoint* corner : corners) within = std::min(within, squared_length(centroid - corner->closest));
+  const std::optional<NearestSite> nearest =
+      surface.hierarchy().nearest(centroid, std::sqrt(within) * (1 + 1e-9) + std::numeric_limits<double>::min());
+  double best = std::numeric_limits<double>::infinity();
+  if (!nearest) return best;
+  for (const std::uint32_t primitive : primitives_at(surface, nearest->site)) {
+    best = std::min(best, bound_by_primitive(corners, lists, surface, primitive));
+    if (best <= enough) break;
+    best = std::min(best, std::max(largest, bound_around(corners, surface, lists, primitive, enough)));
+    if (best <= enough) break;
+  }
+  return best;
+}
+
 }  // namespace
 
 double distance_bound(const Corners& corners, const FacingSurface& surface, double enough) {
@@ -127,7 +147,8 @@ double distance_bound(const Corners& corners, const FacingSurface& surface, doub
     const bool is_again = (k > 0 && primitive == lists[0][0]) || (k > 1 && primitive == lists[1][0]);
     if (!is_again) best = std::min(best, bound_by_primitive(corners, lists, surface, primitive));
   }
-  return best;
+  if (best <= enough) return best;
+  return std::min(best, bound_by_centroid(corners, surface, lists, largest, enough));
 }
 
 }  // namespace blum::surface

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -249,6 +250,10 @@ class FurthestPoint {
     const std::ptrdiff_t count = std::min(pieces_.end() - middle, static_cast<std::ptrdiff_t>(most_per_round));
     std::vector<Piece> taken(middle, middle + count);
     pieces_.erase(middle, middle + count);
+    // Neighbours look at the same places.
+    std::sort(taken.begin(), taken.end(), [](const Piece& p, const Piece& q) {
+      return std::tie(p.primitive, p.corners) < std::tie(q.primitive, q.corners);
+    });
     return taken;
   }
 
