@@ -1,7 +1,7 @@
 # Build options and the third-party packages that they need. A part that is off looks for nothing.
 include(CMakeDependentOption)
 option(BLUM_FIELD_CPU "Build the fast CPU fields and what stands on them (needs Highway, headers of Boost)" ON)
-cmake_dependent_option(BLUM_IO "Build readers and writers (needs zlib, libpng, nlohmann-json)" ON BLUM_FIELD_CPU OFF)
+cmake_dependent_option(BLUM_IO "Build readers and writers (needs zlib, libpng, nlohmann-json, tinygltf)" ON BLUM_FIELD_CPU OFF)
 cmake_dependent_option(BLUM_CLI "Build the command-line tool (needs CLI11)" ${PROJECT_IS_TOP_LEVEL}
                        BLUM_IO OFF)
 option(BLUM_TESTS "Build the tests and the examples (needs GoogleTest)" ${PROJECT_IS_TOP_LEVEL})
@@ -67,5 +67,7 @@ endif()
 if(BLUM_IO)
   find_package(ZLIB REQUIRED)
   find_package(PNG REQUIRED)
+  find_path(BLUM_TINYGLTF_DIR tiny_gltf.h REQUIRED DOC "Folder of tiny_gltf.h, 2.7 or later")  # a header; compiled into io
+  mark_as_advanced(BLUM_TINYGLTF_DIR)
   find_package(nlohmann_json REQUIRED)  # headers only: nobody who links Blum needs it
 endif()
