@@ -334,6 +334,7 @@ class ModelBuilder {
   void add_scene() {
     gltf_library::Node node;
     gltf_library::Scene scene;
+    node.name = "empty";  // tinygltf writes null for a node of nothing
     if (!shown_.primitives.empty()) {
       shown_.name = volume_io::valid_utf8(mesh_.name);
       if (!mesh_.extras.empty()) shown_.extras = extras_value(mesh_.extras);

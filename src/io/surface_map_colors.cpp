@@ -25,8 +25,8 @@ Rgb bytes_of(const Color& color) {
 /// The colours of a scale at so many places that the next place has nearly always the same bytes.
 class ColorTable {
  public:
-  explicit ColorTable(const ColorScale& scale) : scale_(scale), colors_(steps + 1), nothing_(bytes_of(nothing_color)) {
-    first_ = scale.diverges() ? -1 : 0;
+  explicit ColorTable(const ColorScale& scale)
+      : scale_(scale), first_(scale.diverges() ? -1 : 0), colors_(steps + 1), nothing_(bytes_of(nothing_color)) {
     for (int i = 0; i <= steps; ++i) colors_[static_cast<std::size_t>(i)] = bytes_of(scale.color_at(place(i)));
   }
   [[nodiscard]] const Rgb& color(float value) const {
@@ -40,7 +40,7 @@ class ColorTable {
   [[nodiscard]] double place(int i) const { return first_ + (1 - first_) * i / steps; }
 
   const ColorScale& scale_;
-  double first_ = 0;
+  double first_;
   std::vector<Rgb> colors_;
   Rgb nothing_;
 };

@@ -76,7 +76,7 @@ struct ColorTexture {
   [[nodiscard]] PixelView view() const { return {pixels, width, height, PngChannels::rgb}; }
 };
 /// A map in colours, as write_surface_map() writes it. @throws InvalidMesh for a map that lacks parts, OutOfMemory,
-/// Cancelled. Cost: about 10 ns per texel.
+/// Cancelled. Cost: about 15 ns per texel.
 [[nodiscard]] ColorTexture color_texture(const SurfaceMap& map, const ColorScale& scale, const Context& context = {});
 
 }  // namespace blum

@@ -154,6 +154,8 @@ TEST(GltfIo, LinesAndPointsAreParts) {
   // Nothing at all is a scene without a mesh.
   const ReadGlb empty = encoded({});
   EXPECT_FALSE(empty.json.contains("meshes") || empty.json.contains("buffers"));
+  EXPECT_TRUE(empty.json["nodes"][0].is_object());
+  EXPECT_EQ(empty.json["scenes"][0]["nodes"], (std::vector<int>{0}));
 }
 
 TEST(GltfIo, FilesAreTheBytesOfMemory) {
