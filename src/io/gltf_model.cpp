@@ -92,9 +92,6 @@ void check_mesh(const GltfMesh& mesh) {
   for (const std::uint32_t point : mesh.points) {
     if (point >= count) throw InvalidMesh("vertex " + std::to_string(point) + " is a point, but there is none");
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!is_finite(mesh.vertices[i])) throw InvalidMesh("vertex " + std::to_string(i) + " is not finite");
-  }
   if (!mesh.normals.empty() && mesh.normals.size() != count) {
     throw InvalidOption("there are " + std::to_string(mesh.normals.size()) + " normals for " + std::to_string(count) +
                         " vertices of a glTF file");
@@ -231,7 +228,11 @@ class ModelBuilder {
 
   void add_positions() {
     Box3 box;
-    for (std::size_t v = 0; v < vertex_count(); ++v) box.extend(mesh_.vertices[source_of(v)]);
+    for (std::size_t v = 0; v < vertex_count(); ++v) {
+      const Vec3d& place = mesh_.vertices[source_of(v)];
+      if (!is_finite(place)) throw InvalidMesh("vertex " + std::to_string(source_of(v)) + " is not finite");
+      box.extend(place);
+    }
     origin_ = origin_of(box);
     std::vector<float> places;
     places.reserve(3 * vertex_count());

@@ -54,9 +54,9 @@ struct GltfMesh {
 /// Positions are in single precision. Where the mesh is further from the origin than it is large, they count from the
 /// middle of its box, which the node's translation holds in double precision. Axes and units stay as they are (glTF's
 /// own are metres, with y up). Triangles are seen from both sides.
-/// @throws InvalidMesh for corners that are no vertices, positions that are not finite or are beyond single precision;
-///         InvalidOption for the rest that is not as described above; FileError where the file would have more than
-///         2^32 - 1 bytes, which no such file can, or the system refuses; OutOfMemory, Cancelled.
+/// @throws InvalidMesh for corners that are no vertices, and positions to be written that are not finite or beyond
+///         single precision; InvalidOption for the rest that is not as described above; FileError where the file would
+///         have more than 2^32 - 1 bytes, which no such file can, or the system refuses; OutOfMemory, Cancelled.
 ///         Cost: linear; three times the file's size of memory.
 void write_gltf(const std::filesystem::path& path, const GltfMesh& mesh, const Context& context = {});
 /// The bytes of such a file.

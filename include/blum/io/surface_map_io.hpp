@@ -50,8 +50,8 @@ struct SurfaceMapWriteOptions {
 ///                  `largest_error`, texts each; a key that is given counts.
 /// @throws InvalidOption for another extension, a range that is none, metadata with an empty key or one key twice;
 ///         InvalidMesh for a mesh that validate() refuses, a map that is not of this mesh or lacks parts, for .ply and
-///         .vtp for a triangle that names a vertex twice; FileError (for .glb of more than 4 GiB, too), OutOfMemory,
-///         Cancelled.
+///         .vtp for a triangle that names a vertex twice or a vertex of no triangle that is not finite; FileError (for
+///         .glb of more than 4 GiB, too), OutOfMemory, Cancelled.
 void write_surface_map(const std::filesystem::path& path, const MeshView& mesh, const SurfaceMap& map,
                        const FileMetadata& metadata = {}, const SurfaceMapWriteOptions& options = {},
                        const Context& context = {});

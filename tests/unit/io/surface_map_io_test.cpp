@@ -265,6 +265,21 @@ TEST(SurfaceMapIo, ColoursOfMapsWithoutDistances) {
   EXPECT_LT(color_scale_of(depths.map).lowest(), -7);
 }
 
+TEST(SurfaceMapIo, VerticesOfNoTriangleMayBeAnything) {
+  const TemporaryFolder folder;
+  BoxMap box(3);
+  box.mesh.vertices.push_back({std::nan(""), 0, 0});
+  box.map.vertex_distance.push_back(std::nan(""));
+  for (const char* name : {"a.npz", "a.png", "a.glb"}) {
+    EXPECT_NO_THROW(write_surface_map(folder / name, box.mesh, box.map)) << name;
+  }
+  EXPECT_EQ(test::ReadGlb(test::file_content(folder / "a.glb")).attribute("_DISTANCE").size(), 24U);
+  box.mesh.vertices.back() = {9, 9, 9};
+  for (const std::string& end : surface_map_extensions()) {
+    EXPECT_NO_THROW(write_surface_map(folder / ("b" + end), box.mesh, box.map)) << end;
+  }
+}
+
 TEST(SurfaceMapIo, TheSameBytesForAnyNumberOfThreads) {
   const TemporaryFolder folder;
   const BoxMap box(0.5);
