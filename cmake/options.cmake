@@ -1,8 +1,8 @@
 # Build options and the third-party packages that they need. A part that is off looks for nothing.
 include(CMakeDependentOption)
 option(BLUM_FIELD_CPU "Build the fast CPU fields and what stands on them (needs Highway, headers of Boost)" ON)
-cmake_dependent_option(BLUM_IO "Build readers and writers (needs zlib, nlohmann-json)" ON BLUM_FIELD_CPU OFF)
-cmake_dependent_option(BLUM_CLI "Build the command-line tool (needs CLI11, libpng)" ${PROJECT_IS_TOP_LEVEL}
+cmake_dependent_option(BLUM_IO "Build readers and writers (needs zlib, libpng, nlohmann-json, tinygltf)" ON BLUM_FIELD_CPU OFF)
+cmake_dependent_option(BLUM_CLI "Build the command-line tool (needs CLI11)" ${PROJECT_IS_TOP_LEVEL}
                        BLUM_IO OFF)
 option(BLUM_TESTS "Build the tests and the examples (needs GoogleTest)" ${PROJECT_IS_TOP_LEVEL})
 cmake_dependent_option(BLUM_PYTHON "Build the Python extension module (needs Python 3.11, nanobind)" OFF BLUM_IO OFF)
@@ -66,5 +66,8 @@ if(BLUM_SIMD AND NOT BLUM_HAS_HIGHWAY)
 endif()
 if(BLUM_IO)
   find_package(ZLIB REQUIRED)
+  find_package(PNG REQUIRED)
+  find_path(BLUM_TINYGLTF_DIR tiny_gltf.h REQUIRED DOC "Folder of tiny_gltf.h, 2.7 or later")  # a header; compiled into io
+  mark_as_advanced(BLUM_TINYGLTF_DIR)
   find_package(nlohmann_json REQUIRED)  # headers only: nobody who links Blum needs it
 endif()

@@ -70,7 +70,7 @@ def third_party_rule(source: str, name: str) -> str | None:
         return None if allowed else "SIMD belongs in src/field/cpu and src/geometry/*_kernels.cpp"
     if name == "cuda_runtime.h" or name.startswith(("cub/", "thrust/")):
         return None if source.startswith("src/field/cuda/") else "CUDA belongs in src/field/cuda"
-    if name in ("zlib.h", "png.h", "nlohmann/json.hpp"):
+    if name in ("zlib.h", "png.h", "tiny_gltf.h", "nlohmann/json.hpp"):
         return None if source.startswith("src/io/") else "only src/io reads and writes compressed files"
     if name.startswith("boost/multiprecision/"):
         return None if source.startswith("src/proximity/exact/") else "large integers belong in src/proximity/exact"

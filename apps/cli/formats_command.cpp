@@ -21,9 +21,10 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// "read and written", "read", or which of the extensions are written.
+/// "read, written", "read", "written", or which of the extensions are written.
 std::string access_text(const FileFormat& format) {
   if (format.written.empty()) return "read";
+  if (format.extensions.empty()) return "written";
   if (format.written.size() == format.extensions.size()) return "read, written";
   return "read; " + joined(format.written) + " written";
 }
@@ -35,7 +36,7 @@ std::string table_text() {
     TextTable table;
     for (const FileFormat& format : file_formats()) {
       if (format.content != content.value) continue;
-      table.add("  " + joined(format.extensions),
+      table.add("  " + joined(format.extensions.empty() ? format.written : format.extensions),
                 access_text(format) + ": " + format.holds + " (" + format.opens_in + ")");
     }
     text += table.text();

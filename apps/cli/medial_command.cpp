@@ -101,7 +101,7 @@ Request parse(const Arguments& a) {
   Request r;
   r.input = a.input;
   r.output = a.output;
-  check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::write));
+  check_extension("--output", r.output, file_extensions(FileContent::complex, FileAccess::both));
   if (r.input.empty()) throw UsageError("INPUT needs a file name");
   r.graph = parse_graph(a.graph);
   r.extend = parse_extend(a.extend);
@@ -566,7 +566,7 @@ void add_medial_command(const CommandLine& line) {
   command->add_option("INPUT", a->input, extensions_help({FileContent::mesh, FileContent::image}, FileAccess::read))
       ->required();
   command
-      ->add_option("-o,--output", a->output, "Medial axis: " + extension_list(FileContent::complex, FileAccess::write))
+      ->add_option("-o,--output", a->output, "Medial axis: " + extension_list(FileContent::complex, FileAccess::both))
       ->required()
       ->type_name("FILE");
   const auto text = [&](const char* name, std::optional<std::string>& value, const char* type, const char* help) {

@@ -7,6 +7,7 @@
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
+#include "blum/io/color_scale.hpp"
 #include "colors.hpp"
 
 namespace blum::cli {

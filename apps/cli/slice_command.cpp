@@ -8,10 +8,10 @@
 
 #include "blum/core/error.hpp"
 #include "blum/io/field_io.hpp"
+#include "blum/io/png_io.hpp"
 #include "commands.hpp"
 #include "files.hpp"
 #include "options.hpp"
-#include "png.hpp"
 #include "progress.hpp"
 #include "slice_picture.hpp"
 #include "summary.hpp"

@@ -1,17 +1,17 @@
 #include "slice_picture.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/io/color_bar.hpp"
+#include "blum/io/color_scale.hpp"
 #include "colors.hpp"
 #include "slice_sampler.hpp"
 #include "summary.hpp"
-#include "text_raster.hpp"
 
 namespace blum::cli {
 namespace {
@@ -20,9 +20,8 @@ constexpr double wanted_side = 800;
 constexpr double largest_side = 4096;
 constexpr double largest_area = 50e6;
 constexpr int margin = 20;
-constexpr double text_height = 11;
+constexpr double text_height = color_bar_text_height;
 constexpr int caption_height = 34;
-constexpr int bar_width = 20;
 
 /// Where the parts of a picture lie, in pixels.
 struct Layout {
@@ -57,33 +56,19 @@ Layout make_layout(const Slice& slice, double scale, int legend_width) {
   return layout;
 }
 
-/// 1, 2 or 5 times a power of ten, such that about `wanted` steps fit into a range.
-double round_step(double range, double wanted) {
-  const double rough = range / wanted;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double lead = rough / power;
-  return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
-}
-
 /// Distances to colours and lines.
 class DistanceStyle {
  public:
-  explicit DistanceStyle(const Slice& slice) : signed_(slice.is_signed), band_(slice.band) {
-    const double deepest = std::max(0.0, -slice.minimum);
-    const double farthest = std::max(0.0, slice.maximum);
-    const double largest = std::max({deepest, farthest, std::numeric_limits<double>::min()});
-    // Each side has its own scale, so that a thin solid in a wide grid shows; but not more than four times the other's.
-    outside_ = std::max(farthest, largest / 4);
-    inside_ = std::max(deepest, largest / 4);
+  explicit DistanceStyle(const Slice& slice)
+      : signed_(slice.is_signed),
+        band_(slice.band),
+        scale_(signed_ ? ColorScale::diverging(slice.minimum, slice.maximum)
+                       : ColorScale::sequential(0, slice.maximum)) {
     const double range = slice.maximum - slice.minimum;
     step_ = range > 0 && std::isfinite(range) ? round_step(range, 16) : 0;
   }
 
-  [[nodiscard]] Color fill(double value) const {
-    if (beyond(value)) return nothing_color;
-    if (!signed_) return sequential_color(value / outside_);
-    return diverging_color(value < 0 ? value / inside_ : value / outside_);
-  }
+  [[nodiscard]] Color fill(double value) const { return beyond(value) ? nothing_color : scale_.color(value); }
   [[nodiscard]] bool beyond(double value) const {
     return !std::isfinite(value) || (band_ > 0 && std::abs(value) >= band_ * (1 - 1e-6));
   }
@@ -118,8 +103,7 @@ class DistanceStyle {
 
   bool signed_;
   double band_;
-  double outside_ = 1;
-  double inside_ = 1;
+  ColorScale scale_;
   double step_ = 0;
 };
 
@@ -144,79 +128,21 @@ void for_each_row(const Layout& layout, const Context& context, const std::funct
   });
 }
 
-void draw_frame(Picture& picture, int x0, int y0, int width, int height) {
-  const auto shade = [&](int x, int y) { picture.at(x, y) = mix(picture.at(x, y), ink_color, 0.45F); };
-  for (int x = x0 - 1; x <= x0 + width; ++x) {
-    shade(x, y0 - 1);
-    shade(x, y0 + height);
-  }
-  for (int y = y0; y < y0 + height; ++y) {
-    shade(x0 - 1, y);
-    shade(x0 + width, y);
-  }
-}
-
 void draw_caption(Picture& picture, const std::string& text) {
   double height = text_height;
   while (height > 6 && text_width(text, height) > picture.width() - 2 * margin) height -= 0.5;
   draw_text(picture, margin, picture.height() - 12, height, text, ink_color);
 }
 
-/// A level as text with as many decimals as the step has: "0.15".
-std::string level_text(double level, double step) {
-  const int decimals = static_cast<int>(std::max(0.0, std::ceil(-std::log10(step) - 1e-9)));
-  if (decimals > 5 || std::abs(level) >= 1e6) return level == 0 ? "0" : rounded_text(level);
-  char text[40];
-  const auto result =
-      std::to_chars(text, text + sizeof(text), level == 0 ? 0.0 : level, std::chars_format::fixed, decimals);
-  return {text, result.ptr};
+int bar_height(const Layout& layout) {
+  return std::clamp(layout.height - 24, 100, 640);
 }
 
-/// The levels that get a number, at most about one for each 40 pixels.
-std::vector<double> labelled_levels(const Slice& slice, double step, int pixels) {
-  std::vector<double> levels;
-  if (step <= 0) return levels;
-  double shown = step;
-  const double range = slice.maximum - slice.minimum;
-  for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
-    shown = step * factor;
-    if (range / shown * 34 <= pixels) break;
-  }
-  for (double k = std::ceil(slice.minimum / shown); k * shown <= slice.maximum; ++k) levels.push_back(k * shown);
-  return levels;
-}
-
-int legend_space(const Slice& slice, const DistanceStyle& style, int pixels) {
-  double widest = text_width("distance", text_height) - bar_width - 10;
-  for (const double level : labelled_levels(slice, style.step(), pixels)) {
-    widest = std::max(widest, text_width(level_text(level, style.step()), text_height));
-  }
-  return bar_width + 10 + static_cast<int>(std::ceil(widest)) + margin;
-}
-
-void draw_legend(Picture& picture, const Slice& slice, const DistanceStyle& style, const Layout& layout) {
-  const int x0 = 2 * margin + layout.width;
-  const int y0 = margin + 24;
-  const int height = std::clamp(layout.height - 24, 100, 640);
-  draw_text(picture, x0, margin + text_height, text_height, "distance", ink_color);
-  const double range = slice.maximum - slice.minimum;
-  const double per_pixel = range / height;
-  for (int y = 0; y < height; ++y) {
-    const double value = slice.maximum - (y + 0.5) * per_pixel;
-    const Color lines = style.with_contours(style.fill(value), value, per_pixel);
-    const Color color = style.with_surface(lines, value, per_pixel);
-    for (int x = 0; x < bar_width; ++x) picture.at(x0 + x, y0 + y) = color;
-  }
-  draw_frame(picture, x0, y0, bar_width, height);
-  for (const double level : labelled_levels(slice, style.step(), height)) {
-    const double y = y0 + (slice.maximum - level) / per_pixel;
-    for (int x = 0; x < 5; ++x) {
-      const int row = std::clamp(static_cast<int>(y), y0, y0 + height - 1);
-      picture.at(x0 + bar_width + 1 + x, row) = mix(paper_color, ink_color, 0.6F);
-    }
-    draw_text(picture, x0 + bar_width + 10, y + text_height / 2, text_height, level_text(level, style.step()),
-              ink_color);
-  }
+ColorBar legend_of(const Slice& slice, const DistanceStyle& style) {
+  return {slice.minimum, slice.maximum, style.step(), "distance", [&style](double value, double per_pixel) {
+            const Color lines = style.with_contours(style.fill(value), value, per_pixel);
+            return style.with_surface(lines, value, per_pixel);
+          }};
 }
 
 /// How strongly the borders of a region are drawn: not at all where it covers a few pixels only.
@@ -344,8 +270,8 @@ double default_scale(const Slice& slice) {
 Picture distance_picture(const Slice& slice, double scale, const Context& context) {
   const DistanceStyle style(slice);
   Layout layout = make_layout(slice, scale, 0);
-  const int legend = legend_space(slice, style, std::clamp(layout.height - 24, 100, 640));
-  layout = make_layout(slice, scale, legend);
+  const ColorBar legend = legend_of(slice, style);
+  layout = make_layout(slice, scale, width_of(legend, bar_height(layout)) + margin);
   Picture picture(layout.canvas_width, layout.canvas_height, paper_color);
   const DistanceSampler sampler(slice);
   for_each_row(layout, context, [&](int y) {
@@ -363,7 +289,7 @@ Picture distance_picture(const Slice& slice, double scale, const Context& contex
     }
   });
   draw_frame(picture, margin, margin, layout.width, layout.height);
-  draw_legend(picture, slice, style, layout);
+  draw(picture, legend, 2 * margin + layout.width, margin, bar_height(layout));
   draw_caption(picture, slice.place + (style.step() > 0 ? ", contours every " + rounded_text(style.step()) : ""));
   return picture;
 }

@@ -10,7 +10,7 @@
 
 #include "blum/core/context.hpp"
 #include "blum/field/field.hpp"
-#include "png.hpp"
+#include "blum/io/picture.hpp"
 
 namespace blum::cli {
 

@@ -147,7 +147,7 @@ void run(const Arguments& a) {
   const fs::path path = a.input;
   const std::vector<fs::path> axes(a.axes.begin(), a.axes.end());
   for (const fs::path& axis : axes)
-    check_extension("AXIS", axis, file_extensions(FileContent::complex, FileAccess::write));
+    check_extension("AXIS", axis, file_extensions(FileContent::complex, FileAccess::read));
   const InputKind kind = input_kind(path);
   const SolidSelection given = solid_of_options(a, kind);
   std::vector<fs::path> inputs = axes;

@@ -114,7 +114,7 @@ class Mesh:
         return cast(Bounds, self._arrays.bounds())
 
     def write(self, path: PathLike) -> None:
-        """Writes .obj, .off, .stl or .ply; the file appears complete or not at all."""
+        """Writes .obj, .off, .stl, .ply or .glb; the file appears complete or not at all."""
         _core.write_mesh(Path(os.fspath(path)), self._arrays)
 
     def to_trimesh(self) -> Any:

@@ -26,6 +26,8 @@ void write_obj(const std::filesystem::path& path, const Complex& complex, const 
                const ComplexWriteOptions& options, const Context& context);
 void write_npz(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
                const ComplexWriteOptions& options, const Context& context);
+void write_glb(const std::filesystem::path& path, const Complex& complex, const FileMetadata& metadata,
+               const ComplexWriteOptions& options, const Context& context);
 
 // The readers check whatever they need to be safe; problem_of is asked afterwards. All throw FormatError.
 [[nodiscard]] ComplexFile read_vtp(const volume_io::ByteSource& source);

@@ -130,6 +130,9 @@ ComplexFile read_complex(const std::filesystem::path& path) {
 
 ComplexFile read_complex(std::span<const std::byte> bytes, ComplexFormat format, const std::string& name) {
   const formats::ComplexCode& code = formats::code_of(format);
+  if (code.read == nullptr && code.read_text == nullptr) {
+    throw InvalidOption(format.name() + " files are written, but not read");
+  }
   return checked(name, [&] {
     if (code.read != nullptr) return code.read(volume_io::MemorySource(bytes, name));
     return code.read_text(as_text(bytes), name);

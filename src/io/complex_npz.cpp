@@ -103,6 +103,9 @@ class ComplexNpzReader {
   explicit ComplexNpzReader(const volume_io::ByteSource& source) : source_(source), npz_(source) {}
 
   ComplexFile read() {
+    if (npz_.has("distance") && npz_.has("vertex_distance")) {
+      throw FormatError(source_.name() + ": it holds a surface map (array 'vertex_distance'), not a complex");
+    }
     // Fields of meshes have an array 'vertices', too.
     if (npz_.has("distance")) {
       throw FormatError(source_.name() + ": it holds a distance field (array 'distance'), not a complex");

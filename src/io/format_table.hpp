@@ -32,7 +32,7 @@ struct Tells {
 };
 
 struct MeshCode {
-  /// All indices of the mesh are in range. @throws FormatError.
+  /// All indices of the mesh are in range. @throws FormatError. Null: not read.
   MeshFile (*read)(std::string_view bytes, std::string_view name);
   /// Gets valid meshes of finite vertices.
   void (*write)(const fs::path& path, const MeshView& mesh);
@@ -58,7 +58,7 @@ struct FieldCode {
 /// Readers check whatever they need to be safe; problem_of() is asked afterwards. Writers get complexes without
 /// problems, and names and metadata that files can hold; they refuse what they would lose unless the options allow it.
 struct ComplexCode {
-  /// Reads part by part, from where the parts are; null where read_text reads all.
+  /// Reads part by part, from where the parts are; null where read_text reads all. Both null: not read.
   ComplexFile (*read)(const ByteSource& source);
   ComplexFile (*read_text)(std::string_view bytes, std::string_view name);
   void (*write)(const fs::path& path, const Complex& complex, const FileMetadata& metadata,
@@ -68,10 +68,10 @@ struct ComplexCode {
   bool holds_columns = true;   ///< any of them
 };
 
-extern const MeshCode mesh_obj, mesh_off, mesh_stl, mesh_ply;
+extern const MeshCode mesh_obj, mesh_off, mesh_stl, mesh_ply, mesh_glb;
 extern const ImageCode image_nrrd, image_nifti, image_npy, image_vol;
 extern const FieldCode field_nrrd, field_npz, field_vti;
-extern const ComplexCode complex_vtp, complex_ply, complex_obj, complex_ma, complex_npz;
+extern const ComplexCode complex_vtp, complex_ply, complex_obj, complex_ma, complex_npz, complex_glb;
 
 struct Row {
   std::string_view name;  ///< these as in FileFormat, lists as words between blanks
@@ -89,6 +89,8 @@ inline constexpr std::array table{
     Row{"STL", ".stl", ".stl", "triangles without shared vertices; single precision", "CAD, slicers", &mesh_stl},
     Row{"PLY", ".ply", ".ply", "triangles, polygons, segments; double precision", "MeshLab, Blender, ParaView",
         &mesh_ply},
+    Row{"GLB", "", ".glb", "triangles, segments, points; single precision", "Blender, three.js, most viewers",
+        &mesh_glb},
 
     Row{"NRRD", ".nrrd .nhdr", ".nrrd", "scalars of any type, spacing, axes, space", "3D Slicer, ITK", &image_nrrd},
     Row{"NIfTI", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", "", "scalars of any type, spacing, axes",
@@ -106,6 +108,8 @@ inline constexpr std::array table{
     Row{"OBJ", ".obj", ".obj", "positions, edges, triangles; no columns", "Blender, MeshLab", &complex_obj},
     Row{"MA", ".ma", ".ma", "positions, radii, edges, triangles of medial axes", "Q-MAT", &complex_ma},
     Row{"NPZ", ".npz", ".npz", "all columns, metadata, further complexes", "NumPy", &complex_npz},
+    Row{"GLB", "", ".glb", "positions, edges, triangles, columns of vertices, metadata; single precision",
+        "Blender, three.js, trimesh", &complex_glb},
 };
 
 /// What the bytes of a row's files tell.

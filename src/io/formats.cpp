@@ -27,17 +27,25 @@ std::optional<std::size_t> find(FileContent content, Fits fits) {
   return std::nullopt;
 }
 
-std::optional<std::size_t> find_extension(FileContent content, const std::string& extension) {
-  return find(content, [&](std::size_t row) {
-    const std::vector<std::string>& known = file_formats()[row].extensions;
-    return std::find(known.begin(), known.end(), extension) != known.end();
-  });
+bool has(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool allows(const FileFormat& format, const std::string& extension, FileAccess access) {
+  return (access == FileAccess::write || has(format.extensions, extension)) &&
+         (access == FileAccess::read || has(format.written, extension));
+}
+
+std::optional<std::size_t> find_extension(FileContent content, const std::string& extension, FileAccess access) {
+  return find(content, [&](std::size_t row) { return allows(file_formats()[row], extension, access); });
 }
 
 std::size_t find_named(FileContent content, std::string_view name) {
   const std::string word = volume_io::lower_case(name);
   auto row = find(content, [&](std::size_t k) { return volume_io::lower_case(file_formats()[k].name) == word; });
-  if (!row) row = find_extension(content, word.starts_with('.') ? word : "." + word);
+  for (const FileAccess access : {FileAccess::read, FileAccess::write}) {
+    if (!row) row = find_extension(content, word.starts_with('.') ? word : "." + word, access);
+  }
   if (row) return *row;
   std::string known;
   for (const FileFormat& format : file_formats()) {
@@ -76,7 +84,7 @@ FormatOf<content>::FormatOf(std::string_view name) : row_(find_named(content, na
 
 template <FileContent content>
 std::optional<FormatOf<content>> FormatOf<content>::by_name(const std::filesystem::path& path) {
-  const auto row = find_extension(content, file_extension(path));
+  const auto row = find_extension(content, file_extension(path), FileAccess::read);
   return row ? std::optional(FormatOf(*row)) : std::nullopt;
 }
 
@@ -88,13 +96,12 @@ std::optional<FormatOf<content>> FormatOf<content>::by_head(std::string_view hea
 
 template <FileContent content>
 FormatOf<content> FormatOf<content>::of(const std::filesystem::path& path, FileAccess access) {
-  const std::string extension = file_extension(path);
-  const std::vector<std::string> known = file_extensions(content, access);
-  const auto format = by_name(path);
-  if (format && std::find(known.begin(), known.end(), extension) != known.end()) return *format;
+  if (const auto row = find_extension(content, file_extension(path), access)) return FormatOf(*row);
   constexpr std::array<std::string_view, 4> plural{"meshes", "images", "fields", "complexes, medial axes among them,"};
   throw InvalidOption("'" + path.string() + "': " + std::string(plural[static_cast<std::size_t>(content)]) + " are " +
-                      (access == FileAccess::read ? "read from " : "written to ") +
+                      (access == FileAccess::read    ? "read from "
+                       : access == FileAccess::write ? "written to "
+                                                     : "written to and read from ") +
                       extension_list(content, access, ", ") + " files; use one of these extensions");
 }
 
@@ -114,8 +121,9 @@ std::vector<std::string> file_extensions(FileContent content, FileAccess access)
   std::vector<std::string> out;
   for (const FileFormat& format : file_formats()) {
     if (format.content != content) continue;
-    const std::vector<std::string>& words = access == FileAccess::read ? format.extensions : format.written;
-    out.insert(out.end(), words.begin(), words.end());
+    for (const std::string& extension : access == FileAccess::read ? format.extensions : format.written) {
+      if (allows(format, extension, access)) out.push_back(extension);
+    }
   }
   return out;
 }

@@ -61,6 +61,10 @@ class FlatObject final : public nlohmann::json_sax<json> {
 
 }  // namespace
 
+std::string valid_utf8(const std::string& text) {
+  return json::parse(json_string(text)).get<std::string>();
+}
+
 std::string to_json(const FileMetadata& metadata) {
   std::string out = "{";
   for (const auto& [key, value] : metadata) {

@@ -16,6 +16,9 @@ namespace blum::volume_io {
 /// The same where the values of some keys are numbers, true or false: those that read as such.
 [[nodiscard]] std::string to_typed_json(const FileMetadata& metadata, std::span<const std::string_view> typed);
 
+/// The same text; bytes that are not UTF-8 become U+FFFD.
+[[nodiscard]] std::string valid_utf8(const std::string& text);
+
 /// Reads back what to_json writes. @throws FormatError with `name` for anything else.
 [[nodiscard]] FileMetadata from_json(std::string_view text, const std::string& name);
 

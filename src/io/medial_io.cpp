@@ -93,7 +93,7 @@ namespace {
 /// @param nested  may be null.
 void write(const std::filesystem::path& path, const Complex& axis, const Complex* nested, double least_theta,
            const MedialMetadata& metadata, const Context& context) {
-  const ComplexFormat format = ComplexFormat::of(path, FileAccess::write);
+  const ComplexFormat format = ComplexFormat::of(path, FileAccess::both);
   check_metadata(metadata);
   if (nested != nullptr && !formats::code_of(format).holds_further) {
     throw InvalidOption("'" + path.string() + "': axes of all angles are kept in .npz files only");

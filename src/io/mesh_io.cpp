@@ -19,10 +19,11 @@ namespace blum {
 namespace {
 
 /// @throws FileError for another extension.
-MeshFormat format_named(const std::filesystem::path& path) {
-  if (const auto format = MeshFormat::by_name(path)) return *format;
+MeshFormat format_named(const std::filesystem::path& path, FileAccess access) {
+  const std::vector<std::string> known = file_extensions(FileContent::mesh, access);
+  if (std::find(known.begin(), known.end(), file_extension(path)) != known.end()) return MeshFormat::of(path, access);
   throw FileError("cannot tell the mesh format of '" + path.string() + "': its name must end in " +
-                  extension_list(FileContent::mesh, FileAccess::read, ", "));
+                  extension_list(FileContent::mesh, access, ", "));
 }
 
 void apply_weld(MeshFile& file, const MeshReadOptions& options) {
@@ -40,7 +41,9 @@ MeshFile read_mesh_file(std::span<const std::byte> data, MeshFormat format, cons
                         std::string_view name) {
   try {
     const std::string_view bytes(reinterpret_cast<const char*>(data.data()), data.size());
-    MeshFile file = formats::code_of(format).read(bytes, name);
+    const auto read = formats::code_of(format).read;
+    if (read == nullptr) throw InvalidOption(format.name() + " files are written, but not read");
+    MeshFile file = read(bytes, name);
     file.info.format = format;
     apply_weld(file, options);
     return file;
@@ -51,7 +54,7 @@ MeshFile read_mesh_file(std::span<const std::byte> data, MeshFormat format, cons
 }
 
 MeshFile read_mesh_file(const std::filesystem::path& path, const MeshReadOptions& options) {
-  const MeshFormat format = format_named(path);
+  const MeshFormat format = format_named(path, FileAccess::read);
   const FileBytes content = read_whole_file(path);
   return read_mesh_file(content.span(), format, options, path.string());
 }
@@ -66,7 +69,7 @@ TriangleMesh read_mesh(std::span<const std::byte> data, MeshFormat format, const
 }
 
 void write_mesh(const std::filesystem::path& path, const MeshView& mesh) {
-  const MeshFormat format = format_named(path);
+  const MeshFormat format = format_named(path, FileAccess::write);
   validate(mesh);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     if (!is_finite(mesh.vertices[i])) throw InvalidMesh("vertex " + std::to_string(i) + " is not finite");

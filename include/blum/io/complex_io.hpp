@@ -1,4 +1,5 @@
-// Blum: files of complexes with attributes (VTP, PLY, OBJ, NPZ). SPDX-License-Identifier: Apache-2.0
+// Blum: files of complexes with attributes (VTP, PLY, OBJ, NPZ; GLB is written only). SPDX-License-Identifier:
+// Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -64,6 +65,10 @@ inline constexpr std::size_t max_file_name = 256;
 ///         NAME are columns of edges, triangles and vertices, [n] or [n, components] (`vertex_NAME` where NAME alone
 ///         would be read as something else); `metadata` is a JSON object. A further complex has the same arrays, with
 ///         its name and `_` before theirs, and no metadata.
+///   .glb  binary glTF (see write_gltf()): triangles, edges as lines, vertices of nothing else as points. A column of
+///         vertices is the attribute `_NAME` in upper case, unless two names are the same then; metadata are extras.
+///         All is in single precision. No columns of edges and triangles, no columns of more than four components, no
+///         whole numbers beyond 2^24.
 ///
 /// Indices count from 0 (in .obj from 1). A file appears under its name only when it is complete.
 /// @throws InvalidOption for another extension; where the format holds columns, names of other characters than letters,
@@ -76,12 +81,12 @@ void write_complex(const std::filesystem::path& path, const Complex& complex, co
 
 /// Reads a file that write_complex wrote, or one of the same form by another program: with any columns, with polygons
 /// (.ply, .obj) and lines of several steps (.vtp, .obj), which become triangles and edges that share the attributes,
-/// with other numeric types and byte orders. .vtp, .ply and .npz give back exactly what was written. Whole numbers of
-/// 8 and 16 bits become int32, unsigned ones of 32 and 64 bits int64. Left out are lists and unknown elements of .ply,
-/// texts of .vtp, and whatever .obj files say beyond vertices, faces and lines. Cell data of .vtp files that Blum did
-/// not write are columns of the edges and of the triangles.
+/// with other numeric types and byte orders. .vtp, .ply and .npz give back exactly what was written; .glb is not read.
+/// Whole numbers of 8 and 16 bits become int32, unsigned ones of 32 and 64 bits int64. Left out are lists and unknown
+/// elements of .ply, texts of .vtp, and whatever .obj files say beyond vertices, faces and lines. Cell data of .vtp
+/// files that Blum did not write are columns of the edges and of the triangles.
 /// @throws FileError; FormatError naming the file and the reason, also where problem_of() finds one or the name of a
-/// column is not UTF-8; InvalidOption for another extension; OutOfMemory.
+/// column is not UTF-8; InvalidOption for another extension or a format that is not read; OutOfMemory.
 [[nodiscard]] ComplexFile read_complex(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.
 [[nodiscard]] ComplexFile read_complex(std::span<const std::byte> bytes, ComplexFormat format,

@@ -26,14 +26,18 @@ struct Description<FileContent> {
                                      NamedValue{FileContent::complex, "complex"}};
 };
 
-enum class FileAccess : std::uint8_t { read, write };
+enum class FileAccess : std::uint8_t {
+  read,
+  write,
+  both  ///< written files can be read again
+};
 
 /// A format of files of one content. A name that stands for several contents (PLY) has a row for each.
 struct FileFormat {
   FileContent content = FileContent::mesh;
   std::string name;                     ///< "PLY"
   std::vector<std::string> extensions;  ///< that are read: lower case, with their dots; the usual one first
-  std::vector<std::string> written;     ///< those of them that are written as well
+  std::vector<std::string> written;     ///< that are written: some of those, or of a format that is not read its own
   std::string holds;                    ///< what a file can hold, for people
   std::string opens_in;                 ///< other programs, for people
 };
@@ -47,7 +51,8 @@ struct Description<FileFormat> {
       Member{"content", &FileFormat::content, "", "what the files hold; medial axes are complexes"},
       Member{"name", &FileFormat::name, "", "of the format"},
       Member{"extensions", &FileFormat::extensions, "", "those that are read, in lower case, with their dots"},
-      Member{"written", &FileFormat::written, "", "those of them that are written as well"},
+      Member{"written", &FileFormat::written, "",
+             "those that are written: some of these, or of a format that is not read its own"},
       Member{"holds", &FileFormat::holds, "", "what a file can hold, for people"},
       Member{"opens_in", &FileFormat::opens_in, "", "other programs, for people"},
   };
@@ -70,11 +75,11 @@ class FormatOf {
   [[nodiscard]] std::size_t row() const { return row_; }
   friend bool operator==(FormatOf, FormatOf) = default;
 
-  /// The one that the extension of a path stands for; nullopt for none.
+  /// The one that is read from files of the extension of a path; nullopt for none.
   [[nodiscard]] static std::optional<FormatOf> by_name(const std::filesystem::path& path);
   /// The one that the first bytes of a file (8 KiB, or all) are those of; nullopt where they do not tell.
   [[nodiscard]] static std::optional<FormatOf> by_head(std::string_view head);
-  /// The one that the extension of a path stands for.
+  /// The one that files of the extension of a path are read or written in.
   /// @throws InvalidOption naming the path and the extensions that can be read or written.
   [[nodiscard]] static FormatOf of(const std::filesystem::path& path, FileAccess access = FileAccess::read);
 

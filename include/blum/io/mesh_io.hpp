@@ -1,4 +1,4 @@
-// Blum: reading and writing meshes (OBJ, OFF, STL, PLY). SPDX-License-Identifier: Apache-2.0
+// Blum: reading and writing meshes (OBJ, OFF, STL, PLY; GLB is written only). SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -59,7 +59,8 @@ struct MeshFile {
 /// @throws FileError when the file cannot be read, or when its extension is not known.
 /// @throws FormatError naming file and line (text) or byte (binary): broken or cut-off content, counts that the file
 ///         cannot hold, indices out of range, faces of fewer than 3 corners, coordinates that are not finite.
-/// @throws InvalidOption for a weld tolerance that is negative or not finite; OutOfMemory.
+/// @throws InvalidOption for a weld tolerance that is negative or not finite, or a format that is not read;
+/// OutOfMemory.
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 /// The same from memory; `name` stands for the file in messages.
 [[nodiscard]] TriangleMesh read_mesh(std::span<const std::byte> data, MeshFormat format,
@@ -73,7 +74,8 @@ struct MeshFile {
 /// Writes a mesh in the format of the extension; the file appears complete or not at all (see AtomicFile).
 ///
 /// OBJ and OFF are text that reads back to the same doubles; PLY is binary, little endian, with double coordinates; STL
-/// is binary and holds single precision only. What a format cannot hold is refused, not dropped: segments and points in
+/// is binary and holds single precision only; GLB is glTF in one file, in single precision as well (see write_gltf()).
+/// What a format cannot hold is refused, not dropped: segments and points in
 /// STL; segments in OFF; in OFF and PLY, points unless the mesh is a point cloud that names every vertex. STL leaves
 /// out vertices that no triangle names.
 /// @throws InvalidMesh when validate() refuses the mesh, or a vertex is not finite.

@@ -28,6 +28,13 @@ TEST(Formats, MeshesAreKnownByNameAndContent) {
   for (const std::string& end : file_extensions(FileContent::mesh, FileAccess::write)) {
     const auto path = folder / ("m" + end);
     write_mesh(path, triangle);
+    if (end == ".glb") {  // not read, and nothing takes it for something else
+      EXPECT_FALSE(MeshFormat::by_name(path).has_value());
+      EXPECT_THROW((void)content_of(path), FileError);
+      EXPECT_THROW((void)read_mesh(path), FileError);
+      EXPECT_THROW((void)read_mesh(std::span<const std::byte>(), MeshFormat("GLB")), InvalidOption);
+      continue;
+    }
     EXPECT_EQ(content_of(path), FileContent::mesh) << end;
     const auto by_name = MeshFormat::by_name(path);
     ASSERT_TRUE(by_name.has_value());
@@ -96,6 +103,12 @@ TEST(Formats, ComplexesAreWrittenAndKnown) {
     }
     const auto path = folder / ("c" + end);
     write_complex(path, complex);
+    if (end == ".glb") {
+      EXPECT_FALSE(holds_complex(path));
+      EXPECT_THROW((void)read_complex(path), InvalidOption);
+      EXPECT_THROW((void)read_complex(std::span<const std::byte>(), ComplexFormat("glb")), InvalidOption);
+      continue;
+    }
     EXPECT_EQ(read_complex(path).complex.triangles, complex.triangles);
     EXPECT_EQ(holds_complex(path), end == ".vtp" || end == ".npz") << end;
   }
@@ -103,18 +116,27 @@ TEST(Formats, ComplexesAreWrittenAndKnown) {
 
 TEST(Formats, HaveOneNameAndExtensionEach) {
   for (const FileFormat& format : file_formats()) {
-    EXPECT_FALSE(format.extensions.empty()) << format.name;
+    EXPECT_FALSE(format.extensions.empty() && format.written.empty()) << format.name;
     for (const FileFormat& other : file_formats()) {
       if (&other == &format || other.content != format.content) continue;
       EXPECT_NE(other.name, format.name);
-      for (const std::string& end : other.extensions) EXPECT_EQ(std::ranges::count(format.extensions, end), 0) << end;
+      for (const std::vector<std::string>& ends : {other.extensions, other.written}) {
+        for (const std::string& end : ends) {
+          EXPECT_EQ(std::ranges::count(format.extensions, end) + std::ranges::count(format.written, end), 0) << end;
+        }
+      }
     }
+    if (format.extensions.empty()) continue;  // not read
     for (const std::string& end : format.written) EXPECT_EQ(std::ranges::count(format.extensions, end), 1) << end;
   }
   EXPECT_EQ(ImageFormat("nifti"), ImageFormat::of("a.hdr.gz"));
   EXPECT_THROW((void)ImageFormat::of("a.nii", FileAccess::write), InvalidOption);
   EXPECT_THROW((void)ImageFormat::of("a.nhdr", FileAccess::write), InvalidOption);
   EXPECT_THROW((void)FieldFormat::of("a.ply"), InvalidOption);
+  EXPECT_EQ(MeshFormat::of("a.glb", FileAccess::write), MeshFormat("GLB"));
+  EXPECT_THROW((void)MeshFormat::of("a.glb", FileAccess::both), InvalidOption);
+  EXPECT_THROW((void)MeshFormat::of("a.glb"), InvalidOption);
+  EXPECT_EQ(file_extensions(FileContent::image, FileAccess::both), (std::vector<std::string>{".nrrd", ".npy"}));
 }
 
 TEST(Formats, NamesOfSeveralExtensions) {

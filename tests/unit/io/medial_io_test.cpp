@@ -81,7 +81,7 @@ class MedialFiles : public testing::TestWithParam<std::string> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Formats, MedialFiles,
-                         testing::ValuesIn(file_extensions(FileContent::complex, FileAccess::write)),
+                         testing::ValuesIn(file_extensions(FileContent::complex, FileAccess::both)),
                          [](const auto& info) { return info.param.substr(1); });
 
 TEST_P(MedialFiles, ReadBackAsWritten) {

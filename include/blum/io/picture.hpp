@@ -1,26 +1,27 @@
-// Blum: pictures and PNG files. SPDX-License-Identifier: Apache-2.0
+// Blum: pictures. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
-namespace blum::cli {
+namespace blum {
 
 /// A colour in sRGB, each component in [0, 1].
 struct Color {
   float r = 0, g = 0, b = 0;
+  [[nodiscard]] friend Color mix(const Color& a, const Color& b, float t) {
+    return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t};
+  }
 };
-[[nodiscard]] inline Color mix(const Color& a, const Color& b, float t) {
-  return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t};
-}
 
-/// A component as pictures hold it.
+/// A component as pictures hold it; those beyond [0, 1] are cut off.
 [[nodiscard]] std::uint8_t byte_of(float component);
 
 /// Rows from the top, pixels from the left.
 class Picture {
  public:
+  /// @param width, height  pixels, at least 1.
   Picture(int width, int height, const Color& fill)
       : width_(width),
         height_(height),
@@ -38,7 +39,4 @@ class Picture {
   std::vector<Color> pixels_;
 };
 
-/// Writes a PNG of 8 bits a channel; the file appears complete or not at all. @throws FileError.
-void write_png(const std::filesystem::path& path, const Picture& picture);
-
-}  // namespace blum::cli
+}  // namespace blum

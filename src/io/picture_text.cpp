@@ -1,11 +1,12 @@
-#include "text_raster.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-namespace blum::cli {
+#include "blum/io/color_bar.hpp"
+
+namespace blum {
 namespace {
 
 struct Point {
@@ -173,4 +174,4 @@ void draw_text(Picture& picture, double x, double baseline, double height, std::
   }
 }
 
-}  // namespace blum::cli
+}  // namespace blum

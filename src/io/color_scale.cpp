@@ -1,0 +1,106 @@
+#include "blum/io/color_scale.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <span>
+
+namespace blum {
+namespace {
+
+struct Linear {
+  double r = 0, g = 0, b = 0;
+  [[nodiscard]] bool in_gamut() const { return std::min({r, g, b}) >= -1e-4 && std::max({r, g, b}) <= 1.0001; }
+};
+
+Linear linear_of(double lightness, double a, double b) {
+  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
+  const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
+  const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
+          -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+          -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
+}
+
+float gamma(double linear) {
+  const double c = std::clamp(linear, 0.0, 1.0);
+  return static_cast<float>(c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055);
+}
+
+struct Stop {
+  double lightness, chroma, hue;
+};
+
+/// Stops at equal distances, mixed in OKLCh.
+Color from_stops(std::span<const Stop> stops, double t) {
+  const double at = std::clamp(t, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(at), stops.size() - 2);
+  const double f = at - static_cast<double>(i);
+  const auto between = [&](double Stop::* part) { return stops[i].*part + (stops[i + 1].*part - stops[i].*part) * f; };
+  return oklch(between(&Stop::lightness), between(&Stop::chroma), between(&Stop::hue));
+}
+
+constexpr std::array<Stop, 5> outside = {
+    {{0.965, 0.020, 215}, {0.825, 0.075, 228}, {0.680, 0.115, 243}, {0.530, 0.130, 257}, {0.385, 0.120, 268}}};
+constexpr std::array<Stop, 5> inside = {
+    {{0.965, 0.035, 90}, {0.855, 0.105, 78}, {0.730, 0.150, 58}, {0.590, 0.160, 42}, {0.450, 0.130, 32}}};
+constexpr std::array<Stop, 6> whole = {{{0.965, 0.060, 105},
+                                        {0.840, 0.125, 130},
+                                        {0.710, 0.120, 168},
+                                        {0.570, 0.100, 215},
+                                        {0.430, 0.110, 265},
+                                        {0.290, 0.110, 300}}};
+
+}  // namespace
+
+Color oklch(double lightness, double chroma, double hue) {
+  const double angle = hue * std::numbers::pi / 180;
+  Linear color = linear_of(lightness, chroma * std::cos(angle), chroma * std::sin(angle));
+  for (int step = 0; step < 20 && !color.in_gamut(); ++step) {
+    chroma *= 0.93;
+    color = linear_of(lightness, chroma * std::cos(angle), chroma * std::sin(angle));
+  }
+  return {gamma(color.r), gamma(color.g), gamma(color.b)};
+}
+
+Color diverging_color(double t) {
+  return t < 0 ? from_stops(inside, -t) : from_stops(outside, t);
+}
+
+Color sequential_color(double t) {
+  return from_stops(whole, t);
+}
+
+ColorScale::ColorScale(double lowest, double highest, bool diverges)
+    : lowest_(lowest), highest_(highest), diverges_(diverges) {}
+
+ColorScale ColorScale::sequential(double lowest, double highest) {
+  ColorScale scale(lowest, highest, false);
+  scale.start_ = lowest;
+  scale.up_ = scale.down_ = std::max(highest - lowest, std::numeric_limits<double>::min());
+  return scale;
+}
+
+ColorScale ColorScale::diverging(double lowest, double highest) {
+  ColorScale scale(lowest, highest, true);
+  const double deepest = std::max(0.0, -lowest);
+  const double farthest = std::max(0.0, highest);
+  const double largest = std::max({deepest, farthest, std::numeric_limits<double>::min()});
+  scale.up_ = std::max(farthest, largest / 4);
+  scale.down_ = std::max(deepest, largest / 4);
+  return scale;
+}
+
+double ColorScale::place(double value) const {
+  const double from_start = value - start_;
+  return std::clamp(from_start / (from_start < 0 ? down_ : up_), diverges_ ? -1.0 : 0.0, 1.0);
+}
+
+Color ColorScale::color(double value) const {
+  return std::isfinite(value) ? color_at(place(value)) : nothing_color;
+}
+
+}  // namespace blum
