@@ -7,17 +7,21 @@
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/sites.hpp"
 #include "field/point_search.hpp"
 #include "field/sign/policy.hpp"
+#include "field/sign/shared_sides.hpp"
 #include "field/sign/sides.hpp"
 
 namespace blum {
 namespace {
 
 constexpr std::size_t queries_per_range = 512;
+/// What rounding may do to the sum of two distances, relative to the lengths involved, generously.
+constexpr double rounding = 1e-12;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 double checked_limit(const ClosestPointOptions& options) {
@@ -68,11 +72,42 @@ struct ClosestPointQuery::Data {
   }
 
   [[nodiscard]] ClosestPoint finished(const Vec3d& query, const std::optional<NearestSite>& nearest) const {
-    if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
     // What lies on the surface is not inside.
-    const bool is_negative = nearest->distance > 0 && sides.is_inside(query, *nearest);
+    const bool is_negative = nearest && nearest->distance > 0 && sides.is_inside(query, *nearest);
+    return with_side(query, nearest, is_negative);
+  }
+
+  [[nodiscard]] ClosestPoint with_side(const Vec3d& query, const std::optional<NearestSite>& nearest,
+                                       bool is_negative) const {
+    if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
     const double distance = is_negative ? -nearest->distance : nearest->distance;
     return {nearest->point, distance, nearest->site, sites.triangle(nearest->site)};
+  }
+
+  /// The same for queries that lie close together: those that need winding numbers share what they can.
+  void finish(std::span<const Vec3d> queries, std::span<const PointSearch::Answer> group,
+              std::span<ClosestPoint> results) const {
+    static_assert(cpu::PointEngine::most_per_group <= sign::most_shared);
+    InlineList<sign::SidedPoint, sign::most_shared> open;
+    InlineList<std::size_t, sign::most_shared> open_query;
+    double extent = 3 * longest;
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
+      const auto& [query, nearest] = group[k];
+      const Vec3d& at = queries[query];
+      const bool is_off = nearest && nearest->distance > 0;
+      const std::optional<bool> known = is_off ? sides.is_inside_by_site(at, *nearest) : std::optional(false);
+      results[query] = with_side(at, nearest, known.value_or(false));
+      if (known) continue;
+      open.push_back({at, nearest->distance, false});
+      open_query.push_back(query);
+      extent = std::max(extent, nearest->distance + length(at));
+    }
+    if (open.empty()) return;
+    sign::decide_sides(*sides.winding(), {&open[0], open.size()}, rounding * extent);
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      if (open[k].is_inside) results[open_query[k]].distance = -results[open_query[k]].distance;
+    }
   }
 
   /// A bound, widened by more than rounding can have taken from it.
@@ -130,11 +165,7 @@ std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> quer
   std::vector<ClosestPoint> results(queries.size());
   if (const PointSearch* search = data_->search_for(queries.size(), context)) {
     search->nearest(queries, data_->max_distance, data_->bvh, context, [&](std::span<const PointSearch::Answer> group) {
-      for (std::size_t k = 0; k < group.size(); ++k) {
-        if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
-        const auto& [query, nearest] = group[k];
-        results[query] = data_->finished(queries[query], nearest);
-      }
+      data_->finish(queries, group, results);
     });
     return results;
   }

@@ -59,6 +59,7 @@ WindingNumber::Estimate walk(const WindingTree& tree, const Vec3d& query, const 
 }  // namespace
 
 struct WindingNumber::Data {
+  std::size_t triangles = 0;
   WindingTree tree;
   BoundaryChain boundary;
 
@@ -95,6 +96,7 @@ WindingNumber::WindingNumber(const MeshView& mesh, const Context& context)
 
 WindingNumber::WindingNumber(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   auto data = std::make_unique<Data>();
+  data->triangles = mesh.triangles.size();
   data->tree = make_winding_tree(mesh, context);
   data->boundary = BoundaryChain(mesh, sites, data->tree.scale, context);
   data_ = std::move(data);
@@ -120,13 +122,18 @@ double WindingNumber::approximate(const Vec3d& query, double beta) const {
 }
 
 bool WindingNumber::is_inside(const Vec3d& query) const {
+  return decide(query).is_inside;
+}
+
+WindingNumber::Decision WindingNumber::decide(const Vec3d& query) const {
   const std::optional<Vec3d> q = data_->scaled(query);
-  if (!q) return false;
+  if (!q) return {false, 0.5};
   for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance *= 1.0 / 64) {
     const Estimate w = data_->bounded(*q, tolerance);
-    if (std::abs(w.value - 0.5) > w.error) return w.value > 0.5;
+    const double distance = std::abs(w.value - 0.5);
+    if (distance > w.error) return {w.value > 0.5, distance - w.error};
   }
-  return data_->full_sum(*q) > 0.5;
+  return {data_->full_sum(*q) > 0.5, 0};
 }
 
 WindingNumber::Estimate WindingNumber::estimate(const Vec3d& query, double max_error) const {
@@ -141,6 +148,10 @@ WindingNumber::Estimate WindingNumber::estimate(const Vec3d& query, double max_e
 
 bool WindingNumber::is_piecewise_constant() const {
   return data_->boundary.is_empty();
+}
+
+std::size_t WindingNumber::triangle_count() const {
+  return data_->triangles;
 }
 
 double WindingNumber::gradient_bound(const Box3& box, double enough) const {

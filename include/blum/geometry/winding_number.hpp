@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <optional>
 
@@ -46,6 +47,15 @@ class WindingNumber {
   /// 70,000 triangles.
   [[nodiscard]] bool is_inside(const Vec3d& query) const;
 
+  /// A side, and how far w lies at least from 1/2 there: all points that a path joins to the query lie on it, where the
+  /// path crosses no triangle and w changes along it by less.
+  struct Decision {
+    bool is_inside = false;
+    double margin = 0;  ///< 0 where rounding alone may make a difference
+  };
+  /// The same as is_inside(), told with its margin.
+  [[nodiscard]] Decision decide(const Vec3d& query) const;
+
   /// A value and a bound on its error.
   struct Estimate {
     double value = 0;
@@ -73,6 +83,9 @@ class WindingNumber {
   /// Whether w is constant wherever no triangle lies between: triangles meet at every edge in cancelling directions
   /// (edges are compared by the positions of their ends), so that w is an integer off the surface.
   [[nodiscard]] bool is_piecewise_constant() const;
+
+  /// How many triangles there are.
+  [[nodiscard]] std::size_t triangle_count() const;
 
  private:
   struct Data;
