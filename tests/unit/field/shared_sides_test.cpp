@@ -38,7 +38,10 @@ std::vector<std::vector<sign::SidedPoint>> clouds(const TriangleMesh& mesh, std:
   std::vector<std::vector<sign::SidedPoint>> out;
   for (std::size_t c = 0; c < count; ++c) {
     const Triangle& t = mesh.triangles[random.below(mesh.triangles.size())];
-    const Vec3d middle = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) * (1.0 / 3);
+    const Vec3d on_surface = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) * (1.0 / 3);
+    Vec3d middle = bvh.bounds().center();
+    for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] += random.uniform(-0.5, 0.5) * bvh.bounds().size()[axis];
+    if (c % 2 == 0) middle = on_surface;
     const double radius = extent * std::pow(10.0, random.uniform(-4.0, 0.0));
     std::vector<sign::SidedPoint>& cloud = out.emplace_back();
     const std::size_t size = 1 + random.below(sign::most_shared);
@@ -80,6 +83,31 @@ TEST(SharedSides, AreThoseOfEachPoint) {
   append(crossing, test::moved(with_holes(make_sphere({.frequency = 8}), 40), 0.8, {0.4, 0.1, 0.2}));
   expect_sides_of_each(crossing, 4);
   expect_sides_of_each(test::unwelded(with_holes(make_sphere({.frequency = 8}), 30)), 5);
+}
+
+/// Where there is no triangle, but the winding number crosses 1/2.
+TEST(SharedSides, AreThoseOfEachPointInOpenings) {
+  TriangleMesh bowl = make_sphere({.frequency = 16});
+  std::erase_if(bowl.triangles, [&](const Triangle& t) { return bowl.vertices[t[0]].z > 0; });
+  const SiteTable sites(bowl);
+  const Bvh bvh(bowl, sites);
+  const WindingNumber winding(bowl);
+  Random random(11);
+  for (const double radius : {0.1, 0.2, 0.4}) {
+    std::vector<sign::SidedPoint> points;
+    std::size_t inside = 0;
+    for (std::size_t k = 0; k < sign::most_shared; ++k) {
+      const Vec3d at = random.in_ball() * radius;
+      points.push_back({at, bvh.nearest(at)->distance, false});
+    }
+    sign::decide_sides(winding, points, 1e-12);
+    for (const sign::SidedPoint& point : points) {
+      EXPECT_EQ(point.is_inside, winding.is_inside(point.at));
+      inside += point.is_inside ? 1 : 0;
+    }
+    EXPECT_GT(inside, 50U);
+    EXPECT_LT(inside, 200U);
+  }
 }
 
 TEST(SharedSides, AreThoseOfEachPointInSoups) {
