@@ -9,6 +9,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/field/winding_numbers.hpp"
 #include "call.hpp"
 #include "columns.hpp"
 #include "structs.hpp"
@@ -28,6 +29,16 @@ nb::tuple columns_of(std::vector<ClosestPoint> found) {
 
 void bind_closest_points(nb::module_& m) {
   bind_options<ClosestPointOptions>(m);
+  m.def(
+      "winding_numbers",
+      [](const MeshArrays& mesh, const PointsIn& points, double max_error, int threads, nb::object progress) {
+        const MeshView view = mesh.view();
+        return handed_over<double>(run({threads, std::move(progress)}, [&](const Context& context) {
+          return winding_numbers(view, vectors(points), max_error, context);
+        }));
+      },
+      nb::arg("mesh"), nb::arg("points").noconvert(), nb::arg("max_error"), nb::arg("threads"),
+      nb::arg("progress").none());
   nb::class_<ClosestPointQuery>(m, "ClosestPointQuery")
       .def(
           "__init__",

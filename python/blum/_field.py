@@ -1,4 +1,4 @@
-"""Distance fields of meshes and images, and exact closest points."""
+"""Distance fields of meshes and images."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from ._image import as_image
 from ._mesh import Mesh, as_mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import ClosestPointOptions, FieldOptions, VoxelTopology
+from ._structs import FieldOptions, VoxelTopology
 
 
 class Field:
@@ -454,102 +454,6 @@ def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -
     with reporting(progress) as report:
         found: VoxelTopology = _core.voxel_topology(mask_array(mask, "mask"), integer(threads, "threads"), report)
     return found
-
-
-@dataclass(frozen=True, eq=False)
-class ClosestPoints:
-    """What :func:`closest_points` finds; all arrays have the shape of the queries without the last axis."""
-
-    points: FloatArray  #: (..., 3): on the mesh; the query itself where nothing is within max_distance
-    distance: FloatArray  #: mesh units, negative inside when signed; infinite where nothing is within max_distance
-    site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
-    triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
-
-
-@takes("ClosestPointOptions")
-class ClosestPointQuery:
-    """Closest-point queries on one mesh, exact; may be called from many threads at once.
-
-    Parameters
-    ----------
-    mesh, triangles, weld
-        As for :func:`distance_field`.
-    **options
-
-    >>> import blum
-    >>> query = blum.ClosestPointQuery(blum.generate("box"))
-    >>> query([[0, 0, 5]]).points.tolist()
-    [[0.0, 0.0, 0.5]]
-    """
-
-    def __init__(
-        self,
-        mesh: Any,
-        triangles: Any = None,
-        *,
-        weld: Real | None = None,
-        threads: int = 0,
-        progress: Progress = False,
-        **options: Unpack[ClosestPointOptions],
-    ) -> None:
-        self._mesh = as_mesh(mesh, triangles, weld=weld)
-        with reporting(progress) as report:
-            self._query = _core.ClosestPointQuery(
-                self._mesh._arrays,
-                dict(options),
-                integer(threads, "threads"),
-                report,
-            )
-
-    def __repr__(self) -> str:
-        return f"ClosestPointQuery({self._mesh!r}, sign_rule={self.sign_rule!r})"
-
-    @property
-    def sign_rule(self) -> str:
-        """How signs are found: "normals", "winding" or "none"."""
-        return str(self._query.sign_rule)
-
-    @property
-    def sign_reason(self) -> str:
-        """Why, in one sentence."""
-        return str(self._query.sign_reason)
-
-    def __call__(self, points: Any, *, threads: int = 0, progress: Progress = False) -> ClosestPoints:
-        """Queries of the shape (..., 3)."""
-        rows, shape = points_and_shape(points, "points")
-        with reporting(progress) as report:
-            found, distance, site, triangle = self._query.nearest(rows, integer(threads, "threads"), report)
-        return ClosestPoints(
-            found.reshape((*shape, 3)), distance.reshape(shape), site.reshape(shape), triangle.reshape(shape)
-        )
-
-
-@takes("ClosestPointOptions")
-def closest_points(
-    mesh: Any,
-    points: Any,
-    *,
-    weld: Real | None = None,
-    threads: int = 0,
-    progress: Progress = False,
-    **options: Unpack[ClosestPointOptions],
-) -> ClosestPoints:
-    """The closest point of a mesh, its distance, site and triangle for every query; exact, not interpolated.
-
-    Parameters
-    ----------
-    mesh, weld, threads, progress
-        As for :func:`distance_field`.
-    points : array of the shape (..., 3)
-    **options
-
-    >>> import blum
-    >>> found = blum.closest_points(blum.generate("sphere"), [[0, 0, 3], [0, 0, 0.2]])
-    >>> [round(distance, 2) for distance in found.distance.tolist()]
-    [2.0, -0.8]
-    """
-    query = ClosestPointQuery(mesh, weld=weld, threads=threads, progress=progress, **options)
-    return query(points, threads=threads, progress=progress)
 
 
 def read_field(path: PathLike) -> Field:

@@ -9,8 +9,8 @@ import numpy as np
 
 from . import _core
 from ._arguments import FloatArray, IntArray, Integer, Real, as_array, integer
+from ._closest import closest_points
 from ._errors import InvalidOption
-from ._field import closest_points
 from ._mesh import as_mesh
 from ._options import takes
 from ._progress import Progress, reporting

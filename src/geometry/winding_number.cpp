@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "geometry/boundary_chain.hpp"
+#include "geometry/boundary_cone.hpp"
 #include "geometry/winding_tree.hpp"
 
 namespace blum {
@@ -19,6 +20,9 @@ constexpr double rounding = 1e-11;
 constexpr double far_away = 1e30;
 /// Clusters are accepted in is_inside() while each may be wrong by this much, as a winding number; then by less.
 constexpr double first_tolerance = 3e-2;
+
+/// Triangles per digit after the second one: with fewer the full sum is quicker than estimates.
+constexpr double full_sum_is_quicker = 10000;
 
 /// |w - 1/2| hardly ever reaches this: larger changes are not worth a look.
 constexpr double side_limit = 1e3;
@@ -62,6 +66,9 @@ struct WindingNumber::Data {
   std::size_t triangles = 0;
   WindingTree tree;
   BoundaryChain boundary;
+  BoundaryCone cone;  ///< of a short boundary
+
+  [[nodiscard]] bool is_short() const { return boundary.is_empty() || !boundary.edges().empty(); }
 
   /// The query in the tree's coordinates; nullopt where the winding number is 0 anyway.
   [[nodiscard]] std::optional<Vec3d> scaled(const Vec3d& query) const {
@@ -99,6 +106,7 @@ WindingNumber::WindingNumber(const MeshView& mesh, const SiteTable& sites, const
   data->triangles = mesh.triangles.size();
   data->tree = make_winding_tree(mesh, context);
   data->boundary = BoundaryChain(mesh, sites, data->tree.scale, context);
+  data->cone = BoundaryCone(data->boundary.edges());
   data_ = std::move(data);
 }
 
@@ -139,11 +147,40 @@ WindingNumber::Decision WindingNumber::decide(const Vec3d& query) const {
 WindingNumber::Estimate WindingNumber::estimate(const Vec3d& query, double max_error) const {
   const std::optional<Vec3d> q = data_->scaled(query);
   if (!q) return {0, 1e-60};
-  for (double tolerance = std::min(first_tolerance, max_error); tolerance > 1e-12; tolerance *= 1.0 / 64) {
+  // A rough value wants little more than the first try.
+  const double step = max_error > 0.1 ? 1.0 / 8 : 1.0 / 64;
+  for (double tolerance = std::min(first_tolerance, max_error); tolerance > 1e-12; tolerance *= step) {
     const Estimate w = data_->bounded(*q, tolerance);
     if (w.error <= max_error) return w;
   }
   return {data_->full_sum(*q), rounding};
+}
+
+bool WindingNumber::has_short_boundary() const {
+  return data_->is_short();
+}
+
+std::optional<double> WindingNumber::refine(const Vec3d& query, double rough) const {
+  if (!data_->is_short()) return std::nullopt;
+  if (data_->boundary.is_empty()) return std::round(rough) + 0.0;  // no -0
+  const std::optional<Vec3d> q = data_->scaled(query);
+  if (!q) return 0;
+  const std::optional<double> cone = data_->cone.winding_number(*q);
+  if (!cone) return std::nullopt;
+  return std::round(rough + *cone) - *cone;
+}
+
+WindingNumber::Estimate WindingNumber::value(const Vec3d& query, double max_error) const {
+  if (data_->is_short() && (max_error >= refined_error || data_->boundary.is_empty())) {
+    const Estimate rough = estimate(query, rough_error);
+    if (const std::optional<double> fine = refine(query, rough.value)) {
+      return {*fine, data_->boundary.is_empty() ? 0 : refined_error};
+    }
+  }
+  if (static_cast<double>(data_->triangles) < full_sum_is_quicker * (-std::log10(max_error) - 2)) {
+    return {(*this)(query), rounding};
+  }
+  return estimate(query, max_error);
 }
 
 bool WindingNumber::is_piecewise_constant() const {

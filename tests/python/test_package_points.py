@@ -43,6 +43,20 @@ def test_many_queries_get_what_few_get():
         assert np.array_equal(getattr(many, name)[:5000], np.concatenate([getattr(part, name) for part in few]))
 
 
+def test_winding_numbers_are_those_of_full_sums():
+    random = np.random.default_rng(5)
+    closed, open_ = blum.generate("sphere", frequency=8), blum.generate("organic", frequency=8, holes=2)
+    for mesh, most in ((closed, 1e-11), (open_, 1e-9)):
+        points = random.normal(size=(50, 100, 3))
+        found = blum.winding_number(mesh, points)
+        assert found.shape == (50, 100) and np.abs(found - blum.WindingNumber(mesh)(points)).max() <= most
+    assert set(np.unique(blum.winding_number(closed, points)).tolist()) == {0.0, 1.0}
+    with pytest.raises(blum.InvalidOption, match="max_error"):
+        blum.winding_number(closed, points, max_error=0)
+    with pytest.raises(blum.InvalidOption, match="point 0"):
+        blum.winding_number(closed, [[np.inf, 0, 0]])
+
+
 @pytest.mark.parametrize("blue_noise", [False, True])
 def test_samples_lie_on_the_surface(blue_noise):
     mesh = blum.generate("torus")

@@ -1,4 +1,4 @@
-// Blum: the sides of points that lie close together, by winding numbers of a few. SPDX-License-Identifier: Apache-2.0
+// Blum: sides and winding numbers of points that lie close together, by those of a few. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -30,5 +30,15 @@ inline constexpr std::size_t most_shared = 256;
 /// @param slack   how far the sum of two distances may be off, mesh units.
 /// Allocates nothing.
 void decide_sides(const WindingNumber& winding, std::span<SidedPoint> points, double slack);
+
+/// A point off the surface, and its winding number to within WindingNumber::rough_error.
+struct NumberedPoint {
+  Vec3d at;
+  double distance = 0;  ///< as of SidedPoint
+  double number = 0;
+};
+
+/// Finds rough winding numbers in the same way.
+void find_rough_numbers(const WindingNumber& winding, std::span<NumberedPoint> points, double slack);
 
 }  // namespace blum::sign
