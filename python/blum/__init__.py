@@ -13,7 +13,7 @@ from . import _structs, reference
 from ._axis_graph import axis_graph
 from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
 from ._certificate import solid_rule
-from ._closest import ClosestPointQuery, ClosestPoints, closest_points, winding_number
+from ._closest import ClosestPointQuery, ClosestPoints, NearPrimitives, closest_points, winding_number
 from ._complex import Complex, homology
 from ._core import thread_count
 from ._core import version as __version__
@@ -111,6 +111,7 @@ __all__ = [
     "MedialAxis",
     "MedialComplex",
     "Mesh",
+    "NearPrimitives",
     "NearSamples",
     "NestedComplex",
     "OutOfMemory",

@@ -7,7 +7,7 @@ import threading
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Unpack, cast
+from typing import Any, Literal, Unpack, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -163,20 +163,38 @@ class Field:
         """Wall-clock seconds of each phase."""
         return dict(self._seconds)
 
-    def interpolate(self, points: Any, *, threads: int = 0, progress: Progress = False) -> FloatArray:
+    @overload
+    def interpolate(
+        self, points: Any, *, gradient: Literal[False] = False, threads: int = 0, progress: Progress = False
+    ) -> FloatArray: ...
+    @overload
+    def interpolate(
+        self, points: Any, *, gradient: Literal[True], threads: int = 0, progress: Progress = False
+    ) -> tuple[FloatArray, FloatArray]: ...
+    def interpolate(
+        self, points: Any, *, gradient: bool = False, threads: int = 0, progress: Progress = False
+    ) -> FloatArray | tuple[FloatArray, FloatArray]:
         """The distance at points of the shape (..., 3), trilinear between nodes; NaN outside of the grid.
 
         Not exact, as :func:`closest_points` is: off by up to about half a cell's diagonal next to edges and bisectors.
+        With `gradient` also the gradient of what is trilinear, of the shape (..., 3).
 
         >>> import blum
         >>> field = blum.distance_field(blum.generate("sphere"), resolution=64)
         >>> round(float(field.interpolate([0.5, 0, 0])), 2)
         -0.5
+        >>> distance, gradient = field.interpolate([0.52, 0.01, 0.01], gradient=True)
+        >>> gradient.round(1).tolist()
+        [1.0, 0.0, 0.0]
         """
         rows, shape = points_and_shape(points, "points")
+        count = integer(threads, "threads")
         with reporting(progress) as report:
-            values: FloatArray = self._core.interpolate(rows, integer(threads, "threads"), report)
-        return values.reshape(shape)
+            if gradient:
+                values, slopes = self._core.interpolate_with_gradient(rows, count, report)
+                return values.reshape(shape), slopes.reshape((*shape, 3))
+            only: FloatArray = self._core.interpolate(rows, count, report)
+        return only.reshape(shape)
 
     def zero_surface(self, level: Real = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
         """The surface where the distance equals `level` (mesh units), facing larger values.
