@@ -31,7 +31,8 @@ nb::tuple columns_of(std::vector<ClosestPoint> found) {
                         shown(&ClosestPoint::triangle));
 }
 
-/// (first entry of each query, primitives, sites, distances, points); all but the first are views of one block of memory.
+/// (first entry of each query, primitives, sites, distances, points); all but the first are views of one block of
+/// memory.
 nb::tuple columns_of(NearPrimitives found) {
   const Held<NearestPrimitive> kept = held(std::move(found.found));
   const auto shown = [&](auto member) { return column(*kept.entries, member, kept.owner); };

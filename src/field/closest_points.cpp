@@ -233,9 +233,8 @@ std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> quer
   data_->check(queries);
   std::vector<ClosestPoint> results(queries.size());
   if (const PointSearch* search = data_->search_for(queries.size(), context)) {
-    search->nearest(queries, data_->max_distance, data_->bvh, context, [&](std::span<const PointSearch::Answer> group) {
-      data_->finish(queries, group, results);
-    });
+    search->nearest(queries, data_->max_distance, data_->bvh, context,
+                    [&](std::span<const PointSearch::Answer> group) { data_->finish(queries, group, results); });
     return results;
   }
   const std::vector<std::uint32_t> order = order_along_curve(queries);
@@ -285,9 +284,8 @@ NearPrimitives ClosestPointQuery::within(std::span<const Vec3d> queries, double 
 NearPrimitives ClosestPointQuery::nearest_primitives(std::span<const Vec3d> queries, std::size_t k,
                                                      const Context& context) const {
   data_->check(queries);
-  return gathered(queries, context, [&](const Vec3d& query) {
-    return data_->bvh.nearest_primitives(query, k, data_->max_distance);
-  });
+  return gathered(queries, context,
+                  [&](const Vec3d& query) { return data_->bvh.nearest_primitives(query, k, data_->max_distance); });
 }
 
 std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const Vec3d> queries,

@@ -122,9 +122,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> interpolate(const Field& field, std::span<const Vec3d> points, const Context& context) {
   std::vector<double> values(points.size(), nan);
-  for_each_cell(field, points, context, [&](std::size_t p, const auto& cell, const auto& corners) {
-    values[p] = mixed(corners, cell);
-  });
+  for_each_cell(field, points, context,
+                [&](std::size_t p, const auto& cell, const auto& corners) { values[p] = mixed(corners, cell); });
   return values;
 }
 

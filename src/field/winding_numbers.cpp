@@ -85,9 +85,8 @@ std::vector<double> winding_numbers(const MeshView& mesh, std::span<const Vec3d>
     const Bvh bvh(surface, sites, context);
     const NumbersTogether together(winding, bvh.bounds(), max_error);
     const PointSearch search(surface, sites, context);
-    search.nearest(points, no_limit, bvh, context, [&](std::span<const PointSearch::Answer> group) {
-      together.find(points, group, values);
-    });
+    search.nearest(points, no_limit, bvh, context,
+                   [&](std::span<const PointSearch::Answer> group) { together.find(points, group, values); });
     return values;
   }
   parallel_for(context, points.size(), points_per_range, "winding numbers", [&](const WorkRange& range) {

@@ -19,7 +19,8 @@ class BoundaryCone {
   /// @param edges  of the boundary, as the surface runs along it.
   explicit BoundaryCone(std::span<const BoundaryChain::Edge> edges);
 
-  /// The cone's winding number, good to `error`; nullopt where it may not be: next to the edges of the cone's triangles.
+  /// The cone's winding number, good to `error`; nullopt where it may not be: next to the edges of the cone's
+  /// triangles.
   [[nodiscard]] std::optional<double> winding_number(const Vec3d& scaled_query) const;
   static constexpr double error = 1e-9;
 

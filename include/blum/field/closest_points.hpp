@@ -58,7 +58,8 @@ struct ClosestPoint {
 /// @param mesh  that was asked. @return  nullopt where the point lies on no triangle.
 [[nodiscard]] std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const ClosestPoint& found);
 
-/// What several queries found each: entries first[q] ... first[q + 1] - 1 of query q, by rising distance, then primitive.
+/// What several queries found each: entries first[q] ... first[q + 1] - 1 of query q, by rising distance, then
+/// primitive.
 struct NearPrimitives {
   std::vector<std::size_t> first{0};  ///< one more than queries
   std::vector<NearestPrimitive> found;

@@ -20,8 +20,8 @@ namespace blum {
 /// @return           one per point, in their order; the same for any number of threads.
 /// @throws InvalidMesh; InvalidOption, also for a point that is not finite (named by its index); Cancelled.
 /// Cost: O(n log n) for n triangles; then, of a closed mesh or one with no more than 2,048 edges on its boundary, some
-/// 0.2 to 1 us per point and core and 3 ns for each of these edges; of soups as WindingNumber::estimate() or, where that
-/// is less, 3 ns per triangle.
+/// 0.2 to 1 us per point and core and 3 ns for each of these edges; of soups as WindingNumber::estimate() or, where
+/// that is less, 3 ns per triangle.
 [[nodiscard]] std::vector<double> winding_numbers(const MeshView& mesh, std::span<const Vec3d> points,
                                                   double max_error = 1e-6, const Context& context = {});
 

@@ -66,7 +66,8 @@ class WindingNumber {
   [[nodiscard]] Estimate estimate(const Vec3d& query, double max_error) const;
 
   /// w, exact from a rough value: a cone over the surface's boundary closes it, so that w is a whole number less the
-  /// winding number of the cone, which is summed in full. Of a closed mesh it is the whole number next to the rough one.
+  /// winding number of the cone, which is summed in full. Of a closed mesh it is the whole number next to the rough
+  /// one.
   /// @param rough  off by less than rough_error.
   /// @return       off by no more than refined_error, of a closed mesh exact; nullopt where the boundary has more than
   ///               2,048 edges, and where the query is too close to the boundary or to an edge of the cone.

@@ -1,4 +1,5 @@
-// Blum: sides and winding numbers of points that lie close together, by those of a few. SPDX-License-Identifier: Apache-2.0
+// Blum: sides and winding numbers of points that lie close together, by those of a few. SPDX-License-Identifier:
+// Apache-2.0
 #pragma once
 
 #include <cstddef>

@@ -79,7 +79,9 @@ TEST(Interpolate, HasTheGradientOfATrilinearFunctionOnATurnedGrid) {
   std::vector<Vec3d> expected;
   for (int n = 0; n < 1000; ++n) {
     // Also in layers and on borders, where all cells agree.
-    const auto place = [&](double last) { return n % 3 == 0 ? std::floor(random.uniform() * (last + 1)) : random.uniform() * last; };
+    const auto place = [&](double last) {
+      return n % 3 == 0 ? std::floor(random.uniform() * (last + 1)) : random.uniform() * last;
+    };
     const double i = place(4);
     const double j = place(6);
     const double k = place(3);

@@ -1,5 +1,6 @@
-// Proves that the primitives within a distance, and the closest few, of many points are those of each point alone and of
-// a search of all; that gradients are unit vectors along which the distance grows, and weights give the closest point.
+// Proves that the primitives within a distance, and the closest few, of many points are those of each point alone and
+// of a search of all; that gradients are unit vectors along which the distance grows, and weights give the closest
+// point.
 #include <gtest/gtest.h>
 
 #include <algorithm>

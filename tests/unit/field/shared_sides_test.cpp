@@ -1,5 +1,5 @@
-// Proves that points that share answers get the sides that their own winding numbers decide: near rims of holes, next to
-// the surface and on it, between sheets that cross, in soups, at any scale.
+// Proves that points that share answers get the sides that their own winding numbers decide: near rims of holes, next
+// to the surface and on it, between sheets that cross, in soups, at any scale.
 #include "field/sign/shared_sides.hpp"
 
 #include <gtest/gtest.h>
