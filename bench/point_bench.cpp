@@ -53,7 +53,7 @@ void check_points(benchmark::State& state, const Shape& input, const std::vector
     const double distance = input.brute_force().nearest(points[k]).distance;
     const bool is_far = std::abs(std::abs(found[k].distance) - distance) > tolerance;
     const bool is_inside = is_signed && reference::winding_number(input.mesh, points[k]) > 0.5;
-    if (is_far || (distance > tolerance && is_inside != found[k].distance < 0)) {
+    if (is_far || (distance > tolerance && is_inside != (found[k].distance < 0))) {
       return state.SkipWithError("a wrong distance");
     }
   }

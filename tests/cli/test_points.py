@@ -82,7 +82,7 @@ def test_several_files_of_points_give_an_output_each(box, tmp_path):
     np.save(tmp_path / "other" / "a.npy", np.zeros((1, 3)))
     _, error = run("query", box, files[0], tmp_path / "other" / "a.npy", "-o", tmp_path / "e.npz", status=2)
     assert "e-a.npz" in error
-    _, error = run("query", box, files[0], tmp_path / "missing.npy", "-o", tmp_path / "e.npz", status=3)
+    _, error = run("query", box, files[0], tmp_path / "missing.npy", "-o", tmp_path / "e.npz", status=1)
     assert "missing.npy" in error and not [name for name in names(tmp_path) if name.startswith("e")]
 
 
