@@ -166,8 +166,8 @@ void answer(PointFile& file, const ClosestPointQuery& query, const Arguments& a,
 }
 
 Json json_of(const PointFile& file) {
-  return {{"file", file.points.string()},  {"output", file.output.string()}, {"points", file.facts.points},
-          {"found", file.facts.found},     {"inside", file.facts.inside},    {"distance", file.facts.json()}};
+  return {{"file", file.points.string()}, {"output", file.output.string()}, {"points", file.facts.points},
+          {"found", file.facts.found},    {"inside", file.facts.inside},    {"distance", file.facts.json()}};
 }
 
 std::string text_of(const Arguments& a, const MeshFile& mesh, const ClosestPointQuery& query,
@@ -244,13 +244,13 @@ void add_query_command(const CommandLine& line) {
       line.app.add_subcommand("query", "Exact signed distances of any points from a mesh, with the closest points");
   command->add_option("MESH", a->mesh, extensions_help({FileContent::mesh}, FileAccess::read))->required();
   command
-      ->add_option("POINTS", a->points,
-                   join_words(readable_point_extensions(), "or") + "; several give an output each")
+      ->add_option("POINTS", a->points, join_words(readable_point_extensions(), "or") + "; several give an output each")
       ->required();
   command
-      ->add_option("-o,--output", a->output,
-                   ".npz .ply .vtp .csv: the points with columns distance, gradient, closest, site, triangle; of several "
-                   "POINTS files OUT-NAME, by their names")
+      ->add_option(
+          "-o,--output", a->output,
+          ".npz .ply .vtp .csv: the points with columns distance, gradient, closest, site, triangle; of several "
+          "POINTS files OUT-NAME, by their names")
       ->required()
       ->type_name("FILE");
   a->options.add_to(*command);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "blum/core/inline_list.hpp"
@@ -50,42 +51,61 @@ struct AskNumber {
   }
 };
 
-/// Answers of a group that others of it may share.
+/// Answers of a group, which those of it that have none yet may share.
 template <class Ask>
 class SharedAnswers {
  public:
   using Point = typename Ask::Point;
   using Value = decltype(std::declval<Ask>()(Vec3d{}).value);
 
-  SharedAnswers(const Ask& ask, double gradient, double slack)
-      : ask_(ask), gradient_(gradient * (1 + 1e-9)), slack_(slack) {}
+  SharedAnswers(const Ask& ask, std::span<const Point> points, double gradient, double slack)
+      : ask_(ask), points_(points), gradient_(gradient * (1 + 1e-9)), slack_(slack) {
+    reach_.fill(-HUGE_VAL);
+  }
 
-  [[nodiscard]] Value of(const Point& point) {
-    for (std::size_t k = known_.size(); k-- > 0;) {
-      const Known& one = known_[k];
-      const double free = std::min(one.distance + point.distance - slack_, one.reach);
-      if (free > 0 && squared_length(point.at - one.at) < free * free * (1 - 1e-12)) return one.value;
+  /// The answer of a point; once for each.
+  [[nodiscard]] Value of(std::size_t k) {
+    if (const std::optional<std::size_t> other = sharing(k)) {
+      const double way = length(points_[k].at - points_[*other].at) * (1 + 1e-12);
+      reach_[k] = gradient_ > 0 ? reach_[*other] - way : HUGE_VAL;
+      return value_[k] = value_[*other];
     }
-    const Answer<Value> found = ask_(point.at);
-    if (!known_.is_full()) {
-      const double reach = gradient_ > 0 ? found.margin / gradient_ : HUGE_VAL;
-      known_.push_back({point.at, point.distance, reach, found.value});
-    }
-    return found.value;
+    const Answer<Value> found = ask_(points_[k].at);
+    if (!asked_.is_full()) asked_.push_back(static_cast<std::uint16_t>(k));
+    reach_[k] = gradient_ > 0 ? found.margin / gradient_ : HUGE_VAL;
+    return value_[k] = found.value;
   }
 
  private:
-  struct Known {
-    Vec3d at;
-    double distance = 0;
-    double reach = 0;  ///< as far as this the answer holds, unless a triangle lies between
-    Value value;
-  };
+  /// How far in the order of the points neighbours are looked for.
+  static constexpr std::size_t most_steps = 12;
+
+  /// A point that has an answer, which holds here, too: neighbours first, then those that asked.
+  [[nodiscard]] std::optional<std::size_t> sharing(std::size_t k) const {
+    for (std::size_t step = 1; step <= most_steps; ++step) {
+      if (k >= step && holds(k - step, k)) return k - step;
+      if (k + step < points_.size() && holds(k + step, k)) return k + step;
+    }
+    for (std::size_t n = asked_.size(); n-- > 0;) {
+      if (holds(asked_[n], k)) return asked_[n];
+    }
+    return std::nullopt;
+  }
+
+  /// Whether the answer of one point is that of another.
+  [[nodiscard]] bool holds(std::size_t from, std::size_t to) const {
+    const double free = std::min(points_[from].distance + points_[to].distance - slack_, reach_[from]);
+    return free > 0 && squared_length(points_[to].at - points_[from].at) < free * free * (1 - 1e-12);
+  }
 
   const Ask& ask_;
+  std::span<const Point> points_;
   double gradient_;
   double slack_;
-  InlineList<Known, 48> known_;
+  /// Of each point: as far as this its answer holds, unless a triangle lies between; negative where it has none yet.
+  std::array<double, most_shared> reach_;
+  std::array<Value, most_shared> value_;
+  InlineList<std::uint16_t, 64> asked_;
 };
 
 template <class Point>
@@ -116,8 +136,8 @@ void share(const Ask& ask, std::span<typename Ask::Point> points, double slack) 
   std::sort(order.begin(), end, [&](std::uint16_t a, std::uint16_t b) {
     return points[a].distance > points[b].distance || (points[a].distance == points[b].distance && a < b);
   });
-  SharedAnswers<Ask> answers(ask, gradient, slack);
-  for (auto k = order.begin(); k != end; ++k) Ask::take(points[*k], answers.of(points[*k]));
+  SharedAnswers<Ask> answers(ask, points, gradient, slack);
+  for (auto k = order.begin(); k != end; ++k) Ask::take(points[*k], answers.of(*k));
 }
 
 }  // namespace

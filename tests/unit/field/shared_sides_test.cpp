@@ -93,11 +93,13 @@ TEST(SharedSides, AreThoseOfEachPointInOpenings) {
   const Bvh bvh(bowl, sites);
   const WindingNumber winding(bowl);
   Random random(11);
-  for (const double radius : {0.1, 0.2, 0.4}) {
+  // In balls; and in rows across the opening, where each could take its answer from the one before.
+  for (const double radius : {0.1, 0.2, 0.4, -0.1, -0.2, -0.4}) {
     std::vector<sign::SidedPoint> points;
     std::size_t inside = 0;
     for (std::size_t k = 0; k < sign::most_shared; ++k) {
-      const Vec3d at = random.in_ball() * radius;
+      const double height = radius * (2.0 * static_cast<double>(k) / (sign::most_shared - 1) - 1);
+      const Vec3d at = radius > 0 ? random.in_ball() * radius : random.in_ball() * 0.01 + Vec3d{0, 0, height};
       points.push_back({at, bvh.nearest(at)->distance, false});
     }
     sign::decide_sides(winding, points, 1e-12);
