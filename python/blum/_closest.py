@@ -102,9 +102,7 @@ class ClosestPointQuery:
             found.reshape((*shape, 3)), distance.reshape(shape), site.reshape(shape), triangle.reshape(shape)
         )
 
-    def within(
-        self, points: Any, distance: Real, *, threads: int = 0, progress: Progress = False
-    ) -> NearPrimitives:
+    def within(self, points: Any, distance: Real, *, threads: int = 0, progress: Progress = False) -> NearPrimitives:
         """All triangles, segments and points of the mesh within a distance of points of the shape (..., 3).
 
         >>> import blum
@@ -138,8 +136,8 @@ class ClosestPointQuery:
     def refit(self, vertices: Any, *, threads: int = 0, progress: Progress = False) -> None:
         """Moves the vertices of the mesh: answers are those of a new query, which takes longer to make.
 
-        Must not run beside calls. Unsigned it takes some 2 ms for 100,000 triangles on two cores; signs are planned anew, as
-        in a new query.
+        Must not run beside calls. Unsigned it takes some 2 ms for 100,000 triangles on two cores; signs are planned
+        anew, as in a new query.
 
         Parameters
         ----------
@@ -195,7 +193,7 @@ def winding_number(
     threads: int = 0,
     progress: Progress = False,
 ) -> FloatArray:
-    """The generalized winding number of a mesh at any points, which share what they can; of closed meshes whole numbers.
+    """The generalized winding number of a mesh at any points, which share what they can; whole for closed meshes.
 
     For values one by one, and for sides, see :class:`WindingNumber`.
 

@@ -34,8 +34,8 @@ class SignedDistances:
 
     @cached_property
     def barycentric(self) -> FloatArray:
-        """(..., 3): weights of the triangle's corners, of which the closest point is the mean; not a number where there is
-        no triangle. Computed when first asked for, with the mesh's vertices as they are then."""
+        """(..., 3): weights of the triangle's corners, of which the closest point is the mean; not a number where there
+        is no triangle. Computed when first asked for, with the mesh's vertices as they are then."""
         rows, shape = points_and_shape(self.point, "points")
         site, triangle = (np.ascontiguousarray(ids.reshape(-1)) for ids in (self.site, self.triangle))
         weights: FloatArray = _core.barycentric(self._mesh._arrays, rows, site, triangle)
