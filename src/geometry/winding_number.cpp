@@ -19,7 +19,11 @@ constexpr double rounding = 1e-11;
 /// Beyond this many sizes of the mesh its winding number is 0 for every purpose (below 1e-60).
 constexpr double far_away = 1e30;
 /// Clusters are accepted in is_inside() while each may be wrong by this much, as a winding number; then by less.
-constexpr double first_tolerance = 3e-2;
+constexpr double first_tolerance = 1.5e-2;
+/// The next one: what the first does not settle mostly wants little more.
+constexpr double lower(double tolerance) {
+  return tolerance * (tolerance > 1e-3 ? 1.0 / 8 : 1.0 / 64);
+}
 
 /// Triangles per digit after the second one: with fewer the full sum is quicker than estimates.
 constexpr double full_sum_is_quicker = 10000;
@@ -136,7 +140,7 @@ bool WindingNumber::is_inside(const Vec3d& query) const {
 WindingNumber::Decision WindingNumber::decide(const Vec3d& query) const {
   const std::optional<Vec3d> q = data_->scaled(query);
   if (!q) return {false, 0.5};
-  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance *= 1.0 / 64) {
+  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance = lower(tolerance)) {
     const Estimate w = data_->bounded(*q, tolerance);
     const double distance = std::abs(w.value - 0.5);
     if (distance > w.error) return {w.value > 0.5, distance - w.error};
@@ -147,9 +151,7 @@ WindingNumber::Decision WindingNumber::decide(const Vec3d& query) const {
 WindingNumber::Estimate WindingNumber::estimate(const Vec3d& query, double max_error) const {
   const std::optional<Vec3d> q = data_->scaled(query);
   if (!q) return {0, 1e-60};
-  // A rough value wants little more than the first try.
-  const double step = max_error > 0.1 ? 1.0 / 8 : 1.0 / 64;
-  for (double tolerance = std::min(first_tolerance, max_error); tolerance > 1e-12; tolerance *= step) {
+  for (double tolerance = std::min(first_tolerance, max_error); tolerance > 1e-12; tolerance = lower(tolerance)) {
     const Estimate w = data_->bounded(*q, tolerance);
     if (w.error <= max_error) return w;
   }
@@ -200,7 +202,7 @@ std::optional<bool> WindingNumber::side(const Vec3d& query, double change) const
   if (!(change < side_limit)) return std::nullopt;
   const std::optional<Vec3d> q = data_->scaled(query);
   if (!q) return change < 0.5 ? std::optional(false) : std::nullopt;
-  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance *= 1.0 / 64) {
+  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance = lower(tolerance)) {
     const Estimate w = data_->bounded(*q, tolerance);
     const double margin = std::abs(w.value - 0.5);
     if (margin > w.error + change) return w.value > 0.5;
