@@ -101,6 +101,7 @@ struct ClosestPointQuery::Data {
     moved.vertices = vertices;
     validate(moved);
     search_.reset();
+    is_prepared_ = false;
     std::copy(vertices.begin(), vertices.end(), mesh.vertices.begin());
     bvh.refit(mesh.vertices, context);
     measure();
@@ -180,10 +181,16 @@ struct ClosestPointQuery::Data {
   /// The search for so many queries; null where they are not worth one. It is built by the first that are.
   [[nodiscard]] const PointSearch* search_for(std::size_t queries, const Context& context) const {
     const std::scoped_lock lock(search_mutex_);
+    if (is_prepared_) return queries >= PointSearch::fewest ? search_.get() : nullptr;
     const bool is_worth_it =
         search_ ? PointSearch::is_worth_using(queries, sites) : PointSearch::is_worth_building(queries, sites);
     if (is_worth_it && !search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
     return is_worth_it ? search_.get() : nullptr;
+  }
+
+  void prepare(const Context& context) {
+    if (!search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
+    is_prepared_ = true;
   }
 
   void check(std::span<const Vec3d> queries) const {
@@ -202,6 +209,7 @@ struct ClosestPointQuery::Data {
  private:
   mutable std::mutex search_mutex_;
   mutable std::unique_ptr<const PointSearch> search_;
+  bool is_prepared_ = false;  ///< then there is a search, for any number of queries from PointSearch::fewest on
 };
 
 ClosestPointQuery::ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options, const Context& context) {
@@ -227,6 +235,10 @@ ClosestPoint ClosestPointQuery::nearest(const Vec3d& query) const {
 
 void ClosestPointQuery::refit(std::span<const Vec3d> vertices, const Context& context) {
   data_->refit(vertices, context);
+}
+
+void ClosestPointQuery::prepare_for_many(const Context& context) {
+  data_->prepare(context);
 }
 
 std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> queries, const Context& context) const {

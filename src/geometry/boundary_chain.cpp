@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "blum/geometry/space_order.hpp"
 #include "geometry/lanes.hpp"
-#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {

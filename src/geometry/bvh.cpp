@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/space_order.hpp"
 #include "geometry/box_scale.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/primitive_block.hpp"
-#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {
