@@ -332,10 +332,10 @@ std::optional<NearestPrimitive> Bvh::nearest_wanted(const Vec3d& query, Function
   if (!q) return best;
   const double furthest = max_distance * data.scale + q->slack;
   data.for_each_candidate(*q, furthest, [&](std::size_t leaf, std::size_t lane, double limit) {
-    if (lane >= data.lanes_of(leaf)) return limit;
+    // Asking is quicker than looking.
+    if (lane >= data.lanes_of(leaf) || !is_wanted(data.order[leaf * lanes + lane])) return limit;
     const NearestPrimitive found = data.closest(leaf, lane, q->point);
-    const bool is_better = found.distance <= max_distance && (!best || is_nearer(found, *best));
-    if (!is_better || !is_wanted(found.primitive)) return limit;
+    if (found.distance > max_distance || (best && !is_nearer(found, *best))) return limit;
     best = found;
     return std::min(limit, found.distance * data.scale + q->slack);
   });

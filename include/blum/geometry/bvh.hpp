@@ -96,7 +96,7 @@ class Bvh {
       const Context& context = {}) const;
 
   /// The closest one of the primitives that are wanted; of several at the same computed distance the first.
-  /// @param is_wanted  asked of primitives that are closer than those found before.
+  /// @param is_wanted  asked of primitives that may be closer than those found before, more than once each.
   [[nodiscard]] std::optional<NearestPrimitive> nearest_wanted(
       const Vec3d& query, FunctionRef<bool(std::uint32_t)> is_wanted,
       double max_distance = std::numeric_limits<double>::infinity()) const;
