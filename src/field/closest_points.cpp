@@ -86,6 +86,7 @@ struct ClosestPointQuery::Data {
         mode(options.sign),
         sites(mesh, context),
         bvh(mesh, sites, context),
+        planner(mode == SignMode::automatic ? bvh.order() : std::span<const std::uint32_t>{}),
         plan(planner.plan(mode, mesh, sites, context)),
         sides(plan, mesh, sites, bvh, context),
         max_distance(checked_limit(options)) {
