@@ -141,10 +141,16 @@ struct Bvh::Data {
     visit_near(tree, query.point, limit, [&](std::size_t leaf) {
       double distances[lanes];
       approximate_distances(leaves[leaf], query.point, distances);
+      unsigned within = 0;  // without branches, which could not be predicted
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        within |= static_cast<unsigned>(distances[lane] <= limit) << lane;
+      }
+      if (within == 0) return limit;
       // The most promising one first: it mostly rules the others out.
-      const std::size_t first = static_cast<std::size_t>(std::min_element(distances, distances + lanes) - distances);
-      for (std::size_t i = 0; i < lanes; ++i) {
-        const std::size_t lane = first ^ i;
+      std::size_t first = 0;
+      for (std::size_t lane = 1; lane < lanes; ++lane) first = distances[lane] < distances[first] ? lane : first;
+      for (limit = offer(leaf, first, limit), within &= ~(1U << first); within != 0; within &= within - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(within));
         if (distances[lane] <= limit) limit = offer(leaf, lane, limit);
       }
       return limit;
@@ -287,6 +293,9 @@ const Box3& Bvh::bounds() const {
 }
 std::size_t Bvh::size() const {
   return data_->order.size();
+}
+std::span<const std::uint32_t> Bvh::order() const {
+  return data_->order;
 }
 
 std::optional<NearestSite> Bvh::nearest(const Vec3d& query, double max_distance) const {

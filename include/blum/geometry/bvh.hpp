@@ -150,6 +150,8 @@ class Bvh {
   [[nodiscard]] const Box3& bounds() const;
   /// How many primitives there are.
   [[nodiscard]] std::size_t size() const;
+  /// All of them, in an order in which neighbours in space come together (as they were when the hierarchy was built).
+  [[nodiscard]] std::span<const std::uint32_t> order() const;
 
  private:
   struct Data;
