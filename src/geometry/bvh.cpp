@@ -294,9 +294,6 @@ const Box3& Bvh::bounds() const {
 std::size_t Bvh::size() const {
   return data_->order.size();
 }
-std::span<const std::uint32_t> Bvh::order() const {
-  return data_->order;
-}
 
 std::optional<NearestSite> Bvh::nearest(const Vec3d& query, double max_distance) const {
   const Data& data = *data_;

@@ -143,15 +143,14 @@ class Bvh {
   /// Whether the box of a primitive may touch this box: false only if the box is free of the mesh.
   [[nodiscard]] bool may_touch(const Box3& box) const;
 
-  /// All primitives, in an order in which every aligned run of 8, 64, 512, ... lies in a compact box of its own.
+  /// All primitives, in an order in which every aligned run of 8, 64, 512, ... lies in a compact box of its own
+  /// (as they were when the hierarchy was built).
   [[nodiscard]] std::span<const std::uint32_t> order() const;
 
   /// The box around all primitives, mesh units.
   [[nodiscard]] const Box3& bounds() const;
   /// How many primitives there are.
   [[nodiscard]] std::size_t size() const;
-  /// All of them, in an order in which neighbours in space come together (as they were when the hierarchy was built).
-  [[nodiscard]] std::span<const std::uint32_t> order() const;
 
  private:
   struct Data;
