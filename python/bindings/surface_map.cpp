@@ -104,6 +104,61 @@ void bind_maps(nb::module_& m) {
       nb::arg("solid"), nb::arg("options"), nb::arg("thickness"), nb::arg("threads"), nb::arg("progress").none());
 }
 
+/// An atlas of places of the corners of triangles, [t, 3, 2], in texels.
+SurfaceAtlas atlas_of(const MeshView& mesh, const In<double, nb::shape<-1, 3, 2>>& places, std::uint32_t width,
+                      std::uint32_t height, const Context& context) {
+  const std::size_t count = 3 * places.shape(0);
+  std::vector<TexturePlace> coordinates(count);
+  std::vector<Triangle> corners(places.shape(0));
+  for (std::size_t k = 0; k < count; ++k) {
+    coordinates[k] = {places.data()[2 * k], places.data()[2 * k + 1]};
+    corners[k / 3][k % 3] = static_cast<std::uint32_t>(k);
+  }
+  return surface_atlas_from(mesh, coordinates, corners, width, height, context);
+}
+
+void bind_mapper(nb::module_& m) {
+  nb::class_<SurfaceMapper>(m, "SurfaceMapper")
+      .def(
+          "__init__",
+          [](SurfaceMapper* self, const MeshArrays& target, const MeshArrays& other, const nb::dict& given,
+             const std::optional<In<double, nb::shape<-1, 3, 2>>>& places, std::uint32_t width, std::uint32_t height,
+             int threads, nb::object progress) {
+            const MeshView view = target.view();
+            const MeshView facing = other.view();
+            const auto options = options_from<SurfaceMapOptions>(given);
+            new (self) SurfaceMapper(run({threads, std::move(progress)}, [&](const Context& context) {
+              if (!places) return SurfaceMapper(view, facing, options, context);
+              return SurfaceMapper(view, atlas_of(view, *places, width, height, context), facing, options, context);
+            }));
+          },
+          nb::arg("target"), nb::arg("other"), nb::arg("options"), nb::arg("places").none(), nb::arg("width"),
+          nb::arg("height"), nb::arg("threads"), nb::arg("progress").none())
+      .def(
+          "move_target", [](SurfaceMapper& self, const PointsIn& to) { self.move_target(vectors(to)); },
+          nb::arg("vertices").noconvert())
+      .def(
+          "move_other",
+          [](SurfaceMapper& self, const PointsIn& to, int threads) {
+            run_call({threads, nb::none()}, [&](const Context& context) { self.move_other(vectors(to), context); });
+          },
+          nb::arg("vertices").noconvert(), nb::arg("threads"))
+      .def(
+          "replace_other",
+          [](SurfaceMapper& self, const MeshArrays& other, int threads) {
+            const MeshView view = other.view();
+            run_call({threads, nb::none()}, [&](const Context& context) { self.replace_other(view, context); });
+          },
+          nb::arg("other"), nb::arg("threads"))
+      .def(
+          "map",
+          [](const SurfaceMapper& self, int threads, nb::object progress) {
+            return dict_of(
+                run({threads, std::move(progress)}, [&](const Context& context) { return self.map(context); }));
+          },
+          nb::arg("threads"), nb::arg("progress").none());
+}
+
 void bind_distances(nb::module_& m) {
   m.def(
       "hausdorff_distance",
@@ -150,6 +205,7 @@ void bind_surface_map(nb::module_& m) {
   bind_struct<HausdorffDistance>(m);
   bind_struct<SurfaceDeviation>(m);
   bind_maps(m);
+  bind_mapper(m);
   bind_distances(m);
   m.def(
       "thickness",

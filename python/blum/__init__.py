@@ -77,6 +77,7 @@ from ._solid import CellularModel, Solid, SolidBody
 from ._structs import *  # noqa: F403
 from ._surface_map import (
     SurfaceMap,
+    SurfaceMapper,
     Thickness,
     directed_hausdorff_distance,
     hausdorff_distance,
@@ -140,6 +141,7 @@ __all__ = [
     "Solid",
     "SolidBody",
     "SurfaceMap",
+    "SurfaceMapper",
     "SurfaceSamples",
     "Thickness",
     "TriangleDistances",

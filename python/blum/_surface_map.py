@@ -12,7 +12,18 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import FloatArray, IntArray, PathLike, Real, integer, number, points_and_shape
+from ._arguments import (
+    FloatArray,
+    IntArray,
+    Integer,
+    PathLike,
+    Real,
+    as_array,
+    float_rows,
+    integer,
+    number,
+    points_and_shape,
+)
 from ._mesh import Mesh, Sites, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
@@ -133,6 +144,95 @@ def surface_distance_map(
             of._arrays, joined._arrays, dict(options), integer(threads, "threads"), report
         )
     return SurfaceMap(**found, mesh=of, _parts=parts, _joined=joined)
+
+
+@takes("SurfaceMapOptions")
+class SurfaceMapper:
+    """Maps of surfaces that move: the texture stays.
+
+    Parameters
+    ----------
+    target, other : meshes
+        As for :func:`surface_distance_map`.
+    texture_coordinates : array (t, 3, 2), optional
+        Where the corners of each triangle of the target are in a texture that it has, 0 to 1, v down (OBJ files have 1
+        - v). Triangles must not overlap. Default: a texture of its own.
+    texture_size : (int, int), optional
+        Width and height of that texture, in texels.
+    weld, threads, progress
+        As for :func:`distance_field`.
+    **options
+
+    >>> import blum
+    >>> part, ball = blum.generate("box"), blum.generate("sphere", radius=2)
+    >>> mapper = blum.SurfaceMapper(part, ball, texel=0.1)
+    >>> before = mapper.map().distance
+    >>> mapper.move_target(part.vertices * 0.5)
+    >>> bool((mapper.map().faces[:, 0] > 1).all())
+    True
+    """
+
+    def __init__(
+        self,
+        target: Any,
+        other: Any,
+        *,
+        texture_coordinates: Any = None,
+        texture_size: tuple[Integer, Integer] = (1024, 1024),
+        weld: Real | None = None,
+        threads: int = 0,
+        progress: Progress = False,
+        **options: Unpack[SurfaceMapOptions],
+    ) -> None:
+        self._target = as_mesh(target, name="target", weld=weld)
+        self._other = as_mesh(other, name="other", weld=weld)
+        width, height = (integer(side, "texture_size") for side in texture_size)
+        places = None if texture_coordinates is None else _places(texture_coordinates, width, height)
+        with reporting(progress) as report:
+            self._mapper = _core.SurfaceMapper(
+                self._target._arrays,
+                self._other._arrays,
+                dict(options),
+                places,
+                width,
+                height,
+                integer(threads, "threads"),
+                report,
+            )
+
+    def move_target(self, vertices: Any) -> None:
+        """New places of the vertices of the target, as many as it has."""
+        moved = float_rows(vertices, "vertices")
+        self._mapper.move_target(moved)
+        mesh = self._target
+        self._target = Mesh(moved.copy(), mesh.triangles, mesh.segments, mesh.points)
+
+    def move_other(self, vertices: Any, *, threads: int = 0) -> None:
+        """New places of the vertices of the other mesh, as many as it has."""
+        moved = float_rows(vertices, "vertices")
+        self._mapper.move_other(moved, integer(threads, "threads"))
+        mesh = self._other
+        self._other = Mesh(moved.copy(), mesh.triangles, mesh.segments, mesh.points)
+
+    def replace_other(self, other: Any, *, weld: Real | None = None, threads: int = 0) -> None:
+        """Another mesh instead of the other one."""
+        mesh = as_mesh(other, name="other", weld=weld)
+        self._mapper.replace_other(mesh._arrays, integer(threads, "threads"))
+        self._other = mesh
+
+    def map(self, *, threads: int = 0, progress: Progress = False) -> SurfaceMap:
+        """The map of the meshes as they are now."""
+        with reporting(progress) as report:
+            found = self._mapper.map(integer(threads, "threads"), report)
+        return SurfaceMap(**found, mesh=self._target, _parts=(self._other,), _joined=self._other)
+
+
+def _places(coordinates: Any, width: int, height: int) -> FloatArray:
+    """Texture coordinates in texels."""
+    array = as_array(coordinates, "texture_coordinates")
+    if array.ndim != 3 or array.shape[1:] != (3, 2):
+        raise ValueError(f"texture_coordinates has the shape {array.shape}, but must have (triangles, 3, 2)")
+    return np.ascontiguousarray(array * np.array([width, height]), dtype=np.float64)
 
 
 @takes("SurfaceMapOptions", "sign")

@@ -17,12 +17,7 @@ using Places = std::array<std::array<float, 2>, 3>;
 std::vector<Places> texture_coordinates(const SurfaceAtlas& atlas) {
   std::vector<Places> out;
   out.reserve(atlas.corners.size());
-  for (const std::array<TexturePlace, 3>& corners : atlas.corners) {
-    Places& places = out.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      places[k] = {static_cast<float>(corners[k].x / atlas.width), static_cast<float>(corners[k].y / atlas.height)};
-    }
-  }
+  for (std::uint32_t t = 0; t < atlas.corners.size(); ++t) out.push_back(atlas.texture_coordinates(TriangleId(t)));
   return out;
 }
 

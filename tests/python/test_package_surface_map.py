@@ -65,6 +65,35 @@ def test_maps_are_written(organic, torus, tmp_path):
         found.write(tmp_path / "none" / "map.png")
 
 
+def test_meshes_that_move_keep_their_texture(organic, torus):
+    mapper = blum.SurfaceMapper(organic, torus, texel=0.1)
+    first = mapper.map()
+    mapper.move_target(organic.vertices * 1.5)
+    mapper.move_other(torus.vertices + np.array([0, 0, 2]))
+    second = mapper.map()
+    assert np.array_equal(first.triangle, second.triangle) and np.array_equal(first.corners, second.corners)
+    moved = blum.Mesh(torus.vertices + np.array([0, 0, 2]), torus.triangles)
+    exact = blum.closest_points(moved, organic.vertices * 1.5, sign="none").distance
+    assert np.array_equal(second.vertex_distance, exact)
+    mapper.replace_other(blum.generate("sphere"))
+    assert not np.array_equal(mapper.map().vertex_distance, exact)
+    with pytest.raises(blum.InvalidMesh):
+        mapper.move_target(torus.vertices)
+
+
+def test_given_texture_coordinates(torus):
+    square = blum.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    places = np.array([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.9]])[square.triangles]
+    found = blum.SurfaceMapper(square, torus, texture_coordinates=places, texture_size=(64, 32)).map()
+    assert found.distance.shape == (32, 64) and np.allclose(found.texture_coordinates, places)
+    exact = blum.closest_points(torus, [[0.5, 0.5, 0]], sign="none").distance[0]
+    assert abs(found.distance[16, 32] - exact) <= found.error.max() < 0.1
+    with pytest.raises(blum.InvalidOption, match="overlap|cover"):
+        blum.SurfaceMapper(square, torus, texture_coordinates=places[[0, 0]], texture_size=(64, 64))
+    with pytest.raises(ValueError, match="shape"):
+        blum.SurfaceMapper(square, torus, texture_coordinates=places[0])
+
+
 def test_several_others_are_told_apart(organic):
     left = blum.generate("sphere", frequency=3)
     right = blum.Mesh(left.vertices + np.array([6, 0, 0]), left.triangles)
