@@ -88,7 +88,7 @@ def test_given_texture_coordinates(torus):
     assert found.distance.shape == (32, 64) and np.allclose(found.texture_coordinates, places)
     exact = blum.closest_points(torus, [[0.5, 0.5, 0]], sign="none").distance[0]
     assert abs(found.distance[16, 32] - exact) <= found.error.max() < 0.1
-    with pytest.raises(blum.InvalidOption, match="overlap|cover"):
+    with pytest.raises(blum.InvalidOption, match="cover the same texel"):
         blum.SurfaceMapper(square, torus, texture_coordinates=places[[0, 0]], texture_size=(64, 64))
     with pytest.raises(ValueError, match="shape"):
         blum.SurfaceMapper(square, torus, texture_coordinates=places[0])
