@@ -1,8 +1,8 @@
 #include "point_columns.hpp"
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 namespace blum::cli {
 
@@ -18,15 +18,13 @@ Complex points_with_distances(std::span<const Vec3d> points, std::span<const Clo
   const auto triangle = out.vertex_columns.add<std::int32_t>("triangle");
   for (std::size_t k = 0; k < points.size(); ++k) {
     const ClosestPoint& one = found[k];
-    const double rounding = 1e-13 * (length(points[k]) + length(one.point));
+    const std::optional<Vec3d> direction = blum::gradient(points[k], one);
     distance[k] = one.distance;
     site[k] = one.site.to_file();
     triangle[k] = one.triangle.to_file();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       closest[3 * k + axis] = one.point[axis];
-      if (std::abs(one.distance) > rounding && std::isfinite(one.distance)) {
-        gradient[3 * k + axis] = (points[k][axis] - one.point[axis]) / one.distance + 0.0;  // no -0
-      }
+      if (direction) gradient[3 * k + axis] = (*direction)[axis];
     }
   }
   return out;

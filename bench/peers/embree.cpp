@@ -7,6 +7,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "blum/core/parallel.hpp"
+
 namespace blum::bench {
 namespace {
 
@@ -137,6 +139,26 @@ std::optional<PeerField> embree_field(const MeshView& mesh, const GridSpec& grid
   return result;
 }
 
+std::optional<PeerPoints> embree_points(const MeshView& mesh, std::span<const Vec3d> points, const Context& context) {
+  const Vec3d centre = bounds(mesh).center();
+  Scene scene;
+  scene.build(mesh, centre, thread_count(context));
+  PeerPoints out;
+  out.distance.resize(points.size());
+  out.times = time_runs([&] {
+    parallel_for(context, points.size(), 512, "", [&](const WorkRange& range) {
+      Search search{.triangles = scene.corners.data()};
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        const Vec3d p = points[i] - centre;
+        search.point = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+        scene.closest(search);
+        out.distance[i] = std::sqrt(search.squared);
+      }
+    });
+  });
+  return out;
+}
+
 }  // namespace blum::bench
 
 #else
@@ -144,6 +166,10 @@ std::optional<PeerField> embree_field(const MeshView& mesh, const GridSpec& grid
 namespace blum::bench {
 
 std::optional<PeerField> embree_field(const MeshView&, const GridSpec&, const Context&) {
+  return std::nullopt;
+}
+
+std::optional<PeerPoints> embree_points(const MeshView&, std::span<const Vec3d>, const Context&) {
   return std::nullopt;
 }
 

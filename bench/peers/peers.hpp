@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -30,6 +31,14 @@ struct PeerField {
 
 /// Embree 3 point queries. Each starts from the distance to the triangle that the node before it found.
 [[nodiscard]] std::optional<PeerField> embree_field(const MeshView& mesh, const GridSpec& grid, const Context& context);
+
+/// Distances of scattered points by Embree 3 point queries, threaded; of runs in turn the median.
+struct PeerPoints {
+  std::vector<float> distance;
+  Times times;  ///< without building
+};
+[[nodiscard]] std::optional<PeerPoints> embree_points(const MeshView& mesh, std::span<const Vec3d> points,
+                                                      const Context& context);
 
 /// CGAL's AABB tree over Simple_cartesian<double>, with the point that the node before found as the hint.
 [[nodiscard]] std::optional<PeerField> cgal_field(const MeshView& mesh, const GridSpec& grid, const Context& context);

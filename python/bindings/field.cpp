@@ -110,6 +110,16 @@ void bind_field_class(nb::module_& m) {
           },
           nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none())
       .def(
+          "interpolate_with_gradient",
+          [](const Field& field, const PointsIn& points, int threads, nb::object progress) {
+            InterpolatedGradients found = run({threads, std::move(progress)}, [&](const Context& context) {
+              return interpolate_with_gradient(field, vectors(points), context);
+            });
+            return nb::make_tuple(handed_over<double>(std::move(found.value)),
+                                  handed_over<double>(std::move(found.gradient), 3));
+          },
+          nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none())
+      .def(
           "zero_surface",
           [](const Field& field, double level, int threads, nb::object progress) {
             return arrays_of(run({threads, std::move(progress)},

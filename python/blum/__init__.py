@@ -13,6 +13,7 @@ from . import _structs, reference
 from ._axis_graph import axis_graph
 from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
 from ._certificate import solid_rule
+from ._closest import ClosestPointQuery, ClosestPoints, NearPrimitives, closest_points, winding_number
 from ._complex import Complex, homology
 from ._core import thread_count
 from ._core import version as __version__
@@ -33,11 +34,8 @@ from ._errors import (
 from ._extend import ExtendedAxis, extend_axis
 from ._features import FeaturePairs, close_features
 from ._field import (
-    ClosestPointQuery,
-    ClosestPoints,
     Field,
     FieldSolver,
-    closest_points,
     distance_field,
     read_field,
     selected_voxels,
@@ -124,6 +122,7 @@ __all__ = [
     "MedialAxis",
     "MedialComplex",
     "Mesh",
+    "NearPrimitives",
     "NearSamples",
     "NestedComplex",
     "OutOfMemory",
@@ -200,5 +199,6 @@ __all__ = [
     "voxel_topology",
     "weld",
     "weld_clusters",
+    "winding_number",
 ]
 __all__ += _structs.__all__

@@ -1,13 +1,12 @@
-"""Distance fields of meshes and images, and exact closest points."""
+"""Distance fields of meshes and images."""
 
 from __future__ import annotations
 
 import os
 import threading
 import warnings
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Unpack, cast
+from typing import Any, Literal, Unpack, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +34,7 @@ from ._image import as_image
 from ._mesh import Mesh, as_mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import ClosestPointOptions, FieldOptions, VoxelTopology
+from ._structs import FieldOptions, VoxelTopology
 
 
 class Field:
@@ -163,20 +162,38 @@ class Field:
         """Wall-clock seconds of each phase."""
         return dict(self._seconds)
 
-    def interpolate(self, points: Any, *, threads: int = 0, progress: Progress = False) -> FloatArray:
+    @overload
+    def interpolate(
+        self, points: Any, *, gradient: Literal[False] = False, threads: int = 0, progress: Progress = False
+    ) -> FloatArray: ...
+    @overload
+    def interpolate(
+        self, points: Any, *, gradient: Literal[True], threads: int = 0, progress: Progress = False
+    ) -> tuple[FloatArray, FloatArray]: ...
+    def interpolate(
+        self, points: Any, *, gradient: bool = False, threads: int = 0, progress: Progress = False
+    ) -> FloatArray | tuple[FloatArray, FloatArray]:
         """The distance at points of the shape (..., 3), trilinear between nodes; NaN outside of the grid.
 
         Not exact, as :func:`closest_points` is: off by up to about half a cell's diagonal next to edges and bisectors.
+        With `gradient` also the gradient of what is trilinear, of the shape (..., 3).
 
         >>> import blum
         >>> field = blum.distance_field(blum.generate("sphere"), resolution=64)
         >>> round(float(field.interpolate([0.5, 0, 0])), 2)
         -0.5
+        >>> distance, gradient = field.interpolate([0.52, 0.01, 0.01], gradient=True)
+        >>> gradient.round(1).tolist()
+        [1.0, 0.0, 0.0]
         """
         rows, shape = points_and_shape(points, "points")
+        count = integer(threads, "threads")
         with reporting(progress) as report:
-            values: FloatArray = self._core.interpolate(rows, integer(threads, "threads"), report)
-        return values.reshape(shape)
+            if gradient:
+                values, slopes = self._core.interpolate_with_gradient(rows, count, report)
+                return values.reshape(shape), slopes.reshape((*shape, 3))
+            only: FloatArray = self._core.interpolate(rows, count, report)
+        return only.reshape(shape)
 
     def zero_surface(self, level: Real = 0.0, *, threads: int = 0, progress: Progress = False) -> Mesh:
         """The surface where the distance equals `level` (mesh units), facing larger values.
@@ -454,102 +471,6 @@ def voxel_topology(mask: Any, *, threads: int = 0, progress: Progress = False) -
     with reporting(progress) as report:
         found: VoxelTopology = _core.voxel_topology(mask_array(mask, "mask"), integer(threads, "threads"), report)
     return found
-
-
-@dataclass(frozen=True, eq=False)
-class ClosestPoints:
-    """What :func:`closest_points` finds; all arrays have the shape of the queries without the last axis."""
-
-    points: FloatArray  #: (..., 3): on the mesh; the query itself where nothing is within max_distance
-    distance: FloatArray  #: mesh units, negative inside when signed; infinite where nothing is within max_distance
-    site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
-    triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
-
-
-@takes("ClosestPointOptions")
-class ClosestPointQuery:
-    """Closest-point queries on one mesh, exact; may be called from many threads at once.
-
-    Parameters
-    ----------
-    mesh, triangles, weld
-        As for :func:`distance_field`.
-    **options
-
-    >>> import blum
-    >>> query = blum.ClosestPointQuery(blum.generate("box"))
-    >>> query([[0, 0, 5]]).points.tolist()
-    [[0.0, 0.0, 0.5]]
-    """
-
-    def __init__(
-        self,
-        mesh: Any,
-        triangles: Any = None,
-        *,
-        weld: Real | None = None,
-        threads: int = 0,
-        progress: Progress = False,
-        **options: Unpack[ClosestPointOptions],
-    ) -> None:
-        self._mesh = as_mesh(mesh, triangles, weld=weld)
-        with reporting(progress) as report:
-            self._query = _core.ClosestPointQuery(
-                self._mesh._arrays,
-                dict(options),
-                integer(threads, "threads"),
-                report,
-            )
-
-    def __repr__(self) -> str:
-        return f"ClosestPointQuery({self._mesh!r}, sign_rule={self.sign_rule!r})"
-
-    @property
-    def sign_rule(self) -> str:
-        """How signs are found: "normals", "winding" or "none"."""
-        return str(self._query.sign_rule)
-
-    @property
-    def sign_reason(self) -> str:
-        """Why, in one sentence."""
-        return str(self._query.sign_reason)
-
-    def __call__(self, points: Any, *, threads: int = 0, progress: Progress = False) -> ClosestPoints:
-        """Queries of the shape (..., 3)."""
-        rows, shape = points_and_shape(points, "points")
-        with reporting(progress) as report:
-            found, distance, site, triangle = self._query.nearest(rows, integer(threads, "threads"), report)
-        return ClosestPoints(
-            found.reshape((*shape, 3)), distance.reshape(shape), site.reshape(shape), triangle.reshape(shape)
-        )
-
-
-@takes("ClosestPointOptions")
-def closest_points(
-    mesh: Any,
-    points: Any,
-    *,
-    weld: Real | None = None,
-    threads: int = 0,
-    progress: Progress = False,
-    **options: Unpack[ClosestPointOptions],
-) -> ClosestPoints:
-    """The closest point of a mesh, its distance, site and triangle for every query; exact, not interpolated.
-
-    Parameters
-    ----------
-    mesh, weld, threads, progress
-        As for :func:`distance_field`.
-    points : array of the shape (..., 3)
-    **options
-
-    >>> import blum
-    >>> found = blum.closest_points(blum.generate("sphere"), [[0, 0, 3], [0, 0, 0.2]])
-    >>> [round(distance, 2) for distance in found.distance.tolist()]
-    [2.0, -0.8]
-    """
-    query = ClosestPointQuery(mesh, weld=weld, threads=threads, progress=progress, **options)
-    return query(points, threads=threads, progress=progress)
 
 
 def read_field(path: PathLike) -> Field:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Unpack
 
 import numpy as np
 
 from . import _core
-from ._arguments import FloatArray, IntArray, Integer, Real, as_array, integer
+from ._arguments import FloatArray, IntArray, Integer, Real, integer, points_and_shape
+from ._closest import closest_points
 from ._errors import InvalidOption
-from ._field import closest_points
-from ._mesh import as_mesh
+from ._mesh import Mesh, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import ClosestPointOptions, NearSampleOptions, SampleOptions
@@ -29,6 +30,16 @@ class SignedDistances:
     point: FloatArray  #: (..., 3): the closest point of the mesh
     site: IntArray  #: of the mesh, see :class:`Sites`; -1 where there is none
     triangle: IntArray  #: the smallest triangle that the site lies on; -1 where there is none
+    _mesh: Mesh = field(repr=False)
+
+    @cached_property
+    def barycentric(self) -> FloatArray:
+        """(..., 3): weights of the triangle's corners, of which the closest point is the mean; not a number where there
+        is no triangle. Computed when first asked for, with the mesh's vertices as they are then."""
+        rows, shape = points_and_shape(self.point, "points")
+        site, triangle = (np.ascontiguousarray(ids.reshape(-1)) for ids in (self.site, self.triangle))
+        weights: FloatArray = _core.barycentric(self._mesh._arrays, rows, site, triangle)
+        return weights.reshape((*shape, 3))
 
 
 @takes("ClosestPointOptions")
@@ -56,14 +67,22 @@ def signed_distance(
     >>> found = blum.signed_distance(blum.generate("box"), [[0, 0, 2], [0.3, 0, 0]])
     >>> found.distance.round(6).tolist(), found.gradient.round(6).tolist()
     ([1.5, -0.2], [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+    >>> found.barycentric.sum(axis=1).round(6).tolist()
+    [1.0, 1.0]
     """
-    queries = as_array(points, "points")
-    found = closest_points(mesh, queries, weld=weld, threads=threads, progress=progress, **options)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        gradient = (queries - found.points) / found.distance[..., None] + 0.0  # no -0
-    rounding = 1e-13 * (np.linalg.norm(queries, axis=-1) + np.linalg.norm(found.points, axis=-1))
-    gradient[~np.isfinite(found.distance) | (np.abs(found.distance) <= rounding)] = np.nan
-    return SignedDistances(found.distance, gradient, found.points, found.site, found.triangle)
+    of = as_mesh(mesh, weld=weld)
+    rows, shape = points_and_shape(points, "points")
+    found = closest_points(of, rows, threads=threads, progress=progress, **options)
+    closest, distance = np.ascontiguousarray(found.points), np.ascontiguousarray(found.distance)
+    gradient: FloatArray = _core.gradients(rows, closest, distance)
+    return SignedDistances(
+        found.distance.reshape(shape),
+        gradient.reshape((*shape, 3)),
+        found.points.reshape((*shape, 3)),
+        found.site.reshape(shape),
+        found.triangle.reshape(shape),
+        of,
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,8 +29,8 @@ from ._structs import (
 class SurfaceMap:
     """A distance vector field over the surface of a mesh, as a texture.
 
-    Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture, with rows from the top; its value is that of
-    one point of one triangle. Between texels the texture is read by the nearest one or bilinearly.
+    Texel [j, i] is the square from (i, j) to (i + 1, j + 1) of the texture, with rows from the top; its value is that
+    of one point of one triangle. Between texels the texture is read by the nearest one or bilinearly.
     """
 
     quantity: str  #: "distance", "self-distance", "ray-thickness" or "ball-thickness"
@@ -195,9 +195,9 @@ def thickness(
 ) -> Thickness:
     """How thick a solid is at points of its surface.
 
-    By `ray`: how far it is, from the point against the normal of its triangle, to the first other triangle through which
-    one leaves the solid. By `ball`: the diameter of the largest ball that touches the triangle at the point from inside,
-    and holds no point of a triangle that is turned by `separation` or more.
+    By `ray`: how far it is, from the point against the normal of its triangle, to the first other triangle through
+    which one leaves the solid. By `ball`: the diameter of the largest ball that touches the triangle at the point from
+    inside, and holds no point of a triangle that is turned by `separation` or more.
 
     Parameters
     ----------

@@ -2,22 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <string>
 
 #include "blum/core/error.hpp"
+#include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/core/radix_sort.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/sites.hpp"
+#include "field/kernels/morton.hpp"
 #include "field/point_search.hpp"
 #include "field/sign/policy.hpp"
+#include "field/sign/shared_sides.hpp"
 #include "field/sign/sides.hpp"
 
 namespace blum {
 namespace {
 
-constexpr std::size_t queries_per_range = 512;
+constexpr std::size_t queries_per_range = sign::most_shared;
+/// What rounding may do to the sum of two distances, relative to the lengths involved, generously.
+constexpr double rounding = 1e-12;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 double checked_limit(const ClosestPointOptions& options) {
@@ -25,6 +33,28 @@ double checked_limit(const ClosestPointOptions& options) {
     throw InvalidOption("max_distance is " + std::to_string(*options.max_distance) + "; it must be at least 0");
   }
   return options.max_distance.value_or(no_limit);
+}
+
+/// Few queries keep their order.
+constexpr std::size_t few_queries = 64;
+
+/// An order of queries in which neighbours come together.
+std::vector<std::uint32_t> order_along_curve(std::span<const Vec3d> queries) {
+  std::vector<std::uint32_t> order(queries.size());
+  std::iota(order.begin(), order.end(), 0U);
+  if (queries.size() <= few_queries) return order;
+  Box3 box;
+  for (const Vec3d& query : queries) box.extend(query);
+  const Vec3d size = box.size();
+  const double longest = std::max({size.x, size.y, size.z});
+  if (!(longest > 0)) return order;
+  std::vector<detail::KeyedIndex> keyed(queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    keyed[i] = {kernels::morton_code((queries[i] - box.center()) / longest), static_cast<std::uint32_t>(i)};
+  }
+  detail::radix_sort(keyed);
+  std::transform(keyed.begin(), keyed.end(), order.begin(), [](const detail::KeyedIndex& one) { return one.index; });
+  return order;
 }
 
 /// Answers come in another order than queries.
@@ -38,8 +68,10 @@ void prefetch_to_write([[maybe_unused]] const ClosestPoint* point) {
 
 struct ClosestPointQuery::Data {
   TriangleMesh mesh;  ///< what `search` is built of
+  SignMode mode;
   SiteTable sites;
   Bvh bvh;
+  sign::Planner planner;
   sign::Plan plan;
   sign::Sides sides;
   double max_distance;
@@ -51,28 +83,94 @@ struct ClosestPointQuery::Data {
              {given.triangles.begin(), given.triangles.end()},
              {given.segments.begin(), given.segments.end()},
              {given.points.begin(), given.points.end()}},
+        mode(options.sign),
         sites(mesh, context),
         bvh(mesh, sites, context),
-        plan(sign::plan_signs(options.sign, mesh, sites, context)),
+        plan(planner.plan(mode, mesh, sites, context)),
         sides(plan, mesh, sites, bvh, context),
         max_distance(checked_limit(options)) {
+    measure();
+  }
+
+  void refit(std::span<const Vec3d> vertices, const Context& context) {
+    if (vertices.size() != mesh.vertices.size()) {
+      throw InvalidMesh("a query of a mesh with " + std::to_string(mesh.vertices.size()) + " vertices is refitted to " +
+                        std::to_string(vertices.size()) + "; make a new one");
+    }
+    MeshView moved = mesh;
+    moved.vertices = vertices;
+    validate(moved);
+    search_.reset();
+    is_prepared_ = false;
+    std::copy(vertices.begin(), vertices.end(), mesh.vertices.begin());
+    bvh.refit(mesh.vertices, context);
+    measure();
+    if (mode == SignMode::none) return;
+    plan = planner.plan(mode, mesh, sites, context);
+    sides = sign::Sides(plan, mesh, sites, bvh, context);
+  }
+
+  void measure() {
     const Vec3d size = bvh.bounds().size();
     longest = std::max({size.x, size.y, size.z});
     coordinate_limit = longest > 0 ? std::min(longest, 1.0) * 1e140 : 1e140;
   }
 
-  /// An upper bound on the distance, where one is known, spares work; it does not change the result.
-  [[nodiscard]] ClosestPoint closest(const Vec3d& query, double upper_bound) const {
-    const std::optional<NearestSite> nearest = bvh.nearest(query, std::min(max_distance, upper_bound));
-    return finished(query, nearest);
+  [[nodiscard]] ClosestPoint finished(const Vec3d& query, const std::optional<NearestSite>& nearest) const {
+    // What lies on the surface is not inside.
+    const bool is_negative = nearest && nearest->distance > 0 && sides.is_inside(query, *nearest);
+    return with_side(query, nearest, is_negative);
   }
 
-  [[nodiscard]] ClosestPoint finished(const Vec3d& query, const std::optional<NearestSite>& nearest) const {
+  [[nodiscard]] ClosestPoint with_side(const Vec3d& query, const std::optional<NearestSite>& nearest,
+                                       bool is_negative) const {
     if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
-    // What lies on the surface is not inside.
-    const bool is_negative = nearest->distance > 0 && sides.is_inside(query, *nearest);
     const double distance = is_negative ? -nearest->distance : nearest->distance;
     return {nearest->point, distance, nearest->site, sites.triangle(nearest->site)};
+  }
+
+  /// The same for queries that lie close together: those that need winding numbers share what they can.
+  void finish(std::span<const Vec3d> queries, std::span<const PointSearch::Answer> group,
+              std::span<ClosestPoint> results) const {
+    static_assert(cpu::PointEngine::most_per_group <= sign::most_shared);
+    InlineList<sign::SidedPoint, sign::most_shared> open;
+    InlineList<std::size_t, sign::most_shared> open_query;
+    double extent = 3 * longest;
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
+      const auto& [query, nearest] = group[k];
+      const Vec3d& at = queries[query];
+      const bool is_off = nearest && nearest->distance > 0;
+      const std::optional<bool> known = is_off ? sides.is_inside_by_site(at, *nearest) : std::optional(false);
+      results[query] = with_side(at, nearest, known.value_or(false));
+      if (known) continue;
+      open.push_back({at, nearest->distance, false});
+      open_query.push_back(query);
+      extent = std::max(extent, nearest->distance + length(at));
+    }
+    if (open.empty()) return;
+    sign::decide_sides(*sides.winding(), {&open[0], open.size()}, rounding * extent);
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      if (open[k].is_inside) results[open_query[k]].distance = -results[open_query[k]].distance;
+    }
+  }
+
+  /// Queries that follow each other: the last answer bounds the next one by the triangle inequality.
+  void find(std::span<const Vec3d> queries, std::span<const std::uint32_t> order,
+            std::span<ClosestPoint> results) const {
+    InlineList<PointSearch::Answer, sign::most_shared> group;
+    const Vec3d* last = nullptr;
+    double last_distance = no_limit;
+    for (const std::uint32_t index : order) {
+      const Vec3d& query = queries[index];
+      const double step = last != nullptr ? length(query - *last) : 0.0;
+      const double bound = std::min(max_distance, with_slack(last_distance + step, query));
+      group.push_back({index, bvh.nearest(query, bound)});
+      const std::optional<NearestSite>& nearest = group[group.size() - 1].nearest;
+      last = nearest ? &query : nullptr;
+      last_distance = nearest ? nearest->distance : no_limit;
+    }
+    finish(queries, group.span(), results);
   }
 
   /// A bound, widened by more than rounding can have taken from it.
@@ -83,10 +181,25 @@ struct ClosestPointQuery::Data {
   /// The search for so many queries; null where they are not worth one. It is built by the first that are.
   [[nodiscard]] const PointSearch* search_for(std::size_t queries, const Context& context) const {
     const std::scoped_lock lock(search_mutex_);
+    if (is_prepared_) return queries >= PointSearch::fewest ? search_.get() : nullptr;
     const bool is_worth_it =
         search_ ? PointSearch::is_worth_using(queries, sites) : PointSearch::is_worth_building(queries, sites);
     if (is_worth_it && !search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
     return is_worth_it ? search_.get() : nullptr;
+  }
+
+  void prepare(const Context& context) {
+    if (!search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
+    is_prepared_ = true;
+  }
+
+  void check(std::span<const Vec3d> queries) const {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      if (is_in_range(queries[i])) continue;
+      throw InvalidOption("query " + std::to_string(i) +
+                          (is_finite(queries[i]) ? " lies too far from the mesh (1e140 times its longest side)"
+                                                 : " has a coordinate that is not finite"));
+    }
   }
 
   [[nodiscard]] bool is_in_range(const Vec3d& q) const {
@@ -96,12 +209,13 @@ struct ClosestPointQuery::Data {
  private:
   mutable std::mutex search_mutex_;
   mutable std::unique_ptr<const PointSearch> search_;
+  bool is_prepared_ = false;  ///< then there is a search, for any number of queries from PointSearch::fewest on
 };
 
 ClosestPointQuery::ClosestPointQuery(const MeshView& mesh, const ClosestPointOptions& options, const Context& context) {
   validate(mesh);
   (void)checked_limit(options);
-  data_ = std::make_unique<const Data>(mesh, options, context);
+  data_ = std::make_unique<Data>(mesh, options, context);
 }
 
 ClosestPointQuery::ClosestPointQuery(ClosestPointQuery&&) noexcept = default;
@@ -116,38 +230,74 @@ const std::string& ClosestPointQuery::sign_reason() const {
 }
 
 ClosestPoint ClosestPointQuery::nearest(const Vec3d& query) const {
-  return data_->closest(query, no_limit);
+  return data_->finished(query, data_->bvh.nearest(query, data_->max_distance));
+}
+
+void ClosestPointQuery::refit(std::span<const Vec3d> vertices, const Context& context) {
+  data_->refit(vertices, context);
+}
+
+void ClosestPointQuery::prepare_for_many(const Context& context) {
+  data_->prepare(context);
 }
 
 std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> queries, const Context& context) const {
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    if (!data_->is_in_range(queries[i])) {
-      throw InvalidOption("query " + std::to_string(i) +
-                          (is_finite(queries[i]) ? " lies too far from the mesh (1e140 times its longest side)"
-                                                 : " has a coordinate that is not finite"));
-    }
-  }
+  data_->check(queries);
   std::vector<ClosestPoint> results(queries.size());
   if (const PointSearch* search = data_->search_for(queries.size(), context)) {
-    search->nearest(queries, data_->max_distance, data_->bvh, context, [&](std::span<const PointSearch::Answer> group) {
-      for (std::size_t k = 0; k < group.size(); ++k) {
-        if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
-        const auto& [query, nearest] = group[k];
-        results[query] = data_->finished(queries[query], nearest);
-      }
-    });
+    search->nearest(queries, data_->max_distance, data_->bvh, context,
+                    [&](std::span<const PointSearch::Answer> group) { data_->finish(queries, group, results); });
     return results;
   }
-  parallel_for(context, queries.size(), queries_per_range, "closest points", [&](const WorkRange& range) {
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      // Queries often come in order: the last answer bounds the next one by the triangle inequality.
-      const bool has_last = i > range.begin && results[i - 1].site.has_value();
-      const double step = has_last ? length(queries[i] - queries[i - 1]) : 0.0;
-      const double last = has_last ? std::abs(results[i - 1].distance) : no_limit;
-      results[i] = data_->closest(queries[i], data_->with_slack(last + step, queries[i]));
-    }
+  const std::vector<std::uint32_t> order = order_along_curve(queries);
+  parallel_for(context, order.size(), queries_per_range, "closest points", [&](const WorkRange& range) {
+    data_->find(queries, std::span(order).subspan(range.begin, range.end - range.begin), results);
   });
   return results;
+}
+
+namespace {
+
+/// Many queries that find several primitives each. @param find  of one query.
+template <class Find>
+NearPrimitives gathered(std::span<const Vec3d> queries, const Context& context, const Find& find) {
+  NearPrimitives out;
+  out.first.assign(queries.size() + 1, 0);
+  std::vector<std::vector<NearestPrimitive>> parts((queries.size() + queries_per_range - 1) / queries_per_range);
+  parallel_for(context, queries.size(), queries_per_range, "closest primitives", [&](const WorkRange& range) {
+    std::vector<NearestPrimitive>& part = parts[range.begin / queries_per_range];
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const std::vector<NearestPrimitive> found = find(queries[i]);
+      part.insert(part.end(), found.begin(), found.end());
+      out.first[i + 1] = found.size();
+    }
+  });
+  for (std::size_t i = 0; i < queries.size(); ++i) out.first[i + 1] += out.first[i];
+  out.found.resize(out.first.back());
+  parallel_for(context, parts.size(), 1, "", [&](const WorkRange& range) {
+    std::vector<NearestPrimitive>& part = parts[range.begin];
+    std::copy(part.begin(), part.end(),
+              out.found.begin() + static_cast<std::ptrdiff_t>(out.first[range.begin * queries_per_range]));
+    part = {};
+  });
+  return out;
+}
+
+}  // namespace
+
+NearPrimitives ClosestPointQuery::within(std::span<const Vec3d> queries, double distance,
+                                         const Context& context) const {
+  if (!(distance >= 0)) throw InvalidOption("distance is " + std::to_string(distance) + "; it must be at least 0");
+  data_->check(queries);
+  const double limit = std::min(distance, data_->max_distance);
+  return gathered(queries, context, [&](const Vec3d& query) { return data_->bvh.within(query, limit); });
+}
+
+NearPrimitives ClosestPointQuery::nearest_primitives(std::span<const Vec3d> queries, std::size_t k,
+                                                     const Context& context) const {
+  data_->check(queries);
+  return gathered(queries, context,
+                  [&](const Vec3d& query) { return data_->bvh.nearest_primitives(query, k, data_->max_distance); });
 }
 
 std::vector<ClosestPoint> closest_points(const MeshView& mesh, std::span<const Vec3d> queries,

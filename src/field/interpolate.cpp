@@ -42,39 +42,69 @@ double mix(double a, double b, double part) {
   return part == 1 ? b : a + (b - a) * part;
 }
 
-double value_at(const GridSpec& grid, std::span<const float> values, const Vec3d& point) {
+/// The cell around a point; nullopt outside of the grid.
+std::optional<std::array<Between, 3>> cell_around(const GridSpec& grid, const Vec3d& point) {
   const Vec3d local = grid.direction.transposed_times(point - grid.origin);
   std::array<Between, 3> axes;
   for (std::size_t a = 0; a < 3; ++a) {
     const std::optional<Between> found = between_layers(local[a] / grid.spacing[a], grid.size[a]);
-    if (!found) return std::numeric_limits<double>::quiet_NaN();
+    if (!found) return std::nullopt;
     axes[a] = *found;
   }
-  const Between& x = axes[0];
-  const auto along_x = [&](std::int64_t j, std::int64_t k) {
-    const std::size_t row = grid.index(0, j, k);
-    const auto before = static_cast<double>(values[row + static_cast<std::size_t>(x.before)]);
-    return mix(before, static_cast<double>(values[row + static_cast<std::size_t>(x.after)]), x.part);
-  };
-  const Between& y = axes[1];
-  const auto along_y = [&](std::int64_t k) { return mix(along_x(y.before, k), along_x(y.after, k), y.part); };
-  return mix(along_y(axes[2].before), along_y(axes[2].after), axes[2].part);
+  return axes;
 }
 
-}  // namespace
+/// The values at the corners of a cell: bit a of their number is set for the layer after, along axis a.
+std::array<double, 8> corners_of(const GridSpec& grid, std::span<const float> values,
+                                 const std::array<Between, 3>& cell) {
+  std::array<double, 8> out;
+  for (std::size_t c = 0; c < 8; ++c) {
+    const auto layer = [&](std::size_t a) { return (c >> a & 1) != 0 ? cell[a].after : cell[a].before; };
+    out[c] = static_cast<double>(values[grid.index(layer(0), layer(1), layer(2))]);
+  }
+  return out;
+}
 
-std::vector<double> interpolate(const Field& field, std::span<const Vec3d> points, const Context& context) {
+/// Along x, then y, then z.
+double mixed(const std::array<double, 8>& v, const std::array<Between, 3>& cell) {
+  const auto along_x = [&](std::size_t row) { return mix(v[row], v[row + 1], cell[0].part); };
+  const auto along_y = [&](std::size_t slice) { return mix(along_x(slice), along_x(slice + 2), cell[1].part); };
+  return mix(along_y(0), along_y(4), cell[2].part);
+}
+
+/// How the mixture changes along an axis, per step of the grid.
+double slope(const std::array<double, 8>& v, const std::array<Between, 3>& cell, std::size_t axis) {
+  const std::size_t b = (axis + 1) % 3;
+  const std::size_t c = (axis + 2) % 3;
+  const auto rise = [&](std::size_t at) { return v[at | std::size_t{1} << axis] - v[at]; };
+  const auto along_b = [&](std::size_t at) { return mix(rise(at), rise(at | std::size_t{1} << b), cell[b].part); };
+  return mix(along_b(0), along_b(std::size_t{1} << c), cell[c].part);
+}
+
+Vec3d gradient_of(const GridSpec& grid, const std::array<double, 8>& corners, const std::array<Between, 3>& cell) {
+  Vec3d out;
+  for (std::size_t a = 0; a < 3; ++a) out[a] = slope(corners, cell, a) / grid.spacing[a];
+  return grid.direction * out;
+}
+
+void check(const Field& field) {
   validate(field.grid);
   if (field.distance.size() != field.grid.node_count()) {
     throw InvalidGrid("the field has " + std::to_string(field.distance.size()) + " distances for " +
                       std::to_string(field.grid.node_count()) + " nodes");
   }
-  std::vector<double> values(points.size());
+}
+
+/// Calls take(point, cell, values of its corners) for the points in the grid.
+template <class Take>
+void for_each_cell(const Field& field, std::span<const Vec3d> points, const Context& context, const Take& take) {
+  check(field);
   std::atomic<std::size_t> offender{points.size()};
   parallel_for(context, points.size(), points_per_range, "interpolate", [&](const WorkRange& range) {
     for (std::size_t p = range.begin; p < range.end; ++p) {
       if (is_finite(points[p])) {
-        values[p] = value_at(field.grid, field.distance.span(), points[p]);
+        const std::optional<std::array<Between, 3>> cell = cell_around(field.grid, points[p]);
+        if (cell) take(p, *cell, corners_of(field.grid, field.distance.span(), *cell));
         continue;
       }
       std::size_t known = offender;
@@ -84,7 +114,28 @@ std::vector<double> interpolate(const Field& field, std::span<const Vec3d> point
     }
   });
   if (offender < points.size()) throw InvalidOption("point " + std::to_string(offender) + " is not finite");
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+std::vector<double> interpolate(const Field& field, std::span<const Vec3d> points, const Context& context) {
+  std::vector<double> values(points.size(), nan);
+  for_each_cell(field, points, context,
+                [&](std::size_t p, const auto& cell, const auto& corners) { values[p] = mixed(corners, cell); });
   return values;
+}
+
+InterpolatedGradients interpolate_with_gradient(const Field& field, std::span<const Vec3d> points,
+                                                const Context& context) {
+  InterpolatedGradients out{std::vector<double>(points.size(), nan),
+                            std::vector<Vec3d>(points.size(), Vec3d{nan, nan, nan})};
+  for_each_cell(field, points, context, [&](std::size_t p, const auto& cell, const auto& corners) {
+    out.value[p] = mixed(corners, cell);
+    out.gradient[p] = gradient_of(field.grid, corners, cell);
+  });
+  return out;
 }
 
 }  // namespace blum

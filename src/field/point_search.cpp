@@ -18,7 +18,7 @@ bool PointSearch::is_worth_building(std::size_t queries, const SiteTable& sites)
 }
 
 bool PointSearch::is_worth_using(std::size_t queries, const SiteTable& sites) {
-  return queries >= 1024 && queries >= sites.face_count() / 2;
+  return queries >= fewest && queries >= sites.face_count() / 2;
 }
 
 std::optional<NearestSite> PointSearch::projection(const Vec3d& query, const cpu::FoundSite& found) const {

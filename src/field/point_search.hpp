@@ -23,6 +23,8 @@ class PointSearch {
   PointSearch(const MeshView& mesh, const SiteTable& sites, const Context& context)
       : engine_(mesh, sites, context), projection_(mesh, sites, context) {}
 
+  /// Fewer queries at once have too little in common.
+  static constexpr std::size_t fewest = 1024;
   /// Whether so many queries are worth building a search: as many as there are faces are (docs/performance.md).
   [[nodiscard]] static bool is_worth_building(std::size_t queries, const SiteTable& sites);
   /// Whether they are worth a search that is there.

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "blum/geometry/space_order.hpp"
 #include "geometry/lanes.hpp"
-#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {
@@ -83,22 +83,29 @@ struct Piece {
   [[nodiscard]] Vec3d center() const { return (from + to) * 0.5; }
 };
 
-std::vector<Piece> cut_into_pieces(const MeshView& mesh, const std::vector<ChainEdge>& chain, double scale) {
-  std::vector<Piece> pieces;
+std::vector<BoundaryChain::Edge> directed(const MeshView& mesh, const std::vector<ChainEdge>& chain, double scale) {
+  std::vector<BoundaryChain::Edge> edges;
   for (const ChainEdge& edge : chain) {
     const Vec3d a = mesh.vertices[edge.from] * scale;
     const Vec3d b = mesh.vertices[edge.to] * scale;
+    if (edge.multiplicity > 0) {
+      edges.push_back({a, b, edge.multiplicity});
+    } else {
+      edges.push_back({b, a, -edge.multiplicity});
+    }
+  }
+  return edges;
+}
+
+std::vector<Piece> cut_into_pieces(const std::vector<BoundaryChain::Edge>& edges) {
+  std::vector<Piece> pieces;
+  for (const auto& [a, b, multiplicity] : edges) {
     const double whole = length(b - a);
     const int count = static_cast<int>(std::ceil(std::clamp(whole / piece_length, 1.0, 1000.0)));
-    const double multiplicity = static_cast<double>(edge.multiplicity);
     Vec3d last = a;
     for (int i = 1; i <= count; ++i) {
       const Vec3d next = i == count ? b : a + (b - a) * (static_cast<double>(i) / count);
-      if (multiplicity > 0) {
-        pieces.push_back({last, next, multiplicity});
-      } else {
-        pieces.push_back({next, last, -multiplicity});
-      }
+      pieces.push_back({last, next, static_cast<double>(multiplicity)});
       last = next;
     }
   }
@@ -133,8 +140,12 @@ BoundaryChain::BoundaryChain(const MeshView& mesh, const SiteTable& sites, doubl
   std::vector<ChainEdge> chain = net_edges(mesh, sites);
   if (chain.empty()) return;
   weld_chain(mesh, chain);
-  const std::vector<Piece> pieces = cut_into_pieces(mesh, chain, scale);
+  edges_ = directed(mesh, chain, scale);
+  const std::vector<Piece> pieces = cut_into_pieces(edges_);
   if (pieces.empty()) return;
+  std::int64_t count = 0;
+  for (const Edge& edge : edges_) count += edge.multiplicity;
+  if (count > most_edges) edges_ = {};
   std::vector<Cluster>& level = levels_.emplace_back();
   for (const std::uint32_t i : space_order(pieces.size(), [&](std::size_t k) { return pieces[k].center(); }, context)) {
     const Piece& piece = pieces[i];

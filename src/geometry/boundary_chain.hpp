@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -26,6 +28,14 @@ class BoundaryChain {
   BoundaryChain(const MeshView& mesh, const SiteTable& sites, double scale, const Context& context);
 
   [[nodiscard]] bool is_empty() const { return levels_.empty(); }
+  /// An edge as the surface runs along it, scaled.
+  struct Edge {
+    Vec3d from, to;
+    std::int64_t multiplicity = 0;  ///< > 0
+  };
+  /// Empty where there are more than most_edges, counted as often as they occur.
+  [[nodiscard]] std::span<const Edge> edges() const { return edges_; }
+  static constexpr std::int64_t most_edges = 2048;
   /// A bound on |grad w| over a box, in scaled coordinates; where it is above `enough`, any number above that.
   /// Allocates nothing.
   [[nodiscard]] double gradient_bound(const Box3& box, double enough = HUGE_VAL) const;
@@ -43,6 +53,7 @@ class BoundaryChain {
   };
   [[nodiscard]] static Cluster merge(const Cluster* children, std::size_t count);
 
+  std::vector<Edge> edges_;
   /// Level 0: pieces. Entry i of a level is made of entries 8 i ... 8 i + 7 of the level below; the last has one entry.
   std::vector<std::vector<Cluster>> levels_;
 };

@@ -6,9 +6,9 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/space_order.hpp"
 #include "geometry/box_scale.hpp"
 #include "geometry/box_tree.hpp"
-#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/space_order.hpp"
 #include "geometry/box_scale.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/primitive_block.hpp"
-#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {
@@ -179,13 +179,18 @@ struct Bvh::Data {
 
   void fill_tree(const Context& context) {
     std::vector<Box3> boxes(leaves.size());
-    for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
-      for (std::size_t lane = 0; lane < lanes_of(leaf); ++lane) {
-        for (std::size_t k = 0; k < 3; ++k) boxes[leaf].extend(leaves[leaf].position(k, lane));
+    parallel_for(context, leaves.size(), leaf_grain, "", [&](const WorkRange& range) {
+      for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
+        for (std::size_t lane = 0; lane < lanes_of(leaf); ++lane) {
+          for (std::size_t k = 0; k < 3; ++k) boxes[leaf].extend(leaves[leaf].position(k, lane));
+        }
       }
-    }
+    });
     tree = make_box_tree(boxes, context);
   }
+
+  /// The box of the primitives with vertices elsewhere.
+  [[nodiscard]] Box3 bounds_of(std::span<const Vec3d> moved, const Context& context) const;
 };
 
 Bvh::Bvh(const MeshView& mesh, const SiteTable& sites, const Context& context) {
@@ -226,27 +231,41 @@ Bvh::Bvh(Bvh&&) noexcept = default;
 Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 Bvh::~Bvh() = default;
 
+Box3 Bvh::Data::bounds_of(std::span<const Vec3d> moved, const Context& context) const {
+  constexpr std::uint32_t nobody = 0xffffffff;
+  std::vector<Box3> boxes((leaves.size() + leaf_grain - 1) / leaf_grain);
+  std::vector<std::uint32_t> unusable(boxes.size(), nobody);
+  parallel_for(context, leaves.size(), leaf_grain, "", [&](const WorkRange& range) {
+    const std::size_t part = range.begin / leaf_grain;
+    for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
+      for (std::size_t lane = 0; lane < lanes_of(leaf); ++lane) {
+        for (const auto& corners : leaves[leaf].vertex) {
+          const Vec3d& p = moved[corners[lane]];
+          const bool is_usable = std::abs(p.x) <= 1e150 && std::abs(p.y) <= 1e150 && std::abs(p.z) <= 1e150;
+          if (!is_usable && unusable[part] == nobody) unusable[part] = corners[lane];
+          boxes[part].extend(p);
+        }
+      }
+    }
+  });
+  Box3 box;
+  for (std::size_t part = 0; part < boxes.size(); ++part) {
+    if (unusable[part] != nobody) {
+      throw InvalidMesh("vertex " + std::to_string(unusable[part]) + " is not finite, or beyond 1e150");
+    }
+    box.extend(boxes[part]);
+  }
+  return box;
+}
+
 void Bvh::refit(std::span<const Vec3d> vertices, const Context& context) {
   Data& data = *data_;
   if (vertices.size() != data.vertices) {
     throw InvalidMesh("a hierarchy of a mesh with " + std::to_string(data.vertices) + " vertices is refitted to " +
                       std::to_string(vertices.size()) + "; build a new one");
   }
-  Box3 box;
-  for (std::size_t leaf = 0; leaf < data.leaves.size(); ++leaf) {
-    for (std::size_t lane = 0; lane < data.lanes_of(leaf); ++lane) {
-      for (const auto& corners : data.leaves[leaf].vertex) {
-        const std::uint32_t v = corners[lane];
-        const Vec3d& p = vertices[v];
-        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= 1e150)) {
-          throw InvalidMesh("vertex " + std::to_string(v) + " is not finite, or beyond 1e150");
-        }
-        box.extend(vertices[v]);
-      }
-    }
-  }
-  data.bounds = box;
-  data.scale = unit_scale(box);
+  data.bounds = data.bounds_of(vertices, context);
+  data.scale = unit_scale(data.bounds);
   parallel_for(context, data.leaves.size(), leaf_grain, "", [&](const WorkRange& range) {
     for (std::size_t leaf = range.begin; leaf < range.end; ++leaf) {
       PrimitiveBlock& block = data.leaves[leaf];

@@ -373,7 +373,9 @@ void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double
   }
 }
 
-void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum) {
+template <bool is_watched>
+inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
+                       [[maybe_unused]] double* watched) {
   const auto& p = block.corner;
   for (std::size_t i = 0; i < lanes; ++i) {
     const double ax = p[0][0][i] - query.x, ay = p[0][1][i] - query.y, az = p[0][2][i] - query.z;
@@ -403,7 +405,20 @@ void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum
     const double magnitude = 1 / (std::abs(px) + std::abs(py));
     sum.re[i] = px * magnitude;
     sum.im[i] = py * magnitude;
+    if constexpr (is_watched) watched[i] += la * lb * lc * inverse;
   }
+}
+
+void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum) {
+  add_angles<false>(block, query, sum, nullptr);
+}
+
+void add_watched_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
+                           double (&inverse)[lanes]) {
+  // A local array, which cannot overlap the block, so that the loop vectorises without checks.
+  alignas(64) double watched[lanes] = {};
+  add_angles<true>(block, query, sum, watched);
+  for (std::size_t i = 0; i < lanes; ++i) inverse[i] += watched[i];
 }
 
 }  // namespace
@@ -428,6 +443,7 @@ BLUM_KERNEL(approximate_distances);
 BLUM_KERNEL(add_clusters);
 BLUM_KERNEL(add_clusters_beyond);
 BLUM_KERNEL(add_triangles);
+BLUM_KERNEL(add_watched_triangles);
 
 }  // namespace
 
@@ -477,6 +493,11 @@ void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double
 
 void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum) {
   best_add_triangles(block, query, sum);
+}
+
+void add_watched_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
+                           double (&inverse)[lanes]) {
+  best_add_watched_triangles(block, query, sum, inverse);
 }
 
 }  // namespace blum

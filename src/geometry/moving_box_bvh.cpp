@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/space_order.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/moving_block.hpp"
-#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {

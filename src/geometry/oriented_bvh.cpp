@@ -11,10 +11,10 @@
 #include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/primitives.hpp"
+#include "blum/geometry/space_order.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/oriented_block.hpp"
 #include "geometry/oriented_fit.hpp"
-#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {

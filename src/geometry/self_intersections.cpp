@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/space_order.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 #include "blum/geometry/weld.hpp"
 #include "geometry/box_scale.hpp"
 #include "geometry/box_tree.hpp"
-#include "geometry/space_order.hpp"
 #include "geometry/triangle_group.hpp"
 
 namespace blum {

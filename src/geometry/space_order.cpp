@@ -1,4 +1,4 @@
-#include "geometry/space_order.hpp"
+#include "blum/geometry/space_order.hpp"
 
 #include <algorithm>
 #include <array>

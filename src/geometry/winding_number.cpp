@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "geometry/boundary_chain.hpp"
+#include "geometry/boundary_cone.hpp"
 #include "geometry/winding_tree.hpp"
 
 namespace blum {
@@ -18,7 +19,14 @@ constexpr double rounding = 1e-11;
 /// Beyond this many sizes of the mesh its winding number is 0 for every purpose (below 1e-60).
 constexpr double far_away = 1e30;
 /// Clusters are accepted in is_inside() while each may be wrong by this much, as a winding number; then by less.
-constexpr double first_tolerance = 3e-2;
+constexpr double first_tolerance = 1.5e-2;
+/// The next one: what the first does not settle mostly wants little more.
+constexpr double lower(double tolerance) {
+  return tolerance * (tolerance > 1e-3 ? 1.0 / 8 : 1.0 / 64);
+}
+
+/// Triangles per digit after the second one: with fewer the full sum is quicker than estimates.
+constexpr double full_sum_is_quicker = 10000;
 
 /// |w - 1/2| hardly ever reaches this: larger changes are not worth a look.
 constexpr double side_limit = 1e3;
@@ -59,8 +67,12 @@ WindingNumber::Estimate walk(const WindingTree& tree, const Vec3d& query, const 
 }  // namespace
 
 struct WindingNumber::Data {
+  std::size_t triangles = 0;
   WindingTree tree;
   BoundaryChain boundary;
+  BoundaryCone cone;  ///< of a short boundary
+
+  [[nodiscard]] bool is_short() const { return boundary.is_empty() || !boundary.edges().empty(); }
 
   /// The query in the tree's coordinates; nullopt where the winding number is 0 anyway.
   [[nodiscard]] std::optional<Vec3d> scaled(const Vec3d& query) const {
@@ -95,8 +107,10 @@ WindingNumber::WindingNumber(const MeshView& mesh, const Context& context)
 
 WindingNumber::WindingNumber(const MeshView& mesh, const SiteTable& sites, const Context& context) {
   auto data = std::make_unique<Data>();
+  data->triangles = mesh.triangles.size();
   data->tree = make_winding_tree(mesh, context);
   data->boundary = BoundaryChain(mesh, sites, data->tree.scale, context);
+  data->cone = BoundaryCone(data->boundary.edges());
   data_ = std::move(data);
 }
 
@@ -120,27 +134,63 @@ double WindingNumber::approximate(const Vec3d& query, double beta) const {
 }
 
 bool WindingNumber::is_inside(const Vec3d& query) const {
+  return decide(query).is_inside;
+}
+
+WindingNumber::Decision WindingNumber::decide(const Vec3d& query) const {
   const std::optional<Vec3d> q = data_->scaled(query);
-  if (!q) return false;
-  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance *= 1.0 / 64) {
+  if (!q) return {false, 0.5};
+  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance = lower(tolerance)) {
     const Estimate w = data_->bounded(*q, tolerance);
-    if (std::abs(w.value - 0.5) > w.error) return w.value > 0.5;
+    const double distance = std::abs(w.value - 0.5);
+    if (distance > w.error) return {w.value > 0.5, distance - w.error};
   }
-  return data_->full_sum(*q) > 0.5;
+  return {data_->full_sum(*q) > 0.5, 0};
 }
 
 WindingNumber::Estimate WindingNumber::estimate(const Vec3d& query, double max_error) const {
   const std::optional<Vec3d> q = data_->scaled(query);
   if (!q) return {0, 1e-60};
-  for (double tolerance = std::min(first_tolerance, max_error); tolerance > 1e-12; tolerance *= 1.0 / 64) {
+  for (double tolerance = std::min(first_tolerance, max_error); tolerance > 1e-12; tolerance = lower(tolerance)) {
     const Estimate w = data_->bounded(*q, tolerance);
     if (w.error <= max_error) return w;
   }
   return {data_->full_sum(*q), rounding};
 }
 
+bool WindingNumber::has_short_boundary() const {
+  return data_->is_short();
+}
+
+std::optional<double> WindingNumber::refine(const Vec3d& query, double rough) const {
+  if (!data_->is_short()) return std::nullopt;
+  if (data_->boundary.is_empty()) return std::round(rough) + 0.0;  // no -0
+  const std::optional<Vec3d> q = data_->scaled(query);
+  if (!q) return 0;
+  const std::optional<double> cone = data_->cone.winding_number(*q);
+  if (!cone) return std::nullopt;
+  return std::round(rough + *cone) - *cone;
+}
+
+WindingNumber::Estimate WindingNumber::value(const Vec3d& query, double max_error) const {
+  if (data_->is_short() && (max_error >= refined_error || data_->boundary.is_empty())) {
+    const Estimate rough = estimate(query, rough_error);
+    if (const std::optional<double> fine = refine(query, rough.value)) {
+      return {*fine, data_->boundary.is_empty() ? 0 : refined_error};
+    }
+  }
+  if (static_cast<double>(data_->triangles) < full_sum_is_quicker * (-std::log10(max_error) - 2)) {
+    return {(*this)(query), rounding};
+  }
+  return estimate(query, max_error);
+}
+
 bool WindingNumber::is_piecewise_constant() const {
   return data_->boundary.is_empty();
+}
+
+std::size_t WindingNumber::triangle_count() const {
+  return data_->triangles;
 }
 
 double WindingNumber::gradient_bound(const Box3& box, double enough) const {
@@ -152,7 +202,7 @@ std::optional<bool> WindingNumber::side(const Vec3d& query, double change) const
   if (!(change < side_limit)) return std::nullopt;
   const std::optional<Vec3d> q = data_->scaled(query);
   if (!q) return change < 0.5 ? std::optional(false) : std::nullopt;
-  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance *= 1.0 / 64) {
+  for (double tolerance = first_tolerance; tolerance > 1e-12; tolerance = lower(tolerance)) {
     const Estimate w = data_->bounded(*q, tolerance);
     const double margin = std::abs(w.value - 0.5);
     if (margin > w.error + change) return w.value > 0.5;

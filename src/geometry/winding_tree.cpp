@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "blum/core/parallel.hpp"
+#include "blum/geometry/space_order.hpp"
 #include "geometry/box_scale.hpp"
-#include "geometry/space_order.hpp"
 
 namespace blum {
 namespace {

@@ -62,6 +62,11 @@ struct alignas(64) SolidAngleSum {
 /// Adds eight triangles (van Oosterom and Strackee 1983).
 void add_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum);
 
+/// The same, and adds up how badly the angles are conditioned: to `inverse`, lane by lane, the inverse of what an angle
+/// is computed from, relative to its terms. An angle is off by rounding times that.
+void add_watched_triangles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
+                           double (&inverse)[lanes]);
+
 /// A complete tree with eight children per node: leaf i holds triangles 8 i ... 8 i + 7 of a spatial order; block i of
 /// level 0 holds the clusters of leaves 8 i ... 8 i + 7, and so on up to one block.
 struct WindingTree {

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "blum/core/scale.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/closest_point.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
 #include "blum/surface_map/surface_atlas.hpp"
 
 namespace blum::surface {
@@ -61,6 +63,19 @@ class Chart {
   std::array<Vec3d, 3> corners_;
   ChartCorners places_;
   Vec3d along_x_, along_y_;  ///< steps of one texel
+};
+
+/// Charts of a mesh times a power of two, so that products of its coordinates are numbers.
+struct ScaledCharts {
+  const MeshView& mesh;
+  const SurfaceAtlas& atlas;
+  double scale = scale_to_one(bounds(mesh).largest_coordinate());
+
+  [[nodiscard]] Chart operator[](std::uint32_t triangle) const {
+    std::array<Vec3d, 3> corners = triangle_corners(mesh, triangle);
+    for (Vec3d& corner : corners) corner *= scale;
+    return {corners, atlas.corners[triangle]};
+  }
 };
 
 /// The middle of a texel.

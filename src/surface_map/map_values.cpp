@@ -6,7 +6,7 @@
 
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
-#include "surface_map/chart.hpp"
+#include "blum/core/scale.hpp"
 
 namespace blum::surface {
 namespace {
@@ -16,23 +16,19 @@ constexpr std::size_t triangles_per_range = 256;
 constexpr std::size_t default_texels = 1'000'000;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-SurfaceMap::FaceSummary summary_of(const SurfaceMap& map, std::uint32_t triangle) {
-  const SurfaceAtlas& atlas = *map.atlas;
-  SurfaceMap::FaceSummary out{nan, nan, nan};
-  if (twice_area(atlas.corners[triangle]) == 0) return out;
+SurfaceMap::FaceSummary summary_of(const SurfaceMap& map, std::span<const std::uint32_t> texels) {
+  if (texels.empty()) return {nan, nan, nan};
+  SurfaceMap::FaceSummary out{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), nan};
   double sum = 0;
   std::size_t count = 0;
-  for_each_texel(atlas.corners[triangle], atlas.width, atlas.height,
-                 [&](std::size_t x, std::size_t y, double /*outside*/) {
-                   const std::size_t at = y * atlas.width + x;
-                   if (atlas.triangle[at] != TriangleId(triangle)) return;
-                   const float value = map.distance[at];
-                   out.smallest = std::isnan(out.smallest) ? value : std::min(out.smallest, value);
-                   out.largest = std::isnan(out.largest) ? value : std::max(out.largest, value);
-                   if (!std::isfinite(value)) return;
-                   sum += value;
-                   ++count;
-                 });
+  for (const std::uint32_t texel : texels) {
+    const float value = map.distance[texel];
+    out.smallest = std::min(out.smallest, value);
+    out.largest = std::max(out.largest, value);
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
+  }
   if (count > 0) out.mean = static_cast<float>(sum / static_cast<double>(count));
   return out;
 }
@@ -65,15 +61,17 @@ void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceVa
   map.site[texel] = value.site;
 }
 
-void fill(SurfaceMap& map, const MeshView& mesh, ValueAt value_at, const Context& context) {
+void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueAt value_at, const Context& context) {
   const SurfaceAtlas& atlas = *map.atlas;
-  const SurfaceTexels all = surface_texels(mesh, atlas, context);
-  parallel_for(context, all.texels.size(), texels_per_range, "surface map", [&](const WorkRange& range) {
+  const double scale = scale_to_one(bounds(mesh).largest_coordinate());
+  parallel_for(context, order.texels.size(), texels_per_range, "surface map", [&](const WorkRange& range) {
+    const std::span texels = std::span(order.texels).subspan(range.begin, range.end - range.begin);
+    std::vector<Vec3d> points;
+    find_points(mesh, atlas, scale, texels, points);
     SurfaceValue last;
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      const std::uint32_t texel = all.texels[k];
-      last = value_at(all.points[k], atlas.triangle[texel], k > range.begin ? &last : nullptr);
-      put(map, texel, all.points[k], last);
+    for (std::size_t k = 0; k < texels.size(); ++k) {
+      last = value_at(points[k], atlas.triangle[texels[k]], k > 0 ? &last : nullptr);
+      put(map, texels[k], points[k], last);
     }
   });
   const std::vector<TriangleId> triangles = triangles_at_vertices(mesh);
@@ -86,10 +84,10 @@ void fill(SurfaceMap& map, const MeshView& mesh, ValueAt value_at, const Context
   });
 }
 
-void summarize_faces(SurfaceMap& map, const MeshView& mesh, const Context& context) {
-  map.faces.resize(mesh.triangles.size());
+void summarize_faces(SurfaceMap& map, const TexelOrder& order, const Context& context) {
+  map.faces.resize(order.triangles.size());
   parallel_for(context, map.faces.size(), triangles_per_range, "", [&](const WorkRange& range) {
-    for (std::size_t t = range.begin; t < range.end; ++t) map.faces[t] = summary_of(map, static_cast<std::uint32_t>(t));
+    for (std::size_t k = range.begin; k < range.end; ++k) map.faces[order.triangles[k]] = summary_of(map, order.of(k));
   });
 }
 

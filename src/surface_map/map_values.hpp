@@ -11,6 +11,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/surface_map/surface_distance_map.hpp"
+#include "surface_map/texel_order.hpp"
 
 namespace blum::surface {
 
@@ -33,10 +34,10 @@ void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceVa
 /// probably close by, or null: it may bound the search, but must not change its result.
 using ValueAt = FunctionRef<SurfaceValue(const Vec3d& point, TriangleId triangle, const SurfaceValue* last)>;
 /// Fills texels and vertices with such values.
-void fill(SurfaceMap& map, const MeshView& mesh, ValueAt value_at, const Context& context);
+void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueAt value_at, const Context& context);
 
 /// Sums up the texels of each triangle.
-void summarize_faces(SurfaceMap& map, const MeshView& mesh, const Context& context);
+void summarize_faces(SurfaceMap& map, const TexelOrder& order, const Context& context);
 /// Fills `error`.
 void bound_errors(SurfaceMap& map, const MeshView& mesh, const Context& context);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "blum/core/parallel.hpp"
+#include "blum/core/scale.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/primitives.hpp"
@@ -17,7 +18,8 @@ namespace {
 
 using surface::SurfaceValue;
 
-constexpr std::size_t texels_per_range = 4096;
+/// So many have much in common, and what is found of them stays in caches.
+constexpr std::size_t texels_per_batch = 16384;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 TriangleMesh copy_of(const MeshView& mesh) {
@@ -34,12 +36,28 @@ bool have_common_vertex(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-void fill_distances(SurfaceMap& map, const MeshView& target, const ClosestPointQuery& query, const Context& context) {
-  const SurfaceTexels all = surface_texels(target, *map.atlas, context);
-  const std::vector<ClosestPoint> found = query.nearest(all.points, context);
-  parallel_for(context, found.size(), texels_per_range, "", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      surface::put(map, all.texels[k], all.points[k], {found[k].distance, found[k].point, found[k].site});
+/// Refuses what ClosestPointQuery does not answer, before there are threads.
+void check_range(const MeshView& target, const ClosestPointQuery& query) {
+  const Box3 box = bounds(target);
+  try {
+    (void)query.nearest(std::vector<Vec3d>{box.lower, box.upper});
+  } catch (const InvalidOption&) {
+    throw InvalidMesh("the target is more than 1e140 times as large as the other mesh, or as far from it");
+  }
+}
+
+void fill_distances(SurfaceMap& map, const MeshView& target, const surface::TexelOrder& order,
+                    const ClosestPointQuery& query, const Context& context) {
+  const double scale = scale_to_one(bounds(target).largest_coordinate());
+  // Each batch is answered by one thread, out of its caches.
+  const Context alone{.threads = 1};
+  parallel_for(context, order.texels.size(), texels_per_batch, "surface map", [&](const WorkRange& range) {
+    const std::span texels = std::span(order.texels).subspan(range.begin, range.end - range.begin);
+    std::vector<Vec3d> points;
+    surface::find_points(target, *map.atlas, scale, texels, points);
+    const std::vector<ClosestPoint> found = query.nearest(points, alone);
+    for (std::size_t k = 0; k < texels.size(); ++k) {
+      surface::put(map, texels[k], points[k], {found[k].distance, found[k].point, found[k].site});
     }
   });
 }
@@ -81,10 +99,12 @@ struct SurfaceMapper::Data {
   TriangleMesh other;
   SurfaceMapOptions options;
   std::shared_ptr<const SurfaceAtlas> atlas;
+  surface::TexelOrder order;
   std::optional<ClosestPointQuery> query;
 
   void set_other(const Context& context) {
     query.emplace(other, ClosestPointOptions{options.sign, options.max_distance}, context);
+    query->prepare_for_many(context);
   }
 };
 
@@ -94,7 +114,8 @@ SurfaceMapper::SurfaceMapper(const MeshView& target, const MeshView& other, cons
   validate(target);
   validate(other);
   data_ = std::make_unique<Data>(
-      Data{copy_of(target), copy_of(other), options, surface::make_atlas(target, options, context), {}});
+      Data{copy_of(target), copy_of(other), options, surface::make_atlas(target, options, context), {}, {}});
+  data_->order = surface::texel_order(target, *data_->atlas, context);
   data_->set_other(context);
 }
 
@@ -108,7 +129,8 @@ SurfaceMapper::SurfaceMapper(const MeshView& target, SurfaceAtlas atlas, const M
                       std::to_string(atlas.corners.size()));
   }
   data_ = std::make_unique<Data>(
-      Data{copy_of(target), copy_of(other), options, std::make_shared<const SurfaceAtlas>(std::move(atlas)), {}});
+      Data{copy_of(target), copy_of(other), options, std::make_shared<const SurfaceAtlas>(std::move(atlas)), {}, {}});
+  data_->order = surface::texel_order(target, *data_->atlas, context);
   data_->set_other(context);
 }
 
@@ -136,7 +158,8 @@ void SurfaceMapper::move_target(std::span<const Vec3d> vertices) {
 
 void SurfaceMapper::move_other(std::span<const Vec3d> vertices, const Context& context) {
   move_vertices(data_->other, vertices);
-  data_->set_other(context);
+  data_->query->refit(vertices, context);
+  data_->query->prepare_for_many(context);
 }
 
 void SurfaceMapper::replace_other(const MeshView& other, const Context& context) {
@@ -148,11 +171,12 @@ void SurfaceMapper::replace_other(const MeshView& other, const Context& context)
 SurfaceMap SurfaceMapper::map(const Context& context) const {
   SurfaceMap out = surface::empty_map(data_->atlas, SurfaceQuantity::distance);
   PhaseTimer timer(out.phases);
-  fill_distances(out, data_->target, *data_->query, context);
+  check_range(data_->target, *data_->query);
+  fill_distances(out, data_->target, data_->order, *data_->query, context);
   timer.lap("texels");
   fill_vertices(out, data_->target, *data_->query, context);
   timer.lap("vertices");
-  surface::summarize_faces(out, data_->target, context);
+  surface::summarize_faces(out, data_->order, context);
   surface::bound_errors(out, data_->target, context);
   timer.lap("summaries");
   out.sign_rule = data_->query->sign_rule();
@@ -172,6 +196,7 @@ SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& op
   PhaseTimer timer(out.phases);
   const SiteTable sites(target, context);
   const Bvh bvh(target, sites, context);
+  const surface::TexelOrder order = surface::texel_order(target, *out.atlas, context);
   const double furthest = options.max_distance.value_or(no_limit);
   const auto value_at = [&](const Vec3d& point, TriangleId triangle, const SurfaceValue* last) {
     const Triangle& own = target.triangles[triangle.value];
@@ -192,9 +217,9 @@ SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& op
     return SurfaceValue{found->distance, found->point, found->site};
   };
   timer.lap("hierarchy");
-  surface::fill(out, target, value_at, context);
+  surface::fill(out, target, order, value_at, context);
   timer.lap("texels");
-  surface::summarize_faces(out, target, context);
+  surface::summarize_faces(out, order, context);
   surface::bound_errors(out, target, context);
   timer.lap("summaries");
   return out;

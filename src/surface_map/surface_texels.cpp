@@ -6,7 +6,6 @@
 
 #include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
-#include "blum/core/scale.hpp"
 #include "blum/surface_map/surface_atlas.hpp"
 #include "surface_map/chart.hpp"
 
@@ -16,6 +15,7 @@ namespace {
 using surface::Chart;
 using surface::ChartCorners;
 using surface::middle_of;
+using surface::ScaledCharts;
 
 constexpr std::size_t texels_per_range = 1 << 14;
 
@@ -25,19 +25,6 @@ void check(const MeshView& mesh, const SurfaceAtlas& atlas) {
   throw InvalidMesh("the mesh has " + std::to_string(mesh.triangles.size()) + " triangles, but its atlas " +
                     std::to_string(atlas.corners.size()));
 }
-
-/// Charts of a mesh times a power of two, so that products of its coordinates are numbers.
-struct ScaledCharts {
-  const MeshView& mesh;
-  const SurfaceAtlas& atlas;
-  double scale = scale_to_one(bounds(mesh).largest_coordinate());
-
-  [[nodiscard]] Chart operator[](std::uint32_t triangle) const {
-    std::array<Vec3d, 3> corners = triangle_corners(mesh, triangle);
-    for (Vec3d& corner : corners) corner *= scale;
-    return {corners, atlas.corners[triangle]};
-  }
-};
 
 /// A convex polygon in a texture.
 using Polygon = InlineList<TexturePlace, 12>;

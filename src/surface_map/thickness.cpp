@@ -174,6 +174,7 @@ SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map, co
                                       is_ray ? SurfaceQuantity::ray_thickness : SurfaceQuantity::ball_thickness);
   PhaseTimer timer(out.phases);
   const ThicknessSearch search(solid, options, context);
+  const surface::TexelOrder order = surface::texel_order(solid, *out.atlas, context);
   timer.lap("hierarchy");
   const double limit = map.max_distance.value_or(nothing);
   const auto value_at = [&](const Vec3d& point, TriangleId triangle, const SurfaceValue* /*last*/) {
@@ -182,9 +183,9 @@ SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map, co
     const SiteId site = search.sites().id({SiteKind::face, found.triangle.value});
     return SurfaceValue{found.thickness, found.opposite, site};
   };
-  surface::fill(out, solid, value_at, context);
+  surface::fill(out, solid, order, value_at, context);
   timer.lap("texels");
-  surface::summarize_faces(out, solid, context);
+  surface::summarize_faces(out, order, context);
   timer.lap("summaries");
   return out;
 }

@@ -62,6 +62,30 @@ def test_what_is_written_reads_back(box, tmp_path):
     assert {int(row["site"]) == -1 for row in rows if row["distance"] == "inf"} == {True}
 
 
+def test_several_files_of_points_give_an_output_each(box, tmp_path):
+    random = np.random.default_rng(3)
+    for name, count in (("a", 30), ("b", 500), ("c", 4)):
+        np.save(tmp_path / f"{name}.npy", random.uniform(-1, 1, (count, 3)))
+    files = [tmp_path / f"{name}.npy" for name in "abc"]
+    summary = run_json("query", box, *files, "-o", tmp_path / "d.npz")
+    assert names(tmp_path) == ["a.npy", "b.npy", "c.npy", "d-a.npz", "d-b.npz", "d-c.npz"]
+    assert summary["points"] == 534 and [one["points"] for one in summary["files"]] == [30, 500, 4]
+    assert summary["outputs"] == [one["output"] for one in summary["files"]]
+    for file, one in zip(files, summary["files"], strict=True):
+        alone = run_json("query", box, file, "-o", tmp_path / "alone.npz")
+        assert one["distance"] == alone["distance"] and one["inside"] == alone["inside"]
+        first, second = np.load(one["output"]), np.load(tmp_path / "alone.npz")
+        for key in ("points", "distance", "gradient", "closest", "site", "triangle"):
+            assert np.array_equal(first[key], second[key], equal_nan=True)
+    assert summary["distance"]["largest"] == max(one["distance"]["largest"] for one in summary["files"])
+    (tmp_path / "other").mkdir()
+    np.save(tmp_path / "other" / "a.npy", np.zeros((1, 3)))
+    _, error = run("query", box, files[0], tmp_path / "other" / "a.npy", "-o", tmp_path / "e.npz", status=2)
+    assert "e-a.npz" in error
+    _, error = run("query", box, files[0], tmp_path / "missing.npy", "-o", tmp_path / "e.npz", status=1)
+    assert "missing.npy" in error and not [name for name in names(tmp_path) if name.startswith("e")]
+
+
 def test_samples_of_the_surface(box, tmp_path):
     summary = run_json("sample", box, "-n", "4000", "-o", tmp_path / "s.npz", "--seed", "5")
     found = np.load(tmp_path / "s.npz")

@@ -43,6 +43,83 @@ def test_many_queries_get_what_few_get():
         assert np.array_equal(getattr(many, name)[:5000], np.concatenate([getattr(part, name) for part in few]))
 
 
+def test_winding_numbers_are_those_of_full_sums():
+    random = np.random.default_rng(5)
+    closed, open_ = blum.generate("sphere", frequency=8), blum.generate("organic", frequency=8, holes=2)
+    for mesh, most in ((closed, 1e-11), (open_, 1e-9)):
+        points = random.normal(size=(50, 100, 3))
+        found = blum.winding_number(mesh, points)
+        assert found.shape == (50, 100) and np.abs(found - blum.WindingNumber(mesh)(points)).max() <= most
+    assert set(np.unique(blum.winding_number(closed, points)).tolist()) == {0.0, 1.0}
+    with pytest.raises(blum.InvalidOption, match="max_error"):
+        blum.winding_number(closed, points, max_error=0)
+    with pytest.raises(blum.InvalidOption, match="point 0"):
+        blum.winding_number(closed, [[np.inf, 0, 0]])
+
+
+def test_weights_give_the_closest_points():
+    mesh = blum.generate("organic", frequency=10)
+    found = blum.signed_distance(mesh, np.random.default_rng(6).normal(size=(20, 50, 3)))
+    corners = mesh.vertices[mesh.triangles[found.triangle]]
+    assert found.barycentric.shape == (20, 50, 3) and (found.barycentric >= 0).all()
+    assert np.allclose((corners * found.barycentric[..., None]).sum(-2), found.point, rtol=0, atol=1e-13)
+    wires = blum.Mesh([[0, 0, 0], [1, 0, 0]], segments=[[0, 1]])
+    assert np.isnan(blum.signed_distance(wires, [[0, 0, 1.0]]).barycentric).all()
+
+
+def test_near_primitives_are_those_of_each_query():
+    mesh = blum.generate("organic", frequency=8)
+    query = blum.ClosestPointQuery(mesh)
+    points = np.random.default_rng(7).normal(size=(30, 10, 3))
+    few = query.nearest_primitives(points, 4)
+    assert few.first.tolist() == list(range(0, 1201, 4)) and few.primitive.dtype == np.int32
+    assert np.array_equal(few.distance[::4], np.abs(query(points).distance).ravel())
+    assert np.allclose(np.linalg.norm(few.points - np.repeat(points.reshape(-1, 3), 4, axis=0), axis=1), few.distance)
+    near = query.within(points, 0.7, threads=1)
+    assert near.first[0] == 0 and near.first[-1] == len(near.primitive) == len(near.site) > 0
+    assert near.distance.max() <= 0.7 and repr(near) == f"NearPrimitives({len(near.primitive):,} of 300 queries)"
+    for q in range(0, 300, 50):
+        alone = query.within(points.reshape(-1, 3)[q : q + 1], 0.7)
+        assert np.array_equal(alone.primitive, near.primitive[near.first[q] : near.first[q + 1]])
+    with pytest.raises(blum.InvalidOption, match="distance"):
+        query.within(points, -1)
+    with pytest.raises(blum.InvalidOption, match="k is -1"):
+        query.nearest_primitives(points, -1)
+    assert query.within(np.zeros((0, 3)), 1).first.tolist() == [0]
+
+
+def test_a_refitted_query_answers_as_a_new_one():
+    mesh = blum.generate("organic", frequency=10)
+    query = blum.ClosestPointQuery(mesh)
+    points = np.random.default_rng(8).normal(size=(5000, 3))
+    for scale in (1.5, [1, -1, 1], 0.1):
+        moved = mesh.vertices * scale
+        query.refit(moved)
+        expected = blum.ClosestPointQuery((moved, mesh.triangles))
+        assert query.sign_reason == expected.sign_reason
+        found, other = query(points), expected(points)
+        for name in ("points", "distance", "site", "triangle"):
+            assert np.array_equal(getattr(found, name), getattr(other, name))
+    with pytest.raises(blum.InvalidMesh, match="vertices"):
+        query.refit(mesh.vertices[1:])
+    with pytest.raises(ValueError, match="vertices"):
+        query.refit(mesh.vertices.ravel())
+
+
+def test_gradients_of_interpolants():
+    field = blum.distance_field(blum.generate("sphere"), resolution=48)
+    points = np.random.default_rng(9).normal(size=(40, 5, 3)) * 0.4
+    values, gradient = field.interpolate(points, gradient=True)
+    assert np.array_equal(values, field.interpolate(points), equal_nan=True) and gradient.shape == (40, 5, 3)
+    inside = ~np.isnan(values)
+    assert np.isnan(gradient[~inside]).all() and inside.sum() > 100
+    step = 1e-7
+    for axis in range(3):
+        there = field.interpolate(points + step * np.eye(3)[axis])
+        slope = (there - values) / step
+        assert np.mean(np.abs(slope - gradient[..., axis])[inside] < 1e-5) > 0.99
+
+
 @pytest.mark.parametrize("blue_noise", [False, True])
 def test_samples_lie_on_the_surface(blue_noise):
     mesh = blum.generate("torus")

@@ -51,8 +51,8 @@ def cross(a, b):
 
 def test_several_others_are_told_apart(organic):
     left = blum.generate("sphere", frequency=3)
-    right = blum.Mesh(left.vertices + [6, 0, 0], left.triangles)
-    wide = blum.Mesh(organic.vertices * [4, 1, 1] + [3, 0, 0], organic.triangles)
+    right = blum.Mesh(left.vertices + np.array([6, 0, 0]), left.triangles)
+    wide = blum.Mesh(organic.vertices * [4, 1, 1] + np.array([3, 0, 0]), organic.triangles)
     found = blum.surface_distance_map(wide, left, right, texel=0.2)
     known = found.triangle >= 0
     assert set(np.unique(found.object[known])) == {0, 1} and (found.object[~known] == -1).all()
@@ -92,7 +92,7 @@ def test_thickness_of_a_plate():
 
 
 def test_hausdorff_distances_are_intervals(organic):
-    moved = blum.Mesh(organic.vertices + [0, 0, 0.125], organic.triangles)
+    moved = blum.Mesh(organic.vertices + np.array([0, 0, 0.125]), organic.triangles)
     found = blum.hausdorff_distance(organic, moved, tolerance=1e-4)
     assert found.lower <= 0.125 and found.upper - found.lower <= 1e-4 and found.upper > 0.1
     ends = np.array(found.points)

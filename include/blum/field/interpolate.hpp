@@ -24,4 +24,17 @@ namespace blum {
 [[nodiscard]] std::vector<double> interpolate(const Field& field, std::span<const Vec3d> points,
                                               const Context& context = {});
 
+/// Values of the interpolant, and its gradients.
+struct InterpolatedGradients {
+  std::vector<double> value;    ///< as interpolate() gives them, bit for bit
+  std::vector<Vec3d> gradient;  ///< without unit (distance over length), in the mesh's axes
+};
+
+/// The same with the gradient of what is trilinear between the nodes: about 1 long where the distance is smooth,
+/// shorter next to edges and bisectors. It jumps at the borders of cells: there it is that of the cell with the higher
+/// nodes, in the last layer of the one before. 0 along an axis with a single layer. Not a number outside of the grid,
+/// and where a node of the cell is infinitely far.
+[[nodiscard]] InterpolatedGradients interpolate_with_gradient(const Field& field, std::span<const Vec3d> points,
+                                                              const Context& context = {});
+
 }  // namespace blum

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <optional>
 
@@ -46,13 +47,40 @@ class WindingNumber {
   /// 70,000 triangles.
   [[nodiscard]] bool is_inside(const Vec3d& query) const;
 
+  /// A side, and how far w lies at least from 1/2 there: all points that a path joins to the query lie on it, where the
+  /// path crosses no triangle and w changes along it by less.
+  struct Decision {
+    bool is_inside = false;
+    double margin = 0;  ///< 0 where rounding alone may make a difference
+  };
+  /// The same as is_inside(), told with its margin.
+  [[nodiscard]] Decision decide(const Vec3d& query) const;
+
   /// A value and a bound on its error.
   struct Estimate {
     double value = 0;
     double error = 0;
   };
-  /// w with an error bound of at most about max_error (at least 1e-12). Cost: grows slowly as max_error falls.
+  /// w with an error bound of at most about max_error (at least 1e-12). Cost for 70,000 triangles, in us: 1 to 3 where
+  /// max_error is 0.45, 10 to 30 at 0.01, 30 to 60 at 1e-3, 230 to 280 at 1e-6.
   [[nodiscard]] Estimate estimate(const Vec3d& query, double max_error) const;
+
+  /// w, exact from a rough value: a cone over the surface's boundary closes it, so that w is a whole number less the
+  /// winding number of the cone, which is summed in full. Of a closed mesh it is the whole number next to the rough
+  /// one.
+  /// @param rough  off by less than rough_error.
+  /// @return       off by no more than refined_error, of a closed mesh exact; nullopt where the boundary has more than
+  ///               2,048 edges, and where the query is too close to the boundary or to an edge of the cone.
+  /// Cost: O(edges of the boundary), about 3 ns for each.
+  [[nodiscard]] std::optional<double> refine(const Vec3d& query, double rough) const;
+  static constexpr double rough_error = 0.45;
+  static constexpr double refined_error = 1e-9;
+  /// Whether refine() is of any use.
+  [[nodiscard]] bool has_short_boundary() const;
+
+  /// w by the quickest way to a bound on its error: refine() where that works, the full sum of few triangles, else
+  /// estimate().
+  [[nodiscard]] Estimate value(const Vec3d& query, double max_error) const;
 
   /// Whether w > 1/2, where w differs from 1/2 by more than `change` (which an argument about its gradient gives);
   /// nullopt where it may not. With change = 0 the same as is_inside(), up to nullopt where w is 1/2 to rounding.
@@ -73,6 +101,9 @@ class WindingNumber {
   /// Whether w is constant wherever no triangle lies between: triangles meet at every edge in cancelling directions
   /// (edges are compared by the positions of their ends), so that w is an integer off the surface.
   [[nodiscard]] bool is_piecewise_constant() const;
+
+  /// How many triangles there are.
+  [[nodiscard]] std::size_t triangle_count() const;
 
  private:
   struct Data;

@@ -7,20 +7,23 @@
 namespace blum::cpu {
 namespace {
 
-/// Fewer have too many candidates in common with their neighbours; more do not stay in caches.
-constexpr std::size_t points_per_cell = 16384;
+/// More points do not stay in caches; fewer have too many candidates in common with their neighbours, but are divided
+/// among threads.
+constexpr std::size_t most_per_cell = 16384;
+constexpr std::size_t least_per_cell = 1024;
+constexpr std::size_t cells_for_threads = 16;
 
-void add_cells(const MortonPoints& points, const PointCell& cell, std::vector<PointCell>& out) {
+void add_cells(const MortonPoints& points, const PointCell& cell, std::size_t most, std::vector<PointCell>& out) {
   if (cell.size() == 0) return;
-  if (cell.size() <= points_per_cell) return out.push_back(cell);
+  if (cell.size() <= most) return out.push_back(cell);
   if (cell.level < MortonPoints::levels) {
-    for (const PointCell& child : children_of(points, cell)) add_cells(points, child, out);
+    for (const PointCell& child : children_of(points, cell)) add_cells(points, child, most, out);
     return;
   }
   PointCell part = cell;
-  for (std::size_t begin = cell.begin; begin < cell.end; begin += points_per_cell) {
+  for (std::size_t begin = cell.begin; begin < cell.end; begin += most) {
     part.begin = begin;
-    part.end = std::min(begin + points_per_cell, cell.end);
+    part.end = std::min(begin + most, cell.end);
     out.push_back(part);
   }
 }
@@ -47,8 +50,9 @@ std::array<PointCell, 8> children_of(const MortonPoints& points, const PointCell
 std::vector<PointCell> point_cells(const MortonPoints& points) {
   const double half = points.side / 2;
   const Vec3d center = points.lower + Vec3d{half, half, half};
+  const std::size_t most = std::clamp(points.size() / cells_for_threads, least_per_cell, most_per_cell);
   std::vector<PointCell> out;
-  add_cells(points, {0, points.size(), 0, to_float(center), static_cast<float>(half)}, out);
+  add_cells(points, {0, points.size(), 0, to_float(center), static_cast<float>(half)}, most, out);
   return out;
 }
 

@@ -70,16 +70,21 @@ std::size_t Sides::open_site_count() const {
 }
 
 bool Sides::is_inside(const Vec3d& query, const NearestSite& nearest) const {
+  const std::optional<bool> known = is_inside_by_site(query, nearest);
+  return known ? *known : winding_->is_inside(query);
+}
+
+std::optional<bool> Sides::is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const {
   if (method_ == Method::none) return false;
   // Of far sites rounding may name any, and the normal of the wrong one looks away.
   const bool is_beyond = min(query, bounds_.lower) != bounds_.lower || max(query, bounds_.upper) != bounds_.upper;
   if (method_ == Method::crossings && is_beyond) return level_ < 0;
-  if (method_ == Method::sums) return winding_->is_inside(query);
+  if (method_ == Method::sums) return std::nullopt;
   const bool is_behind = normals_->is_inside(query, nearest.point, nearest.site);
   if (method_ == Method::pseudonormals || !winding_) return is_behind;
   const std::uint32_t patch = patch_[nearest.site.value];
   if (patch != no_patch) return in_front_[patch] + (is_behind ? 1 : 0) > level_;
-  if (level_ == 0) return winding_->is_inside(query);
+  if (level_ == 0) return std::nullopt;
   return winding_->estimate(query, 0.25).value > level_ + 0.5;
 }
 

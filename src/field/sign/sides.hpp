@@ -34,6 +34,11 @@ class Sides {
   /// Whether a query that is not on the surface lies inside. Allocates nothing.
   [[nodiscard]] bool is_inside(const Vec3d& query, const NearestSite& nearest) const;
 
+  /// The same as far as it takes no winding number of the query itself: where that is above 1/2 decides, nullopt.
+  [[nodiscard]] std::optional<bool> is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const;
+  /// Null where all sides are told by sites.
+  [[nodiscard]] const WindingNumber* winding() const { return winding_ ? &*winding_ : nullptr; }
+
   /// Patches, and sites whose queries ask for themselves.
   [[nodiscard]] std::size_t patch_count() const { return in_front_.size(); }
   [[nodiscard]] std::size_t open_site_count() const;

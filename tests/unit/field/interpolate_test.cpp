@@ -64,6 +64,48 @@ TEST(Interpolate, IsExactForATrilinearFunctionOnATurnedGrid) {
   for (std::size_t n = 0; n < values.size(); ++n) EXPECT_NEAR(values[n], expected[n], 1e-12);
 }
 
+/// Central differences, exact for what is linear along each axis but for rounding.
+Vec3d slopes(double i, double j, double k) {
+  const double h = 0.5;
+  return {trilinear(i + h, j, k) - trilinear(i - h, j, k), trilinear(i, j + h, k) - trilinear(i, j - h, k),
+          trilinear(i, j, k + h) - trilinear(i, j, k - h)};
+}
+
+TEST(Interpolate, HasTheGradientOfATrilinearFunctionOnATurnedGrid) {
+  const GridSpec grid = turned_grid();
+  const Field field = field_on(grid);
+  Random random(8);
+  std::vector<Vec3d> points;
+  std::vector<Vec3d> expected;
+  for (int n = 0; n < 1000; ++n) {
+    // Also in layers and on borders, where all cells agree.
+    const auto place = [&](double last) {
+      return n % 3 == 0 ? std::floor(random.uniform() * (last + 1)) : random.uniform() * last;
+    };
+    const double i = place(4);
+    const double j = place(6);
+    const double k = place(3);
+    points.push_back(at(grid, i, j, k));
+    const Vec3d s = slopes(i, j, k);
+    expected.push_back(grid.direction * Vec3d{s.x / 0.5, s.y / 0.25, s.z / 2});
+  }
+  points.push_back(at(grid, -1, 0, 0));
+  const InterpolatedGradients found = interpolate_with_gradient(field, points);
+  const std::vector<double> values = interpolate(field, points);
+  for (std::size_t n = 0; n < expected.size(); ++n) {
+    EXPECT_NEAR(length(found.gradient[n] - expected[n]), 0, 1e-11);
+    EXPECT_EQ(found.value[n], values[n]);
+  }
+  EXPECT_TRUE(std::isnan(found.gradient.back().x) && std::isnan(found.value.back()));
+}
+
+TEST(Interpolate, HasNoSlopeAcrossASingleLayer) {
+  const GridSpec grid{{0, 0, 0}, {1, 1, 1}, {3, 1, 3}, {}};
+  const Vec3d point{0.5, 0.2, 0.25};
+  const Vec3d found = interpolate_with_gradient(field_on(grid), {&point, 1}).gradient[0];
+  EXPECT_EQ(found, (Vec3d{2, 0, 0.5}));
+}
+
 TEST(Interpolate, GivesNodesTheirValuesAlsoOnTheBorderAndNextToInfinity) {
   const GridSpec grid{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {}};
   Field field = field_on(grid);

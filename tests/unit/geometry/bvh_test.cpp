@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "blum/core/random.hpp"
 #include "blum/field/reference.hpp"
@@ -303,6 +304,11 @@ TEST(Bvh, AnswersAfterARefitAreThoseOfANewOne) {
   const SiteTable sites(before);
   Bvh refitted(before, sites);
   EXPECT_THROW(refitted.refit(std::span(after.vertices).first(3)), InvalidMesh);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<Vec3d> broken = after.vertices;
+    broken[before.triangles[0][1]][axis] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(refitted.refit(broken), InvalidMesh);
+  }
   refitted.refit(after.vertices);
   const Bvh fresh(after, sites);
   EXPECT_EQ(refitted.bounds().lower, fresh.bounds().lower);

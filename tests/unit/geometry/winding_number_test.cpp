@@ -77,6 +77,20 @@ TEST(WindingNumber, IsAccurateWithoutBoundsToo) {
   EXPECT_GT(worst, worst_at_4);
 }
 
+TEST(WindingNumber, DecidesWithAMargin) {
+  const TriangleMesh mesh = test::awkward_soup(300, 3);
+  const WindingNumber winding(mesh);
+  EXPECT_EQ(winding.triangle_count(), mesh.triangles.size());
+  for (const Vec3d& query : test::places_around(mesh, 300, 9)) {
+    const WindingNumber::Decision found = winding.decide(query);
+    const double w = reference::winding_number(mesh, query);
+    EXPECT_EQ(found.is_inside, winding.is_inside(query));
+    if (std::abs(winding(query) - w) > 1e-9) continue;  // on the surface it jumps
+    EXPECT_GE(found.margin, 0);
+    EXPECT_LE(found.margin, std::abs(w - 0.5) + 1e-9);
+  }
+}
+
 TEST(WindingNumber, IsZeroWithoutTrianglesAndFarAway) {
   const TriangleMesh points = make_points({.points = 10});
   EXPECT_EQ(WindingNumber(points)({0, 0, 0}), 0);

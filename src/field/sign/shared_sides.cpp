@@ -1,0 +1,153 @@
+#include "field/sign/shared_sides.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "blum/core/inline_list.hpp"
+
+namespace blum::sign {
+namespace {
+
+/// Fewer have too little in common for a bound on the gradient, which costs as much as several of their answers.
+constexpr std::size_t few = 48;
+/// The same where answers cost next to nothing.
+constexpr std::size_t few_triangles = 256;
+/// Changes of the winding number over a group beyond which smaller groups are better.
+constexpr double large_change = 1;
+
+/// What a point is told that asks for itself, and by how much the winding number may change for another point to be
+/// told the same.
+template <class Value>
+struct Answer {
+  Value value;
+  double margin = 0;
+};
+
+/// Asks for the side of a point.
+struct AskSide {
+  const WindingNumber& winding;
+
+  using Point = SidedPoint;
+  static void take(SidedPoint& point, bool side) { point.is_inside = side; }
+  [[nodiscard]] Answer<bool> operator()(const Vec3d& at) const {
+    const WindingNumber::Decision found = winding.decide(at);
+    return {found.is_inside, found.margin};
+  }
+};
+
+/// Asks for a rough winding number.
+struct AskNumber {
+  const WindingNumber& winding;
+
+  using Point = NumberedPoint;
+  static void take(NumberedPoint& point, double number) { point.number = number; }
+  [[nodiscard]] Answer<double> operator()(const Vec3d& at) const {
+    const WindingNumber::Estimate found = winding.estimate(at, 0.6 * WindingNumber::rough_error);
+    return {found.value, (1 - 1e-9) * WindingNumber::rough_error - found.error};
+  }
+};
+
+/// Answers of a group, which those of it that have none yet may share.
+template <class Ask>
+class SharedAnswers {
+ public:
+  using Point = typename Ask::Point;
+  using Value = decltype(std::declval<Ask>()(Vec3d{}).value);
+
+  SharedAnswers(const Ask& ask, std::span<const Point> points, double gradient, double slack)
+      : ask_(ask), points_(points), gradient_(gradient * (1 + 1e-9)), slack_(slack) {
+    reach_.fill(-HUGE_VAL);
+  }
+
+  /// The answer of a point; once for each.
+  [[nodiscard]] Value of(std::size_t k) {
+    if (const std::optional<std::size_t> other = sharing(k)) {
+      const double way = length(points_[k].at - points_[*other].at) * (1 + 1e-12);
+      reach_[k] = gradient_ > 0 ? reach_[*other] - way : HUGE_VAL;
+      return value_[k] = value_[*other];
+    }
+    const Answer<Value> found = ask_(points_[k].at);
+    if (!asked_.is_full()) asked_.push_back(static_cast<std::uint16_t>(k));
+    reach_[k] = gradient_ > 0 ? found.margin / gradient_ : HUGE_VAL;
+    return value_[k] = found.value;
+  }
+
+ private:
+  /// How far in the order of the points neighbours are looked for.
+  static constexpr std::size_t most_steps = 12;
+
+  /// A point that has an answer, which holds here, too: neighbours first, then those that asked.
+  [[nodiscard]] std::optional<std::size_t> sharing(std::size_t k) const {
+    for (std::size_t step = 1; step <= most_steps; ++step) {
+      if (k >= step && holds(k - step, k)) return k - step;
+      if (k + step < points_.size() && holds(k + step, k)) return k + step;
+    }
+    for (std::size_t n = asked_.size(); n-- > 0;) {
+      if (holds(asked_[n], k)) return asked_[n];
+    }
+    return std::nullopt;
+  }
+
+  /// Whether the answer of one point is that of another.
+  [[nodiscard]] bool holds(std::size_t from, std::size_t to) const {
+    const double free = std::min(points_[from].distance + points_[to].distance - slack_, reach_[from]);
+    return free > 0 && squared_length(points_[to].at - points_[from].at) < free * free * (1 - 1e-12);
+  }
+
+  const Ask& ask_;
+  std::span<const Point> points_;
+  double gradient_;
+  double slack_;
+  /// Of each point: as far as this its answer holds, unless a triangle lies between; negative where it has none yet.
+  std::array<double, most_shared> reach_;
+  std::array<Value, most_shared> value_;
+  InlineList<std::uint16_t, 64> asked_;
+};
+
+template <class Point>
+Box3 box_around(std::span<const Point> points) {
+  Box3 box;
+  for (const Point& point : points) box.extend(point.at);
+  return box;
+}
+
+template <class Ask>
+void share(const Ask& ask, std::span<typename Ask::Point> points, double slack) {
+  using Point = typename Ask::Point;
+  if (points.size() <= few || ask.winding.triangle_count() <= few_triangles) {
+    for (Point& point : points) Ask::take(point, ask(point.at).value);
+    return;
+  }
+  const Box3 box = box_around<Point>(points);
+  const double enough = large_change / box.diagonal();
+  const double gradient = ask.winding.gradient_bound(box, enough);
+  if (!(gradient <= enough)) {
+    share(ask, points.first(points.size() / 2), slack);
+    share(ask, points.subspan(points.size() / 2), slack);
+    return;
+  }
+  std::array<std::uint16_t, most_shared> order;
+  for (std::size_t k = 0; k < points.size(); ++k) order[k] = static_cast<std::uint16_t>(k);
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(points.size());
+  std::sort(order.begin(), end, [&](std::uint16_t a, std::uint16_t b) {
+    return points[a].distance > points[b].distance || (points[a].distance == points[b].distance && a < b);
+  });
+  SharedAnswers<Ask> answers(ask, points, gradient, slack);
+  for (auto k = order.begin(); k != end; ++k) Ask::take(points[*k], answers.of(*k));
+}
+
+}  // namespace
+
+void decide_sides(const WindingNumber& winding, std::span<SidedPoint> points, double slack) {
+  share(AskSide{winding}, points, slack);
+}
+
+void find_rough_numbers(const WindingNumber& winding, std::span<NumberedPoint> points, double slack) {
+  share(AskNumber{winding}, points, slack);
+}
+
+}  // namespace blum::sign

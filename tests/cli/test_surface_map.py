@@ -1,0 +1,83 @@
+"""`blum surface-map` makes maps of every kind, in every format, and says what is asked wrongly."""
+
+import json
+
+import numpy as np
+import pytest
+from tool import BLUM, run, run_json
+
+pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
+
+
+@pytest.fixture(scope="module")
+def shapes(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("shapes")
+    run("make", "box", "--size-x", 4, "--size-y", 3, "--size-z", 0.5, "-o", folder / "plate.ply")
+    run("make", "sphere", "-o", folder / "sphere.ply")
+    run("make", "torus", "-o", folder / "torus.ply")
+    return folder
+
+
+def test_distances_to_other_meshes(shapes, tmp_path):
+    out = tmp_path / "map.npz"
+    found = run_json("surface-map", shapes / "plate.ply", shapes / "sphere.ply", "-o", out, "--texel", 0.05, "--sign", "auto")
+    held = np.load(out)
+    assert held["distance"].shape == (found["height"], found["width"])
+    known = held["triangle"] >= 0
+    assert known.sum() == found["texels"] and found["without_value"] == 0
+    assert np.isclose(held["distance"][known].min(), found["smallest"]["distance"])
+    assert np.isclose(held["distance"][known].max(), found["largest"]["distance"])
+    assert found["quantity"] == "distance" and found["sign_rule"] == "normals" and found["smallest"]["distance"] < 0
+    corner = np.linalg.norm([2, 1.5, 0.25])
+    assert np.isclose(found["largest"]["distance"], corner - 1, atol=0.05)
+    assert np.isclose(held["triangle_error"].max(), found["largest_error"]) and found["largest_error"] < 0.06
+    meta = json.loads(str(held["metadata"]))
+    assert meta["quantity"] == "distance" and meta["tool"] == "blum surface-map"
+
+
+def test_the_closest_of_several_is_named(shapes, tmp_path):
+    found = run_json(
+        "surface-map", shapes / "plate.ply", shapes / "torus.ply", shapes / "sphere.ply", "-o", tmp_path / "map.png",
+        "--texel", 0.1
+    )
+    assert {found["smallest"]["object"], found["largest"]["object"]} <= {0, 1}
+
+
+def test_thickness_and_self(shapes, tmp_path):
+    ray = run_json("surface-map", shapes / "plate.ply", "-o", tmp_path / "ray.ply", "--thickness", "ray")
+    assert np.isclose(ray["smallest"]["distance"], 0.5) and np.isclose(ray["largest"]["distance"], 4)
+    assert ray["quantity"] == "ray-thickness" and ray["largest_error"] is None
+    ball = run_json("surface-map", shapes / "plate.ply", "-o", tmp_path / "ball.vtp", "--thickness", "ball")
+    assert np.isclose(ball["largest"]["distance"], 0.5, atol=1e-5)
+    own = run_json("surface-map", shapes / "torus.ply", "-o", tmp_path / "own.npz", "--self", "--within", 0.01)
+    assert own["quantity"] == "self-distance" and own["without_value"] > 0
+
+
+def test_all_formats_at_once(shapes, tmp_path):
+    outs = [tmp_path / f"map.{extension}" for extension in ("npz", "png", "glb", "ply", "vtp")]
+    options = [word for out in outs for word in ("-o", out)]
+    text, _ = run(
+        "surface-map", shapes / "plate.ply", shapes / "sphere.ply", *options, "--units", "mm", "--range", "0,2", "--texel", 0.1
+    )
+    assert all(out.stat().st_size > 500 for out in outs) and text.count("wrote") == 5 and " mm between texels" in text
+
+
+def test_what_is_wrong_is_said(shapes, tmp_path):
+    plate, sphere, out = shapes / "plate.ply", shapes / "sphere.ply", tmp_path / "map.png"
+    for words, said in (
+        ((plate, "-o", out), "another mesh"),
+        ((plate, sphere, "-o", out, "--self"), "alone"),
+        ((plate, "-o", out, "--self", "--thickness", "ray"), "two kinds"),
+        ((plate, "-o", out, "--thickness", "cone"), "'ray' or 'ball'"),
+        ((plate, "-o", out, "--thickness", "ray", "--separation", 20), "--thickness ball"),
+        ((plate, "-o", out, "--self", "--sign", "auto"), "--sign"),
+        ((plate, sphere, "-o", out, "--range", "2"), "two numbers"),
+        ((plate, sphere, "-o", out, "--range", "2,1"), "less"),
+        ((plate, sphere, "-o", out, "--texel", 0), "--texel"),
+        ((plate, sphere, "-o", out, "--within", -1), "--within"),
+        ((plate, sphere, "-o", tmp_path / "map.obj"), "extension"),
+        ((plate, sphere, "-o", plate), "plate.ply"),
+    ):
+        assert said in run("surface-map", *words, status=2)[1], words
+    assert "16384" in run("surface-map", plate, sphere, "-o", out, "--texel", 1e-9, status=2)[1]
+    assert not out.exists()
