@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -11,6 +12,8 @@ import webbrowser
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ._arguments import PathLike, existing_file
 from ._errors import Error, FileError, InvalidOption
 from ._field import Field
@@ -19,6 +22,7 @@ from ._medial import MedialAxis
 from ._medial_columns import NestedComplex
 from ._medial_complex import MedialComplex
 from ._mesh import Mesh, as_mesh
+from ._surface_map import SurfaceMap
 
 _TOOL = Path(__file__).parent / "_bin" / "blum"
 _UNREADABLE = 1  # exit status
@@ -26,7 +30,7 @@ _PREFIX = re.compile(r"^blum: (?:error|warning): ")
 
 
 def view(*things: Any, output: PathLike | None = None, show: bool | None = None, **named: Any) -> Path:
-    """Writes one HTML page that shows meshes, images, fields and medial axes, in any mixture, and opens it.
+    """Writes one HTML page that shows meshes, images, fields, medial axes and surface maps, in any mixture, and opens it.
 
     The page is one file that needs neither a network nor this process: slices and isosurfaces of fields, a slider for
     theta (for a :class:`MedialAxis`), and what lies under the pointer.
@@ -35,7 +39,8 @@ def view(*things: Any, output: PathLike | None = None, show: bool | None = None,
     ----------
     things
         Meshes as for :func:`distance_field` (as one object each), :class:`Field`, :class:`MedialAxis`,
-        :class:`MedialComplex`, :class:`Image`, arrays [z, y, x], and paths of files that `blum view` shows.
+        :class:`MedialComplex`, :class:`SurfaceMap`, :class:`Image`, arrays [z, y, x], and paths of files that `blum view`
+        shows.
     named
         The same with names of your own: ``view(part=mesh, distance=field)``.
     output : path, optional
@@ -112,6 +117,9 @@ def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]
     elif isinstance(thing, Field):
         path = _fresh(folder, names, name or "field", ".npz")
         thing.write(path)
+    elif isinstance(thing, SurfaceMap):
+        path = _fresh(folder, names, name or "map", ".npz")
+        _write_map(thing, path)
     elif is_image(thing):
         path = _fresh(folder, names, name or "image", ".nrrd")
         image: Image = as_image(thing)
@@ -121,6 +129,34 @@ def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]
         path = _fresh(folder, names, name or Path(mesh.source).stem or "mesh", ".ply")
         mesh.write(path)
     return path
+
+
+def _write_map(shown: SurfaceMap, path: Path) -> None:
+    """As blum::write_surface_map does; docs/guide/files.md names the arrays."""
+    metadata = {
+        "content": "surface map",
+        "quantity": shown.quantity,
+        "sign_rule": shown.sign_rule,
+        "sign_reason": shown.sign_reason,
+        "separate_charts": "true",  # as in all maps that Python makes
+    }
+    arrays = {
+        "distance": shown.distance,
+        "vector": shown.vector,
+        "site": shown.site,
+        "triangle": shown.triangle,
+        "corners": shown.corners,
+        "vertices": np.asarray(shown.mesh.vertices, np.float64),
+        "triangles": np.asarray(shown.mesh.triangles, np.int32),
+        "vertex_distance": shown.vertex_distance,
+        "triangle_smallest": shown.faces[:, 0],
+        "triangle_largest": shown.faces[:, 1],
+        "triangle_mean": shown.faces[:, 2],
+        "metadata": np.array(json.dumps(metadata)),
+    }
+    if shown.error is not None:
+        arrays["triangle_error"] = shown.error
+    np.savez(path, **{name: np.ascontiguousarray(array) for name, array in arrays.items()})
 
 
 def _fresh(folder: Path, names: set[str], stem: str, extension: str) -> Path:

@@ -4,11 +4,11 @@ import type { Triple } from "./scene.ts";
 
 type Mesh = { positions: Float32Array; triangles: Uint32Array; segments?: Uint32Array };
 
-const edges = new WeakMap<Uint32Array, Float64Array>();
+const edges = new WeakMap<Mesh, Float64Array>();
 
 /** smaller * vertices + larger, of each edge once, in rising order. */
 function edgesOf(mesh: Mesh): Float64Array {
-  const known = edges.get(mesh.triangles);
+  const known = edges.get(mesh);
   if (known !== undefined) return known;
   const { triangles, segments = new Uint32Array(0) } = mesh;
   const vertices = mesh.positions.length / 3;
@@ -18,7 +18,7 @@ function edgesOf(mesh: Mesh): Float64Array {
   for (let s = 0; s < segments.length / 2; ++s) keys[triangles.length + s] = key(segments[2 * s], segments[2 * s + 1]);
   keys.sort();
   const distinct = keys.filter((k, i) => i === 0 || k !== keys[i - 1]);
-  edges.set(mesh.triangles, distinct);
+  edges.set(mesh, distinct);
   return distinct;
 }
 
