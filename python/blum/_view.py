@@ -30,7 +30,7 @@ _PREFIX = re.compile(r"^blum: (?:error|warning): ")
 
 
 def view(*things: Any, output: PathLike | None = None, show: bool | None = None, **named: Any) -> Path:
-    """Writes one HTML page that shows meshes, images, fields, medial axes and surface maps, in any mixture, and opens it.
+    """Writes one HTML page that shows meshes, images, fields, medial axes, surface maps in any mixture, and opens it.
 
     The page is one file that needs neither a network nor this process: slices and isosurfaces of fields, a slider for
     theta (for a :class:`MedialAxis`), and what lies under the pointer.
@@ -39,8 +39,8 @@ def view(*things: Any, output: PathLike | None = None, show: bool | None = None,
     ----------
     things
         Meshes as for :func:`distance_field` (as one object each), :class:`Field`, :class:`MedialAxis`,
-        :class:`MedialComplex`, :class:`SurfaceMap`, :class:`Image`, arrays [z, y, x], and paths of files that `blum view`
-        shows.
+        :class:`MedialComplex`, :class:`SurfaceMap`, :class:`Image`, arrays [z, y, x], and paths of files that
+        `blum view` shows.
     named
         The same with names of your own: ``view(part=mesh, distance=field)``.
     output : path, optional
@@ -140,7 +140,7 @@ def _write_map(shown: SurfaceMap, path: Path) -> None:
         "sign_reason": shown.sign_reason,
         "separate_charts": "true",  # as in all maps that Python makes
     }
-    arrays = {
+    arrays: dict[str, Any] = {
         "distance": shown.distance,
         "vector": shown.vector,
         "site": shown.site,
@@ -156,7 +156,8 @@ def _write_map(shown: SurfaceMap, path: Path) -> None:
     }
     if shown.error is not None:
         arrays["triangle_error"] = shown.error
-    np.savez(path, **{name: np.ascontiguousarray(array) for name, array in arrays.items()})
+    kept: dict[str, Any] = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
+    np.savez(path, **kept)
 
 
 def _fresh(folder: Path, names: set[str], stem: str, extension: str) -> Path:
