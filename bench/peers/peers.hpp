@@ -61,4 +61,11 @@ struct PeerBand {
 [[nodiscard]] std::optional<PeerBand> openvdb_band(const MeshView& mesh, const GridSpec& grid, double width,
                                                    bool is_signed, const Context& context);
 
+/// CGAL's bounded_error_symmetric_Hausdorff_distance, one thread (its parallel version needs METIS).
+struct PeerHausdorff {
+  double distance = 0;
+  Times times;  ///< with building
+};
+[[nodiscard]] std::optional<PeerHausdorff> cgal_hausdorff(const MeshView& a, const MeshView& b, double tolerance);
+
 }  // namespace blum::bench

@@ -1,15 +1,19 @@
-#include <memory>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/io/surface_map_io.hpp"
 #include "blum/surface_map/hausdorff_distance.hpp"
 #include "blum/surface_map/surface_deviation.hpp"
 #include "blum/surface_map/surface_distance_map.hpp"
@@ -28,12 +32,10 @@ nb::tuple columns_of(std::vector<Thickness> found) {
   return nb::make_tuple(shown(&Thickness::thickness), shown(&Thickness::opposite), shown(&Thickness::triangle));
 }
 
-/// A map that Python keeps alive while an array shows a part of it.
+/// A map that Python keeps alive while an array shows a part of it; `handle` is for writing it.
 nb::dict dict_of(SurfaceMap found) {
-  auto kept = std::make_unique<SurfaceMap>(std::move(found));
-  SurfaceMap& map = *kept;
-  const nb::capsule owner(kept.get(), [](void* memory) noexcept { delete static_cast<SurfaceMap*>(memory); });
-  (void)kept.release();  // the capsule's from here on
+  const nb::object owner = nb::cast(std::move(found), nb::rv_policy::move);
+  SurfaceMap& map = nb::cast<SurfaceMap&>(owner);
   const SurfaceAtlas& atlas = *map.atlas;
   const std::size_t h = atlas.height;
   const std::size_t w = atlas.width;
@@ -53,10 +55,23 @@ nb::dict dict_of(SurfaceMap found) {
   out["sign_rule"] = std::string(to_string(map.sign_rule));
   out["sign_reason"] = map.sign_reason;
   out["seconds"] = seconds_of(map.phases);
+  out["_handle"] = owner;
   return out;
 }
 
 void bind_maps(nb::module_& m) {
+  nb::class_<SurfaceMap>(m, "SurfaceMap");
+  m.def(
+      "write_surface_map",
+      [](const std::filesystem::path& path, const MeshArrays& mesh, const SurfaceMap& map,
+         const std::vector<std::pair<std::string, std::string>>& metadata,
+         const std::optional<std::pair<double, double>>& range, const std::string& units) {
+        const MeshView view = mesh.view();
+        run_call({0, nb::none()}, [&](const Context& context) {
+          write_surface_map(path, view, map, {metadata.begin(), metadata.end()}, {range, units}, context);
+        });
+      },
+      nb::arg("path"), nb::arg("mesh"), nb::arg("map"), nb::arg("metadata"), nb::arg("range").none(), nb::arg("units"));
   m.def(
       "surface_distance_map",
       [](const MeshArrays& target, const MeshArrays& other, const nb::dict& given, int threads, nb::object progress) {

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import FloatArray, IntArray, Real, integer, points_and_shape
+from ._arguments import FloatArray, IntArray, PathLike, Real, integer, number, points_and_shape
 from ._mesh import Mesh, Sites, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
@@ -50,6 +52,7 @@ class SurfaceMap:
     sign_reason: str  #: why by this rule
     seconds: dict[str, float]  #: where time went
     mesh: Mesh  #: that the map is of
+    _handle: Any = None
     _parts: tuple[Mesh, ...] = ()
     _joined: Mesh | None = None
 
@@ -62,6 +65,25 @@ class SurfaceMap:
         """(t, 3, 2): of the corners of triangles, 0 to 1, v down as in glTF files (OBJ files have 1 - v)."""
         height, width = self.distance.shape
         return self.corners / (width, height)
+
+    def write(self, path: PathLike, *, units: str = "", range: tuple[Real, Real] | None = None) -> None:
+        """Writes the map; the format goes by the extension.
+
+        ``.npz`` everything as arrays; ``.png`` the texture in colours with a bar; ``.glb`` the mesh with the texture;
+        ``.ply``, ``.vtp`` values of vertices and triangles.
+
+        Parameters
+        ----------
+        path : path
+            An existing file is replaced by a complete one.
+        units : str
+            Of the mesh, such as "mm", for the bar and the metadata.
+        range : (float, float), optional
+            The distances at the ends of the colours. Default: those of the map.
+        """
+        ends = None if range is None else (number(range[0], "range"), number(range[1], "range"))
+        metadata = [("tool", "blum")]
+        _core.write_surface_map(Path(os.fspath(path)), self.mesh._arrays, self._handle, metadata, ends, units)
 
     @cached_property
     def object(self) -> IntArray:

@@ -86,6 +86,7 @@ struct ClosestPointQuery::Data {
         mode(options.sign),
         sites(mesh, context),
         bvh(mesh, sites, context),
+        planner(mode == SignMode::automatic ? bvh.order() : std::span<const std::uint32_t>{}),
         plan(planner.plan(mode, mesh, sites, context)),
         sides(plan, mesh, sites, bvh, context),
         max_distance(checked_limit(options)) {
@@ -155,20 +156,16 @@ struct ClosestPointQuery::Data {
     }
   }
 
-  /// Queries that follow each other: the last answer bounds the next one by the triangle inequality.
+  /// Queries that follow each other: the last one's closest point is no closer than the next one's.
   void find(std::span<const Vec3d> queries, std::span<const std::uint32_t> order,
             std::span<ClosestPoint> results) const {
     InlineList<PointSearch::Answer, sign::most_shared> group;
-    const Vec3d* last = nullptr;
-    double last_distance = no_limit;
+    std::optional<NearestSite> last;
     for (const std::uint32_t index : order) {
       const Vec3d& query = queries[index];
-      const double step = last != nullptr ? length(query - *last) : 0.0;
-      const double bound = std::min(max_distance, with_slack(last_distance + step, query));
-      group.push_back({index, bvh.nearest(query, bound)});
-      const std::optional<NearestSite>& nearest = group[group.size() - 1].nearest;
-      last = nearest ? &query : nullptr;
-      last_distance = nearest ? nearest->distance : no_limit;
+      const double known = last ? with_slack(length(query - last->point), query) : no_limit;
+      last = bvh.nearest(query, std::min(max_distance, known));
+      group.push_back({index, last});
     }
     finish(queries, group.span(), results);
   }

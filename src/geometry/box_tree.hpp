@@ -92,8 +92,10 @@ struct PendingBoxes {
   /// Children of a node whose keys are at most `limit`, so that the one with the smallest is popped first.
   void push_children(const PendingBox& parent, const double (&keys)[lanes], double limit) {
     const std::size_t bottom = items.size();
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (!(keys[lane] <= limit)) continue;
+    unsigned within = 0;  // without branches, which could not be predicted
+    for (std::size_t lane = 0; lane < lanes; ++lane) within |= static_cast<unsigned>(keys[lane] <= limit) << lane;
+    for (; within != 0; within &= within - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(within));
       const PendingBox child{keys[lane], static_cast<std::uint32_t>(parent.block * lanes + lane), parent.level - 1};
       std::size_t place = items.size();
       items.push_back(child);

@@ -141,10 +141,16 @@ struct Bvh::Data {
     visit_near(tree, query.point, limit, [&](std::size_t leaf) {
       double distances[lanes];
       approximate_distances(leaves[leaf], query.point, distances);
+      unsigned within = 0;  // without branches, which could not be predicted
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        within |= static_cast<unsigned>(distances[lane] <= limit) << lane;
+      }
+      if (within == 0) return limit;
       // The most promising one first: it mostly rules the others out.
-      const std::size_t first = static_cast<std::size_t>(std::min_element(distances, distances + lanes) - distances);
-      for (std::size_t i = 0; i < lanes; ++i) {
-        const std::size_t lane = first ^ i;
+      std::size_t first = 0;
+      for (std::size_t lane = 1; lane < lanes; ++lane) first = distances[lane] < distances[first] ? lane : first;
+      for (limit = offer(leaf, first, limit), within &= ~(1U << first); within != 0; within &= within - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(within));
         if (distances[lane] <= limit) limit = offer(leaf, lane, limit);
       }
       return limit;
@@ -332,10 +338,10 @@ std::optional<NearestPrimitive> Bvh::nearest_wanted(const Vec3d& query, Function
   if (!q) return best;
   const double furthest = max_distance * data.scale + q->slack;
   data.for_each_candidate(*q, furthest, [&](std::size_t leaf, std::size_t lane, double limit) {
-    if (lane >= data.lanes_of(leaf)) return limit;
+    // Asking is quicker than looking.
+    if (lane >= data.lanes_of(leaf) || !is_wanted(data.order[leaf * lanes + lane])) return limit;
     const NearestPrimitive found = data.closest(leaf, lane, q->point);
-    const bool is_better = found.distance <= max_distance && (!best || is_nearer(found, *best));
-    if (!is_better || !is_wanted(found.primitive)) return limit;
+    if (found.distance > max_distance || (best && !is_nearer(found, *best))) return limit;
     best = found;
     return std::min(limit, found.distance * data.scale + q->slack);
   });

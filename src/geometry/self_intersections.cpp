@@ -224,12 +224,14 @@ bool SelfIntersectionSearch::finds_any(const MeshView& mesh, const Context& cont
   validate(mesh);
   throw_if_cancelled(context);
   const double scale = coordinate_scale(bounds(mesh));
-  const bool is_new = order_.size() != mesh.triangles.size();
-  if (is_new) order_ = order_in_space(mesh, scale, context);
+  if (order_.size() != mesh.triangles.size()) {
+    order_ = order_in_space(mesh, scale, context);
+    looseness_ = -1;
+  }
   // Where corners at one place have several numbers, a pair is found that only has these in common: then the question
   // is put again. Where none is found, there are no such corners.
   const Search search(mesh, scale, order_, {}, context);
-  if (is_new) looseness_ = search.looseness();
+  if (looseness_ < 0) looseness_ = search.looseness();
   bool found = !find_all(search, 0, context).empty();
   if (found) {
     const std::vector<std::uint32_t> corners = weld_clusters(mesh.vertices);

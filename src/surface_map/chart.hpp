@@ -28,6 +28,7 @@ class Chart {
   /// @param places  where the triangle's corners are; their triangle has an area.
   Chart(const std::array<Vec3d, 3>& corners, const ChartCorners& places) : corners_(corners), places_(places) {
     const double inverse = 1 / twice_area(places);
+    sign_ = inverse < 0 ? -1 : 1;
     const Vec3d u = corners[1] - corners[0];
     const Vec3d v = corners[2] - corners[0];
     along_x_ = u * ((places[2].y - places[0].y) * inverse) - v * ((places[1].y - places[0].y) * inverse);
@@ -38,18 +39,22 @@ class Chart {
   [[nodiscard]] Vec3d in_plane(const TexturePlace& at) const {
     return corners_[0] + along_x_ * (at.x - places_[0].x) + along_y_ * (at.y - places_[0].y);
   }
-  /// Whether a place lies in the chart, border included.
-  [[nodiscard]] bool contains(const TexturePlace& at) const {
-    const double sign = twice_area(places_) > 0 ? 1 : -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (sign * twice_area({places_[k], places_[(k + 1) % 3], at}) < 0) return false;
-    }
-    return true;
-  }
   /// The point of the triangle for a place: of those beyond the border, the closest one to where the plane has them.
   [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
     const Vec3d point = in_plane(at);
-    return contains(at) ? point : closest_point_on_triangle(point, corners_);
+    Vec3d best = point;
+    double squared = HUGE_VAL;
+    // What is beyond some sides is closest to a point of these.
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sign_ * twice_area({places_[k], places_[(k + 1) % 3], at}) >= 0) continue;
+      const Vec3d on_side = closest_point_on_segment(point, corners_[k], corners_[(k + 1) % 3]);
+      const double here = squared_length(point - on_side);
+      if (here < squared) {
+        squared = here;
+        best = on_side;
+      }
+    }
+    return best;
   }
   /// The most that the map stretches: mesh units per texel (the largest singular value).
   [[nodiscard]] double stretch() const {
@@ -62,6 +67,7 @@ class Chart {
  private:
   std::array<Vec3d, 3> corners_;
   ChartCorners places_;
+  double sign_ = 1;          ///< of the chart's area
   Vec3d along_x_, along_y_;  ///< steps of one texel
 };
 

@@ -352,7 +352,7 @@ class MeshPair {
     for (std::size_t k = 0; k < 2; ++k) meshes_[k].vertices = vertices_[k];
     for (std::size_t k = 0; k < 2; ++k) surfaces_[k].emplace(meshes_[k], context);
     const double largest = box.largest_coordinate() * scale_;
-    rounding_ = 16e-16 * largest;
+    rounding_ = 4e-15 * largest;
     tolerance_ = std::max(options.tolerance.value_or(1e-4 * box.diagonal()) * scale_, 1e-13 * largest);
   }
 

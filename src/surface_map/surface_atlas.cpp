@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
@@ -22,6 +23,12 @@ constexpr std::uint32_t most_a_side = 16384;
 constexpr double inset = 1.0 / 64;
 /// Beyond the legs of a chart, in a rectangle that two share.
 constexpr std::uint32_t gutter = 3;
+
+/// More room around large charts, where it costs little: programs that draw a texture smaller than it is read beyond
+/// the texels that they should.
+double room_around(double shorter_leg) {
+  return std::min(std::floor(shorter_leg / 16), 8.0);
+}
 
 /// A triangle of the mesh as a right triangle.
 struct Legs {
@@ -50,7 +57,10 @@ double texels_along(double length, double texel) {
 double texel_count(const std::vector<Legs>& legs, double texel) {
   double sum = 0;
   for (const Legs& one : legs) {
-    sum += (texels_along(one.length[0], texel) + gutter) * (texels_along(one.length[1], texel) + gutter) / 2;
+    const double first = texels_along(one.length[0], texel);
+    const double second = texels_along(one.length[1], texel);
+    const double room = gutter + 2 * room_around(std::min(first, second));
+    sum += (first + room) * (second + room) / 2;
   }
   return sum;
 }
@@ -63,8 +73,9 @@ struct Rectangle {
   std::uint32_t along = 0, across = 0;  ///< of the legs, texels
   bool is_turned = false;               ///< the first leg lies across
 
-  [[nodiscard]] std::uint32_t width() const { return along + gutter; }
-  [[nodiscard]] std::uint32_t height() const { return across + gutter; }
+  [[nodiscard]] std::uint32_t room() const { return static_cast<std::uint32_t>(room_around(across)); }
+  [[nodiscard]] std::uint32_t width() const { return along + gutter + 2 * room(); }
+  [[nodiscard]] std::uint32_t height() const { return across + gutter + 2 * room(); }
 };
 
 /// Rectangles, the highest first, like ones in a row.
@@ -127,9 +138,9 @@ std::array<TexturePlace, 3> chart_in(const Rectangle& r, std::size_t which, std:
   out[(corner + 1) % 3] = r.is_turned ? TexturePlace{along, across} : TexturePlace{along, 0};
   out[(corner + 2) % 3] = r.is_turned ? TexturePlace{0, 0} : TexturePlace{0, across};
   // The right angle is in the corner of the rectangle, so that the long sides of both charts face each other.
-  const double left = r.is_turned ? gutter - 1 : 0;
+  const double left = r.room() + (r.is_turned ? gutter - 1 : 0);
   for (TexturePlace& at : out) {
-    at = {at.x + left + 0.5 + inset, at.y + 0.5 + inset};
+    at = {at.x + left + 0.5 + inset, at.y + r.room() + 0.5 + inset};
     if (which == 1) at = {r.width() - at.x, r.height() - at.y};
     at = {at.x + r.x, at.y + r.y};
   }
@@ -141,7 +152,7 @@ std::array<TexturePlace, 3> chart_in(const Rectangle& r, std::size_t which, std:
   for (int step = 0; step < 200 && texel_count(legs, fits) > 0.98 * most_a_side * most_a_side; ++step) fits *= 1.1;
   double longest = 0;
   for (const Legs& one : legs) longest = std::max({longest, one.length[0], one.length[1]});
-  fits = std::max(fits, longest / (most_a_side - 2 * gutter));
+  fits = std::max(fits, longest / (most_a_side - 32));
   throw InvalidOption("texels of " + exact_text(texel) + " make a texture of more than " + std::to_string(most_a_side) +
                       " x " + std::to_string(most_a_side) + " of them; from about " + exact_text(fits) +
                       " on it is small enough");

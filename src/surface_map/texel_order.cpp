@@ -54,6 +54,7 @@ TexelOrder texel_order(const MeshView& mesh, const SurfaceAtlas& atlas, const Co
 void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, std::span<const std::uint32_t> texels,
                  std::vector<Vec3d>& points) {
   const ScaledCharts charts{mesh, atlas, scale};
+  const double unscale = 1 / scale;  // a power of two
   points.resize(texels.size());
   std::size_t k = 0;
   while (k < texels.size()) {
@@ -61,7 +62,7 @@ void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, 
     const Chart chart = charts[triangle.value];
     for (; k < texels.size() && atlas.triangle[texels[k]] == triangle; ++k) {
       const TexturePlace middle = middle_of(texels[k] % atlas.width, texels[k] / atlas.width);
-      points[k] = chart.on_triangle(middle) / scale;
+      points[k] = chart.on_triangle(middle) * unscale;
     }
   }
 }

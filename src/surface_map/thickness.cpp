@@ -64,16 +64,24 @@ class ThicknessSearch {
 
   [[nodiscard]] const SiteTable& sites() const { return sites_; }
 
-  /// At a point of a triangle.
-  [[nodiscard]] Thickness at(const Vec3d& given, TriangleId triangle) const {
+  /// What a ball may touch: a point, and the triangle that it lies on.
+  struct Hint {
+    Vec3d point;
+    TriangleId triangle;
+  };
+
+  /// At a point of a triangle. @param hint  spares work where the ball touches close to it.
+  [[nodiscard]] Thickness at(const Vec3d& given, TriangleId triangle,
+                             const Hint& hint = {{}, TriangleId::none()}) const {
     const auto [a, b, c] = triangle_corners(mesh_, triangle.value);
     const Vec3d scaled = given * scale_;
     const Vec3d point = scaled + ((a + b + c) / 3.0 - scaled) * towards_centroid;
     const Vec3d& normal = normals_[triangle.value];
     Thickness out{nothing, given, TriangleId::none()};
     if (normal == Vec3d{}) return out;
-    const Thickness found = options_.kind == ThicknessKind::ray ? along_ray(point, normal, triangle.value)
-                                                                : of_ball(point, normal, triangle.value);
+    const Thickness found = options_.kind == ThicknessKind::ray
+                                ? along_ray(point, normal, triangle.value)
+                                : of_ball(point, normal, triangle.value, {hint.point * scale_, hint.triangle});
     if (!found.triangle.has_value()) return out;
     return {found.thickness / scale_, found.opposite / scale_, found.triangle};
   }
@@ -91,27 +99,39 @@ class ThicknessSearch {
     return out;
   }
 
+  /// Of the ball that touches a plane at a point, from below, and another place; infinite where none does.
+  static double touching_radius(const Vec3d& point, const Vec3d& normal, const Vec3d& place) {
+    const Vec3d way = point - place;
+    const double below = dot(way, normal);
+    return below > 0 ? squared_length(way) / (2 * below) : nothing;
+  }
+
   /// Shrinks a ball until nothing that counts is left in it. Each step takes the closest point to the centre, and the
   /// ball that touches both it and the plane.
-  [[nodiscard]] Thickness of_ball(const Vec3d& point, const Vec3d& normal, std::uint32_t own) const {
+  [[nodiscard]] Thickness of_ball(const Vec3d& point, const Vec3d& normal, std::uint32_t own, const Hint& hint) const {
     const auto counts = [&](std::uint32_t triangle) {
       return triangle != own && dot(normals_[triangle], normal) <= cosine_;
     };
     Thickness out{nothing, point, TriangleId::none()};
     // No ball inside of the mesh's box is larger, if it touches something.
     double radius = 4 * bvh_->bounds().diagonal();
+    const auto touch = [&](const Vec3d& place, TriangleId triangle) {
+      const double next = touching_radius(point, normal, place);
+      if (!(next < radius)) return;
+      out = {2 * next, place, triangle};
+      radius = next;
+    };
+    // Most often a point close to the end is known.
+    if (hint.triangle.has_value() && counts(hint.triangle.value)) touch(hint.point, hint.triangle);
+    const Thickness far_side = along_ray(point, normal, own);
+    if (far_side.triangle.has_value() && counts(far_side.triangle.value)) touch(far_side.opposite, far_side.triangle);
     for (int step = 0; step < most_steps; ++step) {
       const Vec3d center = point - normal * radius;
       const std::optional<NearestPrimitive> found = bvh_->nearest_wanted(center, counts, radius * (1 - settled));
       if (!found) break;
-      const Vec3d way = point - found->point;
-      const double below = dot(way, normal);
-      const double next = below > 0 ? squared_length(way) / (2 * below) : 0;
-      if (!(next < radius)) break;
-      out = {2 * next, found->point, TriangleId(found->primitive)};
-      const bool is_settled = next >= radius * (1 - settled);
-      radius = next;
-      if (is_settled || !(radius > 0)) break;
+      const double before = radius;
+      touch(found->point, TriangleId(found->primitive));
+      if (radius >= before * (1 - settled) || !(radius > 0)) break;
     }
     return out;
   }
@@ -177,8 +197,10 @@ SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map, co
   const surface::TexelOrder order = surface::texel_order(solid, *out.atlas, context);
   timer.lap("hierarchy");
   const double limit = map.max_distance.value_or(nothing);
-  const auto value_at = [&](const Vec3d& point, TriangleId triangle, const SurfaceValue* /*last*/) {
-    const Thickness found = search.at(point, triangle);
+  const auto value_at = [&](const Vec3d& point, TriangleId triangle, const SurfaceValue* last) {
+    const bool has_last = last != nullptr && last->site.has_value();
+    const TriangleId touched = has_last ? search.sites().triangle(last->site) : TriangleId::none();
+    const Thickness found = search.at(point, triangle, {has_last ? last->closest : point, touched});
     if (!found.triangle.has_value() || found.thickness > limit) return SurfaceValue{nothing, point, SiteId::none()};
     const SiteId site = search.sites().id({SiteKind::face, found.triangle.value});
     return SurfaceValue{found.thickness, found.opposite, site};

@@ -49,6 +49,22 @@ def cross(a, b):
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
+def test_maps_are_written(organic, torus, tmp_path):
+    found = blum.surface_distance_map(organic, torus, texel=0.1)
+    for extension in ("npz", "png", "glb", "ply", "vtp"):
+        found.write(tmp_path / f"map.{extension}", units="mm", range=(0, 1))
+        assert (tmp_path / f"map.{extension}").stat().st_size > 1000
+    held = np.load(tmp_path / "map.npz")
+    assert np.array_equal(held["distance"], found.distance, equal_nan=True)
+    assert np.array_equal(held["vertices"], organic.vertices)
+    with pytest.raises(blum.InvalidOption, match="extension"):
+        found.write(tmp_path / "map.obj")
+    with pytest.raises(blum.InvalidOption, match="range"):
+        found.write(tmp_path / "map.png", range=(2, 1))
+    with pytest.raises(blum.FileError):
+        found.write(tmp_path / "none" / "map.png")
+
+
 def test_several_others_are_told_apart(organic):
     left = blum.generate("sphere", frequency=3)
     right = blum.Mesh(left.vertices + np.array([6, 0, 0]), left.triangles)

@@ -96,7 +96,7 @@ class Bvh {
       const Context& context = {}) const;
 
   /// The closest one of the primitives that are wanted; of several at the same computed distance the first.
-  /// @param is_wanted  asked of primitives that are closer than those found before.
+  /// @param is_wanted  asked of primitives that may be closer than those found before, more than once each.
   [[nodiscard]] std::optional<NearestPrimitive> nearest_wanted(
       const Vec3d& query, FunctionRef<bool(std::uint32_t)> is_wanted,
       double max_distance = std::numeric_limits<double>::infinity()) const;
@@ -143,7 +143,8 @@ class Bvh {
   /// Whether the box of a primitive may touch this box: false only if the box is free of the mesh.
   [[nodiscard]] bool may_touch(const Box3& box) const;
 
-  /// All primitives, in an order in which every aligned run of 8, 64, 512, ... lies in a compact box of its own.
+  /// All primitives, in an order in which every aligned run of 8, 64, 512, ... lies in a compact box of its own
+  /// (as they were when the hierarchy was built).
   [[nodiscard]] std::span<const std::uint32_t> order() const;
 
   /// The box around all primitives, mesh units.

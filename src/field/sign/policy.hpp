@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "blum/core/context.hpp"
@@ -30,6 +32,10 @@ struct Plan {
 /// where the next mesh is the last one deformed; the plans do not depend on it.
 class Planner {
  public:
+  Planner() = default;
+  /// @param order  as for SelfIntersectionSearch.
+  explicit Planner(std::span<const std::uint32_t> order) : search_(order) {}
+
   /// `automatic` takes
   /// - nothing where there are no triangles;
   /// - `normals` where the mesh is closed and consistently oriented, has no free segments or points, no triangles too

@@ -61,7 +61,7 @@ void expect_as_new(const TriangleMesh& mesh, SignMode mode, std::size_t count) {
 
 TEST(ClosestPointRefit, AnswersAsANewQuery) {
   const TriangleMesh closed = make_organic({.frequency = 6});
-  for (const std::size_t count : {100, 5000}) {
+  for (const std::size_t count : {std::size_t{100}, std::size_t{5000}}) {
     for (const SignMode mode : {SignMode::none, SignMode::automatic, SignMode::normals, SignMode::winding}) {
       expect_as_new(closed, mode, count);
     }

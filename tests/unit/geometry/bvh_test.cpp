@@ -296,6 +296,15 @@ TEST(Bvh, APartAnswersInItsBoxAsTheWhole) {
   }
 }
 
+TEST(Bvh, TellsAnOrderOfAllPrimitives) {
+  const TriangleMesh mesh = test::awkward_soup(90, 4);
+  const Bvh bvh(mesh, SiteTable(mesh));
+  std::vector<std::uint32_t> order(bvh.order().begin(), bvh.order().end());
+  std::sort(order.begin(), order.end());
+  ASSERT_EQ(order.size(), mesh.triangles.size() + mesh.segments.size() + mesh.points.size());
+  for (std::size_t k = 0; k < order.size(); ++k) EXPECT_EQ(order[k], k);
+}
+
 TEST(Bvh, AnswersAfterARefitAreThoseOfANewOne) {
   const TriangleMesh before = test::awkward_soup(150, 41);
   TriangleMesh after = before;

@@ -15,7 +15,9 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/random.hpp"
+#include "blum/geometry/bvh.hpp"
 #include "blum/geometry/oriented_bvh.hpp"
+#include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_contact.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/shapes/generators.hpp"
@@ -240,6 +242,8 @@ TEST(SelfIntersections, FrameAfterFrameAreThoseOfEachFrame) {
       make_torus({.ring_radius = 1, .tube_radius = 0.4, .ring_segments = 24, .tube_segments = 12});
   const TriangleMesh box = make_box({});
   SelfIntersectionSearch search;
+  const Bvh bvh(torus, SiteTable(torus));
+  SelfIntersectionSearch with_order(bvh.order());
   int crossing = 0;
   for (int frame = 0; frame < 60; ++frame) {
     // The tube gets thicker until it crosses itself in the middle, and thin again, while all of it moves far away.
@@ -253,6 +257,8 @@ TEST(SelfIntersections, FrameAfterFrameAreThoseOfEachFrame) {
     const bool expected = !find_self_intersections(mesh).pairs.empty();
     EXPECT_EQ(search.finds_any(mesh), expected) << frame;
     EXPECT_EQ(search.finds_any(test::unwelded(mesh)), expected) << frame;
+    EXPECT_EQ(with_order.finds_any(mesh), expected) << frame;
+    EXPECT_EQ(SelfIntersectionSearch(bvh.order()).finds_any(mesh), expected) << frame;
     crossing += expected ? 1 : 0;
   }
   EXPECT_GT(crossing, 5);

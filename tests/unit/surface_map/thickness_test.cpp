@@ -173,6 +173,36 @@ TEST(ThicknessMap, HoldsThicknesses) {
   }
 }
 
+/// What a map knows of the texel before must not change a value.
+TEST(ThicknessMap, HoldsWhatEachPointHasAlone) {
+  const TriangleMesh mesh = make_organic({.frequency = 6, .seed = 2});
+  for (const ThicknessKind kind : {ThicknessKind::ray, ThicknessKind::ball}) {
+    const SurfaceMap map = thickness_map(mesh, {.texel = 0.03}, {.kind = kind, .separation = 50});
+    const SurfaceTexels all = surface_texels(mesh, *map.atlas);
+    const std::vector<Thickness> alone = thickness(mesh, all.points, {.kind = kind, .separation = 50});
+    std::size_t compared = 0;
+    for (std::size_t k = 0; k < all.texels.size(); ++k) {
+      // At borders of triangles the points alone may be taken for their neighbours'.
+      const std::uint32_t t = map.atlas->triangle[all.texels[k]].value;
+      const auto [a, b, c] = triangle_corners(mesh, t);
+      const Vec3d inwards = cross(b - a, c - a);
+      double inside = HUGE_VAL;
+      for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+        inside = std::min(inside, dot(cross(to - from, all.points[k] - from), inwards) / squared_length(inwards));
+      }
+      if (inside < 1e-6) continue;
+      ++compared;
+      const float value = map.distance[all.texels[k]];
+      if (std::isinf(alone[k].thickness)) {
+        ASSERT_TRUE(std::isinf(value));
+      } else {
+        ASSERT_NEAR(value, alone[k].thickness, 1e-6 * alone[k].thickness);
+      }
+    }
+    EXPECT_GT(compared, all.texels.size() / 4);
+  }
+}
+
 TEST(Thickness, WithoutAFarSideIsInfinite) {
   const TriangleMesh open{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}, {}};
   for (const ThicknessKind kind : {ThicknessKind::ray, ThicknessKind::ball}) {
