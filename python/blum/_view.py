@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shutil
@@ -11,8 +10,6 @@ import tempfile
 import webbrowser
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from ._arguments import PathLike, existing_file
 from ._errors import Error, FileError, InvalidOption
@@ -119,7 +116,7 @@ def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]
         thing.write(path)
     elif isinstance(thing, SurfaceMap):
         path = _fresh(folder, names, name or "map", ".npz")
-        _write_map(thing, path)
+        thing.write(path)
     elif is_image(thing):
         path = _fresh(folder, names, name or "image", ".nrrd")
         image: Image = as_image(thing)
@@ -129,35 +126,6 @@ def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]
         path = _fresh(folder, names, name or Path(mesh.source).stem or "mesh", ".ply")
         mesh.write(path)
     return path
-
-
-def _write_map(shown: SurfaceMap, path: Path) -> None:
-    """As blum::write_surface_map does; docs/guide/files.md names the arrays."""
-    metadata = {
-        "content": "surface map",
-        "quantity": shown.quantity,
-        "sign_rule": shown.sign_rule,
-        "sign_reason": shown.sign_reason,
-        "separate_charts": "true",  # as in all maps that Python makes
-    }
-    arrays: dict[str, Any] = {
-        "distance": shown.distance,
-        "vector": shown.vector,
-        "site": shown.site,
-        "triangle": shown.triangle,
-        "corners": shown.corners,
-        "vertices": np.asarray(shown.mesh.vertices, np.float64),
-        "triangles": np.asarray(shown.mesh.triangles, np.int32),
-        "vertex_distance": shown.vertex_distance,
-        "triangle_smallest": shown.faces[:, 0],
-        "triangle_largest": shown.faces[:, 1],
-        "triangle_mean": shown.faces[:, 2],
-        "metadata": np.array(json.dumps(metadata)),
-    }
-    if shown.error is not None:
-        arrays["triangle_error"] = shown.error
-    kept: dict[str, Any] = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
-    np.savez(path, **kept)
 
 
 def _fresh(folder: Path, names: set[str], stem: str, extension: str) -> Path:
