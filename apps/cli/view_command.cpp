@@ -25,6 +25,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   blum view part.stl                              serves the page until Ctrl-C; its address is printed
   blum view part.ply part.nrrd axis.npz --open    a mesh, its field and its medial axis, in the browser
+  blum view map.npz other.ply                     a surface map: distances as colours, and the other mesh through them
   blum view part.ply axis.npz -o part.html        one file, for a browser without a network
   blum view f*.ply --frames --pairs pairs.json    meshes as the frames of a moving scene, and what is close in each
 
@@ -67,6 +68,7 @@ void open_browser(const std::string& url) {
 
 std::string kind_text(const Json& item) {
   if (item["kind"] == "axis") return "medial axis";
+  if (item["kind"] == "map") return "surface map";
   if (item["kind"] == "frames") return std::to_string(item["frames"].size()) + " frames";
   return item["kind"].get<std::string>();
 }
@@ -113,8 +115,10 @@ void run(const Arguments& a) {
 
 void add_view_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* command = line.app.add_subcommand("view", "Shows files in a browser: meshes, images, fields, medial axes");
-  command->add_option("FILE", a->inputs, "Meshes, images, fields and medial axes, any mixture")->required();
+  CLI::App* command =
+      line.app.add_subcommand("view", "Shows files in a browser: meshes, images, fields, medial axes, surface maps");
+  command->add_option("FILE", a->inputs, "Meshes, images, fields, medial axes and surface maps (.npz), any mixture")
+      ->required();
   add_text_option(*command, "-o,--output", a->output, "HTML", "Write the page to a file, with all that it shows");
   command->add_flag("--frames", a->frames, "The files are meshes: the frames of one moving scene, in their order");
   add_text_option(*command, "--pairs", a->pairs, "JSON",

@@ -13,8 +13,10 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/io/field_io.hpp"
+#include "blum/io/surface_map_io.hpp"
 #include "files.hpp"
 #include "input_facts.hpp"
+#include "map_item.hpp"
 #include "scene_parts.hpp"
 
 namespace blum::cli {
@@ -184,6 +186,7 @@ bool is_site_file(const fs::path& path) {
 }
 
 Json item_of(SceneBlob& blob, const fs::path& path, std::optional<double> weld, const Context& context) {
+  if (holds_surface_map(path)) return map_item(blob, path);
   if (holds_complex(path)) return axis_item(blob, path, context);
   switch (is_site_file(path) ? InputKind::image : input_kind(path)) {
     case InputKind::mesh:

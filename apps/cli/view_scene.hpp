@@ -17,7 +17,8 @@ struct Scene {
   std::vector<std::string> problems;  ///< of the files that could not be read
 };
 
-/// Reads meshes, images, fields and medial axes. A file that cannot be read becomes an item with its message.
+/// Reads meshes, images, fields, medial axes and surface maps. A file that cannot be read becomes an item with its
+/// message.
 /// @param weld  of meshes.
 /// @throws Cancelled.
 [[nodiscard]] Scene make_scene(const std::vector<std::filesystem::path>& files, std::optional<double> weld,

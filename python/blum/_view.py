@@ -19,6 +19,7 @@ from ._medial import MedialAxis
 from ._medial_columns import NestedComplex
 from ._medial_complex import MedialComplex
 from ._mesh import Mesh, as_mesh
+from ._surface_map import SurfaceMap
 
 _TOOL = Path(__file__).parent / "_bin" / "blum"
 _UNREADABLE = 1  # exit status
@@ -26,7 +27,7 @@ _PREFIX = re.compile(r"^blum: (?:error|warning): ")
 
 
 def view(*things: Any, output: PathLike | None = None, show: bool | None = None, **named: Any) -> Path:
-    """Writes one HTML page that shows meshes, images, fields and medial axes, in any mixture, and opens it.
+    """Writes one HTML page that shows meshes, images, fields, medial axes, surface maps in any mixture, and opens it.
 
     The page is one file that needs neither a network nor this process: slices and isosurfaces of fields, a slider for
     theta (for a :class:`MedialAxis`), and what lies under the pointer.
@@ -35,7 +36,8 @@ def view(*things: Any, output: PathLike | None = None, show: bool | None = None,
     ----------
     things
         Meshes as for :func:`distance_field` (as one object each), :class:`Field`, :class:`MedialAxis`,
-        :class:`MedialComplex`, :class:`Image`, arrays [z, y, x], and paths of files that `blum view` shows.
+        :class:`MedialComplex`, :class:`SurfaceMap`, :class:`Image`, arrays [z, y, x], and paths of files that
+        `blum view` shows.
     named
         The same with names of your own: ``view(part=mesh, distance=field)``.
     output : path, optional
@@ -111,6 +113,9 @@ def _file_of(thing: Any, argument: str, name: str, folder: Path, names: set[str]
         raise TypeError(f"{argument} is a NestedComplex: give the MedialAxis that it is of")
     elif isinstance(thing, Field):
         path = _fresh(folder, names, name or "field", ".npz")
+        thing.write(path)
+    elif isinstance(thing, SurfaceMap):
+        path = _fresh(folder, names, name or "map", ".npz")
         thing.write(path)
     elif is_image(thing):
         path = _fresh(folder, names, name or "image", ".nrrd")

@@ -58,10 +58,18 @@ constexpr std::array<Stop, 6> whole = {{{0.965, 0.060, 105},
 
 Color oklch(double lightness, double chroma, double hue) {
   const double angle = hue * std::numbers::pi / 180;
-  Linear color = linear_of(lightness, chroma * std::cos(angle), chroma * std::sin(angle));
-  for (int step = 0; step < 20 && !color.in_gamut(); ++step) {
-    chroma *= 0.93;
-    color = linear_of(lightness, chroma * std::cos(angle), chroma * std::sin(angle));
+  const auto with = [&](double c) { return linear_of(lightness, c * std::cos(angle), c * std::sin(angle)); };
+  Linear color = with(chroma);
+  if (!color.in_gamut()) {
+    // As much chroma as the screen has, exactly: in steps of some per cent, ramps would show borders where there are
+    // none.
+    double low = 0;
+    double high = chroma;
+    for (int step = 0; step < 24; ++step) {
+      const double middle = (low + high) / 2;
+      (with(middle).in_gamut() ? low : high) = middle;
+    }
+    color = with(low);
   }
   return {gamma(color.r), gamma(color.g), gamma(color.b)};
 }

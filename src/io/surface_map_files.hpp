@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "blum/io/surface_map_io.hpp"
 
@@ -16,6 +17,9 @@ struct Request {
   const SurfaceMapWriteOptions& options;
   const Context& context;
 };
+
+/// The key of SurfaceAtlas::is_separate in metadata.
+inline constexpr std::string_view separate_key = "separate_charts";
 
 /// @throws InvalidMesh where a map lacks parts.
 void check(const SurfaceMap& map);

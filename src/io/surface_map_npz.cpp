@@ -1,6 +1,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/json.hpp"
@@ -48,16 +49,33 @@ void add_summaries(NpzWriter& npz, const SurfaceMap& map) {
   add("mean", &SurfaceMap::FaceSummary::mean);
 }
 
+/// What is read back from metadata must be what the map says.
+FileMetadata own_metadata(const Request& request) {
+  FileMetadata out = request.metadata;
+  const auto keep = [&](std::string_view key, std::string_view text) {
+    const std::string_view given = find_value(out, key);
+    if (given.empty()) out.emplace_back(key, text);
+    if (given.empty() || given == text) return;
+    throw InvalidOption("the metadata name '" + std::string(given) + "' as " + std::string(key) +
+                        ", but the map's is '" + std::string(text) + "'; .npz files say what the map is");
+  };
+  keep("quantity", to_string(request.map.quantity));
+  keep("sign_rule", to_string(request.map.sign_rule));
+  keep(separate_key, request.map.atlas->is_separate ? "true" : "false");
+  return out;
+}
+
 }  // namespace
 
 void write_npz(const Request& request) {
+  const FileMetadata metadata = own_metadata(request);
   AtomicFile file(request.path);
   volume_io::FieldSink sink(data_size(request.mesh, request.map), request.context);
   NpzWriter npz(file, sink, request.context);
   add_texels(npz, request.map);
   add_mesh(npz, request.mesh, request.map);
   add_summaries(npz, request.map);
-  npz.add_text("metadata", volume_io::to_json(request.metadata));
+  npz.add_text("metadata", volume_io::to_json(metadata));
   npz.finish();
   file.commit();
 }

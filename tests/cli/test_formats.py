@@ -24,6 +24,6 @@ def test_formats_are_listed_for_people_and_programs():
 def test_each_format_is_fuzzed():
     read = [one for one in run_json("formats")["formats"] if one["extensions"]]
     wanted = {f"fuzz_{one['content']}_{one['name'].lower()}" for one in read}
-    wanted |= {"fuzz_queries_csv", "fuzz_points_csv"}  # what `blum ccd` and `blum query` read
+    wanted |= {"fuzz_queries_csv", "fuzz_points_csv", "fuzz_maps_npz"}  # what `blum ccd`, `query` and `view` read
     assert wanted == {folder.name for folder in CORPUS.iterdir()}
     assert all(any(folder.iterdir()) for folder in CORPUS.iterdir())

@@ -45,6 +45,22 @@ def test_a_page_shows_everything_that_blum_makes(part, tmp_path):
     ]
 
 
+def test_a_page_shows_maps_of_surfaces_as_they_are(part, tmp_path):
+    import scene
+
+    ball = blum.generate("sphere")
+    maps = [blum.surface_distance_map(part, ball, texel=0.1, sign="winding"), blum.thickness_map(part, texel=0.1)]
+    page = blum.view(*maps, ball, output=tmp_path / "page.html")
+    assert items(page) == [("map.npz", "map"), ("map 2.npz", "map"), ("mesh.ply", "mesh")]
+    shown = scene.scene_of_page(page)
+    for made, item in zip(maps, shown.header["items"], strict=False):
+        assert item["quantity"] == made.quantity and item["signed"] == (made.sign_rule != "none")
+        assert shown.array(item["distance"]).tobytes() == made.distance.tobytes()
+        assert shown.array(item["vectors"]).tobytes() == made.vector.tobytes()
+        assert np.array_equal(shown.array(item["owners"]), made.triangle.ravel())
+        assert ("errors" in item) == (made.error is not None)
+
+
 def test_a_page_is_opened_only_where_that_is_meant(part, tmp_path, monkeypatch):
     opened = []
     monkeypatch.setattr(webbrowser, "open", opened.append)

@@ -9,6 +9,7 @@ const kinds: Record<Item["kind"], string> = {
   image: "image",
   axis: "medial axis",
   frames: "moving scene",
+  map: "surface map",
   error: "not read",
 };
 

@@ -5,11 +5,12 @@ import { FramesView } from "./framesview.ts";
 import { frameKeyHelp, keyHelp, listen } from "./keys.ts";
 import { Knob } from "./knob.ts";
 import { legendElement } from "./legend.ts";
+import { MapView } from "./mapview.ts";
 import { Marker } from "./marker.ts";
 import { MeshView } from "./meshview.ts";
 import { pictureName, pictureWithLegends } from "./picture.ts";
-import { Readout, withFootprint } from "./readout.ts";
-import { readScene, type Box, type ErrorItem, type Item, type Scene, type Triple } from "./scene.ts";
+import { Readout, withFootprint, withSiteName } from "./readout.ts";
+import { readScene, type Box, type ErrorItem, type Item, type MeshItem, type Scene, type Triple } from "./scene.ts";
 import { useColors } from "./shaders.ts";
 import { sceneBytes } from "./source.ts";
 import { Stage } from "./stage.ts";
@@ -42,6 +43,8 @@ function makeView(item: Exclude<Item, ErrorItem>, around: Surroundings, isAlone:
       return new AxisView(item, around);
     case "frames":
       return new FramesView(item, around);
+    case "map":
+      return new MapView(item, around);
     case "field":
     case "image":
       return new VolumeView(item, around);
@@ -71,6 +74,7 @@ class Page {
       changed: () => this.#changed(),
       moved: () => stage.moved(),
       forget: () => this.#showHit(undefined),
+      goTo: (view, hit, from, size) => this.#goTo(view, hit, from, size),
     };
     for (const item of items) {
       const view = makeView(item, around, items.length === 1);
@@ -122,16 +126,27 @@ class Page {
       const hit = view.pick(ray);
       if (hit === undefined) continue;
       views.set(hit, view);
-      if ((view instanceof MeshView || view instanceof FramesView) && view.isSeenThrough) {
+      if ((view instanceof MeshView || view instanceof FramesView || view instanceof MapView) && view.isSeenThrough) {
         if (seenThrough === undefined || hit.t < seenThrough.t) seenThrough = hit;
       } else if (best === undefined || hit.t < best.t) {
         best = hit;
       }
     }
     best ??= seenThrough;
-    const meshes = this.#scene.items.filter((item) => item.kind === "mesh");
-    this.#showHit(best && withFootprint(best, meshes));
+    const meshes = this.#meshes();
+    this.#showHit(best && withSiteName(withFootprint(best, meshes), meshes));
     this.#hitView = best && views.get(best);
+  }
+
+  #goTo(view: View, hit: Hit, from: Triple, size: number): void {
+    const at = hit.at.map((p, a) => p - this.#stage.center[a]) as Triple;
+    this.#stage.fly(at, from, size);
+    this.#showHit(withSiteName(hit, this.#meshes()));
+    this.#hitView = view;
+  }
+
+  #meshes(): MeshItem[] {
+    return this.#scene.items.filter((item) => item.kind === "mesh");
   }
 
   /** Saves what is seen, with its legends. */

@@ -2,6 +2,7 @@
 import { place } from "./format.ts";
 import { closestOnMesh, distance, sub } from "./geometry.ts";
 import type { Fact, MeshItem } from "./scene.ts";
+import { siteName } from "./sites.ts";
 import type { Hit } from "./view.ts";
 import { button, element } from "./widgets.ts";
 
@@ -17,6 +18,18 @@ export function withFootprint(hit: Hit, meshes: MeshItem[]): Hit {
     const { about: _, ...rest } = hit;
     const kind: Fact[] = hit.feature === undefined ? [] : [["which is", featureName(hit.feature, mesh)]];
     return { ...rest, footprints: [foot], facts: [...hit.facts, ...kind, ["footprint is on", mesh.name]] };
+  }
+  return hit;
+}
+
+/** A surface map names sites of another mesh by number only: where one of the page has the closest point on it, it is it. */
+export function withSiteName(hit: Hit, meshes: MeshItem[]): Hit {
+  if (hit.site === undefined || hit.footprints.length === 0) return hit;
+  for (const mesh of meshes) {
+    const closest = sub(hit.footprints[0], mesh.origin);
+    const size = mesh.bounds === null ? 0 : distance(mesh.bounds.lower, mesh.bounds.upper);
+    const name = siteName(hit.site, mesh, closest, 1e-5 * (size + distance(hit.at, hit.footprints[0])));
+    if (name !== undefined) return { ...hit, facts: [...hit.facts, ["which is", `${name} of ${mesh.name}`]] };
   }
   return hit;
 }

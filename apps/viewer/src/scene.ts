@@ -99,11 +99,30 @@ export type FramesItem = ItemBase & {
   stages: Stages | undefined;
 };
 
+/** A distance vector field over a surface, as a texture: lists of texels have rows from the top, x fastest. */
+export type MapItem = ItemBase & {
+  kind: "map";
+  quantity: string;
+  signed: boolean;
+  origin: Triple;
+  width: number;
+  height: number;
+  range: [number, number] | null; // of the finite values
+  positions: Float32Array;
+  triangles: Uint32Array;
+  corners: Float32Array; // of each triangle in the texture: x, y of three places, in texels
+  distance: Float32Array; // infinite where there is nothing, NaN of texels of no triangle
+  vectors: Float32Array; // from the surface to the closest point
+  sites: Int32Array;
+  owners: Int32Array; // the triangle of each texel
+  errors: Float32Array | undefined; // of triangles
+};
+
 /** Numbers of roles in files. */
 export type Roles = Record<"sheet" | "rim" | "seam" | "curve" | "junction", number>;
 
 export type ErrorItem = { kind: "error"; name: string; message: string };
-export type Item = MeshItem | FieldItem | ImageItem | AxisItem | FramesItem | ErrorItem;
+export type Item = MeshItem | FieldItem | ImageItem | AxisItem | FramesItem | MapItem | ErrorItem;
 export type Scene = { version: string; items: Item[]; colors: Colors };
 
 export class SceneError extends Error {}
@@ -229,6 +248,25 @@ async function readItem(raw: Raw, roles: Roles, read: (entry: ArrayEntry) => Pro
       };
     case "frames":
       return { ...base, kind: "frames", origin: raw.origin, ...(await readFrames(raw, array)) };
+    case "map":
+      return {
+        ...base,
+        kind: "map",
+        quantity: raw.quantity,
+        signed: raw.signed,
+        origin: raw.origin,
+        width: raw.width,
+        height: raw.height,
+        range: raw.range,
+        positions: await array<Float32Array>(raw.positions),
+        triangles: await array<Uint32Array>(raw.triangles),
+        corners: await array<Float32Array>(raw.corners),
+        distance: await array<Float32Array>(raw.distance),
+        vectors: await array<Float32Array>(raw.vectors),
+        sites: await array<Int32Array>(raw.sites),
+        owners: await array<Int32Array>(raw.owners),
+        errors: await array<Float32Array>(raw.errors),
+      };
     case "error":
       return { kind: "error", name: raw.name, message: raw.message };
     default:

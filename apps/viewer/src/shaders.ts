@@ -1,6 +1,7 @@
 // What draws surfaces, lines, dots and slices. Colours are what the screen shows: no conversion follows.
 import * as THREE from "three";
 import type { Color, Colors } from "./colors.ts";
+import { mapColor, mapUniforms } from "./mapshader.ts";
 
 function colorTexture(table: Uint8Array, width: number, filter: THREE.MagnificationTextureFilter): THREE.DataTexture {
   const texture = new THREE.DataTexture(table, width, table.length / 4 / width);
@@ -50,6 +51,10 @@ const surfaceVertex = /* glsl */ `
     in vec3 normal;
     out vec3 vNormal;
   #endif
+  #ifdef MAP
+    in vec2 place; // texels
+    centroid out vec2 vPlace; // never beyond the triangle, where other charts are
+  #endif
   out vec3 vView;
   void main() {
     vec4 view = modelViewMatrix * vec4(position, 1.0);
@@ -59,6 +64,9 @@ const surfaceVertex = /* glsl */ `
     #endif
     #ifdef NORMALS
       vNormal = normalMatrix * normal;
+    #endif
+    #ifdef MAP
+      vPlace = place;
     #endif
     gl_Position = projectionMatrix * view;
   }
@@ -80,6 +88,9 @@ const surfaceFragment = /* glsl */ `
   #ifdef NORMALS
     in vec3 vNormal;
   #endif
+  #ifdef MAP
+    ${mapColor}
+  #endif
   in vec3 vView;
   out vec4 outColor;
   void main() {
@@ -89,6 +100,9 @@ const surfaceFragment = /* glsl */ `
       if (coloring == 1) base = texture(sequential, vec2((vCell.x - range.x) / span, 0.5)).rgb;
       if (coloring == 2) base = texture(sequential, vec2((vCell.y - range.x) / span, 0.5)).rgb;
       if (coloring == 3) base = regionColor(int(vCell.z + 0.5));
+    #endif
+    #ifdef MAP
+      base = mapColorAt(vPlace);
     #endif
     if (isWire) {
       outColor = vec4(base, opacity);
@@ -112,20 +126,25 @@ const surfaceFragment = /* glsl */ `
     float key = max(dot(n, normalize(vec3(0.35, 0.6, 0.75))), 0.0);
     float fill = max(dot(n, normalize(vec3(-0.6, -0.25, 0.6))), 0.0);
     float facing = dot(n, eye);
-    vec3 lit = base * (0.42 + 0.5 * key + 0.18 * fill) + 0.06 * pow(key, 24.0);
+    #ifdef MAP
+      vec3 lit = base * (0.72 + 0.24 * key + 0.1 * fill); // close to the colours of the legend
+    #else
+      vec3 lit = base * (0.42 + 0.5 * key + 0.18 * fill) + 0.06 * pow(key, 24.0);
+    #endif
     // What is seen through is denser where it is seen from the side, so that its shape shows.
     float alpha = opacity < 1.0 ? mix(min(opacity * 3.2, 1.0), opacity, clamp(facing * 1.25, 0.0, 1.0)) : 1.0;
     outColor = vec4(lit, alpha);
   }
 `;
 
-export type SurfaceOptions = { hasCells?: boolean; hasNormals?: boolean; hasCreases?: boolean };
+export type SurfaceOptions = { hasCells?: boolean; hasNormals?: boolean; hasCreases?: boolean; hasMap?: boolean };
 
 export function surfaceMaterial(options: SurfaceOptions = {}): THREE.RawShaderMaterial {
   const defines: Record<string, string> = {};
   if (options.hasCells === true) defines.CELLS = "";
   if (options.hasNormals === true) defines.NORMALS = "";
   if (options.hasCreases === true) defines.CREASES = "";
+  if (options.hasMap === true) defines.MAP = "";
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
     vertexShader: surfaceVertex,
@@ -139,6 +158,7 @@ export function surfaceMaterial(options: SurfaceOptions = {}): THREE.RawShaderMa
       coloring: { value: Coloring.plain as number },
       range: { value: new THREE.Vector2(0, 1) },
       isWire: { value: false },
+      ...(options.hasMap === true ? mapUniforms() : {}),
     },
   });
 }

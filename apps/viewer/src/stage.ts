@@ -7,6 +7,7 @@ import { pixelRatio, viewport } from "./shaders.ts";
 
 const slowPicture = 120; // milliseconds
 const restAfter = 250;
+const flightTime = 500;
 
 const middle = (box: Box): Triple => box.lower.map((low, a) => (low + box.upper[a]) / 2) as Triple;
 const radiusOf = (box: Box): number =>
@@ -28,6 +29,7 @@ export class Stage {
   readonly #radius: number;
   readonly #everything: Box;
   #fitted: Triple | undefined; // the direction of look(), until somebody moves the view
+  #flight = 0;
   #isAsked = false;
   #isSlow = false;
   #rest: ReturnType<typeof setTimeout> | undefined;
@@ -44,7 +46,10 @@ export class Stage {
     this.#controls.rotateSpeed = 0.8;
     this.#controls.zoomToCursor = true;
     this.#controls.addEventListener("change", () => this.moved());
-    this.#controls.addEventListener("start", () => (this.#fitted = undefined));
+    this.#controls.addEventListener("start", () => {
+      this.#fitted = undefined;
+      ++this.#flight;
+    });
     this.#resize();
     this.look([0.55, -0.75, 0.42]);
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement as HTMLElement);
@@ -66,6 +71,7 @@ export class Stage {
 
   /** Looks at all that is shown from a direction. */
   look(from: Triple): void {
+    ++this.#flight;
     const box = this.shown() ?? this.#everything;
     const radius = radiusOf(box);
     const target = middle(box).map((p, a) => p - this.#center[a]) as Triple;
@@ -84,6 +90,34 @@ export class Stage {
     this.#controls.update();
     this.#fitted = from;
     this.draw();
+  }
+
+  /**
+   * Goes to a place of the drawn world and looks at it from a direction; at once where less motion is wanted.
+   * @param size  the radius of what the place is of.
+   */
+  fly(to: Triple, from: Triple, size: number): void {
+    this.#fitted = undefined;
+    const away = 1.6 * size;
+    const target = new THREE.Vector3(...to);
+    // A little from the side, as what is seen straight from the front looks flat.
+    const direction = new THREE.Vector3(0.3, -0.42, 0.24).add(new THREE.Vector3(...from)).normalize();
+    const position = target.clone().addScaledVector(direction, away);
+    const start = { position: this.camera.position.clone(), target: this.#controls.target.clone() };
+    const begin = performance.now();
+    const length = matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : flightTime;
+    const flight = ++this.#flight;
+    const step = () => {
+      if (flight !== this.#flight) return; // another one, or somebody took over
+      const t = length === 0 ? 1 : Math.min((performance.now() - begin) / length, 1);
+      const s = t * t * (3 - 2 * t);
+      this.camera.position.lerpVectors(start.position, position, s);
+      this.#controls.target.lerpVectors(start.target, target, s);
+      this.#controls.update();
+      this.moved();
+      if (t < 1) requestAnimationFrame(step);
+    };
+    step();
   }
 
   /** Turns the view by angles, as arrow keys do. */

@@ -16,6 +16,7 @@ export type Hit = {
   about?: Triple; // about where the footprint is, where it is not known
   reach?: number; // how far away it is
   feature?: number; // the site, where sites are vertices, edges and faces
+  site?: number; // what the first footprint lies on, of a mesh that is elsewhere
 };
 
 type Titled = { title: string; units: string };
@@ -55,4 +56,5 @@ export type Surroundings = {
   changed: () => void; // something looks different now
   moved: () => void; // the same while something plays: texts can wait, and less may be drawn
   forget: () => void; // what was clicked is not there any more
+  goTo: (view: View, hit: Hit, from: Triple, size: number) => void; // shows a hit as if it were clicked, from a direction
 };

@@ -1,9 +1,11 @@
 // Blum: files of surface maps (NPZ, PNG, GLB, PLY, VTP). SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,15 +48,36 @@ struct SurfaceMapWriteOptions {
 /// Texels of no triangle have the colour of the closest charts, four texels far, and are white beyond, so that no other
 /// colour bleeds in.
 /// @param metadata  goes before what is known of the map: `content` ("surface map"), `quantity`, `units`, `sign_rule`,
-///                  `sign_reason`, `range` (the smallest and the largest distance of texels that is finite) and
-///                  `largest_error`, texts each; a key that is given counts.
-/// @throws InvalidOption for another extension, a range that is none, metadata with an empty key or one key twice;
+///                  `sign_reason`, `range` (the smallest and the largest distance of texels that is finite),
+///                  `largest_error` and, in .npz files, `separate_charts` ("true" or "false"), texts each; a key that
+///                  is given counts.
+/// @throws InvalidOption for another extension, a range that is none, metadata with an empty key or one key twice, for
+///         .npz metadata that give another quantity, sign rule or kind of charts than the map's;
 ///         InvalidMesh for a mesh that validate() refuses, a map that is not of this mesh or lacks parts, for .ply and
 ///         .vtp for a triangle that names a vertex twice or a vertex of no triangle that is not finite; FileError (for
 ///         .glb of more than 4 GiB, too), OutOfMemory, Cancelled.
 void write_surface_map(const std::filesystem::path& path, const MeshView& mesh, const SurfaceMap& map,
                        const FileMetadata& metadata = {}, const SurfaceMapWriteOptions& options = {},
                        const Context& context = {});
+
+/// A surface map as a file holds it.
+struct SurfaceMapFile {
+  TriangleMesh mesh;  ///< triangles only
+  SurfaceMap map;     ///< all but `phases`
+  FileMetadata metadata;
+};
+
+/// Reads what write_surface_map() writes to an .npz file: the same numbers, bit by bit. All of them are looked at:
+/// types and shapes of arrays, indices in range, charts within the texture, texels beside the chart of their triangle.
+/// Sites are not: which there are is known of the other mesh only.
+/// @throws FormatError saying what is wrong, FileError, OutOfMemory. Cost: about that of reading the file; what it
+///         takes of memory is bounded by what the file can hold.
+[[nodiscard]] SurfaceMapFile read_surface_map(const std::filesystem::path& path);
+/// @param name  what messages call the bytes.
+[[nodiscard]] SurfaceMapFile read_surface_map(std::span<const std::byte> bytes, const std::string& name);
+
+/// Whether a file is an .npz file with the arrays by which surface maps are told. False where it cannot be read.
+[[nodiscard]] bool holds_surface_map(const std::filesystem::path& path);
 
 /// The extensions that write_surface_map() knows.
 [[nodiscard]] const std::vector<std::string>& surface_map_extensions();

@@ -85,6 +85,22 @@ TEST(ColorScale, RunsFromLightToDark) {
   EXPECT_EQ(ColorScale::sequential(3, 3).place(3), 0);  // of one value
 }
 
+TEST(ColorScale, HasNoBordersWhereValuesHaveNone) {
+  constexpr int steps = 2000;
+  // The sides of the diverging scale begin with two light colours, lest zero is overlooked.
+  for (const double side : {1.0, -1.0}) {
+    for (Color (*const color_of)(double) : {sequential_color, diverging_color}) {
+      Color last = color_of(side / steps);
+      for (int i = 2; i <= steps; ++i) {
+        const Color next = color_of(side * i / steps);
+        const float jump = std::max({std::abs(next.r - last.r), std::abs(next.g - last.g), std::abs(next.b - last.b)});
+        ASSERT_LT(jump, 0.02F) << i;  // five of 255
+        last = next;
+      }
+    }
+  }
+}
+
 TEST(ColorScale, DivergesAtZero) {
   const ColorScale scale = ColorScale::diverging(-1, 2);
   EXPECT_EQ(scale.place(0), 0);
