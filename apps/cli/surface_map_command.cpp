@@ -214,13 +214,18 @@ void run(const Arguments& a) {
     json["sign_rule"] = to_string(map.sign_rule);
     json["sign_reason"] = map.sign_reason;
   }
+  std::vector<std::string> warnings;
+  if (facts.texels == facts.without) {
+    warnings.emplace_back(asked.thickness ? "no texel has a thickness: the mesh is open, or faces inwards"
+                                          : "nothing lies within the distance of any texel");
+  }
   Json written = Json::array();
   for (const fs::path& output : asked.outputs) written.push_back(output.string());
   json.update(Json{{"seconds", spent.seconds},
                    {"total_seconds", spent.total},
                    {"peak_memory_bytes", peak_memory()},
                    {"threads", thread_count(context)},
-                   {"warnings", Json::array()},
+                   {"warnings", warnings},
                    {"outputs", written}});
   TextTable table;
   table.add("target", a.target + ": " + plural(target.mesh.triangles.size(), "triangle", "triangles"));
@@ -236,6 +241,7 @@ void run(const Arguments& a) {
   }
   for (const fs::path& output : asked.outputs) table.add("wrote", output.string());
   table.add("time", spent.text);
+  if (!a.report.quiet) warn(warnings);
   report(a.report, json, table.text());
 }
 

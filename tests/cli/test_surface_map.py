@@ -53,6 +53,14 @@ def test_thickness_and_self(shapes, tmp_path):
     assert own["quantity"] == "self-distance" and own["without_value"] > 0
 
 
+def test_maps_of_nothing_are_told(shapes, tmp_path):
+    run("make", "sphere", "--radius", 0.2, "-o", tmp_path / "far.ply")
+    far = run_json(
+        "surface-map", shapes / "torus.ply", tmp_path / "far.ply", "-o", tmp_path / "m.png", "--within", 0.01, warns=True
+    )
+    assert far["smallest"] is None and "nothing lies within" in far["warnings"][0]
+
+
 def test_all_formats_at_once(shapes, tmp_path):
     outs = [tmp_path / f"map.{extension}" for extension in ("npz", "png", "glb", "ply", "vtp")]
     options = [word for out in outs for word in ("-o", out)]
