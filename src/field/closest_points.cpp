@@ -79,10 +79,7 @@ struct ClosestPointQuery::Data {
   double coordinate_limit = 0;  ///< of queries, mesh units
 
   Data(const MeshView& given, const ClosestPointOptions& options, const Context& context)
-      : mesh{{given.vertices.begin(), given.vertices.end()},
-             {given.triangles.begin(), given.triangles.end()},
-             {given.segments.begin(), given.segments.end()},
-             {given.points.begin(), given.points.end()}},
+      : mesh(copy_of(given)),
         mode(options.sign),
         sites(mesh, context),
         bvh(mesh, sites, context),

@@ -39,6 +39,13 @@ void for_each_named(const MeshView& mesh, Visit visit) {
 
 }  // namespace
 
+TriangleMesh copy_of(const MeshView& mesh) {
+  return {{mesh.vertices.begin(), mesh.vertices.end()},
+          {mesh.triangles.begin(), mesh.triangles.end()},
+          {mesh.segments.begin(), mesh.segments.end()},
+          {mesh.points.begin(), mesh.points.end()}};
+}
+
 std::vector<Triangle> reversed_triangles(std::span<const Triangle> triangles) {
   std::vector<Triangle> turned(triangles.begin(), triangles.end());
   for (Triangle& t : turned) std::swap(t[0], t[1]);

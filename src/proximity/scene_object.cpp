@@ -74,11 +74,7 @@ SceneObject::SceneObject(const MeshView& mesh, const ObjectOptions& options, con
 void SceneObject::set_mesh(const MeshView& mesh, const Context& context) {
   check(mesh);
   OrientedBvh bvh(mesh, context);
-  TriangleMesh copy{{mesh.vertices.begin(), mesh.vertices.end()},
-                    {mesh.triangles.begin(), mesh.triangles.end()},
-                    {mesh.segments.begin(), mesh.segments.end()},
-                    {mesh.points.begin(), mesh.points.end()}};
-  mesh_ = std::move(copy);
+  mesh_ = copy_of(mesh);
   bvh_ = std::move(bvh);
 }
 

@@ -22,13 +22,6 @@ using surface::SurfaceValue;
 constexpr std::size_t texels_per_batch = 16384;
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-TriangleMesh copy_of(const MeshView& mesh) {
-  return {{mesh.vertices.begin(), mesh.vertices.end()},
-          {mesh.triangles.begin(), mesh.triangles.end()},
-          {mesh.segments.begin(), mesh.segments.end()},
-          {mesh.points.begin(), mesh.points.end()}};
-}
-
 bool have_common_vertex(const Triangle& a, const Triangle& b) {
   for (const std::uint32_t v : a) {
     if (std::find(b.begin(), b.end(), v) != b.end()) return true;

@@ -39,6 +39,9 @@ struct TriangleMesh {
   operator MeshView() const { return view(); }  // NOLINT(google-explicit-constructor): a mesh is its view
 };
 
+/// A mesh of its own with what a view shows.
+[[nodiscard]] TriangleMesh copy_of(const MeshView& mesh);
+
 /// Calls visit(vertex) for each corner of each triangle, each end of each segment and each point, in this order: a
 /// vertex as often as it is named.
 template <class Visit>
