@@ -48,7 +48,10 @@ struct Side {
 
   [[nodiscard]] Json json() const {
     Json out = to_json(distance);
-    if (deviation) out["deviation"] = to_json(*deviation);
+    if (deviation) {
+      out["deviation"] = to_json(*deviation);
+      out["deviation"]["percents"] = SurfaceDeviation::percents;
+    }
     return out;
   }
 };
@@ -60,6 +63,9 @@ std::string interval_text(double lower, double upper) {
 void add_side(TextTable& table, const std::string& label, const Side& side) {
   table.add(label, interval_text(side.distance.lower, side.distance.upper));
   if (!side.deviation) return;
+  if (side.deviation->sign_rule != SignRule::none) {
+    table.add("", "signs by " + std::string(to_string(side.deviation->sign_rule)) + ": " + side.deviation->sign_reason);
+  }
   const SurfaceDeviation& by_area = *side.deviation;
   const auto with_error = [](double value, double error) { return rounded_text(value) + " +- " + rounded_text(error); };
   table.add("", "mean " + with_error(by_area.mean, by_area.mean_error) + ", rms " +
@@ -102,6 +108,9 @@ bool has_area(const MeshView& mesh) {
 
 void run(const Arguments& a) {
   const std::array<fs::path, 2> paths{a.a, a.b};
+  if (a.only_distance && !a.deviation.given().empty()) {
+    throw UsageError(a.deviation.given().front() + " is of means by area, which --only-distance leaves out");
+  }
   const HausdorffOptions options = a.options.read();
   const DeviationOptions deviation = a.deviation.read();
   const std::optional<double> weld = parse_weld(a.weld);
@@ -143,7 +152,7 @@ void run(const Arguments& a) {
   }
   phases.push_back({"deviation", watch.lap()});
   if (a.output) {
-    write_complex(*a.output, witnesses(sides), {{"tool", "blum hausdorff"}});
+    write_complex(*a.output, witnesses(sides), {{"content", "witnesses"}, {"tool", "blum hausdorff"}});
     phases.push_back({"write", watch.lap()});
   }
   progress.clear();
@@ -173,6 +182,9 @@ void run(const Arguments& a) {
   table.add("between", vector_text(both.points[0]) + " of a and " + vector_text(both.points[1]) + " of b");
   add_side(table, "a to b", sides[0]);
   if (!a.one_sided) add_side(table, "b to a", sides[1]);
+  for (std::size_t k = 0; k < sides.size() && !a.only_distance; ++k) {
+    if (!sides[k].deviation) table.add("", std::string(k == 0 ? "a" : "b") + " has no area, so no means by area");
+  }
   if (a.output) table.add("wrote", *a.output);
   table.add("time", spent.text);
   report(a.report, json, table.text());

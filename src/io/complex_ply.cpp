@@ -65,8 +65,10 @@ std::string header_text(const Complex& complex, const FileMetadata& metadata) {
   if (has_derived) out += "property float " + std::string(derived_property) + "\n";
   out += "element face " + std::to_string(complex.triangles.size()) + "\nproperty list uchar int vertex_indices\n" +
          property_lines(complex.triangle_columns, of_faces);
-  // Readers such as trimesh's take all that is in `edge` for corners.
-  out += "element edge " + edges + "\nproperty int vertex1\nproperty int vertex2\n";
+  // Readers such as trimesh's take all that is in `edge` for corners, and some take no files with edges.
+  if (!complex.edges.empty() || !complex.edge_columns.empty()) {
+    out += "element edge " + edges + "\nproperty int vertex1\nproperty int vertex2\n";
+  }
   if (!complex.edge_columns.empty()) {
     out += "element edge_attributes " + edges + "\n" + property_lines(complex.edge_columns, of_edges);
   }

@@ -129,6 +129,7 @@ Field read_field_npz(const ByteSource& source, const std::filesystem::path&) {
   if (npz.has("vertex_distance")) {
     throw FormatError(source.name() + ": it holds a surface map (array 'vertex_distance'), not a field");
   }
+  if (npz.has("points")) throw FormatError(source.name() + ": it holds points (array 'points'), not a field");
   Field field;
   field.distance = npz.read("distance", [&](ByteStream& stream, const NpyHeader& header) {
     field.grid.size = npy_image_size(header, stream.name());

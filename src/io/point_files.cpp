@@ -248,8 +248,11 @@ void write_points(const std::filesystem::path& path, const Complex& points, cons
     throw InvalidMesh("points have edges or triangles: write them with write_complex()");
   }
   if (extension == ".csv") return write_csv(path, points, context);
-  if (extension == ".npz") return write_npz(path, points, metadata, context);
-  write_complex(path, points, metadata, {}, context);
+  FileMetadata told = metadata;
+  const auto is_content = [](const auto& pair) { return pair.first == "content"; };
+  if (std::none_of(told.begin(), told.end(), is_content)) told.insert(told.begin(), {"content", "points"});
+  if (extension == ".npz") return write_npz(path, points, told, context);
+  write_complex(path, points, told, {}, context);
 }
 
 }  // namespace blum

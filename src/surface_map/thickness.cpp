@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -53,6 +54,7 @@ class ThicknessSearch {
     mesh_.points = {};
     sites_ = SiteTable(mesh_, context);
     bvh_.emplace(mesh_, sites_, context);
+    if (options.kind == ThicknessKind::ball) find_triangles_at_vertices();
     normals_.resize(mesh_.triangles.size());
     for (std::size_t t = 0; t < normals_.size(); ++t) {
       const auto [a, b, c] = triangle_corners(mesh_, t);
@@ -87,6 +89,52 @@ class ThicknessSearch {
   }
 
  private:
+  void find_triangles_at_vertices() {
+    first_.assign(mesh_.vertices.size() + 1, 0);
+    for (const Triangle& t : mesh_.triangles) {
+      for (const std::uint32_t v : t) ++first_[v + 1];
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    at_vertex_.resize(first_.back());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      for (const std::uint32_t v : mesh_.triangles[t]) at_vertex_[next[v]++] = t;
+    }
+  }
+
+  /// The mean of the normals of triangles at a corner that are turned by less than the separation from the triangle's
+  /// own, by their angles there.
+  [[nodiscard]] Vec3d corner_normal(std::uint32_t triangle, std::size_t corner) const {
+    const std::uint32_t vertex = mesh_.triangles[triangle][corner];
+    Vec3d sum;
+    for (std::uint32_t k = first_[vertex]; k < first_[vertex + 1]; ++k) {
+      const std::uint32_t other = at_vertex_[k];
+      if (other != triangle && dot(normals_[other], normals_[triangle]) <= cosine_) continue;
+      const Triangle& t = mesh_.triangles[other];
+      const auto here = static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
+      const Vec3d& at = mesh_.vertices[vertex];
+      const Vec3d to_next = mesh_.vertices[t[(here + 1) % 3]] - at;
+      const Vec3d to_last = mesh_.vertices[t[(here + 2) % 3]] - at;
+      sum += normals_[other] * std::atan2(length(cross(to_next, to_last)), dot(to_next, to_last));
+    }
+    const double size = length(sum);
+    return size > 0 ? sum / size : normals_[triangle];
+  }
+
+  /// Of the smooth surface that a mesh approximates: between those of the corners.
+  [[nodiscard]] Vec3d smooth_normal(const Vec3d& point, std::uint32_t triangle) const {
+    const auto [a, b, c] = triangle_corners(mesh_, triangle);
+    const Vec3d across = cross(b - a, c - a);
+    const double whole = squared_length(across);
+    if (!(whole > 0)) return normals_[triangle];
+    const double second = std::clamp(dot(cross(point - a, c - a), across) / whole, 0.0, 1.0);
+    const double third = std::clamp(dot(cross(b - a, point - a), across) / whole, 0.0, 1.0 - second);
+    const Vec3d mean = corner_normal(triangle, 0) * (1 - second - third) + corner_normal(triangle, 1) * second +
+                       corner_normal(triangle, 2) * third;
+    const double size = length(mean);
+    return size > 0 ? mean / size : normals_[triangle];
+  }
+
   [[nodiscard]] Thickness along_ray(const Vec3d& point, const Vec3d& normal, std::uint32_t own) const {
     Thickness out{nothing, point, TriangleId::none()};
     bvh_->for_each_crossing({point, -normal}, nothing, [&](const RayCrossing& crossing) {
@@ -144,6 +192,7 @@ class ThicknessSearch {
   SiteTable sites_;
   std::optional<Bvh> bvh_;
   std::vector<Vec3d> normals_;  ///< of triangles, of length 1; 0 where they have no area
+  std::vector<std::uint32_t> first_, at_vertex_;  ///< triangles at vertex v: at_vertex_[first_[v] .. first_[v + 1])
 };
 
 void check_solid(const MeshView& solid) {

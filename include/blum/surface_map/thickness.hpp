@@ -35,8 +35,9 @@ struct Description<ThicknessKind> {
 
 struct ThicknessOptions {
   ThicknessKind kind = ThicknessKind::ray;
-  /// Of balls, degrees, 0 to 180: triangles that are turned by less do not end them. With 0 the ball lies inside of the
-  /// polyhedron, and shrinks to nothing at each convex edge, also those that only approximate a smooth surface.
+  /// Of balls, degrees, 0 to 180: triangles that are turned by less do not end them, and count as parts of the same smooth
+  /// surface. With 0 the ball touches the triangle itself, lies inside of the polyhedron, and shrinks to nothing at each
+  /// convex edge, also those that only approximate a smooth surface.
   double separation = 30;
 };
 
