@@ -49,7 +49,14 @@ class Chart {
   /// The point of the triangle for a place: of those beyond the border, the closest one to where the plane has them.
   [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
     const Vec3d point = in_plane(at);
-    return contains(at) ? point : closest_point_on_triangle(point, corners_);
+    if (contains(at)) return point;
+    // Beyond the border, it is one of the border. Of slivers only sides tell it to within rounding.
+    Vec3d best = closest_point_on_segment(point, corners_[0], corners_[1]);
+    for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) {
+      const Vec3d other = closest_point_on_segment(point, corners_[k], corners_[(k + 1) % 3]);
+      if (squared_length(point - other) < squared_length(point - best)) best = other;
+    }
+    return best;
   }
   /// The most that the map stretches: mesh units per texel (the largest singular value).
   [[nodiscard]] double stretch() const {

@@ -108,7 +108,7 @@ Extent extent_of(const MeshView& mesh, double scale) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = triangle_corners(mesh, t);
     out.area += length(cross((b - a) * scale, (c - a) * scale)) / 2;
-    out.longest_sides += std::max({length(b - a), length(c - b), length(a - c)}) * scale;
+    out.longest_sides += std::max({length((b - a) * scale), length((c - b) * scale), length((a - c) * scale)});
   }
   return out;
 }
@@ -171,6 +171,8 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   double sum = 0;
   double mean = 0;
   double square = 0;
+  double magnitude = 0;
+  double largest = 0;
   double mean_move = 0;
   double square_move = 0;
   out.smallest = HUGE_VAL;
@@ -181,17 +183,22 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
     sum += pieces.area[k];
     mean += pieces.area[k] * value;
     square += pieces.area[k] * value * value;
+    magnitude += pieces.area[k] * std::abs(value);
+    largest = std::max(largest, std::abs(value));
     mean_move += pieces.area[k] * std::sqrt(pieces.mean_square[k]);
     square_move += pieces.area[k] * pieces.mean_square[k];
     out.smallest = std::min(out.smallest, values[k]);
     out.largest = std::max(out.largest, values[k]);
   }
   out.mean = mean / sum / scale;
-  out.mean_error = mean_move / sum / scale;
+  const double rounding = 4e-15 * (bounds(mesh).largest_coordinate() * scale + largest);
+  // A sign that changes off the other mesh may be another one in the rest of a piece.
+  const bool may_jump = query.sign_may_jump();
+  out.mean_error = (mean_move / sum + rounding + (may_jump ? 2 * magnitude / sum : 0)) / scale;
   out.rms = std::sqrt(square / sum) / scale;
-  out.rms_error = std::sqrt(square_move / sum) / scale;
+  out.rms_error = (std::sqrt(square_move / sum) + rounding) / scale;
   out.percentiles = percentiles(values, pieces.area, sum);
-  out.percentile_error = pieces.largest_radius / scale;
+  out.percentile_error = (pieces.largest_radius + rounding + (may_jump ? 2 * largest : 0)) / scale;
   out.area = extent.area / scale / scale;
   out.pieces = found.size();
   out.sign_rule = query.sign_rule();
