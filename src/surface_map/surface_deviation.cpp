@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -14,6 +15,8 @@ namespace blum {
 namespace {
 
 constexpr std::size_t triangles_per_range = 256;
+/// So many have about 100 gigabytes.
+constexpr std::size_t most_pieces = 1'000'000'000;
 
 /// Small triangles, each by its centroid. Lengths are those of the mesh times a scale.
 struct Pieces {
@@ -154,7 +157,10 @@ std::array<double, 7> percentiles(const std::vector<double>& values, const std::
 SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, const DeviationOptions& options,
                                    const Context& context) {
   validate(mesh);
-  if (options.pieces < 1) throw InvalidOption("pieces is 0, but must be at least 1");
+  if (options.pieces < 1 || options.pieces > most_pieces) {
+    throw InvalidOption("pieces is " + std::to_string(options.pieces) + ", but must be 1 to " +
+                        std::to_string(most_pieces));
+  }
   const double scale = scale_to_one(bounds(mesh).largest_coordinate());
   const Extent extent = extent_of(mesh, scale);
   if (!(extent.area > 0)) throw InvalidMesh("no triangle of the mesh has an area, so there is no surface to measure");

@@ -73,6 +73,7 @@ TEST(SurfaceDeviation, OfNeedlesAndAtEveryScale) {
   const TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}, {}, {}};
   EXPECT_THROW((void)surface_deviation(flat, make_box()), InvalidMesh);
   EXPECT_THROW((void)surface_deviation(make_box(), make_box(), {.pieces = 0}), InvalidOption);
+  EXPECT_THROW((void)surface_deviation(make_box(), make_box(), {.pieces = 1'000'000'000'000}), InvalidOption);
 }
 
 TEST(SurfaceDeviation, IsTheSameForAnyThreads) {
