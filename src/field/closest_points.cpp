@@ -219,6 +219,10 @@ ClosestPointQuery::~ClosestPointQuery() = default;
 SignRule ClosestPointQuery::sign_rule() const {
   return data_->plan.rule;
 }
+bool ClosestPointQuery::sign_may_jump() const {
+  return data_->plan.method == sign::Method::sums || data_->plan.method == sign::Method::pseudonormals;
+}
+
 const std::string& ClosestPointQuery::sign_reason() const {
   return data_->plan.reason;
 }

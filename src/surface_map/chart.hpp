@@ -39,20 +39,22 @@ class Chart {
   [[nodiscard]] Vec3d in_plane(const TexturePlace& at) const {
     return corners_[0] + along_x_ * (at.x - places_[0].x) + along_y_ * (at.y - places_[0].y);
   }
+  /// Whether a place lies in the chart, border included.
+  [[nodiscard]] bool contains(const TexturePlace& at) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sign_ * twice_area({places_[k], places_[(k + 1) % 3], at}) < 0) return false;
+    }
+    return true;
+  }
   /// The point of the triangle for a place: of those beyond the border, the closest one to where the plane has them.
   [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
     const Vec3d point = in_plane(at);
-    Vec3d best = point;
-    double squared = HUGE_VAL;
-    // What is beyond some sides is closest to a point of these.
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (sign_ * twice_area({places_[k], places_[(k + 1) % 3], at}) >= 0) continue;
-      const Vec3d on_side = closest_point_on_segment(point, corners_[k], corners_[(k + 1) % 3]);
-      const double here = squared_length(point - on_side);
-      if (here < squared) {
-        squared = here;
-        best = on_side;
-      }
+    if (contains(at)) return point;
+    // Beyond the border, it is one of the border. Of slivers only sides tell it to within rounding.
+    Vec3d best = closest_point_on_segment(point, corners_[0], corners_[1]);
+    for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) {
+      const Vec3d other = closest_point_on_segment(point, corners_[k], corners_[(k + 1) % 3]);
+      if (squared_length(point - other) < squared_length(point - best)) best = other;
     }
     return best;
   }

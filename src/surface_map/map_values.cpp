@@ -7,6 +7,7 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/core/scale.hpp"
+#include "surface_map/chart.hpp"
 
 namespace blum::surface {
 namespace {
@@ -30,6 +31,22 @@ SurfaceMap::FaceSummary summary_of(const SurfaceMap& map, std::span<const std::u
     ++count;
   }
   if (count > 0) out.mean = static_cast<float>(sum / static_cast<double>(count));
+  return out;
+}
+
+/// The largest finite magnitude of what is read within a triangle; infinite where a distance is too large for float32.
+double largest_read(const SurfaceMap& map, std::size_t triangle) {
+  const SurfaceMap::FaceSummary& own = map.faces[triangle];
+  const float largest = std::max(std::abs(own.smallest), std::abs(own.largest));
+  if (map.atlas->is_separate && std::isfinite(largest)) return largest;
+  const SurfaceAtlas& atlas = *map.atlas;
+  if (twice_area(atlas.corners[triangle]) == 0) return HUGE_VAL;
+  double out = 0;
+  for_each_texel(atlas.corners[triangle], atlas.width, atlas.height, [&](std::size_t x, std::size_t y, double) {
+    const std::size_t texel = y * atlas.width + x;
+    const double here = std::abs(map.distance[texel]);
+    if (std::isfinite(here) || map.site[texel].has_value()) out = std::max(out, here);
+  });
   return out;
 }
 
@@ -91,15 +108,19 @@ void summarize_faces(SurfaceMap& map, const TexelOrder& order, const Context& co
   });
 }
 
-void bound_errors(SurfaceMap& map, const MeshView& mesh, const Context& context) {
+void bound_errors(SurfaceMap& map, const MeshView& mesh, bool may_jump, const Context& context) {
   const std::vector<double> reaches = texel_reaches(mesh, *map.atlas, context);
+  const double extent = bounds(mesh).largest_coordinate();
   map.error.resize(reaches.size());
-  for (std::size_t t = 0; t < reaches.size(); ++t) {
-    // Texels hold float32.
-    const float largest = std::max(std::abs(map.faces[t].smallest), std::abs(map.faces[t].largest));
-    const double rounding = std::isfinite(largest) ? 1.2e-7 * largest : 0;
-    map.error[t] = static_cast<float>((reaches[t] + rounding) * (1 + 1e-6));
-  }
+  parallel_for(context, reaches.size(), triangles_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t t = range.begin; t < range.end; ++t) {
+      const double largest = largest_read(map, t);
+      // Texels hold float32, which below 1e-38 have steps of the same length, and points are rounded.
+      const double rounding = 1.2e-7 * largest + std::numeric_limits<float>::denorm_min() + 4e-15 * (extent + largest);
+      const double jump = may_jump ? 2 * largest : 0;
+      map.error[t] = static_cast<float>((reaches[t] + rounding + jump) * (1 + 1e-6));
+    }
+  });
 }
 
 std::shared_ptr<const SurfaceAtlas> make_atlas(const MeshView& mesh, const SurfaceMapOptions& options,

@@ -38,8 +38,8 @@ void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueA
 
 /// Sums up the texels of each triangle.
 void summarize_faces(SurfaceMap& map, const TexelOrder& order, const Context& context);
-/// Fills `error`.
-void bound_errors(SurfaceMap& map, const MeshView& mesh, const Context& context);
+/// Fills `error`. @param may_jump  whether distances may change their sign off the other mesh.
+void bound_errors(SurfaceMap& map, const MeshView& mesh, bool may_jump, const Context& context);
 
 /// The atlas that options ask for.
 [[nodiscard]] std::shared_ptr<const SurfaceAtlas> make_atlas(const MeshView& mesh, const SurfaceMapOptions& options,

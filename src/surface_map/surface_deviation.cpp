@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -14,6 +15,8 @@ namespace blum {
 namespace {
 
 constexpr std::size_t triangles_per_range = 256;
+/// So many have about 100 gigabytes.
+constexpr std::size_t most_pieces = 1'000'000'000;
 
 /// Small triangles, each by its centroid. Lengths are those of the mesh times a scale.
 struct Pieces {
@@ -108,7 +111,7 @@ Extent extent_of(const MeshView& mesh, double scale) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = triangle_corners(mesh, t);
     out.area += length(cross((b - a) * scale, (c - a) * scale)) / 2;
-    out.longest_sides += std::max({length(b - a), length(c - b), length(a - c)}) * scale;
+    out.longest_sides += std::max({length((b - a) * scale), length((c - b) * scale), length((a - c) * scale)});
   }
   return out;
 }
@@ -154,7 +157,10 @@ std::array<double, 7> percentiles(const std::vector<double>& values, const std::
 SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, const DeviationOptions& options,
                                    const Context& context) {
   validate(mesh);
-  if (options.pieces < 1) throw InvalidOption("pieces is 0, but must be at least 1");
+  if (options.pieces < 1 || options.pieces > most_pieces) {
+    throw InvalidOption("pieces is " + std::to_string(options.pieces) + ", but must be 1 to " +
+                        std::to_string(most_pieces));
+  }
   const double scale = scale_to_one(bounds(mesh).largest_coordinate());
   const Extent extent = extent_of(mesh, scale);
   if (!(extent.area > 0)) throw InvalidMesh("no triangle of the mesh has an area, so there is no surface to measure");
@@ -171,6 +177,8 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   double sum = 0;
   double mean = 0;
   double square = 0;
+  double magnitude = 0;
+  double largest = 0;
   double mean_move = 0;
   double square_move = 0;
   out.smallest = HUGE_VAL;
@@ -181,17 +189,22 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
     sum += pieces.area[k];
     mean += pieces.area[k] * value;
     square += pieces.area[k] * value * value;
+    magnitude += pieces.area[k] * std::abs(value);
+    largest = std::max(largest, std::abs(value));
     mean_move += pieces.area[k] * std::sqrt(pieces.mean_square[k]);
     square_move += pieces.area[k] * pieces.mean_square[k];
     out.smallest = std::min(out.smallest, values[k]);
     out.largest = std::max(out.largest, values[k]);
   }
   out.mean = mean / sum / scale;
-  out.mean_error = mean_move / sum / scale;
+  const double rounding = 4e-15 * (bounds(mesh).largest_coordinate() * scale + largest);
+  // A sign that changes off the other mesh may be another one in the rest of a piece.
+  const bool may_jump = query.sign_may_jump();
+  out.mean_error = (mean_move / sum + rounding + (may_jump ? 2 * magnitude / sum : 0)) / scale;
   out.rms = std::sqrt(square / sum) / scale;
-  out.rms_error = std::sqrt(square_move / sum) / scale;
+  out.rms_error = (std::sqrt(square_move / sum) + rounding) / scale;
   out.percentiles = percentiles(values, pieces.area, sum);
-  out.percentile_error = pieces.largest_radius / scale;
+  out.percentile_error = (pieces.largest_radius + rounding + (may_jump ? 2 * largest : 0)) / scale;
   out.area = extent.area / scale / scale;
   out.pieces = found.size();
   out.sign_rule = query.sign_rule();

@@ -170,7 +170,7 @@ SurfaceMap SurfaceMapper::map(const Context& context) const {
   fill_vertices(out, data_->target, *data_->query, context);
   timer.lap("vertices");
   surface::summarize_faces(out, data_->order, context);
-  surface::bound_errors(out, data_->target, context);
+  surface::bound_errors(out, data_->target, data_->query->sign_may_jump(), context);
   timer.lap("summaries");
   out.sign_rule = data_->query->sign_rule();
   out.sign_reason = data_->query->sign_reason();
@@ -213,7 +213,7 @@ SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& op
   surface::fill(out, target, order, value_at, context);
   timer.lap("texels");
   surface::summarize_faces(out, order, context);
-  surface::bound_errors(out, target, context);
+  surface::bound_errors(out, target, false, context);
   timer.lap("summaries");
   return out;
 }

@@ -158,7 +158,8 @@ class ThicknessSearch {
   /// ball that touches both it and the plane.
   [[nodiscard]] Thickness of_ball(const Vec3d& point, const Vec3d& normal, std::uint32_t own, const Hint& hint) const {
     const auto counts = [&](std::uint32_t triangle) {
-      return triangle != own && dot(normals_[triangle], normal) <= cosine_;
+      // Triangles without area have no normal to be turned.
+      return triangle != own && normals_[triangle] != Vec3d{} && dot(normals_[triangle], normal) <= cosine_;
     };
     Thickness out{nothing, point, TriangleId::none()};
     // No ball inside of the mesh's box is larger, if it touches something.

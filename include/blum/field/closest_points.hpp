@@ -120,6 +120,9 @@ class ClosestPointQuery {
   /// How signs are found, and why (one sentence).
   [[nodiscard]] SignRule sign_rule() const;
   [[nodiscard]] const std::string& sign_reason() const;
+  /// Whether the sign may change off the surface, where the distance is not 0: by winding numbers of meshes with a
+  /// boundary, and by normals of shells that cross each other.
+  [[nodiscard]] bool sign_may_jump() const;
 
  private:
   struct Data;

@@ -79,7 +79,9 @@ struct SurfaceMap {
   Buffer<SiteId> site;
   /// For each triangle of the mesh: how much the distance at any of its points may differ from the value that is read
   /// there from the texture, by the nearest texel or bilinearly: distances do not change by more than one moves. Mesh
-  /// units. Of distances and self-distances; empty of thickness, which may jump.
+  /// units. Of distances and self-distances; empty of thickness, which may jump. Where signs may jump (see
+  /// ClosestPointQuery::sign_may_jump()), it holds that, too, and is large. Where nothing lies within max_distance of
+  /// some texels, it counts for places that do not look at these.
   std::vector<float> error;
 
   /// Exact, at each vertex of the mesh; not a number at those of no triangle. Of all quantities but `distance`, as for

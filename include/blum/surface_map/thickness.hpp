@@ -63,7 +63,7 @@ struct Thickness {
 /// How thick a solid is at points of its surface.
 ///
 /// @param solid   a mesh whose triangles face outwards; closed, where all of it is to have a thickness. Triangles
-///                without area have none (infinite).
+///                without area have none (infinite), and end no ball.
 /// @param points  finite; each stands for the point of the surface that is closest to it and, on edges and at vertices,
 ///                for the smallest triangle there. Where a point lies on the border of its triangle, a place next to it
 ///                inside is taken, a ten-millionth of the triangle's size away.

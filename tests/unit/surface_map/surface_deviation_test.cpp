@@ -47,8 +47,22 @@ TEST(SurfaceDeviation, KnowsItsErrors) {
   EXPECT_EQ(fine.sign_rule, SignRule::normals);
 }
 
+/// By winding numbers of open meshes signs may change within pieces.
+TEST(SurfaceDeviation, KnowsItsErrorsWhereSignsJump) {
+  TriangleMesh bowl = make_sphere();
+  std::erase_if(bowl.triangles, [&](const Triangle& t) {
+    return bowl.vertices[t[0]].z + bowl.vertices[t[1]].z + bowl.vertices[t[2]].z > 0;
+  });
+  const TriangleMesh post{{{0, 0, -0.5}, {0.1, 0, 0.7}, {0, 0.1, 0.7}}, {{0, 1, 2}}, {}, {}};
+  const SurfaceDeviation fine = surface_deviation(post, bowl, {.pieces = 100'000, .sign = SignMode::automatic});
+  const SurfaceDeviation rough = surface_deviation(post, bowl, {.pieces = 1, .sign = SignMode::automatic});
+  EXPECT_LE(std::abs(rough.mean - fine.mean), rough.mean_error);
+  EXPECT_LE(std::abs(rough.smallest - fine.smallest), rough.percentile_error);
+  EXPECT_LE(std::abs(rough.largest - fine.largest), rough.percentile_error);
+}
+
 TEST(SurfaceDeviation, OfNeedlesAndAtEveryScale) {
-  for (const double scale : {1e-120, 1.0, 1e120}) {
+  for (const double scale : {1e-148, 1e-120, 1.0, 1e120}) {
     const TriangleMesh needle{{{0, 0, scale}, {scale, 0, scale}, {scale, 1e-13 * scale, scale}}, {{0, 1, 2}}, {}, {}};
     const TriangleMesh point{{{0, 0, 0}}, {}, {}, {0}};
     const SurfaceDeviation found = surface_deviation(needle, point, {.pieces = 1000});
@@ -59,6 +73,7 @@ TEST(SurfaceDeviation, OfNeedlesAndAtEveryScale) {
   const TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}, {}, {}};
   EXPECT_THROW((void)surface_deviation(flat, make_box()), InvalidMesh);
   EXPECT_THROW((void)surface_deviation(make_box(), make_box(), {.pieces = 0}), InvalidOption);
+  EXPECT_THROW((void)surface_deviation(make_box(), make_box(), {.pieces = 1'000'000'000'000}), InvalidOption);
 }
 
 TEST(SurfaceDeviation, IsTheSameForAnyThreads) {

@@ -101,6 +101,70 @@ TEST(SurfaceDistanceMap, HoldsOfSoups) {
   }
 }
 
+/// Of the points of a triangle whose area is all rounding, the closest ones to places beyond its border are on its
+/// sides.
+TEST(SurfaceDistanceMap, HoldsOfNeedles) {
+  Random random(1314);
+  const auto next = [&] { return Vec3d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; };
+  for (int round = 0; round < 300; ++round) {
+    SCOPED_TRACE(round);
+    const Vec3d a = next();
+    const Vec3d b = next();
+    const TriangleMesh target{{a, b, a + (b - a) * random.uniform(0, 1)}, {{0, 1, 2}}, {}, {}};
+    const TriangleMesh point{{next()}, {}, {}, {0}};
+    const SurfaceMap map = surface_distance_map(target, point, {.texel = 0.05});
+    const std::array<TexturePlace, 3>& at = map.atlas->corners[0];
+    for (int k = 0; k <= 100; ++k) {
+      // On the longest side.
+      const double part = k / 100.0;
+      const double exact = length(a + (b - a) * part - point.vertices[0]);
+      const TexturePlace place{at[0].x + (at[1].x - at[0].x) * part, at[0].y + (at[1].y - at[0].y) * part};
+      ASSERT_LE(std::abs(read_nearest(map, place) - exact), map.error[0]) << k;
+      ASSERT_LE(std::abs(read_bilinear(map, place) - exact), map.error[0]) << k;
+    }
+  }
+}
+
+/// What float32 and the rounding of points lose is part of the errors.
+TEST(SurfaceDistanceMap, HoldsWhatRoundingLoses) {
+  for (const double scale : {1e-140, 1e-44, 1e-30, 1.0, 1e30, 1e37, 1e39, 1e140}) {
+    SCOPED_TRACE(scale);
+    TriangleMesh target{{{0, 0, 0}, {1e-9, 0, 0}, {0, 1e-9, 0}}, {{0, 1, 2}}, {}, {}};
+    TriangleMesh point{{{0.3, 0.1, 0.7}}, {}, {}, {0}};
+    for (Vec3d& v : target.vertices) v *= scale;
+    point.vertices[0] *= scale;
+    const SurfaceMap map = surface_distance_map(target, point, {.texel = 1e-10 * scale});
+    expect_errors(map, target, point, SignMode::none, 100);
+  }
+  // Small, and far from the origin: the closest points of places beyond the border are rounded.
+  const Vec3d far{288323, 1e5, -4e4};
+  const TriangleMesh target{{far, far + Vec3d{3e-10, 0, 0}, far + Vec3d{0, 3e-10, 0}}, {{0, 1, 2}}, {}, {}};
+  const TriangleMesh point{{far + Vec3d{1, 1, 1}}, {}, {}, {0}};
+  const SurfaceMap map = surface_distance_map(target, point, {.texel = 1e-13});
+  EXPECT_GT(map.error[0], 1e-10F);
+  // Where something is beyond reach, the rounding of the rest counts.
+  const TriangleMesh long_way{{{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}}, {{0, 1, 2}}, {}, {}};
+  const TriangleMesh distant{{{1e6, 0, 0}}, {}, {}, {0}};
+  const SurfaceMap limited = surface_distance_map(long_way, distant, {.texel = 1e-4, .max_distance = 1e6 - 5e-4});
+  EXPECT_TRUE(std::isinf(limited.faces[0].largest));
+  EXPECT_GT(limited.error[0], 0.03F);
+}
+
+/// By winding numbers of open meshes the sign changes where the distance is not 0.
+TEST(SurfaceDistanceMap, KnowsThatSignsMayJump) {
+  TriangleMesh bowl = make_sphere();
+  std::erase_if(bowl.triangles, [&](const Triangle& t) {
+    return bowl.vertices[t[0]].z + bowl.vertices[t[1]].z + bowl.vertices[t[2]].z > 0;
+  });
+  const TriangleMesh post{{{0, 0, -0.5}, {0.1, 0, 0.7}, {0, 0.1, 0.7}}, {{0, 1, 2}}, {}, {}};
+  for (const SignMode sign : {SignMode::none, SignMode::automatic, SignMode::winding}) {
+    expect_errors(surface_distance_map(post, bowl, {.texel = 0.01, .sign = sign}), post, bowl, sign, 3000);
+  }
+  EXPECT_TRUE(ClosestPointQuery(bowl).sign_may_jump());
+  EXPECT_FALSE(ClosestPointQuery(bowl, {SignMode::none, {}}).sign_may_jump());
+  EXPECT_FALSE(ClosestPointQuery(make_sphere()).sign_may_jump());
+}
+
 TEST(SurfaceDistanceMap, FollowsMeshesThatMove) {
   TriangleMesh target = make_organic({.frequency = 6, .seed = 1});
   TriangleMesh other = make_sphere({.frequency = 6});

@@ -189,6 +189,19 @@ TEST(BallThickness, AgreesWithBruteForce) {
   }
 }
 
+/// Triangles without area, such as those that close cracks in CAD meshes, have no normal and end no ball.
+TEST(BallThickness, LooksPastTrianglesWithoutArea) {
+  TriangleMesh plate = test::box_between({0, 0, 0}, {4, 3, 0.5});
+  plate.vertices.insert(plate.vertices.end(), {{1.4, 1, 0.5}, {1.6, 1, 0.5}, {1.5, 1, 0.5}});
+  const auto first = static_cast<std::uint32_t>(plate.vertices.size() - 3);
+  plate.triangles.push_back({first, first + 1, first + 2});
+  const std::vector<Vec3d> at{{1.5, 1.01, 0.5}};
+  for (const double separation : {10.0, 30.0, 90.0}) {
+    const std::vector<Thickness> found = thickness(plate, at, {.kind = ThicknessKind::ball, .separation = separation});
+    EXPECT_NEAR(found[0].thickness, 0.5, 1e-9);
+  }
+}
+
 TEST(ThicknessMap, HoldsThicknesses) {
   const TriangleMesh plate = test::box_between({0, 0, 0}, {4, 3, 0.5});
   const SurfaceMap map = thickness_map(plate, {.texel = 0.1});
