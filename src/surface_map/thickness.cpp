@@ -78,12 +78,12 @@ class ThicknessSearch {
     const auto [a, b, c] = triangle_corners(mesh_, triangle.value);
     const Vec3d scaled = given * scale_;
     const Vec3d point = scaled + ((a + b + c) / 3.0 - scaled) * towards_centroid;
-    const Vec3d& normal = normals_[triangle.value];
     Thickness out{nothing, given, TriangleId::none()};
-    if (normal == Vec3d{}) return out;
-    const Thickness found = options_.kind == ThicknessKind::ray
-                                ? along_ray(point, normal, triangle.value)
-                                : of_ball(point, normal, triangle.value, {hint.point * scale_, hint.triangle});
+    if (normals_[triangle.value] == Vec3d{}) return out;
+    const bool is_ray = options_.kind == ThicknessKind::ray;
+    const Vec3d normal = is_ray ? normals_[triangle.value] : smooth_normal(point, triangle.value);
+    const Thickness found = is_ray ? along_ray(point, normal, triangle.value)
+                                   : of_ball(point, normal, triangle.value, {hint.point * scale_, hint.triangle});
     if (!found.triangle.has_value()) return out;
     return {found.thickness / scale_, found.opposite / scale_, found.triangle};
   }
@@ -192,7 +192,7 @@ class ThicknessSearch {
   MeshView mesh_;
   SiteTable sites_;
   std::optional<Bvh> bvh_;
-  std::vector<Vec3d> normals_;  ///< of triangles, of length 1; 0 where they have no area
+  std::vector<Vec3d> normals_;                    ///< of triangles, of length 1; 0 where they have no area
   std::vector<std::uint32_t> first_, at_vertex_;  ///< triangles at vertex v: at_vertex_[first_[v] .. first_[v + 1])
 };
 

@@ -40,7 +40,8 @@ namespace blum {
 /// column under its name, and `metadata`, a JSON object; .csv with a first row of names: x, y, z, then the columns;
 /// those of three numbers are NAME_x, NAME_y, NAME_z, others of several NAME_0, NAME_1, ... CSV files have no metadata.
 /// Numbers of text are exact.
-/// @param metadata  `content` is "points" where it does not say otherwise: readers of axes and fields refuse such files.
+/// @param metadata  `content` is "points" where it does not say otherwise: readers of axes and fields refuse such
+/// files.
 /// @param points  a complex of vertices alone; validate(points) must pass.
 /// @throws InvalidMesh, InvalidOption for another extension, FileError, Cancelled.
 void write_points(const std::filesystem::path& path, const Complex& points, const FileMetadata& metadata = {},

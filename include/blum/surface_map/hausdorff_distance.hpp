@@ -19,8 +19,9 @@ namespace blum {
 struct HausdorffOptions {
   /// How wide the interval may be, > 0, mesh units. Unset: a ten-thousandth of the diagonal of the box around both.
   std::optional<double> tolerance = {};
-  /// The search stops, with a wider interval, once the distance has been computed at this many points of a mesh.
-  std::size_t max_points = 200'000'000;
+  /// The search stops, with a wider interval, once the distance has been computed at this many points of a mesh, which
+  /// take up to 150 bytes each.
+  std::size_t max_points = 20'000'000;
 };
 
 template <>
@@ -96,7 +97,8 @@ struct Description<HausdorffDistance> {
 ///                     taken to be at least 1e-13 of the largest coordinate) unless max_points has ended the search.
 ///                     The same for any number of threads.
 /// @throws InvalidMesh, InvalidOption, Cancelled. Cost: two hierarchies and one search per vertex, then as many
-/// searches as the tolerance asks for near the furthest places. Method: docs/theory/surface-maps.md.
+/// searches as the tolerance asks for near the furthest places. Where many triangles coincide without sharing vertices,
+/// the square of their number. Method: docs/theory/surface-maps.md.
 [[nodiscard]] DirectedHausdorff directed_hausdorff_distance(const MeshView& mesh, const MeshView& other,
                                                             const HausdorffOptions& options = {},
                                                             const Context& context = {});

@@ -16,7 +16,7 @@
 namespace blum {
 
 struct DeviationOptions {
-  /// The surface is cut into about so many pieces, and more where triangles are long; at least 1.
+  /// The surface is cut into about so many pieces, and more where triangles are long; 1 to 10^9.
   std::size_t pieces = 1'000'000;
   /// How signs are found, as for closest_points(); deviations are then negative where the surface is inside of the
   /// other mesh.
@@ -29,7 +29,7 @@ struct Description<DeviationOptions> {
   static constexpr std::string_view doc = "How well deviations are to be known";
   static constexpr std::tuple members{
       Member{"pieces", &DeviationOptions::pieces, "", "that the surface is cut into; errors fall with their size",
-             Range::at_least(1)},
+             Range::between(1, 1e9)},
       Member{"sign", &DeviationOptions::sign, "", "how signs are found: negative inside of the other mesh"},
   };
 };

@@ -35,9 +35,9 @@ struct Description<ThicknessKind> {
 
 struct ThicknessOptions {
   ThicknessKind kind = ThicknessKind::ray;
-  /// Of balls, degrees, 0 to 180: triangles that are turned by less do not end them, and count as parts of the same smooth
-  /// surface. With 0 the ball touches the triangle itself, lies inside of the polyhedron, and shrinks to nothing at each
-  /// convex edge, also those that only approximate a smooth surface.
+  /// Of balls, degrees, 0 to 180: triangles that are turned by less do not end them, and count as parts of the same
+  /// smooth surface. With 0 the ball touches the triangle itself, lies inside of the polyhedron, and shrinks to nothing
+  /// at each convex edge, also those that only approximate a smooth surface.
   double separation = 30;
 };
 
@@ -68,7 +68,8 @@ struct Thickness {
 ///                for the smallest triangle there. Where a point lies on the border of its triangle, a place next to it
 ///                inside is taken, a ten-millionth of the triangle's size away.
 /// @return        one entry per point; exact but for rounding. The same for any number of threads.
-/// @throws InvalidMesh, InvalidOption, Cancelled. Cost: about 1 us (ray) and 5 us (ball) per point and core.
+/// @throws InvalidMesh, InvalidOption, Cancelled. Cost: about 1 us (ray) and 5 to 30 us (ball) per point and core;
+/// balls that touch much of the surface at once, as of spheres, take far more.
 /// Method: docs/theory/surface-maps.md; balls shrink as in Ma, Bae, Choi, "3D medial axis point approximation using
 /// nearest neighbors and the normal field" (2012).
 [[nodiscard]] std::vector<Thickness> thickness(const MeshView& solid, std::span<const Vec3d> points,
