@@ -52,7 +52,7 @@ def test_a_page_holds_a_map_exactly(maps, tmp_path, name):
 
 def test_a_map_without_any_value_is_shown(maps, tmp_path):
     run("make", "sphere", "-o", tmp_path / "far.ply", "--radius", 50)
-    run("surface-map", maps / "box.obj", tmp_path / "far.ply", "-o", tmp_path / "none.npz", "--within", 1)
+    run("surface-map", maps / "box.obj", tmp_path / "far.ply", "-o", tmp_path / "none.npz", "--within", 1, warns=True)
     run("view", tmp_path / "none.npz", "-o", tmp_path / "page.html")
     item = scene_of_page(tmp_path / "page.html").header["items"][0]
     assert item["range"] is None and ["values", "none within reach"] in item["facts"]
