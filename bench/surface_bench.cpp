@@ -65,12 +65,12 @@ void map_case(benchmark::State& state, const std::string& name, const std::strin
 }
 
 /// The same texels by Embree, one query for each.
-void embree_map_case(benchmark::State& state, const std::string& name, const std::string& other_name) {
+void embree_map_case(benchmark::State& state, const std::string& name, const std::string& other_name, bool is_hinted) {
   const Shape& input = shape(name);
   const TriangleMesh other = other_of(input.mesh, other_name);
   const SurfaceAtlas atlas = surface_atlas_of_size(input.mesh, many_texels);
   const SurfaceTexels all = surface_texels(input.mesh, atlas);
-  const std::optional<PeerPoints> found = embree_points(other, all.points, {});
+  const std::optional<PeerPoints> found = embree_points(other, all.points, {}, is_hinted);
   if (!found) return state.SkipWithError("Embree is not installed");
   report(state, found->times, static_cast<double>(atlas.size()));
   state.counters["texels"] = static_cast<double>(all.texels.size());
@@ -167,7 +167,8 @@ const bool registered = [] {
   for (const std::string other : {"rocker-arm", "noisy-0.001"}) {
     const std::string prefix = "surface-map/bunny/" + other + "/";
     add(prefix + "blum", [=](benchmark::State& state) { map_case(state, "bunny", other); });
-    add(prefix + "embree", [=](benchmark::State& state) { embree_map_case(state, "bunny", other); });
+    add(prefix + "embree", [=](benchmark::State& state) { embree_map_case(state, "bunny", other, false); });
+    add(prefix + "embree-hinted", [=](benchmark::State& state) { embree_map_case(state, "bunny", other, true); });
   }
   for (const std::string other : {"organic", "shifted-0.01", "shifted-0.001", "noisy-0.001", "shifted-0"}) {
     const std::string prefix = "hausdorff/bunny/" + other + "/";

@@ -139,7 +139,8 @@ std::optional<PeerField> embree_field(const MeshView& mesh, const GridSpec& grid
   return result;
 }
 
-std::optional<PeerPoints> embree_points(const MeshView& mesh, std::span<const Vec3d> points, const Context& context) {
+std::optional<PeerPoints> embree_points(const MeshView& mesh, std::span<const Vec3d> points, const Context& context,
+                                        bool is_hinted) {
   const Vec3d centre = bounds(mesh).center();
   Scene scene;
   scene.build(mesh, centre, thread_count(context));
@@ -150,6 +151,7 @@ std::optional<PeerPoints> embree_points(const MeshView& mesh, std::span<const Ve
       Search search{.triangles = scene.corners.data()};
       for (std::size_t i = range.begin; i < range.end; ++i) {
         const Vec3d p = points[i] - centre;
+        if (!is_hinted) search = {.triangles = scene.corners.data()};
         search.point = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
         scene.closest(search);
         out.distance[i] = std::sqrt(search.squared);
@@ -169,7 +171,7 @@ std::optional<PeerField> embree_field(const MeshView&, const GridSpec&, const Co
   return std::nullopt;
 }
 
-std::optional<PeerPoints> embree_points(const MeshView&, std::span<const Vec3d>, const Context&) {
+std::optional<PeerPoints> embree_points(const MeshView&, std::span<const Vec3d>, const Context&, bool) {
   return std::nullopt;
 }
 

@@ -37,8 +37,9 @@ struct PeerPoints {
   std::vector<float> distance;
   Times times;  ///< without building
 };
+/// @param is_hinted  whether each search starts from the triangle that the point before found, within ranges of 512.
 [[nodiscard]] std::optional<PeerPoints> embree_points(const MeshView& mesh, std::span<const Vec3d> points,
-                                                      const Context& context);
+                                                      const Context& context, bool is_hinted = true);
 
 /// CGAL's AABB tree over Simple_cartesian<double>, with the point that the node before found as the hint.
 [[nodiscard]] std::optional<PeerField> cgal_field(const MeshView& mesh, const GridSpec& grid, const Context& context);
