@@ -212,7 +212,7 @@ TEST_F(SurfaceMapDamage, OfNumbersIsNamed) {
   expect_refused("the chart of that triangle is elsewhere",
                  [](Arrays& a) { a.put("triangle", first_texel, std::int32_t{11}); });
   expect_refused("the chart of that triangle has no area", [](Arrays& a) {
-    for (const std::size_t c : {0, 1, 2, 3}) a.put("corners", 2 + c, a.get<double>("corners", c % 2));
+    for (const std::size_t c : {0U, 1U, 2U, 3U}) a.put("corners", 2 + c, a.get<double>("corners", c % 2));
   });
   for (const double place : {nan, -0.25, 96.25, HUGE_VAL}) {
     expect_refused("a corner of triangle 1 lies outside", [&](Arrays& a) { a.put("corners", 6, place); });

@@ -24,10 +24,15 @@ namespace {
 /// Where a point of a triangle is in the texture.
 TexturePlace place_of(const MeshView& mesh, const SurfaceAtlas& atlas, std::uint32_t t, const Vec3d& point) {
   const auto [a, b, c] = triangle_corners(mesh, t);
-  const Vec3d normal = cross(b - a, c - a);
+  // About 1 long, so that products are numbers.
+  const double size = std::max({length(b - a), length(c - a), length(c - b)});
+  const Vec3d to_b = (b - a) / size;
+  const Vec3d to_c = (c - a) / size;
+  const Vec3d to_point = (point - a) / size;
+  const Vec3d normal = cross(to_b, to_c);
   const double whole = squared_length(normal);
-  const double u = dot(cross(point - a, c - a), normal) / whole;
-  const double v = dot(cross(b - a, point - a), normal) / whole;
+  const double u = dot(cross(to_point, to_c), normal) / whole;
+  const double v = dot(cross(to_b, to_point), normal) / whole;
   const auto& [pa, pb, pc] = atlas.corners[t];
   return {pa.x + (pb.x - pa.x) * u + (pc.x - pa.x) * v, pa.y + (pb.y - pa.y) * u + (pc.y - pa.y) * v};
 }
