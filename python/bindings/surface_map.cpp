@@ -60,7 +60,7 @@ nb::dict dict_of(SurfaceMap found) {
 }
 
 void bind_maps(nb::module_& m) {
-  nb::class_<SurfaceMap>(m, "SurfaceMap");
+  nb::class_<SurfaceMap>(m, "SurfaceMap");  // NOLINT(bugprone-unused-raii): making it tells the module
   m.def(
       "write_surface_map",
       [](const std::filesystem::path& path, const MeshArrays& mesh, const SurfaceMap& map,

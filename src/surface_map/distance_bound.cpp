@@ -59,7 +59,7 @@ bool common_part(const FacingSurface& surface, std::uint32_t a, std::uint32_t b,
                              of_a.begin() + static_cast<std::ptrdiff_t>(k);
     if (!is_repeated && std::find(of_b.begin(), of_b.end(), of_a[k]) != of_b.end()) common.push_back(of_a[k]);
   }
-  if (common.size() == 0) return false;
+  if (common.empty()) return false;
   part = {surface.position(common[0]), surface.position(common[common.size() > 1 ? 1 : 0])};
   return true;
 }

@@ -45,9 +45,9 @@ class ThicknessSearch {
       : options_(options),
         scale_(scale_to_one(bounds(solid).largest_coordinate())),
         vertices_(solid.vertices.begin(), solid.vertices.end()),
-        cosine_(std::cos(options.separation * std::numbers::pi / 180)) {
+        cosine_(std::cos(options.separation * std::numbers::pi / 180)),
+        mesh_(solid) {
     for (Vec3d& v : vertices_) v *= scale_;
-    mesh_ = solid;
     mesh_.vertices = vertices_;
     // Only triangles make a solid.
     mesh_.segments = {};

@@ -41,7 +41,7 @@ struct SurfaceAtlas {
 
   [[nodiscard]] std::size_t size() const { return triangle.size(); }
   /// Corners of triangles as glTF and OBJ files have them: u to the right, 0 to 1; v down (glTF; OBJ has 1 - v).
-  [[nodiscard]] std::array<std::array<float, 2>, 3> texture_coordinates(TriangleId triangle) const;
+  [[nodiscard]] std::array<std::array<float, 2>, 3> texture_coordinates(TriangleId of) const;
 };
 
 /// A chart of its own for each triangle: a right triangle, whose legs are the two shorter edges, as many texels long as

@@ -101,7 +101,7 @@ struct SurfaceMap {
   /// A texel with the smallest distance; nullopt where no texel has one.
   [[nodiscard]] std::optional<std::size_t> closest_texel() const;
   /// All texels whose distance is at most this, in rising order.
-  [[nodiscard]] std::vector<std::uint32_t> texels_within(double distance) const;
+  [[nodiscard]] std::vector<std::uint32_t> texels_within(double limit) const;
 };
 
 /// The distance from every point of a surface to another mesh, as a texture (Sud 2006, chapter 3).
