@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "blum/core/parallel.hpp"
 #include "blum/io/file_content.hpp"
 #include "blum/medial_axis/centreline.hpp"
 #include "centreline_files.hpp"
@@ -201,16 +200,10 @@ void run(const Arguments& a) {
   const PhaseSummary spent = summarize(phases);
   Json briefs = Json::array();
   for (const Centreline& line : lines.labels) briefs.push_back(brief_json(line));
-  const Json json = answer_json("centreline", {{"image", input.string()},
-                                               {"grid", to_json(image.grid)},
-                                               {"spur", options.spur},
-                                               {"labels", briefs},
-                                               {"seconds", spent.seconds},
-                                               {"total_seconds", spent.total},
-                                               {"peak_memory_bytes", peak_memory()},
-                                               {"threads", thread_count(context)},
-                                               {"warnings", warnings},
-                                               {"outputs", {output.string()}}});
+  Json json = answer_json(
+      "centreline",
+      {{"image", input.string()}, {"grid", to_json(image.grid)}, {"spur", options.spur}, {"labels", briefs}});
+  add_run_facts(json, spent, context, warnings, Json::array({output.string()}));
   TextTable table;
   table.add("image", input.string() + ": " + size_text(image.grid) + " voxels");
   add_lines(table, lines);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "blum/complex/complex.hpp"
-#include "blum/core/parallel.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/file_content.hpp"
@@ -169,12 +168,7 @@ void run(const Arguments& a) {
                                         {"points", to_json(both.points)},
                                         {"forward", sides[0].json()}});
   if (!a.one_sided) json["backward"] = sides[1].json();
-  json.update(Json{{"seconds", spent.seconds},
-                   {"total_seconds", spent.total},
-                   {"peak_memory_bytes", peak_memory()},
-                   {"threads", thread_count(context)},
-                   {"warnings", Json::array()},
-                   {"outputs", a.output ? Json{*a.output} : Json::array()}});
+  add_run_facts(json, spent, context, {}, a.output ? Json::array({*a.output}) : Json::array());
   TextTable table;
   table.add("a", paths[0].string() + ": " + plural(first.triangles.size(), "triangle", "triangles"));
   table.add("b", paths[1].string() + ": " + plural(second.triangles.size(), "triangle", "triangles"));

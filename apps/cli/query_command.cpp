@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "blum/core/error.hpp"
-#include "blum/core/parallel.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/io/file_content.hpp"
@@ -218,21 +217,16 @@ void run(const Arguments& a) {
   }
   progress.clear();
   const PhaseSummary times = summarize(spent.phases());
-  const Json json = answer_json("query", {{"mesh", a.mesh},
-                                          {"triangles", mesh.mesh.triangles.size()},
-                                          {"points", all.points},
-                                          {"found", all.found},
-                                          {"inside", all.inside},
-                                          {"sign_rule", std::string(to_string(query.sign_rule()))},
-                                          {"sign_reason", query.sign_reason()},
-                                          {"distance", all.json()},
-                                          {"files", of_files},
-                                          {"seconds", times.seconds},
-                                          {"total_seconds", times.total},
-                                          {"peak_memory_bytes", peak_memory()},
-                                          {"threads", thread_count(context)},
-                                          {"warnings", Json::array()},
-                                          {"outputs", outputs}});
+  Json json = answer_json("query", {{"mesh", a.mesh},
+                                    {"triangles", mesh.mesh.triangles.size()},
+                                    {"points", all.points},
+                                    {"found", all.found},
+                                    {"inside", all.inside},
+                                    {"sign_rule", std::string(to_string(query.sign_rule()))},
+                                    {"sign_reason", query.sign_reason()},
+                                    {"distance", all.json()},
+                                    {"files", of_files}});
+  add_run_facts(json, times, context, {}, outputs);
   report(a.report, json, text_of(a, mesh, query, files, all, times));
 }
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "blum/core/parallel.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/io/file_content.hpp"
 #include "blum/io/formats.hpp"
@@ -120,17 +119,12 @@ void run(const Arguments& a) {
   phases.push_back({"write", watch.lap()});
   progress.clear();
   const PhaseSummary spent = summarize(phases);
-  const Json json = answer_json("sample", {{"mesh", input.string()},
-                                           {"triangles", file.mesh.triangles.size()},
-                                           {"points", points.positions.size()},
-                                           {"near", a.near},
-                                           {"seed", asked.options.seed},
-                                           {"seconds", spent.seconds},
-                                           {"total_seconds", spent.total},
-                                           {"peak_memory_bytes", peak_memory()},
-                                           {"threads", thread_count(context)},
-                                           {"warnings", Json::array()},
-                                           {"outputs", {output.string()}}});
+  Json json = answer_json("sample", {{"mesh", input.string()},
+                                     {"triangles", file.mesh.triangles.size()},
+                                     {"points", points.positions.size()},
+                                     {"near", a.near},
+                                     {"seed", asked.options.seed}});
+  add_run_facts(json, spent, context, {}, Json::array({output.string()}));
   TextTable table;
   table.add("mesh", input.string() + ": " + plural(file.mesh.triangles.size(), "triangle", "triangles"));
   table.add("points",

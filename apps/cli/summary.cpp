@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "blum/core/error.hpp"
+#include "blum/core/parallel.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "options.hpp"
 
@@ -65,6 +66,16 @@ Json answer_json(std::string_view command, const Json& facts) {
   Json json = {{"blum_version", BLUM_VERSION}, {"command", command}};
   json.update(facts);
   return json;
+}
+
+void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& context,
+                   const std::vector<std::string>& warnings, const Json& outputs) {
+  answer["seconds"] = spent.seconds;
+  answer["total_seconds"] = spent.total;
+  answer["peak_memory_bytes"] = peak_memory();
+  answer["threads"] = thread_count(context);
+  answer["warnings"] = warnings;
+  answer["outputs"] = outputs;
 }
 
 void report(const ReportOptions& options, const Json& json, const std::string& text) {

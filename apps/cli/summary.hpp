@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/field/field.hpp"
@@ -61,6 +62,10 @@ class TextTable {
 
 /// What a command answers as JSON: Blum's version, the command, then these facts.
 [[nodiscard]] Json answer_json(std::string_view command, const Json& facts);
+
+/// Adds what answers end with: how long the run took, its memory and threads, warnings, and the files written.
+void add_run_facts(Json& answer, const PhaseSummary& spent, const Context& context,
+                   const std::vector<std::string>& warnings, const Json& outputs);
 
 /// Where a command's summary goes.
 struct ReportOptions {

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "blum/core/parallel.hpp"
 #include "blum/core/phase_timer.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/io/file_content.hpp"
@@ -221,12 +220,7 @@ void run(const Arguments& a) {
   }
   Json written = Json::array();
   for (const fs::path& output : asked.outputs) written.push_back(output.string());
-  json.update(Json{{"seconds", spent.seconds},
-                   {"total_seconds", spent.total},
-                   {"peak_memory_bytes", peak_memory()},
-                   {"threads", thread_count(context)},
-                   {"warnings", warnings},
-                   {"outputs", written}});
+  add_run_facts(json, spent, context, warnings, written);
   TextTable table;
   table.add("target", a.target + ": " + plural(target.mesh.triangles.size(), "triangle", "triangles"));
   table.add("map", quantity + ", " + std::to_string(map.atlas->width) + " x " + std::to_string(map.atlas->height) +

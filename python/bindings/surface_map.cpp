@@ -159,40 +159,20 @@ void bind_mapper(nb::module_& m) {
           nb::arg("threads"), nb::arg("progress").none());
 }
 
-void bind_distances(nb::module_& m) {
+/// A function of two meshes, and what their parameters are called.
+template <class Options, class Result>
+void bind_comparison(nb::module_& m, const char* name, const char* first, const char* second,
+                     Result (*compare)(const MeshView&, const MeshView&, const Options&, const Context&)) {
   m.def(
-      "hausdorff_distance",
-      [](const MeshArrays& a, const MeshArrays& b, const nb::dict& given, int threads, nb::object progress) {
-        const MeshView first = a.view();
-        const MeshView second = b.view();
-        const auto options = options_from<HausdorffOptions>(given);
-        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return hausdorff_distance(first, second, options, context);
-        }));
+      name,
+      [compare](const MeshArrays& a, const MeshArrays& b, const nb::dict& given, int threads, nb::object progress) {
+        const MeshView of = a.view();
+        const MeshView to = b.view();
+        const auto options = options_from<Options>(given);
+        return result_of(run({threads, std::move(progress)},
+                             [&](const Context& context) { return compare(of, to, options, context); }));
       },
-      nb::arg("a"), nb::arg("b"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
-  m.def(
-      "directed_hausdorff_distance",
-      [](const MeshArrays& a, const MeshArrays& b, const nb::dict& given, int threads, nb::object progress) {
-        const MeshView first = a.view();
-        const MeshView second = b.view();
-        const auto options = options_from<HausdorffOptions>(given);
-        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return directed_hausdorff_distance(first, second, options, context);
-        }));
-      },
-      nb::arg("mesh"), nb::arg("other"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
-  m.def(
-      "surface_deviation",
-      [](const MeshArrays& a, const MeshArrays& b, const nb::dict& given, int threads, nb::object progress) {
-        const MeshView first = a.view();
-        const MeshView second = b.view();
-        const auto options = options_from<DeviationOptions>(given);
-        return result_of(run({threads, std::move(progress)}, [&](const Context& context) {
-          return surface_deviation(first, second, options, context);
-        }));
-      },
-      nb::arg("mesh"), nb::arg("other"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+      nb::arg(first), nb::arg(second), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
 }
 
 }  // namespace
@@ -206,7 +186,9 @@ void bind_surface_map(nb::module_& m) {
   bind_struct<SurfaceDeviation>(m);
   bind_maps(m);
   bind_mapper(m);
-  bind_distances(m);
+  bind_comparison(m, "hausdorff_distance", "a", "b", hausdorff_distance);
+  bind_comparison(m, "directed_hausdorff_distance", "mesh", "other", directed_hausdorff_distance);
+  bind_comparison(m, "surface_deviation", "mesh", "other", surface_deviation);
   m.def(
       "thickness",
       [](const MeshArrays& solid, const std::optional<PointsIn>& points, const nb::dict& given, int threads,

@@ -64,8 +64,7 @@ class SurfaceMap:
     seconds: dict[str, float]  #: where time went
     mesh: Mesh  #: that the map is of
     _handle: Any = None
-    _parts: tuple[Mesh, ...] = ()
-    _joined: Mesh | None = None
+    _others: tuple[Mesh, ...] = ()
 
     def __repr__(self) -> str:
         height, width = self.distance.shape
@@ -100,10 +99,10 @@ class SurfaceMap:
     def object(self) -> IntArray:
         """(h, w): which of the other meshes is closest, in their order; -1 where there is nothing."""
         out = np.where(self.site >= 0, 0, -1).astype(np.int32)
-        if len(self._parts) > 1:
-            ends = np.cumsum([len(part.vertices) for part in self._parts])
+        if len(self._others) > 1:
+            ends = np.cumsum([len(other.vertices) for other in self._others])
             known = self.site >= 0
-            vertices = Sites(self._joined).vertices(self.site[known])[:, 0]
+            vertices = Sites(_joined(self._others)).vertices(self.site[known])[:, 0]
             out[known] = np.searchsorted(ends, vertices, side="right")
         return out
 
@@ -143,7 +142,7 @@ def surface_distance_map(
         found = _core.surface_distance_map(
             of._arrays, joined._arrays, dict(options), integer(threads, "threads"), report
         )
-    return SurfaceMap(**found, mesh=of, _parts=parts, _joined=joined)
+    return SurfaceMap(**found, mesh=of, _others=parts)
 
 
 @takes("SurfaceMapOptions")
@@ -185,13 +184,13 @@ class SurfaceMapper:
         **options: Unpack[SurfaceMapOptions],
     ) -> None:
         self._target = as_mesh(target, name="target", weld=weld)
-        self._other = as_mesh(other, name="other", weld=weld)
+        facing = as_mesh(other, name="other", weld=weld)
         width, height = (integer(side, "texture_size") for side in texture_size)
         places = None if texture_coordinates is None else _places(texture_coordinates, width, height)
         with reporting(progress) as report:
             self._mapper = _core.SurfaceMapper(
                 self._target._arrays,
-                self._other._arrays,
+                facing._arrays,
                 dict(options),
                 places,
                 width,
@@ -209,22 +208,18 @@ class SurfaceMapper:
 
     def move_other(self, vertices: Any, *, threads: int = 0) -> None:
         """New places of the vertices of the other mesh, as many as it has."""
-        moved = float_rows(vertices, "vertices")
-        self._mapper.move_other(moved, integer(threads, "threads"))
-        mesh = self._other
-        self._other = Mesh(moved.copy(), mesh.triangles, mesh.segments, mesh.points)
+        self._mapper.move_other(float_rows(vertices, "vertices"), integer(threads, "threads"))
 
     def replace_other(self, other: Any, *, weld: Real | None = None, threads: int = 0) -> None:
         """Another mesh instead of the other one."""
         mesh = as_mesh(other, name="other", weld=weld)
         self._mapper.replace_other(mesh._arrays, integer(threads, "threads"))
-        self._other = mesh
 
     def map(self, *, threads: int = 0, progress: Progress = False) -> SurfaceMap:
         """The map of the meshes as they are now."""
         with reporting(progress) as report:
             found = self._mapper.map(integer(threads, "threads"), report)
-        return SurfaceMap(**found, mesh=self._target, _parts=(self._other,), _joined=self._other)
+        return SurfaceMap(**found, mesh=self._target)
 
 
 def _places(coordinates: Any, width: int, height: int) -> FloatArray:
@@ -260,7 +255,7 @@ def self_distance_map(
     of = as_mesh(target, name="target", weld=weld)
     with reporting(progress) as report:
         found = _core.self_distance_map(of._arrays, dict(options), integer(threads, "threads"), report)
-    return SurfaceMap(**found, mesh=of, _parts=(of,), _joined=of)
+    return SurfaceMap(**found, mesh=of)
 
 
 @takes("SurfaceMapOptions", "sign")
@@ -293,7 +288,7 @@ def thickness_map(
     meaning = {"kind": kind, "separation": separation}
     with reporting(progress) as report:
         found = _core.thickness_map(of._arrays, dict(options), meaning, integer(threads, "threads"), report)
-    return SurfaceMap(**found, mesh=of, _parts=(of,), _joined=of)
+    return SurfaceMap(**found, mesh=of)
 
 
 @dataclass(frozen=True, eq=False)
@@ -318,8 +313,9 @@ def thickness(
     """How thick a solid is at points of its surface.
 
     By `ray`: how far it is, from the point against the normal of its triangle, to the first other triangle through
-    which one leaves the solid. By `ball`: the diameter of the largest ball that touches the triangle at the point from
-    inside, and holds no point of a triangle that is turned by `separation` or more.
+    which one leaves the solid. By `ball`: the diameter of the largest ball that touches the surface at the point from
+    inside, and holds no point of a triangle that is turned by `separation` or more; triangles that are turned by less
+    count as one smooth surface.
 
     Parameters
     ----------
@@ -370,11 +366,8 @@ def hausdorff_distance(
     >>> found.lower <= 3**0.5 / 2 <= found.upper, found.upper - found.lower <= 1e-6
     (True, True)
     """
-    first, second = as_mesh(a, name="a", weld=weld), as_mesh(b, name="b", weld=weld)
-    with reporting(progress) as report:
-        found: HausdorffDistance = _core.hausdorff_distance(
-            first._arrays, second._arrays, dict(options), integer(threads, "threads"), report
-        )
+    meshes = as_mesh(a, name="a", weld=weld), as_mesh(b, name="b", weld=weld)
+    found: HausdorffDistance = _compared(_core.hausdorff_distance, meshes, dict(options), threads, progress)
     return found
 
 
@@ -404,11 +397,8 @@ def directed_hausdorff_distance(
     >>> found.lower <= 0.5 <= found.upper
     True
     """
-    first, second = as_mesh(mesh, weld=weld), as_mesh(other, name="other", weld=weld)
-    with reporting(progress) as report:
-        found: DirectedHausdorff = _core.directed_hausdorff_distance(
-            first._arrays, second._arrays, dict(options), integer(threads, "threads"), report
-        )
+    meshes = as_mesh(mesh, name="mesh", weld=weld), as_mesh(other, name="other", weld=weld)
+    found: DirectedHausdorff = _compared(_core.directed_hausdorff_distance, meshes, dict(options), threads, progress)
     return found
 
 
@@ -439,12 +429,17 @@ def surface_deviation(
     >>> round(blum.surface_deviation(small, large, pieces=1000).mean, 6)
     0.5
     """
-    first, second = as_mesh(mesh, weld=weld), as_mesh(other, name="other", weld=weld)
-    with reporting(progress) as report:
-        found: SurfaceDeviation = _core.surface_deviation(
-            first._arrays, second._arrays, dict(options), integer(threads, "threads"), report
-        )
+    meshes = as_mesh(mesh, name="mesh", weld=weld), as_mesh(other, name="other", weld=weld)
+    found: SurfaceDeviation = _compared(_core.surface_deviation, meshes, dict(options), threads, progress)
     return found
+
+
+def _compared(
+    compare: Any, meshes: tuple[Mesh, Mesh], options: dict[str, Any], threads: int, progress: Progress
+) -> Any:
+    """What a function of the library says of two meshes."""
+    with reporting(progress) as report:
+        return compare(meshes[0]._arrays, meshes[1]._arrays, options, integer(threads, "threads"), report)
 
 
 def _joined(parts: tuple[Mesh, ...]) -> Mesh:

@@ -182,7 +182,8 @@ struct ClosestPointQuery::Data {
     return is_worth_it ? search_.get() : nullptr;
   }
 
-  void prepare(const Context& context) {
+  void prepare(std::size_t queries, const Context& context) {
+    if (!PointSearch::is_worth_building(queries, sites)) return;
     if (!search_) search_ = std::make_unique<const PointSearch>(mesh, sites, context);
     is_prepared_ = true;
   }
@@ -235,8 +236,8 @@ void ClosestPointQuery::refit(std::span<const Vec3d> vertices, const Context& co
   data_->refit(vertices, context);
 }
 
-void ClosestPointQuery::prepare_for_many(const Context& context) {
-  data_->prepare(context);
+void ClosestPointQuery::prepare_for_many(std::size_t queries, const Context& context) {
+  data_->prepare(queries, context);
 }
 
 std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> queries, const Context& context) const {

@@ -136,12 +136,16 @@ class FurthestPoint {
   std::vector<std::uint32_t> far_primitives() {
     const std::span<const std::uint32_t> order = mesh_.hierarchy().order();
     std::vector<std::uint32_t> out;
+    const auto take = [&](const Run& run) {
+      const std::span part = order.subspan(run.begin, run.end - run.begin);
+      out.insert(out.end(), part.begin(), part.end());
+    };
     std::vector<Run> runs{{0, order.size(), {}, {}, 0}};
     std::size_t size = 1;
     while (size < order.size()) size *= 8;
     while (!runs.empty()) {
       size /= 8;
-      runs = children(runs, order, std::max(size, smallest_run));
+      runs = children(runs, std::max(size, smallest_run));
       if (size <= smallest_run) break;
       evaluate(runs, order);
       std::vector<Run> further;
@@ -153,31 +157,24 @@ class FurthestPoint {
         } else if (run.center_distance +
                        half * std::sqrt(static_cast<double>(smallest_run) / static_cast<double>(size)) >
                    furthest() + tolerance_) {
-          // Its parts will most likely not be ruled out either.
-          out.insert(out.end(), order.begin() + static_cast<std::ptrdiff_t>(run.begin),
-                     order.begin() + static_cast<std::ptrdiff_t>(run.end));
+          take(run);  // its parts will most likely not be ruled out either
         } else {
           further.push_back(run);
         }
       }
       runs = std::move(further);
     }
-    for (const Run& run : runs) {
-      out.insert(out.end(), order.begin() + static_cast<std::ptrdiff_t>(run.begin),
-                 order.begin() + static_cast<std::ptrdiff_t>(run.end));
-    }
+    for (const Run& run : runs) take(run);
     return out;
   }
 
-  [[nodiscard]] std::vector<Run> children(const std::vector<Run>& runs, std::span<const std::uint32_t> order,
-                                          std::size_t size) const {
+  static std::vector<Run> children(const std::vector<Run>& runs, std::size_t size) {
     std::vector<Run> out;
     for (const Run& run : runs) {
       for (std::size_t begin = run.begin; begin < run.end; begin += size) {
         out.push_back({begin, std::min(begin + size, run.end), {}, run.center_closest, 0});
       }
     }
-    (void)order;
     return out;
   }
 

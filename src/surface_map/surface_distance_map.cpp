@@ -97,7 +97,7 @@ struct SurfaceMapper::Data {
 
   void set_other(const Context& context) {
     query.emplace(other, ClosestPointOptions{options.sign, options.max_distance}, context);
-    query->prepare_for_many(context);
+    query->prepare_for_many(order.texels.size(), context);
   }
 };
 
@@ -152,7 +152,7 @@ void SurfaceMapper::move_target(std::span<const Vec3d> vertices) {
 void SurfaceMapper::move_other(std::span<const Vec3d> vertices, const Context& context) {
   move_vertices(data_->other, vertices);
   data_->query->refit(vertices, context);
-  data_->query->prepare_for_many(context);
+  data_->query->prepare_for_many(data_->order.texels.size(), context);
 }
 
 void SurfaceMapper::replace_other(const MeshView& other, const Context& context) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <string>
 
@@ -13,8 +12,8 @@
 #include "blum/core/scale.hpp"
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/bvh.hpp"
-#include "blum/geometry/primitives.hpp"
 #include "blum/geometry/sites.hpp"
+#include "surface_map/facing_surface.hpp"
 #include "surface_map/map_values.hpp"
 
 namespace blum {
@@ -52,9 +51,7 @@ class ThicknessSearch {
     // Only triangles make a solid.
     mesh_.segments = {};
     mesh_.points = {};
-    sites_ = SiteTable(mesh_, context);
-    bvh_.emplace(mesh_, sites_, context);
-    if (options.kind == ThicknessKind::ball) find_triangles_at_vertices();
+    surface_.emplace(mesh_, context);
     normals_.resize(mesh_.triangles.size());
     for (std::size_t t = 0; t < normals_.size(); ++t) {
       const auto [a, b, c] = triangle_corners(mesh_, t);
@@ -64,7 +61,7 @@ class ThicknessSearch {
     }
   }
 
-  [[nodiscard]] const SiteTable& sites() const { return sites_; }
+  [[nodiscard]] const SiteTable& sites() const { return surface_->sites(); }
 
   /// What a ball may touch: a point, and the triangle that it lies on.
   struct Hint {
@@ -89,26 +86,12 @@ class ThicknessSearch {
   }
 
  private:
-  void find_triangles_at_vertices() {
-    first_.assign(mesh_.vertices.size() + 1, 0);
-    for (const Triangle& t : mesh_.triangles) {
-      for (const std::uint32_t v : t) ++first_[v + 1];
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    at_vertex_.resize(first_.back());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-      for (const std::uint32_t v : mesh_.triangles[t]) at_vertex_[next[v]++] = t;
-    }
-  }
-
   /// The mean of the normals of triangles at a corner that are turned by less than the separation from the triangle's
   /// own, by their angles there.
   [[nodiscard]] Vec3d corner_normal(std::uint32_t triangle, std::size_t corner) const {
     const std::uint32_t vertex = mesh_.triangles[triangle][corner];
     Vec3d sum;
-    for (std::uint32_t k = first_[vertex]; k < first_[vertex + 1]; ++k) {
-      const std::uint32_t other = at_vertex_[k];
+    for (const std::uint32_t other : surface_->primitives_at(SiteId(vertex))) {
       if (other != triangle && dot(normals_[other], normals_[triangle]) <= cosine_) continue;
       const Triangle& t = mesh_.triangles[other];
       const auto here = static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
@@ -137,7 +120,7 @@ class ThicknessSearch {
 
   [[nodiscard]] Thickness along_ray(const Vec3d& point, const Vec3d& normal, std::uint32_t own) const {
     Thickness out{nothing, point, TriangleId::none()};
-    bvh_->for_each_crossing({point, -normal}, nothing, [&](const RayCrossing& crossing) {
+    surface_->hierarchy().for_each_crossing({point, -normal}, nothing, [&](const RayCrossing& crossing) {
       const bool leaves = crossing.side > 0 && crossing.triangle.value != own;
       const bool is_first =
           crossing.t < out.thickness || (crossing.t == out.thickness && crossing.triangle < out.triangle);
@@ -163,7 +146,7 @@ class ThicknessSearch {
     };
     Thickness out{nothing, point, TriangleId::none()};
     // No ball inside of the mesh's box is larger, if it touches something.
-    double radius = 4 * bvh_->bounds().diagonal();
+    double radius = 4 * surface_->hierarchy().bounds().diagonal();
     const auto touch = [&](const Vec3d& place, TriangleId triangle) {
       const double next = touching_radius(point, normal, place);
       if (!(next < radius)) return;
@@ -176,7 +159,8 @@ class ThicknessSearch {
     if (far_side.triangle.has_value() && counts(far_side.triangle.value)) touch(far_side.opposite, far_side.triangle);
     for (int step = 0; step < most_steps; ++step) {
       const Vec3d center = point - normal * radius;
-      const std::optional<NearestPrimitive> found = bvh_->nearest_wanted(center, counts, radius * (1 - settled));
+      const std::optional<NearestPrimitive> found =
+          surface_->hierarchy().nearest_wanted(center, counts, radius * (1 - settled));
       if (!found) break;
       const double before = radius;
       touch(found->point, TriangleId(found->primitive));
@@ -190,10 +174,8 @@ class ThicknessSearch {
   std::vector<Vec3d> vertices_;
   double cosine_ = 1;
   MeshView mesh_;
-  SiteTable sites_;
-  std::optional<Bvh> bvh_;
-  std::vector<Vec3d> normals_;                    ///< of triangles, of length 1; 0 where they have no area
-  std::vector<std::uint32_t> first_, at_vertex_;  ///< triangles at vertex v: at_vertex_[first_[v] .. first_[v + 1])
+  std::optional<surface::FacingSurface> surface_;
+  std::vector<Vec3d> normals_;  ///< of triangles, of length 1; 0 where they have no area
 };
 
 void check_solid(const MeshView& solid) {

@@ -91,10 +91,11 @@ class ClosestPointQuery {
   /// @throws InvalidOption naming the first query that is not finite or too far away; Cancelled.
   [[nodiscard]] std::vector<ClosestPoint> nearest(std::span<const Vec3d> queries, const Context& context = {}) const;
 
-  /// Builds what many queries need ahead of them: from then on calls of nearest() with 1,024 queries or more use it,
-  /// however many triangles the mesh has. For queries that come in batches, each of which lie close together. Must not
-  /// run beside queries. @throws Cancelled. Cost: 0.5 us per triangle and core.
-  void prepare_for_many(const Context& context = {});
+  /// Tells that many queries will come in batches, each of which lie close together: where there will be as many as the
+  /// mesh has triangles, and 4,096 or more, what they need is built now, and calls of nearest() with 1,024 queries or
+  /// more use it from then on. Answers are the same. Must not run beside queries.
+  /// @param queries  over all batches, about. @throws Cancelled. Cost: 0.5 us per triangle and core.
+  void prepare_for_many(std::size_t queries, const Context& context = {});
 
   /// The triangles, segments and points of the mesh within a distance of each query, threaded, each with its closest
   /// point. Distances are without sign.

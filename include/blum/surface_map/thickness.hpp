@@ -22,9 +22,11 @@ namespace blum {
 enum class ThicknessKind : std::uint8_t {
   ray,  ///< from the point against the normal: how far it is to the first other triangle through which one leaves the
         ///< solid. Infinite where there is none: the mesh is open, or faces inwards
-  ball  ///< diameter of the largest ball that touches the triangle's plane at the point, from inside, and holds no
-        ///< point of a triangle whose normal is turned by `separation` or more from this one's. Infinite where there is
-        ///< none
+  ball  ///< diameter of the largest ball that touches the surface at the point, from inside, and holds no point of a
+        ///< triangle whose normal is turned by `separation` or more from the surface's there. That normal is of the
+        ///< smooth surface that the mesh approximates: between those of the triangle's corners, each the mean of the
+        ///< normals there that are turned by less than `separation` from the triangle's, by angle. Infinite where there
+        ///< is none
 };
 
 template <>
