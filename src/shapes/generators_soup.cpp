@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
@@ -10,6 +12,14 @@
 
 namespace blum {
 namespace {
+
+/// Adds what `move` makes of `added`, which may be a part of `all`.
+template <class T, class Move>
+void extend(std::vector<T>& all, std::span<const T> added, const Move& move) {
+  std::vector<T> moved(added.size());
+  std::transform(added.begin(), added.end(), moved.begin(), move);
+  all.insert(all.end(), moved.begin(), moved.end());
+}
 
 using detail::require;
 using detail::require_positive;
@@ -194,10 +204,11 @@ void append(TriangleMesh& mesh, const MeshView& other, const Vec3d& offset) {
   if (first + other.vertices.size() > max_id_count)
     throw InvalidMesh("the joined mesh has more than 2^31 - 1 vertices");
   const auto shift = static_cast<std::uint32_t>(first);
-  for (const Vec3d& p : other.vertices) mesh.vertices.push_back(p + offset);
-  for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
-  for (const Segment& s : other.segments) mesh.segments.push_back({s[0] + shift, s[1] + shift});
-  for (const std::uint32_t p : other.points) mesh.points.push_back(p + shift);
+  extend(mesh.vertices, other.vertices, [&](const Vec3d& p) { return p + offset; });
+  extend(mesh.triangles, other.triangles,
+         [&](const Triangle& t) { return Triangle{t[0] + shift, t[1] + shift, t[2] + shift}; });
+  extend(mesh.segments, other.segments, [&](const Segment& s) { return Segment{s[0] + shift, s[1] + shift}; });
+  extend(mesh.points, other.points, [&](std::uint32_t p) { return p + shift; });
 }
 
 void reverse_triangles(TriangleMesh& mesh) {

@@ -192,6 +192,25 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneAtAnySizeAndPlace) {
   expect_as_alone(point, is_unsigned, 16);
 }
 
+/// Two points far away make the crowd lie in few of the smallest cells that points are sorted into, each of which has
+/// more points than one cell of the kernel takes, and much of the mesh.
+TEST(PointSearch, FindsWhatEachQueryFindsAloneInACrowd) {
+  for (const double far : {300.0, 800.0, 3000.0}) {
+    SCOPED_TRACE(far);
+    TriangleMesh mesh = make_organic({.frequency = 8, .holes = 2});
+    for (const Vec3d& p : {Vec3d{far, far, far}, Vec3d{-far, -far, -far}}) {
+      mesh.points.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+      mesh.vertices.push_back(p);
+    }
+    Random random(19);
+    std::vector<Vec3d> queries = {{far, far, far}, {-far, -far, -far}};
+    for (std::size_t k = 0; k < 40000; ++k) queries.push_back(random.in_ball());
+    const ClosestPointQuery query(mesh, is_unsigned);
+    const std::vector<ClosestPoint> found = query.nearest(queries);
+    for (std::size_t k = 0; k < queries.size(); ++k) ASSERT_TRUE(is_same(found[k], query.nearest(queries[k]))) << k;
+  }
+}
+
 TEST(PointSearch, IsTheSameForAnyThreadsAndInstructions) {
   const TriangleMesh mesh = make_organic({.frequency = 12, .holes = 2});
   const std::vector<Vec3d> queries = queries_about(mesh, 2000, 17);

@@ -271,7 +271,7 @@ struct PointsOptions {
 /// stays the same, up to rounding.  @param levels  0 to 12.
 [[nodiscard]] TriangleMesh make_subdivided(const MeshView& mesh, int levels = 1);
 
-/// Adds a copy of `other`, moved by `offset`, to `mesh`. It must not be a view of `mesh` itself.
+/// Adds a copy of `other`, moved by `offset`, to `mesh`. It may be a view of `mesh` itself.
 void append(TriangleMesh& mesh, const MeshView& other, const Vec3d& offset = {});
 
 /// Turns every triangle around: what faced outwards faces inwards.

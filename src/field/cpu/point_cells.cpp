@@ -16,7 +16,7 @@ constexpr std::size_t cells_for_threads = 16;
 void add_cells(const MortonPoints& points, const PointCell& cell, std::size_t most, std::vector<PointCell>& out) {
   if (cell.size() == 0) return;
   if (cell.size() <= most) return out.push_back(cell);
-  if (cell.level < MortonPoints::levels) {
+  if (has_divisible_children(cell)) {
     for (const PointCell& child : children_of(points, cell)) add_cells(points, child, most, out);
     return;
   }

@@ -12,6 +12,12 @@ namespace blum::cpu {
 /// Cells with no more points than this are not divided.
 inline constexpr std::size_t points_per_leaf = 64;
 
+/// Whether a cell's children may be given to the kernel, which divides what it is given at least once: those of the
+/// last level can't be divided, as their points are not sorted further.
+[[nodiscard]] inline bool has_divisible_children(const PointCell& cell) {
+  return cell.level + 1 < MortonPoints::levels;
+}
+
 /// The eight children of a cell, of which some have no points; bit a of their number is set for the upper half along
 /// axis a. @param cell  not of the last level.
 [[nodiscard]] std::array<PointCell, 8> children_of(const MortonPoints& points, const PointCell& cell);

@@ -91,13 +91,14 @@ class PointWorker {
   PointWorker(const PointJob& job, PointScratch& scratch)
       : job_(job), points_(*job.points), mine_(scratch.impl()), scratch_(mine_.tile.impl()) {}
 
+  /// @param cell  not of the last level.
   void cell(const PointCell& cell) {
     if (job_.field.cancel.stop_requested()) return;
     const CenteredBox place{cell.center, Vec3f{cell.half, cell.half, cell.half}};
     const Witness nearest = nearest_record(job_.field, place.center);
     const std::size_t clusters = find_tile_clusters(job_.field, TileTest(place, nearest.point), scratch_);
     if (clusters > cell.size() * clusters_per_point) return give_up(cell, nearest.point);
-    if (clusters > most_clusters && can_divide(cell)) {
+    if (clusters > most_clusters && cell.size() > points_per_leaf && has_divisible_children(cell)) {
       for (const PointCell& child : children_of(points_, cell)) {
         if (child.size() > 0) this->cell(child);
       }

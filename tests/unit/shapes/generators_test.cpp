@@ -340,6 +340,17 @@ TEST(Generators, SubdivisionKeepsShapeAndTopology) {
   EXPECT_EQ(topology(halves).edges, 4U);
 }
 
+TEST(Generators, AMeshCanBeAppendedToItself) {
+  const TriangleMesh box = make_box({});
+  TriangleMesh twice = box;
+  append(twice, twice, {5, 0, 0});
+  TriangleMesh expected = box;
+  append(expected, box, {5, 0, 0});
+  EXPECT_EQ(twice.vertices, expected.vertices);
+  EXPECT_EQ(twice.triangles, expected.triangles);
+  EXPECT_EQ(twice.vertices.size(), 2 * box.vertices.size());
+}
+
 TEST(Generators, RefuseWhatMakesNoSense) {
   const std::vector<Case> bad = {
       {"no_such_shape", {}},
