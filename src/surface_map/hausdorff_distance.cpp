@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/core/scale.hpp"
 #include "blum/geometry/primitives.hpp"
+#include "blum/geometry/weld.hpp"
 #include "surface_map/distance_bound.hpp"
 #include "surface_map/facing_surface.hpp"
 
@@ -71,6 +73,7 @@ class FurthestPoint {
     primitive_of_furthest_ = mesh_.hierarchy().order()[0];
     evaluate_vertices({{furthest_, primitive_of_furthest_}});
     const std::vector<std::uint32_t> primitives = far_primitives();
+    if (are_mostly_common(primitives)) evaluate_common_vertices();
     evaluate_vertices_of(primitives);
     make_pieces(primitives);
     while (!pieces_.empty() && points_.size() < max_points_) divide_furthest();
@@ -120,6 +123,35 @@ class FurthestPoint {
       }
     }
     evaluate_vertices(unknown);
+  }
+
+  /// Whether most primitives have a vertex of the other mesh, judged by a few of them: meshes of which one was made by
+  /// changing a part of the other.
+  bool are_mostly_common(const std::vector<std::uint32_t>& primitives) {
+    constexpr std::size_t samples = 32;
+    if (primitives.size() < 32 * samples) return false;
+    std::vector<std::uint32_t> some;
+    for (std::size_t k = 0; k < samples; ++k) some.push_back(primitives[k * primitives.size() / samples]);
+    evaluate_vertices_of(some);
+    std::size_t common = 0;
+    for (const std::uint32_t p : some) {
+      if (points_[primitive_vertices(mesh_.mesh(), p)[0]].distance == 0) ++common;
+    }
+    return 2 * common >= samples;
+  }
+
+  /// Vertices that stand where the other mesh has one need no search.
+  void evaluate_common_vertices() {
+    std::vector<Vec3d> both(other_.mesh().vertices.begin(), other_.mesh().vertices.end());
+    const std::size_t of_other = both.size();
+    both.insert(both.end(), mesh_.mesh().vertices.begin(), mesh_.mesh().vertices.end());
+    const std::vector<std::uint32_t> first_there = weld_clusters(both);
+    for (std::size_t v = 0; v < is_known_.size(); ++v) {
+      const SiteId site(first_there[of_other + v]);
+      if (is_known_[v] != 0 || site.value >= of_other || other_.primitives_at(site).empty()) continue;
+      points_[v] = {both[site.value], both[site.value], 0, site};
+      is_known_[v] = 1;
+    }
   }
 
   /// Primitives that follow each other in the hierarchy's order, and a box around them.
@@ -347,7 +379,7 @@ class MeshPair {
     vertices_ = {scaled(a.vertices, scale_), scaled(b.vertices, scale_)};
     meshes_ = {a, b};
     for (std::size_t k = 0; k < 2; ++k) meshes_[k].vertices = vertices_[k];
-    for (std::size_t k = 0; k < 2; ++k) surfaces_[k].emplace(meshes_[k], context);
+    build_surfaces(context);
     const double largest = box.largest_coordinate() * scale_;
     rounding_ = 4e-15 * largest;
     tolerance_ = std::max(options.tolerance.value_or(1e-4 * box.diagonal()) * scale_, 1e-13 * largest);
@@ -364,6 +396,28 @@ class MeshPair {
   }
 
  private:
+  /// Both at once where they are about as large: half of the work is done by one thread.
+  void build_surfaces(const Context& context) {
+    const auto [fewer, more] = std::minmax({primitive_count(meshes_[0]), primitive_count(meshes_[1])});
+    const int threads = thread_count(context);
+    if (threads < 2 || fewer < more / 2) {
+      for (std::size_t k = 0; k < 2; ++k) surfaces_[k].emplace(meshes_[k], context);
+      return;
+    }
+    const Context half{.threads = threads / 2, .cancel = context.cancel};
+    std::array<std::exception_ptr, 2> failures;
+    parallel_for(context, 2, 1, "", [&](const WorkRange& range) {
+      try {
+        surfaces_[range.begin].emplace(meshes_[range.begin], half);
+      } catch (...) {
+        failures[range.begin] = std::current_exception();
+      }
+    });
+    for (const std::exception_ptr& failure : failures) {
+      if (failure) std::rethrow_exception(failure);
+    }
+  }
+
   std::size_t max_points_;
   const Context& context_;
   double scale_ = 1;

