@@ -66,6 +66,8 @@ void prefetch_to_write([[maybe_unused]] const ClosestPoint* point) {
 
 }  // namespace
 
+using Use = FunctionRef<void(std::span<const FoundPoint>)>;
+
 struct ClosestPointQuery::Data {
   TriangleMesh mesh;  ///< what `search` is built of
   SignMode mode;
@@ -115,56 +117,54 @@ struct ClosestPointQuery::Data {
   }
 
   [[nodiscard]] ClosestPoint finished(const Vec3d& query, const std::optional<NearestSite>& nearest) const {
-    // What lies on the surface is not inside.
-    const bool is_negative = nearest && nearest->distance > 0 && sides.is_inside(query, *nearest);
-    return with_side(query, nearest, is_negative);
-  }
-
-  [[nodiscard]] ClosestPoint with_side(const Vec3d& query, const std::optional<NearestSite>& nearest,
-                                       bool is_negative) const {
     if (!nearest) return {query, no_limit, SiteId::none(), TriangleId::none()};
+    // What lies on the surface is not inside.
+    const bool is_negative = nearest->distance > 0 && sides.is_inside(query, *nearest);
     const double distance = is_negative ? -nearest->distance : nearest->distance;
     return {nearest->point, distance, nearest->site, sites.triangle(nearest->site)};
   }
 
   /// The same for queries that lie close together: those that need winding numbers share what they can.
-  void finish(std::span<const Vec3d> queries, std::span<const PointSearch::Answer> group,
-              std::span<ClosestPoint> results) const {
+  void finish(std::span<const Vec3d> queries, std::span<const PointSearch::Answer> group, Use use) const {
     static_assert(cpu::PointEngine::most_per_group <= sign::most_shared);
+    InlineList<FoundPoint, sign::most_shared> found;
     InlineList<sign::SidedPoint, sign::most_shared> open;
-    InlineList<std::size_t, sign::most_shared> open_query;
+    InlineList<std::size_t, sign::most_shared> open_index;
     double extent = 3 * longest;
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
-      const auto& [query, nearest] = group[k];
+    for (const auto& [query, nearest] : group) {
       const Vec3d& at = queries[query];
-      const bool is_off = nearest && nearest->distance > 0;
-      const std::optional<bool> known = is_off ? sides.is_inside_by_site(at, *nearest) : std::optional(false);
-      results[query] = with_side(at, nearest, known.value_or(false));
-      if (known) continue;
-      open.push_back({at, nearest->distance, false});
-      open_query.push_back(query);
-      extent = std::max(extent, nearest->distance + length(at));
+      if (!nearest.site.has_value()) {
+        found.push_back({query, at, no_limit, SiteId::none()});
+        continue;
+      }
+      const std::optional<bool> known =
+          nearest.distance > 0 ? sides.is_inside_by_site(at, nearest) : std::optional(false);
+      if (!known) {
+        open.push_back({at, nearest.distance, false});
+        open_index.push_back(found.size());
+        extent = std::max(extent, nearest.distance + length(at));
+      }
+      found.push_back(
+          {query, nearest.point, known.value_or(false) ? -nearest.distance : nearest.distance, nearest.site});
     }
-    if (open.empty()) return;
-    sign::decide_sides(*sides.winding(), {&open[0], open.size()}, rounding * extent);
+    if (!open.empty()) sign::decide_sides(*sides.winding(), {&open[0], open.size()}, rounding * extent);
     for (std::size_t k = 0; k < open.size(); ++k) {
-      if (open[k].is_inside) results[open_query[k]].distance = -results[open_query[k]].distance;
+      if (open[k].is_inside) found[open_index[k]].distance = -found[open_index[k]].distance;
     }
+    use({&found[0], found.size()});
   }
 
   /// Queries that follow each other: the last one's closest point is no closer than the next one's.
-  void find(std::span<const Vec3d> queries, std::span<const std::uint32_t> order,
-            std::span<ClosestPoint> results) const {
+  void find(std::span<const Vec3d> queries, std::span<const std::uint32_t> order, Use use) const {
     InlineList<PointSearch::Answer, sign::most_shared> group;
     std::optional<NearestSite> last;
     for (const std::uint32_t index : order) {
       const Vec3d& query = queries[index];
       const double known = last ? with_slack(length(query - last->point), query) : no_limit;
       last = bvh.nearest(query, std::min(max_distance, known));
-      group.push_back({index, last});
+      group.push_back({index, last.value_or(NearestSite{})});
     }
-    finish(queries, group.span(), results);
+    finish(queries, group.span(), use);
   }
 
   /// A bound, widened by more than rounding can have taken from it.
@@ -240,18 +240,30 @@ void ClosestPointQuery::prepare_for_many(std::size_t queries, const Context& con
   data_->prepare(queries, context);
 }
 
-std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> queries, const Context& context) const {
+void ClosestPointQuery::for_each_nearest(std::span<const Vec3d> queries, Use use, const Context& context) const {
   data_->check(queries);
-  std::vector<ClosestPoint> results(queries.size());
   if (const PointSearch* search = data_->search_for(queries.size(), context)) {
     search->nearest(queries, data_->max_distance, data_->bvh, context,
-                    [&](std::span<const PointSearch::Answer> group) { data_->finish(queries, group, results); });
-    return results;
+                    [&](std::span<const PointSearch::Answer> group) { data_->finish(queries, group, use); });
+    return;
   }
   const std::vector<std::uint32_t> order = order_along_curve(queries);
   parallel_for(context, order.size(), queries_per_range, "closest points", [&](const WorkRange& range) {
-    data_->find(queries, std::span(order).subspan(range.begin, range.end - range.begin), results);
+    data_->find(queries, std::span(order).subspan(range.begin, range.end - range.begin), use);
   });
+}
+
+std::vector<ClosestPoint> ClosestPointQuery::nearest(std::span<const Vec3d> queries, const Context& context) const {
+  std::vector<ClosestPoint> results(queries.size());
+  const auto put = [&](std::span<const FoundPoint> group) {
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      if (k + 8 < group.size()) prefetch_to_write(&results[group[k + 8].query]);
+      const FoundPoint& found = group[k];
+      results[found.query] = {found.point, found.distance, found.site,
+                              found.site.has_value() ? data_->sites.triangle(found.site) : TriangleId::none()};
+    }
+  };
+  for_each_nearest(queries, put, context);
   return results;
 }
 

@@ -21,23 +21,23 @@ bool PointSearch::is_worth_using(std::size_t queries, const SiteTable& sites) {
   return queries >= fewest && queries >= sites.face_count() / 2;
 }
 
-std::optional<NearestSite> PointSearch::projection(const Vec3d& query, const cpu::FoundSite& found) const {
-  if (!found.site.has_value()) return std::nullopt;
-  const std::optional<NearestSite> first = projection_.project(found.site, query, engine_.margin());
-  if (!first || !found.other.has_value()) return first;
-  const std::optional<NearestSite> second = projection_.project(found.other, query, engine_.margin());
-  if (!second) return std::nullopt;
+bool PointSearch::project(const Vec3d& query, const cpu::FoundSite& found, NearestSite& nearest) const {
+  if (!found.site.has_value() || !engine_.is_in_frame(query)) return false;
+  const double margin = engine_.margin();
+  if (!projection_.project(found.site, query, margin, nearest)) return false;
+  if (!found.other.has_value()) return true;
+  NearestSite other;
+  if (!projection_.project(found.other, query, margin, other)) return false;
   const auto key = [](const NearestSite& site) { return std::pair(site.distance, site.site); };
-  return key(*first) < key(*second) ? first : second;
+  if (key(other) < key(nearest)) nearest = other;
+  return true;
 }
 
-std::optional<NearestSite> PointSearch::finished(const Vec3d& query, const cpu::FoundSite& found, double max_distance,
-                                                 const Bvh& bvh) const {
-  if (const std::optional<NearestSite> projected = projection(query, found)) {
-    return projected->distance <= max_distance ? projected : std::nullopt;
-  }
-  if (found.at_most < max_distance) {
-    const std::optional<NearestSite> near = bvh.nearest(query, found.at_most);
+std::optional<NearestSite> PointSearch::search(const Vec3d& query, const cpu::FoundSite& found, double max_distance,
+                                               const Bvh& bvh) const {
+  const double at_most = engine_.at_most(query, found);
+  if (at_most < max_distance) {
+    const std::optional<NearestSite> near = bvh.nearest(query, at_most);
     if (near) return near;
   }
   return bvh.nearest(query, max_distance);
@@ -50,9 +50,16 @@ void PointSearch::nearest(std::span<const Vec3d> queries, double max_distance, c
     engine_.for_each_group(batch, context, [&](std::span<const cpu::FoundSite> group) {
       InlineList<Answer, cpu::PointEngine::most_per_group> answers;
       for (const cpu::FoundSite& one : group) {
-        answers.push_back({first + one.query, finished(batch[one.query], one, max_distance, bvh)});
+        const Vec3d& query = batch[one.query];
+        Answer& answer = answers.emplace_back();
+        answer.query = first + one.query;
+        if (!project(query, one, answer.nearest)) {
+          answer.nearest = search(query, one, max_distance, bvh).value_or(NearestSite{});
+        } else if (answer.nearest.distance > max_distance) {
+          answer.nearest.site = SiteId::none();
+        }
       }
-      tell({&answers[0], answers.size()});
+      tell(answers.span());
     });
   }
 }

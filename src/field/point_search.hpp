@@ -30,10 +30,10 @@ class PointSearch {
   /// Whether they are worth a search that is there.
   [[nodiscard]] static bool is_worth_using(std::size_t queries, const SiteTable& sites);
 
-  /// What is closest to a query; nullopt where nothing lies within max_distance.
+  /// What is closest to a query.
   struct Answer {
     std::size_t query = 0;  ///< its index
-    std::optional<NearestSite> nearest;
+    NearestSite nearest;    ///< without a site where nothing lies within max_distance
   };
 
   /// Calls tell(answers) for groups of queries, on many threads at once; over all groups, each query is told once.
@@ -42,10 +42,11 @@ class PointSearch {
                FunctionRef<void(std::span<const Answer>)> tell) const;
 
  private:
-  /// By the sites that the kernels have found; nullopt where that is not certain.
-  [[nodiscard]] std::optional<NearestSite> projection(const Vec3d& query, const cpu::FoundSite& found) const;
-  [[nodiscard]] std::optional<NearestSite> finished(const Vec3d& query, const cpu::FoundSite& found,
-                                                    double max_distance, const Bvh& bvh) const;
+  /// By the sites that the kernels have found; false where that is not certain.
+  [[nodiscard]] bool project(const Vec3d& query, const cpu::FoundSite& found, NearestSite& nearest) const;
+  /// By the hierarchy, which is told how far to look.
+  [[nodiscard]] std::optional<NearestSite> search(const Vec3d& query, const cpu::FoundSite& found, double max_distance,
+                                                  const Bvh& bvh) const;
 
   cpu::PointEngine engine_;
   SiteProjection projection_;

@@ -45,7 +45,7 @@ class NumbersTogether {
     double extent = 3 * bounds_.diagonal();
     for (const PointSearch::Answer& answer : group) {
       const Vec3d& at = points[answer.query];
-      const double distance = answer.nearest ? answer.nearest->distance : 0;
+      const double distance = answer.nearest.site.has_value() ? answer.nearest.distance : 0;
       // What shares nothing must not spoil the box of those that do.
       if (!(distance > 0) || !(distance < far_away * bounds_.diagonal())) {
         values[answer.query] = winding_.value(at, max_error_).value;

@@ -1,6 +1,9 @@
 #include "blum/geometry/site_projection.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
 
 #include "blum/core/parallel.hpp"
 #include "geometry/box_scale.hpp"
@@ -18,92 +21,134 @@ bool goes_against(const Vec3d& vector, const Vec3d& direction, double margin) {
   return along < 0 && along * along > margin * margin * squared_length(direction);
 }
 
+struct Edge {
+  std::array<std::uint32_t, 2> ends{};
+  /// The further vertices of up to two triangles; an end stands for none.
+  std::array<std::uint32_t, 2> apex{};
+  std::uint32_t triangles = 0;
+};
+
+struct Foot {
+  Vec3d point;
+  double distance = 0;
+};
+
 }  // namespace
 
-SiteProjection::SiteProjection(const MeshView& mesh, const SiteTable& sites, const Context& context)
-    : scale_(unit_scale(bounds(mesh))) {
-  const std::size_t vertices = mesh.vertices.size();
-  positions_.resize(vertices);
-  parallel_for(context, vertices, grain, "", [&](const WorkRange& range) {
-    for (std::size_t v = range.begin; v < range.end; ++v) positions_[v] = mesh.vertices[v] * scale_;
+struct SiteProjection::Data {
+  double scale = 1;              ///< coordinates here are those of the mesh times this, a power of two
+  double unscale = 1;            ///< 1 / scale
+  std::vector<Vec3d> positions;  ///< of all vertices
+  std::vector<Edge> edges;
+  std::vector<TriangleFrame> faces;  ///< seen with their vertices in rising order
+  /// Other ends of the edges at vertex v: neighbours[first[v] .. first[v + 1]).
+  std::vector<std::uint32_t> first, neighbours;
+
+  Data(const MeshView& mesh, const SiteTable& sites, const Context& context);
+  void add_edges(const MeshView& mesh, const SiteTable& sites);
+
+  /// These say whether the query is in the site's domain, and if so, put down its foot.
+  [[nodiscard]] bool find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const;
+  [[nodiscard]] bool find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const;
+  [[nodiscard]] bool find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const;
+};
+
+SiteProjection::Data::Data(const MeshView& mesh, const SiteTable& sites, const Context& context)
+    : scale(unit_scale(bounds(mesh))),
+      unscale(1 / scale),
+      positions(mesh.vertices.size()),
+      faces(mesh.triangles.size()) {
+  parallel_for(context, positions.size(), grain, "", [&](const WorkRange& range) {
+    for (std::size_t v = range.begin; v < range.end; ++v) positions[v] = mesh.vertices[v] * scale;
   });
-  faces_.resize(mesh.triangles.size());
-  parallel_for(context, faces_.size(), grain, "", [&](const WorkRange& range) {
+  parallel_for(context, faces.size(), grain, "", [&](const WorkRange& range) {
     for (std::size_t t = range.begin; t < range.end; ++t) {
-      faces_[t] = mesh.triangles[t];
-      std::sort(faces_[t].begin(), faces_[t].end());
+      Triangle corners = mesh.triangles[t];
+      std::sort(corners.begin(), corners.end());
+      faces[t] = make_triangle_frame({positions[corners[0]], positions[corners[1]], positions[corners[2]]});
     }
   });
-  edges_.reserve(sites.edge_count());
-  first_.assign(vertices + 1, 0);
+  add_edges(mesh, sites);
+}
+
+void SiteProjection::Data::add_edges(const MeshView& mesh, const SiteTable& sites) {
+  edges.reserve(sites.edge_count());
+  first.assign(positions.size() + 1, 0);
   for (const Segment& ends : sites.edges()) {
-    edges_.push_back({ends, ends, 0});
-    ++first_[ends[0] + 1];
-    ++first_[ends[1] + 1];
+    edges.push_back({ends, ends, 0});
+    ++first[ends[0] + 1];
+    ++first[ends[1] + 1];
   }
-  for (std::size_t v = 0; v < vertices; ++v) first_[v + 1] += first_[v];
-  neighbours_.resize(first_.back());
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (std::size_t v = 0; v < positions.size(); ++v) first[v + 1] += first[v];
+  neighbours.resize(first.back());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
   for (const Segment& ends : sites.edges()) {
-    neighbours_[next[ends[0]]++] = ends[1];
-    neighbours_[next[ends[1]]++] = ends[0];
+    neighbours[next[ends[0]]++] = ends[1];
+    neighbours[next[ends[1]]++] = ends[0];
   }
-  throw_if_cancelled(context);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const EdgeId edge = sites.triangle_edges()[t][k];
       if (!edge.has_value()) continue;
-      Edge& of_triangle = edges_[edge.value];
+      Edge& of_triangle = edges[edge.value];
       if (of_triangle.triangles < 2) of_triangle.apex[of_triangle.triangles] = mesh.triangles[t][(k + 2) % 3];
       ++of_triangle.triangles;
     }
   }
 }
 
-std::optional<NearestSite> SiteProjection::project(SiteId site, const Vec3d& query, double margin) const {
-  const Vec3d q = query * scale_;
-  const std::size_t vertices = positions_.size();
-  const auto found = [&]() -> std::optional<Foot> {
-    if (site.value < vertices) return on_vertex(site.value, q, margin * scale_);
-    const std::size_t edge = site.value - vertices;
-    if (edge < edges_.size()) return on_edge(static_cast<std::uint32_t>(edge), q, margin * scale_);
-    return on_face(static_cast<std::uint32_t>(edge - edges_.size()), q, margin * scale_);
-  }();
-  if (!found) return std::nullopt;
-  return NearestSite{found->point / scale_, found->distance / scale_, site};
-}
-
-std::optional<SiteProjection::Foot> SiteProjection::on_vertex(std::uint32_t vertex, const Vec3d& q,
-                                                              double margin) const {
-  const Vec3d& p = positions_[vertex];
+bool SiteProjection::Data::find_on_vertex(std::size_t vertex, const Vec3d& q, double margin, Foot& foot) const {
+  const Vec3d& p = positions[vertex];
   const Vec3d from = q - p;
-  for (std::size_t k = first_[vertex]; k < first_[vertex + 1]; ++k) {
-    if (!goes_against(from, positions_[neighbours_[k]] - p, margin)) return std::nullopt;
+  for (std::size_t k = first[vertex]; k < first[vertex + 1]; ++k) {
+    if (!goes_against(from, positions[neighbours[k]] - p, margin)) return false;
   }
-  return Foot{p, length(from)};
+  foot = {p, length(from)};
+  return true;
 }
 
-std::optional<SiteProjection::Foot> SiteProjection::on_edge(std::uint32_t edge, const Vec3d& q, double margin) const {
-  const Edge& e = edges_[edge];
-  if (e.triangles > 2) return std::nullopt;
-  const Vec3d& a = positions_[e.ends[0]];
-  const Vec3d& b = positions_[e.ends[1]];
-  if (!goes_against(q - b, b - a, margin) || !goes_against(q - a, a - b, margin)) return std::nullopt;
-  const EdgeFoot foot = foot_on_edge(q, a, b);
-  const Vec3d from = q - foot.point;
+bool SiteProjection::Data::find_on_edge(std::size_t edge, const Vec3d& q, double margin, Foot& foot) const {
+  const Edge& e = edges[edge];
+  if (e.triangles > 2) return false;
+  const Vec3d& a = positions[e.ends[0]];
+  const Vec3d& b = positions[e.ends[1]];
+  if (!goes_against(q - b, b - a, margin) || !goes_against(q - a, a - b, margin)) return false;
+  const Vec3d point = foot_on_edge(q, a, b).point;
+  const Vec3d from = q - point;
   for (std::uint32_t k = 0; k < e.triangles; ++k) {
-    if (!goes_against(from, positions_[e.apex[k]] - foot.point, margin)) return std::nullopt;
+    if (!goes_against(from, positions[e.apex[k]] - point, margin)) return false;
   }
-  return Foot{foot.point, length(from)};
+  foot = {point, length(from)};
+  return true;
 }
 
-std::optional<SiteProjection::Foot> SiteProjection::on_face(std::uint32_t face, const Vec3d& q, double margin) const {
-  const auto& [a, b, c] = faces_[face];
-  const TriangleFrame frame = make_triangle_frame({positions_[a], positions_[b], positions_[c]});
-  if (frame.is_flat()) return std::nullopt;
-  const FaceFoot foot(q, frame);
-  if (!foot.is_inside(frame, margin)) return std::nullopt;
-  return Foot{q - foot.rest, length(foot.rest)};
+bool SiteProjection::Data::find_on_face(std::size_t face, const Vec3d& q, double margin, Foot& foot) const {
+  const TriangleFrame& frame = faces[face];
+  if (frame.is_flat()) return false;
+  const FaceFoot of_plane(q, frame);
+  if (!of_plane.is_inside(frame, margin)) return false;
+  foot = {q - of_plane.rest, length(of_plane.rest)};
+  return true;
+}
+
+SiteProjection::SiteProjection(const MeshView& mesh, const SiteTable& sites, const Context& context)
+    : data_(std::make_unique<const Data>(mesh, sites, context)) {}
+SiteProjection::SiteProjection(SiteProjection&&) noexcept = default;
+SiteProjection& SiteProjection::operator=(SiteProjection&&) noexcept = default;
+SiteProjection::~SiteProjection() = default;
+
+bool SiteProjection::project(SiteId site, const Vec3d& query, double margin, NearestSite& found) const {
+  const Data& data = *data_;
+  const Vec3d q = query * data.scale;
+  margin *= data.scale;
+  const std::size_t vertices = data.positions.size();
+  const std::size_t borders = vertices + data.edges.size();
+  Foot foot;
+  const bool is_found = site.value < vertices  ? data.find_on_vertex(site.value, q, margin, foot)
+                        : site.value < borders ? data.find_on_edge(site.value - vertices, q, margin, foot)
+                                               : data.find_on_face(site.value - borders, q, margin, foot);
+  if (is_found) found = {foot.point * data.unscale, foot.distance * data.unscale, site};
+  return is_found;
 }
 
 }  // namespace blum

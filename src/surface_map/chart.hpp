@@ -33,6 +33,8 @@ class Chart {
     const Vec3d v = corners[2] - corners[0];
     along_x_ = u * ((places[2].y - places[0].y) * inverse) - v * ((places[1].y - places[0].y) * inverse);
     along_y_ = v * ((places[1].x - places[0].x) * inverse) - u * ((places[2].x - places[0].x) * inverse);
+    is_sliver_ = !(std::abs(twice_area(places)) > sliver_ratio * longest_square(places)) ||
+                 !(length(cross(u, v)) > sliver_ratio * longest_square(corners));
   }
 
   /// A point of the triangle's plane.
@@ -41,20 +43,25 @@ class Chart {
   }
   /// Whether a place lies in the chart, border included.
   [[nodiscard]] bool contains(const TexturePlace& at) const {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (sign_ * twice_area({places_[k], places_[(k + 1) % 3], at}) < 0) return false;
-    }
-    return true;
+    return !beyond(0, at) && !beyond(1, at) && !beyond(2, at);
   }
   /// The point of the triangle for a place: of those beyond the border, the closest one to where the plane has them.
   [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
     const Vec3d point = in_plane(at);
-    if (contains(at)) return point;
-    // Beyond the border, it is one of the border. Of slivers only sides tell it to within rounding.
-    Vec3d best = closest_point_on_segment(point, corners_[0], corners_[1]);
-    for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) {
+    std::array<bool, 3> is_beyond{};
+    for (std::size_t k = 0; k < 3; ++k) is_beyond[k] = beyond(k, at);
+    if (!is_beyond[0] && !is_beyond[1] && !is_beyond[2]) return point;
+    // Then it is one of a side that the place is beyond. Of slivers, rounding may say that of none or others.
+    Vec3d best;
+    double closest = HUGE_VAL;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!is_beyond[k] && !is_sliver_) continue;
       const Vec3d other = closest_point_on_segment(point, corners_[k], corners_[(k + 1) % 3]);
-      if (squared_length(point - other) < squared_length(point - best)) best = other;
+      const double squared = squared_length(point - other);
+      if (squared < closest) {
+        closest = squared;
+        best = other;
+      }
     }
     return best;
   }
@@ -67,8 +74,28 @@ class Chart {
   }
 
  private:
+  static constexpr double sliver_ratio = 1e-3;
+
+  static double longest_square(const std::array<Vec3d, 3>& p) {
+    return std::max({squared_length(p[1] - p[0]), squared_length(p[2] - p[1]), squared_length(p[0] - p[2])});
+  }
+  static double longest_square(const ChartCorners& p) {
+    double out = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = p[(k + 1) % 3].x - p[k].x;
+      const double y = p[(k + 1) % 3].y - p[k].y;
+      out = std::max(out, x * x + y * y);
+    }
+    return out;
+  }
+  /// Whether a place lies on the other side of a side.
+  [[nodiscard]] bool beyond(std::size_t side, const TexturePlace& at) const {
+    return sign_ * twice_area({places_[side], places_[(side + 1) % 3], at}) < 0;
+  }
+
   std::array<Vec3d, 3> corners_;
   ChartCorners places_;
+  bool is_sliver_ = false;   ///< in the texture, or in space
   double sign_ = 1;          ///< of the chart's area
   Vec3d along_x_, along_y_;  ///< steps of one texel
 };

@@ -78,19 +78,40 @@ void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceVa
   map.site[texel] = value.site;
 }
 
+void fill_texels(SurfaceMap& map, const TexelOrder& order, std::size_t texels_per_range,
+                 FunctionRef<void(std::size_t begin, std::size_t end)> fill_range, const Context& context) {
+  map.faces.resize(order.triangles.size());
+  parallel_for(context, order.texels.size(), texels_per_range, "surface map", [&](const WorkRange& range) {
+    fill_range(range.begin, range.end);
+    // While they are in the caches.
+    const auto first = std::lower_bound(order.first.begin(), order.first.end(), range.begin);
+    for (auto k = static_cast<std::size_t>(first - order.first.begin()); order.first[k] < range.end; ++k) {
+      if (order.first[k + 1] <= range.end) map.faces[order.triangles[k]] = summary_of(map, order.of(k));
+    }
+  });
+  // Triangles in more than one range, and without texels behind the last one.
+  parallel_for(context, map.faces.size(), triangles_per_range, "", [&](const WorkRange& range) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const bool is_in_one = order.first[k] / texels_per_range == (order.first[k + 1] - 1) / texels_per_range;
+      if (!is_in_one) map.faces[order.triangles[k]] = summary_of(map, order.of(k));
+    }
+  });
+}
+
 void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueAt value_at, const Context& context) {
   const SurfaceAtlas& atlas = *map.atlas;
   const double scale = scale_to_one(bounds(mesh).largest_coordinate());
-  parallel_for(context, order.texels.size(), texels_per_range, "surface map", [&](const WorkRange& range) {
-    const std::span texels = std::span(order.texels).subspan(range.begin, range.end - range.begin);
+  const auto fill_range = [&](std::size_t begin, std::size_t end) {
+    const std::span texels = std::span(order.texels).subspan(begin, end - begin);
     std::vector<Vec3d> points;
-    find_points(mesh, atlas, scale, texels, points);
+    find_points(mesh, atlas, scale, order, begin, end, points);
     SurfaceValue last;
     for (std::size_t k = 0; k < texels.size(); ++k) {
       last = value_at(points[k], atlas.triangle[texels[k]], k > 0 ? &last : nullptr);
       put(map, texels[k], points[k], last);
     }
-  });
+  };
+  fill_texels(map, order, texels_per_range, fill_range, context);
   const std::vector<TriangleId> triangles = triangles_at_vertices(mesh);
   map.vertex_distance.assign(mesh.vertices.size(), std::numeric_limits<double>::quiet_NaN());
   parallel_for(context, mesh.vertices.size(), texels_per_range, "", [&](const WorkRange& range) {
@@ -98,13 +119,6 @@ void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueA
       if (!triangles[v].has_value()) continue;
       map.vertex_distance[v] = value_at(mesh.vertices[v], triangles[v], nullptr).distance;
     }
-  });
-}
-
-void summarize_faces(SurfaceMap& map, const TexelOrder& order, const Context& context) {
-  map.faces.resize(order.triangles.size());
-  parallel_for(context, map.faces.size(), triangles_per_range, "", [&](const WorkRange& range) {
-    for (std::size_t k = range.begin; k < range.end; ++k) map.faces[order.triangles[k]] = summary_of(map, order.of(k));
   });
 }
 

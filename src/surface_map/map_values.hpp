@@ -30,14 +30,17 @@ struct SurfaceValue {
 /// Writes the value of a texel. The distance is signed.
 void put(SurfaceMap& map, std::size_t texel, const Vec3d& point, const SurfaceValue& value);
 
+/// Fills the texels of a map, range by range and on many threads, and sums up those of each triangle.
+/// @param fill_range  puts the values of order.texels[begin] ... order.texels[end - 1].
+void fill_texels(SurfaceMap& map, const TexelOrder& order, std::size_t texels_per_range,
+                 FunctionRef<void(std::size_t begin, std::size_t end)> fill_range, const Context& context);
+
 /// Finds values that depend on a point and the triangle that it lies on. @param last  the value of a point that is
 /// probably close by, or null: it may bound the search, but must not change its result.
 using ValueAt = FunctionRef<SurfaceValue(const Vec3d& point, TriangleId triangle, const SurfaceValue* last)>;
-/// Fills texels and vertices with such values.
+/// Fills texels, what they sum up to, and vertices with such values.
 void fill(SurfaceMap& map, const MeshView& mesh, const TexelOrder& order, ValueAt value_at, const Context& context);
 
-/// Sums up the texels of each triangle.
-void summarize_faces(SurfaceMap& map, const TexelOrder& order, const Context& context);
 /// Fills `error`. @param may_jump  whether distances may change their sign off the other mesh.
 void bound_errors(SurfaceMap& map, const MeshView& mesh, bool may_jump, const Context& context);
 

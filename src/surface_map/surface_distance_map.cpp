@@ -44,15 +44,18 @@ void fill_distances(SurfaceMap& map, const MeshView& target, const surface::Texe
   const double scale = scale_to_one(bounds(target).largest_coordinate());
   // Each batch is answered by one thread, out of its caches.
   const Context alone{.threads = 1};
-  parallel_for(context, order.texels.size(), texels_per_batch, "surface map", [&](const WorkRange& range) {
-    const std::span texels = std::span(order.texels).subspan(range.begin, range.end - range.begin);
+  const auto fill_batch = [&](std::size_t begin, std::size_t end) {
+    const std::span texels = std::span(order.texels).subspan(begin, end - begin);
     std::vector<Vec3d> points;
-    surface::find_points(target, *map.atlas, scale, texels, points);
-    const std::vector<ClosestPoint> found = query.nearest(points, alone);
-    for (std::size_t k = 0; k < texels.size(); ++k) {
-      surface::put(map, texels[k], points[k], {found[k].distance, found[k].point, found[k].site});
-    }
-  });
+    surface::find_points(target, *map.atlas, scale, order, begin, end, points);
+    const auto put = [&](std::span<const FoundPoint> group) {
+      for (const FoundPoint& found : group) {
+        surface::put(map, texels[found.query], points[found.query], {found.distance, found.point, found.site});
+      }
+    };
+    query.for_each_nearest(points, put, alone);
+  };
+  surface::fill_texels(map, order, texels_per_batch, fill_batch, context);
 }
 
 void fill_vertices(SurfaceMap& map, const MeshView& target, const ClosestPointQuery& query, const Context& context) {
@@ -169,9 +172,8 @@ SurfaceMap SurfaceMapper::map(const Context& context) const {
   timer.lap("texels");
   fill_vertices(out, data_->target, *data_->query, context);
   timer.lap("vertices");
-  surface::summarize_faces(out, data_->order, context);
   surface::bound_errors(out, data_->target, data_->query->sign_may_jump(), context);
-  timer.lap("summaries");
+  timer.lap("errors");
   out.sign_rule = data_->query->sign_rule();
   out.sign_reason = data_->query->sign_reason();
   return out;
@@ -212,9 +214,8 @@ SurfaceMap self_distance_map(const MeshView& target, const SurfaceMapOptions& op
   timer.lap("hierarchy");
   surface::fill(out, target, order, value_at, context);
   timer.lap("texels");
-  surface::summarize_faces(out, order, context);
   surface::bound_errors(out, target, false, context);
-  timer.lap("summaries");
+  timer.lap("errors");
   return out;
 }
 

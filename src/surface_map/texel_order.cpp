@@ -1,5 +1,6 @@
 #include "surface_map/texel_order.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 #include "blum/core/parallel.hpp"
@@ -51,18 +52,23 @@ TexelOrder texel_order(const MeshView& mesh, const SurfaceAtlas& atlas, const Co
   return out;
 }
 
-void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, std::span<const std::uint32_t> texels,
-                 std::vector<Vec3d>& points) {
+void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, const TexelOrder& order,
+                 std::size_t begin, std::size_t end, std::vector<Vec3d>& points) {
   const ScaledCharts charts{mesh, atlas, scale};
   const double unscale = 1 / scale;  // a power of two
-  points.resize(texels.size());
-  std::size_t k = 0;
-  while (k < texels.size()) {
-    const TriangleId triangle = atlas.triangle[texels[k]];
-    const Chart chart = charts[triangle.value];
-    for (; k < texels.size() && atlas.triangle[texels[k]] == triangle; ++k) {
-      const TexturePlace middle = middle_of(texels[k] % atlas.width, texels[k] / atlas.width);
-      points[k] = chart.on_triangle(middle) * unscale;
+  points.resize(end - begin);
+  auto next = std::upper_bound(order.first.begin(), order.first.end(), begin);
+  for (std::size_t k = begin; k < end; ++next) {
+    const std::size_t last = std::min(end, *next);
+    if (k == last) continue;
+    const auto rank = static_cast<std::size_t>(next - order.first.begin()) - 1;
+    const Chart chart = charts[order.triangles[rank]];
+    // Texels come row by row.
+    std::size_t y = order.texels[k] / atlas.width;
+    std::size_t row = y * atlas.width;
+    for (; k < last; ++k) {
+      for (; order.texels[k] - row >= atlas.width; row += atlas.width) ++y;
+      points[k - begin] = chart.on_triangle(middle_of(order.texels[k] - row, y)) * unscale;
     }
   }
 }

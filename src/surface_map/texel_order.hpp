@@ -28,8 +28,9 @@ struct TexelOrder {
 /// @throws Cancelled. Cost: 0.2 us per triangle, 10 ns per texel.
 [[nodiscard]] TexelOrder texel_order(const MeshView& mesh, const SurfaceAtlas& atlas, const Context& context);
 
-/// The points of the surface that texels stand for. @param texels  those of the same triangle follow each other.
-void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, std::span<const std::uint32_t> texels,
-                 std::vector<Vec3d>& points);
+/// The points of the surface that order.texels[begin] ... order.texels[end - 1] stand for.
+/// @param scale  that of ScaledCharts.
+void find_points(const MeshView& mesh, const SurfaceAtlas& atlas, double scale, const TexelOrder& order,
+                 std::size_t begin, std::size_t end, std::vector<Vec3d>& points);
 
 }  // namespace blum::surface

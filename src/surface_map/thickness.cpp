@@ -239,8 +239,6 @@ SurfaceMap thickness_map(const MeshView& solid, const SurfaceMapOptions& map, co
   };
   surface::fill(out, solid, order, value_at, context);
   timer.lap("texels");
-  surface::summarize_faces(out, order, context);
-  timer.lap("summaries");
   return out;
 }
 

@@ -31,6 +31,8 @@ class InlineList {
   [[nodiscard]] bool is_full() const { return size_ == most; }
   /// @param value  the list must not be full.
   void push_back(const T& value) { std::construct_at(data() + size_++, value); }
+  /// Adds a value that is still to be set, in its place. The list must not be full.
+  T& emplace_back() { return *std::construct_at(data() + size_++); }
   /// Takes the last value out; there must be one.
   T pop_back() { return data()[--size_]; }
   /// Leaves the first values. @param size  at most as many as there are.

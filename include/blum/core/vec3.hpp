@@ -92,6 +92,10 @@ struct Box3 {
   [[nodiscard]] bool is_empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
   [[nodiscard]] Vec3d size() const { return upper - lower; }
   [[nodiscard]] Vec3d center() const { return (lower + upper) * 0.5; }
+  /// Whether a point lies in it, sides included.
+  [[nodiscard]] bool contains(const Vec3d& p) const {
+    return lower.x <= p.x && p.x <= upper.x && lower.y <= p.y && p.y <= upper.y && lower.z <= p.z && p.z <= upper.z;
+  }
   [[nodiscard]] double diagonal() const { return is_empty() ? 0.0 : length(size()); }
   /// The largest magnitude of a coordinate of its sides.
   [[nodiscard]] double largest_coordinate() const {

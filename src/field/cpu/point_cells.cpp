@@ -11,7 +11,7 @@ namespace {
 /// among threads.
 constexpr std::size_t most_per_cell = 16384;
 constexpr std::size_t least_per_cell = 1024;
-constexpr std::size_t cells_for_threads = 16;
+constexpr std::size_t cells_per_thread = 8;
 
 void add_cells(const MortonPoints& points, const PointCell& cell, std::size_t most, std::vector<PointCell>& out) {
   if (cell.size() == 0) return;
@@ -47,10 +47,11 @@ std::array<PointCell, 8> children_of(const MortonPoints& points, const PointCell
   return out;
 }
 
-std::vector<PointCell> point_cells(const MortonPoints& points) {
+std::vector<PointCell> point_cells(const MortonPoints& points, int threads) {
   const double half = points.side / 2;
   const Vec3d center = points.lower + Vec3d{half, half, half};
-  const std::size_t most = std::clamp(points.size() / cells_for_threads, least_per_cell, most_per_cell);
+  const std::size_t cells = threads > 1 ? cells_per_thread * static_cast<std::size_t>(threads) : 1;
+  const std::size_t most = std::clamp(points.size() / cells, least_per_cell, most_per_cell);
   std::vector<PointCell> out;
   add_cells(points, {0, points.size(), 0, to_float(center), static_cast<float>(half)}, most, out);
   return out;

@@ -13,8 +13,6 @@ namespace blum::cpu {
 namespace {
 
 constexpr std::size_t grain = std::size_t{1} << 13;
-/// Queries lie all over memory: they are asked for this many steps before.
-constexpr std::size_t ahead = 16;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 /// What single precision may have taken from a distance, in the normalised frame.
 constexpr double slack = 2e-6;
@@ -23,6 +21,16 @@ Vec3d clamped(const Vec3d& p, const Box3& box) {
   Vec3d out;
   for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = std::clamp(p[axis], box.lower[axis], box.upper[axis]);
   return out;
+}
+
+/// Queries lie all over memory: they are on their way while their group is put together.
+void prefetch(const Vec3d& query) {
+  hwy::Prefetch(&query.x);
+  hwy::Prefetch(&query.z);  // may be in the next cache line
+}
+
+SiteId known_site(std::uint32_t record) {
+  return record == dead_record ? SiteId::none() : SiteId(record);
 }
 
 /// A grid of two nodes a side whose box is a mesh's, wider by its longest side: most queries are that close.
@@ -109,17 +117,11 @@ PointEngine::Ordered PointEngine::order(std::span<const Vec3d> queries, const Co
   return out;
 }
 
-FoundSite PointEngine::found(const Vec3d& query, std::uint32_t index, const PointResults& results,
-                             std::size_t at) const {
-  FoundSite out{index, SiteId::none(), SiteId::none(), infinite};
-  if (!(results.squared[at] < far_away)) return out;
+double PointEngine::at_most(const Vec3d& query, const FoundSite& found) const {
+  if (!(found.squared < far_away)) return infinite;
   const double moved = length(query - clamped(query, box_));
-  const double normalised = std::sqrt(static_cast<double>(results.squared[at])) * (1 + 1e-6) + slack;
-  out.at_most = normalised / frame_.scale + moved * (1 + 1e-12);
-  if (moved > 0) return out;
-  if (results.site[at] != dead_record) out.site = SiteId(results.site[at]);
-  if (results.other[at] != dead_record) out.other = SiteId(results.other[at]);
-  return out;
+  const double normalised = std::sqrt(static_cast<double>(found.squared)) * (1 + 1e-6) + slack;
+  return normalised / frame_.scale + moved * (1 + 1e-12);
 }
 
 void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& context,
@@ -128,7 +130,7 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
     parallel_for(context, queries.size(), most_per_group, "closest points", [&](const WorkRange& range) {
       std::vector<FoundSite> group;
       for (std::size_t k = range.begin; k < range.end; ++k) {
-        group.push_back({static_cast<std::uint32_t>(k), SiteId::none(), SiteId::none(), infinite});
+        group.push_back({static_cast<std::uint32_t>(k), SiteId::none(), SiteId::none(), far_away});
       }
       use(group);
     });
@@ -143,7 +145,7 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
   job.field.cancel = context.cancel;
   job.points = &ordered.points;
   job.results = &results;
-  const std::vector<PointCell> cells = point_cells(ordered.points);
+  const std::vector<PointCell> cells = point_cells(ordered.points, thread_count(context));
   struct Worker {
     PointScratch scratch;
     std::vector<FoundSite> group;
@@ -158,9 +160,9 @@ void PointEngine::for_each_group(std::span<const Vec3d> queries, const Context& 
       const std::size_t end = std::min(begin + most_per_group, cell.end);
       mine.group.resize(end - begin);
       for (std::size_t k = begin; k < end; ++k) {
-        if (k + ahead < end) hwy::Prefetch(&queries[ordered.order[k + ahead].index]);
-        const std::uint32_t index = ordered.order[k].index;
-        mine.group[k - begin] = found(queries[index], index, results, k);
+        prefetch(queries[ordered.order[k].index]);
+        mine.group[k - begin] = {ordered.order[k].index, known_site(results.site[k]), known_site(results.other[k]),
+                                 results.squared[k]};
       }
       use(mine.group);
     }

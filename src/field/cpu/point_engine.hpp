@@ -18,12 +18,12 @@
 
 namespace blum::cpu {
 
-/// What is found of a query.
+/// What is found of a query, or where that lies outside of the frame, of the closest point in it.
 struct FoundSite {
   std::uint32_t query = 0;  ///< its index
   SiteId site;              ///< the closest one, or one that touches it; none where that is not known
   SiteId other;             ///< for the site, where two are as close but for rounding
-  double at_most = 0;       ///< how far the surface is, with room for rounding, mesh units; infinite where not known
+  float squared = 0;        ///< distance to a point of the surface, in the engine's units; see at_most()
 };
 
 /// Looks at many points at once, in an order in which neighbours come together, as tiles of a field are looked at: what
@@ -45,14 +45,18 @@ class PointEngine {
   void for_each_group(std::span<const Vec3d> queries, const Context& context,
                       FunctionRef<void(std::span<const FoundSite>)> use) const;
 
+  /// Whether what is found is found of the query itself.
+  [[nodiscard]] bool is_in_frame(const Vec3d& query) const { return box_.contains(query); }
+
+  /// How far the surface is from a query, with room for rounding, mesh units; infinite where that is not known.
+  [[nodiscard]] double at_most(const Vec3d& query, const FoundSite& found) const;
+
   /// How far distances, and planes between the domains of sites, may be off, mesh units.
   [[nodiscard]] double margin() const;
 
  private:
   struct Ordered;
   [[nodiscard]] Ordered order(std::span<const Vec3d> queries, const Context& context) const;
-  [[nodiscard]] FoundSite found(const Vec3d& query, std::uint32_t index, const PointResults& results,
-                                std::size_t at) const;
 
   bool is_usable_ = false;  ///< false for meshes without extent, or too large or small for single precision
   Box3 box_;                ///< of the frame, mesh units: queries beyond are moved to its border

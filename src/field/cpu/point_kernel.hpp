@@ -68,8 +68,8 @@ class PointScratch {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Cells of at most some thousand points each, which together hold all points.
-[[nodiscard]] std::vector<PointCell> point_cells(const MortonPoints& points);
+/// Cells of at most some thousand points each, enough of them for so many threads, which together hold all points.
+[[nodiscard]] std::vector<PointCell> point_cells(const MortonPoints& points, int threads);
 
 /// Finds the closest sites of the points of a cell, by culling as for the tiles of a field.
 void compute_point_cell(const PointJob& job, const PointCell& cell, PointScratch& scratch);

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "blum/core/error.hpp"
 #include "blum/field/reference.hpp"
@@ -176,6 +178,35 @@ TEST(ClosestPoints, DependOnNeitherThreadsNorNeighbours) {
     EXPECT_EQ(one[i].site, four[i].site);
     EXPECT_EQ(one[i].distance, alone.distance);
     EXPECT_EQ(one[i].site, alone.site);
+  }
+}
+
+/// Few queries, which the hierarchy answers, and many, which are looked at together; signs by normals and by windings.
+TEST(ClosestPoints, AreToldOnceEachAsTheyAreKept) {
+  TriangleMesh open = make_organic({.frequency = 6});
+  open.triangles.resize(open.triangles.size() - 3);
+  for (const TriangleMesh& mesh : {make_organic({.frequency = 6}), open}) {
+    for (const std::size_t count : {0, 1, 700, 9000}) {
+      SCOPED_TRACE(count);
+      const ClosestPointQuery query(mesh, {.max_distance = 0.3 * bounds(mesh).diagonal()});
+      const std::vector<Vec3d> places = test::places_around(mesh, count, 5);
+      const std::vector<ClosestPoint> kept = query.nearest(places);
+      std::vector<ClosestPoint> told(places.size());
+      std::vector<int> times(places.size(), 0);
+      const auto put = [&](std::span<const FoundPoint> group) {
+        for (const FoundPoint& found : group) {
+          ++times[found.query];
+          told[found.query] = {found.point, found.distance, found.site, {}};
+        }
+      };
+      query.for_each_nearest(places, put);
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        ASSERT_EQ(times[k], 1);
+        ASSERT_EQ(told[k].point, kept[k].point);
+        ASSERT_EQ(told[k].distance, kept[k].distance);
+        ASSERT_EQ(told[k].site, kept[k].site);
+      }
+    }
   }
 }
 

@@ -26,12 +26,12 @@ TEST(SiteProjection, IsTheClosestPointOfTheHierarchy) {
     for (int k = 0; k < 20000; ++k) {
       const Vec3d query = box.center() + random.in_ball() * box.diagonal();
       const NearestSite expected = *bvh.nearest(query);
-      const auto found = projection.project(expected.site, query, 1e-9 * scale);
-      if (!found) continue;
+      NearestSite found;
+      if (!projection.project(expected.site, query, 1e-9 * scale, found)) continue;
       ++counts[static_cast<std::size_t>(sites.site(expected.site).kind)];
-      ASSERT_EQ(found->site, expected.site);
-      ASSERT_EQ(found->point, expected.point);
-      ASSERT_EQ(found->distance, expected.distance);
+      ASSERT_EQ(found.site, expected.site);
+      ASSERT_EQ(found.point, expected.point);
+      ASSERT_EQ(found.distance, expected.distance);
     }
     EXPECT_GT(counts[0] + counts[1] + counts[2], 19900U);  // hardly any is next to a border
     for (const std::size_t count : counts) EXPECT_GT(count, 500U);
@@ -51,16 +51,17 @@ TEST(SiteProjection, IsNoneOutsideOfTheDomainAndNextToItsBorder) {
   ASSERT_EQ(sites.site(edge).kind, SiteKind::edge);
   ASSERT_EQ(sites.site(face).kind, SiteKind::face);
   constexpr double margin = 1e-3;
-  EXPECT_TRUE(projection.project(corner, {0.502, 0.502, 0.502}, margin));
-  EXPECT_FALSE(projection.project(corner, {0.502, 0.502, 0.5005}, margin));
-  EXPECT_FALSE(projection.project(corner, {0.502, 0.502, 0.4}, margin));
-  EXPECT_TRUE(projection.project(edge, {0.502, 0.502, 0.498}, margin));
-  EXPECT_FALSE(projection.project(edge, {0.502, 0.502, 0.4995}, margin));
-  EXPECT_FALSE(projection.project(edge, {0.502, 0.5005, 0.1}, margin));
-  EXPECT_FALSE(projection.project(edge, {0.4, 0.6, 0.1}, margin));
-  EXPECT_TRUE(projection.project(face, {2, 0.1, 0.3}, margin));
-  EXPECT_FALSE(projection.project(face, {2, 0.1, 0.4995}, margin));
-  EXPECT_FALSE(projection.project(face, {2, 0.1, 0.6}, margin));
+  NearestSite found;
+  EXPECT_TRUE(projection.project(corner, {0.502, 0.502, 0.502}, margin, found));
+  EXPECT_FALSE(projection.project(corner, {0.502, 0.502, 0.5005}, margin, found));
+  EXPECT_FALSE(projection.project(corner, {0.502, 0.502, 0.4}, margin, found));
+  EXPECT_TRUE(projection.project(edge, {0.502, 0.502, 0.498}, margin, found));
+  EXPECT_FALSE(projection.project(edge, {0.502, 0.502, 0.4995}, margin, found));
+  EXPECT_FALSE(projection.project(edge, {0.502, 0.5005, 0.1}, margin, found));
+  EXPECT_FALSE(projection.project(edge, {0.4, 0.6, 0.1}, margin, found));
+  EXPECT_TRUE(projection.project(face, {2, 0.1, 0.3}, margin, found));
+  EXPECT_FALSE(projection.project(face, {2, 0.1, 0.4995}, margin, found));
+  EXPECT_FALSE(projection.project(face, {2, 0.1, 0.6}, margin, found));
 }
 
 /// Of an edge with three triangles one is not looked at, and triangles without a plane have no domain.
@@ -70,10 +71,11 @@ TEST(SiteProjection, IsNoneWhereDomainsAreNotKnown) {
   mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {5, 6, 7}};
   const SiteTable sites(mesh);
   const SiteProjection projection(mesh, sites);
-  EXPECT_FALSE(projection.project(sites.id({SiteKind::edge, 0}), {0.5, 0, 1}, 1e-6));
-  EXPECT_FALSE(projection.project(sites.id({SiteKind::face, 3}), {4, 1, 0}, 1e-6));
+  NearestSite found;
+  EXPECT_FALSE(projection.project(sites.id({SiteKind::edge, 0}), {0.5, 0, 1}, 1e-6, found));
+  EXPECT_FALSE(projection.project(sites.id({SiteKind::face, 3}), {4, 1, 0}, 1e-6, found));
   mesh.points = {5};
-  EXPECT_TRUE(projection.project(SiteId(2), {0.5, 3, 0}, 1e-6));
+  EXPECT_TRUE(projection.project(SiteId(2), {0.5, 3, 0}, 1e-6, found));
 }
 
 }  // namespace
