@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "blum/complex/complex.hpp"
@@ -10,6 +13,7 @@
 #include "blum/io/complex_io.hpp"
 #include "blum/io/file_content.hpp"
 #include "blum/io/formats.hpp"
+#include "blum/io/point_io.hpp"
 #include "blum/surface_map/hausdorff_distance.hpp"
 #include "blum/surface_map/surface_deviation.hpp"
 #include "commands.hpp"
@@ -28,7 +32,8 @@ namespace fs = std::filesystem;
 constexpr const char* examples = R"(Examples:
   blum hausdorff scan.ply design.stl                          an interval that holds the distance, means, percentiles
   blum hausdorff part.obj simplified.obj --tolerance 1e-4 --json -
-  blum hausdorff part.obj simplified.obj --one-sided -o where.vtp    only from part to simplified; the witnesses)";
+  blum hausdorff part.obj simplified.obj --one-sided -o where.vtp    only from part to simplified; the witnesses
+  blum hausdorff scan.xyz design.stl --one-sided              from the points of a scan to the design)";
 
 struct Arguments {
   std::string a, b;
@@ -105,6 +110,26 @@ bool has_area(const MeshView& mesh) {
   return false;
 }
 
+/// Files that hold points, and no mesh.
+const std::array<std::string_view, 5> cloud_extensions{".npy", ".npz", ".csv", ".xyz", ".txt"};
+
+TriangleMesh read_surface(const fs::path& path, std::optional<double> weld) {
+  if (std::find(cloud_extensions.begin(), cloud_extensions.end(), file_extension(path)) == cloud_extensions.end()) {
+    return read_mesh_of_any_name(path, {weld}).mesh;
+  }
+  TriangleMesh out;
+  out.vertices = read_points(path);
+  out.points.resize(out.vertices.size());
+  std::iota(out.points.begin(), out.points.end(), 0U);
+  return out;
+}
+
+/// What a mesh or a cloud has most of.
+std::string size_text(const MeshView& mesh) {
+  if (mesh.triangles.empty() && !mesh.points.empty()) return plural(mesh.points.size(), "point", "points");
+  return plural(mesh.triangles.size(), "triangle", "triangles");
+}
+
 void run(const Arguments& a) {
   const std::array<fs::path, 2> paths{a.a, a.b};
   if (a.only_distance && !a.deviation.given().empty()) {
@@ -124,13 +149,13 @@ void run(const Arguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(threads, progress, interrupt);
   Stopwatch watch;
-  std::array<MeshFile, 2> files;
+  std::array<TriangleMesh, 2> meshes;
   {
     const Unattended reading;
-    for (std::size_t k = 0; k < 2; ++k) files[k] = read_mesh_of_any_name(paths[k], {weld});
+    for (std::size_t k = 0; k < 2; ++k) meshes[k] = read_surface(paths[k], weld);
   }
-  const TriangleMesh& first = files[0].mesh;
-  const TriangleMesh& second = files[1].mesh;
+  const TriangleMesh& first = meshes[0];
+  const TriangleMesh& second = meshes[1];
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   std::vector<Side> sides(a.one_sided ? 1 : 2);
   HausdorffDistance both;
@@ -170,8 +195,8 @@ void run(const Arguments& a) {
   if (!a.one_sided) json["backward"] = sides[1].json();
   add_run_facts(json, spent, context, {}, a.output ? Json::array({*a.output}) : Json::array());
   TextTable table;
-  table.add("a", paths[0].string() + ": " + plural(first.triangles.size(), "triangle", "triangles"));
-  table.add("b", paths[1].string() + ": " + plural(second.triangles.size(), "triangle", "triangles"));
+  table.add("a", paths[0].string() + ": " + size_text(first));
+  table.add("b", paths[1].string() + ": " + size_text(second));
   table.add("distance", interval_text(both.lower, both.upper) + (a.one_sided ? ", from a to b" : ""));
   table.add("between", vector_text(both.points[0]) + " of a and " + vector_text(both.points[1]) + " of b");
   add_side(table, "a to b", sides[0]);
@@ -190,7 +215,8 @@ void add_hausdorff_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = line.app.add_subcommand(
       "hausdorff", "How far two meshes are from each other at most: an interval that is certain, with means by area");
-  const std::string help = extensions_help({FileContent::mesh}, FileAccess::read);
+  const std::string help =
+      "A mesh, or points (.npy .npz .csv .xyz .txt). " + extensions_help({FileContent::mesh}, FileAccess::read);
   command->add_option("A", a->a, help)->required();
   command->add_option("B", a->b, help)->required();
   add_text_option(*command, "-o,--output", a->output, "FILE",

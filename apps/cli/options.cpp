@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 #include <system_error>
 
 #include "summary.hpp"
@@ -76,8 +78,26 @@ double parse_non_negative(std::string_view name, std::string_view text) {
   return value;
 }
 
+namespace {
+
+/// The whole number that text as 1e6 or 2.5e3 stands for: one that doubles hold exactly.
+std::optional<std::int64_t> scientific_integer(std::string_view digits) {
+  constexpr double largest_exact = 9007199254740992;  // 2^53
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool is_exponential = digits.find_first_of("eE") != std::string_view::npos;
+  if (error != std::errc() || end != digits.data() + digits.size() || !is_exponential) return std::nullopt;
+  if (!(std::abs(value) <= largest_exact) || value != std::trunc(value)) return std::nullopt;
+  return static_cast<std::int64_t>(value);
+}
+
+}  // namespace
+
 std::int64_t parse_integer(std::string_view name, std::string_view text, std::int64_t minimum, std::int64_t maximum) {
   const std::string_view digits = without_plus(text);
+  if (const std::optional<std::int64_t> given = scientific_integer(digits)) {
+    return parse_integer(name, std::to_string(*given), minimum, maximum);
+  }
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();

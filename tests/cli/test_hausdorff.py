@@ -39,6 +39,20 @@ def test_text_says_both_directions(boxes):
     assert "a to b" in text and "b to a" in text and "mean 0.5 +- " in text
 
 
+def test_clouds_of_points(boxes, tmp_path):
+    points = np.array([[2.0, 0, 0], [0, 0.5, 0.25]])
+    np.save(tmp_path / "cloud.npy", points)
+    np.savetxt(tmp_path / "cloud.XYZ", points)
+    for name in ("cloud.npy", "cloud.XYZ"):
+        found = run_json("hausdorff", tmp_path / name, boxes[0], "--one-sided", "--tolerance", "1e-6")
+        assert found["lower"] <= 1.5 <= found["upper"] and found["points"][0] == [2, 0, 0]
+    text, _ = run("hausdorff", tmp_path / "cloud.npy", boxes[0])
+    assert "2 points" in text and "has no area" in text
+    np.save(tmp_path / "none.npy", points[:0])
+    _, error = run("hausdorff", tmp_path / "none.npy", boxes[0], status=1)
+    assert error.startswith("blum: error: ")
+
+
 def test_what_is_wrong_is_said(boxes, tmp_path):
     assert "tolerance" in run("hausdorff", *boxes, "--tolerance", "0", status=2)[1]
     assert "none.ply" in run("hausdorff", boxes[0], tmp_path / "none.ply", status=1)[1]

@@ -99,6 +99,7 @@ def test_samples_of_the_surface(box, tmp_path):
     again = np.load(tmp_path / "d.npz")
     assert np.array_equal(again["points"], found["points"])
     assert np.isnan(again["gradient"]).all()
+    assert run_json("sample", box, "-n", "+2.5e3", "-o", tmp_path / "many.npz")["points"] == 2500
     run("sample", box, "-n", "400", "-o", tmp_path / "even.npz", "--blue-noise")
     even = np.load(tmp_path / "even.npz")["points"]
     apart = np.linalg.norm(even[:, None] - even[None], axis=2) + 9 * np.eye(400)
@@ -138,6 +139,10 @@ def test_what_makes_no_sense_is_refused(box, tmp_path):
         (("-n", "5", "--sigma", "1"), "--near"),
         (("-n", "5", "--near", "--blue-noise"), "--blue-noise"),
         (("-n", "-1"), "-n"),
+        (("-n", "1.5e0"), "not a whole number"),
+        (("-n", "1e30"), "-n"),
+        (("-n", "1e10"), "must be between"),
+        (("-n", "1e"), "not a whole number"),
         (("-n", "5", "--near", "--in-box", "2"), "in-box"),
     ):
         error = run("sample", box, *options, "-o", tmp_path / "o.npz", status=2)[1]
