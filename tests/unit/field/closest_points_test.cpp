@@ -186,7 +186,7 @@ TEST(ClosestPoints, AreToldOnceEachAsTheyAreKept) {
   TriangleMesh open = make_organic({.frequency = 6});
   open.triangles.resize(open.triangles.size() - 3);
   for (const TriangleMesh& mesh : {make_organic({.frequency = 6}), open}) {
-    for (const std::size_t count : {0, 1, 700, 9000}) {
+    for (const std::size_t count : {0U, 1U, 700U, 9000U}) {
       SCOPED_TRACE(count);
       const ClosestPointQuery query(mesh, {.max_distance = 0.3 * bounds(mesh).diagonal()});
       const std::vector<Vec3d> places = test::places_around(mesh, count, 5);

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "blum/core/random.hpp"
@@ -53,7 +54,9 @@ class SlowOrder {
     for (std::size_t axis = 1; axis < 3; ++axis) {
       if (upper[axis] - lower[axis] > upper[longest] - lower[longest]) longest = axis;
     }
-    std::stable_sort(first, last, [&](std::uint32_t a, std::uint32_t b) { return at_[a][longest] < at_[b][longest]; });
+    std::sort(first, last, [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(at_[a][longest], a) < std::pair(at_[b][longest], b);
+    });
     const std::size_t middle = begin + std::bit_ceil(end - begin) / 2;
     cut(begin, middle);
     cut(middle, end);
@@ -71,7 +74,7 @@ void expect_as_slow(const std::vector<Vec3d>& points) {
 }
 
 TEST(SpaceOrder, IsThatOfFullSorts) {
-  for (const std::size_t count : {0, 1, 2, 8, 9, 17, 49, 50, 100, 129, 1000, 5000, 20000}) {
+  for (const std::size_t count : {0U, 1U, 2U, 8U, 9U, 17U, 49U, 50U, 100U, 129U, 1000U, 5000U, 20000U}) {
     SCOPED_TRACE(count);
     Random random(count);
     std::vector<Vec3d> at_random(count);
