@@ -74,7 +74,8 @@ def third_party_rule(source: str, name: str) -> str | None:
     if name in ("zlib.h", "png.h", "tiny_gltf.h", "nlohmann/json.hpp"):
         return None if source.startswith("src/io/") else "only src/io reads and writes compressed files"
     if name.startswith("boost/multiprecision/"):
-        return None if source.startswith("src/proximity/exact/") else "large integers belong in src/proximity/exact"
+        is_exact = source.startswith(("src/proximity/exact/", "src/voronoi/exact/"))
+        return None if is_exact else "large integers belong in src/proximity/exact and src/voronoi/exact"
     if STANDARD.fullmatch(name) or SYSTEM.fullmatch(name):
         return None
     return "not a dependency of this layer"

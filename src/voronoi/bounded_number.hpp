@@ -1,0 +1,57 @@
+// Blum: doubles that know how wrong they may be. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace blum::voronoi {
+
+/// A number in double, and a bound on its distance from the number that exact arithmetic would give: for filters in
+/// front of exact predicates. Each operation adds the most that it can round by, half a unit of the last place; bounds
+/// are themselves rounded, which `grow` makes up for: after n operations on them they are too small by at most 2 n
+/// units, and every operation grows them by 8.
+class BoundedNumber {
+ public:
+  BoundedNumber() = default;
+  /// Exact.
+  explicit BoundedNumber(double value) : value_(value) {}
+
+  /// -1, 0 or 1 where the sign is certain, else unknown.
+  static constexpr int unknown = 2;
+  [[nodiscard]] int sign() const {
+    if (!(std::abs(value_) <= std::numeric_limits<double>::max())) return unknown;
+    if (value_ > error_) return 1;
+    if (value_ < -error_) return -1;
+    return error_ == 0 ? 0 : unknown;
+  }
+
+  [[nodiscard]] friend BoundedNumber operator+(const BoundedNumber& a, const BoundedNumber& b) {
+    return rounded(a.value_ + b.value_, a.error_ + b.error_);
+  }
+  [[nodiscard]] friend BoundedNumber operator-(const BoundedNumber& a, const BoundedNumber& b) {
+    return rounded(a.value_ - b.value_, a.error_ + b.error_);
+  }
+  [[nodiscard]] friend BoundedNumber operator*(const BoundedNumber& a, const BoundedNumber& b) {
+    BoundedNumber out = rounded(a.value_ * b.value_,
+                                std::abs(a.value_) * b.error_ + std::abs(b.value_) * a.error_ + a.error_ * b.error_);
+    // Products, also those of bounds, may fall below the normal range, where they lose more: unless they are 0 exactly.
+    if (!is_zero(a) && !is_zero(b)) out.error_ += 16 * std::numeric_limits<double>::min();
+    return out;
+  }
+
+ private:
+  static constexpr double half_unit = std::numeric_limits<double>::epsilon() / 2;
+  static constexpr double grow = 1 + 16 * half_unit;
+
+  static bool is_zero(const BoundedNumber& number) { return number.value_ == 0 && number.error_ == 0; }
+  static BoundedNumber rounded(double value, double error) {
+    BoundedNumber out(value);
+    out.error_ = (error + std::abs(value) * half_unit) * grow;
+    return out;
+  }
+
+  double value_ = 0;
+  double error_ = 0;
+};
+
+}  // namespace blum::voronoi
