@@ -4,7 +4,7 @@
 #include <span>
 
 #include "voronoi/bounded_number.hpp"
-#include "voronoi/exact/rational.hpp"
+#include "voronoi/exact/dyadic.hpp"
 
 namespace blum::voronoi {
 namespace {
@@ -57,10 +57,6 @@ Ratio<Number> squared_distance(const MeshView& mesh, const SiteTable& table, con
   return {dot(from, from), Number(1.0)};
 }
 
-int sign_of_exact(const Rational& number) {
-  return number.sign();
-}
-
 /// Where an entry of a rising list is.
 std::uint32_t rank_in(const std::vector<std::uint32_t>& list, std::uint32_t entry) {
   return static_cast<std::uint32_t>(std::lower_bound(list.begin(), list.end(), entry) - list.begin());
@@ -108,7 +104,7 @@ int SiteLabels::sign_of(const Expression& expression) const {
   const int sign = expression(BoundedNumber()).sign();
   if (sign != BoundedNumber::unknown) return sign;
   exact_.fetch_add(1, std::memory_order_relaxed);
-  return sign_of_exact(expression(Rational()));
+  return expression(Dyadic()).sign();
 }
 
 int SiteLabels::side_of_triangle(std::uint32_t triangle, std::size_t k, const Vec3d& q) const {

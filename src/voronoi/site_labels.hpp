@@ -36,7 +36,7 @@ struct SignCounts {
 /// - of a vertex, the points with (q - v) . (w - v) <= 0 for all its edges v - w.
 ///
 /// Where a label is closest, the point is in its domain. Signs are computed in double with bounds on all rounding, and
-/// in rational numbers where these leave them open; those that labels next to each other have in common come from one
+/// without rounding where these leave them open; those that labels next to each other have in common come from one
 /// expression, so that they agree.
 class SiteLabels {
  public:
