@@ -20,6 +20,8 @@ constexpr std::size_t leaf_grain = 512;
 constexpr std::size_t query_grain = 512;
 /// Candidates within this much of the best distance, relative to the lengths involved, are looked at exactly.
 constexpr double candidate_slack = 2e-12;
+/// Closest points are rounded as coordinates are: what that does to distances, relative to the largest coordinate.
+constexpr double coordinate_slack = 4e-15;
 
 /// A primitive in the form that PrimitiveBlock holds.
 struct Primitive {
@@ -123,9 +125,10 @@ struct Bvh::Data {
   /// nullopt where a query is out of its range, or there is nothing to find.
   [[nodiscard]] std::optional<Query> prepare(const Vec3d& query) const {
     const Vec3d q = query * scale;
-    if (tree.is_empty() || !(std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) <= 1e150)) return std::nullopt;
+    const double coordinate = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+    if (tree.is_empty() || !(coordinate <= 1e150)) return std::nullopt;
     const Vec3d outside = max(max(bounds.lower * scale - q, q - bounds.upper * scale), Vec3d{});
-    return Query{q, candidate_slack * (1 + length(outside))};
+    return Query{q, candidate_slack * (1 + length(outside)) + coordinate_slack * coordinate};
   }
 
   [[nodiscard]] std::size_t lanes_of(std::size_t leaf) const { return std::min(lanes, order.size() - leaf * lanes); }

@@ -126,7 +126,8 @@ std::vector<std::uint32_t> space_order(std::size_t count, const std::function<Ve
   std::vector<Entry> entries(count);
   parallel_for(context, count, grain, "", [&](const WorkRange& range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      const Vec3d offset = longest > 0 ? (position(i) - bounds.lower) / longest : Vec3d{};
+      // Adding 0 makes -0 the same as 0.
+      const Vec3d offset = longest > 0 ? (position(i) - bounds.lower) / longest + Vec3d{} : Vec3d{};
       entries[i] = {{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)},
                     static_cast<std::uint32_t>(i)};
     }

@@ -22,6 +22,12 @@ using ChartCorners = std::array<TexturePlace, 3>;
   return (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
 }
 
+/// Whether a chart has an area, and not one so small that it is lost in rounding.
+[[nodiscard]] inline bool has_area(const ChartCorners& places) {
+  const double area = twice_area(places);
+  return area != 0 && std::isfinite(area) && std::isfinite(1 / area);
+}
+
 /// The map from a texture to the plane of a triangle that it shows: affine.
 class Chart {
  public:

@@ -44,6 +44,19 @@ void check(const HausdorffOptions& options) {
   }
 }
 
+/// Hierarchies find nothing beyond 1e150 times the size of their mesh.
+void check_sizes(const MeshView& a, const MeshView& b, const Box3& both) {
+  constexpr double most = 1e140;
+  const Vec3d whole = both.size();
+  for (const MeshView* mesh : {&a, &b}) {
+    const Vec3d own = bounds(*mesh).size();
+    const double size = std::max({own.x, own.y, own.z});
+    if (size > 0 && std::max({whole.x, whole.y, whole.z}) / size > most) {
+      throw InvalidMesh("one mesh is more than 1e140 times as large as the other, or as far from it");
+    }
+  }
+}
+
 /// A copy in which the largest coordinate of both meshes is about 1: products of coordinates are then numbers.
 std::vector<Vec3d> scaled(std::span<const Vec3d> vertices, double scale) {
   std::vector<Vec3d> out(vertices.begin(), vertices.end());
@@ -375,6 +388,7 @@ class MeshPair {
     Box3 box = bounds(a);
     box.extend(bounds(b).lower);
     box.extend(bounds(b).upper);
+    check_sizes(a, b, box);
     scale_ = scale_to_one(box.largest_coordinate());
     vertices_ = {scaled(a.vertices, scale_), scaled(b.vertices, scale_)};
     meshes_ = {a, b};

@@ -40,7 +40,7 @@ double largest_read(const SurfaceMap& map, std::size_t triangle) {
   const float largest = std::max(std::abs(own.smallest), std::abs(own.largest));
   if (map.atlas->is_separate && std::isfinite(largest)) return largest;
   const SurfaceAtlas& atlas = *map.atlas;
-  if (twice_area(atlas.corners[triangle]) == 0) return HUGE_VAL;
+  if (!has_area(atlas.corners[triangle])) return HUGE_VAL;
   double out = 0;
   for_each_texel(atlas.corners[triangle], atlas.width, atlas.height, [&](std::size_t x, std::size_t y, double) {
     const std::size_t texel = y * atlas.width + x;
@@ -89,10 +89,12 @@ void fill_texels(SurfaceMap& map, const TexelOrder& order, std::size_t texels_pe
       if (order.first[k + 1] <= range.end) map.faces[order.triangles[k]] = summary_of(map, order.of(k));
     }
   });
-  // Triangles in more than one range, and without texels behind the last one.
+  // Triangles in more than one range, and those without texels, which may lie behind the last one.
   parallel_for(context, map.faces.size(), triangles_per_range, "", [&](const WorkRange& range) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
-      const bool is_in_one = order.first[k] / texels_per_range == (order.first[k + 1] - 1) / texels_per_range;
+      const std::size_t begin = order.first[k];
+      const std::size_t end = order.first[k + 1];
+      const bool is_in_one = begin < end && begin / texels_per_range == (end - 1) / texels_per_range;
       if (!is_in_one) map.faces[order.triangles[k]] = summary_of(map, order.of(k));
     }
   });

@@ -263,7 +263,7 @@ SurfaceAtlas surface_atlas_from(const MeshView& mesh, std::span<const TexturePla
   constexpr double surely_inside = -1e-6;
   for (std::uint32_t t = 0; t < corners.size(); ++t) {
     if (context.cancel.stop_requested()) throw Cancelled();
-    if (surface::twice_area(out.corners[t]) == 0) continue;
+    if (!surface::has_area(out.corners[t])) continue;
     std::uint32_t twin = t;
     for_each_texel(out.corners[t], width, height, [&](std::size_t x, std::size_t y, double outside) {
       const std::size_t at = y * width + x;

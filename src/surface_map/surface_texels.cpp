@@ -66,7 +66,7 @@ double furthest_reader(const Chart& chart, const ChartCorners& places, const Tex
 double reach_of(const ScaledCharts& charts, std::uint32_t triangle) {
   const SurfaceAtlas& atlas = charts.atlas;
   const ChartCorners& places = atlas.corners[triangle];
-  if (surface::twice_area(places) == 0) return HUGE_VAL;
+  if (!surface::has_area(places)) return HUGE_VAL;
   const Chart chart = charts[triangle];
   const double own = chart.stretch() * std::sqrt(0.5);
   if (atlas.is_separate) return own / charts.scale;

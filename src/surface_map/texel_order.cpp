@@ -16,7 +16,7 @@ constexpr std::size_t triangles_per_range = 256;
 template <class Visit>
 void for_each_own_texel(const SurfaceAtlas& atlas, std::uint32_t triangle, Visit visit) {
   const ChartCorners& places = atlas.corners[triangle];
-  if (twice_area(places) == 0) return;
+  if (!has_area(places)) return;
   for_each_texel(places, atlas.width, atlas.height, [&](std::size_t x, std::size_t y, double /*outside*/) {
     const std::size_t texel = y * atlas.width + x;
     if (atlas.triangle[texel] == TriangleId(triangle)) visit(static_cast<std::uint32_t>(texel));

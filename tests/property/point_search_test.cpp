@@ -211,6 +211,36 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneInACrowd) {
   }
 }
 
+/// So close to an open sheet that rounding may tell the side: whoever asks gets the same.
+TEST(PointSearch, TellsSignsNextToASheetAsEachQueryAlone) {
+  constexpr std::uint32_t n = 18;
+  TriangleMesh sheet;
+  for (std::uint32_t k = 0; k < (n + 1) * (n + 1); ++k) {
+    sheet.vertices.push_back({static_cast<double>(k % (n + 1)) / n, static_cast<double>(k / (n + 1)) / n, 0});
+  }
+  for (std::uint32_t k = 0; k < n * n; ++k) {
+    const std::uint32_t corner = k / n * (n + 1) + k % n;
+    sheet.triangles.push_back({corner, corner + 1, corner + n + 2});
+    sheet.triangles.push_back({corner, corner + n + 2, corner + n + 1});
+  }
+  for (const double height : {1e-12, 1e-10, 1e-9, 1e-8, 1e-6, 1e-3}) {
+    SCOPED_TRACE(height);
+    std::vector<Vec3d> queries;
+    for (int i = 0; i < 80; ++i) {
+      for (int k = 0; k < 257; ++k) queries.push_back({(i + 0.5) / 80, (i + 0.5) / 80, height * (k - 128) / 128});
+    }
+    const ClosestPointQuery query(sheet, {.sign = SignMode::winding});
+    for (const int threads : {1, 2, 7}) {
+      const std::vector<ClosestPoint> found = query.nearest(queries, {.threads = threads});
+      std::size_t differ = 0;
+      for (std::size_t k = 0; k < queries.size(); k += 3) {
+        differ += found[k].distance == query.nearest(queries[k]).distance ? 0U : 1U;
+      }
+      EXPECT_EQ(differ, 0U);
+    }
+  }
+}
+
 TEST(PointSearch, IsTheSameForAnyThreadsAndInstructions) {
   const TriangleMesh mesh = make_organic({.frequency = 12, .holes = 2});
   const std::vector<Vec3d> queries = queries_about(mesh, 2000, 17);

@@ -54,7 +54,12 @@ class WindingNumber {
     double margin = 0;  ///< 0 where rounding alone may make a difference
   };
   /// The same as is_inside(), told with its margin.
-  [[nodiscard]] Decision decide(const Vec3d& query) const;
+  /// @param distance  of the query from the triangles, mesh units: rounding may do more to solid angles the closer they
+  ///                  are, about 1e-15 of the coordinates over the distance. Where that leaves no margin, the full sum
+  ///                  decides, as it is rounded.
+  [[nodiscard]] Decision decide(const Vec3d& query, double distance) const;
+  /// What rounding may do to w at a distance from the triangles.
+  [[nodiscard]] double rounding_at(const Vec3d& query, double distance) const;
 
   /// A value and a bound on its error.
   struct Estimate {

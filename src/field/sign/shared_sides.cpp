@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -33,9 +34,14 @@ struct AskSide {
 
   using Point = SidedPoint;
   static void take(SidedPoint& point, bool side) { point.is_inside = side; }
-  [[nodiscard]] Answer<bool> operator()(const Vec3d& at) const {
-    const WindingNumber::Decision found = winding.decide(at);
+  [[nodiscard]] Answer<bool> operator()(const SidedPoint& point) const {
+    const WindingNumber::Decision found = winding.decide(point.at, point.distance);
     return {found.is_inside, found.margin};
+  }
+  /// What rounding may do to a point that asks for itself: it takes the answer of another where that could not change
+  /// it, so that all get what they would get alone.
+  [[nodiscard]] double rounding_at(const SidedPoint& point) const {
+    return winding.rounding_at(point.at, point.distance);
   }
 };
 
@@ -45,10 +51,12 @@ struct AskNumber {
 
   using Point = NumberedPoint;
   static void take(NumberedPoint& point, double number) { point.number = number; }
-  [[nodiscard]] Answer<double> operator()(const Vec3d& at) const {
-    const WindingNumber::Estimate found = winding.estimate(at, 0.6 * WindingNumber::rough_error);
+  [[nodiscard]] Answer<double> operator()(const NumberedPoint& point) const {
+    const WindingNumber::Estimate found = winding.estimate(point.at, 0.6 * WindingNumber::rough_error);
     return {found.value, (1 - 1e-9) * WindingNumber::rough_error - found.error};
   }
+  /// Any rough number will do.
+  [[nodiscard]] static double rounding_at(const NumberedPoint& /*point*/) { return 0; }
 };
 
 /// Answers of a group, which those of it that have none yet may share.
@@ -56,27 +64,33 @@ template <class Ask>
 class SharedAnswers {
  public:
   using Point = typename Ask::Point;
-  using Value = decltype(std::declval<Ask>()(Vec3d{}).value);
+  using Value = decltype(std::declval<Ask>()(Point{}).value);
 
   SharedAnswers(const Ask& ask, std::span<const Point> points, double gradient, double slack)
       : ask_(ask), points_(points), gradient_(gradient * (1 + 1e-9)), slack_(slack) {
     reach_.fill(-HUGE_VAL);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double rounding = ask.rounding_at(points[k]);
+      // Without a boundary winding numbers are whole: answers have a margin of nearly 1/2, wherever they come from.
+      needed_[k] = gradient_ > 0 ? rounding / gradient_ : rounding < 0.25 ? 0.0 : HUGE_VAL;
+    }
   }
 
   /// The answer of a point; once for each.
   [[nodiscard]] Value of(std::size_t k) {
     if (const std::optional<std::size_t> other = sharing(k)) {
       const double way = length(points_[k].at - points_[*other].at) * (1 + 1e-12);
-      reach_[k] = gradient_ > 0 ? reach_[*other] - way : HUGE_VAL;
+      reach_[k] = gradient_ > 0 ? reach_[*other] - way : everywhere;
       return value_[k] = value_[*other];
     }
-    const Answer<Value> found = ask_(points_[k].at);
+    const Answer<Value> found = ask_(points_[k]);
     if (!asked_.is_full()) asked_.push_back(static_cast<std::uint16_t>(k));
-    reach_[k] = gradient_ > 0 ? found.margin / gradient_ : HUGE_VAL;
+    reach_[k] = gradient_ > 0 ? found.margin / gradient_ : everywhere;
     return value_[k] = found.value;
   }
 
  private:
+  static constexpr double everywhere = std::numeric_limits<double>::max();
   /// How far in the order of the points neighbours are looked for.
   static constexpr std::size_t most_steps = 12;
 
@@ -94,7 +108,7 @@ class SharedAnswers {
 
   /// Whether the answer of one point is that of another.
   [[nodiscard]] bool holds(std::size_t from, std::size_t to) const {
-    const double free = std::min(points_[from].distance + points_[to].distance - slack_, reach_[from]);
+    const double free = std::min(points_[from].distance + points_[to].distance - slack_, reach_[from] - needed_[to]);
     return free > 0 && squared_length(points_[to].at - points_[from].at) < free * free * (1 - 1e-12);
   }
 
@@ -104,6 +118,8 @@ class SharedAnswers {
   double slack_;
   /// Of each point: as far as this its answer holds, unless a triangle lies between; negative where it has none yet.
   std::array<double, most_shared> reach_;
+  /// Of each point: how much of that reach must be left for it to take an answer.
+  std::array<double, most_shared> needed_;
   std::array<Value, most_shared> value_;
   InlineList<std::uint16_t, 64> asked_;
 };
@@ -119,7 +135,7 @@ template <class Ask>
 void share(const Ask& ask, std::span<typename Ask::Point> points, double slack) {
   using Point = typename Ask::Point;
   if (points.size() <= few || ask.winding.triangle_count() <= few_triangles) {
-    for (Point& point : points) Ask::take(point, ask(point.at).value);
+    for (Point& point : points) Ask::take(point, ask(point).value);
     return;
   }
   const Box3 box = box_around<Point>(points);

@@ -71,7 +71,7 @@ std::size_t Sides::open_site_count() const {
 
 bool Sides::is_inside(const Vec3d& query, const NearestSite& nearest) const {
   const std::optional<bool> known = is_inside_by_site(query, nearest);
-  return known ? *known : winding_->is_inside(query);
+  return known ? *known : winding_->decide(query, nearest.distance).is_inside;
 }
 
 std::optional<bool> Sides::is_inside_by_site(const Vec3d& query, const NearestSite& nearest) const {

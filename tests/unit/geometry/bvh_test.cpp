@@ -68,6 +68,23 @@ TEST(Bvh, FindsTheSmallestSiteOfExactTies) {
   }
 }
 
+/// A hundred thousand sizes from the origin closest points are rounded by more than distances are close.
+TEST(Bvh, FindsTheSmallestSiteOfTiesFarAway) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0x1.14db1b80d91fcp+16, 0x1.caa6598981641p+15, 0x1.851c8bea48491p+16},
+                   {0x1.14da521bd8723p+16, 0x1.caa72e2699b29p+15, 0x1.851cf9dbe8951p+16},
+                   {0x1.14db2d357c94dp+16, 0x1.caa69f7341026p+15, 0x1.851d2ae3be74dp+16},
+                   {0x1.14da521bd8723p+16, 0x1.caa72e2699b29p+15, 0x1.851cf9dbe8951p+16},
+                   {0x1.14db1b80d91fcp+16, 0x1.caa6598981641p+15, 0x1.851c8bea48491p+16},
+                   {0x1.14db0c102e315p+16, 0x1.caa7c25062068p+15, 0x1.851d7918b4b38p+16}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const Bvh bvh(mesh, SiteTable(mesh));
+  const Vec3d query{0x1.14dabfd64d9d8p+16, 0x1.caa5cfbe43ad1p+15, 0x1.851c52e41f1bcp+16};
+  const std::vector<NearestPrimitive> both = bvh.nearest_primitives(query, 2);
+  ASSERT_EQ(both[0].distance, both[1].distance);
+  EXPECT_EQ(bvh.nearest(query)->site, std::min(both[0].site, both[1].site));
+}
+
 TEST(Bvh, FindsTheFirstOfCopies) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -104,5 +104,15 @@ TEST(SpaceOrder, IsThatOfFullSorts) {
   }
 }
 
+/// -0.0 is no other coordinate than 0.0, also where both are the lowest.
+TEST(SpaceOrder, OfNegativeZeros) {
+  std::vector<Vec3d> points(32);
+  for (std::size_t k = 0; k < points.size(); ++k) points[k] = {k % 2 == 0 ? 0.0 : -0.0, 0, 0};
+  points[31] = {1, 0, 0};
+  expect_as_slow(points);
+  const auto order = space_order(points.size(), [&](std::size_t k) { return points[k]; }, {});
+  for (std::uint32_t k = 0; k < order.size(); ++k) EXPECT_EQ(order[k], k);
+}
+
 }  // namespace
 }  // namespace blum

@@ -253,6 +253,13 @@ TEST(HausdorffDistance, SaysWhatIsWrong) {
   EXPECT_THROW((void)hausdorff_distance(mesh, {}), InvalidMesh);
   EXPECT_THROW((void)hausdorff_distance(mesh, mesh, {.tolerance = 0}), InvalidOption);
   EXPECT_THROW((void)hausdorff_distance(mesh, mesh, {.tolerance = NAN}), InvalidOption);
+  const TriangleMesh tiny = test::moved(make_sphere({.frequency = 4}), 1e-151);
+  EXPECT_THROW((void)hausdorff_distance(mesh, tiny), InvalidMesh);
+  EXPECT_THROW((void)directed_hausdorff_distance(tiny, mesh), InvalidMesh);
+  const double corner = length(mesh.vertices[0]);
+  const HausdorffDistance small = hausdorff_distance(mesh, test::moved(tiny, 1e12), {.tolerance = 1e-6});
+  EXPECT_LE(small.lower, corner);
+  EXPECT_GE(small.upper, corner);
   std::stop_source stop;
   stop.request_stop();
   Context context;

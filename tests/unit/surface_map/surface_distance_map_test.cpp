@@ -161,6 +161,25 @@ TEST(SurfaceDistanceMap, FollowsMeshesThatMove) {
   EXPECT_THROW(mapper.move_target(other.vertices), InvalidMesh);
 }
 
+/// Triangles without texels sum up nothing, wherever they come in the order; charts whose area is lost have none.
+TEST(SurfaceDistanceMap, SaysThatTrianglesHaveNoTexels) {
+  const TriangleMesh target{
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}, {6, 5, 5}, {5, 6, 5}}, {{0, 1, 2}, {3, 4, 5}}, {}, {}};
+  const TriangleMesh other{{{0, 0, 3}}, {}, {}, {0}};
+  const double lost = 1e-155;
+  const std::vector<TexturePlace> uv{{1, 1}, {8, 1}, {1, 8}, {9, 9}, {9 + lost, 9}, {0, 0}, {lost, 0}, {0, lost}};
+  for (const Triangle& none : {Triangle{3, 3, 3}, Triangle{5, 6, 7}}) {
+    for (const bool is_first : {false, true}) {
+      const std::vector<Triangle> corners =
+          is_first ? std::vector<Triangle>{none, {0, 1, 2}} : std::vector<Triangle>{{0, 1, 2}, none};
+      const SurfaceMap map = SurfaceMapper(target, surface_atlas_from(target, uv, corners, 16, 16), other).map();
+      const SurfaceMap::FaceSummary& empty = map.faces[is_first ? 0 : 1];
+      EXPECT_TRUE(std::isnan(empty.smallest) && std::isnan(empty.largest) && std::isnan(empty.mean));
+      EXPECT_FALSE(std::isnan(map.faces[is_first ? 1 : 0].mean));
+    }
+  }
+}
+
 TEST(SurfaceDistanceMap, SumsUpTriangles) {
   const TriangleMesh target = make_organic({.frequency = 5});
   const SurfaceMap map = surface_distance_map(target, make_torus(), {.texel = 0.05});
