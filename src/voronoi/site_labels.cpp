@@ -33,28 +33,27 @@ Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// The square of a distance as a ratio.
+/// The square of a distance as a ratio; of its polar form the numerator alone depends on the points.
 template <class Number>
 struct Ratio {
   Number numerator, denominator;
 };
 
 template <class Number>
-Ratio<Number> squared_distance(const MeshView& mesh, const SiteTable& table, const Label& label, const Vec3d& q) {
+Ratio<Number> squared_distance(const MeshView& mesh, const SiteTable& table, const Label& label, const Vec3d& q,
+                               const Vec3d& r) {
   if (label.kind == SiteKind::face) {
     const auto [a, b, c] = triangle_corners(mesh, label.index);
     const Vector<Number> normal = cross(between<Number>(a, b), between<Number>(a, c));
-    const Number height = dot(normal, between<Number>(a, q));
-    return {height * height, dot(normal, normal)};
+    return {dot(normal, between<Number>(a, q)) * dot(normal, between<Number>(a, r)), dot(normal, normal)};
   }
   if (label.kind == SiteKind::edge) {
-    const auto [a, b] = table.edges()[label.index];
-    const Vector<Number> along = between<Number>(mesh.vertices[a], mesh.vertices[b]);
-    const Vector<Number> across = cross(along, between<Number>(mesh.vertices[a], q));
-    return {dot(across, across), dot(along, along)};
+    const Vec3d& a = mesh.vertices[table.edges()[label.index][0]];
+    const Vector<Number> along = between<Number>(a, mesh.vertices[table.edges()[label.index][1]]);
+    return {dot(cross(along, between<Number>(a, q)), cross(along, between<Number>(a, r))), dot(along, along)};
   }
-  const Vector<Number> from = between<Number>(mesh.vertices[label.index], q);
-  return {dot(from, from), Number(1.0)};
+  const Vec3d& v = mesh.vertices[label.index];
+  return {dot(between<Number>(v, q), between<Number>(v, r)), Number(1.0)};
 }
 
 /// Where an entry of a rising list is.
@@ -122,42 +121,98 @@ int SiteLabels::side_of_end(std::uint32_t edge, std::size_t end, const Vec3d& q)
   return sign_of([&]<class Number>(const Number&) { return dot(between<Number>(from, to), between<Number>(from, q)); });
 }
 
-bool SiteLabels::is_in_edge_domain(std::uint32_t edge, const Vec3d& q) const {
-  if (side_of_end(edge, 0, q) < 0 || side_of_end(edge, 1, q) < 0) return false;
-  for (const std::uint32_t t : sites_.triangles_of[edge]) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (table_.triangle_edges()[t][k].value == edge && side_of_triangle(t, k, q) > 0) return false;
-    }
-  }
-  return true;
-}
-
-bool SiteLabels::is_in_domain(const Label& label, const Vec3d& q) const {
-  if (label.kind == SiteKind::edge) return is_in_edge_domain(label.index, q);
+template <class Visit>
+bool SiteLabels::all_sides(const Label& label, const Vec3d& q, Visit visit) const {
   if (label.kind == SiteKind::face) {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (side_of_triangle(label.index, k, q) < 0) return false;
+      if (!visit(side_of_triangle(label.index, k, q))) return false;
+    }
+    return true;
+  }
+  if (label.kind == SiteKind::edge) {
+    for (const std::size_t end : {0U, 1U}) {
+      if (!visit(side_of_end(label.index, end, q))) return false;
+    }
+    for (const std::uint32_t t : sites_.triangles_of[label.index]) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (table_.triangle_edges()[t][k].value == label.index && !visit(-side_of_triangle(t, k, q))) return false;
+      }
     }
     return true;
   }
   const std::uint32_t k = rank_in(sites_.reflex_vertices, label.index);
   for (const std::uint32_t edge : std::span(edges_).subspan(first_[k], first_[k + 1] - first_[k])) {
-    if (side_of_end(edge, table_.edges()[edge][0] == label.index ? 0 : 1, q) > 0) return false;
+    if (!visit(-side_of_end(edge, table_.edges()[edge][0] == label.index ? 0 : 1, q))) return false;
   }
   return true;
 }
 
+bool SiteLabels::is_in_domain(const Label& label, const Vec3d& q) const {
+  return all_sides(label, q, [](int side) { return side >= 0; });
+}
+
+bool SiteLabels::is_apart(const Label& label, const Vec3d& q, const Vec3d& r) const {
+  std::vector<bool> is_outside;
+  (void)all_sides(label, q, [&](int side) {
+    is_outside.push_back(side < 0);
+    return true;
+  });
+  std::size_t plane = 0;
+  return !all_sides(label, r, [&](int side) {
+    const bool was_outside = is_outside[plane++];
+    return side >= 0 || !was_outside;
+  });
+}
+
+bool SiteLabels::is_attained(const Label& label, const Vec3d& q, const Vec3d& r) const {
+  if (label.kind == SiteKind::vertex) return true;
+  if (label.kind == SiteKind::face) return is_in_domain(label, q) && is_in_domain(label, r);
+  for (const Vec3d* at : {&q, &r}) {
+    for (const std::size_t end : {0U, 1U}) {
+      if (side_of_end(label.index, end, *at) < 0) return false;
+    }
+  }
+  return true;
+}
+
+bool SiteLabels::is_attained(const Label& a, const Label& b, const Vec3d& q, const Vec3d& r) const {
+  if (a.kind != SiteKind::face || b.kind != SiteKind::face || a == b || site_of(a) != site_of(b)) return false;
+  // The way leaves none of both through another side than the one that they share.
+  const std::array<std::array<EdgeId, 3>, 2> edges{table_.triangle_edges()[a.index], table_.triangle_edges()[b.index]};
+  bool have_common = false;
+  for (const std::size_t which : {0U, 1U}) {
+    const std::uint32_t triangle = which == 0 ? a.index : b.index;
+    const std::array<EdgeId, 3>& others = edges[1 - which];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (std::find(others.begin(), others.end(), edges[which][k]) != others.end()) {
+        have_common = true;
+      } else if (side_of_triangle(triangle, k, q) < 0 || side_of_triangle(triangle, k, r) < 0) {
+        return false;
+      }
+    }
+  }
+  return have_common;
+}
+
 int SiteLabels::compare_distances(const Label& a, const Label& b, const Vec3d& q) const {
+  return compare_polar(a, b, q, q);
+}
+
+int SiteLabels::compare_polar(const Label& a, const Label& b, const Vec3d& q, const Vec3d& r) const {
   return sign_of([&]<class Number>(const Number&) {
-    const Ratio<Number> of_a = squared_distance<Number>(mesh_, table_, a, q);
-    const Ratio<Number> of_b = squared_distance<Number>(mesh_, table_, b, q);
+    const Ratio<Number> of_a = squared_distance<Number>(mesh_, table_, a, q, r);
+    const Ratio<Number> of_b = squared_distance<Number>(mesh_, table_, b, q, r);
     return of_a.numerator * of_b.denominator - of_b.numerator * of_a.denominator;
   });
 }
 
 std::vector<Label> SiteLabels::closest_labels(const Vec3d& q) const {
+  return closest_labels(all_, q);
+}
+
+std::vector<Label> SiteLabels::closest_labels(std::span<const Label> among, const Vec3d& q) const {
   std::vector<Label> out;
-  for (const Label& label : all_) {
+  for (const Label& label : among) {
     if (!is_in_domain(label, q)) continue;
     const int comparison = out.empty() ? -1 : compare_distances(label, out[0], q);
     if (comparison > 0) continue;
@@ -165,6 +220,20 @@ std::vector<Label> SiteLabels::closest_labels(const Vec3d& q) const {
     out.push_back(label);
   }
   return out;
+}
+
+bool SiteLabels::are_incident(const Label& a, const Label& b) const {
+  const Label& more = a.kind > b.kind ? a : b;  // kinds are counted by dimension
+  const Label& less = a.kind > b.kind ? b : a;
+  if (more.kind == SiteKind::face && less.kind == SiteKind::edge) {
+    const auto& edges = table_.triangle_edges()[more.index];
+    return std::any_of(edges.begin(), edges.end(), [&](const EdgeId& edge) { return edge.value == less.index; });
+  }
+  if (more.kind == SiteKind::edge && less.kind == SiteKind::vertex) {
+    const Segment& ends = table_.edges()[more.index];
+    return ends[0] == less.index || ends[1] == less.index;
+  }
+  return false;
 }
 
 SignCounts SiteLabels::counts() const {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "blum/core/vec3.hpp"
@@ -56,20 +57,41 @@ class SiteLabels {
   [[nodiscard]] int side_of_end(std::uint32_t edge, std::size_t end, const Vec3d& q) const;
   /// Whether a point is in a label's domain, borders included.
   [[nodiscard]] bool is_in_domain(const Label& label, const Vec3d& q) const;
+  /// Whether two points lie strictly outside of one and the same plane of a label's domain: then so does all between
+  /// them.
+  [[nodiscard]] bool is_apart(const Label& label, const Vec3d& q, const Vec3d& r) const;
+  /// Whether the distance from a label's plane, line or point is that of a point of the surface all the way between two
+  /// points: over a triangle, in the slab of an edge, and for vertices anywhere.
+  [[nodiscard]] bool is_attained(const Label& label, const Vec3d& q, const Vec3d& r) const;
+  /// The same of two triangles of one face that share an edge: whether the way from one point to the other is over
+  /// both.
+  [[nodiscard]] bool is_attained(const Label& a, const Label& b, const Vec3d& q, const Vec3d& r) const;
   /// The sign of the distance from one label's plane, line or point less that from another's.
   [[nodiscard]] int compare_distances(const Label& a, const Label& b, const Vec3d& q) const;
+  /// The same of the polar form of both squared distances. Squared distances are quadratic: at a point with weights
+  /// w_k of points q_k their difference is the sum of w_i w_j times the polar form at q_i and q_j. So a label is
+  /// further than another one all over a convex hull where this is 1 for all pairs of its corners.
+  [[nodiscard]] int compare_polar(const Label& a, const Label& b, const Vec3d& q, const Vec3d& r) const;
 
   /// The labels that a point is closest to, exactly: more than one on walls. For any point, as far as labels go:
   /// outside of the solid, where other edges and vertices are closest, this is of no use. Cost: O(labels); the slow
   /// reference for what is faster.
   [[nodiscard]] std::vector<Label> closest_labels(const Vec3d& q) const;
+  /// Those of some labels, among which all closest ones must be.
+  [[nodiscard]] std::vector<Label> closest_labels(std::span<const Label> among, const Vec3d& q) const;
+  /// Whether one label is a triangle and the other one of its edges, or an edge and one of its ends: then squared
+  /// distances differ by a square, which is 0 on the plane that parts their domains.
+  [[nodiscard]] bool are_incident(const Label& a, const Label& b) const;
 
   [[nodiscard]] SignCounts counts() const;
 
  private:
   template <class Expression>
   [[nodiscard]] int sign_of(const Expression& expression) const;
-  [[nodiscard]] bool is_in_edge_domain(std::uint32_t edge, const Vec3d& q) const;
+  /// Calls visit(side of a plane of a label's domain that a point lies on, 1 inside) until it returns false; whether
+  /// none did.
+  template <class Visit>
+  bool all_sides(const Label& label, const Vec3d& q, Visit visit) const;
 
   const MeshView mesh_;
   const SiteTable& table_;

@@ -15,6 +15,7 @@
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
 #include "blum/solid/solid.hpp"
+#include "support/labelled_solid.hpp"
 #include "support/mesh_places.hpp"
 #include "voronoi/bounded_number.hpp"
 
@@ -22,31 +23,11 @@ namespace blum {
 namespace {
 
 using boost::multiprecision::cpp_rational;
+using test::LabelledSolid;
 using voronoi::BoundedNumber;
 using voronoi::Label;
-using voronoi::SiteLabels;
 
-/// A polyhedron with what its labels need.
-struct Labelled {
-  explicit Labelled(TriangleMesh given)
-      : mesh(std::move(given)), table(mesh), sites(polyhedron_sites(mesh, table)), labels(mesh, table, sites) {}
-
-  TriangleMesh mesh;
-  SiteTable table;
-  PolyhedronSites sites;
-  SiteLabels labels;
-};
-
-/// A box with a void whose corners are sites.
-TriangleMesh box_with_void() {
-  TriangleMesh mesh = test::box_between({-2, -2, -2}, {2, 2, 2});
-  TriangleMesh hole = test::box_between({-1, -1, -1}, {1, 1, 1});
-  reverse_triangles(hole);
-  append(mesh, hole);
-  return mesh;
-}
-
-std::set<std::uint32_t> closest_sites(const Labelled& solid, const Vec3d& q) {
+std::set<std::uint32_t> closest_sites(const LabelledSolid& solid, const Vec3d& q) {
   std::set<std::uint32_t> out;
   for (const Label& label : solid.labels.closest_labels(q)) out.insert(solid.labels.site_of(label));
   return out;
@@ -82,7 +63,7 @@ TEST(BoundedNumber, BoundsHoldRationalNumbers) {
 }
 
 TEST(SiteLabels, TiesOfABox) {
-  const Labelled box(test::box_between({-1, -1, -1}, {1, 1, 1}));
+  const LabelledSolid box(test::box_between({-1, -1, -1}, {1, 1, 1}));
   EXPECT_EQ(closest_sites(box, {0, 0, 0}).size(), 6U);
   EXPECT_EQ(closest_sites(box, {0.5, 0.5, 0.5}).size(), 3U);
   EXPECT_EQ(closest_sites(box, {0.5, 0.5, 0.25}).size(), 2U);
@@ -91,7 +72,7 @@ TEST(SiteLabels, TiesOfABox) {
 }
 
 TEST(SiteLabels, TiesBetweenFacesEdgesAndVertices) {
-  const Labelled solid(box_with_void());
+  const LabelledSolid solid(test::box_with_void());
   ASSERT_EQ(solid.labels.site_count(), 32U);
   // On the border of the domains of a face and its edge both are closest, on the vertex's axis three edges, too.
   EXPECT_EQ(closest_sites(solid, {1.25, 1, 0.125}).size(), 2U);
@@ -105,7 +86,7 @@ TEST(SiteLabels, TiesBetweenFacesEdgesAndVertices) {
 }
 
 /// What rational arithmetic says without any filter.
-int slow_comparison(const Labelled& solid, const Label& a, const Label& b, const Vec3d& q) {
+int slow_comparison(const LabelledSolid& solid, const Label& a, const Label& b, const Vec3d& q) {
   using Q = cpp_rational;
   using Point = std::array<Q, 3>;
   const auto exact = [](const Vec3d& v) { return Point{Q(v.x), Q(v.y), Q(v.z)}; };
@@ -145,11 +126,11 @@ int slow_comparison(const Labelled& solid, const Label& a, const Label& b, const
 }
 
 TEST(SiteLabels, ComparisonsAreThoseOfRationalNumbers) {
-  TriangleMesh turned = box_with_void();
+  TriangleMesh turned = test::box_with_void();
   for (Vec3d& v : turned.vertices) v = test::turned(v);
   Random random(3);
-  for (const TriangleMesh& mesh : {box_with_void(), turned, make_star({})}) {
-    const Labelled solid(mesh);
+  for (const TriangleMesh& mesh : {test::box_with_void(), turned, make_star({})}) {
+    const LabelledSolid solid(mesh);
     const std::vector<Label>& all = solid.labels.all();
     for (int round = 0; round < 3000; ++round) {
       const Label& a = all[random.below(all.size())];
@@ -172,7 +153,7 @@ TEST_P(SiteLabelsOfShapes, ClosestAreThoseOfASearch) {
   for (Vec3d& p : mesh.vertices) p = test::turned(p);
   const Solid found = Solid::of(mesh);
   if (found.rule() != SolidRule::polyhedron) GTEST_SKIP() << "no polyhedron: " << found.reason();
-  const Labelled solid(found.bodies()[0].mesh);
+  const LabelledSolid solid(found.bodies()[0].mesh);
   const ClosestPointQuery query(solid.mesh, {.sign = SignMode::normals});
   const Box3 box = bounds(solid.mesh);
   Random random(4);
