@@ -5,7 +5,6 @@
 #include <numeric>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "blum/complex/complex.hpp"
@@ -110,8 +109,8 @@ bool has_area(const MeshView& mesh) {
   return false;
 }
 
-/// Files that hold points, and no mesh.
-const std::array<std::string_view, 5> cloud_extensions{".npy", ".npz", ".csv", ".xyz", ".txt"};
+/// Extensions of files that hold points, and no mesh. (A .vtp may hold polygons, whose area would be lost.)
+const std::vector<std::string> cloud_extensions{".npy", ".npz", ".csv", ".xyz", ".txt"};
 
 TriangleMesh read_surface(const fs::path& path, std::optional<double> weld) {
   if (std::find(cloud_extensions.begin(), cloud_extensions.end(), file_extension(path)) == cloud_extensions.end()) {
@@ -215,8 +214,8 @@ void add_hausdorff_command(const CommandLine& line) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = line.app.add_subcommand(
       "hausdorff", "How far two meshes are from each other at most: an interval that is certain, with means by area");
-  const std::string help =
-      "A mesh, or points (.npy .npz .csv .xyz .txt). " + extensions_help({FileContent::mesh}, FileAccess::read);
+  const std::string help = extensions_help({FileContent::mesh}, FileAccess::read) + ", or points (" +
+                           join_words(cloud_extensions, "or") + ")";
   command->add_option("A", a->a, help)->required();
   command->add_option("B", a->b, help)->required();
   add_text_option(*command, "-o,--output", a->output, "FILE",

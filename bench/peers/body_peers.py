@@ -21,6 +21,7 @@ import coal
 import fcl
 import ipctk
 import numpy as np
+from timing import best_of
 
 
 def read(path):
@@ -47,15 +48,6 @@ def poses(scene, gap):
             low, high = (low, middle) if scene.separation(0, 1).distance > gap else (middle, high)
         out.append((rotation, np.array([high, 0.1, 0.05])))
     return out
-
-
-def best_of(runs, body):
-    times = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        value = body()
-        times.append(time.perf_counter() - start)
-    return min(times), value
 
 
 def coal_model(vertices, triangles):

@@ -17,15 +17,7 @@ import time
 
 import blum
 import numpy as np
-
-
-def best_of(runs, body):
-    times = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        value = body()
-        times.append(time.perf_counter() - start)
-    return min(times), value
+from timing import best_of
 
 
 def points_about(vertices, triangles, count):

@@ -13,19 +13,10 @@ import json
 import math
 import pathlib
 import sys
-import time
 
 import blum
 import numpy as np
-
-
-def best_of(runs, body):
-    times = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        value = body()
-        times.append(time.perf_counter() - start)
-    return min(times), value
+from timing import best_of
 
 
 def fitted(vertices, goal):

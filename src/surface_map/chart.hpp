@@ -47,10 +47,6 @@ class Chart {
   [[nodiscard]] Vec3d in_plane(const TexturePlace& at) const {
     return corners_[0] + along_x_ * (at.x - places_[0].x) + along_y_ * (at.y - places_[0].y);
   }
-  /// Whether a place lies in the chart, border included.
-  [[nodiscard]] bool contains(const TexturePlace& at) const {
-    return !beyond(0, at) && !beyond(1, at) && !beyond(2, at);
-  }
   /// The point of the triangle for a place: of those beyond the border, the closest one to where the plane has them.
   [[nodiscard]] Vec3d on_triangle(const TexturePlace& at) const {
     const Vec3d point = in_plane(at);

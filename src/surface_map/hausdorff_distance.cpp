@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -419,17 +418,8 @@ class MeshPair {
       return;
     }
     const Context half{.threads = threads / 2, .cancel = context.cancel};
-    std::array<std::exception_ptr, 2> failures;
-    parallel_for(context, 2, 1, "", [&](const WorkRange& range) {
-      try {
-        surfaces_[range.begin].emplace(meshes_[range.begin], half);
-      } catch (...) {
-        failures[range.begin] = std::current_exception();
-      }
-    });
-    for (const std::exception_ptr& failure : failures) {
-      if (failure) std::rethrow_exception(failure);
-    }
+    parallel_for(context, 2, 1, "",
+                 [&](const WorkRange& range) { surfaces_[range.begin].emplace(meshes_[range.begin], half); });
   }
 
   std::size_t max_points_;

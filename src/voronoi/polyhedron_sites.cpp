@@ -9,6 +9,7 @@
 #include "blum/core/union_find.hpp"
 #include "blum/geometry/orient3d.hpp"
 #include "voronoi/dual_cone.hpp"
+#include "voronoi/edges_of_vertices.hpp"
 
 namespace blum {
 namespace {
@@ -76,26 +77,6 @@ void number_faces(const MeshView& mesh, PolyhedronSites& out) {
   }
 }
 
-/// The edges of each vertex: of v all[first[v]] ... all[first[v + 1] - 1].
-struct EdgesOfVertices {
-  std::vector<std::uint32_t> first, all;
-
-  explicit EdgesOfVertices(const SiteTable& sites) : first(sites.vertex_count() + 1, 0) {
-    for (const Segment& ends : sites.edges()) {
-      for (const std::uint32_t v : ends) ++first[v + 1];
-    }
-    for (std::size_t v = 0; v + 1 < first.size(); ++v) first[v + 1] += first[v];
-    all.resize(first.back());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (std::uint32_t edge = 0; edge < sites.edges().size(); ++edge) {
-      for (const std::uint32_t v : sites.edges()[edge]) all[next[v]++] = edge;
-    }
-  }
-  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t v) const {
-    return std::span(all).subspan(first[v], first[v + 1] - first[v]);
-  }
-};
-
 /// Whether points inside are closest to a vertex that fill a cone.
 bool is_reflex_vertex(const MeshView& mesh, const SiteTable& sites, const PolyhedronSites& found, std::uint32_t v,
                       std::span<const std::uint32_t> edges) {
@@ -130,7 +111,7 @@ PolyhedronSites polyhedron_sites(const MeshView& mesh, const SiteTable& sites, c
   for (std::uint32_t edge = 0; edge < out.turn.size(); ++edge) {
     if (out.turn[edge] == EdgeTurn::reflex) out.reflex_edges.push_back(edge);
   }
-  const EdgesOfVertices edges(sites);
+  const voronoi::EdgesOfVertices edges(sites);
   out.reflex_vertices = detail::gather<std::uint32_t>(context, mesh.vertices.size(), vertices_per_range, "sites",
                                                       [&](std::size_t v, std::vector<std::uint32_t>& list) {
                                                         const auto vertex = static_cast<std::uint32_t>(v);

@@ -64,24 +64,10 @@ std::uint32_t rank_in(const std::vector<std::uint32_t>& list, std::uint32_t entr
 }  // namespace
 
 SiteLabels::SiteLabels(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites)
-    : mesh_(mesh), table_(table), sites_(sites) {
+    : mesh_(mesh), table_(table), sites_(sites), edges_(table) {
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) all_.push_back({SiteKind::face, t});
   for (const std::uint32_t edge : sites.reflex_edges) all_.push_back({SiteKind::edge, edge});
   for (const std::uint32_t v : sites.reflex_vertices) all_.push_back({SiteKind::vertex, v});
-  const auto& reflex = sites.reflex_vertices;
-  const auto for_each_use = [&](auto use) {
-    for (std::uint32_t edge = 0; edge < table.edges().size(); ++edge) {
-      for (const std::uint32_t v : table.edges()[edge]) {
-        if (std::binary_search(reflex.begin(), reflex.end(), v)) use(rank_in(reflex, v), edge);
-      }
-    }
-  };
-  first_.assign(reflex.size() + 1, 0);
-  for_each_use([&](std::uint32_t k, std::uint32_t) { ++first_[k + 1]; });
-  for (std::size_t k = 0; k < reflex.size(); ++k) first_[k + 1] += first_[k];
-  edges_.resize(first_.back());
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for_each_use([&](std::uint32_t k, std::uint32_t edge) { edges_[next[k]++] = edge; });
 }
 
 std::uint32_t SiteLabels::site_of(const Label& label) const {
@@ -140,8 +126,7 @@ bool SiteLabels::all_sides(const Label& label, const Vec3d& q, Visit visit) cons
     }
     return true;
   }
-  const std::uint32_t k = rank_in(sites_.reflex_vertices, label.index);
-  for (const std::uint32_t edge : std::span(edges_).subspan(first_[k], first_[k + 1] - first_[k])) {
+  for (const std::uint32_t edge : edges_.of(label.index)) {
     if (!visit(-side_of_end(edge, table_.edges()[edge][0] == label.index ? 0 : 1, q))) return false;
   }
   return true;

@@ -12,6 +12,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
+#include "voronoi/edges_of_vertices.hpp"
 
 namespace blum::voronoi {
 
@@ -97,8 +98,7 @@ class SiteLabels {
   const SiteTable& table_;
   const PolyhedronSites& sites_;
   std::vector<Label> all_;
-  /// Edges of reflex vertex k: edges_[first_[k] .. first_[k + 1]).
-  std::vector<std::uint32_t> first_, edges_;
+  EdgesOfVertices edges_;
   mutable std::atomic<std::size_t> asked_{0};
   mutable std::atomic<std::size_t> exact_{0};
 };

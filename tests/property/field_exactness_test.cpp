@@ -16,6 +16,7 @@
 #include "support/back_ends.hpp"
 #include "support/field_check.hpp"
 #include "support/nasty_soup.hpp"
+#include "support/shape_names.hpp"
 
 namespace blum {
 namespace {
@@ -50,19 +51,14 @@ TEST_P(CatalogFields, AreExactAtEveryNode) {
                context({.threads = 2}), std::min<std::size_t>(brute_nodes, usually<std::size_t>(5000, 500)));
 }
 
-std::vector<std::string> catalog_names() {
-  std::vector<std::string> names;
-  for (const ShapeInfo& shape : shape_catalog()) names.push_back(shape.name);
-  return names;
-}
-
 INSTANTIATE_TEST_SUITE_P(SlowShapes, CatalogFields,
-                         testing::Combine(testing::ValuesIn(catalog_names()),
+                         testing::Combine(testing::ValuesIn(test::catalog_names()),
                                           testing::Values(test::BackEnd::cpu, test::BackEnd::device)),
                          test::name_and_back_end);
 // Small enough for the sanitizers.
 INSTANTIATE_TEST_SUITE_P(Shapes, CatalogFields,
-                         testing::Combine(testing::ValuesIn(catalog_names()), testing::Values(test::BackEnd::host)),
+                         testing::Combine(testing::ValuesIn(test::catalog_names()),
+                                          testing::Values(test::BackEnd::host)),
                          test::name_and_back_end);
 
 constexpr FieldOptions is_unsigned{.sign = SignMode::none};

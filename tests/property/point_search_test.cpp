@@ -15,9 +15,9 @@
 #include "blum/shapes/shape_catalog.hpp"
 #include "field/cpu/tile_kernel.hpp"
 #include "support/data.hpp"
-#include "support/medial_check.hpp"
 #include "support/mesh_places.hpp"
 #include "support/nasty_soup.hpp"
+#include "support/shape_names.hpp"
 
 namespace blum {
 namespace {
@@ -100,13 +100,7 @@ TEST_P(PointSearchOfShapes, FindsWhatEachQueryFindsAlone) {
   expect_as_alone(mesh, {.sign = SignMode::none, .max_distance = 0.05 * bounds(mesh).diagonal()}, 2);
 }
 
-std::vector<std::string> catalog_names() {
-  std::vector<std::string> names;
-  for (const ShapeInfo& shape : shape_catalog()) names.push_back(shape.name);
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Shapes, PointSearchOfShapes, testing::ValuesIn(catalog_names()),
+INSTANTIATE_TEST_SUITE_P(Shapes, PointSearchOfShapes, testing::ValuesIn(test::catalog_names()),
                          [](const auto& info) { return test::test_name(info.param); });
 
 TEST(PointSearch, TellsSignsAsEachQueryAlone) {
@@ -213,16 +207,7 @@ TEST(PointSearch, FindsWhatEachQueryFindsAloneInACrowd) {
 
 /// So close to an open sheet that rounding may tell the side: whoever asks gets the same.
 TEST(PointSearch, TellsSignsNextToASheetAsEachQueryAlone) {
-  constexpr std::uint32_t n = 18;
-  TriangleMesh sheet;
-  for (std::uint32_t k = 0; k < (n + 1) * (n + 1); ++k) {
-    sheet.vertices.push_back({static_cast<double>(k % (n + 1)) / n, static_cast<double>(k / (n + 1)) / n, 0});
-  }
-  for (std::uint32_t k = 0; k < n * n; ++k) {
-    const std::uint32_t corner = k / n * (n + 1) + k % n;
-    sheet.triangles.push_back({corner, corner + 1, corner + n + 2});
-    sheet.triangles.push_back({corner, corner + n + 2, corner + n + 1});
-  }
+  const TriangleMesh sheet = test::flat_sheet(18);
   for (const double height : {1e-12, 1e-10, 1e-9, 1e-8, 1e-6, 1e-3}) {
     SCOPED_TRACE(height);
     std::vector<Vec3d> queries;

@@ -17,8 +17,8 @@
 #include "blum/surface_map/surface_distance_map.hpp"
 #include "support/data.hpp"
 #include "support/map_reading.hpp"
-#include "support/medial_check.hpp"
 #include "support/mesh_places.hpp"
+#include "support/shape_names.hpp"
 
 namespace blum {
 namespace {
@@ -110,13 +110,7 @@ TEST_P(SurfaceMapOfShapes, KeepsItsErrorsAsTheOtherMesh) {
   expect_errors_hold(target, fitted(shape, target), 2);
 }
 
-std::vector<std::string> catalog_names() {
-  std::vector<std::string> names;
-  for (const ShapeInfo& shape : shape_catalog()) names.push_back(shape.name);
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Shapes, SurfaceMapOfShapes, testing::ValuesIn(catalog_names()),
+INSTANTIATE_TEST_SUITE_P(Shapes, SurfaceMapOfShapes, testing::ValuesIn(test::catalog_names()),
                          [](const auto& info) { return test::test_name(info.param); });
 
 TEST(SlowSurfaceMap, KeepsItsErrorsOnRealMeshes) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -16,19 +15,12 @@
 #include "blum/field/closest_points.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
+#include "support/shape_names.hpp"
 
 namespace blum::test {
 
 /// From nothing left out to almost nothing kept; 90 degrees is the angle of many sheets.
 inline constexpr std::array<double, 6> angles{0, 20, 60, 90, 120, 170};
-
-/// Letters and digits, as names of tests may have.
-inline std::string test_name(std::string name) {
-  for (char& c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  }
-  return name;
-}
 
 /// Betti numbers of a complex as it is written.
 inline BettiNumbers betti_of(const Complex& complex) {

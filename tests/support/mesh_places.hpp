@@ -38,6 +38,23 @@ inline TriangleMesh unwelded(const MeshView& mesh) {
   return out;
 }
 
+/// A unit square of n x n cells in the plane z = 0.
+inline TriangleMesh flat_sheet(std::uint32_t n) {
+  TriangleMesh out;
+  for (std::uint32_t j = 0; j <= n; ++j) {
+    for (std::uint32_t i = 0; i <= n; ++i)
+      out.vertices.push_back({static_cast<double>(i) / n, static_cast<double>(j) / n, 0});
+  }
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t corner = j * (n + 1) + i;
+      out.triangles.push_back({corner, corner + 1, corner + n + 2});
+      out.triangles.push_back({corner, corner + n + 2, corner + n + 1});
+    }
+  }
+  return out;
+}
+
 /// Triangles of every awkward kind, with free segments and points among them.
 inline TriangleMesh awkward_soup(std::size_t triangles, std::uint64_t seed) {
   TriangleMesh mesh = make_soup({.triangles = triangles, .awkward = 0.7, .seed = seed});

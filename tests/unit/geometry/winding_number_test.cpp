@@ -44,23 +44,6 @@ void expect_like_brute_force(const TriangleMesh& mesh, std::uint64_t seed, std::
   }
 }
 
-/// A unit square of n x n cells in the plane z = 0.
-TriangleMesh make_grid_sheet(std::uint32_t n) {
-  TriangleMesh out;
-  for (std::uint32_t j = 0; j <= n; ++j) {
-    for (std::uint32_t i = 0; i <= n; ++i)
-      out.vertices.push_back({static_cast<double>(i) / n, static_cast<double>(j) / n, 0});
-  }
-  for (std::uint32_t j = 0; j < n; ++j) {
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const std::uint32_t corner = j * (n + 1) + i;
-      out.triangles.push_back({corner, corner + 1, corner + n + 2});
-      out.triangles.push_back({corner, corner + n + 2, corner + n + 1});
-    }
-  }
-  return out;
-}
-
 TEST(WindingNumber, KeepsItsBoundsOnSoups) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     expect_like_brute_force(make_soup({.triangles = 40 * seed, .triangle_size = 0.5, .awkward = 0.6, .seed = seed}),
@@ -110,7 +93,7 @@ TEST(WindingNumber, DecidesWithAMargin) {
 
 /// Next to a flat sheet w is 1/2 less what the border of the sheet takes, about as much as rounding makes of it.
 TEST(WindingNumber, HasNoMarginWhereRoundingDecides) {
-  const WindingNumber sheet(make_grid_sheet(18));
+  const WindingNumber sheet(test::flat_sheet(18));
   for (int k = 1; k < 400; ++k) {
     const double at = (k % 40 + 0.5) / 40;
     for (const double height : {1e-13, 1e-11, 1e-9, -1e-9, -1e-11, -1e-13}) {

@@ -16,6 +16,7 @@
 #include "blum/shapes/shape_catalog.hpp"
 #include "blum/solid/solid.hpp"
 #include "support/labelled_solid.hpp"
+#include "support/shape_names.hpp"
 
 namespace blum {
 namespace {
@@ -143,18 +144,8 @@ TEST_P(SegmentLabelsOfShapes, AreRightWhereFacesAreBent) {
   EXPECT_GT(look_along_many(LabelledSolid(found.bodies()[0].mesh)).told, 0U);
 }
 
-std::vector<std::string> catalog_names() {
-  std::vector<std::string> names;
-  for (const ShapeInfo& shape : shape_catalog()) names.push_back(shape.name);
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Shapes, SegmentLabelsOfShapes, testing::ValuesIn(catalog_names()), [](const auto& info) {
-  std::string name = info.param;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Shapes, SegmentLabelsOfShapes, testing::ValuesIn(test::catalog_names()),
+                         [](const auto& info) { return test::test_name(info.param); });
 
 }  // namespace
 }  // namespace blum

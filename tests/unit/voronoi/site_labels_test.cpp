@@ -17,6 +17,7 @@
 #include "blum/solid/solid.hpp"
 #include "support/labelled_solid.hpp"
 #include "support/mesh_places.hpp"
+#include "support/shape_names.hpp"
 #include "voronoi/bounded_number.hpp"
 
 namespace blum {
@@ -192,18 +193,8 @@ TEST_P(SiteLabelsOfShapes, ClosestAreThoseOfASearch) {
   EXPECT_GT(asked, 3U);
 }
 
-std::vector<std::string> catalog_names() {
-  std::vector<std::string> names;
-  for (const ShapeInfo& shape : shape_catalog()) names.push_back(shape.name);
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Shapes, SiteLabelsOfShapes, testing::ValuesIn(catalog_names()), [](const auto& info) {
-  std::string name = info.param;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Shapes, SiteLabelsOfShapes, testing::ValuesIn(test::catalog_names()),
+                         [](const auto& info) { return test::test_name(info.param); });
 
 }  // namespace
 }  // namespace blum

@@ -1,0 +1,27 @@
+// Blum: the generated shapes, as names of tests. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cctype>
+#include <string>
+#include <vector>
+
+#include "blum/shapes/shape_catalog.hpp"
+
+namespace blum::test {
+
+/// Letters and digits, as names of tests may have.
+inline std::string test_name(std::string name) {
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return name;
+}
+
+/// Those of all shapes.
+inline std::vector<std::string> catalog_names() {
+  std::vector<std::string> names;
+  for (const ShapeInfo& shape : shape_catalog()) names.push_back(shape.name);
+  return names;
+}
+
+}  // namespace blum::test
