@@ -1,0 +1,114 @@
+// Blum: an octree with the edges, squares and cubes of its leaves. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "voronoi/line_labels.hpp"
+
+namespace blum::voronoi {
+
+/// A node of the finest grid, 0 to Lattice::most along each axis.
+using Node = std::array<std::uint32_t, 3>;
+
+/// The axis after an axis: x, y, z, x, ...
+constexpr std::size_t after(std::size_t axis) {
+  return (axis + 1) % 3;
+}
+
+/// Where the nodes of the finest grid are.
+struct Lattice {
+  static constexpr int depth = 20;
+  static constexpr std::uint32_t most = 1U << depth;
+
+  Vec3d origin;
+  double unit = 1;  ///< distance of neighbouring nodes
+
+  [[nodiscard]] double at(std::size_t axis, std::uint32_t k) const { return origin[axis] + unit * k; }
+  [[nodiscard]] Vec3d at(const Node& node) const { return {at(0, node[0]), at(1, node[1]), at(2, node[2])}; }
+};
+
+/// Numbers of edges, squares and cubes; children are numbered one after the other.
+using CellId = std::uint32_t;
+constexpr CellId no_cell = UINT32_MAX;
+
+/// An edge of the grid, and what is closest along it.
+struct GridEdge {
+  Node low{};
+  std::uint32_t length = 0;
+  std::uint8_t axis = 0;
+  LabelIndex first = outside;                     ///< closest at its lower end
+  LabelIndex last = outside;                      ///< closest at its upper end
+  std::uint32_t first_event = 0, last_event = 0;  ///< its events, of CellTree::events
+  CellId children = no_cell;                      ///< the first of two
+};
+
+/// What a sub-square's border tells once its inside is known.
+enum class SquareState : std::uint8_t { unknown, resolved, undecided };
+
+/// A square across an axis; u is the axis after it, and v the one after u.
+struct GridSquare {
+  Node low{};
+  std::uint32_t length = 0;
+  std::uint8_t axis = 0;
+  SquareState state = SquareState::unknown;
+  /// Along u at the lower v, along v at the upper u, along u at the upper v, along v at the lower u.
+  std::array<CellId, 4> edges{};
+  CellId children = no_cell;     ///< the first of four: u counts first
+  CellId inner_edges = no_cell;  ///< the first of four: along u below and above the middle, along v likewise
+  std::vector<LabelIndex> governors;
+  std::vector<std::uint32_t> triangles;  ///< that may meet it
+  /// Events of its border that the surface in it joins: where it enters and leaves.
+  std::vector<std::array<std::uint32_t, 2>> chains;
+};
+
+enum class CubeState : std::uint8_t { unknown, trivial, passed, failed, split };
+
+struct GridCube {
+  Node low{};
+  std::uint32_t length = 0;
+  CubeState state = CubeState::unknown;
+  std::array<CellId, 6> squares{};  ///< below and above across x, y, z
+  CellId children = no_cell;        ///< the first of eight: x counts first, then y
+  std::vector<LabelIndex> governors;
+  std::vector<std::uint32_t> triangles;  ///< that may meet it
+  std::size_t governors_of_parent = 0;
+};
+
+/// A vertex, edge or triangle of the surface is in a square or cube as the grid's planes are by simulation of
+/// simplicity (grid_predicates.hpp).
+struct CellTree {
+  Lattice lattice;
+  std::vector<LineEvent> events;
+  std::vector<GridEdge> edges;
+  std::vector<GridSquare> squares;
+  std::vector<GridCube> cubes;
+
+  /// Calls visit(edge without children, whether it is traversed downwards) for what an edge consists of.
+  template <class Visit>
+  void visit_leaf_edges(CellId edge, bool is_down, const Visit& visit) const {
+    const GridEdge& e = edges[edge];
+    if (e.children == no_cell) {
+      visit(edge, is_down);
+      return;
+    }
+    visit_leaf_edges(e.children + (is_down ? 1U : 0U), is_down, visit);
+    visit_leaf_edges(e.children + (is_down ? 0U : 1U), is_down, visit);
+  }
+  /// Calls visit(square without children) for what a square consists of.
+  template <class Visit>
+  void visit_leaf_squares(CellId square, const Visit& visit) const {
+    const GridSquare& s = squares[square];
+    if (s.children == no_cell) {
+      visit(square);
+      return;
+    }
+    for (CellId k = 0; k < 4; ++k) visit_leaf_squares(s.children + k, visit);
+  }
+};
+
+}  // namespace blum::voronoi

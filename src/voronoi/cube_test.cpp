@@ -1,0 +1,562 @@
+#include "voronoi/cube_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "blum/core/union_find.hpp"
+
+namespace blum::voronoi {
+
+/// One run of the test.
+class CubeAnalysis {
+ public:
+  CubeAnalysis(const CubeTest& test, const GridCube& cube) : t_(test), cube_(cube) {}
+
+  CubeCells run() {
+    CubeCells out;
+    out.obstacle = find_obstacle();
+    out.site = site_;
+    if (out.obstacle != CubeObstacle::none) return out;
+    std::map<std::uint32_t, std::uint32_t> number;
+    for (const Square& square : squares_) {
+      CubeCells::Square& made = out.squares.emplace_back();
+      made.square = square.id;
+      for (std::uint32_t k = 0; k < square.cells.component_count; ++k) {
+        const auto [at, is_new] = number.try_emplace(walls_.find(square.first_wall + k), out.component_count);
+        if (is_new) ++out.component_count;
+        made.component.push_back(at->second);
+      }
+    }
+    return out;
+  }
+
+ private:
+  struct Square {
+    CellId id = no_cell;
+    std::uint32_t side = 0;  ///< 2 axis + 1 where it is the upper one
+    SquareCells cells;
+    std::uint32_t first_piece = 0, first_wall = 0, first_body = 0;
+  };
+  /// A connected part of a site's region on the boundary.
+  struct Region {
+    std::uint32_t site = outside;
+    bool exits = false;    ///< whether a way to a footprint leaves the cube from it
+    bool touches = false;  ///< whether the site meets the boundary in it
+  };
+  /// The part of a face in the cube that is connected there: regions that it touches.
+  struct FacePart {
+    std::uint32_t face = 0;
+    std::set<std::uint32_t> touched;
+  };
+
+  CubeObstacle find_obstacle() {
+    if (!collect()) return CubeObstacle::square;
+    join_across_edges();
+    find_regions();
+    if (!find_surface()) return CubeObstacle::contradiction;
+    CubeObstacle obstacle = check_vertices();
+    if (obstacle == CubeObstacle::none) obstacle = check_edges();
+    if (obstacle == CubeObstacle::none) obstacle = check_faces();
+    if (obstacle == CubeObstacle::none) obstacle = check_solid();
+    if (obstacle == CubeObstacle::none) obstacle = check_joins();
+    return obstacle;
+  }
+
+  bool collect() {
+    bool is_resolved = true;
+    std::uint32_t pieces = 0;
+    std::uint32_t walls = 0;
+    std::uint32_t bodies = 0;
+    for (std::uint32_t side = 0; side < 6; ++side) {
+      t_.tree_.visit_leaf_squares(cube_.squares[side], [&](CellId id) {
+        const GridSquare& square = t_.tree_.squares[id];
+        if (square.state != SquareState::resolved) is_resolved = false;
+        if (!is_resolved) return;
+        Square made{id, side, square_cells(t_.tree_, t_.labels_, square), pieces, walls, bodies};
+        pieces += static_cast<std::uint32_t>(made.cells.pieces.size());
+        walls += made.cells.component_count;
+        bodies += made.cells.body_count;
+        squares_.push_back(std::move(made));
+      });
+    }
+    pieces_.reset(pieces);
+    walls_.reset(walls);
+    bodies_.reset(bodies);
+    return is_resolved;
+  }
+
+  /// Joins what is on both sides of an edge of the grid.
+  void join_across_edges() {
+    struct AtArc {
+      EdgeArc arc;
+      std::uint32_t piece, body;
+      LabelIndex label;
+    };
+    std::vector<AtArc> arcs;
+    std::vector<std::array<std::uint32_t, 2>> events;
+    for (const Square& square : squares_) {
+      for (const auto& [arc, run] : square.cells.arcs) {
+        const SquareCells::Run& of = square.cells.runs[run];
+        arcs.push_back({arc, square.first_piece + of.piece, square.first_body + of.body, of.label});
+      }
+      for (std::size_t k = 0; k < square.cells.events.size(); ++k) {
+        events.push_back({square.cells.events[k], square.first_wall + square.cells.component[k]});
+      }
+    }
+    std::sort(arcs.begin(), arcs.end(), [](const AtArc& a, const AtArc& b) { return a.arc < b.arc; });
+    std::sort(events.begin(), events.end());
+    for (std::size_t k = 1; k < arcs.size(); ++k) {
+      if (arcs[k].arc != arcs[k - 1].arc) continue;
+      pieces_.join(arcs[k].piece, arcs[k - 1].piece);
+      bodies_.join(arcs[k].body, arcs[k - 1].body);
+      if (arcs[k].label != outside) inside_arcs_.push_back({arcs[k].arc, arcs[k].body});
+    }
+    for (std::size_t k = 1; k < events.size(); ++k) {
+      if (events[k][0] != events[k - 1][0]) continue;
+      walls_.join(events[k][1], events[k - 1][1]);
+      wall_of_event_.push_back(events[k]);
+    }
+  }
+
+  void find_regions() {
+    std::uint32_t count = 0;
+    for (const Square& square : squares_) count += static_cast<std::uint32_t>(square.cells.pieces.size());
+    std::vector<std::uint32_t> number(count, outside);
+    region_of_.assign(count, outside);
+    for (const Square& square : squares_) {
+      for (std::uint32_t k = 0; k < square.cells.pieces.size(); ++k) {
+        const std::uint32_t site = square.cells.pieces[k].site;
+        if (site == outside) continue;
+        std::uint32_t& region = number[pieces_.find(square.first_piece + k)];
+        if (region == outside) {
+          region = static_cast<std::uint32_t>(regions_.size());
+          regions_.push_back({site, false, false});
+        }
+        region_of_[square.first_piece + k] = region;
+      }
+      find_exits(square);
+    }
+    for (std::uint32_t r = 0; r < regions_.size(); ++r) regions_of_site_[regions_[r].site].push_back(r);
+  }
+
+  /// Whether ways to footprints leave the cube at once. Of faces all do in a square, or none.
+  void find_exits(const Square& square) {
+    const std::size_t axis = square.side / 2;
+    const double outwards = square.side % 2 == 1 ? 1 : -1;
+    const double plane = t_.tree_.lattice.at(axis, t_.tree_.squares[square.id].low[axis]) - t_.labels_.centre()[axis];
+    for (const auto& [arc, run] : square.cells.arcs) {
+      const SquareCells::Run& of = square.cells.runs[run];
+      if (of.label == outside) continue;
+      Region& region = regions_[region_of_[square.first_piece + of.piece]];
+      if (region.exits) continue;
+      const PlacedLabel& label = t_.labels_[of.label];
+      if (label.kind == SiteKind::face) {
+        region.exits = label.direction[axis] * outwards < -1e-15;
+      } else {
+        const auto [low, high] = ends(arc);
+        for (const Vec3d& q : {low, (low + high) * 0.5, high}) {
+          if ((label.foot(q)[axis] - plane) * outwards > 4 * t_.labels_.rounding()) region.exits = true;
+        }
+      }
+    }
+  }
+
+  /// The ends of an arc, a little inside, relative to the centre of the labels.
+  [[nodiscard]] std::array<Vec3d, 2> ends(const EdgeArc& arc) const {
+    const GridEdge& edge = t_.tree_.edges[arc.edge];
+    const Vec3d at = t_.tree_.lattice.at(edge.low);
+    double low = at[edge.axis];
+    double high = t_.tree_.lattice.at(edge.axis, edge.low[edge.axis] + edge.length);
+    const std::uint32_t k = edge.first_event + arc.index;
+    if (arc.index > 0) low = t_.tree_.events[k - 1].at;
+    if (k < edge.last_event) high = t_.tree_.events[k].at;
+    Vec3d p = at;
+    Vec3d q = at;
+    p[edge.axis] = low + (high - low) * 0.01;
+    q[edge.axis] = high - (high - low) * 0.01;
+    return {p - t_.labels_.centre(), q - t_.labels_.centre()};
+  }
+
+  [[nodiscard]] std::optional<std::uint32_t> region_in(const Square& square, std::uint32_t site) const {
+    for (std::uint32_t k = 0; k < square.cells.pieces.size(); ++k) {
+      if (square.cells.pieces[k].site == site) return region_of_[square.first_piece + k];
+    }
+    return std::nullopt;
+  }
+
+  /// Which edges, vertices and triangles meet the cube, and where the surface meets its boundary. False where a site
+  /// that passes a square has no region there.
+  bool find_surface() {
+    if (cube_.triangles.empty()) return true;
+    const SiteTable& table = t_.surface_.table();
+    edges_ = t_.surface_.edges_of(cube_.triangles);
+    for (const std::uint32_t edge : edges_) {
+      for (const std::uint32_t v : table.edges()[edge]) vertices_.push_back(v);
+    }
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    std::erase_if(vertices_, [&](std::uint32_t v) { return !t_.surface_.is_in(v, cube_); });
+    std::vector<std::uint32_t> met;
+    for (const std::uint32_t edge : edges_) {
+      const Segment& ends = table.edges()[edge];
+      bool meets = is_inside(ends[0]) || is_inside(ends[1]);
+      for (std::uint32_t s = 0; s < squares_.size(); ++s) {
+        if (!t_.surface_.pierces(edge, t_.tree_.squares[squares_[s].id])) continue;
+        meets = true;
+        piercings_.push_back({edge, s});
+      }
+      if (meets) met.push_back(edge);
+    }
+    edges_ = std::move(met);
+    find_triangles();
+    return mark_touches();
+  }
+
+  [[nodiscard]] bool is_inside(std::uint32_t vertex) const {
+    return std::binary_search(vertices_.begin(), vertices_.end(), vertex);
+  }
+  [[nodiscard]] bool meets(std::uint32_t edge) const { return std::binary_search(edges_.begin(), edges_.end(), edge); }
+
+  /// A triangle meets the cube where an edge of it does, or an edge of the cube crosses it.
+  void find_triangles() {
+    const SiteTable& table = t_.surface_.table();
+    for (std::uint32_t s = 0; s < squares_.size(); ++s) {
+      for (const std::uint32_t event : squares_[s].cells.events) {
+        const LineEvent& e = t_.tree_.events[event];
+        if (e.before != outside && e.after != outside) continue;
+        crossings_.push_back({e.before == outside ? e.after : e.before, s, event});
+      }
+    }
+    std::sort(crossings_.begin(), crossings_.end());
+    for (const std::uint32_t t : cube_.triangles) {
+      const auto& edges = table.triangle_edges()[t];
+      const bool by_edge = std::any_of(edges.begin(), edges.end(), [&](EdgeId edge) { return meets(edge.value); });
+      const auto at = std::lower_bound(crossings_.begin(), crossings_.end(), std::array<std::uint32_t, 3>{t, 0, 0});
+      if (by_edge || (at != crossings_.end() && (*at)[0] == t)) triangles_.push_back(t);
+    }
+    std::sort(triangles_.begin(), triangles_.end());
+    // Parts of the surface, and of faces, in the cube: triangles that share an edge there.
+    const auto count = static_cast<std::uint32_t>(triangles_.size());
+    sheets_.reset(count);
+    face_parts_.reset(count);
+    for (const std::uint32_t edge : edges_) {
+      const auto [first, second] = t_.sites_.triangles_of[edge];
+      sheets_.join(rank(first), rank(second));
+      if (t_.sites_.turn[edge] == EdgeTurn::flat) face_parts_.join(rank(first), rank(second));
+    }
+  }
+
+  [[nodiscard]] std::uint32_t rank(std::uint32_t triangle) const {
+    return static_cast<std::uint32_t>(std::lower_bound(triangles_.begin(), triangles_.end(), triangle) -
+                                      triangles_.begin());
+  }
+
+  bool mark_touches() {
+    const auto touch_face = [&](std::uint32_t triangle, std::uint32_t s) {
+      const std::optional<std::uint32_t> region = region_in(squares_[s], t_.sites_.face_of[triangle]);
+      if (!region) return false;
+      regions_[*region].touches = true;
+      FacePart& part = parts_[face_parts_.find(rank(triangle))];
+      part.touched.insert(*region);
+      return true;
+    };
+    for (const std::uint32_t t : triangles_) parts_[face_parts_.find(rank(t))].face = t_.sites_.face_of[t];
+    for (const auto& [triangle, s, event] : crossings_) {
+      if (!touch_face(triangle, s)) return false;
+    }
+    for (const auto& [edge, s] : piercings_) {
+      for (const std::uint32_t t : t_.sites_.triangles_of[edge]) {
+        if (!touch_face(t, s)) return false;
+      }
+      if (t_.sites_.turn[edge] != EdgeTurn::reflex) continue;
+      const std::optional<std::uint32_t> region = region_in(squares_[s], site_of_edge(edge));
+      if (!region) return false;
+      regions_[*region].touches = true;
+      touched_by_edge_[edge].insert(*region);
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::uint32_t site_of_edge(std::uint32_t edge) const {
+    const auto& list = t_.sites_.reflex_edges;
+    return static_cast<std::uint32_t>(t_.sites_.face_count +
+                                      (std::lower_bound(list.begin(), list.end(), edge) - list.begin()));
+  }
+  [[nodiscard]] std::uint32_t site_of_vertex(std::uint32_t v) const {
+    const auto& list = t_.sites_.reflex_vertices;
+    return static_cast<std::uint32_t>(t_.sites_.face_count + t_.sites_.reflex_edges.size() +
+                                      (std::lower_bound(list.begin(), list.end(), v) - list.begin()));
+  }
+  [[nodiscard]] bool is_edge_site(std::uint32_t site) const {
+    return site >= t_.sites_.face_count && site < t_.sites_.face_count + t_.sites_.reflex_edges.size();
+  }
+
+  /// The region of a vertex is convex: it passes if it meets the boundary in one piece.
+  CubeObstacle check_vertices() {
+    const std::size_t first = t_.sites_.face_count + t_.sites_.reflex_edges.size();
+    for (auto at = regions_of_site_.lower_bound(static_cast<std::uint32_t>(first)); at != regions_of_site_.end();
+         ++at) {
+      site_ = at->first;
+      if (at->second.size() != 1) return CubeObstacle::tunnel;
+    }
+    for (const std::uint32_t v : vertices_) {
+      const bool is_site = std::binary_search(t_.sites_.reflex_vertices.begin(), t_.sites_.reflex_vertices.end(), v);
+      if (is_site && regions_of_site_.find(site_of_vertex(v)) == regions_of_site_.end()) return CubeObstacle::enclosed;
+    }
+    return CubeObstacle::none;
+  }
+
+  /// How many regions of a site neither exit nor touch it.
+  [[nodiscard]] std::size_t count_closed(const std::vector<std::uint32_t>& regions) const {
+    return static_cast<std::size_t>(std::count_if(
+        regions.begin(), regions.end(), [&](std::uint32_t r) { return !regions_[r].exits && !regions_[r].touches; }));
+  }
+
+  CubeObstacle check_edges() {
+    std::set<std::uint32_t> inside;  // sites of edges that meet the cube without passing its boundary
+    for (const std::uint32_t edge : edges_) {
+      if (t_.sites_.turn[edge] != EdgeTurn::reflex) continue;
+      const auto touched = touched_by_edge_.find(edge);
+      if (touched == touched_by_edge_.end()) {
+        inside.insert(site_of_edge(edge));
+      } else if (touched->second.size() != 1) {
+        return CubeObstacle::tunnel;
+      }
+    }
+    for (const auto& [site, regions] : regions_of_site_) {
+      if (!is_edge_site(site)) continue;
+      site_ = site;
+      const bool is_in = inside.erase(site) > 0;
+      if (count_closed(regions) != (is_in ? 1U : 0U)) return CubeObstacle::tunnel;
+    }
+    return inside.empty() ? CubeObstacle::none : CubeObstacle::enclosed;
+  }
+
+  CubeObstacle check_faces() {
+    std::set<std::uint32_t> inside;  // faces that lie wholly inside
+    for (const auto& [root, part] : parts_) {
+      if (has_hole_near(part.face)) return CubeObstacle::face_hole;
+      if (part.touched.empty()) {
+        inside.insert(part.face);
+      } else if (part.touched.size() != 1) {
+        return CubeObstacle::tunnel;
+      }
+    }
+    for (const auto& [site, regions] : regions_of_site_) {
+      if (site >= t_.sites_.face_count) break;
+      site_ = site;
+      const bool is_in = inside.erase(site) > 0;
+      if (count_closed(regions) != (is_in ? 1U : 0U)) return CubeObstacle::tunnel;
+    }
+    return inside.empty() ? CubeObstacle::none : CubeObstacle::enclosed;
+  }
+
+  /// Whether a loop of a face with holes may lie wholly in the cube, as seen along its normal.
+  [[nodiscard]] bool has_hole_near(std::uint32_t face) const {
+    const auto loops = t_.loops_.of(face);
+    if (loops.size() < 2) return false;
+    const double half = 0.5 * t_.tree_.lattice.unit * cube_.length;
+    const Vec3d middle = t_.tree_.lattice.at(cube_.low) + Vec3d{half, half, half} - t_.labels_.centre();
+    // The cube's shadow on the face's plane lies in a disc.
+    const double reach = std::sqrt(3.0) * half * (1 + 1e-12) + 4 * t_.labels_.rounding();
+    const auto found = std::find_if(triangles_.begin(), triangles_.end(),
+                                    [&](std::uint32_t t) { return t_.sites_.face_of[t] == face; });
+    const Vec3d& normal = t_.labels_[*found].direction;
+    return std::any_of(loops.begin(), loops.end(), [&](const std::vector<std::uint32_t>& loop) {
+      return std::all_of(loop.begin(), loop.end(), [&](std::uint32_t v) {
+        const Vec3d away = t_.mesh_.vertices[v] - t_.labels_.centre() - middle;
+        return length(away - normal * dot(normal, away)) < reach;
+      });
+    });
+  }
+
+  /// Components of the solid in the cube must be balls: each has one boundary, of Euler number 2.
+  CubeObstacle check_solid() {
+    if (triangles_.empty()) return CubeObstacle::none;
+    bodies_on_boundary_ = 0;
+    std::uint32_t body_count = 0;
+    for (const Square& square : squares_) body_count += square.cells.body_count;
+    // Components on the boundary come first, then parts of the surface.
+    detail::UnionFind joined(body_count + triangles_.size());
+    const auto body = [&](std::uint32_t k) { return bodies_.find(k); };
+    const auto sheet = [&](std::uint32_t triangle) { return body_count + sheets_.find(rank(triangle)); };
+    std::vector<bool> is_solid(body_count, false);
+    std::vector<std::pair<std::uint32_t, int>> sums;  // of components: cells with signs
+    for (const Square& square : squares_) {
+      std::vector<bool> is_counted(square.cells.body_count, false);
+      for (const SquareCells::Run& run : square.cells.runs) {
+        if (run.label == outside || is_counted[run.body]) continue;
+        is_counted[run.body] = true;
+        is_solid[body(square.first_body + run.body)] = true;
+        sums.emplace_back(body(square.first_body + run.body), 1);
+      }
+    }
+    for (std::uint32_t k = 0; k < body_count; ++k) bodies_on_boundary_ += is_solid[k] ? 1U : 0U;
+    add_intervals(sums, body);
+    std::set<std::uint32_t> bounded;  // parts of the surface that reach the boundary
+    for (const auto& [arc, of] : inside_arcs_) {
+      const GridEdge& edge = t_.tree_.edges[arc.edge];
+      const std::uint32_t k = edge.first_event + arc.index;
+      const auto meet = [&, body_of_arc = of](std::uint32_t triangle) {
+        joined.join(body(body_of_arc), sheet(triangle));
+        bounded.insert(sheets_.find(rank(triangle)));
+      };
+      if (k < edge.last_event && t_.tree_.events[k].after == outside) meet(t_.tree_.events[k].before);
+      if (arc.index > 0 && t_.tree_.events[k - 1].before == outside) meet(t_.tree_.events[k - 1].after);
+    }
+    for (const std::uint32_t t : triangles_) {
+      if (bounded.count(sheets_.find(rank(t))) == 0) return CubeObstacle::handle;
+      sums.emplace_back(sheet(t), 1);
+    }
+    for (const std::uint32_t edge : edges_) sums.emplace_back(sheet(t_.sites_.triangles_of[edge][0]), -1);
+    for (const std::uint32_t v : vertices_) {
+      const auto at = std::find_if(triangles_.begin(), triangles_.end(), [&](std::uint32_t t) {
+        const Triangle& corners = t_.mesh_.triangles[t];
+        return corners[0] == v || corners[1] == v || corners[2] == v;
+      });
+      sums.emplace_back(sheet(*at), 1);
+    }
+    std::map<std::uint32_t, int> euler;
+    for (const auto& [component, sign] : sums) euler[joined.find(component)] += sign;
+    bodies_inside_ = static_cast<std::uint32_t>(euler.size());
+    for (const auto& [component, sum] : euler) {
+      if (sum != 2) return CubeObstacle::handle;
+    }
+    return CubeObstacle::none;
+  }
+
+  /// Intervals of grid edges in the solid, and nodes in it.
+  template <class Body>
+  void add_intervals(std::vector<std::pair<std::uint32_t, int>>& sums, const Body& body) const {
+    std::set<std::array<std::uint32_t, 3>> nodes;
+    for (const auto& [arc, of] : inside_arcs_) {
+      const GridEdge& edge = t_.tree_.edges[arc.edge];
+      const std::uint32_t k = edge.first_event + arc.index;
+      const bool begins = arc.index == 0 || t_.tree_.events[k - 1].before == outside;
+      if (begins) sums.emplace_back(body(of), -1);
+      if (arc.index == 0 && nodes.insert(edge.low).second) sums.emplace_back(body(of), 1);
+      Node end = edge.low;
+      end[edge.axis] += edge.length;
+      if (k == edge.last_event && nodes.insert(end).second) sums.emplace_back(body(of), 1);
+    }
+  }
+
+  /// Finds which components of walls and surface on the boundary are one inside: those that a part of the surface
+  /// joins. Whether these are all is told by numbers.
+  CubeObstacle check_joins() {
+    std::set<std::uint32_t> before;
+    for (const auto& [event, wall] : wall_of_event_) before.insert(walls_.find(wall));
+    if (before.size() < 2) return CubeObstacle::none;
+    std::map<std::uint32_t, std::uint32_t> first;
+    for (const auto& [triangle, s, event] : crossings_) {
+      const std::uint32_t wall = wall_of(event);
+      const auto [at, is_new] = first.try_emplace(sheets_.find(rank(triangle)), wall);
+      if (!is_new) walls_.join(wall, at->second);
+    }
+    std::set<std::uint32_t> now;
+    for (const std::uint32_t wall : before) now.insert(walls_.find(wall));
+    if (now.size() < 2) return CubeObstacle::none;
+    // As many components are joined as all regions, with the outside, have tunnels.
+    std::int64_t joins = bodies_on_boundary_ - bodies_inside_;
+    for (const auto& [site, regions] : regions_of_site_) {
+      if (site < t_.sites_.face_count) joins += tunnels(site, regions.size());
+    }
+    const auto left = static_cast<std::int64_t>(before.size()) - joins;
+    if (left == static_cast<std::int64_t>(now.size())) return CubeObstacle::none;
+    if (left != 1) return CubeObstacle::joins;
+    for (const std::uint32_t wall : now) walls_.join(wall, *now.begin());
+    return CubeObstacle::none;
+  }
+
+  /// Tunnels of a face's region in the cube. Seen along its normal the region is as high as wide: it retracts to what
+  /// it covers of the cube's lower sides and of the face itself, the Euler number of which is a sum over cells.
+  /// @param components  of the region.
+  [[nodiscard]] std::int64_t tunnels(std::uint32_t face, std::size_t components) const {
+    const Vec3d& normal = normal_of(face);
+    const auto is_lower = [&](std::uint32_t side) { return normal[side / 2] * (side % 2 == 1 ? 1 : -1) < -1e-15; };
+    std::int64_t euler = 0;
+    std::map<EdgeArc, int> arcs;          // of lower squares: how often
+    std::map<Node, int> nodes;            // squares around, less arcs around
+    std::map<std::uint32_t, int> events;  // at which the face crosses grid edges: how often
+    std::int64_t ends = 0;                // of segments in which the face meets lower squares
+    for (std::uint32_t s = 0; s < squares_.size(); ++s) {
+      if (!is_lower(squares_[s].side)) continue;
+      const SquareCells& cells = squares_[s].cells;
+      for (const SquareCells::Piece& piece : cells.pieces) euler += piece.site == face ? 1 : 0;
+      for (const auto& [arc, run] : cells.arcs) {
+        if (cells.pieces[cells.runs[run].piece].site == face) ++arcs[arc];
+      }
+      for (const std::uint32_t event : cells.events) {
+        const LineEvent& e = t_.tree_.events[event];
+        if (e.before != outside && e.after != outside) continue;
+        if (t_.labels_[e.before == outside ? e.after : e.before].site != face) continue;
+        ++events[event];
+        ++ends;
+      }
+    }
+    for (const auto& [edge, s] : piercings_) {
+      if (!is_lower(squares_[s].side) || t_.sites_.turn[edge] == EdgeTurn::flat) continue;
+      for (const std::uint32_t t : t_.sites_.triangles_of[edge]) ends += t_.sites_.face_of[t] == face ? 1 : 0;
+    }
+    for (const auto& [arc, count] : arcs) {
+      if (count == 2) --euler;
+      // A node in the middle of lower sides, all around which the region is: as many arcs as squares meet there.
+      const GridEdge& edge = t_.tree_.edges[arc.edge];
+      Node end = edge.low;
+      end[edge.axis] += edge.length;
+      const auto add = [&](const Node& node) {
+        nodes.try_emplace(node, 0);
+        if (count < 2) nodes[node] = 1;
+      };
+      if (arc.index == 0) add(edge.low);
+      if (edge.first_event + arc.index == edge.last_event) add(end);
+    }
+    for (const auto& [node, is_on_rim] : nodes) euler += is_on_rim != 0 ? 0 : 1;
+    for (const auto& [root, part] : parts_) euler += part.face == face ? 1 : 0;
+    euler -= ends / 2;
+    for (const auto& [event, count] : events) euler += count == 2 ? 1 : 0;
+    return static_cast<std::int64_t>(components) - euler;
+  }
+
+  [[nodiscard]] const Vec3d& normal_of(std::uint32_t face) const {
+    for (const Square& square : squares_) {
+      for (const SquareCells::Run& run : square.cells.runs) {
+        if (run.label != outside && t_.labels_[run.label].site == face) return t_.labels_[run.label].direction;
+      }
+    }
+    return t_.labels_[0].direction;  // not reached: the face has a region on the boundary
+  }
+
+  [[nodiscard]] std::uint32_t wall_of(std::uint32_t event) const {
+    return std::lower_bound(wall_of_event_.begin(), wall_of_event_.end(), std::array<std::uint32_t, 2>{event, 0})
+        ->at(1);
+  }
+
+  const CubeTest& t_;
+  const GridCube& cube_;
+  std::vector<Square> squares_;
+  detail::UnionFind pieces_, walls_, bodies_;
+  std::vector<std::pair<EdgeArc, std::uint32_t>> inside_arcs_;  ///< arcs in the solid, and their components
+  std::vector<std::array<std::uint32_t, 2>> wall_of_event_;     ///< sorted
+  std::vector<std::uint32_t> region_of_;                        ///< of pieces
+  std::vector<Region> regions_;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> regions_of_site_;
+  std::vector<std::uint32_t> vertices_, edges_, triangles_;  ///< of the mesh that meet the cube, rising
+  std::vector<std::array<std::uint32_t, 2>> piercings_;      ///< edge, square
+  std::vector<std::array<std::uint32_t, 3>> crossings_;      ///< triangle, square, event
+  detail::UnionFind sheets_, face_parts_;                    ///< of triangles_
+  std::map<std::uint32_t, FacePart> parts_;
+  std::map<std::uint32_t, std::set<std::uint32_t>> touched_by_edge_;
+  std::uint32_t bodies_on_boundary_ = 0;
+  std::uint32_t bodies_inside_ = 0;
+  std::uint32_t site_ = outside;  ///< that is looked at
+};
+
+CubeCells CubeTest::run(const GridCube& cube) const {
+  return CubeAnalysis(*this, cube).run();
+}
+
+}  // namespace blum::voronoi

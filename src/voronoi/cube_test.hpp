@@ -1,0 +1,65 @@
+// Blum: whether walls and surface in a cube are contractible. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "blum/voronoi/polyhedron_sites.hpp"
+#include "voronoi/cell_tree.hpp"
+#include "voronoi/face_loops.hpp"
+#include "voronoi/label_geometry.hpp"
+#include "voronoi/square_cells.hpp"
+#include "voronoi/surface_in_cells.hpp"
+
+namespace blum::voronoi {
+
+/// What keeps a cube from passing.
+enum class CubeObstacle : std::uint8_t {
+  none,
+  square,        ///< the inside of a square could not be told from its border
+  tunnel,        ///< the region of a site passes through the cube, or may
+  enclosed,      ///< the region of a site may lie wholly inside the cube
+  face_hole,     ///< a hole of a face lies in the cube, or next to it
+  handle,        ///< a component of the solid in the cube has a tunnel or a second boundary
+  joins,         ///< which components of walls on the cube's boundary are one inside is not known
+  contradiction  ///< signs contradict each other
+};
+
+/// The components of walls and surface in a cube that passes.
+struct CubeCells {
+  CubeObstacle obstacle = CubeObstacle::none;
+  std::uint32_t site = outside;  ///< whose region the obstacle is in, where it is one's
+  std::uint32_t component_count = 0;
+  /// For each square without children on the boundary: the component that each component in it belongs to.
+  struct Square {
+    CellId square = no_cell;
+    std::vector<std::uint32_t> component;
+  };
+  std::vector<Square> squares;
+};
+
+/// Decides by what is on a cube's boundary whether all components of walls and surface in it are acyclic: which they
+/// are if and only if H0 and H1 of each region in the cube, relative to its part of the boundary, vanish (Lefschetz
+/// duality). Regions retract to footprints in the cube, or to where the way to the footprint leaves it. The criteria
+/// for faces, edges, vertices and the outside, and their proofs: docs/theory/voronoi.md.
+class CubeTest {
+ public:
+  CubeTest(const MeshView& mesh, const PolyhedronSites& sites, const LabelGeometry& labels, const FaceLoops& loops,
+           const SurfaceInCells& surface, const CellTree& tree)
+      : mesh_(mesh), sites_(sites), labels_(labels), loops_(loops), surface_(surface), tree_(tree) {}
+
+  [[nodiscard]] CubeCells run(const GridCube& cube) const;
+
+ private:
+  friend class CubeAnalysis;
+  const MeshView mesh_;
+  const PolyhedronSites& sites_;
+  const LabelGeometry& labels_;
+  const FaceLoops& loops_;
+  const SurfaceInCells& surface_;
+  const CellTree& tree_;
+};
+
+}  // namespace blum::voronoi

@@ -1,0 +1,265 @@
+#include "voronoi/label_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "voronoi/edges_of_vertices.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+/// A sum of two doubles that do not overlap.
+struct DoubleDouble {
+  double high = 0, low = 0;
+};
+
+DoubleDouble exact_difference(double a, double b) {
+  const double high = a - b;
+  const double part = a - high;
+  return {high, (a - (high + part)) + (part - b)};
+}
+
+/// a b - c d, to a few units of the last place of the products times 1e-16.
+double difference_of_products(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
+                              const DoubleDouble& d) {
+  const double ab = a.high * b.high;
+  const double cd = c.high * d.high;
+  const double ab_low = std::fma(a.high, b.high, -ab) + (a.high * b.low + a.low * b.high);
+  const double cd_low = std::fma(c.high, d.high, -cd) + (c.high * d.low + c.low * d.high);
+  const DoubleDouble high = exact_difference(ab, cd);
+  return high.high + (high.low + (ab_low - cd_low));
+}
+
+Vec3d unit(const Vec3d& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  const Vec3d scaled = v / largest;
+  return scaled / length(scaled);
+}
+
+/// The direction of (b - a) x (c - a), also of triangles that are nearly lines.
+Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  std::array<DoubleDouble, 3> u;
+  std::array<DoubleDouble, 3> v;
+  for (std::size_t k = 0; k < 3; ++k) {
+    u[k] = exact_difference(b[k], a[k]);
+    v[k] = exact_difference(c[k], a[k]);
+  }
+  return unit({difference_of_products(u[1], v[2], u[2], v[1]), difference_of_products(u[2], v[0], u[0], v[2]),
+               difference_of_products(u[0], v[1], u[1], v[0])});
+}
+
+}  // namespace
+
+Quadratic PlacedLabel::along(const Vec3d& q, std::size_t axis) const {
+  if (kind == SiteKind::face) {
+    const double start = height(q);
+    const double slope = direction[axis];
+    return {slope * slope, 2 * start * slope, start * start};
+  }
+  if (kind == SiteKind::edge) {
+    Vec3d step;
+    step[axis] = 1;
+    const Vec3d start = cross(q - point, direction);
+    const Vec3d slope = cross(step, direction);
+    return {squared_length(slope), 2 * dot(start, slope), squared_length(start)};
+  }
+  return {1, 2 * (q[axis] - point[axis]), squared_length(q - point)};
+}
+
+LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                             const SiteLabels& labels)
+    : face_count_(sites.face_count) {
+  Box3 box;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) box.extend(mesh.vertices[v]);
+  }
+  centre_ = box.center();
+  size_ = box.diagonal();
+  rounding_ = 4e-15 * size_;
+  label_of_edge_.assign(table.edge_count(), outside);
+  label_of_vertex_.assign(table.vertex_count(), outside);
+  for (LabelIndex k = 0; k < labels.all().size(); ++k) {
+    const Label& label = labels.all()[k];
+    if (label.kind == SiteKind::edge) label_of_edge_[label.index] = k;
+    if (label.kind == SiteKind::vertex) label_of_vertex_[label.index] = k;
+  }
+  add_triangles(mesh, table, sites);
+  add_edges(mesh, table, sites);
+  add_vertices(mesh, table, sites);
+  for (LabelIndex k = 0; k < labels_.size(); ++k) labels_[k].site = labels.site_of(labels.all()[k]);
+  add_neighbours(table, sites);
+}
+
+void LabelGeometry::add_triangles(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites) {
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::array<Vec3d, 3> p = triangle_corners(mesh, t);
+    PlacedLabel label{SiteKind::face, 0, p[0] - centre_, -unit_normal(p[0], p[1], p[2]), 0, 0};
+    label.first_plane = static_cast<std::uint32_t>(planes_.size());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t edge = table.triangle_edges()[t][k].value;
+      const Vec3d inwards = unit(cross(unit(p[(k + 1) % 3] - p[k]), label.direction));
+      DomainPlane plane{inwards, dot(inwards, p[k] - centre_), label_of_edge_[edge], edge};
+      if (sites.turn[edge] == EdgeTurn::flat) {
+        const auto [first, second] = sites.triangles_of[edge];
+        plane.beyond = first == t ? second : first;
+      }
+      planes_.push_back(plane);
+    }
+    label.last_plane = static_cast<std::uint32_t>(planes_.size());
+    labels_.push_back(label);
+    corners_.push_back({p[0] - centre_, p[1] - centre_, p[2] - centre_});
+  }
+  add_bisectors(sites);
+}
+
+/// Both from the sides in the planes and from the normals the direction across may be found: the longer difference is
+/// the more precise one.
+void LabelGeometry::add_bisectors(const PolyhedronSites& sites) {
+  bisectors_.resize(3 * labels_.size());
+  for (LabelIndex t = 0; t < labels_.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const DomainPlane& own = planes_[labels_[t].first_plane + k];
+      if (sites.turn[own.edge] != EdgeTurn::convex) continue;
+      const auto [first, second] = sites.triangles_of[own.edge];
+      const LabelIndex other = first == t ? second : first;
+      std::uint32_t side = labels_[other].first_plane;
+      while (planes_[side].edge != own.edge) ++side;
+      const Vec3d by_sides = own.normal - planes_[side].normal;
+      const Vec3d by_normals = labels_[other].direction - labels_[t].direction;
+      const Vec3d normal = unit(squared_length(by_sides) > squared_length(by_normals) ? by_sides : by_normals);
+      bisectors_[3 * t + k] = {other, normal, dot(normal, corners_[t][k])};
+    }
+  }
+}
+
+Vec3d LabelGeometry::closest_point(LabelIndex label, const Vec3d& q) const {
+  const auto on_segment = [&](const Vec3d& a, const Vec3d& b) {
+    const Vec3d along = b - a;
+    return a + along * std::clamp(dot(q - a, along) / squared_length(along), 0.0, 1.0);
+  };
+  const PlacedLabel& placed = labels_[label];
+  const std::array<Vec3d, 3>& p = corners_[label];
+  if (placed.kind == SiteKind::vertex) return p[0];
+  if (placed.kind == SiteKind::edge) return on_segment(p[0], p[1]);
+  const std::span<const DomainPlane> sides = planes(label);
+  if (std::all_of(sides.begin(), sides.end(), [&](const DomainPlane& side) { return side.height(q) >= 0; })) {
+    return placed.foot(q);
+  }
+  Vec3d best = on_segment(p[0], p[1]);
+  for (const std::size_t k : {1U, 2U}) {
+    const Vec3d other = on_segment(p[k], p[(k + 1) % 3]);
+    if (squared_length(other - q) < squared_length(best - q)) best = other;
+  }
+  return best;
+}
+
+std::optional<Bisector> LabelGeometry::bisector(LabelIndex a, LabelIndex b) const {
+  const PlacedLabel& first = labels_[a];
+  const PlacedLabel& second = labels_[b];
+  if (first.kind != second.kind) return std::nullopt;
+  if (first.kind == SiteKind::face) {
+    for (const Bisector& known : bisectors(a)) {
+      if (known.other == b) return known;
+    }
+    const Vec3d normal = second.direction - first.direction;
+    return Bisector{b, normal, dot(second.direction, second.point) - dot(first.direction, first.point)};
+  }
+  if (first.kind == SiteKind::vertex) {
+    const Vec3d normal = unit(first.point - second.point);
+    return Bisector{b, normal, dot(normal, (first.point + second.point) * 0.5)};
+  }
+  // With directions away from the common end, the one with the smaller angle to a point is closer.
+  for (const double of_a : {1.0, -1.0}) {
+    for (const double of_b : {1.0, -1.0}) {
+      const Vec3d& end = corners_[a][of_a > 0 ? 0 : 1];
+      if (!(end == corners_[b][of_b > 0 ? 0 : 1])) continue;
+      const Vec3d normal = first.direction * of_a - second.direction * of_b;
+      return Bisector{b, normal, dot(normal, end)};
+    }
+  }
+  return std::nullopt;
+}
+
+bool LabelGeometry::share_reflex_edge(LabelIndex a, LabelIndex b) const {
+  if (labels_[a].kind != SiteKind::face || labels_[b].kind != SiteKind::face) return false;
+  const std::span<const DomainPlane> of_b = planes(b);
+  const std::span<const DomainPlane> of_a = planes(a);
+  return std::any_of(of_a.begin(), of_a.end(), [&](const DomainPlane& side) {
+    return label_of_edge_[side.edge] != outside &&
+           std::any_of(of_b.begin(), of_b.end(), [&](const DomainPlane& other) { return other.edge == side.edge; });
+  });
+}
+
+bool LabelGeometry::touch(LabelIndex a, LabelIndex b) const {
+  const std::span<const Vec3d> of_a = corners(a);
+  const std::span<const Vec3d> of_b = corners(b);
+  return std::any_of(of_a.begin(), of_a.end(),
+                     [&](const Vec3d& p) { return std::find(of_b.begin(), of_b.end(), p) != of_b.end(); });
+}
+
+void LabelGeometry::add_edges(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites) {
+  for (const std::uint32_t edge : sites.reflex_edges) {
+    const Segment& ends = table.edges()[edge];
+    const std::array<Vec3d, 2> p{mesh.vertices[ends[0]], mesh.vertices[ends[1]]};
+    PlacedLabel label{SiteKind::edge, 0, p[0] - centre_, unit(p[1] - p[0]), 0, 0};
+    label.first_plane = static_cast<std::uint32_t>(planes_.size());
+    for (const std::size_t end : {0U, 1U}) {
+      const Vec3d inwards = end == 0 ? label.direction : -label.direction;
+      planes_.push_back({inwards, dot(inwards, p[end] - centre_), label_of_vertex_[ends[end]], outside});
+    }
+    for (const std::uint32_t t : sites.triangles_of[edge]) {
+      const std::uint32_t first = labels_[t].first_plane;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        if (table.triangle_edges()[t][k].value != edge) continue;
+        const DomainPlane side = planes_[first + k];
+        planes_.push_back({-side.normal, -side.offset, t, edge});
+      }
+    }
+    label.last_plane = static_cast<std::uint32_t>(planes_.size());
+    labels_.push_back(label);
+    corners_.push_back({p[0] - centre_, p[1] - centre_, {}});
+  }
+}
+
+void LabelGeometry::add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites) {
+  const EdgesOfVertices edges(table);
+  for (const std::uint32_t v : sites.reflex_vertices) {
+    const Vec3d& at = mesh.vertices[v];
+    PlacedLabel label{SiteKind::vertex, 0, at - centre_, {}, 0, 0};
+    label.first_plane = static_cast<std::uint32_t>(planes_.size());
+    for (const std::uint32_t edge : edges.of(v)) {
+      const Segment& ends = table.edges()[edge];
+      const Vec3d inwards = unit(at - mesh.vertices[ends[0] == v ? ends[1] : ends[0]]);
+      planes_.push_back({inwards, dot(inwards, at - centre_), label_of_edge_[edge], outside});
+    }
+    label.last_plane = static_cast<std::uint32_t>(planes_.size());
+    labels_.push_back(label);
+    corners_.push_back({at - centre_, {}, {}});
+  }
+}
+
+void LabelGeometry::add_neighbours(const SiteTable& table, const PolyhedronSites& sites) {
+  const auto add = [&](LabelIndex a, LabelIndex b) {
+    if (a == outside || b == outside) return;
+    neighbours_.push_back({labels_[a].site, labels_[b].site});
+    neighbours_.push_back({labels_[b].site, labels_[a].site});
+  };
+  for (std::uint32_t t = 0; t < table.face_count(); ++t) {
+    for (const EdgeId edge : table.triangle_edges()[t]) {
+      add(t, label_of_edge_[edge.value]);
+      for (const std::uint32_t v : table.edges()[edge.value]) add(t, label_of_vertex_[v]);
+    }
+  }
+  for (const std::uint32_t edge : sites.reflex_edges) {
+    for (const std::uint32_t v : table.edges()[edge]) add(label_of_edge_[edge], label_of_vertex_[v]);
+  }
+  std::sort(neighbours_.begin(), neighbours_.end());
+  neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
+}
+
+bool LabelGeometry::are_incident(std::uint32_t site, LabelIndex label) const {
+  return std::binary_search(neighbours_.begin(), neighbours_.end(),
+                            std::array<std::uint32_t, 2>{site, labels_[label].site});
+}
+
+}  // namespace blum::voronoi

@@ -1,0 +1,146 @@
+// Blum: labels of a polyhedron in double, with bounds on rounding. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/voronoi/polyhedron_sites.hpp"
+#include "voronoi/site_labels.hpp"
+
+namespace blum::voronoi {
+
+/// The number of a label in SiteLabels::all(); triangles come first, with their own numbers.
+using LabelIndex = std::uint32_t;
+
+/// Stands for what is outside of the solid, and for "no label".
+constexpr LabelIndex outside = std::numeric_limits<LabelIndex>::max();
+
+/// A quadratic function a s^2 + b s + c of one variable.
+struct Quadratic {
+  double a = 0, b = 0, c = 0;
+
+  [[nodiscard]] double at(double s) const { return (a * s + b) * s + c; }
+  [[nodiscard]] friend Quadratic operator-(const Quadratic& p, const Quadratic& q) {
+    return {p.a - q.a, p.b - q.b, p.c - q.c};
+  }
+};
+
+/// A plane that bounds a label's domain.
+struct DomainPlane {
+  Vec3d normal;                  ///< of length 1, towards the domain
+  double offset = 0;             ///< normal . q of its points
+  LabelIndex beyond = outside;   ///< the label whose domain lies on its other side, where there is one
+  std::uint32_t edge = outside;  ///< the edge of the mesh that it runs through along its length, where there is one
+
+  [[nodiscard]] double height(const Vec3d& q) const { return dot(normal, q) - offset; }
+};
+
+/// A plane in which two labels are equally close.
+struct Bisector {
+  LabelIndex other = outside;  ///< the second label
+  Vec3d normal;                ///< of length 2 at most, to the side where the first label is closer
+  double offset = 0;
+
+  [[nodiscard]] double height(const Vec3d& q) const { return dot(normal, q) - offset; }
+};
+
+/// A label in double. Places are relative to LabelGeometry::centre().
+struct PlacedLabel {
+  SiteKind kind = SiteKind::face;
+  std::uint32_t site = 0;
+  Vec3d point;      ///< a corner, an end, the vertex
+  Vec3d direction;  ///< of length 1: of a triangle into the solid, of an edge along it
+  std::uint32_t first_plane = 0, last_plane = 0;
+
+  /// The square of the distance from its plane, line or point.
+  [[nodiscard]] double squared_distance(const Vec3d& q) const { return polar(q, q); }
+  /// The polar form of that.
+  [[nodiscard]] double polar(const Vec3d& q, const Vec3d& r) const {
+    if (kind == SiteKind::face) return height(q) * height(r);
+    if (kind == SiteKind::edge) return dot(cross(q - point, direction), cross(r - point, direction));
+    return dot(q - point, r - point);
+  }
+  /// Of a triangle: the signed distance from its plane, positive on the solid's side.
+  [[nodiscard]] double height(const Vec3d& q) const { return dot(direction, q - point); }
+  /// The closest point of its plane, line or point.
+  [[nodiscard]] Vec3d foot(const Vec3d& q) const {
+    if (kind == SiteKind::face) return q - direction * height(q);
+    if (kind == SiteKind::edge) return point + direction * dot(direction, q - point);
+    return point;
+  }
+  /// The squared distance along the line q + s e_axis.
+  [[nodiscard]] Quadratic along(const Vec3d& q, std::size_t axis) const;
+};
+
+/// All labels in double, and how far what they say may be off.
+class LabelGeometry {
+ public:
+  /// @param mesh, table, sites  of one polyhedron, as SiteLabels takes them.
+  LabelGeometry(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, const SiteLabels& labels);
+
+  [[nodiscard]] const Vec3d& centre() const { return centre_; }
+  /// Diagonal of the box around the mesh.
+  [[nodiscard]] double size() const { return size_; }
+  /// How far distances and heights over planes may be off, anywhere in the box.
+  [[nodiscard]] double rounding() const { return rounding_; }
+  /// How far the difference of two squared distances may be off, with a bound on both distances.
+  [[nodiscard]] double rounding_of_squares(double distance) const { return rounding_ * (4 * distance + rounding_); }
+
+  [[nodiscard]] std::size_t count() const { return labels_.size(); }
+  [[nodiscard]] const PlacedLabel& operator[](LabelIndex label) const { return labels_[label]; }
+  [[nodiscard]] std::span<const DomainPlane> planes(LabelIndex label) const {
+    return std::span(planes_).subspan(labels_[label].first_plane,
+                                      labels_[label].last_plane - labels_[label].first_plane);
+  }
+  /// A plane that tells which of two labels is closer, where both domains hold a point: of two triangles, two vertices,
+  /// or two edges with an end in common. Heights may be off by twice the rounding.
+  [[nodiscard]] std::optional<Bisector> bisector(LabelIndex a, LabelIndex b) const;
+  /// Of a triangle, for each of its sides that is a convex edge; other.outside where it is not.
+  [[nodiscard]] std::span<const Bisector, 3> bisectors(LabelIndex triangle) const {
+    return std::span<const Bisector, 3>(bisectors_.data() + std::size_t{3} * triangle, 3);
+  }
+  /// The corners of a label, relative to the centre: three, two or one.
+  [[nodiscard]] std::span<const Vec3d> corners(LabelIndex label) const {
+    const std::size_t count = labels_[label].kind == SiteKind::face ? 3 : labels_[label].kind == SiteKind::edge ? 2 : 1;
+    return std::span(corners_[label]).first(count);
+  }
+  /// The point of a triangle, edge or vertex that is closest.
+  [[nodiscard]] Vec3d closest_point(LabelIndex label, const Vec3d& q) const;
+  /// Whether two labels are triangles on both sides of a reflex edge.
+  [[nodiscard]] bool share_reflex_edge(LabelIndex a, LabelIndex b) const;
+  /// Whether two labels have a corner in common.
+  [[nodiscard]] bool touch(LabelIndex a, LabelIndex b) const;
+  /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
+  /// only at planes of their domains.
+  [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
+  [[nodiscard]] std::size_t face_count() const { return face_count_; }
+
+ private:
+  void add_triangles(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
+  void add_edges(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
+  void add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
+  void add_bisectors(const PolyhedronSites& sites);
+  void add_neighbours(const SiteTable& table, const PolyhedronSites& sites);
+
+  Vec3d centre_;
+  double size_ = 0;
+  double rounding_ = 0;
+  std::size_t face_count_ = 0;
+  std::vector<PlacedLabel> labels_;
+  std::vector<DomainPlane> planes_;
+  std::vector<std::array<Vec3d, 3>> corners_;
+  std::vector<Bisector> bisectors_;                          ///< three for each triangle
+  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` where there is none
+  /// Pairs of sites of which one is an edge or vertex of the other, both ways round, sorted.
+  std::vector<std::array<std::uint32_t, 2>> neighbours_;
+};
+
+}  // namespace blum::voronoi

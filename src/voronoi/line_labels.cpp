@@ -1,0 +1,354 @@
+#include "voronoi/line_labels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "voronoi/segment_labels.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// One end of the interval in which a line runs through a domain.
+struct IntervalEnd {
+  double at = 0;
+  double error = 0;
+  LabelIndex beyond = outside;
+  std::uint32_t edge = outside;  ///< the edge of the mesh that the plane there runs through, along its length
+};
+
+/// A label seen along a line: s is measured from a point of it.
+struct Contender {
+  LabelIndex label = outside;
+  std::uint32_t site = 0;
+  SiteKind kind = SiteKind::face;
+  Quadratic squared;
+  IntervalEnd low{-infinity, 0, outside, outside};
+  IntervalEnd high{infinity, 0, outside, outside};
+  bool grazes = false;  ///< whether the line runs along a plane of its domain, or nearly
+};
+
+/// Where a label takes over from the closest one.
+struct Change {
+  double at = infinity;
+  double error = 0;
+  LabelIndex label = outside;
+  std::uint32_t site = 0;
+  bool is_certain = true;  ///< whether it happens, given that nothing happens before
+};
+
+class EnvelopeWalk {
+ public:
+  EnvelopeWalk(const LabelGeometry& labels, const LinePart& part, std::span<const LabelIndex> among)
+      : labels_(labels), part_(part) {
+    middle_ = part.origin - labels.centre();
+    base_ = part.low + (part.high - part.low) / 2;
+    middle_[part.axis] = base_ - labels.centre()[part.axis];
+    low_ = part.low - base_;
+    high_ = part.high - base_;
+    for (const LabelIndex label : among) add_contender(label);
+  }
+
+  /// Whether all changes are certain.
+  bool run(std::vector<LineEvent>& events) {
+    LabelIndex current = part_.first;
+    std::uint32_t previous = outside;  // the site before
+    double at = low_;
+    double error = 0;
+    bool is_certain = true;
+    // Each pair of labels changes place at most twice; more tells that rounding leads in circles.
+    const std::size_t most = 4 * contenders_.size() + 16;
+    for (std::size_t count = 0; count < most; ++count) {
+      const Change next = next_change(current, previous, at, error, is_certain);
+      if (!(next.at - next.error <= high_)) return is_certain && is_as_expected(current);
+      if (next.at + next.error >= high_ || next.label == outside) {
+        return false;  // next to the end: doubles do not tell whether it comes before
+      }
+      events.push_back({base_ + next.at, next.error + labels_.rounding(), current, next.label});
+      previous = labels_[current].site;
+      current = next.label;
+      at = next.at;
+      error = next.error;
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] bool is_as_expected(LabelIndex current) const {
+    return part_.last == outside || labels_[part_.last].site == labels_[current].site;
+  }
+
+  void add_contender(LabelIndex label) {
+    const PlacedLabel& placed = labels_[label];
+    Contender out;
+    out.label = label;
+    out.site = placed.site;
+    out.kind = placed.kind;
+    for (const DomainPlane& plane : labels_.planes(label)) {
+      const double height = plane.height(middle_);
+      const double slope = plane.normal[part_.axis];
+      const double reach = std::abs(slope) * (high_ - low_);
+      if (reach <= 4 * labels_.rounding()) {
+        if (height + reach < -4 * labels_.rounding()) return;
+        if (height - reach < 4 * labels_.rounding()) out.grazes = true;
+        continue;
+      }
+      const IntervalEnd end{-height / slope, labels_.rounding() / std::abs(slope), plane.beyond, plane.edge};
+      if (slope > 0 && end.at > out.low.at) out.low = end;
+      if (slope < 0 && end.at < out.high.at) out.high = end;
+    }
+    if (out.low.at - out.low.error > out.high.at + out.high.error) return;
+    if (out.low.at - out.low.error > high_ || out.high.at + out.high.error < low_) return;
+    out.squared = placed.along(middle_, part_.axis);
+    contenders_.push_back(out);
+  }
+
+  [[nodiscard]] const Contender* find(LabelIndex label) const {
+    const auto found =
+        std::find_if(contenders_.begin(), contenders_.end(), [&](const Contender& c) { return c.label == label; });
+    return found == contenders_.end() ? nullptr : &*found;
+  }
+
+  /// The place at which the second label becomes as close as the first, and closer behind it.
+  [[nodiscard]] Change crossing(const Quadratic& first, const Contender& second, double from) const {
+    const Quadratic difference = first - second.squared;
+    const auto& [a, b, c] = difference;
+    const double discriminant = b * b - 4 * a * c;
+    Change out;
+    out.label = second.label;
+    out.site = second.site;
+    const double distance = std::sqrt(std::max(0.0, first.at(from)));
+    double error = labels_.rounding_of_squares(distance + (high_ - low_));
+    if (!(discriminant > 0)) {
+      // Their order does not change, unless rounding hides that: where the largest value is 0 up to rounding.
+      if (a < 0 && discriminant > 4 * a * error) {
+        out.at = -b / (2 * a);
+        out.error = std::sqrt(error / -a);
+        out.is_certain = false;
+      }
+      return out;
+    }
+    const double root = std::sqrt(discriminant);
+    if (b > 0) {
+      out.at = -2 * c / (b + root);
+    } else if (a != 0) {
+      out.at = (root - b) / (2 * a);
+    } else {
+      return out;
+    }
+    error = labels_.rounding_of_squares(std::sqrt(std::max(0.0, first.at(out.at))));
+    // Where the slope changes within the error, the root may not even be there.
+    if (root * root < 4 * std::abs(a) * error) {
+      out.error = std::sqrt(error / std::abs(a));
+      out.is_certain = false;
+    } else {
+      out.error = 2 * error / root;
+    }
+    return out;
+  }
+
+  [[nodiscard]] bool is_flat(const Contender& contender, const IntervalEnd& end) const {
+    return end.beyond != outside && labels_[end.beyond].site == contender.site;
+  }
+
+  /// Leaves out a change outside of the label's domain; marks it where this is not certain.
+  /// @param is_next  whether the change is across a convex edge: there the domains overlap.
+  void check_domain(const Contender& contender, Change& change, bool is_next) const {
+    for (const int side : {-1, 1}) {
+      const IntervalEnd& end = side < 0 ? contender.low : contender.high;
+      const double inside = side < 0 ? change.at - end.at : end.at - change.at;
+      const double error = change.error + end.error;
+      if (inside < -error) {
+        change.at = infinity;
+        return;
+      }
+      const bool is_shared = is_next && end.edge != outside && side < 0;
+      if (inside < error && !is_flat(contender, end) && !is_shared) change.is_certain = false;
+    }
+    if (contender.grazes) change.is_certain = false;
+  }
+
+  /// How triangles of a face and another triangle lie to each other.
+  struct Adjacency {
+    const Bisector* bisector = nullptr;  ///< across a convex edge, to the side of the other triangle
+    bool by_reflex_edge = false;
+  };
+  [[nodiscard]] Adjacency adjacency(const PlacedLabel& face, const Contender& other) const {
+    Adjacency out;
+    if (face.kind != SiteKind::face || other.kind != SiteKind::face) return out;
+    for (const Bisector& bisector : labels_.bisectors(other.label)) {
+      if (bisector.other != outside && labels_[bisector.other].site == face.site) out.bisector = &bisector;
+    }
+    for (const DomainPlane& side : labels_.planes(other.label)) {
+      if (side.beyond == outside || labels_[side.beyond].kind != SiteKind::edge) continue;
+      for (const DomainPlane& wall : labels_.planes(side.beyond)) {
+        if (wall.beyond != outside && labels_[wall.beyond].site == face.site) out.by_reflex_edge = true;
+      }
+    }
+    return out;
+  }
+
+  /// The change to a triangle across a convex edge: well known, however flat the edge is.
+  [[nodiscard]] Change change_at(const Bisector& bisector, const Contender& other) const {
+    const double slope = bisector.normal[part_.axis];
+    if (!(slope > 0)) return {};
+    return {-bisector.height(middle_) / slope, labels_.rounding() / slope, other.label, other.site, true};
+  }
+
+  /// A change from the current label to another one, if there is one behind a place.
+  /// @param end  the furthest place that the current label's domain reaches to.
+  [[nodiscard]] Change change_to(const PlacedLabel& current, const Quadratic& squared, const Contender& other,
+                                 double at, double error, const IntervalEnd& end) const {
+    if (!labels_.are_incident(current.site, other.label)) {
+      if (other.low.at - other.low.error > end.at + end.error) return {};
+      if (other.high.at + other.high.error < at - error) return {};
+      const Adjacency adjacent = adjacency(current, other);
+      // Over both sides of a reflex edge, the edge is closest in between.
+      const bool is_apart =
+          other.low.at + other.low.error >= end.at - end.error || other.high.at - other.high.error <= at + error;
+      if (adjacent.by_reflex_edge && is_apart) return {};
+      Change change =
+          adjacent.bisector != nullptr ? change_at(*adjacent.bisector, other) : crossing(squared, other, at);
+      if (change.at < infinity) check_domain(other, change, adjacent.bisector != nullptr);
+      return change;
+    }
+    // From a face to an edge of it; what edges and vertices change to tells their own domain.
+    const IntervalEnd& begin = other.low;
+    const bool is_wall = current.kind == SiteKind::face && other.kind == SiteKind::edge && begin.beyond != outside &&
+                         labels_[begin.beyond].site == current.site;
+    if (!is_wall) return {};
+    // Between the planes of both triangles of a reflex edge there is room, if only for less than rounding.
+    const bool is_between = other.high.edge == begin.edge && begin.edge != outside;
+    const bool may_be_empty = !is_between && begin.at + begin.error > other.high.at - other.high.error;
+    return {begin.at, begin.error, other.label, other.site, !may_be_empty && !other.grazes};
+  }
+
+  /// The furthest place behind another one that a site's domain reaches to without a gap.
+  [[nodiscard]] IntervalEnd end_of_domain(std::uint32_t site, double at, double error) const {
+    IntervalEnd end{at, error, outside, outside};
+    for (bool grows = true; grows;) {
+      grows = false;
+      for (const Contender& own : contenders_) {
+        if (own.site != site || own.low.at - own.low.error > end.at + end.error) continue;
+        if (own.high.at <= end.at) continue;
+        end = own.high;
+        grows = true;
+      }
+    }
+    return end;
+  }
+
+  /// @param previous  the site that `current` took over from.
+  Change next_change(LabelIndex current, std::uint32_t previous, double at, double error, bool& is_certain) const {
+    const PlacedLabel& placed = labels_[current];
+    const Quadratic squared = placed.along(middle_, part_.axis);
+    const IntervalEnd end = end_of_domain(placed.site, at, error);
+    std::vector<Change>& changes = changes_;
+    changes.clear();
+    for (const Contender& other : contenders_) {
+      if (other.site == placed.site) continue;
+      const Change change = change_to(placed, squared, other, at, error, end);
+      if (!(change.at < infinity) || change.at + change.error < at - error) continue;
+      if (change.at - change.error > end.at + end.error) continue;
+      if (change.at - change.error <= at + error) {
+        if (other.site == previous) continue;  // the change just passed, seen from its other side
+        is_certain = false;
+        if (change.at <= at) continue;
+      }
+      changes.push_back(change);
+    }
+    if (placed.kind != SiteKind::face) {
+      const Contender* own = find(current);
+      if (own != nullptr && own->high.at < infinity) {
+        const LabelIndex beyond = own->high.beyond;
+        const bool is_known = beyond != outside;
+        changes.push_back({own->high.at, own->high.error, beyond, is_known ? labels_[beyond].site : outside, is_known});
+      }
+      if (own == nullptr || own->grazes) is_certain = false;
+    }
+    Change first;
+    for (const Change& change : changes) {
+      if (change.at < first.at) first = change;
+    }
+    // A domain ends in the solid where something else is closest.
+    if (!(first.at < infinity) && end.at + end.error < high_) is_certain = false;
+    if (!(first.at - first.error <= high_)) return first;
+    if (!first.is_certain) is_certain = false;
+    for (const Change& change : changes) {
+      if (change.site != first.site && change.at - change.error <= first.at + first.error) is_certain = false;
+    }
+    return first;
+  }
+
+  const LabelGeometry& labels_;
+  const LinePart& part_;
+  Vec3d middle_;
+  double base_ = 0;
+  double low_ = 0, high_ = 0;
+  std::vector<Contender> contenders_;
+  mutable std::vector<Change> changes_;
+};
+
+}  // namespace
+
+bool LineLabels::add_events(const LinePart& part, std::span<const LabelIndex> among,
+                            std::vector<LineEvent>& events) const {
+  parts_.fetch_add(1, std::memory_order_relaxed);
+  const std::size_t begin = events.size();
+  EnvelopeWalk walk(labels_, part, among);
+  if (walk.run(events)) return true;
+  std::vector<LineEvent> exact;
+  if (add_exact_events(part, among, exact)) {
+    exact_parts_.fetch_add(1, std::memory_order_relaxed);
+    events.resize(begin);
+    events.insert(events.end(), exact.begin(), exact.end());
+    return true;
+  }
+  undecided_.fetch_add(1, std::memory_order_relaxed);
+  return false;
+}
+
+bool LineLabels::add_exact_events(const LinePart& part, std::span<const LabelIndex> among,
+                                  std::vector<LineEvent>& events) const {
+  std::vector<Label> labels;
+  for (const LabelIndex label : among) labels.push_back(exact_.all()[label]);
+  Vec3d from = part.origin;
+  Vec3d to = part.origin;
+  from[part.axis] = part.low;
+  to[part.axis] = part.high;
+  const auto found = labels_along(exact_, labels, from, to, part.axis);
+  if (!found || found->sites.front() != labels_[part.first].site) return false;
+  if (part.last != outside && found->sites.back() != labels_[part.last].site) return false;
+  const auto label_of = [&](std::uint32_t site) {
+    return *std::find_if(among.begin(), among.end(), [&](LabelIndex k) { return labels_[k].site == site; });
+  };
+  LabelIndex current = part.first;
+  for (std::size_t k = 0; k < found->changes.size(); ++k) {
+    const LabelIndex next = label_of(found->sites[k + 1]);
+    auto [low, high] = found->changes[k];
+    // The only change between these: by halving again, to where it is.
+    while (high - low > labels_.rounding()) {
+      const double middle = low + (high - low) / 2;
+      if (!(low < middle && middle < high)) break;
+      Vec3d q = part.origin;
+      q[part.axis] = middle;
+      (is_behind_change(exact_, current, next, q) ? high : low) = middle;
+    }
+    events.push_back({low + (high - low) / 2, high - low + labels_.rounding(), current, next});
+    current = next;
+  }
+  return true;
+}
+
+bool is_behind_change(const SiteLabels& exact, LabelIndex before, LabelIndex after, const Vec3d& q) {
+  const Label& first = exact.all()[before];
+  const Label& second = exact.all()[after];
+  if (exact.are_incident(first, second)) {
+    return first.kind > second.kind ? exact.is_in_domain(second, q) : !exact.is_in_domain(first, q);
+  }
+  return exact.compare_distances(second, first, q) < 0;
+}
+
+}  // namespace blum::voronoi

@@ -1,0 +1,73 @@
+// Blum: which labels are closest along a line, by the order of events. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "blum/core/vec3.hpp"
+#include "voronoi/label_geometry.hpp"
+#include "voronoi/site_labels.hpp"
+
+namespace blum::voronoi {
+
+/// A place on an axis-parallel line at which the closest site changes.
+struct LineEvent {
+  double at = 0;                ///< coordinate along the axis, mesh units, rounded
+  double error = 0;             ///< how far that may be off
+  LabelIndex before = outside;  ///< closest below it
+  LabelIndex after = outside;   ///< closest above it
+};
+
+/// A part of an axis-parallel line in the solid.
+struct LinePart {
+  Vec3d origin;  ///< any point of the line, mesh units
+  std::size_t axis = 0;
+  double low = 0, high = 0;    ///< coordinates of the ends along the axis
+  LabelIndex first = outside;  ///< closest at the lower end
+  LabelIndex last = outside;   ///< closest at the upper end, where it is known
+};
+
+/// How often the order of events was found, and where doubles did not tell it.
+struct LineCounts {
+  std::size_t parts = 0;      ///< parts of lines
+  std::size_t exact = 0;      ///< where doubles did not tell, and exact signs did
+  std::size_t undecided = 0;  ///< where these did not, either
+};
+
+/// Whether a point of a line lies behind the place at which one label takes over from another, exactly: where no other
+/// place at which they do is near.
+[[nodiscard]] bool is_behind_change(const SiteLabels& exact, LabelIndex before, LabelIndex after, const Vec3d& q);
+
+/// Finds what is closest along lines.
+///
+/// Along a line squared distances are quadratic functions and domains are intervals, so what is closest is a lower
+/// envelope: from one end on, the label that is closest stays so until the first place at which another one gets as
+/// close (a root of a quadratic function) or its domain ends. Labels that share a footprint (a face and an edge of it,
+/// an edge and its end) change at planes of domains alone. Roots come with bounds on their rounding; where these do not
+/// tell the order of two of them, labels_along() finds it by exact signs.
+class LineLabels {
+ public:
+  LineLabels(const SiteLabels& exact, const LabelGeometry& labels) : exact_(exact), labels_(labels) {}
+
+  /// Appends the events of a part, in rising order. Between labels of one site there are none.
+  /// @param among  labels that hold all that are closest anywhere on it.
+  /// @return  whether all of it is certain.
+  bool add_events(const LinePart& part, std::span<const LabelIndex> among, std::vector<LineEvent>& events) const;
+
+  [[nodiscard]] LineCounts counts() const { return {parts_.load(), exact_parts_.load(), undecided_.load()}; }
+
+ private:
+  bool add_exact_events(const LinePart& part, std::span<const LabelIndex> among, std::vector<LineEvent>& events) const;
+
+  const SiteLabels& exact_;
+  const LabelGeometry& labels_;
+  mutable std::atomic<std::size_t> parts_{0};
+  mutable std::atomic<std::size_t> exact_parts_{0};
+  mutable std::atomic<std::size_t> undecided_{0};
+};
+
+}  // namespace blum::voronoi

@@ -1,0 +1,52 @@
+// Blum: regions and walls in a square, from its border. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "voronoi/cell_tree.hpp"
+#include "voronoi/label_geometry.hpp"
+
+namespace blum::voronoi {
+
+/// An arc of a grid edge without children: between two of its events, or one and an end.
+struct EdgeArc {
+  CellId edge = no_cell;
+  std::uint32_t index = 0;  ///< counted from the lower end
+
+  [[nodiscard]] friend auto operator<=>(const EdgeArc&, const EdgeArc&) = default;
+};
+
+/// The regions of sites and of the outside in a resolved square, and the components of walls and surface.
+///
+/// Its border is a cyclic word: runs between events. All regions touch the border, those of a site are connected, and
+/// which runs of the outside belong together the surface tells, so the word alone tells the rest: the boundary of a
+/// region leads from each of its runs to the next one, which joins the events there (the Kreweras complement of a
+/// non-crossing partition).
+struct SquareCells {
+  struct Run {
+    LabelIndex label = outside;
+    std::uint32_t piece = 0;
+    std::uint32_t body = 0;  ///< the component of the solid, or of the outside, that it lies in
+  };
+  struct Piece {
+    std::uint32_t site = outside;  ///< or the outside
+    std::uint32_t body = 0;
+  };
+  struct ArcOfRun {
+    EdgeArc arc;
+    std::uint32_t run = 0;
+  };
+
+  std::vector<std::uint32_t> events;  ///< around the border; event k lies between runs k and k + 1, the last and 0
+  std::vector<Run> runs;              ///< as many as events, but one where there is no event
+  std::vector<Piece> pieces;
+  std::uint32_t body_count = 0;
+  std::vector<std::uint32_t> component;  ///< of each event
+  std::uint32_t component_count = 0;
+  std::vector<ArcOfRun> arcs;
+};
+
+[[nodiscard]] SquareCells square_cells(const CellTree& tree, const LabelGeometry& labels, const GridSquare& square);
+
+}  // namespace blum::voronoi

@@ -1,0 +1,372 @@
+#include "voronoi/square_test.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "blum/core/union_find.hpp"
+#include "voronoi/governors.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+/// The part of a convex polygon where a height is above -margin.
+template <class Height>
+std::vector<Vec3d> clipped(const std::vector<Vec3d>& polygon, double margin, const Height& height) {
+  std::vector<Vec3d> out;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3d& p = polygon[k];
+    const Vec3d& q = polygon[(k + 1) % polygon.size()];
+    const double at_p = height(p) + margin;
+    const double at_q = height(q) + margin;
+    if (at_p >= 0) out.push_back(p);
+    if ((at_p >= 0) != (at_q >= 0)) out.push_back(p + (q - p) * (at_p / (at_p - at_q)));
+  }
+  return out;
+}
+
+/// The largest distance of a corner from the first one.
+double extent(const std::vector<Vec3d>& polygon) {
+  double largest = 0;
+  for (const Vec3d& p : polygon) largest = std::max(largest, length(p - polygon[0]));
+  return largest;
+}
+
+/// Whether a quadratic function is positive on [0, 1], from its values in Bernstein form.
+bool is_positive(double first, double middle, double last) {
+  return first > 0 && last > 0 && (middle >= 0 || middle * middle < first * last);
+}
+
+}  // namespace
+
+bool SquareTest::resolve(GridSquare& square) const {
+  if (square.state == SquareState::resolved) return true;
+  if (!find_chains(square)) return false;
+  const std::vector<BorderArc> arcs = border(square);
+  const bool is_outside = square.chains.empty() && std::all_of(arcs.begin(), arcs.end(), [](const BorderArc& arc) {
+                            return arc.label == outside;
+                          });
+  if (is_outside) {
+    square.state = SquareState::resolved;
+    return true;
+  }
+  std::vector<std::uint32_t> sites;
+  for (const BorderArc& arc : arcs) {
+    if (arc.label != outside) sites.push_back(labels_[arc.label].site);
+  }
+  std::sort(sites.begin(), sites.end());
+  sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
+  const Polygon whole = polygon(square);
+  std::vector<LabelIndex> present;
+  for (const LabelIndex label : square.governors) {
+    if (std::binary_search(sites.begin(), sites.end(), labels_[label].site)) {
+      present.push_back(label);
+      continue;
+    }
+    if (!is_absent(label, square, in_domain(label, whole), 0)) return false;
+  }
+  const bool all_star_shaped = std::all_of(
+      sites.begin(), sites.end(), [&](std::uint32_t site) { return is_star_shaped(site, arcs, present, whole); });
+  if (!all_star_shaped) return false;
+  square.state = SquareState::resolved;
+  return true;
+}
+
+/// The surface runs along triangles from an event of the border or an edge of the mesh to the next.
+bool SquareTest::find_chains(GridSquare& square) const {
+  square.chains.clear();
+  if (square.triangles.empty()) return true;
+  std::vector<std::array<std::uint32_t, 2>> nodes;  // triangle, node
+  std::vector<std::uint32_t> events;                // of the first nodes
+  for (const CellId id : square.edges) {
+    const GridEdge& edge = tree_.edges[id];
+    for (std::uint32_t k = edge.first_event; k < edge.last_event; ++k) {
+      const LineEvent& event = tree_.events[k];
+      if (event.before != outside && event.after != outside) continue;
+      const LabelIndex triangle = event.before == outside ? event.after : event.before;
+      nodes.push_back({triangle, static_cast<std::uint32_t>(events.size())});
+      events.push_back(k);
+    }
+  }
+  auto count = static_cast<std::uint32_t>(events.size());
+  for (const std::uint32_t t : square.triangles) {
+    for (const EdgeId edge : surface_.table().triangle_edges()[t]) {
+      if (surface_.pierces(edge.value, square)) nodes.push_back({t, count + edge.value});
+    }
+  }
+  // Edges are numbered by their rank.
+  std::vector<std::uint32_t> edges;
+  for (const auto& [triangle, node] : nodes) {
+    if (node >= count) edges.push_back(node);
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (auto& [triangle, node] : nodes) {
+    if (node >= count) {
+      node = count + static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), node) - edges.begin());
+    }
+  }
+  std::sort(nodes.begin(), nodes.end());
+  detail::UnionFind joined(count + edges.size());
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    if (nodes[k][0] == nodes[k - 1][0]) joined.join(nodes[k][1], nodes[k - 1][1]);
+  }
+  std::vector<std::vector<std::uint32_t>> ends(count + edges.size());
+  for (std::uint32_t k = 0; k < count; ++k) ends[joined.find(k)].push_back(events[k]);
+  for (std::uint32_t k = 0; k < ends.size(); ++k) {
+    if (joined.find(k) != k) continue;
+    if (ends[k].size() != 2) return false;  // a closed curve, where there is none
+    square.chains.push_back({ends[k][0], ends[k][1]});
+  }
+  return true;
+}
+
+std::vector<SquareTest::BorderArc> SquareTest::border(const GridSquare& square) const {
+  std::vector<BorderArc> out;
+  for (const CellId id : square.edges) {
+    const GridEdge& edge = tree_.edges[id];
+    const Vec3d low = tree_.lattice.at(edge.low) - labels_.centre();
+    const auto point = [&](double at) {
+      Vec3d p = low;
+      p[edge.axis] = at - labels_.centre()[edge.axis];
+      return p;
+    };
+    BorderArc arc{edge.first, low, low, 0};
+    for (std::uint32_t k = edge.first_event; k < edge.last_event; ++k) {
+      const LineEvent& event = tree_.events[k];
+      arc.high = point(event.at);
+      arc.error = std::max(arc.error, event.error);
+      out.push_back(arc);
+      arc = {event.after, arc.high, arc.high, event.error};
+    }
+    arc.high = point(tree_.lattice.at(edge.axis, edge.low[edge.axis] + edge.length));
+    out.push_back(arc);
+  }
+  return out;
+}
+
+SquareTest::Polygon SquareTest::polygon(const GridSquare& square) const {
+  const std::size_t u = after(square.axis);
+  const std::size_t v = after(u);
+  Polygon out;
+  for (const auto& [at_u, at_v] : {std::array{0U, 0U}, {1U, 0U}, {1U, 1U}, {0U, 1U}}) {
+    Node node = square.low;
+    node[u] += at_u * square.length;
+    node[v] += at_v * square.length;
+    out.push_back(tree_.lattice.at(node) - labels_.centre());
+  }
+  return out;
+}
+
+bool SquareTest::is_further(LabelIndex label, LabelIndex other, const Polygon& part) const {
+  if (const std::optional<Bisector> plane = labels_.bisector(other, label)) {
+    return std::all_of(part.begin(), part.end(),
+                       [&](const Vec3d& q) { return plane->height(q) > 2 * labels_.rounding(); });
+  }
+  const PlacedLabel& far = labels_[label];
+  const PlacedLabel& near = labels_[other];
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const double error = labels_.rounding_of_squares(std::sqrt(near.squared_distance(part[i])));
+    for (std::size_t k = 0; k <= i; ++k) {
+      if (!(far.polar(part[i], part[k]) - near.polar(part[i], part[k]) > 4 * error)) return false;
+    }
+  }
+  return true;
+}
+
+/// A part of a polygon that holds all of it where a label may be as close as another one.
+SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, const Polygon& part) const {
+  const double margin = 2 * labels_.rounding();
+  if (const std::optional<Bisector> plane = labels_.bisector(other, label)) {
+    return clipped(part, margin, [&](const Vec3d& q) { return -plane->height(q); });
+  }
+  const PlacedLabel& near = labels_[other];
+  const PlacedLabel& far = labels_[label];
+  if (near.kind != SiteKind::face) return part;
+  // The distance from an edge or vertex less that from a plane is convex: where it is positive, its tangent plane parts
+  // what is left from there.
+  Polygon left = part;
+  for (const Vec3d& corner : part) {
+    const Vec3d away = corner - far.foot(corner);
+    const double distance = length(away);
+    if (!(distance - near.height(corner) > 4 * margin)) continue;
+    const Vec3d slope = away / distance - near.direction;
+    left = clipped(left, margin,
+                   [&](const Vec3d& q) { return -(distance - near.height(corner) + dot(slope, q - corner)); });
+  }
+  return left;
+}
+
+bool SquareTest::is_absent(LabelIndex label, const GridSquare& square, Polygon part, int depth) const {
+  constexpr int most = 6;
+  if (part.empty()) return true;
+  if (depth > most) return false;
+  Vec3d middle;
+  for (const Vec3d& p : part) middle += p;
+  middle *= 1.0 / static_cast<double>(part.size());
+  // The closest one to the middle, without the label itself.
+  std::vector<LabelIndex> others;
+  for (const LabelIndex other : square.governors) {
+    if (labels_[other].site != labels_[label].site) others.push_back(other);
+  }
+  if (others.empty()) return false;
+  // One point of the surface may do: less the square of the distance from it, that of the label is concave.
+  const Vec3d foot = closest_surface_point(labels_, others, middle);
+  const bool is_beyond_foot = std::all_of(part.begin(), part.end(), [&](const Vec3d& q) {
+    const double distance = length(q - foot) + labels_.rounding();
+    return labels_[label].squared_distance(q) > distance * distance + labels_.rounding_of_squares(distance);
+  });
+  if (is_beyond_foot) return true;
+  // Or another label all over the part in its domain; what is left has to be covered by others.
+  std::sort(others.begin(), others.end(), [&](LabelIndex a, LabelIndex b) {
+    return labels_[a].squared_distance(middle) < labels_[b].squared_distance(middle);
+  });
+  const double own = labels_[label].squared_distance(middle);
+  int tries = 3;
+  for (const LabelIndex other : others) {
+    if (tries == 0 || !(labels_[other].squared_distance(middle) < own)) return false;
+    const std::span<const DomainPlane> planes = labels_.planes(other);
+    const bool is_in = std::all_of(planes.begin(), planes.end(), [&](const DomainPlane& plane) {
+      return plane.height(middle) >= -labels_.rounding();
+    });
+    if (!is_in || (labels_[other].kind == SiteKind::face && labels_[other].height(middle) < 0)) continue;
+    --tries;
+    Polygon inside = part;
+    for (const DomainPlane& plane : planes) {
+      inside = clipped(inside, 0, [&](const Vec3d& q) { return plane.height(q); });
+    }
+    Polygon left;
+    // Domains of labels next to each other meet in their borders alone.
+    if (!labels_.are_incident(labels_[label].site, other) && !is_further(label, other, inside)) {
+      left = not_further(label, other, inside);
+      if (left == inside) continue;
+    }
+    return is_absent(label, square, std::move(left), depth + 1) &&
+           is_absent_outside(label, other, square, std::move(part), depth);
+  }
+  return false;
+}
+
+/// Whether a label is closest nowhere in the part of a polygon outside of another one's domain.
+bool SquareTest::is_absent_outside(LabelIndex label, LabelIndex other, const GridSquare& square, Polygon part,
+                                   int depth) const {
+  for (const DomainPlane& plane : labels_.planes(other)) {
+    // Slivers by rounding are shared with the part inside.
+    const auto beyond = [&](const Vec3d& q) { return -plane.height(q); };
+    const bool leaves =
+        std::any_of(part.begin(), part.end(), [&](const Vec3d& q) { return beyond(q) > 2 * labels_.rounding(); });
+    if (!leaves) continue;
+    if (!is_absent(label, square, clipped(part, 0, beyond), depth + 1)) return false;
+    part = clipped(part, 0, [&](const Vec3d& q) { return plane.height(q); });
+  }
+  return true;
+}
+
+bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> arcs, std::span<const LabelIndex> others,
+                                const Polygon& square) const {
+  std::vector<const BorderArc*> own;
+  for (const BorderArc& arc : arcs) {
+    if (arc.label != outside && labels_[arc.label].site == site) own.push_back(&arc);
+  }
+  std::sort(own.begin(), own.end(), [](const BorderArc* a, const BorderArc* b) {
+    return squared_length(a->high - a->low) > squared_length(b->high - b->low);
+  });
+  const SiteKind kind = labels_[own[0]->label].kind;
+  if (kind == SiteKind::vertex) return true;
+  // The domain of an edge is convex, and may be thinner than rounding.
+  const Polygon part = kind == SiteKind::edge ? in_domain(own[0]->label, square) : square;
+  if (kind == SiteKind::face) {
+    std::erase_if(own, [&](const BorderArc* arc) {
+      return length(arc->high - arc->low) <= 4 * arc->error + 4 * labels_.rounding();
+    });
+  }
+  constexpr std::size_t tries = 3;
+  if (own.size() > tries) own.resize(tries);
+  return std::any_of(own.begin(), own.end(), [&](const BorderArc* arc) {
+    const Vec3d from = (arc->low + arc->high) * 0.5;
+    return std::all_of(others.begin(), others.end(), [&](LabelIndex other) {
+      return labels_[other].site == site || stays_behind(arc->label, other, from, part) ||
+             stays_behind_in_domain(arc->label, other, from, part) || never_meet(site, other, others, part);
+    });
+  });
+}
+
+/// The same where the other label's domain alone is looked at: it does not give way elsewhere.
+bool SquareTest::stays_behind_in_domain(LabelIndex label, LabelIndex other, const Vec3d& from,
+                                        const Polygon& square) const {
+  const PlacedLabel& own = labels_[label];
+  const PlacedLabel& rival = labels_[other];
+  if (labels_.are_incident(own.site, other)) return false;
+  const auto polar = [&](const Vec3d& q, const Vec3d& r) { return own.polar(q, r) - rival.polar(q, r); };
+  const double distance = std::sqrt(own.squared_distance(from)) + extent(square);
+  const double error = 4 * labels_.rounding_of_squares(distance);
+  if (!(polar(from, from) < -error)) return false;
+  // Where a ray comes back the second Bernstein coefficient is positive, and the third, the value there, 0.
+  const Polygon part = clipped(in_domain(other, square), error, [&](const Vec3d& q) { return polar(from, q); });
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    for (std::size_t k = 0; k <= i; ++k) {
+      if (!(polar(part[i], part[k]) > error)) return false;
+    }
+  }
+  return true;
+}
+
+SquareTest::Polygon SquareTest::in_domain(LabelIndex label, Polygon part) const {
+  const double margin = 2 * labels_.rounding();
+  for (const DomainPlane& plane : labels_.planes(label)) {
+    part = clipped(part, margin, [&](const Vec3d& q) { return plane.height(q); });
+  }
+  if (labels_[label].kind == SiteKind::face) {
+    part = clipped(part, margin, [&](const Vec3d& q) { return labels_[label].height(q); });
+  }
+  return part;
+}
+
+/// Whether the region of a site has no border with that of another label in a square, because their domains have no
+/// point in common there: or one alone, over a corner that both have. Over both sides of a reflex edge they part, too.
+bool SquareTest::never_meet(std::uint32_t site, LabelIndex other, std::span<const LabelIndex> labels,
+                            const Polygon& square) const {
+  const Polygon of_other = in_domain(other, square);
+  return std::all_of(labels.begin(), labels.end(), [&](LabelIndex label) {
+    if (labels_[label].site != site || labels_.share_reflex_edge(label, other)) return true;
+    const Polygon common = in_domain(label, of_other);
+    if (common.empty()) return true;
+    return extent(common) <= 64 * labels_.rounding() && labels_.touch(label, other);
+  });
+}
+
+/// Whether no ray from a point of a label's region leaves it to another label and comes back.
+bool SquareTest::stays_behind(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& square) const {
+  const PlacedLabel& own = labels_[label];
+  const PlacedLabel& rival = labels_[other];
+  if (labels_.are_incident(own.site, other)) {
+    if (own.kind != SiteKind::face || rival.kind != SiteKind::edge) return true;
+    const std::span<const DomainPlane> planes = labels_.planes(other);
+    return std::all_of(planes.begin(), planes.end(), [&](const DomainPlane& plane) {
+      const bool is_wall = plane.beyond != outside && labels_[plane.beyond].site == own.site;
+      return !is_wall || plane.height(from) < -labels_.rounding();
+    });
+  }
+  const std::optional<Bisector> plane = labels_.bisector(label, other);
+  if (plane && plane->height(from) > 2 * labels_.rounding()) return true;
+  // Along a ray the difference of squares is quadratic: at the start, its polar form, and at the end, as Bernstein
+  // coefficients. It is negative first, and comes back only where the second is positive and the third negative.
+  const auto polar = [&](const Vec3d& q, const Vec3d& r) { return own.polar(q, r) - rival.polar(q, r); };
+  if (!(polar(from, from) < 0)) return false;
+  for (std::size_t k = 0; k < square.size(); ++k) {
+    Vec3d begin = square[k];
+    Vec3d end = square[(k + 1) % square.size()];
+    const double distance = std::sqrt(own.squared_distance(begin)) + length(end - begin);
+    const double error = 4 * labels_.rounding_of_squares(distance);
+    const double at_begin = polar(from, begin) + error;
+    const double at_end = polar(from, end) + error;
+    if (at_begin <= 0 && at_end <= 0) continue;
+    const Vec3d zero = begin + (end - begin) * (at_begin / (at_begin - at_end));
+    if (at_begin <= 0) begin = zero;
+    if (at_end <= 0) end = zero;
+    if (!is_positive(polar(begin, begin) - error, polar(begin, end) - error, polar(end, end) - error)) return false;
+  }
+  return true;
+}
+
+}  // namespace blum::voronoi

@@ -1,0 +1,65 @@
+// Blum: whether the border of a square tells what is inside. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "voronoi/cell_tree.hpp"
+#include "voronoi/label_geometry.hpp"
+#include "voronoi/surface_in_cells.hpp"
+
+namespace blum::voronoi {
+
+/// Decides whether a square is resolved: the region of each site in it is connected and touches its border, and the
+/// surface in it consists of arcs that end on the border. Then the components of walls and surface in it are
+/// contractible, and its border tells them (SquareCells).
+///
+/// A label that is closest nowhere on the border must be proven absent: the part of the square in its domain is covered
+/// by pieces in domains of others that are closer all over a piece. A site on the border must be star-shaped about a
+/// point of the border, as seen by each of the other labels: along each ray, once another label is closer, this one
+/// stays behind. The region of a vertex is convex.
+/// All of this is one-sided: rounding only leads to another split.
+class SquareTest {
+ public:
+  SquareTest(const MeshView& mesh, const LabelGeometry& labels, const SurfaceInCells& surface, const CellTree& tree)
+      : mesh_(mesh), labels_(labels), surface_(surface), tree_(tree) {}
+
+  /// Whether it is resolved; then its chains are set.
+  bool resolve(GridSquare& square) const;
+
+ private:
+  using Polygon = std::vector<Vec3d>;
+
+  /// An arc of the border, relative to the centre of the labels.
+  struct BorderArc {
+    LabelIndex label = outside;
+    Vec3d low, high;
+    double error = 0;
+  };
+
+  [[nodiscard]] bool find_chains(GridSquare& square) const;
+  [[nodiscard]] std::vector<BorderArc> border(const GridSquare& square) const;
+  [[nodiscard]] Polygon polygon(const GridSquare& square) const;
+  [[nodiscard]] bool is_absent(LabelIndex label, const GridSquare& square, Polygon part, int depth) const;
+  [[nodiscard]] bool is_absent_outside(LabelIndex label, LabelIndex other, const GridSquare& square, Polygon part,
+                                       int depth) const;
+  [[nodiscard]] Polygon not_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
+  [[nodiscard]] bool is_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
+  [[nodiscard]] bool is_star_shaped(std::uint32_t site, std::span<const BorderArc> arcs,
+                                    std::span<const LabelIndex> others, const Polygon& square) const;
+  [[nodiscard]] bool stays_behind_in_domain(LabelIndex label, LabelIndex other, const Vec3d& from,
+                                            const Polygon& square) const;
+  [[nodiscard]] Polygon in_domain(LabelIndex label, Polygon part) const;
+  [[nodiscard]] bool never_meet(std::uint32_t site, LabelIndex other, std::span<const LabelIndex> labels,
+                                const Polygon& square) const;
+  [[nodiscard]] bool stays_behind(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& square) const;
+
+  const MeshView mesh_;
+  const LabelGeometry& labels_;
+  const SurfaceInCells& surface_;
+  const CellTree& tree_;
+};
+
+}  // namespace blum::voronoi

@@ -1,0 +1,133 @@
+#include "voronoi/subdivision.hpp"
+
+#include <algorithm>
+
+#include "blum/core/parallel.hpp"
+
+namespace blum::voronoi {
+namespace {
+
+constexpr std::size_t grain = 8;
+
+class Subdivider {
+ public:
+  Subdivider(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, const SiteLabels& exact,
+             const LabelGeometry& labels, const FaceLoops& loops, const SubdivisionOptions& options, Subdivision& out,
+             const Context& context)
+      : options_(options),
+        out_(out),
+        context_(context),
+        splitter_(mesh, exact, labels, out.tree),
+        surface_(mesh, table, out.tree.lattice),
+        square_test_(mesh, labels, surface_, out.tree),
+        cube_test_(mesh, sites, labels, loops, surface_, out.tree) {}
+
+  void run() {
+    splitter_.add_root();
+    std::vector<CellId> cubes{0};
+    for (int depth = 0; !cubes.empty(); ++depth) {
+      const bool is_last = depth >= options_.most_depth;
+      std::vector<CellId> to_test;
+      std::vector<CellId> to_split;
+      for (const CellId cube : cubes) {
+        (!is_last && is_crowded(out_.tree.cubes[cube], depth) ? to_split : to_test).push_back(cube);
+      }
+      resolve_squares(to_test);
+      test(to_test, is_last, to_split);
+      std::sort(to_split.begin(), to_split.end());
+      splitter_.split_cubes(to_split, context_);
+      cubes.clear();
+      for (const CellId cube : to_split) {
+        for (CellId k = 0; k < 8; ++k) {
+          const CellId child = out_.tree.cubes[cube].children + k;
+          if (out_.tree.cubes[child].state != CubeState::trivial) cubes.push_back(child);
+        }
+      }
+    }
+    out_.lines = splitter_.counts();
+    out_.contradictions = splitter_.contradictions();
+    for (const CellId leaf : out_.leaves) out_.governors += out_.tree.cubes[leaf].governors.size();
+  }
+
+ private:
+  /// Whether a cube has so many governors that its test is not worth it, and splitting it makes them fewer.
+  [[nodiscard]] bool is_crowded(const GridCube& cube, int depth) const {
+    constexpr std::size_t many = 64;
+    if (depth < std::max(1, options_.least_depth)) return true;
+    return cube.governors.size() > many && cube.governors.size() * 10 < cube.governors_of_parent * 9;
+  }
+
+  /// Splits squares of cubes until each is resolved or small.
+  void resolve_squares(const std::vector<CellId>& cubes) {
+    std::vector<CellId> squares;
+    for (const CellId cube : cubes) {
+      for (const CellId square : out_.tree.cubes[cube].squares) {
+        out_.tree.visit_leaf_squares(square, [&](CellId leaf) { squares.push_back(leaf); });
+      }
+    }
+    const std::uint32_t length = cubes.empty() ? 1 : out_.tree.cubes[cubes.front()].length;
+    const std::uint32_t least = std::max<std::uint32_t>(2, length >> options_.most_square_depth);
+    while (!squares.empty()) {
+      std::sort(squares.begin(), squares.end());
+      squares.erase(std::unique(squares.begin(), squares.end()), squares.end());
+      std::erase_if(squares, [&](CellId id) { return out_.tree.squares[id].state == SquareState::resolved; });
+      std::vector<std::uint8_t> is_left(squares.size());
+      parallel_for(context_, squares.size(), grain, {}, [&](const WorkRange& range) {
+        for (std::size_t k = range.begin; k < range.end; ++k) {
+          is_left[k] = square_test_.resolve(out_.tree.squares[squares[k]]) ? 0 : 1;
+        }
+      });
+      std::vector<CellId> left;
+      for (std::size_t k = 0; k < squares.size(); ++k) {
+        if (is_left[k] != 0 && out_.tree.squares[squares[k]].length >= 2 * least) left.push_back(squares[k]);
+      }
+      splitter_.split_squares(left, context_);
+      squares.clear();
+      for (const CellId square : left) {
+        for (CellId k = 0; k < 4; ++k) squares.push_back(out_.tree.squares[square].children + k);
+      }
+    }
+  }
+
+  void test(const std::vector<CellId>& cubes, bool is_last, std::vector<CellId>& to_split) {
+    std::vector<CubeObstacle> obstacles(cubes.size());
+    parallel_for(context_, cubes.size(), grain, {}, [&](const WorkRange& range) {
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        obstacles[k] = cube_test_.run(out_.tree.cubes[cubes[k]]).obstacle;
+      }
+    });
+    for (std::size_t k = 0; k < cubes.size(); ++k) {
+      GridCube& cube = out_.tree.cubes[cubes[k]];
+      cube.state = obstacles[k] == CubeObstacle::none ? CubeState::passed : CubeState::failed;
+      if (cube.state == CubeState::failed) {
+        ++out_.obstacles[static_cast<std::size_t>(obstacles[k])];
+        if (!is_last) {
+          to_split.push_back(cubes[k]);
+          continue;
+        }
+        out_.failing.push_back({cubes[k], obstacles[k]});
+      }
+      out_.leaves.push_back(cubes[k]);
+    }
+  }
+
+  const SubdivisionOptions& options_;
+  Subdivision& out_;
+  const Context& context_;
+  CellSplitter splitter_;
+  SurfaceInCells surface_;
+  SquareTest square_test_;
+  CubeTest cube_test_;
+};
+
+}  // namespace
+
+Subdivision subdivide(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                      const SiteLabels& exact, const LabelGeometry& labels, const FaceLoops& loops,
+                      const SubdivisionOptions& options, const Context& context) {
+  Subdivision out;
+  Subdivider(mesh, table, sites, exact, labels, loops, options, out, context).run();
+  return out;
+}
+
+}  // namespace blum::voronoi

@@ -1,0 +1,44 @@
+// Blum: the octree in which walls and surface are contractible. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "voronoi/cell_splitter.hpp"
+#include "voronoi/cube_test.hpp"
+#include "voronoi/square_test.hpp"
+
+namespace blum::voronoi {
+
+struct SubdivisionOptions {
+  int least_depth = 0;        ///< all cubes that meet the solid are split at least so often
+  int most_depth = 16;        ///< and at most so often
+  int most_square_depth = 5;  ///< how often squares of a cube are split before the cube is
+};
+
+/// A cube that does not pass, at the largest depth.
+struct FailingCube {
+  CellId cube = no_cell;
+  CubeObstacle obstacle = CubeObstacle::none;
+};
+
+struct Subdivision {
+  CellTree tree;
+  std::vector<CellId> leaves;  ///< cubes that meet the solid and have no children
+  std::vector<FailingCube> failing;
+  std::array<std::size_t, 8> obstacles{};  ///< of cubes that had to be split, by CubeObstacle
+  LineCounts lines;
+  std::size_t contradictions = 0;
+  std::size_t governors = 0;  ///< sum over leaves
+};
+
+/// Splits a cube around the mesh until each leaf passes CubeTest, or is at the largest depth.
+[[nodiscard]] Subdivision subdivide(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                                    const SiteLabels& exact, const LabelGeometry& labels, const FaceLoops& loops,
+                                    const SubdivisionOptions& options, const Context& context);
+
+}  // namespace blum::voronoi

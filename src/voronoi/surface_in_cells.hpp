@@ -1,0 +1,34 @@
+// Blum: where the surface passes squares and cubes, exactly. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "voronoi/cell_tree.hpp"
+
+namespace blum::voronoi {
+
+/// Exact questions about a mesh and the cells of a grid, whose planes count as moved by infinitely small amounts
+/// (grid_predicates.hpp).
+class SurfaceInCells {
+ public:
+  SurfaceInCells(const MeshView& mesh, const SiteTable& table, const Lattice& lattice)
+      : mesh_(mesh), table_(table), lattice_(lattice) {}
+
+  [[nodiscard]] const SiteTable& table() const { return table_; }
+  /// Whether an edge of the mesh passes through a square.
+  [[nodiscard]] bool pierces(std::uint32_t edge, const GridSquare& square) const;
+  [[nodiscard]] bool is_in(std::uint32_t vertex, const GridCube& cube) const;
+  /// The edges of some triangles, rising.
+  [[nodiscard]] std::vector<std::uint32_t> edges_of(std::span<const std::uint32_t> triangles) const;
+
+ private:
+  const MeshView mesh_;
+  const SiteTable& table_;
+  const Lattice& lattice_;
+};
+
+}  // namespace blum::voronoi
