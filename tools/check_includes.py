@@ -28,7 +28,7 @@ LOWER = {
     "surface_map": {"core", "geometry", "grid", "field"},
     "medial_axis": {"core", "geometry", "grid", "complex", "solid", "field"},
     "proximity": {"core", "geometry"},
-    "voronoi": {"core", "geometry"},
+    "voronoi": {"core", "geometry", "complex"},
     "certificate": {"core", "complex"},
 }
 LOWER["io"] = set(LOWER)

@@ -78,7 +78,10 @@ void CellSplitter::add_root() {
       tree_.squares.push_back(square);
     }
   }
-  for (LabelIndex k = 0; k < labels_.count(); ++k) cube.governors.push_back(k);
+  const std::span<const LabelIndex> thin = labels_.thin_vertices();
+  for (LabelIndex k = 0; k < labels_.count(); ++k) {
+    if (!std::binary_search(thin.begin(), thin.end(), k)) cube.governors.push_back(k);
+  }
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) cube.triangles.push_back(t);
   cube.governors_of_parent = cube.governors.size();
   tree_.cubes.push_back(cube);

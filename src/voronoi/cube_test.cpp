@@ -304,9 +304,17 @@ class CubeAnalysis {
     }
     for (const std::uint32_t v : vertices_) {
       const bool is_site = std::binary_search(t_.sites_.reflex_vertices.begin(), t_.sites_.reflex_vertices.end(), v);
-      if (is_site && regions_of_site_.find(site_of_vertex(v)) == regions_of_site_.end()) return CubeObstacle::enclosed;
+      if (is_site && !is_thin(v) && regions_of_site_.find(site_of_vertex(v)) == regions_of_site_.end()) {
+        return CubeObstacle::enclosed;
+      }
     }
     return CubeObstacle::none;
+  }
+
+  [[nodiscard]] bool is_thin(std::uint32_t v) const {
+    const std::span<const LabelIndex> thin = t_.labels_.thin_vertices();
+    return std::any_of(thin.begin(), thin.end(),
+                       [&](LabelIndex label) { return t_.labels_[label].site == site_of_vertex(v); });
   }
 
   /// How many regions of a site neither exit nor touch it.

@@ -190,11 +190,16 @@ bool LabelGeometry::share_reflex_edge(LabelIndex a, LabelIndex b) const {
   });
 }
 
-bool LabelGeometry::touch(LabelIndex a, LabelIndex b) const {
-  const std::span<const Vec3d> of_a = corners(a);
-  const std::span<const Vec3d> of_b = corners(b);
-  return std::any_of(of_a.begin(), of_a.end(),
-                     [&](const Vec3d& p) { return std::find(of_b.begin(), of_b.end(), p) != of_b.end(); });
+bool LabelGeometry::has_corner(LabelIndex label, const Vec3d& corner) const {
+  const std::span<const Vec3d> own = corners(label);
+  return std::find(own.begin(), own.end(), corner) != own.end();
+}
+
+std::optional<Vec3d> LabelGeometry::common_corner(LabelIndex a, LabelIndex b) const {
+  for (const Vec3d& corner : corners(a)) {
+    if (has_corner(b, corner)) return corner;
+  }
+  return std::nullopt;
 }
 
 void LabelGeometry::add_edges(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites) {
@@ -215,6 +220,10 @@ void LabelGeometry::add_edges(const MeshView& mesh, const SiteTable& table, cons
         planes_.push_back({-side.normal, -side.offset, t, edge});
       }
     }
+    // Where the edge is nearly flat these two leave room below it, too, up to rounding.
+    const auto [first, second] = sites.triangles_of[edge];
+    const Vec3d upwards = unit(labels_[first].direction + labels_[second].direction);
+    planes_.push_back({upwards, dot(upwards, label.point), outside, outside});
     label.last_plane = static_cast<std::uint32_t>(planes_.size());
     labels_.push_back(label);
     corners_.push_back({p[0] - centre_, p[1] - centre_, {}});
@@ -227,6 +236,16 @@ void LabelGeometry::add_vertices(const MeshView& mesh, const SiteTable& table, c
     const Vec3d& at = mesh.vertices[v];
     PlacedLabel label{SiteKind::vertex, 0, at - centre_, {}, 0, 0};
     label.first_plane = static_cast<std::uint32_t>(planes_.size());
+    // Its cone lies between the normals of its triangles.
+    const Vec3d& normal = labels_[sites.triangles_of[edges.of(v).front()][0]].direction;
+    double widest = 0;
+    for (const std::uint32_t edge : edges.of(v)) {
+      for (const std::uint32_t t : sites.triangles_of[edge]) {
+        widest = std::max(widest, length(labels_[t].direction - normal));
+      }
+    }
+    constexpr double thin = 1e-12;
+    if (widest < thin) thin_vertices_.push_back(static_cast<LabelIndex>(labels_.size()));
     for (const std::uint32_t edge : edges.of(v)) {
       const Segment& ends = table.edges()[edge];
       const Vec3d inwards = unit(at - mesh.vertices[ends[0] == v ? ends[1] : ends[0]]);

@@ -116,12 +116,16 @@ class LabelGeometry {
   [[nodiscard]] Vec3d closest_point(LabelIndex label, const Vec3d& q) const;
   /// Whether two labels are triangles on both sides of a reflex edge.
   [[nodiscard]] bool share_reflex_edge(LabelIndex a, LabelIndex b) const;
-  /// Whether two labels have a corner in common.
-  [[nodiscard]] bool touch(LabelIndex a, LabelIndex b) const;
+  /// A corner that two labels have in common.
+  [[nodiscard]] std::optional<Vec3d> common_corner(LabelIndex a, LabelIndex b) const;
+  [[nodiscard]] bool has_corner(LabelIndex label, const Vec3d& corner) const;
   /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
   /// only at planes of their domains.
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
   [[nodiscard]] std::size_t face_count() const { return face_count_; }
+  /// Vertices whose cones are thinner than 1e-12: dents by rounding in faces that are flat but for that. No grid in
+  /// double could meet their regions.
+  [[nodiscard]] std::span<const LabelIndex> thin_vertices() const { return thin_vertices_; }
 
  private:
   void add_triangles(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
@@ -137,6 +141,7 @@ class LabelGeometry {
   std::vector<PlacedLabel> labels_;
   std::vector<DomainPlane> planes_;
   std::vector<std::array<Vec3d, 3>> corners_;
+  std::vector<LabelIndex> thin_vertices_;                    ///< rising
   std::vector<Bisector> bisectors_;                          ///< three for each triangle
   std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` where there is none
   /// Pairs of sites of which one is an edge or vertex of the other, both ways round, sorted.

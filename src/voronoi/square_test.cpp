@@ -63,7 +63,7 @@ bool SquareTest::resolve(GridSquare& square) const {
       present.push_back(label);
       continue;
     }
-    if (!is_absent(label, square, in_domain(label, whole), 0)) return false;
+    if (!is_absent(label, square.governors, in_domain(label, whole), is_thin(label, whole), 0)) return false;
   }
   const bool all_star_shaped = std::all_of(
       sites.begin(), sites.end(), [&](std::uint32_t site) { return is_star_shaped(site, arcs, present, whole); });
@@ -197,7 +197,8 @@ SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, 
   return left;
 }
 
-bool SquareTest::is_absent(LabelIndex label, const GridSquare& square, Polygon part, int depth) const {
+bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part, bool thin,
+                           int depth) const {
   constexpr int most = 6;
   if (part.empty()) return true;
   if (depth > most) return false;
@@ -206,7 +207,7 @@ bool SquareTest::is_absent(LabelIndex label, const GridSquare& square, Polygon p
   middle *= 1.0 / static_cast<double>(part.size());
   // The closest one to the middle, without the label itself.
   std::vector<LabelIndex> others;
-  for (const LabelIndex other : square.governors) {
+  for (const LabelIndex other : all) {
     if (labels_[other].site != labels_[label].site) others.push_back(other);
   }
   if (others.empty()) return false;
@@ -237,26 +238,28 @@ bool SquareTest::is_absent(LabelIndex label, const GridSquare& square, Polygon p
     }
     Polygon left;
     // Domains of labels next to each other meet in their borders alone.
-    if (!labels_.are_incident(labels_[label].site, other) && !is_further(label, other, inside)) {
+    const bool are_incident = labels_.are_incident(labels_[label].site, other);
+    if (are_incident && thin) continue;
+    if (!are_incident && !is_further(label, other, inside)) {
       left = not_further(label, other, inside);
       if (left == inside) continue;
     }
-    return is_absent(label, square, std::move(left), depth + 1) &&
-           is_absent_outside(label, other, square, std::move(part), depth);
+    return is_absent(label, all, std::move(left), thin, depth + 1) &&
+           is_absent_outside(label, other, all, std::move(part), thin, depth);
   }
   return false;
 }
 
 /// Whether a label is closest nowhere in the part of a polygon outside of another one's domain.
-bool SquareTest::is_absent_outside(LabelIndex label, LabelIndex other, const GridSquare& square, Polygon part,
-                                   int depth) const {
+bool SquareTest::is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all, Polygon part,
+                                   bool thin, int depth) const {
   for (const DomainPlane& plane : labels_.planes(other)) {
     // Slivers by rounding are shared with the part inside.
     const auto beyond = [&](const Vec3d& q) { return -plane.height(q); };
     const bool leaves =
         std::any_of(part.begin(), part.end(), [&](const Vec3d& q) { return beyond(q) > 2 * labels_.rounding(); });
     if (!leaves) continue;
-    if (!is_absent(label, square, clipped(part, 0, beyond), depth + 1)) return false;
+    if (!is_absent(label, all, clipped(part, 0, beyond), thin, depth + 1)) return false;
     part = clipped(part, 0, [&](const Vec3d& q) { return plane.height(q); });
   }
   return true;
@@ -311,6 +314,15 @@ bool SquareTest::stays_behind_in_domain(LabelIndex label, LabelIndex other, cons
   return true;
 }
 
+/// Whether a label's domain in a square may be all within rounding of the domains next to it.
+bool SquareTest::is_thin(LabelIndex label, Polygon part) const {
+  const double margin = -2 * labels_.rounding();
+  for (const DomainPlane& plane : labels_.planes(label)) {
+    part = clipped(part, margin, [&](const Vec3d& q) { return plane.height(q); });
+  }
+  return part.empty();
+}
+
 SquareTest::Polygon SquareTest::in_domain(LabelIndex label, Polygon part) const {
   const double margin = 2 * labels_.rounding();
   for (const DomainPlane& plane : labels_.planes(label)) {
@@ -323,7 +335,9 @@ SquareTest::Polygon SquareTest::in_domain(LabelIndex label, Polygon part) const 
 }
 
 /// Whether the region of a site has no border with that of another label in a square, because their domains have no
-/// point in common there: or one alone, over a corner that both have. Over both sides of a reflex edge they part, too.
+/// point in common there: or one alone, over a corner that both have, where nothing is closer than what has this
+/// corner. There the diagram is a cone, in which regions are connected. Over both sides of a reflex edge regions part,
+/// too.
 bool SquareTest::never_meet(std::uint32_t site, LabelIndex other, std::span<const LabelIndex> labels,
                             const Polygon& square) const {
   const Polygon of_other = in_domain(other, square);
@@ -331,7 +345,18 @@ bool SquareTest::never_meet(std::uint32_t site, LabelIndex other, std::span<cons
     if (labels_[label].site != site || labels_.share_reflex_edge(label, other)) return true;
     const Polygon common = in_domain(label, of_other);
     if (common.empty()) return true;
-    return extent(common) <= 64 * labels_.rounding() && labels_.touch(label, other);
+    const std::optional<Vec3d> corner = labels_.common_corner(label, other);
+    constexpr double small = 4096;
+    if (!corner || extent(common) > small * labels_.rounding()) {
+      // Where they meet something else may be closer.
+      return is_absent(other, labels, common, true, 0) || is_absent(label, labels, common, true, 0);
+    }
+    const double distance = length(common[0] - *corner);
+    const double nearest = distance * distance + 4 * small * labels_.rounding_of_squares(distance);
+    return std::all_of(labels.begin(), labels.end(), [&](LabelIndex third) {
+      return labels_.has_corner(third, *corner) || labels_[third].squared_distance(common[0]) > nearest ||
+             in_domain(third, common).empty();
+    });
   });
 }
 

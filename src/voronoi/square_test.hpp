@@ -42,9 +42,11 @@ class SquareTest {
   [[nodiscard]] bool find_chains(GridSquare& square) const;
   [[nodiscard]] std::vector<BorderArc> border(const GridSquare& square) const;
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
-  [[nodiscard]] bool is_absent(LabelIndex label, const GridSquare& square, Polygon part, int depth) const;
-  [[nodiscard]] bool is_absent_outside(LabelIndex label, LabelIndex other, const GridSquare& square, Polygon part,
-                                       int depth) const;
+  [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part, bool thin,
+                               int depth) const;
+  [[nodiscard]] bool is_thin(LabelIndex label, Polygon part) const;
+  [[nodiscard]] bool is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all,
+                                       Polygon part, bool thin, int depth) const;
   [[nodiscard]] Polygon not_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
   [[nodiscard]] bool is_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
   [[nodiscard]] bool is_star_shaped(std::uint32_t site, std::span<const BorderArc> arcs,

@@ -26,7 +26,7 @@ class Subdivider {
     splitter_.add_root();
     std::vector<CellId> cubes{0};
     for (int depth = 0; !cubes.empty(); ++depth) {
-      const bool is_last = depth >= options_.most_depth;
+      const bool is_last = depth >= options_.most_depth || is_full();
       std::vector<CellId> to_test;
       std::vector<CellId> to_split;
       for (const CellId cube : cubes) {
@@ -57,6 +57,13 @@ class Subdivider {
     return cube.governors.size() > many && cube.governors.size() * 10 < cube.governors_of_parent * 9;
   }
 
+  /// Whether there are so many cells that no more are made.
+  [[nodiscard]] bool is_full() const {
+    constexpr std::size_t squares_per_cube = 16;
+    return out_.tree.cubes.size() > options_.most_cubes ||
+           out_.tree.squares.size() > squares_per_cube * options_.most_cubes;
+  }
+
   /// Splits squares of cubes until each is resolved or small.
   void resolve_squares(const std::vector<CellId>& cubes) {
     std::vector<CellId> squares;
@@ -81,6 +88,7 @@ class Subdivider {
       for (std::size_t k = 0; k < squares.size(); ++k) {
         if (is_left[k] != 0 && out_.tree.squares[squares[k]].length >= 2 * least) left.push_back(squares[k]);
       }
+      if (is_full()) return;
       splitter_.split_squares(left, context_);
       squares.clear();
       for (const CellId square : left) {

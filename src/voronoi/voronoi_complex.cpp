@@ -1,0 +1,113 @@
+#include "blum/voronoi/voronoi_complex.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "blum/complex/homology.hpp"
+#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/voronoi/polyhedron_sites.hpp"
+#include "voronoi/assemble.hpp"
+#include "voronoi/subdivision.hpp"
+
+namespace blum {
+namespace {
+
+using namespace voronoi;
+
+void check(const VoronoiOptions& options) {
+  const auto check_range = [](const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
+    if (value >= least && value <= most) return;
+    throw InvalidOption("Voronoi complex: " + std::string(name) + " is " + std::to_string(least) + " to " +
+                        std::to_string(most) + ", not " + std::to_string(value));
+  };
+  check_range("resolution", options.resolution, 1, 1024);
+  check_range("depth", options.depth, 1, 18);
+  check_range("max_cubes", options.max_cubes, 1000, 100'000'000);
+}
+
+/// The Betti numbers of the solid. @throws InvalidMesh
+BettiNumbers checked_betti(const MeshView& mesh, const SiteTable& table, const Context& context) {
+  const Topology facts = topology(mesh, table, context);
+  if (!facts.betti) {
+    throw InvalidMesh(
+        "the mesh bounds no solid: it must be closed, oriented, manifold and face outwards; `blum info` tells what is "
+        "not");
+  }
+  const SelfIntersections crossings = find_self_intersections(mesh, 1, context);
+  if (!crossings.pairs.empty()) {
+    throw InvalidMesh("the mesh crosses or touches itself: triangles " +
+                      std::to_string(crossings.pairs[0].first.value) + " and " +
+                      std::to_string(crossings.pairs[0].second.value) + ", for one");
+  }
+  return *facts.betti;
+}
+
+/// How often a cube is split at least, so that its side is that of the box over the resolution.
+int least_depth(int resolution) {
+  int depth = 0;
+  while ((1 << depth) < resolution) ++depth;
+  return depth;
+}
+
+void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiReport& report) {
+  report.thin_vertices = labels.thin_vertices().size();
+  report.cubes = cells.leaves.size();
+  for (const GridSquare& square : cells.tree.squares) report.squares += square.children == no_cell ? 1U : 0U;
+  for (const std::size_t count : cells.obstacles) report.splits += count;
+  report.splits -= cells.failing.size();
+  if (report.cubes > 0) report.governors = static_cast<double>(cells.governors) / static_cast<double>(report.cubes);
+  report.lines = cells.lines.parts;
+  report.exact_lines = cells.lines.exact + cells.lines.undecided;
+  report.undecided_lines = cells.lines.undecided;
+  report.contradictions = cells.contradictions;
+  for (const FailingCube& failing : cells.failing) {
+    const GridCube& cube = cells.tree.cubes[failing.cube];
+    Node high = cube.low;
+    for (std::uint32_t& k : high) k += cube.length;
+    report.failing.push_back(
+        {cells.tree.lattice.at(cube.low), cells.tree.lattice.at(high), static_cast<VoronoiObstacle>(failing.obstacle)});
+  }
+}
+
+}  // namespace
+
+VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options, const Context& context) {
+  check(options);
+  validate(mesh);
+  VoronoiComplex out;
+  VoronoiReport& report = out.report;
+  PhaseTimer timer(report.phases);
+  const SiteTable table(mesh, context);
+  const BettiNumbers solid = checked_betti(mesh, table, context);
+  timer.lap("checks");
+  const PolyhedronSites sites = polyhedron_sites(mesh, table, context);
+  const SiteLabels exact(mesh, table, sites);
+  const LabelGeometry labels(mesh, table, sites, exact);
+  const FaceLoops loops(mesh, table, sites);
+  report.faces = sites.face_count;
+  report.reflex_edges = sites.reflex_edges.size();
+  report.reflex_vertices = sites.reflex_vertices.size();
+  timer.lap("sites");
+  SubdivisionOptions how;
+  how.least_depth = least_depth(options.resolution);
+  how.most_depth = std::max(options.depth, how.least_depth);
+  how.most_cubes = static_cast<std::size_t>(options.max_cubes);
+  const Subdivision cells = subdivide(mesh, table, sites, exact, labels, loops, how, context);
+  timer.lap("cells");
+  add_facts(cells, labels, report);
+  const SurfaceInCells surface(mesh, table, cells.tree.lattice);
+  out.complex = assemble(cells, CubeTest(mesh, sites, labels, loops, surface, cells.tree), labels, context);
+  timer.lap("complex");
+  report.found = homology(out.complex.view(), context);
+  report.expected = solid;
+  report.expected[1] += static_cast<std::int64_t>(loops.hole_count());
+  report.expected[2] += static_cast<std::int64_t>(exact.site_count() - report.thin_vertices);
+  report.certified = report.failing.empty() && report.undecided_lines == 0 && report.contradictions == 0 &&
+                     report.found == report.expected;
+  timer.lap("homology");
+  return out;
+}
+
+}  // namespace blum
