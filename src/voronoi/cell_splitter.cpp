@@ -185,7 +185,7 @@ bool CellSplitter::is_below(const GridEdge& edge, const LineEvent& event, const 
     const std::array<Vec3d, 3> p = triangle_corners(mesh_, event.before == outside ? event.after : event.before);
     return detail::side_of_node(p, q) != detail::side_of_node(p, tree_.lattice.at(edge.low));
   }
-  return is_behind_change(exact_, event.before, event.after, q);
+  return is_behind_change(exact_, labels_, event.before, event.after, q);
 }
 
 void CellSplitter::split_edge(CellId id) {

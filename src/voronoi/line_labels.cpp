@@ -334,7 +334,7 @@ bool LineLabels::add_exact_events(const LinePart& part, std::span<const LabelInd
       if (!(low < middle && middle < high)) break;
       Vec3d q = part.origin;
       q[part.axis] = middle;
-      (is_behind_change(exact_, current, next, q) ? high : low) = middle;
+      (is_behind_change(exact_, labels_, current, next, q) ? high : low) = middle;
     }
     events.push_back({low + (high - low) / 2, high - low + labels_.rounding(), current, next});
     current = next;
@@ -342,10 +342,11 @@ bool LineLabels::add_exact_events(const LinePart& part, std::span<const LabelInd
   return true;
 }
 
-bool is_behind_change(const SiteLabels& exact, LabelIndex before, LabelIndex after, const Vec3d& q) {
+bool is_behind_change(const SiteLabels& exact, const LabelGeometry& labels, LabelIndex before, LabelIndex after,
+                      const Vec3d& q) {
   const Label& first = exact.all()[before];
   const Label& second = exact.all()[after];
-  if (exact.are_incident(first, second)) {
+  if (labels.are_incident(labels[before].site, after)) {
     return first.kind > second.kind ? exact.is_in_domain(second, q) : !exact.is_in_domain(first, q);
   }
   return exact.compare_distances(second, first, q) < 0;

@@ -40,7 +40,8 @@ struct LineCounts {
 
 /// Whether a point of a line lies behind the place at which one label takes over from another, exactly: where no other
 /// place at which they do is near.
-[[nodiscard]] bool is_behind_change(const SiteLabels& exact, LabelIndex before, LabelIndex after, const Vec3d& q);
+[[nodiscard]] bool is_behind_change(const SiteLabels& exact, const LabelGeometry& labels, LabelIndex before,
+                                    LabelIndex after, const Vec3d& q);
 
 /// Finds what is closest along lines.
 ///

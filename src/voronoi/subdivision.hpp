@@ -15,9 +15,10 @@
 namespace blum::voronoi {
 
 struct SubdivisionOptions {
-  int least_depth = 0;        ///< all cubes that meet the solid are split at least so often
-  int most_depth = 16;        ///< and at most so often
-  int most_square_depth = 5;  ///< how often squares of a cube are split before the cube is
+  int least_depth = 0;                 ///< all cubes that meet the solid are split at least so often
+  int most_depth = 16;                 ///< and at most so often
+  int most_square_depth = 5;           ///< how often squares of a cube are split before the cube is
+  std::size_t most_cubes = 1'000'000;  ///< with more of them nothing is split any more
 };
 
 /// A cube that does not pass, at the largest depth.
