@@ -46,7 +46,7 @@ void CellSplitter::add_root() {
   const double longest = std::max({size.x, size.y, size.z});
   // Sides and halves must not fit to what shapes have: irrational parts, another one along each axis.
   const Vec3d shift{0.0618034, 0.0414214, 0.0732051};
-  const double side = longest * 1.2718281828459045;
+  const double side = longest * 1.4;
   tree_.lattice.origin = box.center() - Vec3d{side, side, side} * 0.5 + shift * (0.31 * longest);
   tree_.lattice.unit = side / Lattice::most;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -88,6 +88,11 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
   add_vertices(mesh, table, sites);
   for (LabelIndex k = 0; k < labels_.size(); ++k) labels_[k].site = labels.site_of(labels.all()[k]);
   add_neighbours(table, sites);
+  for (std::uint32_t k = 0; k < bisectors_.size(); ++k) {
+    if (bisectors_[k].other == outside) continue;
+    convex_pairs_.push_back({labels_[k / 3].site, labels_[bisectors_[k].other].site, k});
+  }
+  std::sort(convex_pairs_.begin(), convex_pairs_.end());
 }
 
 void LabelGeometry::add_triangles(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites) {
@@ -158,8 +163,10 @@ std::optional<Bisector> LabelGeometry::bisector(LabelIndex a, LabelIndex b) cons
   const PlacedLabel& second = labels_[b];
   if (first.kind != second.kind) return std::nullopt;
   if (first.kind == SiteKind::face) {
-    for (const Bisector& known : bisectors(a)) {
-      if (known.other == b) return known;
+    const ConvexPair key{first.site, second.site, 0};
+    const auto known = std::lower_bound(convex_pairs_.begin(), convex_pairs_.end(), key);
+    if (known != convex_pairs_.end() && (*known)[0] == first.site && (*known)[1] == second.site) {
+      return bisectors_[(*known)[2]];
     }
     const Vec3d normal = second.direction - first.direction;
     return Bisector{b, normal, dot(second.direction, second.point) - dot(first.direction, first.point)};

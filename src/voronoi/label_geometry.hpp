@@ -141,8 +141,10 @@ class LabelGeometry {
   std::vector<PlacedLabel> labels_;
   std::vector<DomainPlane> planes_;
   std::vector<std::array<Vec3d, 3>> corners_;
-  std::vector<LabelIndex> thin_vertices_;                    ///< rising
-  std::vector<Bisector> bisectors_;                          ///< three for each triangle
+  std::vector<LabelIndex> thin_vertices_;  ///< rising
+  std::vector<Bisector> bisectors_;        ///< three for each triangle
+  using ConvexPair = std::array<std::uint32_t, 3>;
+  std::vector<ConvexPair> convex_pairs_;  ///< two faces that share a convex edge, and a bisector; sorted
   std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` where there is none
   /// Pairs of sites of which one is an edge or vertex of the other, both ways round, sorted.
   std::vector<std::array<std::uint32_t, 2>> neighbours_;
