@@ -100,6 +100,12 @@ class LabelGeometry {
     return std::span(planes_).subspan(labels_[label].first_plane,
                                       labels_[label].last_plane - labels_[label].first_plane);
   }
+  /// Of the planes of a domain those between which the distance from a label's plane, line or point is that of a point
+  /// of it: of a triangle all, of an edge those through its ends, of a vertex none.
+  [[nodiscard]] std::span<const DomainPlane> ends(LabelIndex label) const {
+    const SiteKind kind = labels_[label].kind;
+    return planes(label).first(kind == SiteKind::face ? 3 : kind == SiteKind::edge ? 2 : 0);
+  }
   /// A plane that tells which of two labels is closer, where both domains hold a point: of two triangles, two vertices,
   /// or two edges with an end in common. Heights may be off by twice the rounding.
   [[nodiscard]] std::optional<Bisector> bisector(LabelIndex a, LabelIndex b) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "blum/core/union_find.hpp"
 #include "voronoi/governors.hpp"
@@ -63,7 +64,8 @@ bool SquareTest::resolve(GridSquare& square) const {
       present.push_back(label);
       continue;
     }
-    if (!is_absent(label, square.governors, in_domain(label, whole), is_thin(label, whole), 0)) return false;
+    if (!is_absent(label, square.governors, in_domain(label, whole), {!is_thin(label, whole), std::nullopt}, 0))
+      return false;
   }
   const bool all_star_shaped = std::all_of(
       sites.begin(), sites.end(), [&](std::uint32_t site) { return is_star_shaped(site, arcs, present, whole); });
@@ -197,10 +199,10 @@ SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, 
   return left;
 }
 
-bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part, bool thin,
+bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part, const Allowance& allowed,
                            int depth) const {
   constexpr int most = 6;
-  if (part.empty()) return true;
+  if (part.empty() || (allowed.corner && is_at_corner(part, *allowed.corner, all))) return true;
   if (depth > most) return false;
   Vec3d middle;
   for (const Vec3d& p : part) middle += p;
@@ -218,48 +220,64 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
     return labels_[label].squared_distance(q) > distance * distance + labels_.rounding_of_squares(distance);
   });
   if (is_beyond_foot) return true;
-  // Or another label all over the part in its domain; what is left has to be covered by others.
-  std::sort(others.begin(), others.end(), [&](LabelIndex a, LabelIndex b) {
-    return labels_[a].squared_distance(middle) < labels_[b].squared_distance(middle);
-  });
+  // Or another label, where its distance is that of a point of the surface; what is left has to be covered by others.
+  // Those first which a plane parts from the label.
+  struct Candidate {
+    bool is_curved = false;
+    double squared = 0;
+    LabelIndex label = outside;
+    [[nodiscard]] bool operator<(const Candidate& other) const {
+      return std::tie(is_curved, squared, label) < std::tie(other.is_curved, other.squared, other.label);
+    }
+  };
+  std::vector<Candidate> candidates;
   const double own = labels_[label].squared_distance(middle);
-  int tries = 3;
   for (const LabelIndex other : others) {
-    if (tries == 0 || !(labels_[other].squared_distance(middle) < own)) return false;
-    const std::span<const DomainPlane> planes = labels_.planes(other);
-    const bool is_in = std::all_of(planes.begin(), planes.end(), [&](const DomainPlane& plane) {
-      return plane.height(middle) >= -labels_.rounding();
-    });
-    if (!is_in || (labels_[other].kind == SiteKind::face && labels_[other].height(middle) < 0)) continue;
-    --tries;
+    const double squared = labels_[other].squared_distance(middle);
+    if (!(squared < own) || !is_attained(other, middle)) continue;
+    candidates.push_back({!labels_.bisector(other, label), squared, other});
+  }
+  std::sort(candidates.begin(), candidates.end());
+  constexpr std::size_t tries = 3;
+  if (candidates.size() > tries) candidates.resize(tries);
+  for (const Candidate& candidate : candidates) {
+    const LabelIndex other = candidate.label;
+    const bool are_incident = labels_.are_incident(labels_[label].site, other);
+    if (are_incident && !allowed.by_incident) continue;
     Polygon inside = part;
-    for (const DomainPlane& plane : planes) {
+    for (const DomainPlane& plane : labels_.ends(other)) {
       inside = clipped(inside, 0, [&](const Vec3d& q) { return plane.height(q); });
     }
     Polygon left;
     // Domains of labels next to each other meet in their borders alone.
-    const bool are_incident = labels_.are_incident(labels_[label].site, other);
-    if (are_incident && thin) continue;
     if (!are_incident && !is_further(label, other, inside)) {
       left = not_further(label, other, inside);
       if (left == inside) continue;
     }
-    return is_absent(label, all, std::move(left), thin, depth + 1) &&
-           is_absent_outside(label, other, all, std::move(part), thin, depth);
+    return is_absent(label, all, std::move(left), allowed, depth + 1) &&
+           is_absent_outside(label, other, all, std::move(part), allowed, depth);
   }
   return false;
 }
 
+/// Whether the distance from a label's plane, line or point is that of a point of the surface.
+bool SquareTest::is_attained(LabelIndex label, const Vec3d& q) const {
+  const std::span<const DomainPlane> ends = labels_.ends(label);
+  return (labels_[label].kind != SiteKind::face || labels_[label].height(q) >= 0) &&
+         std::all_of(ends.begin(), ends.end(),
+                     [&](const DomainPlane& plane) { return plane.height(q) >= -labels_.rounding(); });
+}
+
 /// Whether a label is closest nowhere in the part of a polygon outside of another one's domain.
 bool SquareTest::is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all, Polygon part,
-                                   bool thin, int depth) const {
-  for (const DomainPlane& plane : labels_.planes(other)) {
+                                   const Allowance& allowed, int depth) const {
+  for (const DomainPlane& plane : labels_.ends(other)) {
     // Slivers by rounding are shared with the part inside.
     const auto beyond = [&](const Vec3d& q) { return -plane.height(q); };
     const bool leaves =
         std::any_of(part.begin(), part.end(), [&](const Vec3d& q) { return beyond(q) > 2 * labels_.rounding(); });
     if (!leaves) continue;
-    if (!is_absent(label, all, clipped(part, 0, beyond), thin, depth + 1)) return false;
+    if (!is_absent(label, all, clipped(part, 0, beyond), allowed, depth + 1)) return false;
     part = clipped(part, 0, [&](const Vec3d& q) { return plane.height(q); });
   }
   return true;
@@ -345,18 +363,21 @@ bool SquareTest::never_meet(std::uint32_t site, LabelIndex other, std::span<cons
     if (labels_[label].site != site || labels_.share_reflex_edge(label, other)) return true;
     const Polygon common = in_domain(label, of_other);
     if (common.empty()) return true;
-    const std::optional<Vec3d> corner = labels_.common_corner(label, other);
-    constexpr double small = 4096;
-    if (!corner || extent(common) > small * labels_.rounding()) {
-      // Where they meet something else may be closer.
-      return is_absent(other, labels, common, true, 0) || is_absent(label, labels, common, true, 0);
-    }
-    const double distance = length(common[0] - *corner);
-    const double nearest = distance * distance + 4 * small * labels_.rounding_of_squares(distance);
-    return std::all_of(labels.begin(), labels.end(), [&](LabelIndex third) {
-      return labels_.has_corner(third, *corner) || labels_[third].squared_distance(common[0]) > nearest ||
-             in_domain(third, common).empty();
-    });
+    const Allowance allowed{false, labels_.common_corner(label, other)};
+    // Where they meet something else may be closer, except over a common corner.
+    return is_absent(other, labels, common, allowed, 0) || is_absent(label, labels, common, allowed, 0);
+  });
+}
+
+/// Whether a part is next to one point alone, over a corner, where nothing is closer than what has this corner.
+bool SquareTest::is_at_corner(const Polygon& part, const Vec3d& corner, std::span<const LabelIndex> all) const {
+  constexpr double small = 4096;
+  if (extent(part) > small * labels_.rounding()) return false;
+  const double distance = length(part[0] - corner);
+  const double nearest = distance * distance + 4 * small * labels_.rounding_of_squares(distance);
+  return std::all_of(all.begin(), all.end(), [&](LabelIndex label) {
+    return labels_.has_corner(label, corner) || labels_[label].squared_distance(part[0]) > nearest ||
+           in_domain(label, part).empty();
   });
 }
 

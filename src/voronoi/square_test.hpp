@@ -39,14 +39,22 @@ class SquareTest {
     double error = 0;
   };
 
+  /// What may rule a label out beside labels that are closer.
+  struct Allowance {
+    bool by_incident = false;     ///< the domain of a label next to it, which shares its border alone
+    std::optional<Vec3d> corner;  ///< a corner that it has, where what is left is next to a point over that
+  };
+
   [[nodiscard]] bool find_chains(GridSquare& square) const;
   [[nodiscard]] std::vector<BorderArc> border(const GridSquare& square) const;
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
-  [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part, bool thin,
-                               int depth) const;
+  [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part,
+                               const Allowance& allowed, int depth) const;
+  [[nodiscard]] bool is_attained(LabelIndex label, const Vec3d& q) const;
+  [[nodiscard]] bool is_at_corner(const Polygon& part, const Vec3d& corner, std::span<const LabelIndex> all) const;
   [[nodiscard]] bool is_thin(LabelIndex label, Polygon part) const;
   [[nodiscard]] bool is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all,
-                                       Polygon part, bool thin, int depth) const;
+                                       Polygon part, const Allowance& allowed, int depth) const;
   [[nodiscard]] Polygon not_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
   [[nodiscard]] bool is_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
   [[nodiscard]] bool is_star_shaped(std::uint32_t site, std::span<const BorderArc> arcs,
