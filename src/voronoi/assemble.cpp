@@ -152,7 +152,7 @@ class Assembly {
     const auto site = [&](LabelIndex label) {
       return label == outside ? -1 : static_cast<std::int32_t>(labels_[label].site);
     };
-    const auto [low, high] = std::minmax(site(event.before), site(event.after));
+    const auto [low, high] = std::minmax({site(event.before), site(event.after)});
     site_a_.push_back(low);
     site_b_.push_back(high);
   }
@@ -162,12 +162,16 @@ class Assembly {
     parallel_for(context_, places_.size(), grain, "vertices", [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
         Place& place = places_[k];
+        bool is_settled = true;
         if (!(place.box.low == place.box.high)) {
-          place.start = settle(labels_, place.labels, place.on_surface, place.start, place.box).value_or(place.start);
+          const auto settled = settle(labels_, place.labels, place.on_surface, place.start, place.box);
+          is_settled = settled.has_value();
+          place.start = settled.value_or(place.start);
         }
-        double least = place.on_surface ? 0 : labels_.size() * labels_.size();
-        for (const LabelIndex label : place.labels)
-          least = std::min(least, labels_[label].squared_distance(place.start));
+        double least = place.on_surface && is_settled ? 0 : labels_.size() * labels_.size();
+        for (const LabelIndex label : place.labels) {
+          least = std::min(least, squared_length(labels_.closest_point(label, place.start) - place.start));
+        }
         radius_[k] = std::sqrt(least);
       }
     });

@@ -20,7 +20,7 @@ struct IntervalEnd {
 };
 
 /// A label seen along a line: s is measured from a point of it.
-struct Contender {
+struct Candidate {
   LabelIndex label = outside;
   std::uint32_t site = 0;
   SiteKind kind = SiteKind::face;
@@ -48,26 +48,27 @@ class EnvelopeWalk {
     middle_[part.axis] = base_ - labels.centre()[part.axis];
     low_ = part.low - base_;
     high_ = part.high - base_;
-    for (const LabelIndex label : among) add_contender(label);
+    for (const LabelIndex label : among) add_candidate(label);
   }
 
   /// Whether all changes are certain.
   bool run(std::vector<LineEvent>& events) {
     LabelIndex current = part_.first;
-    std::uint32_t previous = outside;  // the site before
+    std::vector<std::uint32_t> recent;  // sites that ended here, up to rounding
     double at = low_;
     double error = 0;
     bool is_certain = true;
     // Each pair of labels changes place at most twice; more tells that rounding leads in circles.
-    const std::size_t most = 4 * contenders_.size() + 16;
+    const std::size_t most = 4 * candidates_.size() + 16;
     for (std::size_t count = 0; count < most; ++count) {
-      const Change next = next_change(current, previous, at, error, is_certain);
+      const Change next = next_change(current, recent, at, error, is_certain);
       if (!(next.at - next.error <= high_)) return is_certain && is_as_expected(current);
       if (next.at + next.error >= high_ || next.label == outside) {
         return false;  // next to the end: doubles do not tell whether it comes before
       }
       events.push_back({base_ + next.at, next.error + labels_.rounding(), current, next.label});
-      previous = labels_[current].site;
+      if (next.at - next.error > at + error) recent.clear();
+      recent.push_back(labels_[current].site);
       current = next.label;
       at = next.at;
       error = next.error;
@@ -80,9 +81,9 @@ class EnvelopeWalk {
     return part_.last == outside || labels_[part_.last].site == labels_[current].site;
   }
 
-  void add_contender(LabelIndex label) {
+  void add_candidate(LabelIndex label) {
     const PlacedLabel& placed = labels_[label];
-    Contender out;
+    Candidate out;
     out.label = label;
     out.site = placed.site;
     out.kind = placed.kind;
@@ -102,17 +103,17 @@ class EnvelopeWalk {
     if (out.low.at - out.low.error > out.high.at + out.high.error) return;
     if (out.low.at - out.low.error > high_ || out.high.at + out.high.error < low_) return;
     out.squared = placed.along(middle_, part_.axis);
-    contenders_.push_back(out);
+    candidates_.push_back(out);
   }
 
-  [[nodiscard]] const Contender* find(LabelIndex label) const {
+  [[nodiscard]] const Candidate* find(LabelIndex label) const {
     const auto found =
-        std::find_if(contenders_.begin(), contenders_.end(), [&](const Contender& c) { return c.label == label; });
-    return found == contenders_.end() ? nullptr : &*found;
+        std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c) { return c.label == label; });
+    return found == candidates_.end() ? nullptr : &*found;
   }
 
   /// The place at which the second label becomes as close as the first, and closer behind it.
-  [[nodiscard]] Change crossing(const Quadratic& first, const Contender& second, double from) const {
+  [[nodiscard]] Change crossing(const Quadratic& first, const Candidate& second, double from) const {
     const Quadratic difference = first - second.squared;
     const auto& [a, b, c] = difference;
     const double discriminant = b * b - 4 * a * c;
@@ -149,15 +150,27 @@ class EnvelopeWalk {
     return out;
   }
 
-  [[nodiscard]] bool is_flat(const Contender& contender, const IntervalEnd& end) const {
-    return end.beyond != outside && labels_[end.beyond].site == contender.site;
+  /// Whether a label is certainly further than the current one all between two places.
+  [[nodiscard]] bool is_further(const Candidate& other, const Quadratic& squared, double from, double to) const {
+    from = std::max({from, other.low.at - other.low.error, low_});
+    to = std::min({to, other.high.at + other.high.error, high_});
+    const Quadratic difference = other.squared - squared;
+    const double distance = std::sqrt(std::max({0.0, squared.at(from), squared.at(to)}));
+    const double error = 4 * labels_.rounding_of_squares(distance);
+    if (!(difference.at(from) > error && difference.at(to) > error)) return false;
+    const double lowest = -difference.b / (2 * difference.a);
+    return !(difference.a > 0 && lowest > from && lowest < to) || difference.at(lowest) > error;
+  }
+
+  [[nodiscard]] bool is_flat(const Candidate& candidate, const IntervalEnd& end) const {
+    return end.beyond != outside && labels_[end.beyond].site == candidate.site;
   }
 
   /// Leaves out a change outside of the label's domain; marks it where this is not certain.
   /// @param is_next  whether the change is across a convex edge: there the domains overlap.
-  void check_domain(const Contender& contender, Change& change, bool is_next) const {
+  void check_domain(const Candidate& candidate, Change& change, bool is_next) const {
     for (const int side : {-1, 1}) {
-      const IntervalEnd& end = side < 0 ? contender.low : contender.high;
+      const IntervalEnd& end = side < 0 ? candidate.low : candidate.high;
       const double inside = side < 0 ? change.at - end.at : end.at - change.at;
       const double error = change.error + end.error;
       if (inside < -error) {
@@ -165,9 +178,9 @@ class EnvelopeWalk {
         return;
       }
       const bool is_shared = is_next && end.edge != outside && side < 0;
-      if (inside < error && !is_flat(contender, end) && !is_shared) change.is_certain = false;
+      if (inside < error && !is_flat(candidate, end) && !is_shared) change.is_certain = false;
     }
-    if (contender.grazes) change.is_certain = false;
+    if (candidate.grazes) change.is_certain = false;
   }
 
   /// How triangles of a face and another triangle lie to each other.
@@ -175,7 +188,7 @@ class EnvelopeWalk {
     const Bisector* bisector = nullptr;  ///< across a convex edge, to the side of the other triangle
     bool by_reflex_edge = false;
   };
-  [[nodiscard]] Adjacency adjacency(const PlacedLabel& face, const Contender& other) const {
+  [[nodiscard]] Adjacency adjacency(const PlacedLabel& face, const Candidate& other) const {
     Adjacency out;
     if (face.kind != SiteKind::face || other.kind != SiteKind::face) return out;
     for (const Bisector& bisector : labels_.bisectors(other.label)) {
@@ -191,7 +204,7 @@ class EnvelopeWalk {
   }
 
   /// The change to a triangle across a convex edge: well known, however flat the edge is.
-  [[nodiscard]] Change change_at(const Bisector& bisector, const Contender& other) const {
+  [[nodiscard]] Change change_at(const Bisector& bisector, const Candidate& other) const {
     const double slope = bisector.normal[part_.axis];
     if (!(slope > 0)) return {};
     return {-bisector.height(middle_) / slope, labels_.rounding() / slope, other.label, other.site, true};
@@ -199,7 +212,7 @@ class EnvelopeWalk {
 
   /// A change from the current label to another one, if there is one behind a place.
   /// @param end  the furthest place that the current label's domain reaches to.
-  [[nodiscard]] Change change_to(const PlacedLabel& current, const Quadratic& squared, const Contender& other,
+  [[nodiscard]] Change change_to(const PlacedLabel& current, const Quadratic& squared, const Candidate& other,
                                  double at, double error, const IntervalEnd& end) const {
     if (!labels_.are_incident(current.site, other.label)) {
       if (other.low.at - other.low.error > end.at + end.error) return {};
@@ -209,6 +222,7 @@ class EnvelopeWalk {
       const bool is_apart =
           other.low.at + other.low.error >= end.at - end.error || other.high.at - other.high.error <= at + error;
       if (adjacent.by_reflex_edge && is_apart) return {};
+      if (adjacent.bisector == nullptr && is_further(other, squared, at - error, end.at + end.error)) return {};
       Change change =
           adjacent.bisector != nullptr ? change_at(*adjacent.bisector, other) : crossing(squared, other, at);
       if (change.at < infinity) check_domain(other, change, adjacent.bisector != nullptr);
@@ -230,7 +244,7 @@ class EnvelopeWalk {
     IntervalEnd end{at, error, outside, outside};
     for (bool grows = true; grows;) {
       grows = false;
-      for (const Contender& own : contenders_) {
+      for (const Candidate& own : candidates_) {
         if (own.site != site || own.low.at - own.low.error > end.at + end.error) continue;
         if (own.high.at <= end.at) continue;
         end = own.high;
@@ -240,27 +254,31 @@ class EnvelopeWalk {
     return end;
   }
 
-  /// @param previous  the site that `current` took over from.
-  Change next_change(LabelIndex current, std::uint32_t previous, double at, double error, bool& is_certain) const {
+  /// @param recent  sites that were closest up to here, the last of which `current` took over from.
+  Change next_change(LabelIndex current, const std::vector<std::uint32_t>& recent, double at, double error,
+                     bool& is_certain) const {
     const PlacedLabel& placed = labels_[current];
     const Quadratic squared = placed.along(middle_, part_.axis);
     const IntervalEnd end = end_of_domain(placed.site, at, error);
     std::vector<Change>& changes = changes_;
     changes.clear();
-    for (const Contender& other : contenders_) {
+    for (const Candidate& other : candidates_) {
       if (other.site == placed.site) continue;
       const Change change = change_to(placed, squared, other, at, error, end);
       if (!(change.at < infinity) || change.at + change.error < at - error) continue;
       if (change.at - change.error > end.at + end.error) continue;
       if (change.at - change.error <= at + error) {
-        if (other.site == previous) continue;  // the change just passed, seen from its other side
+        // The change just passed, seen from its other side, or what has ended here.
+        if (!recent.empty() && other.site == recent.back()) continue;
+        const bool was_recent = std::find(recent.begin(), recent.end(), other.site) != recent.end();
+        if (was_recent && other.high.at - other.high.error <= at + error) continue;
         is_certain = false;
         if (change.at <= at) continue;
       }
       changes.push_back(change);
     }
     if (placed.kind != SiteKind::face) {
-      const Contender* own = find(current);
+      const Candidate* own = find(current);
       if (own != nullptr && own->high.at < infinity) {
         const LabelIndex beyond = own->high.beyond;
         const bool is_known = beyond != outside;
@@ -287,7 +305,7 @@ class EnvelopeWalk {
   Vec3d middle_;
   double base_ = 0;
   double low_ = 0, high_ = 0;
-  std::vector<Contender> contenders_;
+  std::vector<Candidate> candidates_;
   mutable std::vector<Change> changes_;
 };
 

@@ -1,0 +1,173 @@
+// Voronoi complexes: known ones, certified ones of generated solids as they are and turned, places on walls, threads,
+// and what is refused.
+#include "blum/voronoi/voronoi_complex.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "blum/geometry/bvh.hpp"
+#include "blum/shapes/generators.hpp"
+#include "support/labelled_solid.hpp"
+#include "support/mesh_places.hpp"
+#include "support/random_transform.hpp"
+
+namespace blum {
+namespace {
+
+TEST(VoronoiComplex, OfABox) {
+  const VoronoiComplex found = voronoi_complex(make_box());
+  EXPECT_TRUE(found.report.certified);
+  EXPECT_EQ(found.report.faces, 6U);
+  EXPECT_EQ(found.report.reflex_edges, 0U);
+  EXPECT_EQ(found.report.found, (BettiNumbers{1, 0, 6})) << "six regions";
+  EXPECT_TRUE(problem_of(found.complex).empty());
+  const auto radius = found.complex.vertex_columns.get<double>("radius");
+  EXPECT_NEAR(*std::max_element(radius.begin(), radius.end()), 0.5, 1e-12) << "the junction in the middle";
+  EXPECT_EQ(*std::min_element(radius.begin(), radius.end()), 0) << "the surface";
+}
+
+TEST(VoronoiComplex, OfABoxWithAVoid) {
+  const VoronoiComplex found = voronoi_complex(test::box_with_void());
+  EXPECT_TRUE(found.report.certified);
+  EXPECT_EQ(found.report.faces, 12U);
+  EXPECT_EQ(found.report.reflex_edges, 12U);
+  EXPECT_EQ(found.report.reflex_vertices, 8U);
+  EXPECT_EQ(found.report.found, (BettiNumbers{1, 0, 33})) << "32 regions and the void";
+}
+
+struct Case {
+  std::string name;
+  TriangleMesh mesh;
+};
+
+void PrintTo(const Case& of, std::ostream* out) {
+  *out << of.name;
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> out;
+  const auto add = [&](const std::string& name, const TriangleMesh& mesh, int turns) {
+    out.push_back({name, mesh});
+    for (int turn = 1; turn <= turns; ++turn) {
+      TriangleMesh turned = out.back().mesh;
+      for (Vec3d& v : turned.vertices) v = test::turned(v);
+      out.push_back({name + "_turned_" + std::to_string(turn), turned});
+    }
+  };
+  constexpr int turns = 4;
+  add("box", make_box(), turns);
+  add("box_with_void", test::box_with_void(), turns);
+  add("wedge", make_wedge(), turns);
+  add("star", make_star(), turns);
+  for (const int sides : {3, 5, 12, 64}) {
+    add("cylinder_of_" + std::to_string(sides), make_cylinder({.sides = sides}), sides > 12 ? 1 : turns);
+  }
+  add("menger", make_menger({.level = 1}), turns);
+  add("bodies", make_bodies(), 1);
+  add("plate", make_plate(), 1);
+  add("bracket", make_bracket(), 2);
+  add("gear", make_gear(), 0);
+  add("void_cube", make_void_cube({.frequency = 1}), 1);
+  add("torus", make_torus({.ring_segments = 12, .tube_segments = 8}), 2);
+  add("sphere", make_sphere({.frequency = 3}), 1);
+  return out;
+}
+
+class Shapes : public testing::TestWithParam<Case> {};
+
+TEST_P(Shapes, AreCertified) {
+  const VoronoiComplex found = voronoi_complex(GetParam().mesh);
+  EXPECT_TRUE(found.report.certified);
+  EXPECT_EQ(found.report.found, found.report.expected);
+  EXPECT_EQ(found.report.failing.size(), 0U);
+  EXPECT_EQ(found.report.undecided_lines, 0U);
+  EXPECT_EQ(found.report.contradictions, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solids, Shapes, testing::ValuesIn(cases()),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// The first corner of each triangle lies on a grid edge, on the wall exactly but for rounding: it is as far from the
+/// surface as its radius says.
+TEST(VoronoiComplex, CrossesGridLinesOnWalls) {
+  const TriangleMesh mesh = make_bracket();
+  const Complex complex = voronoi_complex(mesh).complex;
+  const SiteTable table(mesh);
+  const Bvh bvh(mesh, table);
+  const double size = 6;
+  const auto radius = complex.vertex_columns.get<double>("radius");
+  double largest = 0;
+  for (const auto& triangle : complex.triangles) {
+    const auto nearest = bvh.nearest(complex.positions[triangle[0]]);
+    ASSERT_TRUE(nearest);
+    largest = std::max(largest, std::abs(nearest->distance - radius[triangle[0]]));
+  }
+  EXPECT_LE(largest, 1e-9 * size);
+}
+
+TEST(VoronoiComplex, IsTheSameForAnyNumberOfThreads) {
+  const TriangleMesh mesh = make_bracket();
+  Context context;
+  context.threads = 1;
+  const VoronoiComplex one = voronoi_complex(mesh, {}, context);
+  for (const int threads : {2, 7}) {
+    context.threads = threads;
+    const VoronoiComplex more = voronoi_complex(mesh, {}, context);
+    EXPECT_EQ(one.complex.positions, more.complex.positions);
+    EXPECT_EQ(one.complex.triangles, more.complex.triangles);
+    EXPECT_EQ(one.complex.vertex_columns, more.complex.vertex_columns);
+    EXPECT_EQ(one.complex.triangle_columns, more.complex.triangle_columns);
+  }
+}
+
+/// With few splits cubes do not pass: then it says which.
+TEST(VoronoiComplex, SaysWhatDoesNotPass) {
+  const VoronoiReport report = voronoi_complex(make_gear(), {.depth = 3}).report;
+  EXPECT_FALSE(report.certified);
+  ASSERT_FALSE(report.failing.empty());
+  for (const FailingVoronoiCell& cell : report.failing) {
+    EXPECT_NE(cell.obstacle, VoronoiObstacle::none);
+    EXPECT_LT(cell.low.x, cell.high.x);
+  }
+}
+
+/// A finer grid has the same homology.
+TEST(VoronoiComplex, OfAFinerGrid) {
+  const VoronoiComplex coarse = voronoi_complex(make_star());
+  const VoronoiComplex fine = voronoi_complex(make_star(), {.resolution = 16});
+  EXPECT_TRUE(fine.report.certified);
+  EXPECT_EQ(coarse.report.found, fine.report.found);
+  EXPECT_GT(fine.report.cubes, 10 * coarse.report.cubes);
+}
+
+TEST(VoronoiComplex, RefusesWhatIsNoSolid) {
+  TriangleMesh open = make_box();
+  open.triangles.pop_back();
+  EXPECT_THROW((void)voronoi_complex(open), InvalidMesh);
+  EXPECT_THROW((void)voronoi_complex(TriangleMesh{}), InvalidMesh);
+  TriangleMesh inside_out = make_box();
+  reverse_triangles(inside_out);
+  EXPECT_THROW((void)voronoi_complex(inside_out), InvalidMesh);
+  TriangleMesh crossing = make_box();
+  append(crossing, test::moved(make_box(), 1, {0.5, 0.25, 0.125}));
+  EXPECT_THROW((void)voronoi_complex(crossing), InvalidMesh);
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.resolution = 0}), InvalidOption);
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.depth = 19}), InvalidOption);
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.max_cubes = 1}), InvalidOption);
+}
+
+TEST(VoronoiComplex, Stops) {
+  std::stop_source stop;
+  stop.request_stop();
+  Context context;
+  context.cancel = stop.get_token();
+  EXPECT_THROW((void)voronoi_complex(make_box(), {}, context), Cancelled);
+}
+
+}  // namespace
+}  // namespace blum
