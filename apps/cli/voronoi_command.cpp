@@ -96,6 +96,15 @@ VoronoiComplex compute(const fs::path& path, const MeshView& mesh, const Voronoi
   }
 }
 
+/// Which options may let more cubes pass.
+std::string advice(const VoronoiOptions& options) {
+  const VoronoiOptions defaults;
+  std::vector<std::string> names;
+  if (options.depth < defaults.depth) names.emplace_back("--depth");
+  if (options.max_cubes < defaults.max_cubes) names.emplace_back("--max-cubes");
+  return names.empty() ? "" : "; a larger " + join_words(names, "or") + " may help";
+}
+
 /// Why a complex is not certified; nothing where it is.
 std::vector<std::string> mismatches_of(const VoronoiReport& report, const VoronoiOptions& options) {
   std::vector<std::string> all;
@@ -107,8 +116,7 @@ std::vector<std::string> mismatches_of(const VoronoiReport& report, const Vorono
                            : count_text(report.failing.size()) + " cubes do not pass, the first one";
     text += " from " + vector_text(first.low) + " to " + vector_text(first.high) + " (" +
             std::string(to_string(first.obstacle)) + ")";
-    if (options.depth < VoronoiOptions{}.depth) text += "; a larger --depth may help";
-    all.push_back(text);
+    all.push_back(text + advice(options));
   }
   if (report.undecided_lines > 0) {
     all.push_back("of " + plural(report.undecided_lines, "part of a grid line", "parts of grid lines") +
