@@ -1,0 +1,271 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/complex/complex.hpp"
+#include "blum/core/error.hpp"
+#include "blum/io/complex_io.hpp"
+#include "blum/voronoi/voronoi_complex.hpp"
+#include "commands.hpp"
+#include "common_options.hpp"
+#include "described.hpp"
+#include "files.hpp"
+#include "medial_report.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "solid_input.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum voronoi part.stl -o part.vtp                for ParaView: walls and surface, with the sites on both sides
+  blum voronoi part.stl -o walls.ply --walls       what lies between regions, without the surface
+  blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: no cube above a 32nd of the box
+  blum voronoi part.stl --json -                   only the facts: sites, cubes, whether it can be certified
+
+Exit status 3: the complex could not be certified, and no file was written.)";
+
+struct Arguments {
+  std::string input;
+  std::optional<std::string> output, weld, threads;
+  OptionTexts<VoronoiOptions> options;
+  bool walls = false;
+  bool allow_uncertified = false;
+  ReportOptions report;
+};
+
+bool is_wall(std::int32_t site_a) {
+  return site_a != -1;
+}
+
+/// A complex without its triangles on the surface, and without vertices that nothing uses then.
+Complex without_surface(const Complex& all) {
+  constexpr std::uint32_t unused = UINT32_MAX;
+  const auto site_a = all.triangle_columns.get<std::int32_t>("site_a");
+  std::vector<std::uint32_t> number_of(all.positions.size(), unused);
+  std::vector<std::uint32_t> vertices, triangles;
+  const auto use = [&](std::uint32_t& vertex) {
+    std::uint32_t& number = number_of[vertex];
+    if (number == unused) {
+      number = static_cast<std::uint32_t>(vertices.size());
+      vertices.push_back(vertex);
+    }
+    vertex = number;
+  };
+  Complex out;
+  out.edges = all.edges;
+  out.edge_columns = all.edge_columns;
+  for (auto& edge : out.edges) {
+    for (std::uint32_t& vertex : edge) use(vertex);
+  }
+  for (std::size_t t = 0; t < all.triangles.size(); ++t) {
+    if (!is_wall(site_a[t])) continue;
+    triangles.push_back(static_cast<std::uint32_t>(t));
+    out.triangles.push_back(all.triangles[t]);
+    for (std::uint32_t& vertex : out.triangles.back()) use(vertex);
+  }
+  for (const std::uint32_t vertex : vertices) out.positions.push_back(all.positions[vertex]);
+  out.vertex_columns = all.vertex_columns.pick(vertices);
+  out.triangle_columns = all.triangle_columns.pick(triangles);
+  return out;
+}
+
+SolidInput read_mesh_input(const fs::path& path, std::optional<double> weld) {
+  if (input_kind(path) != InputKind::mesh) {
+    throw FileError("'" + path.string() + "' is no mesh; the Voronoi diagram is that of a closed mesh");
+  }
+  return load_solid(path, weld);
+}
+
+VoronoiComplex compute(const fs::path& path, const MeshView& mesh, const VoronoiOptions& options,
+                       const Context& context) {
+  try {
+    return voronoi_complex(mesh, options, context);
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh("'" + path.string() + "': " + error.what());
+  }
+}
+
+/// Which options may let more cubes pass.
+std::string advice(const VoronoiOptions& options) {
+  const VoronoiOptions defaults;
+  std::vector<std::string> names;
+  if (options.depth < defaults.depth) names.emplace_back("--depth");
+  if (options.max_cubes < defaults.max_cubes) names.emplace_back("--max-cubes");
+  return names.empty() ? "" : "; a larger " + join_words(names, "or") + " may help";
+}
+
+/// Why a complex is not certified; nothing where it is.
+std::vector<std::string> mismatches_of(const VoronoiReport& report, const VoronoiOptions& options) {
+  std::vector<std::string> all;
+  if (report.certified) return all;
+  if (!report.failing.empty()) {
+    const FailingVoronoiCell& first = report.failing.front();
+    std::string text = report.failing.size() == 1
+                           ? "a cube does not pass, that"
+                           : count_text(report.failing.size()) + " cubes do not pass, the first one";
+    text += " from " + vector_text(first.low) + " to " + vector_text(first.high) + " (" +
+            std::string(to_string(first.obstacle)) + ")";
+    all.push_back(text + advice(options));
+  }
+  if (report.undecided_lines > 0) {
+    all.push_back("of " + plural(report.undecided_lines, "part of a grid line", "parts of grid lines") +
+                  " it is not known what is closest");
+  }
+  if (report.contradictions > 0) {
+    all.push_back("different sites are told of " + plural(report.contradictions, "node", "nodes"));
+  }
+  if (report.found != report.expected) {
+    all.push_back("the complex has " + betti_text(report.found) + ", but walls and surface have " +
+                  betti_text(report.expected));
+  }
+  return all;
+}
+
+FileMetadata metadata_of(const Arguments& a, const fs::path& input, const std::optional<double>& weld,
+                         const VoronoiReport& report) {
+  FileMetadata out{{"content", a.walls ? "walls of a Voronoi diagram" : "Voronoi diagram"},
+                   {"blum_version", BLUM_VERSION},
+                   {"source", input.filename().string()},
+                   {"certified", report.certified ? "true" : "false"}};
+  if (weld) out.emplace_back("weld", exact_text(*weld));
+  return out;
+}
+
+/// Numbers of a complex, as JSON and as text.
+struct Counts {
+  std::size_t vertices = 0;
+  std::size_t walls = 0;    ///< triangles
+  std::size_t surface = 0;  ///< triangles
+
+  explicit Counts(const Complex& complex) : vertices(complex.positions.size()) {
+    const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
+    walls = static_cast<std::size_t>(std::count_if(site_a.begin(), site_a.end(), is_wall));
+    surface = site_a.size() - walls;
+  }
+  [[nodiscard]] Json json() const {
+    return {{"vertices", vertices},
+            {"triangles", walls + surface},
+            {"wall_triangles", walls},
+            {"surface_triangles", surface}};
+  }
+  [[nodiscard]] std::string text() const {
+    return plural(vertices, "vertex", "vertices") + ", " + plural(walls + surface, "triangle", "triangles") + ": " +
+           count_text(walls) + " on walls, " + count_text(surface) + " on the surface";
+  }
+};
+
+std::string sites_text(const VoronoiReport& report) {
+  std::string text = plural(report.faces, "face", "faces") + ", " +
+                     plural(report.reflex_edges, "reflex edge", "reflex edges") + ", " +
+                     plural(report.reflex_vertices, "reflex vertex", "reflex vertices");
+  if (report.thin_vertices > 0) text += " (" + count_text(report.thin_vertices) + " of them thin)";
+  return text;
+}
+
+TextTable table_of(const VoronoiReport& report, const Counts& counts) {
+  TextTable table;
+  table.add("sites", sites_text(report));
+  table.add("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
+                         plural(report.splits, "split", "splits") + "; " + rounded_text(report.governors) +
+                         " labels in a cube, mean");
+  table.add("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
+                         count_text(report.exact_lines) + " by exact signs");
+  table.add("complex", counts.text());
+  table.add("expected", betti_text(report.expected));
+  table.add("found", betti_text(report.found));
+  table.add("certified", report.certified ? "yes: walls and surface have the homology of the exact diagram's" : "NO");
+  return table;
+}
+
+struct Request {
+  VoronoiOptions options;
+  std::optional<double> weld;
+  int threads = 0;
+};
+
+Request parse(const Arguments& a) {
+  Request r{a.options.read(), parse_weld(a.weld), parse_threads(a.threads)};
+  std::vector<fs::path> outputs = a.report.files();
+  if (a.output) {
+    check_extension("--output", *a.output, file_extensions(FileContent::complex, FileAccess::write));
+    outputs.emplace_back(*a.output);
+  } else if (a.walls || a.allow_uncertified) {
+    throw UsageError(std::string(a.walls ? "--walls" : "--allow-uncertified") + " is for files: give --output, too");
+  }
+  check_outputs(outputs, {a.input});
+  return r;
+}
+
+void run(const Arguments& a) {
+  const Request r = parse(a);
+  const fs::path path = a.input;
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(r.threads, progress, interrupt);
+  Stopwatch watch;
+  const SolidInput input = read_mesh_input(path, r.weld);
+  std::vector<std::string> warnings;
+  if (input.weld && input.weld->before != input.weld->after) warnings.push_back(weld_text(*input.weld));
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  VoronoiComplex made = compute(path, input.mesh.mesh, r.options, context);
+  const VoronoiReport& found = made.report;
+  phases.insert(phases.end(), found.phases.begin(), found.phases.end());
+  static_cast<void>(watch.lap());
+  if (a.walls) made.complex = without_surface(made.complex);
+  const bool is_written = a.output && (found.certified || a.allow_uncertified);
+  if (is_written) {
+    ComplexWriteOptions how;
+    how.allow_loss = true;  // as the table of formats says
+    write_complex(*a.output, made.complex, metadata_of(a, path, r.weld, found), how, context);
+    phases.push_back({"write", watch.lap()});
+  }
+  progress.clear();
+  const Counts counts(made.complex);
+  const std::vector<std::string> mismatches = mismatches_of(found, r.options);
+  const PhaseSummary spent = summarize(phases);
+  Json facts = {{"input", input.json}, {"walls_only", a.walls}, {"options", to_json(r.options)}};
+  facts.update(to_json(found));
+  facts.erase("seconds");  // the run's, below, hold them
+  facts["mismatches"] = mismatches;
+  facts["complex"] = counts.json();
+  Json json = answer_json("voronoi", facts);
+  add_run_facts(json, spent, context, warnings, is_written ? Json::array({*a.output}) : Json::array());
+  TextTable table = table_of(found, counts);
+  if (is_written) table.add("wrote", *a.output);
+  table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
+  report(a.report, json, input.text + table.text());
+  if (!a.report.quiet) warn(warnings);
+  if (!found.certified) throw NotCertified(mismatches, is_written || !a.output ? "" : "; nothing was written");
+}
+
+}  // namespace
+
+void add_voronoi_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = line.app.add_subcommand(
+      "voronoi", "The Voronoi diagram of faces, reflex edges and reflex vertices inside a closed mesh, certified");
+  command->add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read))->required();
+  add_text_option(*command, "-o,--output", a->output, "FILE",
+                  "Its walls and the surface: a complex, with columns in .vtp, .ply or .npz, without in .obj");
+  command->add_flag("--walls", a->walls, "Leave out the triangles on the surface");
+  a->options.add_to(*command);
+  command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even where it is not certified");
+  add_weld_option(*command, a->weld);
+  add_threads_option(*command, a->threads);
+  add_report_options(*command, a->report);
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

@@ -1,0 +1,251 @@
+"""`blum voronoi` writes walls and surface in every format, and nothing that is not certified."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from tool import BLUM, names, run, run_json
+
+pytestmark = pytest.mark.skipif(not BLUM, reason="BLUM_CLI does not name the tool")
+
+SITES = 6  # of a box
+CERTIFIED = "certified  yes"
+TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8"}
+
+
+@pytest.fixture(scope="module")
+def parts(tmp_path_factory):
+    """A folder with a box, the same in STL, a bracket and a gear."""
+    folder = tmp_path_factory.mktemp("parts")
+    for name in ("box.ply", "box.stl", "bracket.ply", "gear.ply"):
+        run("make", name.split(".")[0], "-o", folder / name)
+    return folder
+
+
+# ---- Readers of our own ----
+
+
+def read_npz(path):
+    file = np.load(path)
+    return {
+        "vertices": file["vertices"],
+        "triangles": file["triangles"],
+        "radius": file["radius"],
+        "site_a": file["triangle_site_a"],
+        "site_b": file["triangle_site_b"],
+        "metadata": json.loads(str(file["metadata"])),
+    }
+
+
+def read_ply(path):
+    head, body = path.read_bytes().split(b"end_header\n", 1)
+    lines = head.decode().splitlines()
+    elements, metadata, at, tables = [], {}, 0, {}
+    for line in lines:
+        words = line.split()
+        if line.startswith("comment blum {"):
+            metadata.update(json.loads(line[len("comment blum ") :]))
+        if words[0] == "element":
+            elements.append((words[1], int(words[2]), []))
+        elif words[:2] == ["property", "list"]:
+            elements[-1][2].append((words[4], [("count", "u1"), ("of", TYPES[words[3]], 3)]))
+        elif words[0] == "property":
+            elements[-1][2].append((words[2], TYPES[words[1]]))
+    for name, count, fields in elements:
+        kind = np.dtype(fields)
+        tables[name] = np.frombuffer(body, kind, count, at)
+        at += count * kind.itemsize
+    assert at == len(body)
+    vertex, face = tables["vertex"], tables["face"]
+    (corners,) = (name for name in face.dtype.names if name.startswith("vertex_ind"))
+    return {
+        "vertices": np.stack([vertex[axis] for axis in "xyz"], axis=1),
+        "triangles": face[corners]["of"],
+        "radius": vertex["radius"],
+        "site_a": face["site_a"],
+        "site_b": face["site_b"],
+        "metadata": metadata,
+    }
+
+
+def read_vtp(path):
+    head, body = path.read_bytes().split(b'<AppendedData encoding="raw">', 1)
+    start = body.index(b"_") + 1
+
+    def array(name):
+        # Of lines and polys, the last one is that of the polys.
+        tag = re.findall(rb'<DataArray type="(\w+)" Name="%s"[^>]* offset="(\d+)"/>' % name.encode(), head)[-1]
+        at = start + int(tag[1])
+        size = int(np.frombuffer(body, "<u8", 1, at)[0])
+        return np.frombuffer(body[at + 8 : at + 8 + size], TYPES[tag[0].decode()])
+
+    (points,) = re.findall(rb'<Points>\s*<DataArray type="Float64" Name="(\w+)"', head)
+    (codes,) = re.findall(rb'Name="metadata"[^>]*>([\d\s]+)<', head)
+    return {
+        "vertices": array(points.decode()).reshape(-1, 3),
+        "triangles": array("connectivity").reshape(-1, 3),
+        "radius": array("radius"),
+        "site_a": array("site_a"),
+        "site_b": array("site_b"),
+        "metadata": json.loads(bytes(int(code) for code in codes.split()).rstrip(b"\0")),
+    }
+
+
+def read_obj(path):
+    rows = [line.split() for line in path.read_text().splitlines()]
+    return {
+        "vertices": np.array([row[1:] for row in rows if row[0] == "v"], dtype=float),
+        "triangles": np.array([row[1:] for row in rows if row[0] == "f"], dtype=int) - 1,
+    }
+
+
+READERS = {"npz": read_npz, "ply": read_ply, "vtp": read_vtp, "obj": read_obj}
+
+
+# ---- What is written ----
+
+
+def test_a_box_is_certified(parts, tmp_path):
+    out = tmp_path / "box.npz"
+    found = run_json("voronoi", parts / "box.ply", "-o", out)
+    assert found["certified"] and found["mismatches"] == [] and found["failing"] == []
+    assert found["faces"] == SITES and found["reflex_edges"] == found["reflex_vertices"] == 0
+    assert found["expected_betti"] == found["found_betti"] == [1, 0, SITES]
+    assert found["outputs"] == [str(out)] and names(tmp_path) == ["box.npz"]
+    assert {"read", "cells", "complex", "homology", "write"} <= set(found["seconds"])
+    assert found["options"]["depth"] == 17 and not found["walls_only"]
+    counts = found["complex"]
+    assert counts["triangles"] == counts["wall_triangles"] + counts["surface_triangles"]
+    assert min(counts.values()) > 0
+
+
+def test_a_bracket_as_text(parts, tmp_path):
+    text, _ = run("voronoi", parts / "bracket.ply", "-o", tmp_path / "b.vtp")
+    assert CERTIFIED in text and "144 reflex edges, 4 reflex vertices" in text and f"wrote      {tmp_path}" in text
+    rows = dict(re.findall(r"^(\w+)  +(.*)$", text, re.MULTILINE))
+    assert rows["expected"] == rows["found"] == "1 component, 12 tunnels, 291 voids"
+    assert {"sites", "cubes", "lines", "complex", "certified", "time"} <= set(rows)
+
+
+@pytest.mark.parametrize("end", READERS)
+def test_every_format_holds_the_complex(parts, tmp_path, end):
+    run("voronoi", parts / "box.ply", "-o", tmp_path / "all.npz", "--quiet")
+    counts = run_json("voronoi", parts / "box.ply", "-o", tmp_path / f"box.{end}")["complex"]
+    expected, found = read_npz(tmp_path / "all.npz"), READERS[end](tmp_path / f"box.{end}")
+    for key in found:
+        assert key == "metadata" or np.array_equal(found[key], expected[key]), key
+    assert found.get("metadata", expected["metadata"]) == expected["metadata"]
+    assert (len(found["vertices"]), len(found["triangles"])) == (counts["vertices"], counts["triangles"])
+
+
+def test_columns_and_metadata_say_what_there_is(parts, tmp_path):
+    run("voronoi", parts / "box.ply", "-o", tmp_path / "box.npz", "--quiet")
+    found = read_npz(tmp_path / "box.npz")
+    on_surface = found["site_a"] == -1
+    assert (found["site_a"] < found["site_b"]).all() and found["site_a"].min() == -1
+    assert set(found["site_b"][on_surface]) == set(range(SITES)) and found["site_b"].max() == SITES - 1
+    assert set(found["site_a"][~on_surface]) | set(found["site_b"][~on_surface]) == set(range(SITES))
+    assert (np.abs(found["vertices"]) <= 0.5).all() and (found["radius"] >= 0).all()
+    assert (found["radius"][found["triangles"][on_surface]] == 0).all()
+    metadata = found["metadata"]
+    assert metadata["content"] == "Voronoi diagram" and metadata["certified"] == "true"
+    assert metadata["source"] == "box.ply" and "weld" not in metadata
+
+
+def test_walls_leave_out_the_surface(parts, tmp_path):
+    run("voronoi", parts / "box.ply", "-o", tmp_path / "all.npz", "--quiet")
+    counts = run_json("voronoi", parts / "box.ply", "-o", tmp_path / "walls.npz", "--walls")["complex"]
+    full, walls = read_npz(tmp_path / "all.npz"), read_npz(tmp_path / "walls.npz")
+    kept = full["site_a"] != -1
+    assert 0 < kept.sum() < len(kept) == len(full["triangles"])
+    assert np.array_equal(walls["site_a"], full["site_a"][kept])
+    assert np.array_equal(walls["site_b"], full["site_b"][kept])
+    for key in ("vertices", "radius"):
+        assert np.array_equal(walls[key][walls["triangles"]], full[key][full["triangles"][kept]])
+    assert np.array_equal(np.unique(walls["triangles"]), np.arange(len(walls["vertices"])))
+    assert len(walls["vertices"]) < len(full["vertices"])
+    assert counts["triangles"] == counts["wall_triangles"] == kept.sum() and counts["surface_triangles"] == 0
+    assert walls["metadata"]["content"] == "walls of a Voronoi diagram"
+
+
+def test_stl_is_welded_and_a_tolerance_recorded(parts, tmp_path):
+    assert run_json("voronoi", parts / "box.stl")["expected_betti"] == [1, 0, SITES]
+    run("voronoi", parts / "box.stl", "-o", tmp_path / "b.npz", "--weld", "0.001")
+    assert read_npz(tmp_path / "b.npz")["metadata"]["weld"] == "0.001"
+
+
+def test_a_finer_complex_has_more_cubes(parts):
+    coarse, fine = (run_json("voronoi", parts / "box.ply", "--resolution", n) for n in (1, 16))
+    assert coarse["cubes"] < 1000 < fine["cubes"] and fine["certified"]
+
+
+def test_threads_do_not_change_a_byte(parts, tmp_path):
+    for threads in (1, 2):
+        run("voronoi", parts / "bracket.ply", "-o", tmp_path / f"{threads}.vtp", "--threads", threads)
+    assert (tmp_path / "1.vtp").read_bytes() == (tmp_path / "2.vtp").read_bytes()
+
+
+def test_json_goes_to_a_file_beside_the_text(parts, tmp_path):
+    text, _ = run("voronoi", parts / "box.ply", "--json", tmp_path / "facts.json")
+    assert CERTIFIED in text and names(tmp_path) == ["facts.json"]
+    found = json.loads((tmp_path / "facts.json").read_text())
+    assert found["command"] == "voronoi" and found["certified"] and found["outputs"] == []
+    assert run("voronoi", parts / "box.ply", "--quiet") == ("", "")
+
+
+# ---- What is not certified ----
+
+COARSE = ["--depth", 3]
+
+
+def test_what_is_not_certified_is_not_written(parts, tmp_path):
+    (tmp_path / "gear.vtp").write_bytes(b"old")
+    out, err = run("voronoi", parts / "gear.ply", "-o", tmp_path / "gear.vtp", *COARSE, "--json", "-", status=3)
+    assert "NOT certified" in err and "nothing was written" in err and "--depth" in err
+    assert re.search(r"\d+ cubes do not pass, the first one from \(.*\) to \(.*\) \(\w+( \w+)?\)", err)
+    assert "but walls and surface have 1 component, 18 tunnels, 546 voids" in err
+    assert (tmp_path / "gear.vtp").read_bytes() == b"old" and names(tmp_path) == ["gear.vtp"]
+    found = json.loads(out)
+    assert not found["certified"] and found["outputs"] == [] and found["found_betti"] != found["expected_betti"]
+    assert len(found["mismatches"]) >= 2 and set(found["failing"][0]) == {"low", "high", "obstacle"}
+    assert f"{len(found['failing'])} cubes" in found["mismatches"][0]
+
+
+def test_what_is_not_certified_is_written_where_that_is_asked_for(parts, tmp_path):
+    out = tmp_path / "gear.npz"
+    text, err = run("voronoi", parts / "gear.ply", "-o", out, *COARSE, "--allow-uncertified", status=3)
+    assert "certified  NO" in text and "NOT certified" in err and "nothing was written" not in err
+    assert read_npz(out)["metadata"]["certified"] == "false"
+
+
+# ---- What is wrong ----
+
+
+def test_meshes_that_bound_no_solid(solids, tmp_path):
+    for name, word in (("open.obj", "closed"), ("inverted.obj", "outwards")):
+        _, err = run("voronoi", solids / name, "-o", tmp_path / "o.vtp", status=1)
+        assert name in err and "bounds no solid" in err and word in err
+    _, err = run("voronoi", solids / "ball.nrrd", "-o", tmp_path / "o.vtp", status=1)
+    assert "ball.nrrd" in err and "is no mesh" in err
+    assert names(tmp_path) == []
+
+
+def test_bad_options_are_said(parts, tmp_path):
+    box, out = parts / "box.ply", tmp_path / "o.vtp"
+    for option, value in (("--depth", 0), ("--depth", 19), ("--resolution", 0), ("--max-cubes", 10), ("--weld", -1)):
+        assert option in run("voronoi", box, "-o", out, option, value, status=2)[1]
+    assert "--output" in run("voronoi", box, "-o", tmp_path / "o.xyz", status=2)[1]
+    assert "--output" in run("voronoi", box, "--walls", status=2)[1]
+    assert "--allow-uncertified" in run("voronoi", box, "--allow-uncertified", status=2)[1]
+    assert "--depth" in run("voronoi", box, "--dept", 3, status=2)[1]
+    assert "INPUT" in run("voronoi", status=2)[1]
+    run("voronoi", box, "-o", box, status=2)
+    assert "none.ply" in run("voronoi", parts / "none.ply", status=1)[1]
+    assert names(tmp_path) == []
+
+
+def test_help_has_examples():
+    text, _ = run("voronoi", "--help")
+    assert len(re.findall(r"^  blum voronoi ", text, re.MULTILINE)) >= 3 and "Exit status 3" in text
+    assert "voronoi" in run("--help")[0]
