@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "voronoi/dual_cone.hpp"
 #include "voronoi/edges_of_vertices.hpp"
 
 namespace blum::voronoi {
@@ -46,6 +47,25 @@ Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   }
   return unit({difference_of_products(u[1], v[2], u[2], v[1]), difference_of_products(u[2], v[0], u[0], v[2]),
                difference_of_products(u[0], v[1], u[1], v[0])});
+}
+
+/// Whether all rays of a vertex's cone are one but for rounding.
+bool is_thin(const MeshView& mesh, const SiteTable& table, std::span<const std::uint32_t> edges, std::uint32_t v) {
+  std::vector<Vec3d> ends;
+  for (const std::uint32_t edge : edges) {
+    const Segment& of_edge = table.edges()[edge];
+    ends.push_back(mesh.vertices[of_edge[0] == v ? of_edge[1] : of_edge[0]]);
+  }
+  const std::vector<std::uint32_t> bounds = dual_cone(mesh.vertices[v], ends);
+  std::vector<Vec3d> rays;
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    const Vec3d& next = ends[bounds[(k + 1) % bounds.size()]];
+    if (!are_collinear(mesh.vertices[v], ends[bounds[k]], next)) {
+      rays.push_back(unit_normal(mesh.vertices[v], ends[bounds[k]], next));
+    }
+  }
+  constexpr double thin = 1e-12;
+  return std::all_of(rays.begin(), rays.end(), [&](const Vec3d& ray) { return length(ray - rays[0]) < thin; });
 }
 
 }  // namespace
@@ -243,16 +263,7 @@ void LabelGeometry::add_vertices(const MeshView& mesh, const SiteTable& table, c
     const Vec3d& at = mesh.vertices[v];
     PlacedLabel label{SiteKind::vertex, 0, at - centre_, {}, 0, 0};
     label.first_plane = static_cast<std::uint32_t>(planes_.size());
-    // Its cone lies between the normals of its triangles.
-    const Vec3d& normal = labels_[sites.triangles_of[edges.of(v).front()][0]].direction;
-    double widest = 0;
-    for (const std::uint32_t edge : edges.of(v)) {
-      for (const std::uint32_t t : sites.triangles_of[edge]) {
-        widest = std::max(widest, length(labels_[t].direction - normal));
-      }
-    }
-    constexpr double thin = 1e-12;
-    if (widest < thin) thin_vertices_.push_back(static_cast<LabelIndex>(labels_.size()));
+    if (is_thin(mesh, table, edges.of(v), v)) thin_vertices_.push_back(static_cast<LabelIndex>(labels_.size()));
     for (const std::uint32_t edge : edges.of(v)) {
       const Segment& ends = table.edges()[edge];
       const Vec3d inwards = unit(at - mesh.vertices[ends[0] == v ? ends[1] : ends[0]]);
