@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "voronoi/segment_labels.hpp"
 
@@ -177,27 +178,37 @@ class EnvelopeWalk {
         change.at = infinity;
         return;
       }
-      const bool is_shared = is_next && end.edge != outside && side < 0;
+      const bool is_shared = is_next && side < 0;
       if (inside < error && !is_flat(candidate, end) && !is_shared) change.is_certain = false;
     }
     if (candidate.grazes) change.is_certain = false;
   }
 
-  /// How triangles of a face and another triangle lie to each other.
+  /// How two labels of one kind that are next to each other lie.
   struct Adjacency {
-    const Bisector* bisector = nullptr;  ///< across a convex edge, to the side of the other triangle
-    bool by_reflex_edge = false;
+    std::optional<Bisector> bisector;  ///< across a convex edge or a common end, to the side of the other label
+    bool have_between = false;         ///< whether they share an edge or vertex that is a site itself
   };
-  [[nodiscard]] Adjacency adjacency(const PlacedLabel& face, const Candidate& other) const {
+  [[nodiscard]] Adjacency adjacency(LabelIndex current, const Candidate& other) const {
+    const PlacedLabel& face = labels_[current];
     Adjacency out;
+    if (face.kind == SiteKind::edge && other.kind == SiteKind::edge) {
+      out.bisector = labels_.bisector(other.label, current);
+      for (const DomainPlane& of_current : labels_.ends(current)) {
+        for (const DomainPlane& of_other : labels_.ends(other.label)) {
+          if (of_current.beyond != outside && of_current.beyond == of_other.beyond) out.have_between = true;
+        }
+      }
+      return out;
+    }
     if (face.kind != SiteKind::face || other.kind != SiteKind::face) return out;
     for (const Bisector& bisector : labels_.bisectors(other.label)) {
-      if (bisector.other != outside && labels_[bisector.other].site == face.site) out.bisector = &bisector;
+      if (bisector.other != outside && labels_[bisector.other].site == face.site) out.bisector = bisector;
     }
     for (const DomainPlane& side : labels_.planes(other.label)) {
       if (side.beyond == outside || labels_[side.beyond].kind != SiteKind::edge) continue;
       for (const DomainPlane& wall : labels_.planes(side.beyond)) {
-        if (wall.beyond != outside && labels_[wall.beyond].site == face.site) out.by_reflex_edge = true;
+        if (wall.beyond != outside && labels_[wall.beyond].site == face.site) out.have_between = true;
       }
     }
     return out;
@@ -212,20 +223,20 @@ class EnvelopeWalk {
 
   /// A change from the current label to another one, if there is one behind a place.
   /// @param end  the furthest place that the current label's domain reaches to.
-  [[nodiscard]] Change change_to(const PlacedLabel& current, const Quadratic& squared, const Candidate& other,
-                                 double at, double error, const IntervalEnd& end) const {
+  [[nodiscard]] Change change_to(LabelIndex label, const Quadratic& squared, const Candidate& other, double at,
+                                 double error, const IntervalEnd& end) const {
+    const PlacedLabel& current = labels_[label];
     if (!labels_.are_incident(current.site, other.label)) {
       if (other.low.at - other.low.error > end.at + end.error) return {};
       if (other.high.at + other.high.error < at - error) return {};
-      const Adjacency adjacent = adjacency(current, other);
-      // Over both sides of a reflex edge, the edge is closest in between.
+      const Adjacency adjacent = adjacency(label, other);
+      // Over both sides of a reflex edge or vertex, this is closest in between.
       const bool is_apart =
           other.low.at + other.low.error >= end.at - end.error || other.high.at - other.high.error <= at + error;
-      if (adjacent.by_reflex_edge && is_apart) return {};
-      if (adjacent.bisector == nullptr && is_further(other, squared, at - error, end.at + end.error)) return {};
-      Change change =
-          adjacent.bisector != nullptr ? change_at(*adjacent.bisector, other) : crossing(squared, other, at);
-      if (change.at < infinity) check_domain(other, change, adjacent.bisector != nullptr);
+      if (adjacent.have_between && is_apart) return {};
+      if (!adjacent.bisector && is_further(other, squared, at - error, end.at + end.error)) return {};
+      Change change = adjacent.bisector ? change_at(*adjacent.bisector, other) : crossing(squared, other, at);
+      if (change.at < infinity) check_domain(other, change, adjacent.bisector.has_value());
       return change;
     }
     // From a face to an edge of it; what edges and vertices change to tells their own domain.
@@ -264,7 +275,7 @@ class EnvelopeWalk {
     changes.clear();
     for (const Candidate& other : candidates_) {
       if (other.site == placed.site) continue;
-      const Change change = change_to(placed, squared, other, at, error, end);
+      const Change change = change_to(current, squared, other, at, error, end);
       if (!(change.at < infinity) || change.at + change.error < at - error) continue;
       if (change.at - change.error > end.at + end.error) continue;
       if (change.at - change.error <= at + error) {
@@ -282,7 +293,15 @@ class EnvelopeWalk {
       if (own != nullptr && own->high.at < infinity) {
         const LabelIndex beyond = own->high.beyond;
         const bool is_known = beyond != outside;
-        changes.push_back({own->high.at, own->high.error, beyond, is_known ? labels_[beyond].site : outside, is_known});
+        // Where its end is no site, another edge with this end may go on.
+        const double reach = own->high.at + own->high.error;
+        const bool goes_on = !is_known && std::any_of(changes.begin(), changes.end(), [&](const Change& change) {
+          return change.at - change.error <= reach;
+        });
+        if (!goes_on) {
+          changes.push_back(
+              {own->high.at, own->high.error, beyond, is_known ? labels_[beyond].site : outside, is_known});
+        }
       }
       if (own == nullptr || own->grazes) is_certain = false;
     }
