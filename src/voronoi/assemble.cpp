@@ -1,6 +1,7 @@
 #include "voronoi/assemble.hpp"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
@@ -17,8 +18,8 @@ struct Place {
   Vec3d start;  ///< relative to the centre of the labels
   std::uint32_t parts = 0;
   PlacedBox box;
-  std::vector<LabelIndex> labels;  ///< one of each site
-  bool on_surface = false;
+  std::vector<LabelIndex> labels;   ///< one of each site
+  std::vector<LabelIndex> surface;  ///< those of them whose own face is part of it
 };
 
 class Assembly {
@@ -60,14 +61,18 @@ class Assembly {
     vertex_of_square_.assign(tree_.squares.size(), no_vertex);
   }
 
-  void add_label(Place& place, LabelIndex label) const {
-    if (label == outside) {
-      place.on_surface = true;
-      return;
-    }
-    const bool is_known = std::any_of(place.labels.begin(), place.labels.end(),
+  void add_label(std::vector<LabelIndex>& list, LabelIndex label) const {
+    const bool is_known = std::any_of(list.begin(), list.end(),
                                       [&](LabelIndex known) { return labels_[known].site == labels_[label].site; });
-    if (!is_known) place.labels.push_back(label);
+    if (!is_known) list.push_back(label);
+  }
+
+  void add_labels(Place& place, const LineEvent& event) const {
+    for (const LabelIndex label : {event.before, event.after}) {
+      if (label != outside) add_label(place.labels, label);
+    }
+    if (event.before == outside) add_label(place.surface, event.after);
+    if (event.after == outside) add_label(place.surface, event.before);
   }
 
   std::uint32_t vertex_of_event(std::uint32_t event) {
@@ -78,8 +83,7 @@ class Assembly {
     place.start = at_event_[event];
     place.parts = 1;
     place.box = {place.start, place.start};
-    add_label(place, tree_.events[event].before);
-    add_label(place, tree_.events[event].after);
+    add_labels(place, tree_.events[event]);
     places_.push_back(std::move(place));
     return vertex;
   }
@@ -105,8 +109,7 @@ class Assembly {
       const LineEvent& event = tree_.events[cells.events[k]];
       of_component.start += at_event_[cells.events[k]];
       ++of_component.parts;
-      add_label(of_component, event.before);
-      add_label(of_component, event.after);
+      add_labels(of_component, event);
     }
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {
       places_[first + k].start *= 1.0 / places_[first + k].parts;
@@ -133,8 +136,8 @@ class Assembly {
         const Place& part = places_[first_of_square + k];
         of_component.start += part.start;
         ++of_component.parts;
-        of_component.on_surface = of_component.on_surface || part.on_surface;
-        for (const LabelIndex label : part.labels) add_label(of_component, label);
+        for (const LabelIndex label : part.labels) add_label(of_component.labels, label);
+        for (const LabelIndex label : part.surface) add_label(of_component.surface, label);
       }
       for (std::size_t k = 0; k < of_square.events.size(); ++k) {
         const std::uint32_t component = of_square.component[k];
@@ -161,20 +164,27 @@ class Assembly {
     radius_.resize(places_.size());
     parallel_for(context_, places_.size(), grain, "vertices", [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
-        Place& place = places_[k];
-        bool is_settled = true;
-        if (!(place.box.low == place.box.high)) {
-          const auto settled = settle(labels_, place.labels, place.on_surface, place.start, place.box);
-          is_settled = settled.has_value();
-          place.start = settled.value_or(place.start);
-        }
-        double least = place.on_surface && is_settled ? 0 : labels_.size() * labels_.size();
+        const bool is_settled = settle_one(places_[k]);
+        const Place& place = places_[k];
+        double least = !place.surface.empty() && is_settled ? 0 : labels_.size() * labels_.size();
         for (const LabelIndex label : place.labels) {
           least = std::min(least, squared_length(labels_.closest_point(label, place.start) - place.start));
         }
         radius_[k] = std::sqrt(least);
       }
     });
+  }
+
+  /// Moves a vertex to the surface where it has a part in it, else to where all its labels are equally close, or two.
+  bool settle_one(Place& place) const {
+    if (place.box.low == place.box.high) return true;
+    const bool on_surface = !place.surface.empty();
+    std::span<const LabelIndex> which = on_surface ? place.surface : place.labels;
+    auto settled = settle(labels_, which, on_surface, place.start, place.box);
+    const std::size_t few = on_surface ? 1 : 2;
+    if (!settled && which.size() > few) settled = settle(labels_, which.first(few), on_surface, place.start, place.box);
+    if (settled) place.start = *settled;
+    return settled.has_value();
   }
 
   Complex finish() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "blum/core/parallel.hpp"
 #include "blum/geometry/grid_predicates.hpp"
@@ -37,7 +38,7 @@ bool is_plane_apart(const PlacedLabel& triangle, const Vec3d& middle, const Vec3
 
 }  // namespace
 
-void CellSplitter::add_root() {
+void CellSplitter::add_root(int grid) {
   Box3 box;
   for (const Triangle& triangle : mesh_.triangles) {
     for (const std::uint32_t v : triangle) box.extend(mesh_.vertices[v]);
@@ -45,9 +46,11 @@ void CellSplitter::add_root() {
   const Vec3d size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
   // Sides and halves must not fit to what shapes have: irrational parts, another one along each axis.
-  const Vec3d shift{0.0618034, 0.0414214, 0.0732051};
-  const double side = longest * 1.4;
-  tree_.lattice.origin = box.center() - Vec3d{side, side, side} * 0.5 + shift * (0.31 * longest);
+  const Vec3d fractions{std::numbers::phi - 1, std::numbers::sqrt2 - 1, std::numbers::sqrt3 - 1};
+  Vec3d shift;
+  for (std::size_t axis = 0; axis < 3; ++axis) shift[axis] = std::fmod(fractions[axis] * (grid + 1), 1.0) - 0.5;
+  const double side = longest * side_of_root;
+  tree_.lattice.origin = box.center() - Vec3d{side, side, side} * 0.5 + shift * (0.2 * longest);
   tree_.lattice.unit = side / Lattice::most;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (CellId k = 0; k < 4; ++k) {

@@ -21,11 +21,15 @@ namespace blum::voronoi {
 /// is ever searched among all labels; an edge that is split shares its events among its halves.
 class CellSplitter {
  public:
+  /// The side of the first cube, over the longest side of the box around the mesh.
+  static constexpr double side_of_root = 1.4;
+
   CellSplitter(const MeshView& mesh, const SiteLabels& exact, const LabelGeometry& labels, CellTree& tree)
       : mesh_(mesh), exact_(exact), labels_(labels), lines_(exact, labels), tree_(tree) {}
 
   /// Makes one cube, around the mesh, whose sides lie outside of the solid.
-  void add_root();
+  /// @param grid  a number: each has its place of its own.
+  void add_root(int grid);
   /// Splits squares that have no children into four each.
   void split_squares(std::span<const CellId> squares, const Context& context);
   /// Splits cubes into eight each; their squares may have been split before.

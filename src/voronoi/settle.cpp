@@ -46,7 +46,7 @@ std::optional<Vec3d> settle(const LabelGeometry& geometry, std::span<const Label
   const double enough = 1e-12 * geometry.size();
   Vec3d q = start;
   std::vector<Distance> distances(labels.size());
-  constexpr int most_steps = 16;
+  constexpr int most_steps = 24;
   for (int step = 0; step < most_steps; ++step) {
     double mean = 0;
     Vec3d mean_slope;
@@ -75,10 +75,11 @@ std::optional<Vec3d> settle(const LabelGeometry& geometry, std::span<const Label
       }
     }
     if (largest <= enough) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!(q[axis] >= box.low[axis] && q[axis] <= box.high[axis])) return std::nullopt;
-      }
-      return q;
+      // Outside of the box from the nearest point in it on: to and fro it comes to a point of both, where there is one.
+      const Vec3d inside = max(box.low, min(box.high, q));
+      if (inside == q) return q;
+      q = inside;
+      continue;
     }
     // A little of the identity keeps steps short along directions that nothing is known of.
     const double trace = normal[0][0] + normal[1][1] + normal[2][2];

@@ -23,7 +23,7 @@ class Subdivider {
         cube_test_(mesh, sites, labels, loops, surface_, out.tree) {}
 
   void run() {
-    splitter_.add_root();
+    splitter_.add_root(options_.grid);
     std::vector<CellId> cubes{0};
     for (int depth = 0; !cubes.empty(); ++depth) {
       const bool is_last = depth >= options_.most_depth || is_full();

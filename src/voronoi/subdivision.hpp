@@ -15,6 +15,7 @@
 namespace blum::voronoi {
 
 struct SubdivisionOptions {
+  int grid = 0;                        ///< which place of the grid
   int least_depth = 0;                 ///< all cubes that meet the solid are split at least so often
   int most_depth = 16;                 ///< and at most so often
   int most_square_depth = 5;           ///< how often squares of a cube are split before the cube is

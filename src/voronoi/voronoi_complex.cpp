@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "blum/complex/homology.hpp"
 #include "blum/geometry/self_intersections.hpp"
@@ -24,6 +25,7 @@ void check(const VoronoiOptions& options) {
   };
   check_range("resolution", options.resolution, 1, 1024);
   check_range("depth", options.depth, 1, 18);
+  check_range("grids", options.grids, 1, 100);
   check_range("max_cubes", options.max_cubes, 1000, 100'000'000);
 }
 
@@ -47,8 +49,19 @@ BettiNumbers checked_betti(const MeshView& mesh, const SiteTable& table, const C
 /// How often a cube is split at least, so that its side is that of the box over the resolution.
 int least_depth(int resolution) {
   int depth = 0;
-  while ((1 << depth) < resolution) ++depth;
+  while ((1 << depth) < CellSplitter::side_of_root * resolution) ++depth;
   return depth;
+}
+
+/// What keeps an octree from passing.
+std::size_t obstacles(const Subdivision& cells) {
+  return cells.failing.size() + cells.lines.undecided + cells.contradictions;
+}
+
+/// Whether so little does not pass that another place of the grid may help.
+bool may_pass_elsewhere(const Subdivision& cells) {
+  constexpr std::size_t few = 100;
+  return obstacles(cells) > 0 && obstacles(cells) * few <= cells.leaves.size();
 }
 
 void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiReport& report) {
@@ -94,7 +107,16 @@ VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& optio
   how.least_depth = least_depth(options.resolution);
   how.most_depth = std::max(options.depth, how.least_depth);
   how.most_cubes = static_cast<std::size_t>(options.max_cubes);
-  const Subdivision cells = subdivide(mesh, table, sites, exact, labels, loops, how, context);
+  const auto divide = [&](int grid) {
+    how.grid = grid;
+    ++report.grids;
+    return subdivide(mesh, table, sites, exact, labels, loops, how, context);
+  };
+  Subdivision cells = divide(0);
+  for (int grid = 1; grid < options.grids && may_pass_elsewhere(cells); ++grid) {
+    Subdivision other = divide(grid);
+    if (obstacles(other) < obstacles(cells)) cells = std::move(other);
+  }
   timer.lap("cells");
   add_facts(cells, labels, report);
   const SurfaceInCells surface(mesh, table, cells.tree.lattice);

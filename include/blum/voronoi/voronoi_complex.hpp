@@ -21,9 +21,11 @@ namespace blum {
 
 struct VoronoiOptions {
   /// Cubes that meet the solid are at most the side of the box around it over this, 1 to 1024.
-  int resolution = 1;
+  int resolution = 16;
   /// How often cubes are split at most, 1 to 18.
   int depth = 17;
+  /// How many places of the grid are tried at most, 1 to 100: where few cubes fail, others may pass.
+  int grids = 4;
   /// With more cubes than this nothing is split any more, 1,000 to 100,000,000: what does not pass then is reported.
   std::int64_t max_cubes = 1'000'000;
 };
@@ -37,6 +39,9 @@ struct Description<VoronoiOptions> {
              "cubes that meet the solid are at most the longest side of the box around it over this",
              Range::between(1, 1024)},
       Member{"depth", &VoronoiOptions::depth, "", "how often cubes are split at most", Range::between(1, 18)},
+      Member{"grids", &VoronoiOptions::grids, "",
+             "how many places of the grid are tried at most: where few cubes fail, others may pass",
+             Range::between(1, 100)},
       Member{"max_cubes", &VoronoiOptions::max_cubes, "", "with more cubes nothing is split any more",
              Range::between(1000, 100'000'000)},
   };
@@ -93,6 +98,7 @@ struct VoronoiReport {
   std::size_t reflex_vertices = 0;  ///< sites
   /// Of these, vertices whose cones are thinner than 1e-12 (dents by rounding): their regions count as part of walls.
   std::size_t thin_vertices = 0;
+  std::size_t grids = 0;            ///< places of the grid that were tried
   std::size_t cubes = 0;            ///< that meet the solid, and are not split
   std::size_t squares = 0;          ///< and parts of squares
   std::size_t splits = 0;           ///< cubes that were split because they did not pass
@@ -119,6 +125,7 @@ struct Description<VoronoiReport> {
       Member{"reflex_vertices", &VoronoiReport::reflex_vertices, "", "sites"},
       Member{"thin_vertices", &VoronoiReport::thin_vertices, "",
              "reflex vertices whose cones are thinner than 1e-12: their regions count as part of walls"},
+      Member{"grids", &VoronoiReport::grids, "", "places of the grid that were tried"},
       Member{"cubes", &VoronoiReport::cubes, "", "that meet the solid, and are not split"},
       Member{"squares", &VoronoiReport::squares, "", "and parts of squares"},
       Member{"splits", &VoronoiReport::splits, "", "cubes that were split because they did not pass"},

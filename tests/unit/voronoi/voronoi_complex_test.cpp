@@ -27,7 +27,7 @@ TEST(VoronoiComplex, OfABox) {
   EXPECT_EQ(found.report.found, (BettiNumbers{1, 0, 6})) << "six regions";
   EXPECT_TRUE(problem_of(found.complex).empty());
   const auto radius = found.complex.vertex_columns.get<double>("radius");
-  EXPECT_NEAR(*std::max_element(radius.begin(), radius.end()), 0.5, 1e-12) << "the junction in the middle";
+  EXPECT_NEAR(*std::max_element(radius.begin(), radius.end()), 0.5, 1e-9) << "the junction in the middle";
   EXPECT_EQ(*std::min_element(radius.begin(), radius.end()), 0) << "the surface";
 }
 
@@ -81,7 +81,7 @@ std::vector<Case> cases() {
 class Shapes : public testing::TestWithParam<Case> {};
 
 TEST_P(Shapes, AreCertified) {
-  const VoronoiComplex found = voronoi_complex(GetParam().mesh);
+  const VoronoiComplex found = voronoi_complex(GetParam().mesh, {.resolution = 1});
   EXPECT_TRUE(found.report.certified);
   EXPECT_EQ(found.report.found, found.report.expected);
   EXPECT_EQ(found.report.failing.size(), 0U);
@@ -127,7 +127,7 @@ TEST(VoronoiComplex, IsTheSameForAnyNumberOfThreads) {
 
 /// With few splits cubes do not pass: then it says which.
 TEST(VoronoiComplex, SaysWhatDoesNotPass) {
-  const VoronoiReport report = voronoi_complex(make_gear(), {.depth = 3}).report;
+  const VoronoiReport report = voronoi_complex(make_gear(), {.resolution = 1, .depth = 3}).report;
   EXPECT_FALSE(report.certified);
   ASSERT_FALSE(report.failing.empty());
   for (const FailingVoronoiCell& cell : report.failing) {
@@ -138,7 +138,7 @@ TEST(VoronoiComplex, SaysWhatDoesNotPass) {
 
 /// A finer grid has the same homology.
 TEST(VoronoiComplex, OfAFinerGrid) {
-  const VoronoiComplex coarse = voronoi_complex(make_star());
+  const VoronoiComplex coarse = voronoi_complex(make_star(), {.resolution = 1});
   const VoronoiComplex fine = voronoi_complex(make_star(), {.resolution = 16});
   EXPECT_TRUE(fine.report.certified);
   EXPECT_EQ(coarse.report.found, fine.report.found);
@@ -158,6 +158,7 @@ TEST(VoronoiComplex, RefusesWhatIsNoSolid) {
   EXPECT_THROW((void)voronoi_complex(crossing), InvalidMesh);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.resolution = 0}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.depth = 19}), InvalidOption);
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.grids = 0}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.max_cubes = 1}), InvalidOption);
 }
 
