@@ -39,10 +39,7 @@ bool is_plane_apart(const PlacedLabel& triangle, const Vec3d& middle, const Vec3
 }  // namespace
 
 void CellSplitter::add_root(int grid) {
-  Box3 box;
-  for (const Triangle& triangle : mesh_.triangles) {
-    for (const std::uint32_t v : triangle) box.extend(mesh_.vertices[v]);
-  }
+  const Box3& box = labels_.box();
   const Vec3d size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
   // Sides and halves must not fit to what shapes have: irrational parts, another one along each axis.

@@ -47,7 +47,7 @@ class CellSplitter {
   };
 
   void split_edges(std::vector<CellId> edges, const Context& context);
-  void split_edge(CellId edge);
+  void split_edge(CellId id);
   [[nodiscard]] bool is_below(const GridEdge& edge, const LineEvent& event, const Node& node) const;
   /// Finds what is closest along an edge from what is at its lower end.
   void find_events(NewEdge& made, std::span<const LabelIndex> among, std::span<const std::uint32_t> triangles) const;
@@ -60,7 +60,7 @@ class CellSplitter {
   void expect_same(LabelIndex a, LabelIndex b) const;
   [[nodiscard]] std::array<NewEdge, 4> inner_edges(const GridSquare& square) const;
   [[nodiscard]] std::array<NewEdge, 6> inner_edges(const GridCube& cube) const;
-  void place_children(CellId square);
+  void place_children(CellId id);
   void place_squares(const GridCube& cube, CellId first_edge, CellId first_square);
   void place_children(const GridCube& cube, CellId first_square);
   void find_contents(GridSquare& square, std::span<const LabelIndex> among,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -112,7 +113,7 @@ class CubeAnalysis {
       if (arcs[k].arc != arcs[k - 1].arc) continue;
       pieces_.join(arcs[k].piece, arcs[k - 1].piece);
       bodies_.join(arcs[k].body, arcs[k - 1].body);
-      if (arcs[k].label != outside) inside_arcs_.push_back({arcs[k].arc, arcs[k].body});
+      if (arcs[k].label != outside) inside_arcs_.emplace_back(arcs[k].arc, arcs[k].body);
     }
     for (std::size_t k = 1; k < events.size(); ++k) {
       if (events[k][0] != events[k - 1][0]) continue;
@@ -249,10 +250,7 @@ class CubeAnalysis {
     }
   }
 
-  [[nodiscard]] std::uint32_t rank(std::uint32_t triangle) const {
-    return static_cast<std::uint32_t>(std::lower_bound(triangles_.begin(), triangles_.end(), triangle) -
-                                      triangles_.begin());
-  }
+  [[nodiscard]] std::uint32_t rank(std::uint32_t triangle) const { return rank_in(triangles_, triangle); }
 
   bool mark_touches() {
     const auto touch_face = [&](std::uint32_t triangle, std::uint32_t s) {
@@ -281,14 +279,14 @@ class CubeAnalysis {
   }
 
   [[nodiscard]] std::uint32_t site_of_edge(std::uint32_t edge) const {
-    const auto& list = t_.sites_.reflex_edges;
-    return static_cast<std::uint32_t>(t_.sites_.face_count +
-                                      (std::lower_bound(list.begin(), list.end(), edge) - list.begin()));
+    return rank_in(t_.sites_.reflex_edges, edge) + static_cast<std::uint32_t>(t_.sites_.face_count);
   }
   [[nodiscard]] std::uint32_t site_of_vertex(std::uint32_t v) const {
-    const auto& list = t_.sites_.reflex_vertices;
-    return static_cast<std::uint32_t>(t_.sites_.face_count + t_.sites_.reflex_edges.size() +
-                                      (std::lower_bound(list.begin(), list.end(), v) - list.begin()));
+    return rank_in(t_.sites_.reflex_vertices, v) +
+           static_cast<std::uint32_t>(t_.sites_.face_count + t_.sites_.reflex_edges.size());
+  }
+  [[nodiscard]] static std::uint32_t rank_in(const std::vector<std::uint32_t>& list, std::uint32_t entry) {
+    return static_cast<std::uint32_t>(std::lower_bound(list.begin(), list.end(), entry) - list.begin());
   }
   [[nodiscard]] bool is_edge_site(std::uint32_t site) const {
     return site >= t_.sites_.face_count && site < t_.sites_.face_count + t_.sites_.reflex_edges.size();
@@ -304,7 +302,7 @@ class CubeAnalysis {
     }
     for (const std::uint32_t v : vertices_) {
       const bool is_site = std::binary_search(t_.sites_.reflex_vertices.begin(), t_.sites_.reflex_vertices.end(), v);
-      if (is_site && !is_thin(v) && regions_of_site_.find(site_of_vertex(v)) == regions_of_site_.end()) {
+      if (is_site && !is_thin(v) && !regions_of_site_.contains(site_of_vertex(v))) {
         return CubeObstacle::enclosed;
       }
     }
@@ -369,7 +367,7 @@ class CubeAnalysis {
     const double half = 0.5 * t_.tree_.lattice.unit * cube_.length;
     const Vec3d middle = t_.tree_.lattice.at(cube_.low) + Vec3d{half, half, half} - t_.labels_.centre();
     // The cube's shadow on the face's plane lies in a disc.
-    const double reach = std::sqrt(3.0) * half * (1 + 1e-12) + 4 * t_.labels_.rounding();
+    const double reach = std::numbers::sqrt3 * half * (1 + 1e-12) + 4 * t_.labels_.rounding();
     const auto found = std::find_if(triangles_.begin(), triangles_.end(),
                                     [&](std::uint32_t t) { return t_.sites_.face_of[t] == face; });
     const Vec3d& normal = t_.labels_[*found].direction;
@@ -416,7 +414,7 @@ class CubeAnalysis {
       if (arc.index > 0 && t_.tree_.events[k - 1].before == outside) meet(t_.tree_.events[k - 1].after);
     }
     for (const std::uint32_t t : triangles_) {
-      if (bounded.count(sheets_.find(rank(t))) == 0) return CubeObstacle::handle;
+      if (!bounded.contains(sheets_.find(rank(t)))) return CubeObstacle::handle;
       sums.emplace_back(sheet(t), 1);
     }
     for (const std::uint32_t edge : edges_) sums.emplace_back(sheet(t_.sites_.triangles_of[edge][0]), -1);
@@ -479,53 +477,65 @@ class CubeAnalysis {
     return CubeObstacle::none;
   }
 
-  /// Tunnels of a face's region in the cube. Seen along its normal the region is as high as wide: it retracts to what
-  /// it covers of the cube's lower sides and of the face itself, the Euler number of which is a sum over cells.
-  /// @param components  of the region.
-  [[nodiscard]] std::int64_t tunnels(std::uint32_t face, std::size_t components) const {
+  /// What a face and its region cover of the lower sides of the cube, seen along the normal.
+  struct LowerPart {
+    std::int64_t pieces = 0;
+    std::map<EdgeArc, int> arcs;          ///< how many lower squares have it
+    std::map<std::uint32_t, int> events;  ///< at which the face crosses grid edges: how many lower squares have it
+    std::int64_t ends = 0;                ///< of segments in which the face meets lower squares
+  };
+
+  void add_square(const SquareCells& cells, std::uint32_t face, LowerPart& out) const {
+    for (const SquareCells::Piece& piece : cells.pieces) out.pieces += piece.site == face ? 1 : 0;
+    for (const auto& [arc, run] : cells.arcs) {
+      if (cells.pieces[cells.runs[run].piece].site == face) ++out.arcs[arc];
+    }
+    for (const std::uint32_t event : cells.events) {
+      const LineEvent& e = t_.tree_.events[event];
+      if (e.before != outside && e.after != outside) continue;
+      if (t_.labels_[e.before == outside ? e.after : e.before].site != face) continue;
+      ++out.events[event];
+      ++out.ends;
+    }
+  }
+
+  [[nodiscard]] LowerPart lower_part(std::uint32_t face) const {
     const Vec3d& normal = normal_of(face);
     const auto is_lower = [&](std::uint32_t side) { return normal[side / 2] * (side % 2 == 1 ? 1 : -1) < -1e-15; };
-    std::int64_t euler = 0;
-    std::map<EdgeArc, int> arcs;          // of lower squares: how often
-    std::map<Node, int> nodes;            // squares around, less arcs around
-    std::map<std::uint32_t, int> events;  // at which the face crosses grid edges: how often
-    std::int64_t ends = 0;                // of segments in which the face meets lower squares
-    for (std::uint32_t s = 0; s < squares_.size(); ++s) {
-      if (!is_lower(squares_[s].side)) continue;
-      const SquareCells& cells = squares_[s].cells;
-      for (const SquareCells::Piece& piece : cells.pieces) euler += piece.site == face ? 1 : 0;
-      for (const auto& [arc, run] : cells.arcs) {
-        if (cells.pieces[cells.runs[run].piece].site == face) ++arcs[arc];
-      }
-      for (const std::uint32_t event : cells.events) {
-        const LineEvent& e = t_.tree_.events[event];
-        if (e.before != outside && e.after != outside) continue;
-        if (t_.labels_[e.before == outside ? e.after : e.before].site != face) continue;
-        ++events[event];
-        ++ends;
-      }
+    LowerPart out;
+    for (const Square& square : squares_) {
+      if (is_lower(square.side)) add_square(square.cells, face, out);
     }
     for (const auto& [edge, s] : piercings_) {
       if (!is_lower(squares_[s].side) || t_.sites_.turn[edge] == EdgeTurn::flat) continue;
-      for (const std::uint32_t t : t_.sites_.triangles_of[edge]) ends += t_.sites_.face_of[t] == face ? 1 : 0;
+      for (const std::uint32_t t : t_.sites_.triangles_of[edge]) out.ends += t_.sites_.face_of[t] == face ? 1 : 0;
     }
+    return out;
+  }
+
+  /// Grid nodes amid lower squares, which the region is all around: all arcs there lie between two of them.
+  [[nodiscard]] std::int64_t nodes_amid(const std::map<EdgeArc, int>& arcs) const {
+    std::map<Node, bool> is_on_rim;
     for (const auto& [arc, count] : arcs) {
-      if (count == 2) --euler;
-      // A node in the middle of lower sides, all around which the region is: as many arcs as squares meet there.
       const GridEdge& edge = t_.tree_.edges[arc.edge];
       Node end = edge.low;
       end[edge.axis] += edge.length;
-      const auto add = [&](const Node& node) {
-        nodes.try_emplace(node, 0);
-        if (count < 2) nodes[node] = 1;
-      };
-      if (arc.index == 0) add(edge.low);
-      if (edge.first_event + arc.index == edge.last_event) add(end);
+      if (arc.index == 0) is_on_rim[edge.low] = is_on_rim[edge.low] || count < 2;
+      if (edge.first_event + arc.index == edge.last_event) is_on_rim[end] = is_on_rim[end] || count < 2;
     }
-    for (const auto& [node, is_on_rim] : nodes) euler += is_on_rim != 0 ? 0 : 1;
+    return std::count_if(is_on_rim.begin(), is_on_rim.end(), [](const auto& node) { return !node.second; });
+  }
+
+  /// Tunnels of a face's region in the cube. Along the normal the region reaches from the face, or the cube's lower
+  /// sides, up to walls: so it retracts to what it covers of these, whose Euler number is a sum over cells.
+  /// @param components  of the region.
+  [[nodiscard]] std::int64_t tunnels(std::uint32_t face, std::size_t components) const {
+    const LowerPart lower = lower_part(face);
+    const auto is_shared = [](const auto& counted) { return counted.second == 2; };
+    std::int64_t euler = lower.pieces + nodes_amid(lower.arcs) - lower.ends / 2;
+    euler -= std::count_if(lower.arcs.begin(), lower.arcs.end(), is_shared);
+    euler += std::count_if(lower.events.begin(), lower.events.end(), is_shared);
     for (const auto& [root, part] : parts_) euler += part.face == face ? 1 : 0;
-    euler -= ends / 2;
-    for (const auto& [event, count] : events) euler += count == 2 ? 1 : 0;
     return static_cast<std::int64_t>(components) - euler;
   }
 

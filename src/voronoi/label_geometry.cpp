@@ -88,14 +88,11 @@ Quadratic PlacedLabel::along(const Vec3d& q, std::size_t axis) const {
 
 LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
                              const SiteLabels& labels)
-    : face_count_(sites.face_count) {
-  Box3 box;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) box.extend(mesh.vertices[v]);
-  }
-  centre_ = box.center();
-  size_ = box.diagonal();
-  rounding_ = 4e-15 * size_;
+    : box_(bounds(mesh)),
+      centre_(box_.center()),
+      size_(box_.diagonal()),
+      rounding_(4e-15 * size_),
+      face_count_(sites.face_count) {
   label_of_edge_.assign(table.edge_count(), outside);
   label_of_vertex_.assign(table.vertex_count(), outside);
   for (LabelIndex k = 0; k < labels.all().size(); ++k) {

@@ -86,6 +86,9 @@ class LabelGeometry {
   /// @param mesh, table, sites  of one polyhedron, as SiteLabels takes them.
   LabelGeometry(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, const SiteLabels& labels);
 
+  /// Around the mesh.
+  [[nodiscard]] const Box3& box() const { return box_; }
+  /// Of the box.
   [[nodiscard]] const Vec3d& centre() const { return centre_; }
   /// Diagonal of the box around the mesh.
   [[nodiscard]] double size() const { return size_; }
@@ -140,6 +143,7 @@ class LabelGeometry {
   void add_bisectors(const PolyhedronSites& sites);
   void add_neighbours(const SiteTable& table, const PolyhedronSites& sites);
 
+  Box3 box_;
   Vec3d centre_;
   double size_ = 0;
   double rounding_ = 0;

@@ -43,12 +43,13 @@ struct Change {
 class EnvelopeWalk {
  public:
   EnvelopeWalk(const LabelGeometry& labels, const LinePart& part, std::span<const LabelIndex> among)
-      : labels_(labels), part_(part) {
-    middle_ = part.origin - labels.centre();
-    base_ = part.low + (part.high - part.low) / 2;
+      : labels_(labels),
+        part_(part),
+        middle_(part.origin - labels.centre()),
+        base_(part.low + (part.high - part.low) / 2),
+        low_(part.low - base_),
+        high_(part.high - base_) {
     middle_[part.axis] = base_ - labels.centre()[part.axis];
-    low_ = part.low - base_;
-    high_ = part.high - base_;
     for (const LabelIndex label : among) add_candidate(label);
   }
 
@@ -265,6 +266,23 @@ class EnvelopeWalk {
     return end;
   }
 
+  /// Adds the end of the domain of an edge or vertex; whether it is known.
+  bool add_own_end(LabelIndex current) const {
+    const Candidate* own = find(current);
+    if (own == nullptr || own->grazes) return false;
+    if (!(own->high.at < infinity)) return true;
+    const LabelIndex beyond = own->high.beyond;
+    const bool is_known = beyond != outside;
+    // Where its end is no site, another edge with this end may go on.
+    const double reach = own->high.at + own->high.error;
+    const bool goes_on = !is_known && std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+      return change.at - change.error <= reach;
+    });
+    if (goes_on) return true;
+    changes_.push_back({own->high.at, own->high.error, beyond, is_known ? labels_[beyond].site : outside, is_known});
+    return true;
+  }
+
   /// @param recent  sites that were closest up to here, the last of which `current` took over from.
   Change next_change(LabelIndex current, const std::vector<std::uint32_t>& recent, double at, double error,
                      bool& is_certain) const {
@@ -288,23 +306,7 @@ class EnvelopeWalk {
       }
       changes.push_back(change);
     }
-    if (placed.kind != SiteKind::face) {
-      const Candidate* own = find(current);
-      if (own != nullptr && own->high.at < infinity) {
-        const LabelIndex beyond = own->high.beyond;
-        const bool is_known = beyond != outside;
-        // Where its end is no site, another edge with this end may go on.
-        const double reach = own->high.at + own->high.error;
-        const bool goes_on = !is_known && std::any_of(changes.begin(), changes.end(), [&](const Change& change) {
-          return change.at - change.error <= reach;
-        });
-        if (!goes_on) {
-          changes.push_back(
-              {own->high.at, own->high.error, beyond, is_known ? labels_[beyond].site : outside, is_known});
-        }
-      }
-      if (own == nullptr || own->grazes) is_certain = false;
-    }
+    if (placed.kind != SiteKind::face && !add_own_end(current)) is_certain = false;
     Change first;
     for (const Change& change : changes) {
       if (change.at < first.at) first = change;
