@@ -20,6 +20,7 @@ void bind_solid(nb::module_& m);
 void bind_medial_axis(nb::module_& m);
 void bind_axis_graph(nb::module_& m);
 void bind_extend_axis(nb::module_& m);
+void bind_voronoi(nb::module_& m);
 void bind_centreline(nb::module_& m);
 void bind_certificate(nb::module_& m);
 void bind_proximity(nb::module_& m);

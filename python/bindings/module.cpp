@@ -74,6 +74,7 @@ NB_MODULE(_core, m) {
   bind_medial_axis(m);
   bind_axis_graph(m);
   bind_extend_axis(m);
+  bind_voronoi(m);
   bind_centreline(m);
   bind_certificate(m);
   bind_proximity(m);

@@ -89,6 +89,7 @@ from ._surface_map import (
 )
 from ._transform import distance_transform, distance_transforms
 from ._view import view
+from ._voronoi import VoronoiComplex, voronoi_complex
 
 __all__ = [
     "ROLES",
@@ -145,6 +146,7 @@ __all__ = [
     "SurfaceSamples",
     "Thickness",
     "TriangleDistances",
+    "VoronoiComplex",
     "WindingNumber",
     "__version__",
     "axis_graph",
@@ -198,6 +200,7 @@ __all__ = [
     "triangle_distances",
     "vertex_face_impacts",
     "view",
+    "voronoi_complex",
     "voxel_topology",
     "weld",
     "weld_clusters",

@@ -1,0 +1,100 @@
+"""Voronoi diagrams inside polyhedra, as complexes."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+
+from . import _core
+from ._arguments import FloatArray, IntArray, PathLike, integer
+from ._complex import Complex, core_arguments
+from ._mesh import as_mesh
+from ._options import takes
+from ._progress import Progress, reporting
+from ._structs import VoronoiOptions, VoronoiReport
+
+# A class that has a member `_core` cannot name the module in its annotations.
+_CoreComplex = _core.Complex
+
+
+class VoronoiComplex(Complex):
+    """The walls of a Voronoi diagram inside a mesh, and its surface, as triangles. What :func:`voronoi_complex`
+    returns.
+    """
+
+    #: What it consists of, and whether it is certified.
+    report: VoronoiReport
+
+    @staticmethod
+    def _of(core: _CoreComplex, report: VoronoiReport) -> VoronoiComplex:
+        made = VoronoiComplex.__new__(VoronoiComplex)
+        made._core = core
+        made.report = report
+        return made
+
+    @property
+    def radius(self) -> FloatArray:
+        """(n,): distance of each vertex from the closest site; 0 on the surface."""
+        found: FloatArray = self.vertex_columns["radius"]
+        return found
+
+    @property
+    def triangle_sites(self) -> IntArray:
+        """(m, 2): the sites of the regions on both sides of each triangle, the smaller one first; -1 outside."""
+        columns = self.triangle_columns
+        return np.stack([columns["site_a"], columns["site_b"]], axis=1)
+
+    def write(self, path: PathLike) -> None:
+        """Writes .vtp, .ply, .obj (without columns), .npz or .glb; the file appears complete or not at all."""
+        _core.write_complex(Path(os.fspath(path)), self._core)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (core_arguments(self), self.report)
+
+    def __repr__(self) -> str:
+        return f"VoronoiComplex({len(self.vertices):,} vertices, {len(self.triangles):,} triangles)"
+
+
+def _restored(arguments: tuple[Any, ...], report: VoronoiReport) -> VoronoiComplex:
+    return VoronoiComplex._of(_core.Complex(*arguments), report)
+
+
+@takes("VoronoiOptions")
+def voronoi_complex(
+    mesh: Any,
+    triangles: Any = None,
+    *,
+    threads: int = 0,
+    progress: Progress = False,
+    **options: Unpack[VoronoiOptions],
+) -> VoronoiComplex:
+    """The Voronoi diagram of the faces, reflex edges and reflex vertices of a polyhedron inside it, as a complex whose
+    homology is proven to be that of the exact diagram where its report is `certified`.
+
+    Triangles are taken as they are given: faces that rounding has bent are several sites.
+
+    Parameters
+    ----------
+    mesh, triangles
+        As for :func:`distance_field`; closed, facing outwards, without crossings.
+    threads, progress
+        As for :func:`distance_field`.
+    **options
+
+    Returns
+    -------
+    VoronoiComplex
+        Triangles on walls and on the surface with `triangle_sites`, vertices with `radius`; `.report`.
+
+    >>> import blum
+    >>> found = blum.voronoi_complex(blum.generate("box"))
+    >>> found.report.certified, found.report.found_betti
+    (True, (1, 0, 6))
+    """
+    own = as_mesh(mesh, triangles)
+    with reporting(progress) as report:
+        core, told = _core.voronoi_complex(own._arrays, dict(options), integer(threads, "threads"), report)
+    return VoronoiComplex._of(core, told)

@@ -1,0 +1,49 @@
+"""Proves that the package makes Voronoi complexes as the library does, and what it refuses."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+blum = pytest.importorskip("blum")
+
+
+@pytest.fixture(scope="module")
+def box():
+    return blum.generate("box")
+
+
+def test_a_box_has_six_regions(box):
+    found = blum.voronoi_complex(box, threads=2)
+    assert found.report.certified and found.report.faces == 6
+    assert found.homology() == found.report.found_betti == found.report.expected_betti == (1, 0, 6)
+    sites = found.triangle_sites
+    assert sites.shape == (len(found.triangles), 2) and sites.min() == -1 and sites.max() == 5
+    assert (sites[:, 0] < sites[:, 1]).all()
+    assert np.isclose(found.radius.max(), 0.5) and found.radius.min() == 0
+    again = pickle.loads(pickle.dumps(found))
+    assert np.array_equal(again.triangles, found.triangles) and again.report == found.report
+    assert "VoronoiComplex" in repr(found)
+
+
+def test_options_and_what_is_refused(box):
+    coarse = blum.voronoi_complex(box, resolution=1)
+    fine = blum.voronoi_complex(box, resolution=32)
+    assert coarse.report.cubes < fine.report.cubes and fine.report.certified
+    failed = blum.voronoi_complex(blum.generate("gear"), resolution=1, depth=3)
+    assert not failed.report.certified and failed.report.failing
+    with pytest.raises(blum.InvalidOption, match="depth"):
+        blum.voronoi_complex(box, depth=0)
+    with pytest.raises(TypeError):
+        blum.voronoi_complex(box, depths=3)
+    with pytest.raises(blum.InvalidMesh, match="no solid"):
+        blum.voronoi_complex(box.vertices, box.triangles[1:])
+
+
+def test_files(box, tmp_path):
+    found = blum.voronoi_complex(box)
+    for extension in ("vtp", "ply", "obj", "npz"):
+        found.write(tmp_path / f"walls.{extension}")
+        assert (tmp_path / f"walls.{extension}").stat().st_size > 1000
+    arrays = np.load(tmp_path / "walls.npz")
+    assert np.array_equal(arrays["triangles"], found.triangles)
