@@ -30,9 +30,8 @@ void bind_voronoi(nb::module_& m) {
   m.def(
       "write_complex",
       [](const std::filesystem::path& path, const Complex& complex) {
-        run_call({0, nb::none()}, [&](const Context& context) {
-          write_complex(path, complex, {}, {.allow_loss = true}, context);
-        });
+        run_call({0, nb::none()},
+                 [&](const Context& context) { write_complex(path, complex, {}, {.allow_loss = true}, context); });
       },
       nb::arg("path"), nb::arg("complex"));
 }
