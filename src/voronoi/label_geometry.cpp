@@ -95,10 +95,16 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
       face_count_(sites.face_count) {
   label_of_edge_.assign(table.edge_count(), outside);
   label_of_vertex_.assign(table.vertex_count(), outside);
+  const EdgesOfVertices edges(table);
   for (LabelIndex k = 0; k < labels.all().size(); ++k) {
     const Label& label = labels.all()[k];
     if (label.kind == SiteKind::edge) label_of_edge_[label.index] = k;
-    if (label.kind == SiteKind::vertex) label_of_vertex_[label.index] = k;
+    if (label.kind != SiteKind::vertex) continue;
+    if (is_thin(mesh, table, edges.of(label.index), label.index)) {
+      thin_vertices_.push_back(k);
+    } else {
+      label_of_vertex_[label.index] = k;
+    }
   }
   add_triangles(mesh, table, sites);
   add_edges(mesh, table, sites);
@@ -260,7 +266,6 @@ void LabelGeometry::add_vertices(const MeshView& mesh, const SiteTable& table, c
     const Vec3d& at = mesh.vertices[v];
     PlacedLabel label{SiteKind::vertex, 0, at - centre_, {}, 0, 0};
     label.first_plane = static_cast<std::uint32_t>(planes_.size());
-    if (is_thin(mesh, table, edges.of(v), v)) thin_vertices_.push_back(static_cast<LabelIndex>(labels_.size()));
     for (const std::uint32_t edge : edges.of(v)) {
       const Segment& ends = table.edges()[edge];
       const Vec3d inwards = unit(at - mesh.vertices[ends[0] == v ? ends[1] : ends[0]]);

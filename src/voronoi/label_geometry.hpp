@@ -155,7 +155,7 @@ class LabelGeometry {
   std::vector<Bisector> bisectors_;        ///< three for each triangle
   using ConvexPair = std::array<std::uint32_t, 3>;
   std::vector<ConvexPair> convex_pairs_;  ///< two faces that share a convex edge, and a bisector; sorted
-  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` where there is none
+  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` where there is none, or a thin one
   /// Pairs of sites of which one is an edge or vertex of the other, both ways round, sorted.
   std::vector<std::array<std::uint32_t, 2>> neighbours_;
 };
