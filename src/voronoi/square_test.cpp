@@ -307,23 +307,24 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
     const Vec3d from = (arc->low + arc->high) * 0.5;
     return std::all_of(others.begin(), others.end(), [&](LabelIndex other) {
       return labels_[other].site == site || stays_behind(arc->label, other, from, part) ||
-             stays_behind_in_domain(arc->label, other, from, part) || never_meet(site, other, others, part);
+             returns_nowhere(arc->label, other, from, in_domain(other, part)) ||
+             never_meet(arc->label, other, others, from, part);
     });
   });
 }
 
-/// The same where the other label's domain alone is looked at: it does not give way elsewhere.
-bool SquareTest::stays_behind_in_domain(LabelIndex label, LabelIndex other, const Vec3d& from,
-                                        const Polygon& square) const {
+/// The same, where another label can give way to it in a part of the square alone.
+bool SquareTest::returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& domain) const {
   const PlacedLabel& own = labels_[label];
   const PlacedLabel& rival = labels_[other];
+  if (domain.empty()) return true;
   if (labels_.are_incident(own.site, other)) return false;
   const auto polar = [&](const Vec3d& q, const Vec3d& r) { return own.polar(q, r) - rival.polar(q, r); };
-  const double distance = std::sqrt(own.squared_distance(from)) + extent(square);
+  const double distance = std::sqrt(own.squared_distance(from)) + length(domain[0] - from) + extent(domain);
   const double error = 4 * labels_.rounding_of_squares(distance);
   if (!(polar(from, from) < -error)) return false;
   // Where a ray comes back the second Bernstein coefficient is positive, and the third, the value there, 0.
-  const Polygon part = clipped(in_domain(other, square), error, [&](const Vec3d& q) { return polar(from, q); });
+  const Polygon part = clipped(domain, error, [&](const Vec3d& q) { return polar(from, q); });
   for (std::size_t i = 0; i < part.size(); ++i) {
     for (std::size_t k = 0; k <= i; ++k) {
       if (!(polar(part[i], part[k]) > error)) return false;
@@ -356,13 +357,14 @@ SquareTest::Polygon SquareTest::in_domain(LabelIndex label, Polygon part) const 
 /// point in common there: or one alone, over a corner that both have, where nothing is closer than what has this
 /// corner. There the diagram is a cone, in which regions are connected. Over both sides of a reflex edge regions part,
 /// too.
-bool SquareTest::never_meet(std::uint32_t site, LabelIndex other, std::span<const LabelIndex> labels,
+bool SquareTest::never_meet(LabelIndex own, LabelIndex other, std::span<const LabelIndex> labels, const Vec3d& from,
                             const Polygon& square) const {
+  const std::uint32_t site = labels_[own].site;
   const Polygon of_other = in_domain(other, square);
   return std::all_of(labels.begin(), labels.end(), [&](LabelIndex label) {
     if (labels_[label].site != site || labels_.share_reflex_edge(label, other)) return true;
     const Polygon common = in_domain(label, of_other);
-    if (common.empty()) return true;
+    if (common.empty() || returns_nowhere(own, other, from, common)) return true;
     const Allowance allowed{false, labels_.common_corner(label, other)};
     // Where they meet something else may be closer, except over a common corner.
     return is_absent(other, labels, common, allowed, 0) || is_absent(label, labels, common, allowed, 0);

@@ -59,10 +59,10 @@ class SquareTest {
   [[nodiscard]] bool is_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
   [[nodiscard]] bool is_star_shaped(std::uint32_t site, std::span<const BorderArc> arcs,
                                     std::span<const LabelIndex> others, const Polygon& square) const;
-  [[nodiscard]] bool stays_behind_in_domain(LabelIndex label, LabelIndex other, const Vec3d& from,
-                                            const Polygon& square) const;
+  [[nodiscard]] bool returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d& from,
+                                     const Polygon& domain) const;
   [[nodiscard]] Polygon in_domain(LabelIndex label, Polygon part) const;
-  [[nodiscard]] bool never_meet(std::uint32_t site, LabelIndex other, std::span<const LabelIndex> labels,
+  [[nodiscard]] bool never_meet(LabelIndex own, LabelIndex other, std::span<const LabelIndex> labels, const Vec3d& from,
                                 const Polygon& square) const;
   [[nodiscard]] bool stays_behind(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& square) const;
 
