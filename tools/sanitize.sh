@@ -2,8 +2,8 @@
 # Runs the tests under sanitizers.
 #   tools/sanitize.sh asan|tsan
 # asan: AddressSanitizer and UndefinedBehaviorSanitizer, every test program; with clang, whose warnings are errors here.
-# tsan: ThreadSanitizer over std::thread, the tests of the layers that run threads (of proximity and surface maps those
-#   of threads), with g++.
+# tsan: ThreadSanitizer over std::thread, the tests of the layers that run threads (of proximity, surface maps and
+#   Voronoi complexes those of threads), with g++.
 # Left out are tests labelled slow or many (tests/CMakeLists.txt), which repeat what others run once.
 # With RESULTS set, adds the counts to that folder and leaves the closing line to the caller (.ci/run).
 set -euo pipefail
@@ -23,9 +23,9 @@ case $preset in
     export UBSAN_OPTIONS=print_stacktrace=1
     ;;
   tsan)
-    targets=(-- test_core test_field test_points test_medial_axis test_proximity test_surface_map)
+    targets=(-- test_core test_field test_points test_medial_axis test_proximity test_surface_map test_voronoi)
     # Kernels on the host (/Host, Kernels) run on one thread.
-    selection=(--label-exclude 'slow|many' --exclude-regex '/Host$|Kernels' --tests-regex '^test_(core|field|points|medial_axis)\.|^test_(proximity|surface_map)\..*Threads')
+    selection=(--label-exclude 'slow|many' --exclude-regex '/Host$|Kernels' --tests-regex '^test_(core|field|points|medial_axis)\.|^test_(proximity|surface_map|voronoi)\..*Threads')
     export TSAN_OPTIONS=allocator_may_return_null=1:halt_on_error=1:second_deadlock_stack=1
     ;;
   *)
