@@ -64,14 +64,27 @@ bool SquareTest::resolve(GridSquare& square) const {
       present.push_back(label);
       continue;
     }
-    if (!is_absent(label, square.governors, in_domain(label, whole), {!is_thin(label, whole), std::nullopt}, 0))
-      return false;
+    if (!is_absent(label, square)) return false;
   }
   const bool all_star_shaped = std::all_of(
       sites.begin(), sites.end(), [&](std::uint32_t site) { return is_star_shaped(site, arcs, present, whole); });
   if (!all_star_shaped) return false;
   square.state = SquareState::resolved;
   return true;
+}
+
+/// Whether a label is closest nowhere in a square, or next to a point over a corner of it alone, where it has no
+/// islands.
+bool SquareTest::is_absent(LabelIndex label, const GridSquare& square) const {
+  const Polygon whole = polygon(square);
+  const Polygon part = in_domain(label, whole);
+  const bool by_incident = !is_thin(label, whole);
+  if (is_absent(label, square.governors, part, {by_incident, std::nullopt}, 0)) return true;
+  if (labels_[label].kind == SiteKind::vertex) return false;
+  const std::span<const Vec3d> corners = labels_.corners(label);
+  return std::any_of(corners.begin(), corners.end(), [&](const Vec3d& corner) {
+    return is_absent(label, square.governors, part, {by_incident, corner}, 0);
+  });
 }
 
 /// The surface runs along triangles from an event of the border or an edge of the mesh to the next.

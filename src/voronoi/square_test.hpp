@@ -45,6 +45,7 @@ class SquareTest {
     std::optional<Vec3d> corner;  ///< a corner that it has, where what is left is next to a point over that
   };
 
+  [[nodiscard]] bool is_absent(LabelIndex label, const GridSquare& square) const;
   [[nodiscard]] bool find_chains(GridSquare& square) const;
   [[nodiscard]] std::vector<BorderArc> border(const GridSquare& square) const;
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
