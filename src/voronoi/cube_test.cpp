@@ -212,8 +212,7 @@ class CubeAnalysis {
       if (meets) met.push_back(edge);
     }
     edges_ = std::move(met);
-    find_triangles();
-    return mark_touches();
+    return find_triangles() && mark_touches();
   }
 
   [[nodiscard]] bool is_inside(std::uint32_t vertex) const {
@@ -221,8 +220,8 @@ class CubeAnalysis {
   }
   [[nodiscard]] bool meets(std::uint32_t edge) const { return std::binary_search(edges_.begin(), edges_.end(), edge); }
 
-  /// A triangle meets the cube where an edge of it does, or an edge of the cube crosses it.
-  void find_triangles() {
+  /// A triangle meets the cube where an edge of it does, or an edge of the cube crosses it. False where one is missing.
+  bool find_triangles() {
     const SiteTable& table = t_.surface_.table();
     for (std::uint32_t s = 0; s < squares_.size(); ++s) {
       for (const std::uint32_t event : squares_[s].cells.events) {
@@ -245,11 +244,17 @@ class CubeAnalysis {
     face_parts_.reset(count);
     for (const std::uint32_t edge : edges_) {
       const auto [first, second] = t_.sites_.triangles_of[edge];
+      if (!is_listed(first) || !is_listed(second)) return false;
       sheets_.join(rank(first), rank(second));
       if (t_.sites_.turn[edge] == EdgeTurn::flat) face_parts_.join(rank(first), rank(second));
     }
+    return std::all_of(crossings_.begin(), crossings_.end(),
+                       [&](const auto& crossing) { return is_listed(crossing[0]); });
   }
 
+  [[nodiscard]] bool is_listed(std::uint32_t triangle) const {
+    return std::binary_search(triangles_.begin(), triangles_.end(), triangle);
+  }
   [[nodiscard]] std::uint32_t rank(std::uint32_t triangle) const { return rank_in(triangles_, triangle); }
 
   bool mark_touches() {

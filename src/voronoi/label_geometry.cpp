@@ -91,7 +91,7 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
     : box_(bounds(mesh)),
       centre_(box_.center()),
       size_(box_.diagonal()),
-      rounding_(4e-15 * size_),
+      rounding_(4e-15 * size_ + 1e-15 * box_.largest_coordinate()),
       face_count_(sites.face_count) {
   label_of_edge_.assign(table.edge_count(), outside);
   label_of_vertex_.assign(table.vertex_count(), outside);

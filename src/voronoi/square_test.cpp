@@ -258,7 +258,7 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
     const bool are_incident = labels_.are_incident(labels_[label].site, other);
     if (are_incident && !allowed.by_incident) continue;
     Polygon inside = part;
-    for (const DomainPlane& plane : labels_.ends(other)) {
+    for (const DomainPlane& plane : attained_between(other)) {
       inside = clipped(inside, 0, [&](const Vec3d& q) { return plane.height(q); });
     }
     Polygon left;
@@ -273,18 +273,27 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   return false;
 }
 
-/// Whether the distance from a label's plane, line or point is that of a point of the surface.
-bool SquareTest::is_attained(LabelIndex label, const Vec3d& q) const {
+/// The planes between which the distance from a label's plane, line or point is that of a point of the surface: of a
+/// triangle on the solid's side alone, where its signed height is that distance.
+std::vector<DomainPlane> SquareTest::attained_between(LabelIndex label) const {
   const std::span<const DomainPlane> ends = labels_.ends(label);
-  return (labels_[label].kind != SiteKind::face || labels_[label].height(q) >= 0) &&
-         std::all_of(ends.begin(), ends.end(),
+  std::vector<DomainPlane> out(ends.begin(), ends.end());
+  const PlacedLabel& placed = labels_[label];
+  if (placed.kind == SiteKind::face)
+    out.push_back({placed.direction, dot(placed.direction, placed.point), outside, outside});
+  return out;
+}
+
+bool SquareTest::is_attained(LabelIndex label, const Vec3d& q) const {
+  const std::vector<DomainPlane> planes = attained_between(label);
+  return std::all_of(planes.begin(), planes.end(),
                      [&](const DomainPlane& plane) { return plane.height(q) >= -labels_.rounding(); });
 }
 
 /// Whether a label is closest nowhere in the part of a polygon outside of another one's domain.
 bool SquareTest::is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all, Polygon part,
                                    const Allowance& allowed, int depth) const {
-  for (const DomainPlane& plane : labels_.ends(other)) {
+  for (const DomainPlane& plane : attained_between(other)) {
     // Slivers by rounding are shared with the part inside.
     const auto beyond = [&](const Vec3d& q) { return -plane.height(q); };
     const bool leaves =

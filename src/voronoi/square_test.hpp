@@ -51,6 +51,7 @@ class SquareTest {
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part,
                                const Allowance& allowed, int depth) const;
+  [[nodiscard]] std::vector<DomainPlane> attained_between(LabelIndex label) const;
   [[nodiscard]] bool is_attained(LabelIndex label, const Vec3d& q) const;
   [[nodiscard]] bool is_at_corner(const Polygon& part, const Vec3d& corner, std::span<const LabelIndex> all) const;
   [[nodiscard]] bool is_thin(LabelIndex label, Polygon part) const;

@@ -57,11 +57,12 @@ class Subdivider {
     return cube.governors.size() > many && cube.governors.size() * 10 < cube.governors_of_parent * 9;
   }
 
-  /// Whether there are so many cells that no more are made.
+  /// Whether there are so many cells, or so many that are not certain, that no more are made.
   [[nodiscard]] bool is_full() const {
     constexpr std::size_t squares_per_cube = 16;
     return out_.tree.cubes.size() > options_.most_cubes ||
-           out_.tree.squares.size() > squares_per_cube * options_.most_cubes;
+           out_.tree.squares.size() > squares_per_cube * options_.most_cubes ||
+           splitter_.counts().undecided + splitter_.contradictions() > Subdivision::most_undecided;
   }
 
   /// Splits squares of cubes until each is resolved or small.

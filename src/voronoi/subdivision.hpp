@@ -29,6 +29,9 @@ struct FailingCube {
 };
 
 struct Subdivision {
+  /// With more lines or nodes that are not certain nothing is split any more: the place of the grid is a bad one.
+  static constexpr std::size_t most_undecided = 200;
+
   CellTree tree;
   std::vector<CellId> leaves;  ///< cubes that meet the solid and have no children
   std::vector<FailingCube> failing;

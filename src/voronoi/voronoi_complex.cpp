@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "blum/complex/homology.hpp"
 #include "blum/geometry/self_intersections.hpp"
@@ -29,6 +31,35 @@ void check(const VoronoiOptions& options) {
   check_range("max_cubes", options.max_cubes, 1000, 100'000'000);
 }
 
+/// @throws InvalidMesh where two vertices lie in one place, or the mesh so far from the origin that a grid in double
+/// has
+///         no room around it.
+void check_places(const MeshView& mesh) {
+  std::vector<std::pair<Vec3d, std::uint32_t>> places;
+  std::vector<bool> is_named(mesh.vertices.size(), false);
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      if (!is_named[v]) places.emplace_back(mesh.vertices[v], v);
+      is_named[v] = true;
+    }
+  }
+  const auto before = [](const auto& a, const auto& b) {
+    return std::tie(a.first.x, a.first.y, a.first.z, a.second) < std::tie(b.first.x, b.first.y, b.first.z, b.second);
+  };
+  std::sort(places.begin(), places.end(), before);
+  const auto same =
+      std::adjacent_find(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (same != places.end()) {
+    throw InvalidMesh("the mesh touches itself: vertices " + std::to_string(same->second) + " and " +
+                      std::to_string((same + 1)->second) + " lie in one place; weld it first");
+  }
+  const Box3 box = bounds(mesh);
+  constexpr double furthest = 1e8;
+  if (box.largest_coordinate() > furthest * box.diagonal()) {
+    throw InvalidMesh("the mesh lies more than 1e8 times its size from the origin: move it there first");
+  }
+}
+
 /// The Betti numbers of the solid. @throws InvalidMesh
 BettiNumbers checked_betti(const MeshView& mesh, const SiteTable& table, const Context& context) {
   const Topology facts = topology(mesh, table, context);
@@ -37,6 +68,7 @@ BettiNumbers checked_betti(const MeshView& mesh, const SiteTable& table, const C
         "the mesh bounds no solid: it must be closed, oriented, manifold and face outwards; `blum info` tells what is "
         "not");
   }
+  check_places(mesh);
   const SelfIntersections crossings = find_self_intersections(mesh, 1, context);
   if (!crossings.pairs.empty()) {
     throw InvalidMesh("the mesh crosses or touches itself: triangles " +
@@ -58,10 +90,11 @@ std::size_t obstacles(const Subdivision& cells) {
   return cells.failing.size() + cells.lines.undecided + cells.contradictions;
 }
 
-/// Whether so little does not pass that another place of the grid may help.
+/// Whether another place of the grid may help: where little does not pass, or where this one was given up.
 bool may_pass_elsewhere(const Subdivision& cells) {
   constexpr std::size_t few = 100;
-  return obstacles(cells) > 0 && obstacles(cells) * few <= cells.leaves.size();
+  return obstacles(cells) > 0 && (obstacles(cells) * few <= cells.leaves.size() ||
+                                  cells.lines.undecided + cells.contradictions > Subdivision::most_undecided);
 }
 
 void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiReport& report) {

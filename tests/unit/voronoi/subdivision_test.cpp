@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "blum/core/random.hpp"
 #include "blum/shapes/generators.hpp"
+#include "blum/solid/solid.hpp"
 #include "support/labelled_solid.hpp"
 #include "support/mesh_places.hpp"
 #include "support/random_transform.hpp"
@@ -122,6 +124,65 @@ TEST(SquareCells, AreOfTheBorder) {
     EXPECT_EQ(cells.component_count + cells.pieces.size(), cells.events.size() + 1);
   }
   EXPECT_GT(with_walls, 1000U);
+}
+
+/// A room over a floor, above which a thin plate parts it in two; two small boxes place the grid such that a square of
+/// it lies across the part behind the plate, in which the floor is closest in the middle, and nothing of its region on
+/// the border. Planes seen from behind, as that of the plate, must not rule the floor out.
+TriangleMesh room_with_a_plate() {
+  constexpr double depth = 2.25;
+  constexpr double plate = 0.05;
+  constexpr double height = 6.5;
+  TriangleMesh mesh;
+  mesh.vertices = {{-3, depth, 0},      {3, depth, 0},  {3, -plate, 0},  {0, -4 - plate, 0},  {-3, -plate, 0},
+                   {-3, 0, 1},          {3, 0, 1},      {3, -plate, 1},  {-3, -plate, 1},     {-3, depth, height},
+                   {3, depth, height},  {3, 0, height}, {-3, 0, height}, {3, -plate, height}, {0, -4 - plate, height},
+                   {-3, -plate, height}};
+  mesh.triangles = {{0, 1, 3},   {1, 2, 3},   {0, 3, 4},   {0, 9, 1},   {9, 10, 1},  {2, 1, 6},   {2, 6, 7},
+                    {1, 10, 6},  {10, 11, 6}, {4, 5, 0},   {4, 8, 5},   {0, 5, 9},   {9, 5, 12},  {5, 6, 11},
+                    {5, 11, 12}, {8, 13, 7},  {8, 15, 13}, {8, 7, 6},   {8, 6, 5},   {3, 2, 7},   {3, 7, 13},
+                    {3, 13, 14}, {3, 8, 4},   {3, 15, 8},  {3, 14, 15}, {9, 12, 11}, {9, 11, 10}, {15, 14, 13}};
+  const Vec3d middle{-2.13 - 0.2834081, -2.113 + 0.2058874, 1.2 - 0.5569219};
+  const Vec3d reach{5.9, 5.9, 6};
+  const Vec3d side{0.1, 0.1, 0.1};
+  append(mesh, test::box_between(middle - reach, middle - reach + side));
+  append(mesh, test::box_between(middle + reach - side, middle + reach));
+  return mesh;
+}
+
+TEST(SquareTest, FindsAllThatIsClosestInsideOnTheBorder) {
+  TriangleMesh star = make_star();
+  for (Vec3d& v : star.vertices) v = test::turned(v);
+  Random random(5);
+  for (const TriangleMesh& mesh : {room_with_a_plate(), star, make_bracket(), test::box_with_void()}) {
+    const Divided divided(mesh);
+    const Solid inside = Solid::of(mesh);
+    const voronoi::CellTree& tree = divided.cells.tree;
+    std::size_t asked = 0;
+    for (std::size_t k = 0; k < tree.squares.size(); k += 1 + tree.squares.size() / 2000) {
+      const voronoi::GridSquare& square = tree.squares[k];
+      if (square.state != voronoi::SquareState::resolved || square.governors.empty()) continue;
+      const voronoi::SquareCells cells = square_cells(tree, divided.labels, square);
+      const Vec3d low = tree.lattice.at(square.low);
+      for (int sample = 0; sample < 16; ++sample) {
+        Vec3d q = low;
+        const double side = tree.lattice.unit * square.length;
+        for (const std::size_t axis : {voronoi::after(square.axis), voronoi::after(voronoi::after(square.axis))}) {
+          q[axis] += side * random.uniform(0, 1);
+        }
+        if (!inside.inside(q)) continue;
+        ++asked;
+        const std::vector<voronoi::Label> closest = divided.solid.labels.closest_labels(q);
+        const bool is_told = std::any_of(cells.pieces.begin(), cells.pieces.end(), [&](const auto& piece) {
+          return std::any_of(closest.begin(), closest.end(), [&](const voronoi::Label& label) {
+            return divided.solid.labels.site_of(label) == piece.site;
+          });
+        });
+        EXPECT_TRUE(is_told) << "at " << q.x << " " << q.y << " " << q.z;
+      }
+    }
+    EXPECT_GT(asked, 300U);
+  }
 }
 
 TEST(FaceLoops, CountHoles) {

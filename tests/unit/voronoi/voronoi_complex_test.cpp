@@ -162,6 +162,35 @@ TEST(VoronoiComplex, RefusesWhatIsNoSolid) {
   EXPECT_THROW((void)voronoi_complex(make_box(), {.max_cubes = 1}), InvalidOption);
 }
 
+/// Bodies that share a place are one as points go, and two as triangles go.
+TEST(VoronoiComplex, RefusesBodiesThatTouch) {
+  TriangleMesh touching = make_box();
+  append(touching, test::moved(make_box(), 1, {1, 1, 1}));
+  EXPECT_THROW((void)voronoi_complex(touching), InvalidMesh);
+  TriangleMesh apart = make_box();
+  append(apart, test::moved(make_box(), 1, {1.25, 1.25, 1.25}));
+  EXPECT_TRUE(voronoi_complex(apart).report.certified);
+}
+
+TEST(VoronoiComplex, OfSolidsFarFromTheOrigin) {
+  for (const double offset : {1e3, 1e5, 1e7}) {
+    const VoronoiComplex far = voronoi_complex(test::moved(test::box_with_void(), 1, {offset, -offset, offset / 3}));
+    EXPECT_TRUE(far.report.certified) << offset;
+  }
+  EXPECT_THROW((void)voronoi_complex(test::moved(make_box(), 1, {1e10, 0, 0})), InvalidMesh);
+}
+
+/// A face in a plane of the grid ties with what is closest all over squares: another place of the grid passes.
+TEST(VoronoiComplex, WhereAFaceLiesInAPlaneOfTheGrid) {
+  constexpr double plane = 0.5464101615137754;  // the first grid's middle for a box from 0 to 1
+  const std::vector<Point2> outline{{0, 0}, {1, 0}, {1, plane}, {0.5, plane}, {0.5, 1}, {0, 1}};
+  TriangleMesh mesh = make_extrusion(outline, {});
+  for (Vec3d& v : mesh.vertices) v = Vec3d{v.z + 0.5, v.x, v.y};
+  const VoronoiReport report = voronoi_complex(mesh).report;
+  EXPECT_TRUE(report.certified);
+  EXPECT_LE(report.undecided_lines, 0U);
+}
+
 TEST(VoronoiComplex, Stops) {
   std::stop_source stop;
   stop.request_stop();
