@@ -279,8 +279,9 @@ std::vector<DomainPlane> SquareTest::attained_between(LabelIndex label) const {
   const std::span<const DomainPlane> ends = labels_.ends(label);
   std::vector<DomainPlane> out(ends.begin(), ends.end());
   const PlacedLabel& placed = labels_[label];
-  if (placed.kind == SiteKind::face)
+  if (placed.kind == SiteKind::face) {
     out.push_back({placed.direction, dot(placed.direction, placed.point), outside, outside});
+  }
   return out;
 }
 

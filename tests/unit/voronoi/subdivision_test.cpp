@@ -164,7 +164,8 @@ TEST(SquareTest, FindsAllThatIsClosestInsideOnTheBorder) {
       if (square.state != voronoi::SquareState::resolved || square.governors.empty()) continue;
       const voronoi::SquareCells cells = square_cells(tree, divided.labels, square);
       const Vec3d low = tree.lattice.at(square.low);
-      for (int sample = 0; sample < 16; ++sample) {
+      const bool is_large = square.length >= voronoi::Lattice::most / 8;
+      for (int sample = 0; sample < (is_large ? 300 : 4); ++sample) {
         Vec3d q = low;
         const double side = tree.lattice.unit * square.length;
         for (const std::size_t axis : {voronoi::after(square.axis), voronoi::after(voronoi::after(square.axis))}) {
