@@ -1,6 +1,7 @@
 #include "blum/voronoi/voronoi_complex.hpp"
 
 #include <algorithm>
+#include <new>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -117,11 +118,7 @@ void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiRep
   }
 }
 
-}  // namespace
-
-VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options, const Context& context) {
-  check(options);
-  validate(mesh);
+VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, const Context& context) {
   VoronoiComplex out;
   VoronoiReport& report = out.report;
   PhaseTimer timer(report.phases);
@@ -163,6 +160,18 @@ VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& optio
                      report.found == report.expected;
   timer.lap("homology");
   return out;
+}
+
+}  // namespace
+
+VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options, const Context& context) {
+  check(options);
+  validate(mesh);
+  try {
+    return compute(mesh, options, context);
+  } catch (const std::bad_alloc&) {
+    throw OutOfMemory("a Voronoi complex of this mesh needs more memory than there is: allow fewer cubes (max_cubes)");
+  }
 }
 
 }  // namespace blum
