@@ -1,6 +1,8 @@
 #include "voronoi/assemble.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -71,8 +73,7 @@ class Assembly {
     for (const LabelIndex label : {event.before, event.after}) {
       if (label != outside) add_label(place.labels, label);
     }
-    if (event.before == outside) add_label(place.surface, event.after);
-    if (event.after == outside) add_label(place.surface, event.before);
+    if (const std::optional<LabelIndex> triangle = event.crossed()) add_label(place.surface, *triangle);
   }
 
   std::uint32_t vertex_of_event(std::uint32_t event) {
@@ -98,11 +99,8 @@ class Assembly {
     if (first != no_vertex) return first;
     first = static_cast<std::uint32_t>(places_.size());
     const GridSquare& square = tree_.squares[id];
-    Node high = square.low;
-    high[after(square.axis)] += square.length;
-    high[after(after(square.axis))] += square.length;
     Place place;
-    place.box = box_of(square.low, high);
+    place.box = box_of(square.low, square.high());
     places_.insert(places_.end(), cells.component_count, place);
     for (std::size_t k = 0; k < cells.events.size(); ++k) {
       Place& of_component = places_[first + cells.component[k]];
@@ -121,11 +119,9 @@ class Assembly {
     const CubeCells& cells = cubes_[number];
     if (cells.component_count == 0) return;
     const GridCube& cube = tree_.cubes[cells_.leaves[number]];
-    Node high = cube.low;
-    for (std::uint32_t& k : high) k += cube.length;
     const auto first = static_cast<std::uint32_t>(places_.size());
     Place place;
-    place.box = box_of(cube.low, high);
+    place.box = box_of(cube.low, cube.high());
     places_.insert(places_.end(), cells.component_count, place);
     for (const CubeCells::Square& square : cells.squares) {
       if (square.component.empty()) continue;

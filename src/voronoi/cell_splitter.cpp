@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "blum/core/parallel.hpp"
@@ -13,27 +14,18 @@ namespace {
 
 constexpr std::size_t grain = 16;
 
-/// Where the surface may meet a box: sides included.
-std::vector<std::uint32_t> triangles_in(const MeshView& mesh, std::span<const std::uint32_t> among, const Vec3d& low,
-                                        const Vec3d& high) {
-  std::vector<std::uint32_t> out;
-  for (const std::uint32_t t : among) {
-    const std::array<Vec3d, 3> p = triangle_corners(mesh, t);
-    bool meets = true;
-    for (std::size_t axis = 0; axis < 3 && meets; ++axis) {
-      meets = std::max({p[0][axis], p[1][axis], p[2][axis]}) >= low[axis] &&
-              std::min({p[0][axis], p[1][axis], p[2][axis]}) <= high[axis];
-    }
-    if (meets) out.push_back(t);
+/// Whether a triangle may meet a box, sides included: by its own box and its plane.
+bool may_meet(const MeshView& mesh, const LabelGeometry& labels, std::uint32_t t, const Box3& box) {
+  const std::array<Vec3d, 3> p = triangle_corners(mesh, t);
+  const Vec3d low = min(p[0], min(p[1], p[2]));
+  const Vec3d high = max(p[0], max(p[1], p[2]));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (high[axis] < box.lower[axis] || low[axis] > box.upper[axis]) return false;
   }
-  return out;
-}
-
-/// Whether a triangle's plane keeps further off the middle of a box than its corners are.
-bool is_plane_apart(const PlacedLabel& triangle, const Vec3d& middle, const Vec3d& half, double margin) {
-  const Vec3d& n = triangle.direction;
+  const Vec3d half = box.size() * 0.5;
+  const Vec3d& n = labels[t].direction;
   const double reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
-  return std::abs(triangle.height(middle)) > reach + margin;
+  return !(std::abs(labels[t].height(box.center() - labels.centre())) > reach + 2 * labels.rounding());
 }
 
 }  // namespace
@@ -54,16 +46,16 @@ void CellSplitter::add_root(int grid) {
       GridEdge edge;
       edge.axis = static_cast<std::uint8_t>(axis);
       edge.length = Lattice::most;
-      edge.low[after(axis)] = (k & 1U) != 0 ? Lattice::most : 0;
-      edge.low[after(after(axis))] = (k & 2U) != 0 ? Lattice::most : 0;
+      edge.low[next_axis(axis)] = (k & 1U) != 0 ? Lattice::most : 0;
+      edge.low[next_axis(next_axis(axis))] = (k & 2U) != 0 ? Lattice::most : 0;
       tree_.edges.push_back(edge);
     }
   }
   GridCube cube;
   cube.length = Lattice::most;
   for (std::uint8_t axis = 0; axis < 3; ++axis) {
-    const std::size_t u = after(axis);
-    const std::size_t v = after(u);
+    const std::size_t u = next_axis(axis);
+    const std::size_t v = next_axis(u);
     for (std::uint32_t side_k = 0; side_k < 2; ++side_k) {
       GridSquare square;
       square.axis = axis;
@@ -88,9 +80,7 @@ void CellSplitter::add_root(int grid) {
 }
 
 void CellSplitter::expect_same(LabelIndex a, LabelIndex b) const {
-  const std::uint32_t of_a = a == outside ? outside : labels_[a].site;
-  const std::uint32_t of_b = b == outside ? outside : labels_[b].site;
-  if (of_a != of_b) contradictions_.fetch_add(1, std::memory_order_relaxed);
+  if (labels_.site_of(a) != labels_.site_of(b)) contradictions_.fetch_add(1, std::memory_order_relaxed);
 }
 
 // Edges.
@@ -98,11 +88,9 @@ void CellSplitter::expect_same(LabelIndex a, LabelIndex b) const {
 std::vector<std::uint32_t> CellSplitter::crossed(const GridEdge& edge, std::span<const std::uint32_t> triangles) const {
   const std::size_t axis = edge.axis;
   const Vec3d low = tree_.lattice.at(edge.low);
-  Node end = edge.low;
-  end[axis] += edge.length;
-  const Vec3d high = tree_.lattice.at(end);
-  const double u = low[after(axis)];
-  const double v = low[after(after(axis))];
+  const Vec3d high = tree_.lattice.at(edge.high());
+  const double u = low[next_axis(axis)];
+  const double v = low[next_axis(next_axis(axis))];
   std::vector<std::uint32_t> out;
   for (const std::uint32_t t : triangles) {
     const std::array<Vec3d, 3> p = triangle_corners(mesh_, t);
@@ -181,8 +169,8 @@ bool CellSplitter::is_below(const GridEdge& edge, const LineEvent& event, const 
   const double margin = 2 * event.error + labels_.rounding();
   if (std::abs(event.at - at) > margin) return event.at < at;
   const Vec3d q = tree_.lattice.at(node);
-  if (event.before == outside || event.after == outside) {
-    const std::array<Vec3d, 3> p = triangle_corners(mesh_, event.before == outside ? event.after : event.before);
+  if (const std::optional<LabelIndex> triangle = event.crossed()) {
+    const std::array<Vec3d, 3> p = triangle_corners(mesh_, *triangle);
     return detail::side_of_node(p, q) != detail::side_of_node(p, tree_.lattice.at(edge.low));
   }
   return is_behind_change(exact_, labels_, event.before, event.after, q);
@@ -224,8 +212,8 @@ void CellSplitter::split_edges(std::vector<CellId> edges, const Context& context
 // Squares.
 
 std::array<CellSplitter::NewEdge, 4> CellSplitter::inner_edges(const GridSquare& square) const {
-  const std::size_t u = after(square.axis);
-  const std::size_t v = after(u);
+  const std::size_t u = next_axis(square.axis);
+  const std::size_t v = next_axis(u);
   const std::uint32_t half = square.length / 2;
   const auto node = [&](std::uint32_t at_u, std::uint32_t at_v) {
     Node out = square.low;
@@ -247,8 +235,8 @@ std::array<CellSplitter::NewEdge, 4> CellSplitter::inner_edges(const GridSquare&
 
 void CellSplitter::place_children(CellId id) {
   const GridSquare& square = tree_.squares[id];
-  const std::size_t u = after(square.axis);
-  const std::size_t v = after(u);
+  const std::size_t u = next_axis(square.axis);
+  const std::size_t v = next_axis(u);
   const auto part = [&](std::size_t side, CellId half) { return tree_.edges[square.edges[side]].children + half; };
   const CellId inner = square.inner_edges;
   const std::array<std::array<CellId, 4>, 4> edges{{
@@ -275,18 +263,13 @@ bool CellSplitter::is_outside(const GridSquare& square) const {
 
 void CellSplitter::find_contents(GridSquare& square, std::span<const LabelIndex> among,
                                  std::span<const std::uint32_t> triangles) const {
-  const std::size_t u = after(square.axis);
-  const std::size_t v = after(u);
+  const std::size_t u = next_axis(square.axis);
+  const std::size_t v = next_axis(u);
   const Vec3d low = tree_.lattice.at(square.low);
-  Node end = square.low;
-  end[u] += square.length;
-  end[v] += square.length;
-  const Vec3d high = tree_.lattice.at(end);
+  const Vec3d high = tree_.lattice.at(square.high());
   const Vec3d middle = (low + high) * 0.5 - labels_.centre();
-  square.triangles = triangles_in(mesh_, triangles, low, high);
-  std::erase_if(square.triangles, [&](std::uint32_t t) {
-    return is_plane_apart(labels_[t], middle, (high - low) * 0.5, 2 * labels_.rounding());
-  });
+  std::copy_if(triangles.begin(), triangles.end(), std::back_inserter(square.triangles),
+               [&](std::uint32_t t) { return may_meet(mesh_, labels_, t, {low, high}); });
   if (is_outside(square)) {
     square.state = SquareState::resolved;
     return;
@@ -337,8 +320,8 @@ std::array<CellSplitter::NewEdge, 6> CellSplitter::inner_edges(const GridCube& c
   std::array<NewEdge, 6> made;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Node low = cube.low;
-    low[after(axis)] += half;
-    low[after(after(axis))] += half;
+    low[next_axis(axis)] += half;
+    low[next_axis(next_axis(axis))] += half;
     made[2 * axis] = edge_between(axis, low, half, middle_of(2 * axis), cube.governors, cube.triangles);
     low[axis] += half;
     made[2 * axis + 1] = edge_between(axis, low, half, made[0].edge.last, cube.governors, cube.triangles);
@@ -351,8 +334,8 @@ std::array<CellSplitter::NewEdge, 6> CellSplitter::inner_edges(const GridCube& c
 void CellSplitter::place_squares(const GridCube& cube, CellId first_edge, CellId first_square) {
   const std::uint32_t half = cube.length / 2;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t u = after(axis);
-    const std::size_t v = after(u);
+    const std::size_t u = next_axis(axis);
+    const std::size_t v = next_axis(u);
     const auto inner_of = [&](std::size_t square) { return tree_.squares[cube.squares[square]].inner_edges; };
     for (CellId k = 0; k < 4; ++k) {
       const CellId at_u = k & 1U;
@@ -384,14 +367,10 @@ bool CellSplitter::is_outside(const GridCube& cube) const {
 
 void CellSplitter::find_contents(GridCube& cube, const GridCube& parent) const {
   const Vec3d low = tree_.lattice.at(cube.low);
-  Node end = cube.low;
-  for (std::uint32_t& k : end) k += cube.length;
-  const Vec3d high = tree_.lattice.at(end);
+  const Vec3d high = tree_.lattice.at(cube.high());
   const Vec3d middle = (low + high) * 0.5 - labels_.centre();
-  cube.triangles = triangles_in(mesh_, parent.triangles, low, high);
-  std::erase_if(cube.triangles, [&](std::uint32_t t) {
-    return is_plane_apart(labels_[t], middle, (high - low) * 0.5, 2 * labels_.rounding());
-  });
+  std::copy_if(parent.triangles.begin(), parent.triangles.end(), std::back_inserter(cube.triangles),
+               [&](std::uint32_t t) { return may_meet(mesh_, labels_, t, {low, high}); });
   cube.governors_of_parent = parent.governors.size();
   if (is_outside(cube)) {
     cube.state = CubeState::trivial;
@@ -414,7 +393,7 @@ void CellSplitter::place_children(const GridCube& cube, CellId first_square) {
     child.low = cube.low;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       child.low[axis] += at[axis] * child.length;
-      const CellId quarter = at[after(axis)] + 2 * at[after(after(axis))];
+      const CellId quarter = at[next_axis(axis)] + 2 * at[next_axis(next_axis(axis))];
       for (CellId side = 0; side < 2; ++side) {
         child.squares[2 * axis + side] = side == at[axis]
                                              ? tree_.squares[cube.squares[2 * axis + side]].children + quarter

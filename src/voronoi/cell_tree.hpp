@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "blum/core/vec3.hpp"
+#include "blum/geometry/grid_predicates.hpp"
 #include "voronoi/line_labels.hpp"
 
 namespace blum::voronoi {
@@ -15,10 +16,7 @@ namespace blum::voronoi {
 /// A node of the finest grid, 0 to Lattice::most along each axis.
 using Node = std::array<std::uint32_t, 3>;
 
-/// The axis after an axis: x, y, z, x, ...
-constexpr std::size_t after(std::size_t axis) {
-  return (axis + 1) % 3;
-}
+using detail::next_axis;
 
 /// Where the nodes of the finest grid are.
 struct Lattice {
@@ -45,10 +43,17 @@ struct GridEdge {
   LabelIndex last = outside;                      ///< closest at its upper end
   std::uint32_t first_event = 0, last_event = 0;  ///< its events, of CellTree::events
   CellId children = no_cell;                      ///< the first of two
+
+  /// The node at its upper end.
+  [[nodiscard]] Node high() const {
+    Node out = low;
+    out[axis] += length;
+    return out;
+  }
 };
 
-/// What a sub-square's border tells once its inside is known.
-enum class SquareState : std::uint8_t { unknown, resolved, undecided };
+/// Whether a square's border is known to tell what is inside.
+enum class SquareState : std::uint8_t { unknown, resolved };
 
 /// A square across an axis; u is the axis after it, and v the one after u.
 struct GridSquare {
@@ -64,6 +69,14 @@ struct GridSquare {
   std::vector<std::uint32_t> triangles;  ///< that may meet it
   /// Events of its border that the surface in it joins: where it enters and leaves.
   std::vector<std::array<std::uint32_t, 2>> chains;
+
+  /// The corner opposite to `low`.
+  [[nodiscard]] Node high() const {
+    Node out = low;
+    out[next_axis(axis)] += length;
+    out[next_axis(next_axis(axis))] += length;
+    return out;
+  }
 };
 
 enum class CubeState : std::uint8_t { unknown, trivial, passed, failed, split };
@@ -77,6 +90,9 @@ struct GridCube {
   std::vector<LabelIndex> governors;
   std::vector<std::uint32_t> triangles;  ///< that may meet it
   std::size_t governors_of_parent = 0;
+
+  /// The corner opposite to `low`.
+  [[nodiscard]] Node high() const { return {low[0] + length, low[1] + length, low[2] + length}; }
 };
 
 /// A vertex, edge or triangle of the surface is in a square or cube as the grid's planes are by simulation of

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -19,8 +20,7 @@ class CubeAnalysis {
   CubeCells run() {
     CubeCells out;
     out.obstacle = find_obstacle();
-    out.site = site_;
-    if (out.obstacle != CubeObstacle::none) return out;
+    if (out.obstacle != VoronoiObstacle::none) return out;
     std::map<std::uint32_t, std::uint32_t> number;
     for (const Square& square : squares_) {
       CubeCells::Square& made = out.squares.emplace_back();
@@ -53,16 +53,16 @@ class CubeAnalysis {
     std::set<std::uint32_t> touched;
   };
 
-  CubeObstacle find_obstacle() {
-    if (!collect()) return CubeObstacle::square;
+  VoronoiObstacle find_obstacle() {
+    if (!collect()) return VoronoiObstacle::square;
     join_across_edges();
     find_regions();
-    if (!find_surface()) return CubeObstacle::contradiction;
-    CubeObstacle obstacle = check_vertices();
-    if (obstacle == CubeObstacle::none) obstacle = check_edges();
-    if (obstacle == CubeObstacle::none) obstacle = check_faces();
-    if (obstacle == CubeObstacle::none) obstacle = check_solid();
-    if (obstacle == CubeObstacle::none) obstacle = check_joins();
+    if (!find_surface()) return VoronoiObstacle::contradiction;
+    VoronoiObstacle obstacle = check_vertices();
+    if (obstacle == VoronoiObstacle::none) obstacle = check_edges();
+    if (obstacle == VoronoiObstacle::none) obstacle = check_faces();
+    if (obstacle == VoronoiObstacle::none) obstacle = check_solid();
+    if (obstacle == VoronoiObstacle::none) obstacle = check_joins();
     return obstacle;
   }
 
@@ -170,7 +170,7 @@ class CubeAnalysis {
     const GridEdge& edge = t_.tree_.edges[arc.edge];
     const Vec3d at = t_.tree_.lattice.at(edge.low);
     double low = at[edge.axis];
-    double high = t_.tree_.lattice.at(edge.axis, edge.low[edge.axis] + edge.length);
+    double high = t_.tree_.lattice.at(edge.high())[edge.axis];
     const std::uint32_t k = edge.first_event + arc.index;
     if (arc.index > 0) low = t_.tree_.events[k - 1].at;
     if (k < edge.last_event) high = t_.tree_.events[k].at;
@@ -225,9 +225,8 @@ class CubeAnalysis {
     const SiteTable& table = t_.surface_.table();
     for (std::uint32_t s = 0; s < squares_.size(); ++s) {
       for (const std::uint32_t event : squares_[s].cells.events) {
-        const LineEvent& e = t_.tree_.events[event];
-        if (e.before != outside && e.after != outside) continue;
-        crossings_.push_back({e.before == outside ? e.after : e.before, s, event});
+        const std::optional<LabelIndex> triangle = t_.tree_.events[event].crossed();
+        if (triangle) crossings_.push_back({*triangle, s, event});
       }
     }
     std::sort(crossings_.begin(), crossings_.end());
@@ -255,7 +254,10 @@ class CubeAnalysis {
   [[nodiscard]] bool is_listed(std::uint32_t triangle) const {
     return std::binary_search(triangles_.begin(), triangles_.end(), triangle);
   }
-  [[nodiscard]] std::uint32_t rank(std::uint32_t triangle) const { return rank_in(triangles_, triangle); }
+  [[nodiscard]] std::uint32_t rank(std::uint32_t triangle) const {
+    return static_cast<std::uint32_t>(std::lower_bound(triangles_.begin(), triangles_.end(), triangle) -
+                                      triangles_.begin());
+  }
 
   bool mark_touches() {
     const auto touch_face = [&](std::uint32_t triangle, std::uint32_t s) {
@@ -274,8 +276,9 @@ class CubeAnalysis {
       for (const std::uint32_t t : t_.sites_.triangles_of[edge]) {
         if (!touch_face(t, s)) return false;
       }
-      if (t_.sites_.turn[edge] != EdgeTurn::reflex) continue;
-      const std::optional<std::uint32_t> region = region_in(squares_[s], site_of_edge(edge));
+      const std::optional<std::uint32_t> site = t_.labels_.site_of_edge(edge);
+      if (!site) continue;
+      const std::optional<std::uint32_t> region = region_in(squares_[s], *site);
       if (!region) return false;
       regions_[*region].touches = true;
       touched_by_edge_[edge].insert(*region);
@@ -283,41 +286,22 @@ class CubeAnalysis {
     return true;
   }
 
-  [[nodiscard]] std::uint32_t site_of_edge(std::uint32_t edge) const {
-    return rank_in(t_.sites_.reflex_edges, edge) + static_cast<std::uint32_t>(t_.sites_.face_count);
-  }
-  [[nodiscard]] std::uint32_t site_of_vertex(std::uint32_t v) const {
-    return rank_in(t_.sites_.reflex_vertices, v) +
-           static_cast<std::uint32_t>(t_.sites_.face_count + t_.sites_.reflex_edges.size());
-  }
-  [[nodiscard]] static std::uint32_t rank_in(const std::vector<std::uint32_t>& list, std::uint32_t entry) {
-    return static_cast<std::uint32_t>(std::lower_bound(list.begin(), list.end(), entry) - list.begin());
-  }
   [[nodiscard]] bool is_edge_site(std::uint32_t site) const {
     return site >= t_.sites_.face_count && site < t_.sites_.face_count + t_.sites_.reflex_edges.size();
   }
 
   /// The region of a vertex is convex: it passes if it meets the boundary in one piece.
-  CubeObstacle check_vertices() {
+  VoronoiObstacle check_vertices() {
     const std::size_t first = t_.sites_.face_count + t_.sites_.reflex_edges.size();
     for (auto at = regions_of_site_.lower_bound(static_cast<std::uint32_t>(first)); at != regions_of_site_.end();
          ++at) {
-      site_ = at->first;
-      if (at->second.size() != 1) return CubeObstacle::tunnel;
+      if (at->second.size() != 1) return VoronoiObstacle::tunnel;
     }
     for (const std::uint32_t v : vertices_) {
-      const bool is_site = std::binary_search(t_.sites_.reflex_vertices.begin(), t_.sites_.reflex_vertices.end(), v);
-      if (is_site && !is_thin(v) && !regions_of_site_.contains(site_of_vertex(v))) {
-        return CubeObstacle::enclosed;
-      }
+      const std::optional<std::uint32_t> site = t_.labels_.site_of_vertex(v);
+      if (site && !regions_of_site_.contains(*site)) return VoronoiObstacle::enclosed;
     }
-    return CubeObstacle::none;
-  }
-
-  [[nodiscard]] bool is_thin(std::uint32_t v) const {
-    const std::span<const LabelIndex> thin = t_.labels_.thin_vertices();
-    return std::any_of(thin.begin(), thin.end(),
-                       [&](LabelIndex label) { return t_.labels_[label].site == site_of_vertex(v); });
+    return VoronoiObstacle::none;
   }
 
   /// How many regions of a site neither exit nor touch it.
@@ -326,43 +310,42 @@ class CubeAnalysis {
         regions.begin(), regions.end(), [&](std::uint32_t r) { return !regions_[r].exits && !regions_[r].touches; }));
   }
 
-  CubeObstacle check_edges() {
+  VoronoiObstacle check_edges() {
     std::set<std::uint32_t> inside;  // sites of edges that meet the cube without passing its boundary
     for (const std::uint32_t edge : edges_) {
-      if (t_.sites_.turn[edge] != EdgeTurn::reflex) continue;
+      const std::optional<std::uint32_t> site = t_.labels_.site_of_edge(edge);
+      if (!site) continue;
       const auto touched = touched_by_edge_.find(edge);
       if (touched == touched_by_edge_.end()) {
-        inside.insert(site_of_edge(edge));
+        inside.insert(*site);
       } else if (touched->second.size() != 1) {
-        return CubeObstacle::tunnel;
+        return VoronoiObstacle::tunnel;
       }
     }
     for (const auto& [site, regions] : regions_of_site_) {
       if (!is_edge_site(site)) continue;
-      site_ = site;
       const bool is_in = inside.erase(site) > 0;
-      if (count_closed(regions) != (is_in ? 1U : 0U)) return CubeObstacle::tunnel;
+      if (count_closed(regions) != (is_in ? 1U : 0U)) return VoronoiObstacle::tunnel;
     }
-    return inside.empty() ? CubeObstacle::none : CubeObstacle::enclosed;
+    return inside.empty() ? VoronoiObstacle::none : VoronoiObstacle::enclosed;
   }
 
-  CubeObstacle check_faces() {
+  VoronoiObstacle check_faces() {
     std::set<std::uint32_t> inside;  // faces that lie wholly inside
     for (const auto& [root, part] : parts_) {
-      if (has_hole_near(part.face)) return CubeObstacle::face_hole;
+      if (has_hole_near(part.face)) return VoronoiObstacle::face_hole;
       if (part.touched.empty()) {
         inside.insert(part.face);
       } else if (part.touched.size() != 1) {
-        return CubeObstacle::tunnel;
+        return VoronoiObstacle::tunnel;
       }
     }
     for (const auto& [site, regions] : regions_of_site_) {
       if (site >= t_.sites_.face_count) break;
-      site_ = site;
       const bool is_in = inside.erase(site) > 0;
-      if (count_closed(regions) != (is_in ? 1U : 0U)) return CubeObstacle::tunnel;
+      if (count_closed(regions) != (is_in ? 1U : 0U)) return VoronoiObstacle::tunnel;
     }
-    return inside.empty() ? CubeObstacle::none : CubeObstacle::enclosed;
+    return inside.empty() ? VoronoiObstacle::none : VoronoiObstacle::enclosed;
   }
 
   /// Whether a loop of a face with holes may lie wholly in the cube, as seen along its normal.
@@ -385,8 +368,8 @@ class CubeAnalysis {
   }
 
   /// Components of the solid in the cube must be balls: each has one boundary, of Euler number 2.
-  CubeObstacle check_solid() {
-    if (triangles_.empty()) return CubeObstacle::none;
+  VoronoiObstacle check_solid() {
+    if (triangles_.empty()) return VoronoiObstacle::none;
     bodies_on_boundary_ = 0;
     std::uint32_t body_count = 0;
     for (const Square& square : squares_) body_count += square.cells.body_count;
@@ -419,7 +402,7 @@ class CubeAnalysis {
       if (arc.index > 0 && t_.tree_.events[k - 1].before == outside) meet(t_.tree_.events[k - 1].after);
     }
     for (const std::uint32_t t : triangles_) {
-      if (!bounded.contains(sheets_.find(rank(t)))) return CubeObstacle::handle;
+      if (!bounded.contains(sheets_.find(rank(t)))) return VoronoiObstacle::handle;
       sums.emplace_back(sheet(t), 1);
     }
     for (const std::uint32_t edge : edges_) sums.emplace_back(sheet(t_.sites_.triangles_of[edge][0]), -1);
@@ -434,9 +417,9 @@ class CubeAnalysis {
     for (const auto& [component, sign] : sums) euler[joined.find(component)] += sign;
     bodies_inside_ = static_cast<std::uint32_t>(euler.size());
     for (const auto& [component, sum] : euler) {
-      if (sum != 2) return CubeObstacle::handle;
+      if (sum != 2) return VoronoiObstacle::handle;
     }
-    return CubeObstacle::none;
+    return VoronoiObstacle::none;
   }
 
   /// Intervals of grid edges in the solid, and nodes in it.
@@ -449,18 +432,17 @@ class CubeAnalysis {
       const bool begins = arc.index == 0 || t_.tree_.events[k - 1].before == outside;
       if (begins) sums.emplace_back(body(of), -1);
       if (arc.index == 0 && nodes.insert(edge.low).second) sums.emplace_back(body(of), 1);
-      Node end = edge.low;
-      end[edge.axis] += edge.length;
+      const Node end = edge.high();
       if (k == edge.last_event && nodes.insert(end).second) sums.emplace_back(body(of), 1);
     }
   }
 
   /// Finds which components of walls and surface on the boundary are one inside: those that a part of the surface
   /// joins. Whether these are all is told by numbers.
-  CubeObstacle check_joins() {
+  VoronoiObstacle check_joins() {
     std::set<std::uint32_t> before;
     for (const auto& [event, wall] : wall_of_event_) before.insert(walls_.find(wall));
-    if (before.size() < 2) return CubeObstacle::none;
+    if (before.size() < 2) return VoronoiObstacle::none;
     std::map<std::uint32_t, std::uint32_t> first;
     for (const auto& [triangle, s, event] : crossings_) {
       const std::uint32_t wall = wall_of(event);
@@ -469,17 +451,17 @@ class CubeAnalysis {
     }
     std::set<std::uint32_t> now;
     for (const std::uint32_t wall : before) now.insert(walls_.find(wall));
-    if (now.size() < 2) return CubeObstacle::none;
+    if (now.size() < 2) return VoronoiObstacle::none;
     // As many components are joined as all regions, with the outside, have tunnels.
     std::int64_t joins = bodies_on_boundary_ - bodies_inside_;
     for (const auto& [site, regions] : regions_of_site_) {
       if (site < t_.sites_.face_count) joins += tunnels(site, regions.size());
     }
     const auto left = static_cast<std::int64_t>(before.size()) - joins;
-    if (left == static_cast<std::int64_t>(now.size())) return CubeObstacle::none;
-    if (left != 1) return CubeObstacle::joins;
+    if (left == static_cast<std::int64_t>(now.size())) return VoronoiObstacle::none;
+    if (left != 1) return VoronoiObstacle::joins;
     for (const std::uint32_t wall : now) walls_.join(wall, *now.begin());
-    return CubeObstacle::none;
+    return VoronoiObstacle::none;
   }
 
   /// What a face and its region cover of the lower sides of the cube, seen along the normal.
@@ -496,9 +478,8 @@ class CubeAnalysis {
       if (cells.pieces[cells.runs[run].piece].site == face) ++out.arcs[arc];
     }
     for (const std::uint32_t event : cells.events) {
-      const LineEvent& e = t_.tree_.events[event];
-      if (e.before != outside && e.after != outside) continue;
-      if (t_.labels_[e.before == outside ? e.after : e.before].site != face) continue;
+      const std::optional<LabelIndex> triangle = t_.tree_.events[event].crossed();
+      if (!triangle || t_.labels_[*triangle].site != face) continue;
       ++out.events[event];
       ++out.ends;
     }
@@ -523,8 +504,7 @@ class CubeAnalysis {
     std::map<Node, bool> is_on_rim;
     for (const auto& [arc, count] : arcs) {
       const GridEdge& edge = t_.tree_.edges[arc.edge];
-      Node end = edge.low;
-      end[edge.axis] += edge.length;
+      const Node end = edge.high();
       if (arc.index == 0) is_on_rim[edge.low] = is_on_rim[edge.low] || count < 2;
       if (edge.first_event + arc.index == edge.last_event) is_on_rim[end] = is_on_rim[end] || count < 2;
     }
@@ -575,7 +555,6 @@ class CubeAnalysis {
   std::map<std::uint32_t, std::set<std::uint32_t>> touched_by_edge_;
   std::uint32_t bodies_on_boundary_ = 0;
   std::uint32_t bodies_inside_ = 0;
-  std::uint32_t site_ = outside;  ///< that is looked at
 };
 
 CubeCells CubeTest::run(const GridCube& cube) const {

@@ -1,12 +1,11 @@
 // Blum: whether walls and surface in a cube are contractible. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "blum/voronoi/polyhedron_sites.hpp"
+#include "blum/voronoi/voronoi_complex.hpp"
 #include "voronoi/cell_tree.hpp"
 #include "voronoi/face_loops.hpp"
 #include "voronoi/label_geometry.hpp"
@@ -15,22 +14,9 @@
 
 namespace blum::voronoi {
 
-/// What keeps a cube from passing.
-enum class CubeObstacle : std::uint8_t {
-  none,
-  square,        ///< the inside of a square could not be told from its border
-  tunnel,        ///< the region of a site passes through the cube, or may
-  enclosed,      ///< the region of a site may lie wholly inside the cube
-  face_hole,     ///< a hole of a face lies in the cube, or next to it
-  handle,        ///< a component of the solid in the cube has a tunnel or a second boundary
-  joins,         ///< which components of walls on the cube's boundary are one inside is not known
-  contradiction  ///< signs contradict each other
-};
-
 /// The components of walls and surface in a cube that passes.
 struct CubeCells {
-  CubeObstacle obstacle = CubeObstacle::none;
-  std::uint32_t site = outside;  ///< whose region the obstacle is in, where it is one's
+  VoronoiObstacle obstacle = VoronoiObstacle::none;
   std::uint32_t component_count = 0;
   /// For each square without children on the boundary: the component that each component in it belongs to.
   struct Square {

@@ -23,23 +23,6 @@ bool is_apart(const LabelGeometry& labels, LabelIndex label, std::span<const Vec
 
 }  // namespace
 
-LabelIndex closest_label(const LabelGeometry& labels, std::span<const LabelIndex> among, const Vec3d& q) {
-  LabelIndex best = outside;
-  double least = std::numeric_limits<double>::infinity();
-  for (const LabelIndex label : among) {
-    const PlacedLabel& placed = labels[label];
-    const double squared = placed.squared_distance(q);
-    if (!(squared < least)) continue;
-    const std::span<const DomainPlane> planes = labels.planes(label);
-    const bool is_in = std::all_of(planes.begin(), planes.end(),
-                                   [&](const DomainPlane& plane) { return plane.height(q) >= -labels.rounding(); });
-    if (!is_in || (placed.kind == SiteKind::face && placed.height(q) < -labels.rounding())) continue;
-    least = squared;
-    best = label;
-  }
-  return best;
-}
-
 Vec3d closest_surface_point(const LabelGeometry& labels, std::span<const LabelIndex> among, const Vec3d& q) {
   Vec3d best;
   double least = std::numeric_limits<double>::infinity();

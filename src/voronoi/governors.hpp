@@ -24,8 +24,4 @@ namespace blum::voronoi {
 [[nodiscard]] Vec3d closest_surface_point(const LabelGeometry& labels, std::span<const LabelIndex> among,
                                           const Vec3d& q);
 
-/// The label of the smallest distance at a point, of those whose domain holds it or misses it by rounding alone;
-/// `outside` where there is none.
-[[nodiscard]] LabelIndex closest_label(const LabelGeometry& labels, std::span<const LabelIndex> among, const Vec3d& q);
-
 }  // namespace blum::voronoi

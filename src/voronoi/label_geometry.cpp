@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "voronoi/dual_cone.hpp"
-#include "voronoi/edges_of_vertices.hpp"
 
 namespace blum::voronoi {
 namespace {
@@ -91,8 +90,7 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
     : box_(bounds(mesh)),
       centre_(box_.center()),
       size_(box_.diagonal()),
-      rounding_(4e-15 * size_ + 1e-15 * box_.largest_coordinate()),
-      face_count_(sites.face_count) {
+      rounding_(4e-15 * size_ + 1e-15 * box_.largest_coordinate()) {
   label_of_edge_.assign(table.edge_count(), outside);
   label_of_vertex_.assign(table.vertex_count(), outside);
   const EdgesOfVertices edges(table);
@@ -108,7 +106,7 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
   }
   add_triangles(mesh, table, sites);
   add_edges(mesh, table, sites);
-  add_vertices(mesh, table, sites);
+  add_vertices(mesh, table, sites, edges);
   for (LabelIndex k = 0; k < labels_.size(); ++k) labels_[k].site = labels.site_of(labels.all()[k]);
   add_neighbours(table, sites);
   for (std::uint32_t k = 0; k < bisectors_.size(); ++k) {
@@ -260,8 +258,8 @@ void LabelGeometry::add_edges(const MeshView& mesh, const SiteTable& table, cons
   }
 }
 
-void LabelGeometry::add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites) {
-  const EdgesOfVertices edges(table);
+void LabelGeometry::add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                                 const EdgesOfVertices& edges) {
   for (const std::uint32_t v : sites.reflex_vertices) {
     const Vec3d& at = mesh.vertices[v];
     PlacedLabel label{SiteKind::vertex, 0, at - centre_, {}, 0, 0};

@@ -13,6 +13,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
+#include "voronoi/edges_of_vertices.hpp"
 #include "voronoi/site_labels.hpp"
 
 namespace blum::voronoi {
@@ -99,6 +100,17 @@ class LabelGeometry {
 
   [[nodiscard]] std::size_t count() const { return labels_.size(); }
   [[nodiscard]] const PlacedLabel& operator[](LabelIndex label) const { return labels_[label]; }
+  /// Its site; `outside` of the outside.
+  [[nodiscard]] std::uint32_t site_of(LabelIndex label) const {
+    return label == outside ? outside : labels_[label].site;
+  }
+  /// The site of an edge or vertex of the mesh: nullopt where it is none, or a thin vertex.
+  [[nodiscard]] std::optional<std::uint32_t> site_of_edge(std::uint32_t edge) const {
+    return site_if_any(label_of_edge_[edge]);
+  }
+  [[nodiscard]] std::optional<std::uint32_t> site_of_vertex(std::uint32_t v) const {
+    return site_if_any(label_of_vertex_[v]);
+  }
   [[nodiscard]] std::span<const DomainPlane> planes(LabelIndex label) const {
     return std::span(planes_).subspan(labels_[label].first_plane,
                                       labels_[label].last_plane - labels_[label].first_plane);
@@ -131,15 +143,18 @@ class LabelGeometry {
   /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
   /// only at planes of their domains.
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
-  [[nodiscard]] std::size_t face_count() const { return face_count_; }
   /// Vertices whose cones are thinner than 1e-12: dents by rounding in faces that are flat but for that. No grid in
   /// double could meet their regions.
   [[nodiscard]] std::span<const LabelIndex> thin_vertices() const { return thin_vertices_; }
 
  private:
+  [[nodiscard]] std::optional<std::uint32_t> site_if_any(LabelIndex label) const {
+    return label == outside ? std::nullopt : std::optional(labels_[label].site);
+  }
   void add_triangles(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
   void add_edges(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
-  void add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
+  void add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
+                    const EdgesOfVertices& edges);
   void add_bisectors(const PolyhedronSites& sites);
   void add_neighbours(const SiteTable& table, const PolyhedronSites& sites);
 
@@ -147,7 +162,6 @@ class LabelGeometry {
   Vec3d centre_;
   double size_ = 0;
   double rounding_ = 0;
-  std::size_t face_count_ = 0;
   std::vector<PlacedLabel> labels_;
   std::vector<DomainPlane> planes_;
   std::vector<std::array<Vec3d, 3>> corners_;

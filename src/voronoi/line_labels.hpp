@@ -20,6 +20,12 @@ struct LineEvent {
   double error = 0;             ///< how far that may be off
   LabelIndex before = outside;  ///< closest below it
   LabelIndex after = outside;   ///< closest above it
+
+  /// The triangle that the line crosses here, where it enters or leaves the solid.
+  [[nodiscard]] std::optional<LabelIndex> crossed() const {
+    if (before == outside) return after;
+    return after == outside ? std::optional(before) : std::nullopt;
+  }
 };
 
 /// A part of an axis-parallel line in the solid.

@@ -67,7 +67,7 @@ SquareCells square_cells(const CellTree& tree, const LabelGeometry& labels, cons
   follow_border(tree, square, out);
   find_bodies(square, out);
   for (SquareCells::Run& run : out.runs) {
-    const std::uint32_t site = run.label == outside ? outside : labels[run.label].site;
+    const std::uint32_t site = labels.site_of(run.label);
     const auto same = [&](const SquareCells::Piece& piece) {
       return piece.site == site && (site != outside || piece.body == run.body);
     };

@@ -96,10 +96,9 @@ bool SquareTest::find_chains(GridSquare& square) const {
   for (const CellId id : square.edges) {
     const GridEdge& edge = tree_.edges[id];
     for (std::uint32_t k = edge.first_event; k < edge.last_event; ++k) {
-      const LineEvent& event = tree_.events[k];
-      if (event.before != outside && event.after != outside) continue;
-      const LabelIndex triangle = event.before == outside ? event.after : event.before;
-      nodes.push_back({triangle, static_cast<std::uint32_t>(events.size())});
+      const std::optional<LabelIndex> triangle = tree_.events[k].crossed();
+      if (!triangle) continue;
+      nodes.push_back({*triangle, static_cast<std::uint32_t>(events.size())});
       events.push_back(k);
     }
   }
@@ -161,8 +160,8 @@ std::vector<SquareTest::BorderArc> SquareTest::border(const GridSquare& square) 
 }
 
 SquareTest::Polygon SquareTest::polygon(const GridSquare& square) const {
-  const std::size_t u = after(square.axis);
-  const std::size_t v = after(u);
+  const std::size_t u = next_axis(square.axis);
+  const std::size_t v = next_axis(u);
   Polygon out;
   for (const auto& [at_u, at_v] : {std::array{0U, 0U}, {1U, 0U}, {1U, 1U}, {0U, 1U}}) {
     Node node = square.low;

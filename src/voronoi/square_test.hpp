@@ -23,8 +23,8 @@ namespace blum::voronoi {
 /// All of this is one-sided: rounding only leads to another split.
 class SquareTest {
  public:
-  SquareTest(const MeshView& mesh, const LabelGeometry& labels, const SurfaceInCells& surface, const CellTree& tree)
-      : mesh_(mesh), labels_(labels), surface_(surface), tree_(tree) {}
+  SquareTest(const LabelGeometry& labels, const SurfaceInCells& surface, const CellTree& tree)
+      : labels_(labels), surface_(surface), tree_(tree) {}
 
   /// Whether it is resolved; then its chains are set.
   bool resolve(GridSquare& square) const;
@@ -68,7 +68,6 @@ class SquareTest {
                                 const Polygon& square) const;
   [[nodiscard]] bool stays_behind(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& square) const;
 
-  const MeshView mesh_;
   const LabelGeometry& labels_;
   const SurfaceInCells& surface_;
   const CellTree& tree_;

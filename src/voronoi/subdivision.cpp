@@ -19,7 +19,7 @@ class Subdivider {
         context_(context),
         splitter_(mesh, exact, labels, out.tree),
         surface_(mesh, table, out.tree.lattice),
-        square_test_(mesh, labels, surface_, out.tree),
+        square_test_(labels, surface_, out.tree),
         cube_test_(mesh, sites, labels, loops, surface_, out.tree) {}
 
   void run() {
@@ -99,7 +99,7 @@ class Subdivider {
   }
 
   void test(const std::vector<CellId>& cubes, bool is_last, std::vector<CellId>& to_split) {
-    std::vector<CubeObstacle> obstacles(cubes.size());
+    std::vector<VoronoiObstacle> obstacles(cubes.size());
     parallel_for(context_, cubes.size(), grain, {}, [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
         obstacles[k] = cube_test_.run(out_.tree.cubes[cubes[k]]).obstacle;
@@ -107,10 +107,10 @@ class Subdivider {
     });
     for (std::size_t k = 0; k < cubes.size(); ++k) {
       GridCube& cube = out_.tree.cubes[cubes[k]];
-      cube.state = obstacles[k] == CubeObstacle::none ? CubeState::passed : CubeState::failed;
+      cube.state = obstacles[k] == VoronoiObstacle::none ? CubeState::passed : CubeState::failed;
       if (cube.state == CubeState::failed) {
-        ++out_.obstacles[static_cast<std::size_t>(obstacles[k])];
         if (!is_last) {
+          ++out_.splits;
           to_split.push_back(cubes[k]);
           continue;
         }

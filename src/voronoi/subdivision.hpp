@@ -1,10 +1,8 @@
 // Blum: the octree in which walls and surface are contractible. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -25,7 +23,7 @@ struct SubdivisionOptions {
 /// A cube that does not pass, at the largest depth.
 struct FailingCube {
   CellId cube = no_cell;
-  CubeObstacle obstacle = CubeObstacle::none;
+  VoronoiObstacle obstacle = VoronoiObstacle::none;
 };
 
 struct Subdivision {
@@ -35,7 +33,7 @@ struct Subdivision {
   CellTree tree;
   std::vector<CellId> leaves;  ///< cubes that meet the solid and have no children
   std::vector<FailingCube> failing;
-  std::array<std::size_t, 8> obstacles{};  ///< of cubes that had to be split, by CubeObstacle
+  std::size_t splits = 0;  ///< of cubes that did not pass
   LineCounts lines;
   std::size_t contradictions = 0;
   std::size_t governors = 0;  ///< sum over leaves

@@ -14,14 +14,14 @@ bool SurfaceInCells::pierces(std::uint32_t edge, const GridSquare& square) const
   const double plane = lattice_.at(axis, square.low[axis]);
   const bool starts_above = detail::is_above(p[0][axis], plane);
   if (starts_above == detail::is_above(p[1][axis], plane)) return false;
-  for (const std::size_t along : {after(axis), after(after(axis))}) {
+  for (const std::size_t along : {next_axis(axis), next_axis(next_axis(axis))}) {
     // Seen against the axis that is left, the edge passes the plane above or below a coordinate.
     const std::size_t seen = 3 - axis - along;
     const auto is_beyond = [&](double coordinate) {
       if (detail::is_above(p[0][along], coordinate) == detail::is_above(p[1][along], coordinate)) {
         return detail::is_above(p[0][along], coordinate);
       }
-      const bool axis_is_first = after(seen) == axis;
+      const bool axis_is_first = next_axis(seen) == axis;
       const int side = axis_is_first ? detail::side_of_line(p, seen, plane, coordinate)
                                      : detail::side_of_line(p, seen, coordinate, plane);
       // Where the axis is the first one seen and the edge runs up along it, a line to its left is above it.

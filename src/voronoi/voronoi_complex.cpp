@@ -102,8 +102,7 @@ void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiRep
   report.thin_vertices = labels.thin_vertices().size();
   report.cubes = cells.leaves.size();
   for (const GridSquare& square : cells.tree.squares) report.squares += square.children == no_cell ? 1U : 0U;
-  for (const std::size_t count : cells.obstacles) report.splits += count;
-  report.splits -= cells.failing.size();
+  report.splits = cells.splits;
   if (report.cubes > 0) report.governors = static_cast<double>(cells.governors) / static_cast<double>(report.cubes);
   report.lines = cells.lines.parts;
   report.exact_lines = cells.lines.exact + cells.lines.undecided;
@@ -111,10 +110,7 @@ void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiRep
   report.contradictions = cells.contradictions;
   for (const FailingCube& failing : cells.failing) {
     const GridCube& cube = cells.tree.cubes[failing.cube];
-    Node high = cube.low;
-    for (std::uint32_t& k : high) k += cube.length;
-    report.failing.push_back(
-        {cells.tree.lattice.at(cube.low), cells.tree.lattice.at(high), static_cast<VoronoiObstacle>(failing.obstacle)});
+    report.failing.push_back({cells.tree.lattice.at(cube.low), cells.tree.lattice.at(cube.high()), failing.obstacle});
   }
 }
 

@@ -14,7 +14,6 @@
 #include "blum/solid/solid.hpp"
 #include "support/labelled_solid.hpp"
 #include "support/mesh_places.hpp"
-#include "support/random_transform.hpp"
 #include "voronoi/square_cells.hpp"
 
 namespace blum {
@@ -114,8 +113,7 @@ TEST(SquareCells, AreOfTheBorder) {
     for (std::size_t k = 0; k < cells.events.size(); ++k) {
       const auto& before = cells.runs[k];
       const auto& behind = cells.runs[(k + 1) % cells.runs.size()];
-      const auto site = [&](LabelIndex label) { return label == outside ? outside : divided.labels[label].site; };
-      EXPECT_NE(site(before.label), site(behind.label));
+      EXPECT_NE(divided.labels.site_of(before.label), divided.labels.site_of(behind.label));
       EXPECT_LT(cells.component[k], cells.component_count);
     }
     // Components and regions of a disc: one more of both than events, as each event cuts the border once.
@@ -168,7 +166,8 @@ TEST(SquareTest, FindsAllThatIsClosestInsideOnTheBorder) {
       for (int sample = 0; sample < (is_large ? 300 : 4); ++sample) {
         Vec3d q = low;
         const double side = tree.lattice.unit * square.length;
-        for (const std::size_t axis : {voronoi::after(square.axis), voronoi::after(voronoi::after(square.axis))}) {
+        for (const std::size_t axis :
+             {voronoi::next_axis(square.axis), voronoi::next_axis(voronoi::next_axis(square.axis))}) {
           q[axis] += side * random.uniform(0, 1);
         }
         if (!inside.inside(q)) continue;

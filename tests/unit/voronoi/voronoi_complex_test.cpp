@@ -14,7 +14,6 @@
 #include "blum/shapes/generators.hpp"
 #include "support/labelled_solid.hpp"
 #include "support/mesh_places.hpp"
-#include "support/random_transform.hpp"
 
 namespace blum {
 namespace {
