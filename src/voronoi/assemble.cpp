@@ -94,22 +94,22 @@ class Assembly {
   }
 
   /// The first vertex of a square's components.
-  std::uint32_t vertex_of_square(CellId id, const SquareCells& cells) {
-    std::uint32_t& first = vertex_of_square_[id];
+  std::uint32_t vertex_of_square(const CubeCells::Square& cells) {
+    std::uint32_t& first = vertex_of_square_[cells.square];
     if (first != no_vertex) return first;
     first = static_cast<std::uint32_t>(places_.size());
-    const GridSquare& square = tree_.squares[id];
+    const GridSquare& square = tree_.squares[cells.square];
     Place place;
     place.box = box_of(square.low, square.high());
-    places_.insert(places_.end(), cells.component_count, place);
+    places_.insert(places_.end(), cells.component.size(), place);
     for (std::size_t k = 0; k < cells.events.size(); ++k) {
-      Place& of_component = places_[first + cells.component[k]];
+      Place& of_component = places_[first + cells.component_of_event[k]];
       const LineEvent& event = tree_.events[cells.events[k]];
       of_component.start += at_event_[cells.events[k]];
       ++of_component.parts;
       add_labels(of_component, event);
     }
-    for (std::uint32_t k = 0; k < cells.component_count; ++k) {
+    for (std::uint32_t k = 0; k < cells.component.size(); ++k) {
       places_[first + k].start *= 1.0 / places_[first + k].parts;
     }
     return first;
@@ -125,9 +125,8 @@ class Assembly {
     places_.insert(places_.end(), cells.component_count, place);
     for (const CubeCells::Square& square : cells.squares) {
       if (square.component.empty()) continue;
-      const SquareCells of_square = square_cells(tree_, labels_, tree_.squares[square.square]);
-      const std::uint32_t first_of_square = vertex_of_square(square.square, of_square);
-      for (std::uint32_t k = 0; k < of_square.component_count; ++k) {
+      const std::uint32_t first_of_square = vertex_of_square(square);
+      for (std::uint32_t k = 0; k < square.component.size(); ++k) {
         Place& of_component = places_[first + square.component[k]];
         const Place& part = places_[first_of_square + k];
         of_component.start += part.start;
@@ -135,11 +134,11 @@ class Assembly {
         for (const LabelIndex label : part.labels) add_label(of_component.labels, label);
         for (const LabelIndex label : part.surface) add_label(of_component.surface, label);
       }
-      for (std::size_t k = 0; k < of_square.events.size(); ++k) {
-        const std::uint32_t component = of_square.component[k];
+      for (std::size_t k = 0; k < square.events.size(); ++k) {
+        const std::uint32_t component = square.component_of_event[k];
         triangles_.push_back(
-            {vertex_of_event(of_square.events[k]), first_of_square + component, first + square.component[component]});
-        add_sites(tree_.events[of_square.events[k]]);
+            {vertex_of_event(square.events[k]), first_of_square + component, first + square.component[component]});
+        add_sites(tree_.events[square.events[k]]);
       }
     }
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {

@@ -22,9 +22,11 @@ class CubeAnalysis {
     out.obstacle = find_obstacle();
     if (out.obstacle != VoronoiObstacle::none) return out;
     std::map<std::uint32_t, std::uint32_t> number;
-    for (const Square& square : squares_) {
+    for (Square& square : squares_) {
       CubeCells::Square& made = out.squares.emplace_back();
       made.square = square.id;
+      made.events = std::move(square.cells.events);
+      made.component_of_event = std::move(square.cells.component);
       for (std::uint32_t k = 0; k < square.cells.component_count; ++k) {
         const auto [at, is_new] = number.try_emplace(walls_.find(square.first_wall + k), out.component_count);
         if (is_new) ++out.component_count;

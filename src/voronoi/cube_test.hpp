@@ -18,10 +18,12 @@ namespace blum::voronoi {
 struct CubeCells {
   VoronoiObstacle obstacle = VoronoiObstacle::none;
   std::uint32_t component_count = 0;
-  /// For each square without children on the boundary: the component that each component in it belongs to.
+  /// A square without children on the boundary.
   struct Square {
     CellId square = no_cell;
-    std::vector<std::uint32_t> component;
+    std::vector<std::uint32_t> events;              ///< as in SquareCells
+    std::vector<std::uint32_t> component_of_event;  ///< in the square
+    std::vector<std::uint32_t> component;           ///< in the cube, of each component in the square
   };
   std::vector<Square> squares;
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "blum/core/union_find.hpp"
 #include "voronoi/governors.hpp"
@@ -24,6 +25,14 @@ std::vector<Vec3d> clipped(const std::vector<Vec3d>& polygon, double margin, con
     if ((at_p >= 0) != (at_q >= 0)) out.push_back(p + (q - p) * (at_p / (at_p - at_q)));
   }
   return out;
+}
+
+/// The part of it where heights over some planes are above -margin.
+std::vector<Vec3d> clipped_by(std::vector<Vec3d> polygon, double margin, std::span<const DomainPlane> planes) {
+  for (const DomainPlane& plane : planes) {
+    polygon = clipped(polygon, margin, [&](const Vec3d& q) { return plane.height(q); });
+  }
+  return polygon;
 }
 
 /// The largest distance of a corner from the first one.
@@ -64,7 +73,7 @@ bool SquareTest::resolve(GridSquare& square) const {
       present.push_back(label);
       continue;
     }
-    if (!is_absent(label, square)) return false;
+    if (!is_absent(label, square.governors, whole)) return false;
   }
   const bool all_star_shaped = std::all_of(
       sites.begin(), sites.end(), [&](std::uint32_t site) { return is_star_shaped(site, arcs, present, whole); });
@@ -75,16 +84,14 @@ bool SquareTest::resolve(GridSquare& square) const {
 
 /// Whether a label is closest nowhere in a square, or next to a point over a corner of it alone, where it has no
 /// islands.
-bool SquareTest::is_absent(LabelIndex label, const GridSquare& square) const {
-  const Polygon whole = polygon(square);
+bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const {
   const Polygon part = in_domain(label, whole);
   const bool by_incident = !is_thin(label, whole);
-  if (is_absent(label, square.governors, part, {by_incident, std::nullopt}, 0)) return true;
+  if (is_absent(label, all, part, {by_incident, std::nullopt}, 0)) return true;
   if (labels_[label].kind == SiteKind::vertex) return false;
   const std::span<const Vec3d> corners = labels_.corners(label);
-  return std::any_of(corners.begin(), corners.end(), [&](const Vec3d& corner) {
-    return is_absent(label, square.governors, part, {by_incident, corner}, 0);
-  });
+  return std::any_of(corners.begin(), corners.end(),
+                     [&](const Vec3d& corner) { return is_absent(label, all, part, {by_incident, corner}, 0); });
 }
 
 /// The surface runs along triangles from an event of the border or an edge of the mesh to the next.
@@ -172,8 +179,10 @@ SquareTest::Polygon SquareTest::polygon(const GridSquare& square) const {
   return out;
 }
 
-bool SquareTest::is_further(LabelIndex label, LabelIndex other, const Polygon& part) const {
-  if (const std::optional<Bisector> plane = labels_.bisector(other, label)) {
+/// @param plane  bisector(other, label).
+bool SquareTest::is_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,
+                            const Polygon& part) const {
+  if (plane) {
     return std::all_of(part.begin(), part.end(),
                        [&](const Vec3d& q) { return plane->height(q) > 2 * labels_.rounding(); });
   }
@@ -189,9 +198,10 @@ bool SquareTest::is_further(LabelIndex label, LabelIndex other, const Polygon& p
 }
 
 /// A part of a polygon that holds all of it where a label may be as close as another one.
-SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, const Polygon& part) const {
+SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,
+                                            const Polygon& part) const {
   const double margin = 2 * labels_.rounding();
-  if (const std::optional<Bisector> plane = labels_.bisector(other, label)) {
+  if (plane) {
     return clipped(part, margin, [&](const Vec3d& q) { return -plane->height(q); });
   }
   const PlacedLabel& near = labels_[other];
@@ -256,14 +266,12 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
     const LabelIndex other = candidate.label;
     const bool are_incident = labels_.are_incident(labels_[label].site, other);
     if (are_incident && !allowed.by_incident) continue;
-    Polygon inside = part;
-    for (const DomainPlane& plane : attained_between(other)) {
-      inside = clipped(inside, 0, [&](const Vec3d& q) { return plane.height(q); });
-    }
+    const Polygon inside = clipped_by(part, 0, attained_between(other));
+    const std::optional<Bisector> plane = labels_.bisector(other, label);
     Polygon left;
     // Domains of labels next to each other meet in their borders alone.
-    if (!are_incident && !is_further(label, other, inside)) {
-      left = not_further(label, other, inside);
+    if (!are_incident && !is_further(label, other, plane, inside)) {
+      left = not_further(label, other, plane, inside);
       if (left == inside) continue;
     }
     return is_absent(label, all, std::move(left), allowed, depth + 1) &&
@@ -328,9 +336,10 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
   return std::any_of(own.begin(), own.end(), [&](const BorderArc* arc) {
     const Vec3d from = (arc->low + arc->high) * 0.5;
     return std::all_of(others.begin(), others.end(), [&](LabelIndex other) {
-      return labels_[other].site == site || stays_behind(arc->label, other, from, part) ||
-             returns_nowhere(arc->label, other, from, in_domain(other, part)) ||
-             never_meet(arc->label, other, others, from, part);
+      if (labels_[other].site == site || stays_behind(arc->label, other, from, part)) return true;
+      const Polygon of_other = in_domain(other, part);
+      return returns_nowhere(arc->label, other, from, of_other) ||
+             never_meet(arc->label, other, others, from, of_other);
     });
   });
 }
@@ -357,18 +366,12 @@ bool SquareTest::returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d
 
 /// Whether a label's domain in a square may be all within rounding of the domains next to it.
 bool SquareTest::is_thin(LabelIndex label, Polygon part) const {
-  const double margin = -2 * labels_.rounding();
-  for (const DomainPlane& plane : labels_.planes(label)) {
-    part = clipped(part, margin, [&](const Vec3d& q) { return plane.height(q); });
-  }
-  return part.empty();
+  return clipped_by(std::move(part), -2 * labels_.rounding(), labels_.planes(label)).empty();
 }
 
 SquareTest::Polygon SquareTest::in_domain(LabelIndex label, Polygon part) const {
   const double margin = 2 * labels_.rounding();
-  for (const DomainPlane& plane : labels_.planes(label)) {
-    part = clipped(part, margin, [&](const Vec3d& q) { return plane.height(q); });
-  }
+  part = clipped_by(std::move(part), margin, labels_.planes(label));
   if (labels_[label].kind == SiteKind::face) {
     part = clipped(part, margin, [&](const Vec3d& q) { return labels_[label].height(q); });
   }
@@ -380,9 +383,8 @@ SquareTest::Polygon SquareTest::in_domain(LabelIndex label, Polygon part) const 
 /// corner. There the diagram is a cone, in which regions are connected. Over both sides of a reflex edge regions part,
 /// too.
 bool SquareTest::never_meet(LabelIndex own, LabelIndex other, std::span<const LabelIndex> labels, const Vec3d& from,
-                            const Polygon& square) const {
+                            const Polygon& of_other) const {
   const std::uint32_t site = labels_[own].site;
-  const Polygon of_other = in_domain(other, square);
   return std::all_of(labels.begin(), labels.end(), [&](LabelIndex label) {
     if (labels_[label].site != site || labels_.share_reflex_edge(label, other)) return true;
     const Polygon common = in_domain(label, of_other);

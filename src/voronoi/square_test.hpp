@@ -45,7 +45,7 @@ class SquareTest {
     std::optional<Vec3d> corner;  ///< a corner that it has, where what is left is next to a point over that
   };
 
-  [[nodiscard]] bool is_absent(LabelIndex label, const GridSquare& square) const;
+  [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const;
   [[nodiscard]] bool find_chains(GridSquare& square) const;
   [[nodiscard]] std::vector<BorderArc> border(const GridSquare& square) const;
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
@@ -57,15 +57,17 @@ class SquareTest {
   [[nodiscard]] bool is_thin(LabelIndex label, Polygon part) const;
   [[nodiscard]] bool is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all,
                                        Polygon part, const Allowance& allowed, int depth) const;
-  [[nodiscard]] Polygon not_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
-  [[nodiscard]] bool is_further(LabelIndex label, LabelIndex other, const Polygon& part) const;
+  [[nodiscard]] Polygon not_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,
+                                    const Polygon& part) const;
+  [[nodiscard]] bool is_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,
+                                const Polygon& part) const;
   [[nodiscard]] bool is_star_shaped(std::uint32_t site, std::span<const BorderArc> arcs,
                                     std::span<const LabelIndex> others, const Polygon& square) const;
   [[nodiscard]] bool returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d& from,
                                      const Polygon& domain) const;
   [[nodiscard]] Polygon in_domain(LabelIndex label, Polygon part) const;
   [[nodiscard]] bool never_meet(LabelIndex own, LabelIndex other, std::span<const LabelIndex> labels, const Vec3d& from,
-                                const Polygon& square) const;
+                                const Polygon& of_other) const;
   [[nodiscard]] bool stays_behind(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& square) const;
 
   const LabelGeometry& labels_;

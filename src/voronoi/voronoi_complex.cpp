@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -11,6 +11,7 @@
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
+#include "blum/geometry/weld.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "voronoi/assemble.hpp"
 #include "voronoi/subdivision.hpp"
@@ -32,27 +33,20 @@ void check(const VoronoiOptions& options) {
   check_range("max_cubes", options.max_cubes, 1000, 100'000'000);
 }
 
-/// @throws InvalidMesh where two vertices lie in one place, or the mesh so far from the origin that a grid in double
-/// has
-///         no room around it.
+/// @throws InvalidMesh where two vertices lie in one place, or the mesh so far from the origin that there is no room
+/// for
+///         a grid in double around it.
 void check_places(const MeshView& mesh) {
-  std::vector<std::pair<Vec3d, std::uint32_t>> places;
-  std::vector<bool> is_named(mesh.vertices.size(), false);
+  const std::vector<std::uint32_t> places = weld_clusters(mesh.vertices);
+  std::vector<std::optional<std::uint32_t>> vertex_at(mesh.vertices.size());
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) {
-      if (!is_named[v]) places.emplace_back(mesh.vertices[v], v);
-      is_named[v] = true;
+      std::optional<std::uint32_t>& known = vertex_at[places[v]];
+      if (!known) known = v;
+      if (*known == v) continue;
+      throw InvalidMesh("the mesh touches itself: vertices " + std::to_string(*known) + " and " + std::to_string(v) +
+                        " lie in one place; weld it first");
     }
-  }
-  const auto before = [](const auto& a, const auto& b) {
-    return std::tie(a.first.x, a.first.y, a.first.z, a.second) < std::tie(b.first.x, b.first.y, b.first.z, b.second);
-  };
-  std::sort(places.begin(), places.end(), before);
-  const auto same =
-      std::adjacent_find(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
-  if (same != places.end()) {
-    throw InvalidMesh("the mesh touches itself: vertices " + std::to_string(same->second) + " and " +
-                      std::to_string((same + 1)->second) + " lie in one place; weld it first");
   }
   const Box3 box = bounds(mesh);
   constexpr double furthest = 1e8;
