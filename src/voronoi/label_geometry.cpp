@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blum/geometry/closest_point.hpp"
 #include "voronoi/dual_cone.hpp"
 
 namespace blum::voronoi {
@@ -159,24 +160,15 @@ void LabelGeometry::add_bisectors(const PolyhedronSites& sites) {
 }
 
 Vec3d LabelGeometry::closest_point(LabelIndex label, const Vec3d& q) const {
-  const auto on_segment = [&](const Vec3d& a, const Vec3d& b) {
-    const Vec3d along = b - a;
-    return a + along * std::clamp(dot(q - a, along) / squared_length(along), 0.0, 1.0);
-  };
-  const PlacedLabel& placed = labels_[label];
   const std::array<Vec3d, 3>& p = corners_[label];
-  if (placed.kind == SiteKind::vertex) return p[0];
-  if (placed.kind == SiteKind::edge) return on_segment(p[0], p[1]);
-  const std::span<const DomainPlane> sides = planes(label);
-  if (std::all_of(sides.begin(), sides.end(), [&](const DomainPlane& side) { return side.height(q) >= 0; })) {
-    return placed.foot(q);
+  switch (labels_[label].kind) {
+    case SiteKind::face:
+      return closest_point_on_triangle(q, p);
+    case SiteKind::edge:
+      return closest_point_on_segment(q, p[0], p[1]);
+    default:
+      return p[0];
   }
-  Vec3d best = on_segment(p[0], p[1]);
-  for (const std::size_t k : {1U, 2U}) {
-    const Vec3d other = on_segment(p[k], p[(k + 1) % 3]);
-    if (squared_length(other - q) < squared_length(best - q)) best = other;
-  }
-  return best;
 }
 
 std::optional<Bisector> LabelGeometry::bisector(LabelIndex a, LabelIndex b) const {
