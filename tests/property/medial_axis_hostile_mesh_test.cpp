@@ -339,8 +339,7 @@ TEST(MedialHostileMesh, NoTriangleSpansAHoleNarrowerThanAVoxel) {
   for (const double radius : {0.02, 0.005}) {
     for (const int holes : {1, 2}) {
       SCOPED_TRACE(::testing::Message() << "radius " << radius << ", holes " << holes * holes);
-      TriangleMesh plate = make_plate({.holes_x = holes, .holes_y = holes, .hole_radius = radius});
-      for (Vec3d& v : plate.vertices) v = test::turned(v);
+      const TriangleMesh plate = test::turned(make_plate({.holes_x = holes, .holes_y = holes, .hole_radius = radius}));
       const MedialAxis axis = medial_axis(plate, {.resolution = 24});
       for (const Complex& complex : {axis.simplify(20), axis.fitted(20), axis.fitted(60)}) {
         const Certificate found = certify(complex, plate);

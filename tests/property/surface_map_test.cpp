@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/core/random.hpp"
@@ -49,7 +50,7 @@ std::vector<Vec3d> deformed(const MeshView& mesh, double part, std::uint64_t see
 
 /// A mesh turned, and brought to the middle of another one and to a size like its.
 TriangleMesh fitted(TriangleMesh mesh, const MeshView& to) {
-  for (Vec3d& v : mesh.vertices) v = test::turned(v);
+  mesh = test::turned(std::move(mesh));
   const Box3 from = bounds(mesh);
   const Box3 goal = bounds(to);
   const double scale = 0.8 * goal.diagonal() / from.diagonal();

@@ -27,6 +27,12 @@ inline Vec3d turned(const Vec3d& p) {
   return {q.x, std::cos(about_x) * q.y - std::sin(about_x) * q.z, std::sin(about_x) * q.y + std::cos(about_x) * q.z};
 }
 
+/// A mesh after the same turns: faces of several triangles are bent by rounding.
+inline TriangleMesh turned(TriangleMesh mesh) {
+  for (Vec3d& v : mesh.vertices) v = turned(v);
+  return mesh;
+}
+
 /// Each triangle with its own three vertices.
 inline TriangleMesh unwelded(const MeshView& mesh) {
   TriangleMesh out;

@@ -18,9 +18,7 @@ namespace blum {
 namespace {
 
 TriangleMesh turned_box(const Vec3d& size) {
-  TriangleMesh out = test::box_between({0, 0, 0}, size);
-  for (Vec3d& v : out.vertices) v = test::turned(v);
-  return out;
+  return test::turned(test::box_between({0, 0, 0}, size));
 }
 
 TEST(RayThickness, OfPlatesIsTheirs) {

@@ -127,10 +127,8 @@ int slow_comparison(const LabelledSolid& solid, const Label& a, const Label& b, 
 }
 
 TEST(SiteLabels, ComparisonsAreThoseOfRationalNumbers) {
-  TriangleMesh turned = test::box_with_void();
-  for (Vec3d& v : turned.vertices) v = test::turned(v);
   Random random(3);
-  for (const TriangleMesh& mesh : {test::box_with_void(), turned, make_star({})}) {
+  for (const TriangleMesh& mesh : {test::box_with_void(), test::turned(test::box_with_void()), make_star({})}) {
     const LabelledSolid solid(mesh);
     const std::vector<Label>& all = solid.labels.all();
     for (int round = 0; round < 3000; ++round) {

@@ -77,26 +77,25 @@ std::size_t wrong_places(const Divided& divided, std::size_t edges) {
   return wrong;
 }
 
+void expect_right_edges(const TriangleMesh& mesh) {
+  const Divided divided(mesh);
+  EXPECT_EQ(divided.cells.failing.size(), 0U);
+  EXPECT_EQ(divided.cells.contradictions, 0U);
+  EXPECT_EQ(divided.cells.lines.undecided, 0U);
+  EXPECT_EQ(wrong_places(divided, 1000), 0U);
+}
+
 TEST(Subdivision, FindsWhatIsClosestAlongEdges) {
   for (const TriangleMesh& mesh : {make_box(), test::box_with_void(), make_cylinder({.sides = 12}), make_star(),
                                    make_bracket(), make_torus({.ring_segments = 12, .tube_segments = 8})}) {
-    const Divided divided(mesh);
-    EXPECT_EQ(divided.cells.failing.size(), 0U);
-    EXPECT_EQ(divided.cells.contradictions, 0U);
-    EXPECT_EQ(divided.cells.lines.undecided, 0U);
-    EXPECT_EQ(wrong_places(divided, 1000), 0U);
+    expect_right_edges(mesh);
   }
 }
 
 /// Faces that rounding has bent by 1e-16: what is closest next to their edges the structure tells.
 TEST(Subdivision, FindsWhatIsClosestOverBentFaces) {
-  for (TriangleMesh mesh : {make_box(), test::box_with_void(), make_cylinder({.sides = 24}), make_star()}) {
-    for (Vec3d& v : mesh.vertices) v = test::turned(v);
-    const Divided divided(mesh);
-    EXPECT_EQ(divided.cells.failing.size(), 0U);
-    EXPECT_EQ(divided.cells.contradictions, 0U);
-    EXPECT_EQ(divided.cells.lines.undecided, 0U);
-    EXPECT_EQ(wrong_places(divided, 1000), 0U);
+  for (const TriangleMesh& mesh : {make_box(), test::box_with_void(), make_cylinder({.sides = 24}), make_star()}) {
+    expect_right_edges(test::turned(mesh));
   }
 }
 
@@ -149,10 +148,9 @@ TriangleMesh room_with_a_plate() {
 }
 
 TEST(SquareTest, FindsAllThatIsClosestInsideOnTheBorder) {
-  TriangleMesh star = make_star();
-  for (Vec3d& v : star.vertices) v = test::turned(v);
   Random random(5);
-  for (const TriangleMesh& mesh : {room_with_a_plate(), star, make_bracket(), test::box_with_void()}) {
+  for (const TriangleMesh& mesh :
+       {room_with_a_plate(), test::turned(make_star()), make_bracket(), test::box_with_void()}) {
     const Divided divided(mesh);
     const Solid inside = Solid::of(mesh);
     const voronoi::CellTree& tree = divided.cells.tree;

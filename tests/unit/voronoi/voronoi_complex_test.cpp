@@ -53,9 +53,7 @@ std::vector<Case> cases() {
   const auto add = [&](const std::string& name, const TriangleMesh& mesh, int turns) {
     out.push_back({name, mesh});
     for (int turn = 1; turn <= turns; ++turn) {
-      TriangleMesh turned = out.back().mesh;
-      for (Vec3d& v : turned.vertices) v = test::turned(v);
-      out.push_back({name + "_turned_" + std::to_string(turn), turned});
+      out.push_back({name + "_turned_" + std::to_string(turn), test::turned(out.back().mesh)});
     }
   };
   constexpr int turns = 4;
