@@ -103,6 +103,7 @@ class Assembly {
     place.box = box_of(square.low, square.high());
     places_.insert(places_.end(), cells.component.size(), place);
     for (std::size_t k = 0; k < cells.events.size(); ++k) {
+      if (cells.component_of_event[k] == outside) continue;
       Place& of_component = places_[first + cells.component_of_event[k]];
       const LineEvent& event = tree_.events[cells.events[k]];
       of_component.start += at_event_[cells.events[k]];
@@ -136,6 +137,7 @@ class Assembly {
       }
       for (std::size_t k = 0; k < square.events.size(); ++k) {
         const std::uint32_t component = square.component_of_event[k];
+        if (component == outside) continue;
         triangles_.push_back(
             {vertex_of_event(square.events[k]), first_of_square + component, first + square.component[component]});
         add_sites(tree_.events[square.events[k]]);

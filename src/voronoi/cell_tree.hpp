@@ -55,6 +55,14 @@ struct GridEdge {
 /// Whether a square's border is known to tell what is inside.
 enum class SquareState : std::uint8_t { unknown, resolved };
 
+/// A wall or part of the surface in a square that a part of the diagram does without (PartRule), and that need not reach
+/// its border.
+struct InnerArc {
+  std::uint32_t first = 0;   ///< site on one side
+  std::uint32_t second = 0;  ///< site on the other; `outside` of the surface
+  std::uint32_t event = 0;   ///< of the surface: an event of the border next to the same part of the outside
+};
+
 /// A square across an axis; u is the axis after it, and v the one after u.
 struct GridSquare {
   Node low{};
@@ -69,6 +77,8 @@ struct GridSquare {
   std::vector<std::uint32_t> triangles;  ///< that may meet it
   /// Events of its border that the surface in it joins: where it enters and leaves.
   std::vector<std::array<std::uint32_t, 2>> chains;
+  std::vector<InnerArc> inner_arcs;    ///< where a part of the diagram alone is looked at
+  std::uint32_t reflex_piercings = 0;  ///< likewise: how many reflex edges pierce it
 
   /// The corner opposite to `low`.
   [[nodiscard]] Node high() const {

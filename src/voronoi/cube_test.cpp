@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "blum/core/union_find.hpp"
+#include "voronoi/part_cube_test.hpp"
 
 namespace blum::voronoi {
 
@@ -22,27 +23,22 @@ class CubeAnalysis {
     out.obstacle = find_obstacle();
     if (out.obstacle != VoronoiObstacle::none) return out;
     std::map<std::uint32_t, std::uint32_t> number;
-    for (Square& square : squares_) {
+    for (const SquareOfCube& square : squares_) {
       CubeCells::Square& made = out.squares.emplace_back();
       made.square = square.id;
-      made.events = std::move(square.cells.events);
-      made.component_of_event = std::move(square.cells.component);
+      made.events = square.cells.events;
+      made.component_of_event = square.cells.component;
       for (std::uint32_t k = 0; k < square.cells.component_count; ++k) {
         const auto [at, is_new] = number.try_emplace(walls_.find(square.first_wall + k), out.component_count);
         if (is_new) ++out.component_count;
         made.component.push_back(at->second);
       }
     }
-    return out;
+    return t_.solid_.rule.is_all() ? out : part_of(out.component_count);
   }
 
  private:
-  struct Square {
-    CellId id = no_cell;
-    std::uint32_t side = 0;  ///< 2 axis + 1 where it is the upper one
-    SquareCells cells;
-    std::uint32_t first_piece = 0, first_wall = 0, first_body = 0;
-  };
+  using Square = SquareOfCube;
   /// A connected part of a site's region on the boundary.
   struct Region {
     std::uint32_t site = outside;
@@ -54,6 +50,16 @@ class CubeAnalysis {
     std::uint32_t face = 0;
     std::set<std::uint32_t> touched;
   };
+
+  /// The part that is asked for.
+  [[nodiscard]] CubeCells part_of(std::uint32_t component_count) const {
+    CubeContents in{squares_, component_count, vertices_, edges_, piercings_, parts_.size(), false};
+    in.has_inner_face =
+        std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part.second.touched.empty(); });
+    CubeCells out;
+    out.obstacle = PartOfCube(t_.solid_, t_.tree_, in).find(out);
+    return out;
+  }
 
   VoronoiObstacle find_obstacle() {
     if (!collect()) return VoronoiObstacle::square;

@@ -4,17 +4,23 @@
 #include <cstdint>
 #include <vector>
 
-#include "blum/voronoi/polyhedron_sites.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "voronoi/cell_tree.hpp"
-#include "voronoi/face_loops.hpp"
-#include "voronoi/label_geometry.hpp"
 #include "voronoi/square_cells.hpp"
 #include "voronoi/surface_in_cells.hpp"
+#include "voronoi/voronoi_solid.hpp"
 
 namespace blum::voronoi {
 
-/// The components of walls and surface in a cube that passes.
+/// A square without children on a cube's boundary, with what is in it.
+struct SquareOfCube {
+  CellId id = no_cell;
+  std::uint32_t side = 0;  ///< 2 axis + 1 where it is the upper one
+  SquareCells cells;
+  std::uint32_t first_piece = 0, first_wall = 0, first_body = 0;
+};
+
+/// The components of walls and surface, or of the part of them that is asked for, in a cube that passes.
 struct CubeCells {
   VoronoiObstacle obstacle = VoronoiObstacle::none;
   std::uint32_t component_count = 0;
@@ -22,7 +28,7 @@ struct CubeCells {
   struct Square {
     CellId square = no_cell;
     std::vector<std::uint32_t> events;              ///< as in SquareCells
-    std::vector<std::uint32_t> component_of_event;  ///< in the square
+    std::vector<std::uint32_t> component_of_event;  ///< in the square; `outside` where it is on no kept wall
     std::vector<std::uint32_t> component;           ///< in the cube, of each component in the square
   };
   std::vector<Square> squares;
@@ -34,14 +40,20 @@ struct CubeCells {
 /// for faces, edges, vertices and the outside, and their proofs: docs/theory/voronoi.md.
 class CubeTest {
  public:
-  CubeTest(const MeshView& mesh, const PolyhedronSites& sites, const LabelGeometry& labels, const FaceLoops& loops,
-           const SurfaceInCells& surface, const CellTree& tree)
-      : mesh_(mesh), sites_(sites), labels_(labels), loops_(loops), surface_(surface), tree_(tree) {}
+  CubeTest(const VoronoiSolid& solid, const SurfaceInCells& surface, const CellTree& tree)
+      : solid_(solid),
+        mesh_(solid.mesh),
+        sites_(solid.sites),
+        labels_(solid.labels),
+        loops_(solid.loops),
+        surface_(surface),
+        tree_(tree) {}
 
   [[nodiscard]] CubeCells run(const GridCube& cube) const;
 
  private:
   friend class CubeAnalysis;
+  const VoronoiSolid& solid_;
   const MeshView mesh_;
   const PolyhedronSites& sites_;
   const LabelGeometry& labels_;

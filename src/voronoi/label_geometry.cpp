@@ -287,8 +287,11 @@ void LabelGeometry::add_neighbours(const SiteTable& table, const PolyhedronSites
 }
 
 bool LabelGeometry::are_incident(std::uint32_t site, LabelIndex label) const {
-  return std::binary_search(neighbours_.begin(), neighbours_.end(),
-                            std::array<std::uint32_t, 2>{site, labels_[label].site});
+  return are_neighbours(site, labels_[label].site);
+}
+
+bool LabelGeometry::are_neighbours(std::uint32_t site, std::uint32_t other) const {
+  return std::binary_search(neighbours_.begin(), neighbours_.end(), std::array<std::uint32_t, 2>{site, other});
 }
 
 }  // namespace blum::voronoi

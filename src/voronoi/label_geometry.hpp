@@ -143,6 +143,8 @@ class LabelGeometry {
   /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
   /// only at planes of their domains.
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
+  /// The same of two sites.
+  [[nodiscard]] bool are_neighbours(std::uint32_t site, std::uint32_t other) const;
   /// Vertices whose cones are thinner than 1e-12: dents by rounding in faces that are flat but for that. No grid in
   /// double could meet their regions.
   [[nodiscard]] std::span<const LabelIndex> thin_vertices() const { return thin_vertices_; }

@@ -1,6 +1,7 @@
 #include "voronoi/square_cells.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "blum/core/union_find.hpp"
 
@@ -62,6 +63,36 @@ void find_bodies(const GridSquare& square, SquareCells& out) {
 
 }  // namespace
 
+EventComponents join_events(std::span<const std::uint32_t> region_of_run) {
+  const auto count = static_cast<std::uint32_t>(region_of_run.size());
+  EventComponents out;
+  if (count == 0) return out;
+  detail::UnionFind joined(count);
+  const std::uint32_t regions = *std::max_element(region_of_run.begin(), region_of_run.end()) + 1;
+  std::vector<std::uint32_t> first(regions, outside);
+  std::vector<std::uint32_t> last(regions, outside);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t region = region_of_run[k];
+    if (first[region] == outside) {
+      first[region] = k;
+    } else {
+      joined.join(last[region], k - 1);  // the event behind the last run, and the one before this
+    }
+    last[region] = k;
+  }
+  for (std::uint32_t region = 0; region < regions; ++region) {
+    if (first[region] != outside) joined.join(last[region], (first[region] + count - 1) % count);
+  }
+  out.of.assign(count, 0);
+  std::vector<std::uint32_t> number(count, outside);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    std::uint32_t& of_set = number[joined.find(k)];
+    if (of_set == outside) of_set = out.count++;
+    out.of[k] = of_set;
+  }
+  return out;
+}
+
 SquareCells square_cells(const CellTree& tree, const LabelGeometry& labels, const GridSquare& square) {
   SquareCells out;
   follow_border(tree, square, out);
@@ -75,29 +106,11 @@ SquareCells square_cells(const CellTree& tree, const LabelGeometry& labels, cons
     run.piece = static_cast<std::uint32_t>(found - out.pieces.begin());
     if (found == out.pieces.end()) out.pieces.push_back({site, run.body});
   }
-  const auto count = static_cast<std::uint32_t>(out.events.size());
-  detail::UnionFind joined(count);
-  std::vector<std::uint32_t> first(out.pieces.size(), outside);
-  std::vector<std::uint32_t> last(out.pieces.size(), outside);
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const std::uint32_t piece = out.runs[k].piece;
-    if (first[piece] == outside) {
-      first[piece] = k;
-    } else {
-      joined.join(last[piece], k - 1);  // the event behind the last run, and the one before this
-    }
-    last[piece] = k;
-  }
-  for (std::size_t piece = 0; piece < out.pieces.size() && count > 0; ++piece) {
-    joined.join(last[piece], (first[piece] + count - 1) % count);
-  }
-  out.component.assign(count, 0);
-  std::vector<std::uint32_t> number(count, outside);
-  for (std::uint32_t k = 0; k < count; ++k) {
-    std::uint32_t& of_set = number[joined.find(k)];
-    if (of_set == outside) of_set = out.component_count++;
-    out.component[k] = of_set;
-  }
+  std::vector<std::uint32_t> piece_of_run;
+  for (std::size_t k = 0; k < out.events.size(); ++k) piece_of_run.push_back(out.runs[k].piece);
+  EventComponents components = join_events(piece_of_run);
+  out.component = std::move(components.of);
+  out.component_count = components.count;
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "voronoi/cell_tree.hpp"
@@ -46,6 +47,18 @@ struct SquareCells {
   std::uint32_t component_count = 0;
   std::vector<ArcOfRun> arcs;
 };
+
+/// The components that events around a border belong to, where parts of the border that lie in one region are joined
+/// in the square: the boundary of a region leads from each of its runs to the next one.
+struct EventComponents {
+  std::vector<std::uint32_t> of;  ///< of each event
+  std::uint32_t count = 0;
+};
+
+/// @param region_of_run  from 0; run k lies before event k, and behind the one before it. One for each event. Regions
+/// do not cross: of four runs around the border the first and third are never of one region, and the other two of
+/// another one.
+[[nodiscard]] EventComponents join_events(std::span<const std::uint32_t> region_of_run);
 
 [[nodiscard]] SquareCells square_cells(const CellTree& tree, const LabelGeometry& labels, const GridSquare& square);
 

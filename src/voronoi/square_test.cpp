@@ -6,8 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "blum/core/union_find.hpp"
 #include "voronoi/governors.hpp"
+#include "voronoi/surface_chains.hpp"
 
 namespace blum::voronoi {
 namespace {
@@ -51,7 +51,9 @@ bool is_positive(double first, double middle, double last) {
 
 bool SquareTest::resolve(GridSquare& square) const {
   if (square.state == SquareState::resolved) return true;
-  if (!find_chains(square)) return false;
+  std::optional<SurfaceChains> chains = surface_chains(tree_, surface_, square);
+  if (!chains) return false;
+  square.chains = std::move(chains->ends);
   const std::vector<BorderArc> arcs = border(square);
   const bool is_outside = square.chains.empty() && std::all_of(arcs.begin(), arcs.end(), [](const BorderArc& arc) {
                             return arc.label == outside;
@@ -92,54 +94,6 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, co
   const std::span<const Vec3d> corners = labels_.corners(label);
   return std::any_of(corners.begin(), corners.end(),
                      [&](const Vec3d& corner) { return is_absent(label, all, part, {by_incident, corner}, 0); });
-}
-
-/// The surface runs along triangles from an event of the border or an edge of the mesh to the next.
-bool SquareTest::find_chains(GridSquare& square) const {
-  square.chains.clear();
-  if (square.triangles.empty()) return true;
-  std::vector<std::array<std::uint32_t, 2>> nodes;  // triangle, node
-  std::vector<std::uint32_t> events;                // of the first nodes
-  for (const CellId id : square.edges) {
-    const GridEdge& edge = tree_.edges[id];
-    for (std::uint32_t k = edge.first_event; k < edge.last_event; ++k) {
-      const std::optional<LabelIndex> triangle = tree_.events[k].crossed();
-      if (!triangle) continue;
-      nodes.push_back({*triangle, static_cast<std::uint32_t>(events.size())});
-      events.push_back(k);
-    }
-  }
-  auto count = static_cast<std::uint32_t>(events.size());
-  for (const std::uint32_t t : square.triangles) {
-    for (const EdgeId edge : surface_.table().triangle_edges()[t]) {
-      if (surface_.pierces(edge.value, square)) nodes.push_back({t, count + edge.value});
-    }
-  }
-  // Edges are numbered by their rank.
-  std::vector<std::uint32_t> edges;
-  for (const auto& [triangle, node] : nodes) {
-    if (node >= count) edges.push_back(node);
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  for (auto& [triangle, node] : nodes) {
-    if (node >= count) {
-      node = count + static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), node) - edges.begin());
-    }
-  }
-  std::sort(nodes.begin(), nodes.end());
-  detail::UnionFind joined(count + edges.size());
-  for (std::size_t k = 1; k < nodes.size(); ++k) {
-    if (nodes[k][0] == nodes[k - 1][0]) joined.join(nodes[k][1], nodes[k - 1][1]);
-  }
-  std::vector<std::vector<std::uint32_t>> ends(count + edges.size());
-  for (std::uint32_t k = 0; k < count; ++k) ends[joined.find(k)].push_back(events[k]);
-  for (std::uint32_t k = 0; k < ends.size(); ++k) {
-    if (joined.find(k) != k) continue;
-    if (ends[k].size() != 2) return false;  // a closed curve, where there is none
-    square.chains.push_back({ends[k][0], ends[k][1]});
-  }
-  return true;
 }
 
 std::vector<SquareTest::BorderArc> SquareTest::border(const GridSquare& square) const {
@@ -376,6 +330,16 @@ SquareTest::Polygon SquareTest::in_domain(LabelIndex label, Polygon part) const 
     part = clipped(part, margin, [&](const Vec3d& q) { return labels_[label].height(q); });
   }
   return part;
+}
+
+bool SquareTest::is_closest_nowhere(LabelIndex label, std::span<const LabelIndex> all, const Polygon& part) const {
+  return is_absent(label, all, part, {}, 0);
+}
+
+SquareTest::Polygon SquareTest::along_plane(LabelIndex label, const DomainPlane& plane,
+                                            const GridSquare& square) const {
+  const double margin = 2 * labels_.rounding();
+  return clipped(in_domain(label, polygon(square)), margin, [&](const Vec3d& q) { return -plane.height(q); });
 }
 
 /// Whether the region of a site has no border with that of another label in a square, because their domains have no

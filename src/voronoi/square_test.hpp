@@ -29,8 +29,13 @@ class SquareTest {
   /// Whether it is resolved; then its chains are set.
   bool resolve(GridSquare& square) const;
 
- private:
   using Polygon = std::vector<Vec3d>;
+  /// A strip that holds where a plane of a label's domain passes its domain in a square.
+  [[nodiscard]] Polygon along_plane(LabelIndex label, const DomainPlane& plane, const GridSquare& square) const;
+  /// Whether some other label is closer than a given one all over a part of a square.
+  [[nodiscard]] bool is_closest_nowhere(LabelIndex label, std::span<const LabelIndex> all, const Polygon& part) const;
+
+ private:
 
   /// An arc of the border, relative to the centre of the labels.
   struct BorderArc {
@@ -46,7 +51,6 @@ class SquareTest {
   };
 
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const;
-  [[nodiscard]] bool find_chains(GridSquare& square) const;
   [[nodiscard]] std::vector<BorderArc> border(const GridSquare& square) const;
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part,

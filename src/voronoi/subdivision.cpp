@@ -11,16 +11,15 @@ constexpr std::size_t grain = 8;
 
 class Subdivider {
  public:
-  Subdivider(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, const SiteLabels& exact,
-             const LabelGeometry& labels, const FaceLoops& loops, const SubdivisionOptions& options, Subdivision& out,
-             const Context& context)
+  Subdivider(const VoronoiSolid& solid, const SubdivisionOptions& options, Subdivision& out, const Context& context)
       : options_(options),
         out_(out),
         context_(context),
-        splitter_(mesh, exact, labels, out.tree),
-        surface_(mesh, table, out.tree.lattice),
-        square_test_(labels, surface_, out.tree),
-        cube_test_(mesh, sites, labels, loops, surface_, out.tree) {}
+        splitter_(solid.mesh, solid.exact, solid.labels, out.tree),
+        surface_(solid.mesh, solid.table, out.tree.lattice),
+        square_test_(solid.labels, surface_, out.tree),
+        part_test_(solid, square_test_, surface_, out.tree),
+        cube_test_(solid, surface_, out.tree) {}
 
   void run() {
     splitter_.add_root(options_.grid);
@@ -82,7 +81,7 @@ class Subdivider {
       std::vector<std::uint8_t> is_left(squares.size());
       parallel_for(context_, squares.size(), grain, {}, [&](const WorkRange& range) {
         for (std::size_t k = range.begin; k < range.end; ++k) {
-          is_left[k] = square_test_.resolve(out_.tree.squares[squares[k]]) ? 0 : 1;
+          is_left[k] = part_test_.resolve(out_.tree.squares[squares[k]]) ? 0 : 1;
         }
       });
       std::vector<CellId> left;
@@ -126,16 +125,15 @@ class Subdivider {
   CellSplitter splitter_;
   SurfaceInCells surface_;
   SquareTest square_test_;
+  PartSquareTest part_test_;
   CubeTest cube_test_;
 };
 
 }  // namespace
 
-Subdivision subdivide(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
-                      const SiteLabels& exact, const LabelGeometry& labels, const FaceLoops& loops,
-                      const SubdivisionOptions& options, const Context& context) {
+Subdivision subdivide(const VoronoiSolid& solid, const SubdivisionOptions& options, const Context& context) {
   Subdivision out;
-  Subdivider(mesh, table, sites, exact, labels, loops, options, out, context).run();
+  Subdivider(solid, options, out, context).run();
   return out;
 }
 

@@ -8,7 +8,8 @@
 #include "blum/core/context.hpp"
 #include "voronoi/cell_splitter.hpp"
 #include "voronoi/cube_test.hpp"
-#include "voronoi/square_test.hpp"
+#include "voronoi/part_square_test.hpp"
+#include "voronoi/voronoi_solid.hpp"
 
 namespace blum::voronoi {
 
@@ -40,8 +41,7 @@ struct Subdivision {
 };
 
 /// Splits a cube around the mesh until each leaf passes CubeTest, or is at the largest depth.
-[[nodiscard]] Subdivision subdivide(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
-                                    const SiteLabels& exact, const LabelGeometry& labels, const FaceLoops& loops,
-                                    const SubdivisionOptions& options, const Context& context);
+[[nodiscard]] Subdivision subdivide(const VoronoiSolid& solid, const SubdivisionOptions& options,
+                                    const Context& context);
 
 }  // namespace blum::voronoi

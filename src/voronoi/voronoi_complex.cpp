@@ -108,6 +108,19 @@ void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiRep
   }
 }
 
+/// Of the part that is asked for (docs/theory/voronoi.md). @param solid  Betti numbers.
+BettiNumbers expected_betti(const VoronoiSolid& sited, const BettiNumbers& solid) {
+  BettiNumbers out = solid;
+  if (sited.rule.is_medial()) return out;
+  out[2] += static_cast<std::int64_t>(sited.exact.site_count() - sited.labels.thin_vertices().size());
+  if (sited.rule.is_all()) {
+    out[1] += static_cast<std::int64_t>(sited.loops.hole_count());
+  } else {
+    out[2] -= static_cast<std::int64_t>(sited.sites.face_count);
+  }
+  return out;
+}
+
 VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, const Context& context) {
   VoronoiComplex out;
   VoronoiReport& report = out.report;
@@ -115,13 +128,10 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   const SiteTable table(mesh, context);
   const BettiNumbers solid = checked_betti(mesh, table, context);
   timer.lap("checks");
-  const PolyhedronSites sites = polyhedron_sites(mesh, table, context);
-  const SiteLabels exact(mesh, table, sites);
-  const LabelGeometry labels(mesh, table, sites, exact);
-  const FaceLoops loops(mesh, table, sites);
-  report.faces = sites.face_count;
-  report.reflex_edges = sites.reflex_edges.size();
-  report.reflex_vertices = sites.reflex_vertices.size();
+  const VoronoiSolid sited(mesh, table, options.part, context);
+  report.faces = sited.sites.face_count;
+  report.reflex_edges = sited.sites.reflex_edges.size();
+  report.reflex_vertices = sited.sites.reflex_vertices.size();
   timer.lap("sites");
   SubdivisionOptions how;
   how.least_depth = least_depth(options.resolution);
@@ -130,7 +140,7 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   const auto divide = [&](int grid) {
     how.grid = grid;
     ++report.grids;
-    return subdivide(mesh, table, sites, exact, labels, loops, how, context);
+    return subdivide(sited, how, context);
   };
   Subdivision cells = divide(0);
   for (int grid = 1; grid < options.grids && may_pass_elsewhere(cells); ++grid) {
@@ -138,14 +148,12 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
     if (obstacles(other) < obstacles(cells)) cells = std::move(other);
   }
   timer.lap("cells");
-  add_facts(cells, labels, report);
+  add_facts(cells, sited.labels, report);
   const SurfaceInCells surface(mesh, table, cells.tree.lattice);
-  out.complex = assemble(cells, CubeTest(mesh, sites, labels, loops, surface, cells.tree), labels, context);
+  out.complex = assemble(cells, CubeTest(sited, surface, cells.tree), sited.labels, context);
   timer.lap("complex");
   report.found = homology(out.complex.view(), context);
-  report.expected = solid;
-  report.expected[1] += static_cast<std::int64_t>(loops.hole_count());
-  report.expected[2] += static_cast<std::int64_t>(exact.site_count() - report.thin_vertices);
+  report.expected = expected_betti(sited, solid);
   report.certified = report.failing.empty() && report.undecided_lines == 0 && report.contradictions == 0 &&
                      report.found == report.expected;
   timer.lap("homology");

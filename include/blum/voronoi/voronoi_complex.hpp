@@ -19,7 +19,24 @@
 
 namespace blum {
 
+/// What a Voronoi complex is made of.
+enum class VoronoiPart : std::uint8_t {
+  all,          ///< walls between regions, and the surface
+  walls,        ///< without the surface
+  medial_axis,  ///< of the walls those whose points have two footprints: none between a face and its own reflex edge, or
+                ///< an edge and its end
+};
+
+template <>
+struct Description<VoronoiPart> {
+  static constexpr std::string_view name = "VoronoiPart";
+  static constexpr std::array values{NamedValue{VoronoiPart::all, "all"}, NamedValue{VoronoiPart::walls, "walls"},
+                                     NamedValue{VoronoiPart::medial_axis, "medial axis"}};
+};
+
 struct VoronoiOptions {
+  /// What the complex is made of.
+  VoronoiPart part = VoronoiPart::all;
   /// Cubes that meet the solid are at most the side of the box around it over this, 1 to 1024.
   int resolution = 16;
   /// How often cubes are split at most, 1 to 18.

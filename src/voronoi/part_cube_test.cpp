@@ -1,0 +1,182 @@
+#include "voronoi/part_cube_test.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace blum::voronoi {
+
+VoronoiObstacle PartOfCube::find(CubeCells& out) {
+  collect();
+  join_events();
+  const VoronoiObstacle obstacle = add_dropped_walls();
+  if (obstacle != VoronoiObstacle::none) return obstacle;
+  add_lines_and_points();
+  const std::int64_t components = static_cast<std::int64_t>(in_.component_count) - euler_;
+  out.component_count = 0;
+  number_components(out);
+  const std::int64_t on_boundary = out.component_count;
+  if (components != on_boundary) {
+    // Some of those on the boundary are one inside: which, is clear where all are.
+    if (components != 1 || on_boundary == 0) return VoronoiObstacle::joins;
+    for (CubeCells::Square& square : out.squares) square.component.assign(square.component.size(), 0);
+    out.component_count = 1;
+  }
+  return VoronoiObstacle::none;
+}
+
+void PartOfCube::collect() {
+  std::uint32_t count = 0;
+  for (const SquareOfCube& square : in_.squares) {
+    parts_.push_back(part_square(square.cells, tree_.squares[square.id], solid_.rule));
+    first_.push_back(count);
+    count += parts_.back().component_count;
+    const auto s = static_cast<std::uint32_t>(parts_.size() - 1);
+    for (const auto& [a, b] : parts_.back().arcs) {
+      const Pair sites{square.cells.pieces[a].site, square.cells.pieces[b].site};
+      walls_[{std::min(sites[0], sites[1]), std::max(sites[0], sites[1])}].push_back(s);
+    }
+    // Of what is dropped arcs in a square count as -1, points as 1.
+    corners_.insert(parts_.back().corners.begin(), parts_.back().corners.end());
+    euler_ += static_cast<std::int64_t>(parts_.back().corners.size());
+    euler_ -= static_cast<std::int64_t>(parts_.back().arcs.size());
+  }
+  joined_.reset(count);
+}
+
+/// Joins components across edges of the grid, and counts dropped events.
+void PartOfCube::join_events() {
+  struct AtEvent {
+    std::uint32_t event, square, component;
+    Pair sites;
+  };
+  std::vector<AtEvent> all;
+  for (std::uint32_t s = 0; s < in_.squares.size(); ++s) {
+    const SquareCells& cells = in_.squares[s].cells;
+    for (std::size_t k = 0; k < cells.events.size(); ++k) {
+      const std::uint32_t before = cells.pieces[cells.runs[k].piece].site;
+      const std::uint32_t behind = cells.pieces[cells.runs[(k + 1) % cells.runs.size()].piece].site;
+      const std::uint32_t of = parts_[s].component[k];
+      all.push_back({cells.events[k], s, of == outside ? outside : first_[s] + of,
+                     {std::min(before, behind), std::max(before, behind)}});
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const AtEvent& a, const AtEvent& b) {
+    return std::pair(a.event, a.square) < std::pair(b.event, b.square);
+  });
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    if (all[k].event != all[k - 1].event) continue;
+    if (all[k].component != outside) {
+      joined_.join(all[k].component, all[k - 1].component);
+    } else {
+      ++euler_;
+      events_of_walls_[all[k].sites].push_back({all[k - 1].square, all[k].square});
+    }
+  }
+}
+
+VoronoiObstacle PartOfCube::add_dropped_walls() {
+  // Without its boundary each counts as 1.
+  if (in_.has_inner_face) return VoronoiObstacle::enclosed;
+  euler_ += static_cast<std::int64_t>(in_.face_parts);
+  if (!solid_.rule.is_medial()) return VoronoiObstacle::none;
+  if (is_any_wall_inside()) return VoronoiObstacle::enclosed;
+  for (const auto& [sites, squares] : walls_) {
+    if (sites[1] == outside) continue;
+    if (solid_.rule.is_vertex(sites[1])) {
+      ++euler_;  // what is closest to a vertex is convex, and so is its border to an edge
+      continue;
+    }
+    const VoronoiObstacle obstacle = add_edge_walls(sites, squares);
+    if (obstacle != VoronoiObstacle::none) return obstacle;
+  }
+  return VoronoiObstacle::none;
+}
+
+/// Whether a wall that begins at an edge or vertex in the cube, or a line at a vertex, does not reach the boundary.
+bool PartOfCube::is_any_wall_inside() const {
+  const auto has_wall = [&](std::uint32_t low, std::uint32_t high) { return walls_.contains({low, high}); };
+  for (const std::uint32_t edge : in_.edges) {
+    const std::optional<std::uint32_t> site = solid_.labels.site_of_edge(edge);
+    if (!site) continue;
+    for (const std::uint32_t t : solid_.sites.triangles_of[edge]) {
+      if (!has_wall(solid_.sites.face_of[t], *site)) return true;
+    }
+  }
+  for (const std::uint32_t v : in_.vertices) {
+    const std::optional<std::uint32_t> site = solid_.labels.site_of_vertex(v);
+    if (!site) continue;
+    const ReflexCorner& corner = solid_.corners[v];
+    for (const std::uint32_t edge : corner.edges) {
+      if (!has_wall(edge, *site)) return true;
+    }
+    for (const std::uint32_t face : corner.faces) {
+      if (!corners_.contains({face, *site})) return true;
+    }
+  }
+  return false;
+}
+
+bool PartOfCube::is_lower(std::uint32_t side, std::uint32_t face) const {
+  // Any of its triangles: the numbers of faces' labels are those of triangles.
+  const double outwards = side % 2 == 1 ? 1 : -1;
+  return solid_.labels[solid_.triangle_of_face[face]].direction[side / 2] * outwards < -1e-15;
+}
+
+/// Walls between a face and a reflex edge lie in a plane. On the way along the face's normal to the edge each point stays
+/// in them, until it comes to the edge or leaves the cube: so there are as many as parts of that.
+VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares) {
+  const auto [face, site] = sites;
+  const auto is_low = [&, f = face](std::uint32_t s) { return is_lower(in_.squares[s].side, f); };
+  const std::uint32_t edge = solid_.sites.reflex_edges[site - solid_.sites.face_count];
+  const auto count = static_cast<std::uint32_t>(squares.size());
+  const auto rank = [&](std::uint32_t s) {
+    return static_cast<std::uint32_t>(std::lower_bound(squares.begin(), squares.end(), s) - squares.begin());
+  };
+  // The last one is the edge's part in the cube.
+  detail::UnionFind parts(count + 1);
+  for (const auto& [s, t] : events_of_walls_[sites]) {
+    if (is_low(s) && is_low(t)) parts.join(rank(s), rank(t));
+  }
+  for (const auto& [pierced_by, s] : in_.piercings) {
+    if (pierced_by == edge && is_low(s)) parts.join(rank(s), count);
+  }
+  const bool has_edge = std::binary_search(in_.edges.begin(), in_.edges.end(), edge);
+  std::set<std::uint32_t> found;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (is_low(squares[k])) found.insert(parts.find(k));
+  }
+  if (has_edge) found.insert(parts.find(count));
+  if (found.empty()) return VoronoiObstacle::contradiction;
+  euler_ += static_cast<std::int64_t>(found.size());
+  return VoronoiObstacle::none;
+}
+
+/// Lines around which all walls are dropped: a reflex edge, the normal of a face at a reflex vertex. Each meets the cube
+/// in one part, which counts as 1 less than its ends on the boundary. Points: vertices.
+void PartOfCube::add_lines_and_points() {
+  if (!solid_.rule.is_medial()) return;
+  euler_ -= static_cast<std::int64_t>(corners_.size());
+  for (const std::uint32_t edge : in_.edges) euler_ -= solid_.labels.site_of_edge(edge) ? 1 : 0;
+  for (const auto& [edge, s] : in_.piercings) euler_ += solid_.labels.site_of_edge(edge) ? 1 : 0;
+  for (const std::uint32_t v : in_.vertices) {
+    if (solid_.labels.site_of_vertex(v) && solid_.corners[v].all_reflex) ++euler_;
+  }
+}
+
+/// Numbers the components on the boundary.
+void PartOfCube::number_components(CubeCells& out) {
+  std::map<std::uint32_t, std::uint32_t> number;
+  for (std::uint32_t s = 0; s < in_.squares.size(); ++s) {
+    CubeCells::Square& made = out.squares.emplace_back();
+    made.square = in_.squares[s].id;
+    made.events = in_.squares[s].cells.events;
+    made.component_of_event = std::move(parts_[s].component);
+    for (std::uint32_t k = 0; k < parts_[s].component_count; ++k) {
+      const auto [at, is_new] = number.try_emplace(joined_.find(first_[s] + k), out.component_count);
+      if (is_new) ++out.component_count;
+      made.component.push_back(at->second);
+    }
+  }
+}
+
+}  // namespace blum::voronoi

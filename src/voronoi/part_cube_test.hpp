@@ -1,0 +1,65 @@
+// Blum: whether a part of the diagram in a cube is contractible. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "blum/core/union_find.hpp"
+#include "voronoi/cube_test.hpp"
+#include "voronoi/part_cells.hpp"
+#include "voronoi/voronoi_solid.hpp"
+
+namespace blum::voronoi {
+
+/// What is known of a cube in which all components of walls and surface are acyclic.
+struct CubeContents {
+  std::span<const SquareOfCube> squares;
+  std::uint32_t component_count = 0;                        ///< of walls and surface in the cube
+  std::span<const std::uint32_t> vertices, edges;           ///< of the mesh that meet the cube, rising
+  std::span<const std::array<std::uint32_t, 2>> piercings;  ///< edge, number of the square
+  std::size_t face_parts = 0;                               ///< connected parts of faces in the cube
+  bool has_inner_face = false;                              ///< whether one of them does not reach the boundary
+};
+
+/// Decides whether all components of a part of the diagram in a cube are acyclic, which they are where each dropped
+/// wall in it reaches the boundary, and which parts on the boundary belong together. Their number is the sum of Euler
+/// numbers of what is dropped (docs/theory/voronoi.md, "Parts").
+class PartOfCube {
+ public:
+  PartOfCube(const VoronoiSolid& solid, const CellTree& tree, const CubeContents& contents)
+      : solid_(solid), tree_(tree), in_(contents) {}
+
+  /// Fills in the components where nothing is in the way.
+  [[nodiscard]] VoronoiObstacle find(CubeCells& out);
+
+ private:
+  using Pair = std::array<std::uint32_t, 2>;
+  /// Where walls between two sites are dropped: in which squares.
+  using WallsOnBoundary = std::map<Pair, std::vector<std::uint32_t>>;
+
+  void collect();
+  void join_events();
+  [[nodiscard]] VoronoiObstacle add_dropped_walls();
+  [[nodiscard]] VoronoiObstacle add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares);
+  [[nodiscard]] bool is_any_wall_inside() const;
+  void add_lines_and_points();
+  [[nodiscard]] bool is_lower(std::uint32_t side, std::uint32_t face) const;
+  void number_components(CubeCells& out);
+
+  const VoronoiSolid& solid_;
+  const CellTree& tree_;
+  const CubeContents& in_;
+  std::vector<PartSquare> parts_;
+  std::vector<std::uint32_t> first_;  ///< of each square's components
+  detail::UnionFind joined_;
+  WallsOnBoundary walls_;
+  std::map<Pair, std::vector<Pair>> events_of_walls_;  ///< dropped events between two sites: both squares of each
+  std::set<Pair> corners_;                             ///< face, vertex
+  std::int64_t euler_ = 0;                             ///< of what is dropped in the cube
+};
+
+}  // namespace blum::voronoi

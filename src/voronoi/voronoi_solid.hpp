@@ -1,0 +1,51 @@
+// Blum: all that is known of a polyhedron before space is divided. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/voronoi/polyhedron_sites.hpp"
+#include "voronoi/face_loops.hpp"
+#include "voronoi/label_geometry.hpp"
+#include "voronoi/part_cells.hpp"
+#include "voronoi/reflex_corners.hpp"
+#include "voronoi/site_labels.hpp"
+
+namespace blum::voronoi {
+
+/// A polyhedron with its sites, and the part of its diagram that is asked for. Lives no longer than the mesh and its
+/// table, and stays where it is.
+struct VoronoiSolid {
+  VoronoiSolid(const MeshView& of, const SiteTable& table_of, VoronoiPart part, const Context& context = {})
+      : mesh(of),
+        table(table_of),
+        sites(polyhedron_sites(mesh, table, context)),
+        exact(mesh, table, sites),
+        labels(mesh, table, sites, exact),
+        loops(mesh, table, sites),
+        rule(part, sites, labels) {
+    triangle_of_face.resize(sites.face_count);
+    for (std::uint32_t t = 0; t < sites.face_of.size(); ++t) triangle_of_face[sites.face_of[t]] = t;
+    if (rule.is_medial()) corners = reflex_corners(mesh, table, sites, labels);
+  }
+  VoronoiSolid(const VoronoiSolid&) = delete;
+  VoronoiSolid& operator=(const VoronoiSolid&) = delete;
+  VoronoiSolid(VoronoiSolid&&) = delete;
+  VoronoiSolid& operator=(VoronoiSolid&&) = delete;
+  ~VoronoiSolid() = default;
+
+  const MeshView mesh;
+  const SiteTable& table;
+  const PolyhedronSites sites;
+  const SiteLabels exact;
+  const LabelGeometry labels;
+  const FaceLoops loops;
+  const PartRule rule;
+  std::vector<std::uint32_t> triangle_of_face;  ///< any of each
+  std::vector<ReflexCorner> corners;  ///< of each vertex, for a medial axis
+};
+
+}  // namespace blum::voronoi
