@@ -5,49 +5,10 @@
 
 #include "blum/geometry/closest_point.hpp"
 #include "voronoi/dual_cone.hpp"
+#include "voronoi/unit_normal.hpp"
 
 namespace blum::voronoi {
 namespace {
-
-/// A sum of two doubles that do not overlap.
-struct DoubleDouble {
-  double high = 0, low = 0;
-};
-
-DoubleDouble exact_difference(double a, double b) {
-  const double high = a - b;
-  const double part = a - high;
-  return {high, (a - (high + part)) + (part - b)};
-}
-
-/// a b - c d, to a few units of the last place of the products times 1e-16.
-double difference_of_products(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
-                              const DoubleDouble& d) {
-  const double ab = a.high * b.high;
-  const double cd = c.high * d.high;
-  const double ab_low = std::fma(a.high, b.high, -ab) + (a.high * b.low + a.low * b.high);
-  const double cd_low = std::fma(c.high, d.high, -cd) + (c.high * d.low + c.low * d.high);
-  const DoubleDouble high = exact_difference(ab, cd);
-  return high.high + (high.low + (ab_low - cd_low));
-}
-
-Vec3d unit(const Vec3d& v) {
-  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  const Vec3d scaled = v / largest;
-  return scaled / length(scaled);
-}
-
-/// The direction of (b - a) x (c - a), also of triangles that are nearly lines.
-Vec3d unit_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  std::array<DoubleDouble, 3> u;
-  std::array<DoubleDouble, 3> v;
-  for (std::size_t k = 0; k < 3; ++k) {
-    u[k] = exact_difference(b[k], a[k]);
-    v[k] = exact_difference(c[k], a[k]);
-  }
-  return unit({difference_of_products(u[1], v[2], u[2], v[1]), difference_of_products(u[2], v[0], u[0], v[2]),
-               difference_of_products(u[0], v[1], u[1], v[0])});
-}
 
 /// Whether all rays of a vertex's cone are one but for rounding.
 bool is_thin(const MeshView& mesh, const SiteTable& table, std::span<const std::uint32_t> edges, std::uint32_t v) {

@@ -152,14 +152,15 @@ VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<
 }
 
 /// Lines around which all walls are dropped: a reflex edge, the normal of a face at a reflex vertex. Each meets the cube
-/// in one part, which counts as 1 less than its ends on the boundary. Points: vertices.
+/// in one part, which counts as 1 less than its ends on the boundary. Points: reflex vertices, where the parts of the axis
+/// that meet in one alone are kept apart.
 void PartOfCube::add_lines_and_points() {
   if (!solid_.rule.is_medial()) return;
   euler_ -= static_cast<std::int64_t>(corners_.size());
   for (const std::uint32_t edge : in_.edges) euler_ -= solid_.labels.site_of_edge(edge) ? 1 : 0;
   for (const auto& [edge, s] : in_.piercings) euler_ += solid_.labels.site_of_edge(edge) ? 1 : 0;
   for (const std::uint32_t v : in_.vertices) {
-    if (solid_.labels.site_of_vertex(v) && solid_.corners[v].all_reflex) ++euler_;
+    if (solid_.labels.site_of_vertex(v)) euler_ += 1 - solid_.corners[v].axis_parts();
   }
 }
 

@@ -88,6 +88,11 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
     return of.beyond != outside && labels_[of.beyond].site == other;
   });
   if (plane == planes.end()) return Answer::unknown;
+  const ReflexCorner* corner = nullptr;
+  if (rule_.is_vertex(other)) {
+    corner = &corners_[sites_.reflex_vertices[other - sites_.face_count - sites_.reflex_edges.size()]];
+    if (std::find(corner->edges.begin(), corner->edges.end(), edge) == corner->edges.end()) return Answer::no;
+  }
   // In the plane between both domains one is as close as the other.
   const std::vector<Vec3d> strip = test_.along_plane(*own, *plane, square);
   if (strip.empty() || test_.is_closest_nowhere(*own, square.governors, strip)) return Answer::no;
@@ -100,7 +105,39 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
     Vec3d q = strip[0] + (strip[far] - strip[0]) * ((k + 0.5) / samples);
     if (is_closest(*own, other, q, square)) return Answer::yes;
   }
+  if (rule_.is_vertex(other)) {
+    const std::size_t facet = static_cast<std::size_t>(
+        std::find(corner->edges.begin(), corner->edges.end(), edge) - corner->edges.begin());
+    if (have_wall_at_vertex(plane->beyond, corner->rays[facet], square)) return Answer::yes;
+  }
   return Answer::unknown;
+}
+
+/// Whether a point of a facet of a vertex's cone is closest to the vertex, however narrow the facet is: then no label
+/// that has this vertex for a corner is closer to it.
+bool PartSquareTest::have_wall_at_vertex(LabelIndex vertex, const std::array<Vec3d, 2>& rays,
+                                         const GridSquare& square) const {
+  const Vec3d& v = labels_[vertex].point;
+  const Vec3d low = tree_.lattice.at(square.low) - labels_.centre();
+  const Vec3d high = tree_.lattice.at(square.high()) - labels_.centre();
+  const double margin = 64 * labels_.rounding();
+  constexpr int samples = 5;
+  for (int k = 0; k < samples; ++k) {
+    const Vec3d way = rays[0] + (rays[1] - rays[0]) * ((k + 0.5) / samples);
+    const double reach = (low[square.axis] - v[square.axis]) / way[square.axis];
+    if (!(reach > 0)) continue;
+    const Vec3d q = v + way * reach;
+    bool is_free = true;
+    for (const std::size_t axis : {next_axis(square.axis), next_axis(next_axis(square.axis))}) {
+      is_free = is_free && q[axis] > low[axis] + margin && q[axis] < high[axis] - margin;
+    }
+    const double least = length(q - v) + margin;
+    is_free = is_free && std::all_of(square.governors.begin(), square.governors.end(), [&](LabelIndex other) {
+                return labels_.has_corner(other, v) || length(labels_.closest_point(other, q) - q) > least;
+              });
+    if (is_free) return true;
+  }
+  return false;
 }
 
 /// Whether nothing but a label and a site beside it is as close to a point, and points as near to it as rounding.

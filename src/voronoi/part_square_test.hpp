@@ -24,6 +24,7 @@ class PartSquareTest {
         labels_(solid.labels),
         surface_(surface),
         sites_(solid.sites),
+        corners_(solid.corners),
         tree_(tree) {}
 
   /// Whether it is resolved; then its inner arcs are set.
@@ -35,6 +36,8 @@ class PartSquareTest {
   void add_surface(const SurfaceChains& chains, GridSquare& square) const;
   [[nodiscard]] bool add_walls(const SquareCells& cells, GridSquare& square) const;
   [[nodiscard]] Answer have_wall(std::uint32_t low, std::uint32_t high, const GridSquare& square) const;
+  [[nodiscard]] bool have_wall_at_vertex(LabelIndex vertex, const std::array<Vec3d, 2>& rays,
+                                         const GridSquare& square) const;
   [[nodiscard]] bool is_closest(LabelIndex label, std::uint32_t beside, const Vec3d& q,
                                 const GridSquare& square) const;
 
@@ -43,6 +46,7 @@ class PartSquareTest {
   const LabelGeometry& labels_;
   const SurfaceInCells& surface_;
   const PolyhedronSites& sites_;
+  const std::vector<ReflexCorner>& corners_;
   const CellTree& tree_;
 };
 

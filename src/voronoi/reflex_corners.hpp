@@ -1,9 +1,11 @@
 // Blum: walls and lines that end at reflex vertices. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "blum/core/vec3.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
@@ -16,8 +18,15 @@ namespace blum::voronoi {
 /// normals of faces.
 struct ReflexCorner {
   std::vector<std::uint32_t> edges;  ///< sites
+  /// Directions of length 1, of the two rays between which each of their facets lies.
+  std::vector<std::array<Vec3d, 2>> rays;
   std::vector<std::uint32_t> faces;  ///< sites, of the normals
-  bool all_reflex = false;           ///< whether all edges that are not flat are reflex
+
+  /// Into how many parts the medial axis falls next to v: around v, walls that are kept are a forest, and Euler's
+  /// formula counts its trees. None where all edges are reflex; more than one only meet in v.
+  [[nodiscard]] std::int64_t axis_parts() const {
+    return static_cast<std::int64_t>(edges.size()) - static_cast<std::int64_t>(faces.size());
+  }
 };
 
 /// That of each vertex of a mesh, empty where it is no site or a thin one.
