@@ -55,8 +55,8 @@ struct GridEdge {
 /// Whether a square's border is known to tell what is inside.
 enum class SquareState : std::uint8_t { unknown, resolved };
 
-/// A wall or part of the surface in a square that a part of the diagram does without (PartRule), and that need not reach
-/// its border.
+/// A wall or part of the surface in a square that a part of the diagram does without (PartRule), and that need not
+/// reach its border.
 struct InnerArc {
   std::uint32_t first = 0;   ///< site on one side
   std::uint32_t second = 0;  ///< site on the other; `outside` of the surface

@@ -72,20 +72,53 @@ class PartOfSquare {
     return std::binary_search(out_.arcs.begin(), out_.arcs.end(), Pair{std::min(a, b), std::max(a, b)});
   }
 
-  /// Around the normal of a face at a vertex lie the face, one of its edges, the vertex, and the other edge.
+  /// Around the normal of a face at a reflex vertex lie the face, one of its edges, the vertex, and the other edge; at
+  /// a vertex in which edges in one line meet, the face and both edges.
   void find_corners() {
-    const auto count = static_cast<std::uint32_t>(cells_.pieces.size());
-    for (std::uint32_t v = 0; v < count; ++v) {
-      if (!rule_.is_vertex(cells_.pieces[v].site)) continue;
-      for (std::uint32_t f = 0; f < count; ++f) {
-        if (!rule_.is_face(cells_.pieces[f].site)) continue;
-        std::size_t edges = 0;
-        for (std::uint32_t e = 0; e < count; ++e) {
-          if (rule_.is_edge(cells_.pieces[e].site) && are_joined(f, e) && are_joined(e, v)) ++edges;
+    for (const auto& [a, b] : out_.arcs) {
+      const std::uint32_t low = cells_.pieces[a].site;
+      const std::uint32_t high = cells_.pieces[b].site;
+      if (const auto v = rule_.passing_vertex(low, high)) {
+        for (std::uint32_t f = 0; f < cells_.pieces.size(); ++f) {
+          const bool is_beside = rule_.is_face(cells_.pieces[f].site) && are_joined(f, a) && are_joined(f, b);
+          if (is_beside) out_.corners.push_back({cells_.pieces[f].site, *v});
         }
-        if (edges == 2) out_.corners.push_back({cells_.pieces[f].site, cells_.pieces[v].site});
-        if (edges > 2) out_.is_told = false;
       }
+    }
+    for (std::uint32_t k = 0; k < cells_.pieces.size(); ++k) {
+      const std::uint32_t site = cells_.pieces[k].site;
+      if (rule_.is_vertex(site)) find_corners_of(k);
+      if (!rule_.is_edge(site)) continue;
+      for (const auto& [edge, v] : rule_.thin_ends(site)) {
+        // It is looked at from the first of its edges.
+        if (rule_.corner(v).edges.front() == site && is_surrounded(v)) out_.corners.push_back({outside, v});
+      }
+    }
+  }
+
+  /// Whether pieces of all faces and edges of a vertex are joined around it.
+  [[nodiscard]] bool is_surrounded(std::uint32_t v) const {
+    const std::vector<std::uint32_t>& edges = rule_.corner(v).edges;
+    return std::all_of(edges.begin(), edges.end(), [&](std::uint32_t edge) {
+      const std::uint32_t of_edge = piece_of(edge, outside);
+      const std::array<std::uint32_t, 2> faces = rule_.faces_of(edge);
+      return of_edge != outside && std::all_of(faces.begin(), faces.end(), [&](std::uint32_t face) {
+               const std::uint32_t of_face = piece_of(face, outside);
+               return of_face != outside && are_joined(of_edge, of_face);
+             });
+    });
+  }
+
+  void find_corners_of(std::uint32_t v) {
+    const auto count = static_cast<std::uint32_t>(cells_.pieces.size());
+    for (std::uint32_t f = 0; f < count; ++f) {
+      if (!rule_.is_face(cells_.pieces[f].site)) continue;
+      std::size_t edges = 0;
+      for (std::uint32_t e = 0; e < count; ++e) {
+        if (rule_.is_edge(cells_.pieces[e].site) && are_joined(f, e) && are_joined(e, v)) ++edges;
+      }
+      if (edges == 2) out_.corners.push_back({cells_.pieces[f].site, rule_.vertex_of(cells_.pieces[v].site)});
+      if (edges > 2) out_.is_told = false;
     }
   }
 
@@ -120,7 +153,45 @@ bool PartRule::drops(std::uint32_t first, std::uint32_t second) const {
   const std::uint32_t low = std::min(first, second);
   const std::uint32_t high = std::max(first, second);
   const bool is_step = (is_face(low) && is_edge(high)) || (is_edge(low) && is_vertex(high));
-  return is_step && labels_.are_neighbours(low, high);
+  return is_step ? labels_.are_neighbours(low, high) : passing_vertex(low, high).has_value();
+}
+
+std::optional<std::uint32_t> PartRule::passing_vertex(std::uint32_t edge, std::uint32_t other) const {
+  const PassingPair key{std::min(edge, other), std::max(edge, other), 0};
+  const auto at = std::lower_bound(passing_.begin(), passing_.end(), key);
+  if (at == passing_.end() || (*at)[0] != key[0] || (*at)[1] != key[1]) return std::nullopt;
+  return (*at)[2];
+}
+
+std::span<const std::array<std::uint32_t, 2>> PartRule::thin_ends(std::uint32_t edge) const {
+  const auto first = std::lower_bound(thin_ends_.begin(), thin_ends_.end(), Pair{edge, 0});
+  const auto last = std::lower_bound(first, thin_ends_.end(), Pair{edge + 1, 0});
+  return {first, last};
+}
+
+std::array<std::uint32_t, 2> PartRule::faces_of(std::uint32_t edge) const {
+  const auto [first, second] = sites_.triangles_of[sites_.reflex_edges[edge - first_edge_]];
+  return {sites_.face_of[first], sites_.face_of[second]};
+}
+
+std::vector<std::array<std::uint32_t, 2>> PartRule::thin_ends_of(std::span<const ReflexCorner> corners) {
+  std::vector<Pair> out;
+  for (std::uint32_t v = 0; v < corners.size(); ++v) {
+    if (!corners[v].is_thin) continue;
+    for (const std::uint32_t edge : corners[v].edges) out.push_back({edge, v});
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<PartRule::PassingPair> PartRule::passing_pairs(std::span<const ReflexCorner> corners) {
+  std::vector<PassingPair> out;
+  for (std::uint32_t v = 0; v < corners.size(); ++v) {
+    const std::vector<std::uint32_t>& edges = corners[v].edges;
+    if (corners[v].is_passing) out.push_back({std::min(edges[0], edges[1]), std::max(edges[0], edges[1]), v});
+  }
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 PartSquare part_square(const SquareCells& cells, const GridSquare& square, const PartRule& rule) {

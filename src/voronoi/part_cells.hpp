@@ -4,12 +4,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "voronoi/cell_tree.hpp"
 #include "voronoi/label_geometry.hpp"
+#include "voronoi/reflex_corners.hpp"
 #include "voronoi/square_cells.hpp"
 
 namespace blum::voronoi {
@@ -17,11 +20,16 @@ namespace blum::voronoi {
 /// Which walls a part of the diagram does without. Regions on both sides of one count as joined across it.
 class PartRule {
  public:
-  PartRule(VoronoiPart part, const PolyhedronSites& sites, const LabelGeometry& labels)
+  PartRule(VoronoiPart part, const PolyhedronSites& sites, const LabelGeometry& labels,
+           std::span<const ReflexCorner> corners)
       : part_(part),
         first_edge_(static_cast<std::uint32_t>(sites.face_count)),
         first_vertex_(static_cast<std::uint32_t>(sites.face_count + sites.reflex_edges.size())),
-        labels_(labels) {}
+        sites_(sites),
+        labels_(labels),
+        corners_(corners),
+        passing_(passing_pairs(corners)),
+        thin_ends_(thin_ends_of(corners)) {}
 
   [[nodiscard]] bool is_all() const { return part_ == VoronoiPart::all; }
   [[nodiscard]] bool is_medial() const { return part_ == VoronoiPart::medial_axis; }
@@ -29,26 +37,50 @@ class PartRule {
   [[nodiscard]] bool is_edge(std::uint32_t site) const { return site >= first_edge_ && site < first_vertex_; }
   [[nodiscard]] bool is_vertex(std::uint32_t site) const { return site >= first_vertex_ && site != outside; }
 
+  /// The vertex of the mesh that is a site.
+  [[nodiscard]] std::uint32_t vertex_of(std::uint32_t site) const {
+    return sites_.reflex_vertices[site - first_vertex_];
+  }
+
   /// Whether walls between two sites, or a site and the outside, are left out: the surface is, and from a medial axis
-  /// what lies between a face and its reflex edges, an edge and its ends, where both footprints are one point.
+  /// what lies between a face and its reflex edges, an edge and its ends, or two edges in one line with a common end,
+  /// where both footprints are one point.
   [[nodiscard]] bool drops(std::uint32_t first, std::uint32_t second) const;
+  /// The vertex of the mesh in which two edges in one line meet: nullopt where sites are no such edges.
+  [[nodiscard]] std::optional<std::uint32_t> passing_vertex(std::uint32_t edge, std::uint32_t other) const;
+  /// Thin vertices at the ends of an edge around which all walls are dropped.
+  [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> thin_ends(std::uint32_t edge) const;
+  /// The faces on both sides of an edge: sites.
+  [[nodiscard]] std::array<std::uint32_t, 2> faces_of(std::uint32_t edge) const;
+  /// By vertices of the mesh.
+  [[nodiscard]] const ReflexCorner& corner(std::uint32_t v) const { return corners_[v]; }
 
  private:
+  /// Two edges, the smaller one first, and a vertex.
+  using PassingPair = std::array<std::uint32_t, 3>;
+  [[nodiscard]] static std::vector<PassingPair> passing_pairs(std::span<const ReflexCorner> corners);
+  [[nodiscard]] static std::vector<std::array<std::uint32_t, 2>> thin_ends_of(std::span<const ReflexCorner> corners);
+
   VoronoiPart part_;
   std::uint32_t first_edge_, first_vertex_;
+  const PolyhedronSites& sites_;
   const LabelGeometry& labels_;
+  std::span<const ReflexCorner> corners_;
+  std::vector<PassingPair> passing_;                     ///< sorted
+  std::vector<std::array<std::uint32_t, 2>> thin_ends_;  ///< edge, vertex: sorted
 };
 
 /// A part of the diagram in a resolved square.
 ///
 /// Pieces are joined across dropped walls. As each is connected and reaches the border, two of them have one arc in
 /// common at most: two would enclose a third piece. Where joined pieces go around something, it is a point around which
-/// all walls are dropped: where a reflex edge pierces the square, or the normal of a face at a reflex vertex
-/// (`corners`); or it is a component of the part that lies strictly inside (then `is_told` is false).
+/// all walls are dropped: where a reflex edge pierces the square, or the normal of a face at a vertex (`corners`); or
+/// it is a component of the part that lies strictly inside (then `is_told` is false).
 struct PartSquare {
-  std::vector<std::array<std::uint32_t, 2>> arcs;     ///< dropped: the pieces on both sides, the smaller one first
-  std::vector<std::array<std::uint32_t, 2>> corners;  ///< sites: face, vertex
-  std::vector<std::uint32_t> component;               ///< of the part, of each event; `outside` of dropped ones
+  std::vector<std::array<std::uint32_t, 2>> arcs;  ///< dropped: the pieces on both sides, the smaller one first
+  std::vector<std::array<std::uint32_t, 2>>
+      corners;                           ///< the site of a face, or `outside` of a thin vertex; a vertex of the mesh
+  std::vector<std::uint32_t> component;  ///< of the part, of each event; `outside` of dropped ones
   std::uint32_t component_count = 0;
   bool is_told = true;
 };

@@ -56,7 +56,9 @@ void PartOfCube::join_events() {
       const std::uint32_t before = cells.pieces[cells.runs[k].piece].site;
       const std::uint32_t behind = cells.pieces[cells.runs[(k + 1) % cells.runs.size()].piece].site;
       const std::uint32_t of = parts_[s].component[k];
-      all.push_back({cells.events[k], s, of == outside ? outside : first_[s] + of,
+      all.push_back({cells.events[k],
+                     s,
+                     of == outside ? outside : first_[s] + of,
                      {std::min(before, behind), std::max(before, behind)}});
     }
   }
@@ -82,7 +84,7 @@ VoronoiObstacle PartOfCube::add_dropped_walls() {
   if (is_any_wall_inside()) return VoronoiObstacle::enclosed;
   for (const auto& [sites, squares] : walls_) {
     if (sites[1] == outside) continue;
-    if (solid_.rule.is_vertex(sites[1])) {
+    if (!solid_.rule.is_face(sites[0])) {
       ++euler_;  // what is closest to a vertex is convex, and so is its border to an edge
       continue;
     }
@@ -94,7 +96,9 @@ VoronoiObstacle PartOfCube::add_dropped_walls() {
 
 /// Whether a wall that begins at an edge or vertex in the cube, or a line at a vertex, does not reach the boundary.
 bool PartOfCube::is_any_wall_inside() const {
-  const auto has_wall = [&](std::uint32_t low, std::uint32_t high) { return walls_.contains({low, high}); };
+  const auto has_wall = [&](std::uint32_t a, std::uint32_t b) {
+    return walls_.contains({std::min(a, b), std::max(a, b)});
+  };
   for (const std::uint32_t edge : in_.edges) {
     const std::optional<std::uint32_t> site = solid_.labels.site_of_edge(edge);
     if (!site) continue;
@@ -103,14 +107,17 @@ bool PartOfCube::is_any_wall_inside() const {
     }
   }
   for (const std::uint32_t v : in_.vertices) {
-    const std::optional<std::uint32_t> site = solid_.labels.site_of_vertex(v);
-    if (!site) continue;
     const ReflexCorner& corner = solid_.corners[v];
+    if (corner.is_thin) {
+      if (!corners_.contains({outside, v})) return true;
+      continue;
+    }
     for (const std::uint32_t edge : corner.edges) {
-      if (!has_wall(edge, *site)) return true;
+      const std::uint32_t beyond = corner.is_passing ? corner.edges[1] : *solid_.labels.site_of_vertex(v);
+      if (!has_wall(corner.is_passing ? corner.edges[0] : edge, beyond)) return true;
     }
     for (const std::uint32_t face : corner.faces) {
-      if (!corners_.contains({face, *site})) return true;
+      if (!corners_.contains({face, v})) return true;
     }
   }
   return false;
@@ -122,8 +129,8 @@ bool PartOfCube::is_lower(std::uint32_t side, std::uint32_t face) const {
   return solid_.labels[solid_.triangle_of_face[face]].direction[side / 2] * outwards < -1e-15;
 }
 
-/// Walls between a face and a reflex edge lie in a plane. On the way along the face's normal to the edge each point stays
-/// in them, until it comes to the edge or leaves the cube: so there are as many as parts of that.
+/// Walls between a face and a reflex edge lie in a plane. On the way along the face's normal to the edge each point
+/// stays in them, until it comes to the edge or leaves the cube: so there are as many as parts of that.
 VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares) {
   const auto [face, site] = sites;
   const auto is_low = [&, f = face](std::uint32_t s) { return is_lower(in_.squares[s].side, f); };
@@ -151,16 +158,16 @@ VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<
   return VoronoiObstacle::none;
 }
 
-/// Lines around which all walls are dropped: a reflex edge, the normal of a face at a reflex vertex. Each meets the cube
-/// in one part, which counts as 1 less than its ends on the boundary. Points: reflex vertices, where the parts of the axis
-/// that meet in one alone are kept apart.
+/// Lines around which all walls are dropped: a reflex edge, the normal of a face at a reflex vertex. Each meets the
+/// cube in one part, which counts as 1 less than its ends on the boundary. Points: reflex vertices, where the parts of
+/// the axis that meet in one alone are kept apart.
 void PartOfCube::add_lines_and_points() {
   if (!solid_.rule.is_medial()) return;
   euler_ -= static_cast<std::int64_t>(corners_.size());
   for (const std::uint32_t edge : in_.edges) euler_ -= solid_.labels.site_of_edge(edge) ? 1 : 0;
   for (const auto& [edge, s] : in_.piercings) euler_ += solid_.labels.site_of_edge(edge) ? 1 : 0;
   for (const std::uint32_t v : in_.vertices) {
-    if (solid_.labels.site_of_vertex(v)) euler_ += 1 - solid_.corners[v].axis_parts();
+    if (!solid_.corners[v].edges.empty()) euler_ += 1 - solid_.corners[v].axis_parts();
   }
 }
 

@@ -75,49 +75,63 @@ bool PartSquareTest::add_walls(const SquareCells& cells, GridSquare& square) con
 }
 
 /// Whether two pieces have a wall in common.
-/// @param low, high  sites: a face and an edge of it, or an edge and an end of it.
+/// @param low, high  sites: a face and an edge of it, an edge and an end of it, or two edges in one line.
 PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_t high,
                                                  const GridSquare& square) const {
   const std::uint32_t edge = rule_.is_edge(low) ? low : high;
   const std::uint32_t other = edge == low ? high : low;
+  const ReflexCorner* corner = nullptr;
+  std::optional<std::uint32_t> vertex = rule_.passing_vertex(low, high);
+  if (rule_.is_vertex(other)) vertex = rule_.vertex_of(other);
+  std::size_t facet = 0;
+  if (vertex) {
+    corner = &rule_.corner(*vertex);
+    while (facet < corner->edges.size() && corner->edges[facet] != edge) ++facet;
+    if (facet == corner->edges.size()) return Answer::no;
+  }
   const auto own = std::find_if(square.governors.begin(), square.governors.end(),
                                 [&](LabelIndex label) { return labels_[label].site == edge; });
   if (own == square.governors.end()) return Answer::no;
-  const auto planes = labels_.planes(*own);
-  const auto plane = std::find_if(planes.begin(), planes.end(), [&](const DomainPlane& of) {
-    return of.beyond != outside && labels_[of.beyond].site == other;
-  });
-  if (plane == planes.end()) return Answer::unknown;
-  const ReflexCorner* corner = nullptr;
-  if (rule_.is_vertex(other)) {
-    corner = &corners_[sites_.reflex_vertices[other - sites_.face_count - sites_.reflex_edges.size()]];
-    if (std::find(corner->edges.begin(), corner->edges.end(), edge) == corner->edges.end()) return Answer::no;
-  }
+  const std::optional<DomainPlane> plane = plane_between(*own, other, vertex);
+  if (!plane) return Answer::unknown;
   // In the plane between both domains one is as close as the other.
   const std::vector<Vec3d> strip = test_.along_plane(*own, *plane, square);
   if (strip.empty() || test_.is_closest_nowhere(*own, square.governors, strip)) return Answer::no;
+  if (is_closest_on(strip, *own, other, square)) return Answer::yes;
+  if (vertex && have_wall_at_vertex(place_of(*vertex), corner->rays[facet], square)) return Answer::yes;
+  return Answer::unknown;
+}
+
+/// The plane that parts the domain of an edge from that of a face or vertex, or of the edge behind a vertex.
+std::optional<DomainPlane> PartSquareTest::plane_between(LabelIndex edge, std::uint32_t other,
+                                                         const std::optional<std::uint32_t>& vertex) const {
+  const auto planes = labels_.planes(edge);
+  if (vertex) return planes[labels_.corners(edge)[0] == place_of(*vertex) ? 0 : 1];
+  const auto at = std::find_if(planes.begin(), planes.end(), [&](const DomainPlane& plane) {
+    return plane.beyond != outside && labels_[plane.beyond].site == other;
+  });
+  return at == planes.end() ? std::nullopt : std::optional(*at);
+}
+
+/// Whether one of some points along a strip is closest to a label and a site beside it.
+bool PartSquareTest::is_closest_on(const std::vector<Vec3d>& strip, LabelIndex label, std::uint32_t beside,
+                                   const GridSquare& square) const {
   std::size_t far = 0;
   for (std::size_t k = 1; k < strip.size(); ++k) {
     if (squared_length(strip[k] - strip[0]) > squared_length(strip[far] - strip[0])) far = k;
   }
   constexpr int samples = 16;
   for (int k = 0; k < samples; ++k) {
-    Vec3d q = strip[0] + (strip[far] - strip[0]) * ((k + 0.5) / samples);
-    if (is_closest(*own, other, q, square)) return Answer::yes;
+    const Vec3d q = strip[0] + (strip[far] - strip[0]) * ((k + 0.5) / samples);
+    if (is_closest(label, beside, q, square)) return true;
   }
-  if (rule_.is_vertex(other)) {
-    const std::size_t facet = static_cast<std::size_t>(
-        std::find(corner->edges.begin(), corner->edges.end(), edge) - corner->edges.begin());
-    if (have_wall_at_vertex(plane->beyond, corner->rays[facet], square)) return Answer::yes;
-  }
-  return Answer::unknown;
+  return false;
 }
 
 /// Whether a point of a facet of a vertex's cone is closest to the vertex, however narrow the facet is: then no label
 /// that has this vertex for a corner is closer to it.
-bool PartSquareTest::have_wall_at_vertex(LabelIndex vertex, const std::array<Vec3d, 2>& rays,
+bool PartSquareTest::have_wall_at_vertex(const Vec3d& v, const std::array<Vec3d, 2>& rays,
                                          const GridSquare& square) const {
-  const Vec3d& v = labels_[vertex].point;
   const Vec3d low = tree_.lattice.at(square.low) - labels_.centre();
   const Vec3d high = tree_.lattice.at(square.high()) - labels_.centre();
   const double margin = 64 * labels_.rounding();

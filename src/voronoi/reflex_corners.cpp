@@ -1,7 +1,9 @@
 #include "voronoi/reflex_corners.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "blum/geometry/orient3d.hpp"
 #include "voronoi/dual_cone.hpp"
@@ -27,16 +29,55 @@ std::vector<std::uint32_t> facets(const Vec3d& v, std::span<const Vec3d> ends) {
   return out;
 }
 
+/// Two reflex edges and flat ones: all faces there lie in two planes, and the edges in the line in which these meet.
+std::optional<ReflexCorner> passing_corner(std::uint32_t v, std::span<const std::uint32_t> edges,
+                                           const PolyhedronSites& sites, const LabelGeometry& labels) {
+  std::vector<std::uint32_t> bent;
+  for (const std::uint32_t edge : edges) {
+    if (sites.turn[edge] != EdgeTurn::flat) bent.push_back(edge);
+  }
+  if (bent.size() != 2 || labels.site_of_vertex(v)) return std::nullopt;
+  ReflexCorner out;
+  out.is_passing = true;
+  const auto [first, second] = sites.triangles_of[bent[0]];
+  out.faces = {sites.face_of[first], sites.face_of[second]};
+  if (out.faces[0] == out.faces[1]) return std::nullopt;
+  for (const std::uint32_t edge : bent) {
+    const std::optional<std::uint32_t> site = labels.site_of_edge(edge);
+    if (!site) return std::nullopt;
+    out.edges.push_back(*site);
+    out.rays.push_back({labels[first].direction, labels[second].direction});
+  }
+  return out;
+}
+
+std::optional<ReflexCorner> thin_corner(std::span<const std::uint32_t> edges, const PolyhedronSites& sites,
+                                        const LabelGeometry& labels) {
+  ReflexCorner out;
+  out.is_thin = true;
+  for (const std::uint32_t edge : edges) {
+    if (sites.turn[edge] == EdgeTurn::convex) return std::nullopt;
+    if (const std::optional<std::uint32_t> site = labels.site_of_edge(edge)) out.edges.push_back(*site);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<ReflexCorner> reflex_corners(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
                                          const LabelGeometry& labels) {
   std::vector<ReflexCorner> out(table.vertex_count());
   const EdgesOfVertices edges_of(table);
+  for (std::uint32_t v = 0; v < out.size(); ++v) {
+    if (auto passing = passing_corner(v, edges_of.of(v), sites, labels)) out[v] = std::move(*passing);
+  }
   for (const std::uint32_t v : sites.reflex_vertices) {
-    if (!labels.site_of_vertex(v)) continue;
     ReflexCorner& corner = out[v];
     const std::span<const std::uint32_t> edges = edges_of.of(v);
+    if (!labels.site_of_vertex(v)) {
+      if (auto thin = thin_corner(edges, sites, labels)) corner = std::move(*thin);
+      continue;
+    }
     std::vector<Vec3d> ends;
     for (const std::uint32_t edge : edges) {
       const Segment& of = table.edges()[edge];
@@ -46,8 +87,8 @@ std::vector<ReflexCorner> reflex_corners(const MeshView& mesh, const SiteTable& 
     Vec3d against;
     for (const Vec3d& end : ends) against -= unit(end - mesh.vertices[v]);
     const auto ray = [&](std::size_t k) {
-      const Vec3d normal = unit_normal(mesh.vertices[v], ends[bounds[k % bounds.size()]],
-                                       ends[bounds[(k + 1) % bounds.size()]]);
+      const Vec3d normal =
+          unit_normal(mesh.vertices[v], ends[bounds[k % bounds.size()]], ends[bounds[(k + 1) % bounds.size()]]);
       return dot(normal, against) > 0 ? normal : -normal;
     };
     for (std::size_t k = 0; k < bounds.size(); ++k) {

@@ -36,7 +36,6 @@ class SquareTest {
   [[nodiscard]] bool is_closest_nowhere(LabelIndex label, std::span<const LabelIndex> all, const Polygon& part) const;
 
  private:
-
   /// An arc of the border, relative to the centre of the labels.
   struct BorderArc {
     LabelIndex label = outside;

@@ -26,10 +26,11 @@ struct VoronoiSolid {
         exact(mesh, table, sites),
         labels(mesh, table, sites, exact),
         loops(mesh, table, sites),
-        rule(part, sites, labels) {
+        corners(part == VoronoiPart::medial_axis ? reflex_corners(mesh, table, sites, labels)
+                                                 : std::vector<ReflexCorner>()),
+        rule(part, sites, labels, corners) {
     triangle_of_face.resize(sites.face_count);
     for (std::uint32_t t = 0; t < sites.face_of.size(); ++t) triangle_of_face[sites.face_of[t]] = t;
-    if (rule.is_medial()) corners = reflex_corners(mesh, table, sites, labels);
   }
   VoronoiSolid(const VoronoiSolid&) = delete;
   VoronoiSolid& operator=(const VoronoiSolid&) = delete;
@@ -43,9 +44,9 @@ struct VoronoiSolid {
   const SiteLabels exact;
   const LabelGeometry labels;
   const FaceLoops loops;
+  const std::vector<ReflexCorner> corners;  ///< of each vertex, for a medial axis
   const PartRule rule;
   std::vector<std::uint32_t> triangle_of_face;  ///< any of each
-  std::vector<ReflexCorner> corners;  ///< of each vertex, for a medial axis
 };
 
 }  // namespace blum::voronoi

@@ -23,8 +23,8 @@ namespace blum {
 enum class VoronoiPart : std::uint8_t {
   all,          ///< walls between regions, and the surface
   walls,        ///< without the surface
-  medial_axis,  ///< of the walls those whose points have two footprints: none between a face and its own reflex edge, or
-                ///< an edge and its end
+  medial_axis,  ///< of the walls those whose points have two footprints: none between a face and its own reflex edge,
+                ///< or an edge and its end
 };
 
 template <>
