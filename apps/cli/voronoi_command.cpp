@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 constexpr const char* examples = R"(Examples:
   blum voronoi part.stl -o part.vtp                for ParaView: walls and surface, with the sites on both sides
   blum voronoi part.stl -o walls.ply --walls       what lies between regions, without the surface
+  blum voronoi part.stl -o axis.vtp --medial       the medial axis: walls with two footprints
   blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: no cube above a 32nd of the box
   blum voronoi part.stl --json -                   only the facts: sites, cubes, whether it can be certified
 
@@ -40,44 +41,13 @@ struct Arguments {
   std::optional<std::string> output, weld, threads;
   OptionTexts<VoronoiOptions> options;
   bool walls = false;
+  bool medial = false;
   bool allow_uncertified = false;
   ReportOptions report;
 };
 
 bool is_wall(std::int32_t site_a) {
   return site_a != -1;
-}
-
-/// A complex without its triangles on the surface, and without vertices that nothing uses then.
-Complex without_surface(const Complex& all) {
-  constexpr std::uint32_t unused = UINT32_MAX;
-  const auto site_a = all.triangle_columns.get<std::int32_t>("site_a");
-  std::vector<std::uint32_t> number_of(all.positions.size(), unused);
-  std::vector<std::uint32_t> vertices, triangles;
-  const auto use = [&](std::uint32_t& vertex) {
-    std::uint32_t& number = number_of[vertex];
-    if (number == unused) {
-      number = static_cast<std::uint32_t>(vertices.size());
-      vertices.push_back(vertex);
-    }
-    vertex = number;
-  };
-  Complex out;
-  out.edges = all.edges;
-  out.edge_columns = all.edge_columns;
-  for (auto& edge : out.edges) {
-    for (std::uint32_t& vertex : edge) use(vertex);
-  }
-  for (std::size_t t = 0; t < all.triangles.size(); ++t) {
-    if (!is_wall(site_a[t])) continue;
-    triangles.push_back(static_cast<std::uint32_t>(t));
-    out.triangles.push_back(all.triangles[t]);
-    for (std::uint32_t& vertex : out.triangles.back()) use(vertex);
-  }
-  for (const std::uint32_t vertex : vertices) out.positions.push_back(all.positions[vertex]);
-  out.vertex_columns = all.vertex_columns.pick(vertices);
-  out.triangle_columns = all.triangle_columns.pick(triangles);
-  return out;
 }
 
 SolidInput read_mesh_input(const fs::path& path, std::optional<double> weld) {
@@ -94,6 +64,17 @@ VoronoiComplex compute(const fs::path& path, const MeshView& mesh, const Voronoi
   } catch (const InvalidMesh& error) {
     throw InvalidMesh("'" + path.string() + "': " + error.what());
   }
+}
+
+std::string content_of(const Arguments& a) {
+  if (a.medial) return "medial axis by a Voronoi diagram";
+  return a.walls ? "walls of a Voronoi diagram" : "Voronoi diagram";
+}
+
+/// What the complex is, in messages.
+std::string subject_of(VoronoiPart part) {
+  if (part == VoronoiPart::medial_axis) return "the medial axis";
+  return part == VoronoiPart::walls ? "walls" : "walls and surface";
 }
 
 /// Which options may let more cubes pass.
@@ -126,15 +107,15 @@ std::vector<std::string> mismatches_of(const VoronoiReport& report, const Vorono
     all.push_back("different sites are told of " + plural(report.contradictions, "node", "nodes"));
   }
   if (report.found != report.expected) {
-    all.push_back("the complex has " + betti_text(report.found) + ", but walls and surface have " +
-                  betti_text(report.expected));
+    all.push_back("the complex has " + betti_text(report.found) + ", but " + subject_of(options.part) +
+                  (options.part == VoronoiPart::medial_axis ? " has " : " have ") + betti_text(report.expected));
   }
   return all;
 }
 
 FileMetadata metadata_of(const Arguments& a, const fs::path& input, const std::optional<double>& weld,
                          const VoronoiReport& report) {
-  FileMetadata out{{"content", a.walls ? "walls of a Voronoi diagram" : "Voronoi diagram"},
+  FileMetadata out{{"content", content_of(a)},
                    {"blum_version", BLUM_VERSION},
                    {"source", input.filename().string()},
                    {"certified", report.certified ? "true" : "false"}};
@@ -173,7 +154,13 @@ std::string sites_text(const VoronoiReport& report) {
   return text;
 }
 
-TextTable table_of(const VoronoiReport& report, const Counts& counts) {
+std::string certificate_text(VoronoiPart part) {
+  if (part == VoronoiPart::medial_axis)
+    return "the homology is that of the solid's exact medial axis, and of the solid";
+  return subject_of(part) + " have the homology of the exact diagram's";
+}
+
+TextTable table_of(const VoronoiReport& report, VoronoiPart part, const Counts& counts) {
   TextTable table;
   table.add("sites", sites_text(report));
   table.add("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
@@ -184,7 +171,7 @@ TextTable table_of(const VoronoiReport& report, const Counts& counts) {
   table.add("complex", counts.text());
   table.add("expected", betti_text(report.expected));
   table.add("found", betti_text(report.found));
-  table.add("certified", report.certified ? "yes: walls and surface have the homology of the exact diagram's" : "NO");
+  table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
   return table;
 }
 
@@ -196,12 +183,15 @@ struct Request {
 
 Request parse(const Arguments& a) {
   Request r{a.options.read(), parse_weld(a.weld), parse_threads(a.threads)};
+  if (a.walls && a.medial) throw UsageError("--walls and --medial are two different parts of the diagram: give one");
+  if (a.walls) r.options.part = VoronoiPart::walls;
+  if (a.medial) r.options.part = VoronoiPart::medial_axis;
   std::vector<fs::path> outputs = a.report.files();
   if (a.output) {
     check_extension("--output", *a.output, file_extensions(FileContent::complex, FileAccess::write));
     outputs.emplace_back(*a.output);
-  } else if (a.walls || a.allow_uncertified) {
-    throw UsageError(std::string(a.walls ? "--walls" : "--allow-uncertified") + " is for files: give --output, too");
+  } else if (a.allow_uncertified) {
+    throw UsageError("--allow-uncertified is for files: give --output, too");
   }
   check_outputs(outputs, {a.input});
   return r;
@@ -222,7 +212,6 @@ void run(const Arguments& a) {
   const VoronoiReport& found = made.report;
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
   static_cast<void>(watch.lap());
-  if (a.walls) made.complex = without_surface(made.complex);
   const bool is_written = a.output && (found.certified || a.allow_uncertified);
   if (is_written) {
     ComplexWriteOptions how;
@@ -234,14 +223,14 @@ void run(const Arguments& a) {
   const Counts counts(made.complex);
   const std::vector<std::string> mismatches = mismatches_of(found, r.options);
   const PhaseSummary spent = summarize(phases);
-  Json facts = {{"input", input.json}, {"walls_only", a.walls}, {"options", to_json(r.options)}};
+  Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
   facts.update(to_json(found));
   facts.erase("seconds");  // the run's, below, hold them
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
   Json json = answer_json("voronoi", facts);
   add_run_facts(json, spent, context, warnings, is_written ? Json::array({*a.output}) : Json::array());
-  TextTable table = table_of(found, counts);
+  TextTable table = table_of(found, r.options.part, counts);
   if (is_written) table.add("wrote", *a.output);
   table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(a.report, json, input.text + table.text());
@@ -258,8 +247,10 @@ void add_voronoi_command(const CommandLine& line) {
   command->add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read))->required();
   add_text_option(*command, "-o,--output", a->output, "FILE",
                   "Its walls and the surface: a complex, with columns in .vtp, .ply or .npz, without in .obj");
-  command->add_flag("--walls", a->walls, "Leave out the triangles on the surface");
-  a->options.add_to(*command);
+  command->add_flag("--walls", a->walls, "Walls between regions alone, without the surface");
+  command->add_flag("--medial", a->medial,
+                    "The medial axis: of the walls those with two footprints, none between a face and its own edge");
+  a->options.add_to(*command, {}, {"part"});
   command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even where it is not certified");
   add_weld_option(*command, a->weld);
   add_threads_option(*command, a->threads);

@@ -114,7 +114,7 @@ def test_a_box_is_certified(parts, tmp_path):
     assert found["expected_betti"] == found["found_betti"] == [1, 0, SITES]
     assert found["outputs"] == [str(out)] and names(tmp_path) == ["box.npz"]
     assert {"read", "cells", "complex", "homology", "write"} <= set(found["seconds"])
-    assert found["options"]["depth"] == 17 and not found["walls_only"]
+    assert found["options"]["depth"] == 17 and found["options"]["part"] == "all"
     counts = found["complex"]
     assert counts["triangles"] == counts["wall_triangles"] + counts["surface_triangles"]
     assert min(counts.values()) > 0
@@ -154,19 +154,32 @@ def test_columns_and_metadata_say_what_there_is(parts, tmp_path):
 
 
 def test_walls_leave_out_the_surface(parts, tmp_path):
-    run("voronoi", parts / "box.ply", "-o", tmp_path / "all.npz", "--quiet")
-    counts = run_json("voronoi", parts / "box.ply", "-o", tmp_path / "walls.npz", "--walls")["complex"]
+    run("voronoi", parts / "box.ply", "-o", tmp_path / "all.npz")
+    found = run_json("voronoi", parts / "box.ply", "-o", tmp_path / "walls.npz", "--walls")
     full, walls = read_npz(tmp_path / "all.npz"), read_npz(tmp_path / "walls.npz")
-    kept = full["site_a"] != -1
-    assert 0 < kept.sum() < len(kept) == len(full["triangles"])
-    assert np.array_equal(walls["site_a"], full["site_a"][kept])
-    assert np.array_equal(walls["site_b"], full["site_b"][kept])
-    for key in ("vertices", "radius"):
-        assert np.array_equal(walls[key][walls["triangles"]], full[key][full["triangles"][kept]])
+    assert found["options"]["part"] == "walls"
+    assert found["certified"]
+    assert found["found_betti"] == [1, 0, 0]
+    assert found["complex"]["surface_triangles"] == 0
+    assert found["complex"]["wall_triangles"] == len(walls["triangles"])
+    between = {tuple(pair) for pair in np.stack([full["site_a"], full["site_b"]], axis=1) if pair[0] >= 0}
+    assert between == {tuple(pair) for pair in np.stack([walls["site_a"], walls["site_b"]], axis=1)}
     assert np.array_equal(np.unique(walls["triangles"]), np.arange(len(walls["vertices"])))
-    assert len(walls["vertices"]) < len(full["vertices"])
-    assert counts["triangles"] == counts["wall_triangles"] == kept.sum() and counts["surface_triangles"] == 0
     assert walls["metadata"]["content"] == "walls of a Voronoi diagram"
+
+
+def test_a_medial_axis_has_the_topology_of_the_solid(parts, tmp_path):
+    found = run_json("voronoi", parts / "bracket.ply", "-o", tmp_path / "axis.npz", "--medial")
+    axis = read_npz(tmp_path / "axis.npz")
+    assert found["certified"]
+    assert found["found_betti"] == [1, 4, 0]
+    faces = found["faces"]
+    edges = faces + found["reflex_edges"]
+    is_face_and_edge = (axis["site_a"] < faces) & (axis["site_b"] >= faces) & (axis["site_b"] < edges)
+    # Walls between faces and edges that are not theirs stay.
+    assert 0 <= axis["site_a"].min()
+    assert is_face_and_edge.sum() < len(axis["triangles"])
+    assert axis["metadata"]["content"] == "medial axis by a Voronoi diagram"
 
 
 def test_stl_is_welded_and_a_tolerance_recorded(parts, tmp_path):
@@ -236,7 +249,7 @@ def test_bad_options_are_said(parts, tmp_path):
     for option, value in (("--depth", 0), ("--depth", 19), ("--resolution", 0), ("--max-cubes", 10), ("--weld", -1)):
         assert option in run("voronoi", box, "-o", out, option, value, status=2)[1]
     assert "--output" in run("voronoi", box, "-o", tmp_path / "o.xyz", status=2)[1]
-    assert "--output" in run("voronoi", box, "--walls", status=2)[1]
+    assert "give one" in run("voronoi", box, "--walls", "--medial", status=2)[1]
     assert "--allow-uncertified" in run("voronoi", box, "--allow-uncertified", status=2)[1]
     assert "--depth" in run("voronoi", box, "--dept", 3, status=2)[1]
     assert "INPUT" in run("voronoi", status=2)[1]

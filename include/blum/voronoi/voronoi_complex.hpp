@@ -31,7 +31,7 @@ template <>
 struct Description<VoronoiPart> {
   static constexpr std::string_view name = "VoronoiPart";
   static constexpr std::array values{NamedValue{VoronoiPart::all, "all"}, NamedValue{VoronoiPart::walls, "walls"},
-                                     NamedValue{VoronoiPart::medial_axis, "medial axis"}};
+                                     NamedValue{VoronoiPart::medial_axis, "medial"}};
 };
 
 struct VoronoiOptions {
@@ -50,8 +50,10 @@ struct VoronoiOptions {
 template <>
 struct Description<VoronoiOptions> {
   static constexpr std::string_view name = "VoronoiOptions";
-  static constexpr std::string_view doc = "How fine a Voronoi complex is";
+  static constexpr std::string_view doc = "What a Voronoi complex is made of, and how fine it is";
   static constexpr std::tuple members{
+      Member{"part", &VoronoiOptions::part, "",
+             "all: walls and surface; walls: without the surface; medial: of the walls those with two footprints"},
       Member{"resolution", &VoronoiOptions::resolution, "",
              "cubes that meet the solid are at most the longest side of the box around it over this",
              Range::between(1, 1024)},

@@ -29,17 +29,15 @@ using voronoi::outside;
 /// A solid with its octree.
 struct Divided {
   explicit Divided(const TriangleMesh& given, int threads = 0)
-      : solid(given),
-        labels(solid.mesh, solid.table, solid.sites, solid.labels),
-        loops(solid.mesh, solid.table, solid.sites) {
+      : mesh(given), table(mesh), solid(mesh, table, VoronoiPart::all) {
     Context context;
     context.threads = threads;
-    cells = subdivide(solid.mesh, solid.table, solid.sites, solid.labels, labels, loops, {}, context);
+    cells = subdivide(solid, {}, context);
   }
 
-  LabelledSolid solid;
-  voronoi::LabelGeometry labels;
-  voronoi::FaceLoops loops;
+  TriangleMesh mesh;
+  SiteTable table;
+  voronoi::VoronoiSolid solid;
   voronoi::Subdivision cells;
 };
 
@@ -62,9 +60,9 @@ std::size_t wrong_places(const Divided& divided, std::size_t edges) {
         Vec3d q = tree.lattice.at(edge.low);
         q[edge.axis] = low + (high - low) * part;
         if (label == outside || (high - low) * 0.01 <= 2 * reach) continue;
-        const std::vector<voronoi::Label> closest = divided.solid.labels.closest_labels(q);
+        const std::vector<voronoi::Label> closest = divided.solid.exact.closest_labels(q);
         const bool is_right = std::any_of(closest.begin(), closest.end(), [&](const voronoi::Label& other) {
-          return divided.solid.labels.site_of(other) == divided.labels[label].site;
+          return divided.solid.exact.site_of(other) == divided.solid.labels[label].site;
         });
         if (!is_right) ++wrong;
       }
@@ -107,12 +105,12 @@ TEST(SquareCells, AreOfTheBorder) {
   std::size_t with_walls = 0;
   for (const voronoi::GridSquare& square : tree.squares) {
     if (square.children != no_cell || square.state != voronoi::SquareState::resolved) continue;
-    const voronoi::SquareCells cells = square_cells(tree, divided.labels, square);
+    const voronoi::SquareCells cells = square_cells(tree, divided.solid.labels, square);
     ASSERT_EQ(cells.runs.size(), std::max<std::size_t>(1, cells.events.size()));
     for (std::size_t k = 0; k < cells.events.size(); ++k) {
       const auto& before = cells.runs[k];
       const auto& behind = cells.runs[(k + 1) % cells.runs.size()];
-      EXPECT_NE(divided.labels.site_of(before.label), divided.labels.site_of(behind.label));
+      EXPECT_NE(divided.solid.labels.site_of(before.label), divided.solid.labels.site_of(behind.label));
       EXPECT_LT(cells.component[k], cells.component_count);
     }
     // Components and regions of a disc: one more of both than events, as each event cuts the border once.
@@ -158,7 +156,7 @@ TEST(SquareTest, FindsAllThatIsClosestInsideOnTheBorder) {
     for (std::size_t k = 0; k < tree.squares.size(); k += 1 + tree.squares.size() / 2000) {
       const voronoi::GridSquare& square = tree.squares[k];
       if (square.state != voronoi::SquareState::resolved || square.governors.empty()) continue;
-      const voronoi::SquareCells cells = square_cells(tree, divided.labels, square);
+      const voronoi::SquareCells cells = square_cells(tree, divided.solid.labels, square);
       const Vec3d low = tree.lattice.at(square.low);
       const bool is_large = square.length >= voronoi::Lattice::most / 8;
       for (int sample = 0; sample < (is_large ? 300 : 4); ++sample) {
@@ -170,10 +168,10 @@ TEST(SquareTest, FindsAllThatIsClosestInsideOnTheBorder) {
         }
         if (!inside.inside(q)) continue;
         ++asked;
-        const std::vector<voronoi::Label> closest = divided.solid.labels.closest_labels(q);
+        const std::vector<voronoi::Label> closest = divided.solid.exact.closest_labels(q);
         const bool is_told = std::any_of(cells.pieces.begin(), cells.pieces.end(), [&](const auto& piece) {
           return std::any_of(closest.begin(), closest.end(), [&](const voronoi::Label& label) {
-            return divided.solid.labels.site_of(label) == piece.site;
+            return divided.solid.exact.site_of(label) == piece.site;
           });
         });
         EXPECT_TRUE(is_told) << "at " << q.x << " " << q.y << " " << q.z;

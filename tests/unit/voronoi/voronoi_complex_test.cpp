@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "blum/core/random.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/topology.hpp"
 #include "blum/shapes/generators.hpp"
 #include "support/labelled_solid.hpp"
 #include "support/mesh_places.hpp"
@@ -77,17 +79,50 @@ std::vector<Case> cases() {
 
 class Shapes : public testing::TestWithParam<Case> {};
 
+void expect_certified(const VoronoiReport& report) {
+  EXPECT_TRUE(report.certified);
+  EXPECT_EQ(report.found, report.expected);
+  EXPECT_EQ(report.failing.size(), 0U);
+  EXPECT_EQ(report.undecided_lines, 0U);
+  EXPECT_EQ(report.contradictions, 0U);
+}
+
 TEST_P(Shapes, AreCertified) {
-  const VoronoiComplex found = voronoi_complex(GetParam().mesh, {.resolution = 1});
-  EXPECT_TRUE(found.report.certified);
-  EXPECT_EQ(found.report.found, found.report.expected);
-  EXPECT_EQ(found.report.failing.size(), 0U);
-  EXPECT_EQ(found.report.undecided_lines, 0U);
-  EXPECT_EQ(found.report.contradictions, 0U);
+  expect_certified(voronoi_complex(GetParam().mesh, {.resolution = 1}).report);
+}
+
+/// Without the surface, faces have no regions of their own any more, and their holes no tunnels.
+TEST_P(Shapes, HaveWalls) {
+  const VoronoiReport report = voronoi_complex(GetParam().mesh, {.part = VoronoiPart::walls, .resolution = 1}).report;
+  expect_certified(report);
+  const BettiNumbers solid = *topology(GetParam().mesh).betti;
+  const std::size_t regions = report.reflex_edges + report.reflex_vertices - report.thin_vertices;
+  EXPECT_EQ(report.found, (BettiNumbers{solid[0], solid[1], solid[2] + static_cast<std::int64_t>(regions)}));
+}
+
+TEST_P(Shapes, HaveMedialAxesWithTheirTopology) {
+  const VoronoiReport report =
+      voronoi_complex(GetParam().mesh, {.part = VoronoiPart::medial_axis, .resolution = 1}).report;
+  expect_certified(report);
+  EXPECT_EQ(report.found, *topology(GetParam().mesh).betti);
 }
 
 INSTANTIATE_TEST_SUITE_P(Solids, Shapes, testing::ValuesIn(cases()),
                          [](const auto& tested) { return tested.param.name; });
+
+/// Corners that are moved bend faces: some of the edges at reflex vertices become convex, and the closed medial axis
+/// has parts there that meet in the vertex alone, which the complex keeps apart.
+TEST(VoronoiComplex, KeepsPartsOfTheAxisApartThatMeetInACorner) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U}) {
+    TriangleMesh mesh = test::box_with_void();
+    Random random(seed);
+    for (Vec3d& p : mesh.vertices) p += (random.in_cube() - Vec3d{0.5, 0.5, 0.5}) * 0.3;
+    for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
+      SCOPED_TRACE(std::to_string(seed) + ", " + std::string(to_string(part)));
+      expect_certified(voronoi_complex(mesh, {.part = part, .resolution = 1}).report);
+    }
+  }
+}
 
 /// The first corner of each triangle lies on a grid edge, on the wall exactly but for rounding: it is as far from the
 /// surface as its radius says.
