@@ -47,6 +47,29 @@ Quadratic PlacedLabel::along(const Vec3d& q, std::size_t axis) const {
   return {1, 2 * (q[axis] - point[axis]), squared_length(q - point)};
 }
 
+PolarDifference::PolarDifference(const LabelGeometry& labels, LabelIndex first, LabelIndex second)
+    : labels_(labels), first_(labels[first]), second_(labels[second]), corner_(labels.common_corner(first, second)) {}
+
+double PolarDifference::at(const Vec3d& q, const Vec3d& r) const {
+  if (!corner_) return first_.polar(q, r) - second_.polar(q, r);
+  const Vec3d from_q = q - *corner_;
+  const Vec3d from_r = r - *corner_;
+  return dot(second_.along(from_q), second_.along(from_r)) - dot(first_.along(from_q), first_.along(from_r));
+}
+
+double PolarDifference::error(const Vec3d& q, const Vec3d& r) const {
+  const double rounding = labels_.rounding();
+  if (!corner_) {
+    return labels_.rounding_of_squares(std::sqrt(std::max({first_.squared_distance(q), second_.squared_distance(q),
+                                                           first_.squared_distance(r), second_.squared_distance(r)})));
+  }
+  const Vec3d from_q = q - *corner_;
+  const Vec3d from_r = r - *corner_;
+  const double reach = length(first_.along(from_q)) + length(first_.along(from_r)) + length(second_.along(from_q)) +
+                       length(second_.along(from_r));
+  return rounding * (reach + 2 * rounding);
+}
+
 LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
                              const SiteLabels& labels)
     : box_(bounds(mesh)),

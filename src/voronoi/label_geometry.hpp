@@ -77,8 +77,36 @@ struct PlacedLabel {
     if (kind == SiteKind::edge) return point + direction * dot(direction, q - point);
     return point;
   }
+  /// The projection of a vector to its plane or line through the origin.
+  [[nodiscard]] Vec3d along(const Vec3d& way) const {
+    if (kind == SiteKind::face) return way - direction * dot(direction, way);
+    return kind == SiteKind::edge ? direction * dot(direction, way) : Vec3d{};
+  }
   /// The squared distance along the line q + s e_axis.
   [[nodiscard]] Quadratic along(const Vec3d& q, std::size_t axis) const;
+};
+
+class LabelGeometry;
+
+/// The polar form of the difference of the squared distances from two labels' planes, lines or points, with a bound on
+/// its rounding.
+///
+/// With q and r relative to a corner that both have, a squared distance is q . r less the product of the projections to
+/// the label's plane or line. So the difference is that of these products, which are small over the corner: there it is
+/// known much better than from both distances.
+class PolarDifference {
+ public:
+  PolarDifference(const LabelGeometry& labels, LabelIndex first, LabelIndex second);
+
+  /// That of the first less that of the second.
+  [[nodiscard]] double at(const Vec3d& q, const Vec3d& r) const;
+  [[nodiscard]] double error(const Vec3d& q, const Vec3d& r) const;
+
+ private:
+  const LabelGeometry& labels_;
+  const PlacedLabel& first_;
+  const PlacedLabel& second_;
+  std::optional<Vec3d> corner_;
 };
 
 /// All labels in double, and how far what they say may be off.

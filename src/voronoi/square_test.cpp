@@ -140,12 +140,10 @@ bool SquareTest::is_further(LabelIndex label, LabelIndex other, const std::optio
     return std::all_of(part.begin(), part.end(),
                        [&](const Vec3d& q) { return plane->height(q) > 2 * labels_.rounding(); });
   }
-  const PlacedLabel& far = labels_[label];
-  const PlacedLabel& near = labels_[other];
+  const PolarDifference difference(labels_, label, other);
   for (std::size_t i = 0; i < part.size(); ++i) {
-    const double error = labels_.rounding_of_squares(std::sqrt(near.squared_distance(part[i])));
     for (std::size_t k = 0; k <= i; ++k) {
-      if (!(far.polar(part[i], part[k]) - near.polar(part[i], part[k]) > 4 * error)) return false;
+      if (!(difference.at(part[i], part[k]) > 4 * difference.error(part[i], part[k]))) return false;
     }
   }
   return true;
@@ -300,19 +298,16 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
 
 /// The same, where another label can give way to it in a part of the square alone.
 bool SquareTest::returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& domain) const {
-  const PlacedLabel& own = labels_[label];
-  const PlacedLabel& rival = labels_[other];
   if (domain.empty()) return true;
-  if (labels_.are_incident(own.site, other)) return false;
-  const auto polar = [&](const Vec3d& q, const Vec3d& r) { return own.polar(q, r) - rival.polar(q, r); };
-  const double distance = std::sqrt(own.squared_distance(from)) + length(domain[0] - from) + extent(domain);
-  const double error = 4 * labels_.rounding_of_squares(distance);
-  if (!(polar(from, from) < -error)) return false;
-  // Where a ray comes back the second Bernstein coefficient is positive, and the third, the value there, 0.
-  const Polygon part = clipped(domain, error, [&](const Vec3d& q) { return polar(from, q); });
+  if (labels_.are_incident(labels_[label].site, other)) return false;
+  const PolarDifference difference(labels_, label, other);
+  // Where a ray comes back at q, D(q, q) = 0 and D(from, q) >= 0, as its slope there is -2 D(from, q).
+  double error = 0;
+  for (const Vec3d& q : domain) error = std::max(error, 4 * difference.error(from, q));
+  const Polygon part = clipped(domain, error, [&](const Vec3d& q) { return difference.at(from, q); });
   for (std::size_t i = 0; i < part.size(); ++i) {
     for (std::size_t k = 0; k <= i; ++k) {
-      if (!(polar(part[i], part[k]) > error)) return false;
+      if (!(difference.at(part[i], part[k]) > 4 * difference.error(part[i], part[k]))) return false;
     }
   }
   return true;
