@@ -20,7 +20,7 @@ using detail::next_axis;
 
 /// Where the nodes of the finest grid are.
 struct Lattice {
-  static constexpr int depth = 20;
+  static constexpr int depth = 26;
   static constexpr std::uint32_t most = 1U << depth;
 
   Vec3d origin;

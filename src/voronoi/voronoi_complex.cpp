@@ -28,7 +28,7 @@ void check(const VoronoiOptions& options) {
                         std::to_string(most) + ", not " + std::to_string(value));
   };
   check_range("resolution", options.resolution, 1, 1024);
-  check_range("depth", options.depth, 1, 18);
+  check_range("depth", options.depth, 1, 24);
   check_range("grids", options.grids, 1, 100);
   check_range("max_cubes", options.max_cubes, 1000, 100'000'000);
 }

@@ -39,8 +39,8 @@ struct VoronoiOptions {
   VoronoiPart part = VoronoiPart::all;
   /// Cubes that meet the solid are at most the side of the box around it over this, 1 to 1024.
   int resolution = 16;
-  /// How often cubes are split at most, 1 to 18.
-  int depth = 17;
+  /// How often cubes are split at most, 1 to 24.
+  int depth = 23;
   /// How many places of the grid are tried at most, 1 to 100: where few cubes fail, others may pass.
   int grids = 4;
   /// With more cubes than this nothing is split any more, 1,000 to 100,000,000: what does not pass then is reported.
@@ -57,7 +57,7 @@ struct Description<VoronoiOptions> {
       Member{"resolution", &VoronoiOptions::resolution, "",
              "cubes that meet the solid are at most the longest side of the box around it over this",
              Range::between(1, 1024)},
-      Member{"depth", &VoronoiOptions::depth, "", "how often cubes are split at most", Range::between(1, 18)},
+      Member{"depth", &VoronoiOptions::depth, "", "how often cubes are split at most", Range::between(1, 24)},
       Member{"grids", &VoronoiOptions::grids, "",
              "how many places of the grid are tried at most: where few cubes fail, others may pass",
              Range::between(1, 100)},

@@ -70,7 +70,7 @@ std::vector<Case> cases() {
   add("bodies", make_bodies(), 1);
   add("plate", make_plate(), 1);
   add("bracket", make_bracket(), 2);
-  add("gear", make_gear(), 0);
+  add("gear", make_gear(), 1);
   add("void_cube", make_void_cube({.frequency = 1}), 1);
   add("torus", make_torus({.ring_segments = 12, .tube_segments = 8}), 2);
   add("sphere", make_sphere({.frequency = 3}), 1);
@@ -110,16 +110,19 @@ TEST_P(Shapes, HaveMedialAxesWithTheirTopology) {
 INSTANTIATE_TEST_SUITE_P(Solids, Shapes, testing::ValuesIn(cases()),
                          [](const auto& tested) { return tested.param.name; });
 
-/// Corners that are moved bend faces: some of the edges at reflex vertices become convex, and the closed medial axis
-/// has parts there that meet in the vertex alone, which the complex keeps apart.
-TEST(VoronoiComplex, KeepsPartsOfTheAxisApartThatMeetInACorner) {
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U}) {
-    TriangleMesh mesh = test::box_with_void();
-    Random random(seed);
-    for (Vec3d& p : mesh.vertices) p += (random.in_cube() - Vec3d{0.5, 0.5, 0.5}) * 0.3;
-    for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
-      SCOPED_TRACE(std::to_string(seed) + ", " + std::string(to_string(part)));
-      expect_certified(voronoi_complex(mesh, {.part = part, .resolution = 1}).report);
+/// Corners that are moved bend faces, as rounding does to 32 bits or a modeller's tolerance: by how much does not
+/// matter. Some of the edges at reflex vertices become convex, and the closed medial axis has parts there that meet in
+/// the vertex alone, which the complex keeps apart.
+TEST(VoronoiComplex, OfFacesBentByAnyAmount) {
+  for (const double by : {0.3, 0.03, 1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-11, 1e-13, 1e-15}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+      TriangleMesh mesh = test::box_with_void();
+      Random random(seed);
+      for (Vec3d& p : mesh.vertices) p += (random.in_cube() - Vec3d{0.5, 0.5, 0.5}) * by;
+      for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
+        SCOPED_TRACE(std::to_string(by) + ", " + std::to_string(seed) + ", " + std::string(to_string(part)));
+        expect_certified(voronoi_complex(mesh, {.part = part, .resolution = 1}).report);
+      }
     }
   }
 }
@@ -189,7 +192,7 @@ TEST(VoronoiComplex, RefusesWhatIsNoSolid) {
   append(crossing, test::moved(make_box(), 1, {0.5, 0.25, 0.125}));
   EXPECT_THROW((void)voronoi_complex(crossing), InvalidMesh);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.resolution = 0}), InvalidOption);
-  EXPECT_THROW((void)voronoi_complex(make_box(), {.depth = 19}), InvalidOption);
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.depth = 25}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.grids = 0}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.max_cubes = 1}), InvalidOption);
 }
