@@ -1,13 +1,16 @@
 #include "voronoi/assemble.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "blum/complex/medial_columns.hpp"
 #include "blum/core/parallel.hpp"
 #include "voronoi/settle.hpp"
+#include "voronoi/wall_point.hpp"
 
 namespace blum::voronoi {
 namespace {
@@ -20,14 +23,16 @@ struct Place {
   Vec3d start;  ///< relative to the centre of the labels
   std::uint32_t parts = 0;
   PlacedBox box;
+  CellId cube = no_cell;            ///< that it lies in
+  Vec3d on_wall;                    ///< a place where walls of it cross an edge of the grid
   std::vector<LabelIndex> labels;   ///< one of each site
   std::vector<LabelIndex> surface;  ///< those of them whose own face is part of it
 };
 
 class Assembly {
  public:
-  Assembly(const Subdivision& cells, const CubeTest& test, const LabelGeometry& labels, const Context& context)
-      : cells_(cells), tree_(cells.tree), test_(test), labels_(labels), context_(context) {}
+  Assembly(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid, const Context& context)
+      : cells_(cells), tree_(cells.tree), test_(test), solid_(solid), labels_(solid.labels), context_(context) {}
 
   Complex run() {
     analyse_cubes();
@@ -76,14 +81,15 @@ class Assembly {
     if (const std::optional<LabelIndex> triangle = event.crossed()) add_label(place.surface, *triangle);
   }
 
-  std::uint32_t vertex_of_event(std::uint32_t event) {
+  std::uint32_t vertex_of_event(std::uint32_t event, CellId cube) {
     std::uint32_t& vertex = vertex_of_event_[event];
     if (vertex != no_vertex) return vertex;
     vertex = static_cast<std::uint32_t>(places_.size());
     Place place;
-    place.start = at_event_[event];
+    place.start = place.on_wall = at_event_[event];
     place.parts = 1;
     place.box = {place.start, place.start};
+    place.cube = cube;
     add_labels(place, tree_.events[event]);
     places_.push_back(std::move(place));
     return vertex;
@@ -94,19 +100,21 @@ class Assembly {
   }
 
   /// The first vertex of a square's components.
-  std::uint32_t vertex_of_square(const CubeCells::Square& cells) {
+  std::uint32_t vertex_of_square(const CubeCells::Square& cells, CellId cube) {
     std::uint32_t& first = vertex_of_square_[cells.square];
     if (first != no_vertex) return first;
     first = static_cast<std::uint32_t>(places_.size());
     const GridSquare& square = tree_.squares[cells.square];
     Place place;
     place.box = box_of(square.low, square.high());
+    place.cube = cube;
     places_.insert(places_.end(), cells.component.size(), place);
     for (std::size_t k = 0; k < cells.events.size(); ++k) {
       if (cells.component_of_event[k] == outside) continue;
       Place& of_component = places_[first + cells.component_of_event[k]];
       const LineEvent& event = tree_.events[cells.events[k]];
       of_component.start += at_event_[cells.events[k]];
+      if (of_component.parts == 0) of_component.on_wall = at_event_[cells.events[k]];
       ++of_component.parts;
       add_labels(of_component, event);
     }
@@ -119,18 +127,21 @@ class Assembly {
   void add_cube(std::size_t number) {
     const CubeCells& cells = cubes_[number];
     if (cells.component_count == 0) return;
-    const GridCube& cube = tree_.cubes[cells_.leaves[number]];
+    const CellId id = cells_.leaves[number];
+    const GridCube& cube = tree_.cubes[id];
     const auto first = static_cast<std::uint32_t>(places_.size());
     Place place;
     place.box = box_of(cube.low, cube.high());
+    place.cube = id;
     places_.insert(places_.end(), cells.component_count, place);
     for (const CubeCells::Square& square : cells.squares) {
       if (square.component.empty()) continue;
-      const std::uint32_t first_of_square = vertex_of_square(square);
+      const std::uint32_t first_of_square = vertex_of_square(square, id);
       for (std::uint32_t k = 0; k < square.component.size(); ++k) {
         Place& of_component = places_[first + square.component[k]];
         const Place& part = places_[first_of_square + k];
         of_component.start += part.start;
+        if (of_component.parts == 0) of_component.on_wall = part.on_wall;
         ++of_component.parts;
         for (const LabelIndex label : part.labels) add_label(of_component.labels, label);
         for (const LabelIndex label : part.surface) add_label(of_component.surface, label);
@@ -139,8 +150,8 @@ class Assembly {
         const std::uint32_t component = square.component_of_event[k];
         if (component == outside) continue;
         triangles_.push_back(
-            {vertex_of_event(square.events[k]), first_of_square + component, first + square.component[component]});
-        add_sites(tree_.events[square.events[k]]);
+            {vertex_of_event(square.events[k], id), first_of_square + component, first + square.component[component]});
+        add_sites(tree_.events[square.events[k]], at_event_[square.events[k]]);
       }
     }
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {
@@ -148,40 +159,65 @@ class Assembly {
     }
   }
 
-  void add_sites(const LineEvent& event) {
+  /// @param at  relative to the centre of the labels.
+  void add_sites(const LineEvent& event, const Vec3d& at) {
     const auto site = [&](LabelIndex label) {
       return label == outside ? -1 : static_cast<std::int32_t>(labels_[label].site);
     };
     const auto [low, high] = std::minmax({site(event.before), site(event.after)});
     site_a_.push_back(low);
     site_b_.push_back(high);
+    const bool is_wall = event.before != outside && event.after != outside;
+    triangle_angle_.push_back(is_wall ? static_cast<float>(separation_angle(at, labels_.closest_point(event.before, at),
+                                                                            labels_.closest_point(event.after, at)))
+                                      : 0.0F);
   }
 
   void settle_all() {
-    radius_.resize(places_.size());
+    points_.resize(places_.size());
     parallel_for(context_, places_.size(), grain, "vertices", [&](const WorkRange& range) {
-      for (std::size_t k = range.begin; k < range.end; ++k) {
-        const bool is_settled = settle_one(places_[k]);
-        const Place& place = places_[k];
-        double least = !place.surface.empty() && is_settled ? 0 : labels_.size() * labels_.size();
-        for (const LabelIndex label : place.labels) {
-          least = std::min(least, squared_length(labels_.closest_point(label, place.start) - place.start));
-        }
-        radius_[k] = std::sqrt(least);
-      }
+      for (std::size_t k = range.begin; k < range.end; ++k) settle_one(places_[k], points_[k]);
     });
   }
 
-  /// Moves a vertex to the surface where it has a part in it, else to where all its labels are equally close, or two.
-  bool settle_one(Place& place) const {
-    if (place.box.low == place.box.high) return true;
+  /// Moves a vertex to the surface where it has a part in it, else to where all its labels are equally close, or two;
+  /// where none of that is found nearby, to where a wall of it crosses an edge of the grid.
+  void settle_one(Place& place, WallPoint& out) const {
+    const auto try_at = [&](const std::optional<Vec3d>& at) {
+      if (!at) return false;
+      const WallPoint found = wall_point(labels_, tree_.cubes[place.cube].governors, *at);
+      if (!is_on_wall(place, *at, found)) return false;
+      place.start = *at;
+      out = found;
+      return true;
+    };
     const bool on_surface = !place.surface.empty();
-    std::span<const LabelIndex> which = on_surface ? place.surface : place.labels;
-    auto settled = settle(labels_, which, on_surface, place.start, place.box);
-    const std::size_t few = on_surface ? 1 : 2;
-    if (!settled && which.size() > few) settled = settle(labels_, which.first(few), on_surface, place.start, place.box);
-    if (settled) place.start = *settled;
-    return settled.has_value();
+    const bool is_point = place.box.low == place.box.high;
+    if (!is_point) {
+      const std::vector<LabelIndex>& which = on_surface ? place.surface : place.labels;
+      if (try_at(settle(labels_, which, on_surface, place.start, place.box))) return;
+      for (std::size_t i = 0; i < which.size(); ++i) {
+        if (on_surface && try_at(settle(labels_, std::array{which[i]}, true, place.start, place.box))) return;
+        for (std::size_t k = i + 1; k < which.size() && !on_surface; ++k) {
+          if (try_at(settle(labels_, std::array{which[i], which[k]}, false, place.start, place.box))) return;
+        }
+      }
+    }
+    place.start = place.on_wall;
+    out = wall_point(labels_, tree_.cubes[place.cube].governors, place.start);
+  }
+
+  /// Whether a point is as far from two labels, or on the surface, and in the solid.
+  [[nodiscard]] bool is_on_wall(const Place& place, const Vec3d& at, const WallPoint& found) const {
+    const double near = 1e-9 * labels_.size();
+    if (!place.surface.empty()) return found.radius <= near;
+    if (!(found.separation_angle > 0)) return false;
+    return std::all_of(found.labels.begin(), found.labels.end(), [&](LabelIndex label) {
+      if (labels_[label].kind == SiteKind::face) return labels_[label].height(at) > -near;
+      const std::span<const DomainPlane> planes = labels_.planes(label);
+      return std::all_of(planes.begin(), planes.end(),
+                         [&](const DomainPlane& plane) { return plane.height(at) > -near; });
+    });
   }
 
   Complex finish() {
@@ -191,30 +227,54 @@ class Assembly {
     out.triangles = std::move(triangles_);
     out.vertex_columns = Columns(out.positions.size());
     out.triangle_columns = Columns(out.triangles.size());
-    out.vertex_columns.add({"radius", 1, std::move(radius_)});
+    add_vertex_columns(out.vertex_columns);
     out.triangle_columns.add({"site_a", 1, std::move(site_a_)});
     out.triangle_columns.add({"site_b", 1, std::move(site_b_)});
+    out.triangle_columns.add({std::string(medial_columns::separation_angle), 1, std::move(triangle_angle_)});
     return out;
+  }
+
+  void add_vertex_columns(Columns& out) const {
+    const std::span<double> radius = out.add<double>(std::string(medial_columns::radius));
+    for (std::size_t k = 0; k < points_.size(); ++k) radius[k] = points_[k].radius;
+    for (const std::size_t which : {0U, 1U}) {
+      const std::span<double> footprint = out.add<double>(std::string(medial_columns::footprints[which]), 3);
+      for (std::size_t k = 0; k < points_.size(); ++k) {
+        const Vec3d at = points_[k].footprints[which] + labels_.centre();
+        for (std::size_t axis = 0; axis < 3; ++axis) footprint[3 * k + axis] = at[axis];
+      }
+    }
+    for (const std::size_t which : {0U, 1U}) {
+      const std::span<std::int32_t> site = out.add<std::int32_t>(std::string(medial_columns::sites[which]));
+      for (std::size_t k = 0; k < points_.size(); ++k) {
+        const Label& label = solid_.exact.all()[points_[k].labels[which]];
+        site[k] = static_cast<std::int32_t>(solid_.table.id({label.kind, label.index}).value);
+      }
+    }
+    const std::span<double> angle = out.add<double>(std::string(medial_columns::separation_angle));
+    for (std::size_t k = 0; k < points_.size(); ++k) angle[k] = points_[k].separation_angle;
   }
 
   const Subdivision& cells_;
   const CellTree& tree_;
   const CubeTest& test_;
+  const VoronoiSolid& solid_;
   const LabelGeometry& labels_;
   const Context& context_;
   std::vector<CubeCells> cubes_;
   std::vector<Vec3d> at_event_;
   std::vector<std::uint32_t> vertex_of_event_, vertex_of_square_;
   std::vector<Place> places_;
-  std::vector<double> radius_;
+  std::vector<WallPoint> points_;  ///< of places_
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::int32_t> site_a_, site_b_;
+  std::vector<float> triangle_angle_;
 };
 
 }  // namespace
 
-Complex assemble(const Subdivision& cells, const CubeTest& test, const LabelGeometry& labels, const Context& context) {
-  return Assembly(cells, test, labels, context).run();
+Complex assemble(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid, const Context& context) {
+  return Assembly(cells, test, solid, context).run();
 }
 
 }  // namespace blum::voronoi

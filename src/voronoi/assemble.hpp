@@ -4,15 +4,15 @@
 #include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
 #include "voronoi/cube_test.hpp"
-#include "voronoi/label_geometry.hpp"
 #include "voronoi/subdivision.hpp"
+#include "voronoi/voronoi_solid.hpp"
 
 namespace blum::voronoi {
 
 /// A vertex for each component in a cube that passes, in a square without children and on a grid edge; a triangle for
 /// each three of which one contains the next. Columns as VoronoiComplex says. Vertices settle on what they stand for:
 /// walls, seams, junctions, the surface.
-[[nodiscard]] Complex assemble(const Subdivision& cells, const CubeTest& test, const LabelGeometry& labels,
+[[nodiscard]] Complex assemble(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid,
                                const Context& context);
 
 }  // namespace blum::voronoi

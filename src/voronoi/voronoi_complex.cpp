@@ -150,7 +150,7 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   timer.lap("cells");
   add_facts(cells, sited.labels, report);
   const SurfaceInCells surface(mesh, table, cells.tree.lattice);
-  out.complex = assemble(cells, CubeTest(sited, surface, cells.tree), sited.labels, context);
+  out.complex = assemble(cells, CubeTest(sited, surface, cells.tree), sited, context);
   timer.lap("complex");
   report.found = homology(out.complex.view(), context);
   report.expected = expected_betti(sited, solid);
