@@ -21,6 +21,7 @@
 #include "progress.hpp"
 #include "solid_input.hpp"
 #include "summary.hpp"
+#include "voronoi_axis.hpp"
 
 namespace blum::cli {
 namespace {
@@ -31,6 +32,7 @@ constexpr const char* examples = R"(Examples:
   blum voronoi part.stl -o part.vtp                for ParaView: walls and surface, with the sites on both sides
   blum voronoi part.stl -o walls.ply --walls       what lies between regions, without the surface
   blum voronoi part.stl -o axis.vtp --medial       the medial axis: walls with two footprints
+  blum voronoi part.stl -o axis.vtp --medial --theta 60 --simplify 0.01    where these are 60 degrees apart; fewer triangles
   blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: no cube above a 32nd of the box
   blum voronoi part.stl --json -                   only the facts: sites, cubes, whether it can be certified
 
@@ -42,6 +44,7 @@ struct Arguments {
   OptionTexts<VoronoiOptions> options;
   bool walls = false;
   bool medial = false;
+  VoronoiAxisTexts axis;
   bool allow_uncertified = false;
   ReportOptions report;
 };
@@ -64,11 +67,6 @@ VoronoiComplex compute(const fs::path& path, const MeshView& mesh, const Voronoi
   } catch (const InvalidMesh& error) {
     throw InvalidMesh("'" + path.string() + "': " + error.what());
   }
-}
-
-std::string content_of(const Arguments& a) {
-  if (a.medial) return "medial axis by a Voronoi diagram";
-  return a.walls ? "walls of a Voronoi diagram" : "Voronoi diagram";
 }
 
 /// What the complex is, in messages.
@@ -115,7 +113,7 @@ std::vector<std::string> mismatches_of(const VoronoiReport& report, const Vorono
 
 FileMetadata metadata_of(const Arguments& a, const fs::path& input, const std::optional<double>& weld,
                          const VoronoiReport& report) {
-  FileMetadata out{{"content", content_of(a)},
+  FileMetadata out{{"content", a.walls ? "walls of a Voronoi diagram" : "Voronoi diagram"},
                    {"blum_version", BLUM_VERSION},
                    {"source", input.filename().string()},
                    {"certified", report.certified ? "true" : "false"}};
@@ -177,18 +175,24 @@ TextTable table_of(const VoronoiReport& report, VoronoiPart part, const Counts& 
 
 struct Request {
   VoronoiOptions options;
+  VoronoiAxisOptions axis;
   std::optional<double> weld;
   int threads = 0;
 };
 
 Request parse(const Arguments& a) {
-  Request r{a.options.read(), parse_weld(a.weld), parse_threads(a.threads)};
+  Request r{a.options.read(), parse_axis_options(a.axis), parse_weld(a.weld), parse_threads(a.threads)};
   if (a.walls && a.medial) throw UsageError("--walls and --medial are two different parts of the diagram: give one");
   if (a.walls) r.options.part = VoronoiPart::walls;
   if (a.medial) r.options.part = VoronoiPart::medial_axis;
+  const std::string of_axis = a.axis.given();
+  if (!of_axis.empty() && !a.medial) throw UsageError(of_axis + " is for medial axes: give --medial, too");
+  if (!of_axis.empty() && !a.output) throw UsageError(of_axis + " is for files: give --output, too");
   std::vector<fs::path> outputs = a.report.files();
+  if (r.axis.graph) outputs.push_back(*r.axis.graph);
   if (a.output) {
-    check_extension("--output", *a.output, file_extensions(FileContent::complex, FileAccess::write));
+    const FileAccess access = a.medial ? FileAccess::both : FileAccess::write;  // axes are read again
+    check_extension("--output", *a.output, file_extensions(FileContent::complex, access));
     outputs.emplace_back(*a.output);
   } else if (a.allow_uncertified) {
     throw UsageError("--allow-uncertified is for files: give --output, too");
@@ -212,8 +216,19 @@ void run(const Arguments& a) {
   const VoronoiReport& found = made.report;
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
   static_cast<void>(watch.lap());
-  const bool is_written = a.output && (found.certified || a.allow_uncertified);
-  if (is_written) {
+  std::vector<std::string> mismatches = mismatches_of(found, r.options);
+  bool is_written = a.output && (mismatches.empty() || a.allow_uncertified);
+  std::optional<VoronoiAxis> axis;
+  if (is_written && a.medial) {
+    axis = make_voronoi_axis(made.complex, input, r.axis, path, r.weld, *a.output, context);
+    mismatches.insert(mismatches.end(), axis->mismatches.begin(), axis->mismatches.end());
+    is_written = mismatches.empty() || a.allow_uncertified;
+    if (is_written) {
+      for (Draft& draft : axis->drafts) draft.keep();
+    }
+    phases.insert(phases.end(), axis->phases.begin(), axis->phases.end());
+    warnings.insert(warnings.end(), axis->warnings.begin(), axis->warnings.end());
+  } else if (is_written) {
     ComplexWriteOptions how;
     how.allow_loss = true;  // as the table of formats says
     write_complex(*a.output, made.complex, metadata_of(a, path, r.weld, found), how, context);
@@ -221,21 +236,26 @@ void run(const Arguments& a) {
   }
   progress.clear();
   const Counts counts(made.complex);
-  const std::vector<std::string> mismatches = mismatches_of(found, r.options);
   const PhaseSummary spent = summarize(phases);
   Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
   facts.update(to_json(found));
   facts.erase("seconds");  // the run's, below, hold them
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
+  facts["axis"] = axis ? axis->json : Json(nullptr);
   Json json = answer_json("voronoi", facts);
-  add_run_facts(json, spent, context, warnings, is_written ? Json::array({*a.output}) : Json::array());
+  Json outputs = Json::array();
+  if (is_written) outputs.push_back(*a.output);
+  if (is_written && r.axis.graph) outputs.push_back(r.axis.graph->string());
+  add_run_facts(json, spent, context, warnings, outputs);
   TextTable table = table_of(found, r.options.part, counts);
+  if (axis) table.add(axis->table);
   if (is_written) table.add("wrote", *a.output);
+  if (is_written && r.axis.graph) table.add("wrote", r.axis.graph->string());
   table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(a.report, json, input.text + table.text());
   if (!a.report.quiet) warn(warnings);
-  if (!found.certified) throw NotCertified(mismatches, is_written || !a.output ? "" : "; nothing was written");
+  if (!mismatches.empty()) throw NotCertified(mismatches, is_written || !a.output ? "" : "; nothing was written");
 }
 
 }  // namespace
@@ -250,6 +270,7 @@ void add_voronoi_command(const CommandLine& line) {
   command->add_flag("--walls", a->walls, "Walls between regions alone, without the surface");
   command->add_flag("--medial", a->medial,
                     "The medial axis: of the walls those with two footprints, none between a face and its own edge");
+  a->axis.add_to(*command);
   a->options.add_to(*command, {}, {"part"});
   command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even where it is not certified");
   add_weld_option(*command, a->weld);

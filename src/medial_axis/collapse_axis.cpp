@@ -134,16 +134,15 @@ class AxisCollapser {
       out.positions.push_back(walls_.positions[v]);
     }
     out.vertex_columns = walls_.vertex_columns.pick(kept);
-    std::vector<float> angles;
+    kept.clear();
     for (std::uint32_t t = 0; t < walls_.triangles.size(); ++t) {
       if (is_triangle_gone_[t]) continue;
       const auto& [a, b, c] = walls_.triangles[t];
       out.triangles.push_back({number[a], number[b], number[c]});
-      angles.push_back(angles_[t]);
+      kept.push_back(t);
     }
-    out.triangle_columns = Columns(out.triangles.size());
-    out.triangle_columns.add({std::string(medial_columns::separation_angle), 1, std::move(angles)});
-    angles.clear();
+    out.triangle_columns = walls_.triangle_columns.pick(kept);
+    std::vector<float> angles;
     for (std::uint32_t e = 0; e < edge_count(); ++e) {
       if (is_edge_gone_[e] || triangles_left_[e] > 0) continue;
       const auto& [a, b] = incidence_.edges()[e];

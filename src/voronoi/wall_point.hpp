@@ -12,10 +12,10 @@ namespace blum::voronoi {
 /// What is closest to a point: of all points of labels that are as close, but for 1e-9 of the size, the two that are
 /// seen furthest apart; the same one twice where there is one.
 struct WallPoint {
-  double radius = 0;                    ///< exact distance from the closest label
-  std::array<Vec3d, 2> footprints;      ///< relative to the centre of the labels
+  double radius = 0;                ///< exact distance from the closest label
+  std::array<Vec3d, 2> footprints;  ///< relative to the centre of the labels
   std::array<LabelIndex, 2> labels{};
-  double separation_angle = 0;          ///< between them, degrees
+  double separation_angle = 0;  ///< between them, degrees
 };
 
 /// @param among  labels that hold all that may be closest.  @param q  relative to the centre of the labels.
