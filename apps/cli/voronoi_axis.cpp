@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 void VoronoiAxisTexts::add_to(CLI::App& command) {
   add_text_option(command, "--theta", theta, "DEG",
-                  "With --medial: keep where footprints are seen more than DEG apart (default 0), and what joins that");
+                  "With --medial: keep where footprints are seen more than DEG apart (default 1), and what joins that");
   add_text_option(command, "--simplify", simplify, "TOL",
                   "With --medial: fewer triangles, at most TOL mesh units away (default 0: all)");
   add_graph_option(command, graph, "With --medial: its sheets, seams, curves and junctions as a graph");

@@ -29,7 +29,7 @@ struct VoronoiAxisTexts {
 };
 
 struct VoronoiAxisOptions {
-  double theta = 0;     ///< degrees
+  double theta = 1;     ///< degrees; faces bent by rounding to 32 bits are seen at less
   double simplify = 0;  ///< mesh units; 0 keeps all vertices
   std::optional<std::filesystem::path> graph;
 };

@@ -16,6 +16,7 @@
 #include "blum/complex/sample_axis.hpp"
 #include "blum/field/ball_union.hpp"
 #include "blum/medial_axis/axis_forms.hpp"
+#include "blum/medial_axis/collapse_axis.hpp"
 #include "blum/medial_axis/decimate.hpp"
 #include "blum/medial_axis/prune_sheets.hpp"
 #include "call.hpp"
@@ -125,6 +126,13 @@ void bind_medial_axis(nb::module_& m) {
       [](const Complex& complex, double theta, int threads, nb::object progress) {
         return run({threads, std::move(progress)},
                    [&](const Context& context) { return prune_sheets(complex, theta, context); });
+      },
+      nb::arg("complex"), nb::arg("theta"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "collapse_axis",
+      [](const Complex& complex, double theta, int threads, nb::object progress) {
+        return run({threads, std::move(progress)},
+                   [&](const Context& context) { return collapse_axis(complex, theta, context); });
       },
       nb::arg("complex"), nb::arg("theta"), nb::arg("threads"), nb::arg("progress").none());
   m.def(

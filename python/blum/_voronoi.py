@@ -9,9 +9,11 @@ from typing import Any, Unpack
 import numpy as np
 
 from . import _core
-from ._arguments import FloatArray, IntArray, PathLike, integer
+from ._arguments import FloatArray, IntArray, PathLike, Real, integer, number
 from ._complex import Complex, core_arguments
-from ._mesh import as_mesh
+from ._errors import InvalidOption
+from ._medial_complex import EVERYTHING, MedialComplex, Origin
+from ._mesh import Mesh, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import VoronoiOptions, VoronoiReport
@@ -27,12 +29,17 @@ class VoronoiComplex(Complex):
 
     #: What it consists of, and whether it is certified.
     report: VoronoiReport
+    #: "all", "walls" or "medial".
+    part: str
+    _mesh: Mesh
 
     @staticmethod
-    def _of(core: _CoreComplex, report: VoronoiReport) -> VoronoiComplex:
+    def _of(core: _CoreComplex, report: VoronoiReport, part: str, mesh: Mesh) -> VoronoiComplex:
         made = VoronoiComplex.__new__(VoronoiComplex)
         made._core = core
         made.report = report
+        made.part = part
+        made._mesh = mesh
         return made
 
     @property
@@ -47,19 +54,51 @@ class VoronoiComplex(Complex):
         columns = self.triangle_columns
         return np.stack([columns["site_a"], columns["site_b"]], axis=1)
 
+    @property
+    def footprints(self) -> FloatArray:
+        """(n, 2, 3): the closest points of the surface; of more than two those that are seen furthest apart."""
+        columns = self.vertex_columns
+        return np.stack([columns["footprint_0"], columns["footprint_1"]], axis=1)
+
+    @property
+    def separation_angle(self) -> FloatArray:
+        """(n,): the angle between the footprints of each vertex, degrees."""
+        found: FloatArray = self.vertex_columns["separation_angle"]
+        return found
+
+    def medial_axis(self, theta: Real = 1.0, *, threads: int = 0, progress: Progress = False) -> MedialComplex:
+        """The medial axis where two footprints are seen more than theta degrees apart, and what joins that.
+
+        Of a complex that is `part="medial"`: triangles of at most theta go by elementary collapses, so that the
+        topology stays; what a larger theta leaves is part of what a smaller one does.
+
+        >>> import blum
+        >>> walls = blum.voronoi_complex(blum.generate("box"), part="medial")
+        >>> axis = walls.medial_axis(60)
+        >>> axis.certificate.holds, len(walls.medial_axis(120).triangles) < len(axis.triangles)
+        (True, True)
+        """
+        if self.part != "medial":
+            raise InvalidOption(f'a medial axis is made of walls with two footprints: part="medial", not "{self.part}"')
+        angle = number(theta, "theta")
+        with reporting(progress) as report:
+            core = _core.collapse_axis(self._core, angle, integer(threads, "threads"), report)
+        origin = Origin(self._mesh, theta=angle, solid_rule="polyhedron")
+        return MedialComplex._of(core, EVERYTHING, origin)
+
     def write(self, path: PathLike) -> None:
         """Writes .vtp, .ply, .obj (without columns), .npz or .glb; the file appears complete or not at all."""
         _core.write_complex(Path(os.fspath(path)), self._core)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (core_arguments(self), self.report)
+        return _restored, (core_arguments(self), self.report, self.part, self._mesh)
 
     def __repr__(self) -> str:
         return f"VoronoiComplex({len(self.vertices):,} vertices, {len(self.triangles):,} triangles)"
 
 
-def _restored(arguments: tuple[Any, ...], report: VoronoiReport) -> VoronoiComplex:
-    return VoronoiComplex._of(_core.Complex(*arguments), report)
+def _restored(arguments: tuple[Any, ...], report: VoronoiReport, part: str, mesh: Mesh) -> VoronoiComplex:
+    return VoronoiComplex._of(_core.Complex(*arguments), report, part, mesh)
 
 
 @takes("VoronoiOptions")
@@ -87,7 +126,8 @@ def voronoi_complex(
     Returns
     -------
     VoronoiComplex
-        Triangles on walls and on the surface with `triangle_sites`, vertices with `radius`; `.report`.
+        Triangles on walls and on the surface with `triangle_sites`, vertices with `radius` and `footprints`;
+        `.report`. With `part="walls"` without the surface; with `part="medial"` the medial axis.
 
     >>> import blum
     >>> found = blum.voronoi_complex(blum.generate("box"))
@@ -97,4 +137,4 @@ def voronoi_complex(
     own = as_mesh(mesh, triangles)
     with reporting(progress) as report:
         core, told = _core.voronoi_complex(own._arrays, dict(options), integer(threads, "threads"), report)
-    return VoronoiComplex._of(core, told)
+    return VoronoiComplex._of(core, told, options.get("part", "all"), own)

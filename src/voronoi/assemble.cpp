@@ -39,6 +39,7 @@ class Assembly {
     place_events();
     for (std::size_t k = 0; k < cubes_.size(); ++k) add_cube(k);
     settle_all();
+    find_angles();
     return finish();
   }
 
@@ -151,7 +152,7 @@ class Assembly {
         if (component == outside) continue;
         triangles_.push_back(
             {vertex_of_event(square.events[k], id), first_of_square + component, first + square.component[component]});
-        add_sites(tree_.events[square.events[k]], at_event_[square.events[k]]);
+        add_sites(tree_.events[square.events[k]]);
       }
     }
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {
@@ -159,24 +160,41 @@ class Assembly {
     }
   }
 
-  /// @param at  relative to the centre of the labels.
-  void add_sites(const LineEvent& event, const Vec3d& at) {
+  void add_sites(const LineEvent& event) {
     const auto site = [&](LabelIndex label) {
       return label == outside ? -1 : static_cast<std::int32_t>(labels_[label].site);
     };
     const auto [low, high] = std::minmax({site(event.before), site(event.after)});
     site_a_.push_back(low);
     site_b_.push_back(high);
-    const bool is_wall = event.before != outside && event.after != outside;
-    triangle_angle_.push_back(is_wall ? static_cast<float>(separation_angle(at, labels_.closest_point(event.before, at),
-                                                                            labels_.closest_point(event.after, at)))
-                                      : 0.0F);
+    walls_.push_back({event.before, event.after});
+  }
+
+  /// The angle at which the middle of each triangle sees the planes, lines or points of both sites of its wall; 0 on
+  /// the surface, and where it is none but for rounding.
+  void find_angles() {
+    constexpr double least = 1e-6;  // degrees
+    triangle_angle_.assign(triangles_.size(), 0);
+    parallel_for(context_, triangles_.size(), grain, {}, [&](const WorkRange& range) {
+      for (std::size_t t = range.begin; t < range.end; ++t) {
+        const auto& [first, second] = walls_[t];
+        if (first == outside || second == outside) continue;
+        const auto& [a, b, c] = triangles_[t];
+        const Vec3d middle = (places_[a].start + places_[b].start + places_[c].start) * (1.0 / 3);
+        const double angle = separation_angle(middle, labels_[first].foot(middle), labels_[second].foot(middle));
+        if (angle >= least) triangle_angle_[t] = static_cast<float>(angle);
+      }
+    });
   }
 
   void settle_all() {
     points_.resize(places_.size());
     parallel_for(context_, places_.size(), grain, "vertices", [&](const WorkRange& range) {
-      for (std::size_t k = range.begin; k < range.end; ++k) settle_one(places_[k], points_[k]);
+      for (std::size_t k = range.begin; k < range.end; ++k) {
+        settle_one(places_[k], points_[k]);
+        const bool is_on_surface = !places_[k].surface.empty() && points_[k].radius <= near();
+        if (is_on_surface) points_[k].radius = 0;  // but for rounding
+      }
     });
   }
 
@@ -207,16 +225,18 @@ class Assembly {
     out = wall_point(labels_, tree_.cubes[place.cube].governors, place.start);
   }
 
+  /// How far points may be off walls and the surface, mesh units.
+  [[nodiscard]] double near() const { return 1e-9 * labels_.size(); }
+
   /// Whether a point is as far from two labels, or on the surface, and in the solid.
   [[nodiscard]] bool is_on_wall(const Place& place, const Vec3d& at, const WallPoint& found) const {
-    const double near = 1e-9 * labels_.size();
-    if (!place.surface.empty()) return found.radius <= near;
+    if (!place.surface.empty()) return found.radius <= near();
     if (!(found.separation_angle > 0)) return false;
     return std::all_of(found.labels.begin(), found.labels.end(), [&](LabelIndex label) {
-      if (labels_[label].kind == SiteKind::face) return labels_[label].height(at) > -near;
+      if (labels_[label].kind == SiteKind::face) return labels_[label].height(at) > -near();
       const std::span<const DomainPlane> planes = labels_.planes(label);
       return std::all_of(planes.begin(), planes.end(),
-                         [&](const DomainPlane& plane) { return plane.height(at) > -near; });
+                         [&](const DomainPlane& plane) { return plane.height(at) > -near(); });
     });
   }
 
@@ -268,6 +288,7 @@ class Assembly {
   std::vector<WallPoint> points_;  ///< of places_
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::int32_t> site_a_, site_b_;
+  std::vector<std::array<LabelIndex, 2>> walls_;  ///< of triangles_
   std::vector<float> triangle_angle_;
 };
 

@@ -170,16 +170,47 @@ def test_walls_leave_out_the_surface(parts, tmp_path):
 
 def test_a_medial_axis_has_the_topology_of_the_solid(parts, tmp_path):
     found = run_json("voronoi", parts / "bracket.ply", "-o", tmp_path / "axis.npz", "--medial")
-    axis = read_npz(tmp_path / "axis.npz")
     assert found["certified"]
     assert found["found_betti"] == [1, 4, 0]
-    faces = found["faces"]
-    edges = faces + found["reflex_edges"]
-    is_face_and_edge = (axis["site_a"] < faces) & (axis["site_b"] >= faces) & (axis["site_b"] < edges)
-    # Walls between faces and edges that are not theirs stay.
-    assert 0 <= axis["site_a"].min()
-    assert is_face_and_edge.sum() < len(axis["triangles"])
-    assert axis["metadata"]["content"] == "medial axis by a Voronoi diagram"
+    assert found["axis"]["certificate"]["certified"]
+    assert found["axis"]["theta"] == 1
+    file = np.load(tmp_path / "axis.npz")
+    site_a, site_b = file["triangle_site_a"], file["triangle_site_b"]
+    assert len(site_a) == found["axis"]["counts"]["triangles"]
+    assert 0 <= site_a.min()
+    # Of walls between faces and edges those stay that are of other faces.
+    is_face_and_edge = (site_a < found["faces"]) & (site_b >= found["faces"])
+    assert 0 < is_face_and_edge.sum() < len(site_a)
+    run("verify", parts / "bracket.ply", tmp_path / "axis.npz")
+
+
+@pytest.mark.parametrize("extension", ["vtp", "ply", "obj", "ma", "npz"])
+def test_medial_axes_of_angles_in_every_format(parts, tmp_path, extension):
+    mesh, triangles = parts / "bracket.ply", []
+    for theta in (0, 60, 120):
+        name = tmp_path / f"axis{theta}.{extension}"
+        options = ("--theta", theta, "--simplify", 0.02, "--resolution", 4, "--graph", tmp_path / f"axis{theta}.json")
+        axis = run_json("voronoi", mesh, "-o", name, "--medial", *options)["axis"]
+        assert axis["theta"] == theta and 0 < axis["deviation"] <= 0.02
+        assert axis["vertices_before"] > axis["counts"]["vertices"]
+        assert json.loads((tmp_path / f"axis{theta}.json").read_text())["theta"] == theta
+        triangles.append(axis["counts"]["triangles"])
+        run("verify", mesh, name)
+    assert triangles[0] > triangles[1] > triangles[2]
+
+
+def test_what_medial_axes_refuse(parts, tmp_path):
+    box, out = parts / "box.ply", tmp_path / "out.vtp"
+    assert "--medial" in run("voronoi", box, "-o", out, "--theta", 60, status=2)[1]
+    assert "--medial" in run("voronoi", box, "-o", out, "--graph", tmp_path / "g.json", "--walls", status=2)[1]
+    assert "--output" in run("voronoi", box, "--medial", "--theta", 60, status=2)[1]
+    for bad in ("-1", "181", "nan", "x"):
+        run("voronoi", box, "-o", out, "--medial", "--theta", bad, status=2)
+    for bad in ("-1", "nan", "inf"):
+        run("voronoi", box, "-o", out, "--medial", "--simplify", bad, status=2)
+    run("voronoi", box, "-o", tmp_path / "out.glb", "--medial", status=2)
+    run("voronoi", box, "-o", out, "--medial", "--graph", out, status=2)
+    assert not out.exists()
 
 
 def test_stl_is_welded_and_a_tolerance_recorded(parts, tmp_path):
@@ -246,7 +277,7 @@ def test_meshes_that_bound_no_solid(solids, tmp_path):
 
 def test_bad_options_are_said(parts, tmp_path):
     box, out = parts / "box.ply", tmp_path / "o.vtp"
-    for option, value in (("--depth", 0), ("--depth", 19), ("--resolution", 0), ("--max-cubes", 10), ("--weld", -1)):
+    for option, value in (("--depth", 0), ("--depth", 25), ("--resolution", 0), ("--max-cubes", 10), ("--weld", -1)):
         assert option in run("voronoi", box, "-o", out, option, value, status=2)[1]
     assert "--output" in run("voronoi", box, "-o", tmp_path / "o.xyz", status=2)[1]
     assert "give one" in run("voronoi", box, "--walls", "--medial", status=2)[1]

@@ -47,3 +47,26 @@ def test_files(box, tmp_path):
         assert (tmp_path / f"walls.{extension}").stat().st_size > 1000
     arrays = np.load(tmp_path / "walls.npz")
     assert np.array_equal(arrays["triangles"], found.triangles)
+
+
+def test_medial_axes(tmp_path):
+    bracket = blum.generate("bracket")
+    walls = blum.voronoi_complex(bracket, part="walls", resolution=4)
+    assert walls.report.certified and walls.part == "walls" and walls.triangle_sites.min() == 0
+    found = blum.voronoi_complex(bracket, part="medial", resolution=4)
+    assert found.report.certified and found.homology() == (1, 4, 0)
+    assert found.footprints.shape == (len(found.vertices), 2, 3)
+    distances = np.linalg.norm(found.footprints - found.vertices[:, None], axis=2)
+    assert np.abs(distances - found.radius[:, None]).max() < 1e-8
+    assert found.separation_angle.min() > 0
+    for theta in (0, 60, 120):
+        axis = found.medial_axis(theta)
+        assert axis.certificate.holds and axis.homology() == (1, 4, 0)
+    fewer = pickle.loads(pickle.dumps(found)).medial_axis(60).decimate(0.01)
+    assert fewer.certificate.holds and len(fewer.triangles) < len(found.medial_axis(60).triangles)
+    fewer.write(tmp_path / "axis.vtp")
+    assert blum.read_medial(tmp_path / "axis.vtp").triangles.shape == fewer.triangles.shape
+    with pytest.raises(blum.InvalidOption, match="two footprints"):
+        walls.medial_axis(60)
+    with pytest.raises(blum.InvalidOption, match="theta"):
+        found.medial_axis(200)

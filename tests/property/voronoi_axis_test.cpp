@@ -1,0 +1,98 @@
+// Medial axes from exact walls, at several angles, with all vertices and with few: certified by what shares nothing
+// with their construction, and near those of the grid.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "blum/certificate/certificate.hpp"
+#include "blum/geometry/bvh.hpp"
+#include "blum/medial_axis/collapse_axis.hpp"
+#include "blum/medial_axis/decimate.hpp"
+#include "blum/medial_axis/medial_axis.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/voronoi/voronoi_complex.hpp"
+#include "support/mesh_places.hpp"
+
+namespace blum {
+namespace {
+
+struct Case {
+  std::string name;
+  TriangleMesh mesh;
+};
+
+void PrintTo(const Case& of, std::ostream* out) {
+  *out << of.name;
+}
+
+std::vector<Case> cases() {
+  return {{"box", make_box()},
+          {"wedge", make_wedge()},
+          {"star", make_star()},
+          {"cylinder", make_cylinder({.sides = 12})},
+          {"bracket", make_bracket()},
+          {"bracket_turned", test::turned(make_bracket())},
+          {"menger", make_menger({.level = 1})},
+          {"void_cube", make_void_cube({.frequency = 1})},
+          {"torus", make_torus({.ring_segments = 12, .tube_segments = 8})},
+          {"bodies", make_bodies()}};
+}
+
+class Shapes : public testing::TestWithParam<Case> {};
+
+TEST_P(Shapes, AreCertifiedFromTheAxisAlone) {
+  const TriangleMesh& mesh = GetParam().mesh;
+  const VoronoiComplex walls = voronoi_complex(mesh, {.part = VoronoiPart::medial_axis, .resolution = 8});
+  ASSERT_TRUE(walls.report.certified);
+  const double tolerance = 1e-3 * bounds(mesh).diagonal();
+  for (const double theta : {0.0, 30.0, 75.0, 130.0}) {
+    SCOPED_TRACE(theta);
+    const Complex axis = collapse_axis(walls.complex, theta);
+    EXPECT_TRUE(problem_of_medial(axis).empty());
+    for (const Complex& form : {axis, decimate(axis, tolerance).axis}) {
+      const Certificate certificate = certify(form, mesh);
+      EXPECT_TRUE(certificate.topology_holds);
+      EXPECT_TRUE(certificate.geometry.holds);
+      EXPECT_TRUE(certificate.holds());
+      for (const std::string& mismatch : certificate.mismatches) ADD_FAILURE() << mismatch;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solids, Shapes, testing::ValuesIn(cases()),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// How far the vertices of triangles of one axis are from triangles of the other: the largest, and 95 % of them.
+std::array<double, 2> distances(const Complex& from, const Complex& to) {
+  const TriangleMesh target{to.positions, to.triangles};
+  const SiteTable table(target);
+  const Bvh bvh(target, table);
+  std::vector<double> all;
+  for (const auto& triangle : from.triangles) {
+    const Vec3d middle =
+        (from.positions[triangle[0]] + from.positions[triangle[1]] + from.positions[triangle[2]]) * (1.0 / 3);
+    all.push_back(bvh.nearest(middle)->distance);
+  }
+  std::sort(all.begin(), all.end());
+  return {all.back(), all[all.size() * 95 / 100]};
+}
+
+/// At an angle at which no sheet of the solid begins or ends.
+TEST(VoronoiAxis, IsNearThatOfTheGrid) {
+  const TriangleMesh mesh = make_bracket();
+  const double theta = 40;
+  const VoronoiComplex walls = voronoi_complex(mesh, {.part = VoronoiPart::medial_axis, .resolution = 64});
+  const Complex exact = collapse_axis(walls.complex, theta);
+  const MedialAxis grid = medial_axis(mesh, {.resolution = 128});
+  const Complex voxels = grid.fitted(theta);
+  const double side = grid.report().bodies.front().spacing;
+  const auto [most, usual] = distances(exact, voxels);
+  const auto [most_back, usual_back] = distances(voxels, exact);
+  EXPECT_LE(std::max(most, most_back), 1.5 * side) << "rims, which go along triangles and voxels";
+  EXPECT_LE(std::max(usual, usual_back), 0.05 * side);
+}
+
+}  // namespace
+}  // namespace blum
