@@ -62,7 +62,10 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
   Progress progress(!options.quiet);
   const Interrupt interrupt;
   const Context context = make_context(0, progress, interrupt);
-  const MedialFile file = read_axis(path);
+  const ShownAxis shown = read_axis_or_walls(path);
+  const MedialFile& file = shown.file;
+  if (graph && !shown.is_axis)
+    throw FileError("'" + path.string() + "' is a " + shown.content + "; graphs are of medial axes");
   const MedialCounts counts = count(file.complex);
   const BettiNumbers betti = homology(file.complex.view(), context);
   Json graph_facts;
@@ -86,7 +89,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
   const bool has_radii = file.has_radii && !box.is_empty();
   const MedialMetadata& m = file.metadata;
   const Json json = {{"path", path.string()},
-                     {"kind", "medial axis"},
+                     {"kind", shown.content},
                      {"counts", counts_json(counts, file.has_labels)},
                      {"betti", to_json(betti)},
                      {"graph", graph_facts},
@@ -106,8 +109,8 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
                      {"smooth", or_null(m.smooth)},
                      {"bounds", to_json(box)}};
   TextTable table;
-  table.add("file", path.string() + ": medial axis");
-  table.add("axis", counts_text(counts, file.has_labels));
+  table.add("file", path.string() + ": " + shown.content);
+  table.add(shown.is_axis ? "axis" : "walls", shown.is_axis ? counts_text(counts, file.has_labels) : walls_text(shown));
   table.add("topology", betti_text(betti));
   if (graph) table.add("graph", graph_line);
   table.add("radii", has_radii ? rounded_text(least) + " to " + rounded_text(most) : "none in the file");

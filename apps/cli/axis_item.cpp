@@ -71,11 +71,14 @@ void add_cells(SceneBlob& blob, const MedialView& axis, const std::optional<Medi
   json["sheets"] = column<std::int32_t>(blob, triangles, 1, [&](std::size_t t, std::size_t) { return axis.sheet[t]; });
 }
 
-void add_facts(Json& item, const MedialFile& file, const BettiNumbers& betti) {
+void add_facts(Json& item, const ShownAxis& shown, const BettiNumbers& betti) {
+  const MedialFile& file = shown.file;
   const MedialMetadata& m = file.metadata;
   Json facts = Json::array();
   const auto add = [&](const char* label, const std::string& text) { facts.push_back(Json::array({label, text})); };
-  add("axis", counts_text(count(file.complex), file.has_labels));
+  if (!shown.is_axis) add("content", shown.content);
+  add(shown.is_axis ? "axis" : "walls",
+      shown.is_axis ? counts_text(count(file.complex), file.has_labels) : walls_text(shown));
   add("topology", betti_text(betti));
   if (file.has_radii && !file.complex.positions.empty()) {
     const MedialView axis(file.complex);
@@ -93,7 +96,8 @@ void add_facts(Json& item, const MedialFile& file, const BettiNumbers& betti) {
 }  // namespace
 
 Json axis_item(SceneBlob& blob, const std::filesystem::path& path, const Context& context) {
-  const MedialFile file = read_axis(path);
+  const ShownAxis read = read_axis_or_walls(path);
+  const MedialFile& file = read.file;
   Box3 box;
   for (const Vec3d& position : file.complex.positions) box.extend(position);
   Json item = {{"kind", "axis"}, {"units", "mesh units"}};
@@ -103,7 +107,7 @@ Json axis_item(SceneBlob& blob, const std::filesystem::path& path, const Context
   item["theta"] = file.metadata.theta ? Json(*file.metadata.theta) : Json(nullptr);
   const BettiNumbers betti = homology(file.complex.view(), context);
   item["betti"] = to_json(betti);
-  add_facts(item, file, betti);
+  add_facts(item, read, betti);
   // The complex of a file with the axes of all angles is that of the least one, but for vertices at the same place.
   const Complex& shown = file.nested ? *file.nested : file.complex;
   const MedialView axis(shown);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "blum/io/complex_io.hpp"
 #include "blum/io/verify_medial.hpp"
 #include "commands.hpp"
 #include "files.hpp"
@@ -79,6 +81,59 @@ MedialFile read_axis(const std::filesystem::path& path) {
   MedialFile file = read_medial(path);
   add_missing_medial_columns(file.complex);
   return file;
+}
+
+namespace {
+
+std::string text_of(const FileMetadata& metadata, std::string_view name) {
+  const auto at = std::find_if(metadata.begin(), metadata.end(), [&](const auto& pair) { return pair.first == name; });
+  return at == metadata.end() ? "" : at->second;
+}
+
+/// Numbers walls between the same two sites as one sheet.
+void number_walls(Complex& complex) {
+  const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
+  const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> number;
+  std::vector<std::int32_t> sheets;
+  for (std::size_t t = 0; t < site_a.size(); ++t) {
+    sheets.push_back(
+        number.try_emplace({site_a[t], site_b[t]}, static_cast<std::int32_t>(number.size())).first->second);
+  }
+  const auto out = complex.triangle_columns.edit<std::int32_t>(medial_columns::sheet);
+  std::copy(sheets.begin(), sheets.end(), out.begin());
+}
+
+}  // namespace
+
+std::string walls_text(const ShownAxis& shown) {
+  const Complex& complex = shown.file.complex;
+  return plural(complex.positions.size(), "vertex", "vertices") + ", " +
+         plural(complex.triangles.size(), "triangle", "triangles") + " between " +
+         plural(sheet_count(complex), "pair", "pairs") + " of sites";
+}
+
+ShownAxis read_axis_or_walls(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".vtp" || extension == ".ply" || extension == ".npz") {
+    ComplexFile file = read_complex(path);
+    const std::string content = text_of(file.metadata, "content");
+    const bool has_sites = file.complex.triangle_columns.find("site_a") != nullptr &&
+                           file.complex.triangle_columns.find("site_b") != nullptr;
+    if (content.ends_with("Voronoi diagram") && has_sites) {
+      ShownAxis out;
+      out.content = content;
+      out.is_axis = false;
+      out.file.complex = std::move(file.complex);
+      out.file.metadata.source = text_of(file.metadata, "source");
+      out.file.has_radii = out.file.has_footprints = true;
+      out.file.has_sites = out.file.has_angles = true;
+      add_missing_medial_columns(out.file.complex);
+      number_walls(out.file.complex);
+      return out;
+    }
+  }
+  return {read_axis(path), "medial axis", true};
 }
 
 Certificate certificate_of(const MedialFile& file, const SolidInput& input, const LabelSelection& selection,

@@ -16,6 +16,18 @@ namespace blum::cli {
 /// The axis of a file with all columns of MedialView, whatever the file holds (MedialFile::has_radii and so on).
 [[nodiscard]] MedialFile read_axis(const std::filesystem::path& path);
 
+/// What is shown of a file of a medial axis, or of walls of a Voronoi diagram.
+struct ShownAxis {
+  MedialFile file;      ///< of a diagram, walls between the same sites have one number as sheets
+  std::string content;  ///< as metadata call it: "medial axis", "Voronoi diagram"
+  bool is_axis = true;
+};
+/// read_axis(), and the same of files that `blum voronoi` wrote.
+[[nodiscard]] ShownAxis read_axis_or_walls(const std::filesystem::path& path);
+
+/// What walls there are.
+[[nodiscard]] std::string walls_text(const ShownAxis& shown);
+
 /// The certificate of an axis as a file holds it, against a solid.
 /// @param selection  of the voxels, for images.
 /// @throws FileError where the solid is known by voxels only, and the file does not say which.
