@@ -25,6 +25,8 @@ struct Place {
   PlacedBox box;
   CellId cube = no_cell;            ///< that it lies in
   Vec3d on_wall;                    ///< a place where walls of it cross an edge of the grid
+  Vec3d rim;                        ///< sum of places on convex edges of the mesh at which walls of it end
+  std::uint32_t rims = 0;           ///< how many there are
   std::vector<LabelIndex> labels;   ///< one of each site
   std::vector<LabelIndex> surface;  ///< those of them whose own face is part of it
 };
@@ -122,7 +124,43 @@ class Assembly {
     for (std::uint32_t k = 0; k < cells.component.size(); ++k) {
       places_[first + k].start *= 1.0 / places_[first + k].parts;
     }
+    add_rims(cells, square, first);
     return first;
+  }
+
+  /// A wall between the faces of a convex edge ends where that pierces a square: in the first component there that
+  /// both faces touch, best where it crosses the border between them.
+  void add_rims(const CubeCells::Square& cells, const GridSquare& square, std::uint32_t first) {
+    for (const std::uint32_t edge : cells.convex_edges) {
+      const auto [t, u] = solid_.sites.triangles_of[edge];
+      std::vector<std::uint8_t> touched(cells.component.size(), 0);  // a bit for each face, one where it is crossed
+      for (std::size_t k = 0; k < cells.events.size(); ++k) {
+        if (cells.component_of_event[k] == outside) continue;
+        const LineEvent& event = tree_.events[cells.events[k]];
+        unsigned faces = 0;
+        for (const LabelIndex label : {event.before, event.after}) {
+          if (labels_.site_of(label) == labels_[t].site) faces |= 1U;
+          if (labels_.site_of(label) == labels_[u].site) faces |= 2U;
+        }
+        touched[cells.component_of_event[k]] |= static_cast<std::uint8_t>(faces == 3 ? 7U : faces);
+      }
+      const auto best = std::max_element(touched.begin(), touched.end());
+      if (best == touched.end() || *best < 3) continue;
+      Place& place = places_[first + static_cast<std::uint32_t>(best - touched.begin())];
+      place.rim += piercing(edge, square);
+      ++place.rims;
+    }
+  }
+
+  /// Where an edge of the mesh passes a square, relative to the centre of the labels.
+  [[nodiscard]] Vec3d piercing(std::uint32_t edge, const GridSquare& square) const {
+    const Segment& ends = solid_.table.edges()[edge];
+    const Vec3d p = solid_.mesh.vertices[ends[0]] - labels_.centre();
+    const Vec3d q = solid_.mesh.vertices[ends[1]] - labels_.centre();
+    const std::size_t axis = square.axis;
+    const double plane = tree_.lattice.at(axis, square.low[axis]) - labels_.centre()[axis];
+    const double part = (plane - p[axis]) / (q[axis] - p[axis]);
+    return p + (q - p) * std::clamp(part, 0.0, 1.0);
   }
 
   void add_cube(std::size_t number) {
@@ -144,6 +182,8 @@ class Assembly {
         of_component.start += part.start;
         if (of_component.parts == 0) of_component.on_wall = part.on_wall;
         ++of_component.parts;
+        of_component.rim += part.rim;
+        of_component.rims += part.rims;
         for (const LabelIndex label : part.labels) add_label(of_component.labels, label);
         for (const LabelIndex label : part.surface) add_label(of_component.surface, label);
       }
@@ -156,7 +196,15 @@ class Assembly {
       }
     }
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {
-      places_[first + k].start *= 1.0 / places_[first + k].parts;
+      Place& of_component = places_[first + k];
+      of_component.start *= 1.0 / of_component.parts;
+      // Rims of one wall go through its middle; those of several meet in a corner of the mesh, if there is one.
+      if (of_component.rims >= 3 && cells.vertices.size() == 1) {
+        of_component.rim = solid_.mesh.vertices[cells.vertices[0]] - labels_.centre();
+        of_component.rims = 1;
+      } else if (of_component.labels.size() > 2) {
+        of_component.rims = 0;
+      }
     }
   }
 
@@ -192,6 +240,7 @@ class Assembly {
     parallel_for(context_, places_.size(), grain, "vertices", [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
         settle_one(places_[k], points_[k]);
+        if (places_[k].rims > 0) move_to_rim(places_[k], points_[k]);
         const bool is_on_surface = !places_[k].surface.empty() && points_[k].radius <= near();
         if (is_on_surface) points_[k].radius = 0;  // but for rounding
       }
@@ -223,6 +272,17 @@ class Assembly {
     }
     place.start = place.on_wall;
     out = wall_point(labels_, tree_.cubes[place.cube].governors, place.start);
+  }
+
+  /// Moves a vertex nearly to where its wall ends on the surface, if the way there is on walls, too.
+  void move_to_rim(Place& place, WallPoint& out) const {
+    constexpr double left = 0.02;  // of the way, so that edges do not touch the surface
+    const Vec3d rim = place.rim * (1.0 / place.rims);
+    const Vec3d at = rim + (place.start - rim) * left;
+    const WallPoint found = wall_point(labels_, tree_.cubes[place.cube].governors, at);
+    if (!is_on_wall(place, at, found)) return;
+    place.start = at;
+    out = found;
   }
 
   /// How far points may be off walls and the surface, mesh units.

@@ -30,8 +30,10 @@ struct CubeCells {
     std::vector<std::uint32_t> events;              ///< as in SquareCells
     std::vector<std::uint32_t> component_of_event;  ///< in the square; `outside` where it is on no kept wall
     std::vector<std::uint32_t> component;           ///< in the cube, of each component in the square
+    std::vector<std::uint32_t> convex_edges;        ///< of the mesh that pierce it, where a part is asked for
   };
   std::vector<Square> squares;
+  std::vector<std::uint32_t> vertices;  ///< of the mesh in the cube, where a part is asked for
 };
 
 /// Decides by what is on a cube's boundary whether all components of walls and surface in it are acyclic: which they

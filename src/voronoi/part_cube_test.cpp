@@ -173,6 +173,7 @@ void PartOfCube::add_lines_and_points() {
 
 /// Numbers the components on the boundary.
 void PartOfCube::number_components(CubeCells& out) {
+  out.vertices.assign(in_.vertices.begin(), in_.vertices.end());
   std::map<std::uint32_t, std::uint32_t> number;
   for (std::uint32_t s = 0; s < in_.squares.size(); ++s) {
     CubeCells::Square& made = out.squares.emplace_back();
@@ -184,6 +185,9 @@ void PartOfCube::number_components(CubeCells& out) {
       if (is_new) ++out.component_count;
       made.component.push_back(at->second);
     }
+  }
+  for (const auto& [edge, s] : in_.piercings) {
+    if (solid_.sites.turn[edge] == EdgeTurn::convex) out.squares[s].convex_edges.push_back(edge);
   }
 }
 
