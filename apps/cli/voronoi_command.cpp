@@ -34,6 +34,7 @@ constexpr const char* examples = R"(Examples:
   blum voronoi part.stl -o axis.vtp --medial       the medial axis: walls with two footprints
   blum voronoi part.stl -o axis.vtp --medial --theta 60 --simplify 0.01    where these are 60 degrees apart; fewer triangles
   blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: no cube above a 32nd of the box
+  blum voronoi part.stl -o part.vtp --tolerance 0.1    nowhere more than 0.1 mesh units off the exact walls
   blum voronoi part.stl --json -                   only the facts: sites, cubes, whether it can be certified
 
 Exit status 3: the complex could not be certified, and no file was written.)";
@@ -167,6 +168,9 @@ TextTable table_of(const VoronoiReport& report, VoronoiPart part, const Counts& 
   table.add("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
                          count_text(report.exact_lines) + " by exact signs");
   table.add("complex", counts.text());
+  if (report.certified) {
+    table.add("geometry", "at most " + rounded_text(report.hausdorff_bound) + " from the exact one, everywhere");
+  }
   table.add("expected", betti_text(report.expected));
   table.add("found", betti_text(report.found));
   table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,13 +37,13 @@ class Assembly {
   Assembly(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid, const Context& context)
       : cells_(cells), tree_(cells.tree), test_(test), solid_(solid), labels_(solid.labels), context_(context) {}
 
-  Complex run() {
+  Assembled run() {
     analyse_cubes();
     place_events();
     for (std::size_t k = 0; k < cubes_.size(); ++k) add_cube(k);
     settle_all();
     find_angles();
-    return finish();
+    return {finish(), largest_diagonal_};
   }
 
  private:
@@ -168,6 +169,7 @@ class Assembly {
     if (cells.component_count == 0) return;
     const CellId id = cells_.leaves[number];
     const GridCube& cube = tree_.cubes[id];
+    largest_diagonal_ = std::max(largest_diagonal_, std::numbers::sqrt3 * tree_.lattice.unit * cube.length);
     const auto first = static_cast<std::uint32_t>(places_.size());
     Place place;
     place.box = box_of(cube.low, cube.high());
@@ -350,11 +352,12 @@ class Assembly {
   std::vector<std::int32_t> site_a_, site_b_;
   std::vector<std::array<LabelIndex, 2>> walls_;  ///< of triangles_
   std::vector<float> triangle_angle_;
+  double largest_diagonal_ = 0;
 };
 
 }  // namespace
 
-Complex assemble(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid, const Context& context) {
+Assembled assemble(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid, const Context& context) {
   return Assembly(cells, test, solid, context).run();
 }
 

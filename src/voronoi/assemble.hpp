@@ -9,10 +9,15 @@
 
 namespace blum::voronoi {
 
+struct Assembled {
+  Complex complex;
+  double largest_diagonal = 0;  ///< of cubes with a component, mesh units
+};
+
 /// A vertex for each component in a cube that passes, in a square without children and on a grid edge; a triangle for
 /// each three of which one contains the next. Columns as VoronoiComplex says. Vertices settle on what they stand for:
 /// walls, seams, junctions, the surface.
-[[nodiscard]] Complex assemble(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid,
-                               const Context& context);
+[[nodiscard]] Assembled assemble(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid,
+                                 const Context& context);
 
 }  // namespace blum::voronoi

@@ -12,7 +12,8 @@ constexpr std::size_t grain = 8;
 class Subdivider {
  public:
   Subdivider(const VoronoiSolid& solid, const SubdivisionOptions& options, Subdivision& out, const Context& context)
-      : options_(options),
+      : solid_(solid),
+        options_(options),
         out_(out),
         context_(context),
         splitter_(solid.mesh, solid.exact, solid.labels, out.tree),
@@ -49,10 +50,19 @@ class Subdivider {
   }
 
  private:
+  /// Whether the part that is asked for may meet a cube.
+  [[nodiscard]] bool may_hold_some(const GridCube& cube) const {
+    if (solid_.rule.is_all()) return true;
+    return std::any_of(cube.governors.begin(), cube.governors.end(), [&](LabelIndex label) {
+      return solid_.labels[label].site != solid_.labels[cube.governors.front()].site;
+    });
+  }
+
   /// Whether a cube has so many governors that its test is not worth it, and splitting it makes them fewer.
   [[nodiscard]] bool is_crowded(const GridCube& cube, int depth) const {
     constexpr std::size_t many = 64;
-    if (depth < std::max(1, options_.least_depth)) return true;
+    if (depth < 1) return true;
+    if (depth < options_.least_depth && may_hold_some(cube)) return true;
     return cube.governors.size() > many && cube.governors.size() * 10 < cube.governors_of_parent * 9;
   }
 
@@ -119,6 +129,7 @@ class Subdivider {
     }
   }
 
+  const VoronoiSolid& solid_;
   const SubdivisionOptions& options_;
   Subdivision& out_;
   const Context& context_;

@@ -1,13 +1,16 @@
 #include "blum/voronoi/voronoi_complex.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <new>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "blum/complex/homology.hpp"
+#include "blum/core/exact_text.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
@@ -31,6 +34,9 @@ void check(const VoronoiOptions& options) {
   check_range("depth", options.depth, 1, 24);
   check_range("grids", options.grids, 1, 100);
   check_range("max_cubes", options.max_cubes, 1000, 100'000'000);
+  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
+    throw InvalidOption("Voronoi complex: tolerance is above 0, not " + exact_text(*options.tolerance));
+  }
 }
 
 /// @throws InvalidMesh where two vertices lie in one place, or the mesh so far from the origin that there is no room
@@ -73,11 +79,19 @@ BettiNumbers checked_betti(const MeshView& mesh, const SiteTable& table, const C
   return *facts.betti;
 }
 
-/// How often a cube is split at least, so that its side is that of the box over the resolution.
-int least_depth(int resolution) {
+/// How often a cube is split at least, so that its side is that of the box over the resolution, and its diagonal at
+/// most the tolerance. @throws InvalidOption where that is more than there may be.
+int least_depth(const VoronoiOptions& options, const Box3& box) {
+  const Vec3d size = box.size();
+  const double root = CellSplitter::side_of_root * std::max({size.x, size.y, size.z});
   int depth = 0;
-  while ((1 << depth) < CellSplitter::side_of_root * resolution) ++depth;
-  return depth;
+  while ((1 << depth) < CellSplitter::side_of_root * options.resolution) ++depth;
+  if (!options.tolerance) return depth;
+  constexpr int most = 12;  // some 10^9 cubes where all of the box is solid
+  while (depth <= most && std::ldexp(root * std::numbers::sqrt3, -depth) > *options.tolerance) ++depth;
+  if (depth <= most) return depth;
+  throw InvalidOption("Voronoi complex: a tolerance of " + exact_text(*options.tolerance) +
+                      " is below a 2,000th of the box around the mesh");
 }
 
 /// What keeps an octree from passing.
@@ -134,7 +148,7 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   report.reflex_vertices = sited.sites.reflex_vertices.size();
   timer.lap("sites");
   SubdivisionOptions how;
-  how.least_depth = least_depth(options.resolution);
+  how.least_depth = least_depth(options, sited.labels.box());
   how.most_depth = std::max(options.depth, how.least_depth);
   how.most_cubes = static_cast<std::size_t>(options.max_cubes);
   const auto divide = [&](int grid) {
@@ -150,7 +164,9 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   timer.lap("cells");
   add_facts(cells, sited.labels, report);
   const SurfaceInCells surface(mesh, table, cells.tree.lattice);
-  out.complex = assemble(cells, CubeTest(sited, surface, cells.tree), sited, context);
+  Assembled made = assemble(cells, CubeTest(sited, surface, cells.tree), sited, context);
+  out.complex = std::move(made.complex);
+  report.hausdorff_bound = made.largest_diagonal;
   timer.lap("complex");
   report.found = homology(out.complex.view(), context);
   report.expected = expected_betti(sited, solid);

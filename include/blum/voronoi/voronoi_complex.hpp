@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -39,6 +40,8 @@ struct VoronoiOptions {
   VoronoiPart part = VoronoiPart::all;
   /// Cubes that meet the solid are at most the side of the box around it over this, 1 to 1024.
   int resolution = 16;
+  /// Cubes that meet the solid have a diagonal of at most this, > 0, mesh units; what `resolution` asks for holds, too.
+  std::optional<double> tolerance = {};
   /// How often cubes are split at most, 1 to 24.
   int depth = 23;
   /// How many places of the grid are tried at most, 1 to 100: where few cubes fail, others may pass.
@@ -57,6 +60,8 @@ struct Description<VoronoiOptions> {
       Member{"resolution", &VoronoiOptions::resolution, "",
              "cubes that meet the solid are at most the longest side of the box around it over this",
              Range::between(1, 1024)},
+      Member{"tolerance", &VoronoiOptions::tolerance, "mesh units",
+             "the complex is nowhere further from the exact walls than this, nor these from it", Range::positive()},
       Member{"depth", &VoronoiOptions::depth, "", "how often cubes are split at most", Range::between(1, 24)},
       Member{"grids", &VoronoiOptions::grids, "",
              "how many places of the grid are tried at most: where few cubes fail, others may pass",
@@ -110,8 +115,11 @@ struct VoronoiReport {
   /// Whether every cube passes, all signs agree, and the Betti numbers found are those expected: then the homology of
   /// the complex is proven to be that of the walls and the surface of the exact diagram.
   bool certified = false;
-  BettiNumbers expected{};          ///< of walls and surface: from the solid's own, holes of faces and regions
-  BettiNumbers found{};             ///< of the complex
+  BettiNumbers expected{};  ///< of walls and surface: from the solid's own, holes of faces and regions
+  BettiNumbers found{};     ///< of the complex
+  /// Where it is certified: each point of the complex has one of the exact part that is no further away than this, and
+  /// each point of that one of the complex; mesh units. The largest diagonal of a cube that either is in.
+  double hausdorff_bound = 0;
   std::size_t faces = 0;            ///< sites
   std::size_t reflex_edges = 0;     ///< sites
   std::size_t reflex_vertices = 0;  ///< sites
@@ -139,6 +147,8 @@ struct Description<VoronoiReport> {
              "whether every cube passes and the Betti numbers are as expected: then the homology is proven"},
       Member{"expected_betti", &VoronoiReport::expected, "", "components, tunnels, voids of walls and surface"},
       Member{"found_betti", &VoronoiReport::found, "", "of the complex"},
+      Member{"hausdorff_bound", &VoronoiReport::hausdorff_bound, "mesh units",
+             "where certified: how far complex and exact part are from each other at most"},
       Member{"faces", &VoronoiReport::faces, "", "sites: coplanar triangles that share edges are one"},
       Member{"reflex_edges", &VoronoiReport::reflex_edges, "", "sites"},
       Member{"reflex_vertices", &VoronoiReport::reflex_vertices, "", "sites"},

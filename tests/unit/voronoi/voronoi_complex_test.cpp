@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -145,18 +146,54 @@ TEST(VoronoiComplex, CrossesGridLinesOnWalls) {
   EXPECT_LE(largest, 1e-9 * size);
 }
 
+/// At a point that is at most e from a wall two distances differ by 2 e at most; and next to each point of a wall there
+/// is one of the complex.
+TEST(VoronoiComplex, IsAsNearToTheWallsAsItSays) {
+  for (const double tolerance : {0.5, 0.1, 0.05}) {
+    const VoronoiComplex walls =
+        voronoi_complex(make_box(), {.part = VoronoiPart::walls, .resolution = 1, .tolerance = tolerance});
+    ASSERT_TRUE(walls.report.certified);
+    EXPECT_LE(walls.report.hausdorff_bound, tolerance);
+    EXPECT_GT(walls.report.hausdorff_bound, 0);
+    const Complex& complex = walls.complex;
+    for (const auto& [a, b, c] : complex.triangles) {
+      const Vec3d middle = (complex.positions[a] + complex.positions[b] + complex.positions[c]) * (1.0 / 3);
+      std::array<double, 6> distances{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        distances[2 * axis] = 0.5 - middle[axis];
+        distances[2 * axis + 1] = 0.5 + middle[axis];
+      }
+      std::sort(distances.begin(), distances.end());
+      ASSERT_LE(distances[1] - distances[0], 2 * walls.report.hausdorff_bound);
+    }
+    // The wall between the faces towards +x and +y.
+    for (int k = 0; k <= 20; ++k) {
+      const Vec3d on_wall{0.5 * k / 20, 0.5 * k / 20, 0.4 * k / 20};
+      double nearest = 1;
+      for (const Vec3d& p : complex.positions) nearest = std::min(nearest, length(p - on_wall));
+      EXPECT_LE(nearest, walls.report.hausdorff_bound);
+    }
+  }
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = 0.0}), InvalidOption);
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = 1e-9}), InvalidOption);
+  EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = std::nan("")}), InvalidOption);
+}
+
 TEST(VoronoiComplex, IsTheSameForAnyNumberOfThreads) {
   const TriangleMesh mesh = make_bracket();
   Context context;
   context.threads = 1;
-  const VoronoiComplex one = voronoi_complex(mesh, {}, context);
-  for (const int threads : {2, 7}) {
-    context.threads = threads;
-    const VoronoiComplex more = voronoi_complex(mesh, {}, context);
-    EXPECT_EQ(one.complex.positions, more.complex.positions);
-    EXPECT_EQ(one.complex.triangles, more.complex.triangles);
-    EXPECT_EQ(one.complex.vertex_columns, more.complex.vertex_columns);
-    EXPECT_EQ(one.complex.triangle_columns, more.complex.triangle_columns);
+  for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
+    context.threads = 1;
+    const VoronoiComplex one = voronoi_complex(mesh, {.part = part}, context);
+    for (const int threads : {2, 7}) {
+      context.threads = threads;
+      const VoronoiComplex more = voronoi_complex(mesh, {.part = part}, context);
+      EXPECT_EQ(one.complex.positions, more.complex.positions);
+      EXPECT_EQ(one.complex.triangles, more.complex.triangles);
+      EXPECT_EQ(one.complex.vertex_columns, more.complex.vertex_columns);
+      EXPECT_EQ(one.complex.triangle_columns, more.complex.triangle_columns);
+    }
   }
 }
 
