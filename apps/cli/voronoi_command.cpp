@@ -12,6 +12,7 @@
 #include "blum/core/error.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
+#include "blum/voronoi/voronoi_regions.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "described.hpp"
@@ -246,6 +247,7 @@ void run(const Arguments& a) {
   facts.erase("seconds");  // the run's, below, hold them
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
+  facts["regions"] = r.options.part == VoronoiPart::all ? to_json(voronoi_regions(made.complex)) : Json(nullptr);
   facts["axis"] = axis ? axis->json : Json(nullptr);
   Json json = answer_json("voronoi", facts);
   Json outputs = Json::array();

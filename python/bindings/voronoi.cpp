@@ -8,6 +8,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/io/complex_io.hpp"
+#include "blum/voronoi/voronoi_regions.hpp"
 #include "call.hpp"
 #include "structs.hpp"
 
@@ -16,6 +17,8 @@ namespace blum::python {
 void bind_voronoi(nb::module_& m) {
   bind_options<VoronoiOptions>(m);
   bind_struct<FailingVoronoiCell>(m);
+  bind_struct<VoronoiNeighbour>(m);
+  bind_struct<VoronoiRegion>(m);
   bind_struct<VoronoiReport>(m);
   m.def(
       "voronoi_complex",
@@ -27,6 +30,14 @@ void bind_voronoi(nb::module_& m) {
         return nb::make_tuple(std::move(out.complex), to_python(out.report));
       },
       nb::arg("mesh"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+  m.def(
+      "voronoi_regions",
+      [](const Complex& complex) {
+        nb::list out;
+        for (const VoronoiRegion& region : voronoi_regions(complex)) out.append(to_python(region));
+        return out;
+      },
+      nb::arg("complex"));
   m.def(
       "write_complex",
       [](const std::filesystem::path& path, const Complex& complex) {

@@ -16,7 +16,7 @@ from ._medial_complex import EVERYTHING, MedialComplex, Origin
 from ._mesh import Mesh, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import VoronoiOptions, VoronoiReport
+from ._structs import VoronoiOptions, VoronoiRegion, VoronoiReport
 
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
@@ -64,6 +64,20 @@ class VoronoiComplex(Complex):
     def separation_angle(self) -> FloatArray:
         """(n,): the angle between the footprints of each vertex, degrees."""
         found: FloatArray = self.vertex_columns["separation_angle"]
+        return found
+
+    def regions(self) -> list[VoronoiRegion]:
+        """The regions by rising site, each with `volume`, `surface_area` and `neighbours` (`site`, `area`); of
+        `part="all"`.
+
+        >>> import blum
+        >>> found = blum.voronoi_complex(blum.generate("box")).regions()
+        >>> len(found), round(sum(region.volume for region in found), 9)
+        (6, 1.0)
+        """
+        if self.part != "all":
+            raise InvalidOption(f'regions have walls and surface: part="all", not "{self.part}"')
+        found: list[VoronoiRegion] = _core.voronoi_regions(self._core)
         return found
 
     def medial_axis(self, theta: Real = 1.0, *, threads: int = 0, progress: Progress = False) -> MedialComplex:

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blum/complex/medial_columns.hpp"
@@ -42,6 +43,7 @@ class Assembly {
     place_events();
     for (std::size_t k = 0; k < cubes_.size(); ++k) add_cube(k);
     settle_all();
+    orient();
     find_angles();
     return {finish(), largest_diagonal_};
   }
@@ -218,6 +220,24 @@ class Assembly {
     site_a_.push_back(low);
     site_b_.push_back(high);
     walls_.push_back({event.before, event.after});
+  }
+
+  /// Turns triangles so that their corners run counterclockwise as seen from the region of the larger site.
+  void orient() {
+    parallel_for(context_, triangles_.size(), grain, {}, [&](const WorkRange& range) {
+      for (std::size_t t = range.begin; t < range.end; ++t) {
+        auto& [a, b, c] = triangles_[t];
+        const Vec3d& p = places_[a].start;
+        const Vec3d normal = cross(places_[b].start - p, places_[c].start - p);
+        const Vec3d middle = (p + places_[b].start + places_[c].start) * (1.0 / 3);
+        LabelIndex first = walls_[t][0];
+        LabelIndex second = walls_[t][1];
+        const bool is_second_larger =
+            first == outside || (second != outside && labels_[second].site > labels_[first].site);
+        if (!is_second_larger) std::swap(first, second);
+        if (dot(normal, towards_second(labels_, first, second, middle)) < 0) std::swap(b, c);
+      }
+    });
   }
 
   /// The angle at which the middle of each triangle sees the planes, lines or points of both sites of its wall; 0 on

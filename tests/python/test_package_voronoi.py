@@ -49,6 +49,15 @@ def test_files(box, tmp_path):
     assert np.array_equal(arrays["triangles"], found.triangles)
 
 
+def test_regions(box):
+    found = blum.voronoi_complex(box).regions()
+    assert [region.site for region in found] == list(range(6))
+    assert np.isclose(sum(region.volume for region in found), 1)
+    assert all(len(region.neighbours) == 4 for region in found)
+    with pytest.raises(blum.InvalidOption, match="all"):
+        blum.voronoi_complex(box, part="walls").regions()
+
+
 def test_medial_axes(tmp_path):
     bracket = blum.generate("bracket")
     walls = blum.voronoi_complex(bracket, part="walls", resolution=4)

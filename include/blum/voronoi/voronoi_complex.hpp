@@ -170,10 +170,14 @@ struct Description<VoronoiReport> {
 
 /// Walls and surface of a Voronoi diagram.
 struct VoronoiComplex {
-  /// Triangles on walls between regions and on the surface. Columns: of vertices, `radius` (float64, mesh units: the
-  /// distance from the closest site; 0 on the surface); of triangles, `site_a` and `site_b` (int32, the smaller one
-  /// first: the regions on both sides; -1 and a site on the surface). Sites are numbered as faces, by their smallest
-  /// triangle, then reflex edges, then reflex vertices, as polyhedron_sites() lists them.
+  /// Triangles on walls between regions and on the surface. Columns of vertices: `radius` (float64, mesh units: the
+  /// distance from the closest site; 0 on the surface), `footprint_0`, `footprint_1` (3 x float64: the closest points
+  /// of the surface; of more than two, those that are seen furthest apart; the same one twice where there is one),
+  /// `site_0`, `site_1` (int32: what these lie on, by SiteTable), `separation_angle` (float64: between them, degrees).
+  /// Of triangles: `site_a` and `site_b` (int32, the smaller one first: the regions on both sides; -1 and a site on the
+  /// surface), `separation_angle` (float32, degrees: at which the middle sees both; 0 below 1e-6, and on the surface).
+  /// Corners run counterclockwise as seen from the region of site_b. Sites a and b are numbered as faces, by their
+  /// smallest triangle, then reflex edges, then reflex vertices, as polyhedron_sites() lists them.
   Complex complex;
   VoronoiReport report;
 };

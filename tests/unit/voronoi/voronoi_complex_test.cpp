@@ -15,6 +15,7 @@
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/shapes/generators.hpp"
+#include "blum/voronoi/voronoi_regions.hpp"
 #include "support/labelled_solid.hpp"
 #include "support/mesh_places.hpp"
 
@@ -177,6 +178,51 @@ TEST(VoronoiComplex, IsAsNearToTheWallsAsItSays) {
   EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = 0.0}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = 1e-9}), InvalidOption);
   EXPECT_THROW((void)voronoi_complex(make_box(), {.tolerance = std::nan("")}), InvalidOption);
+}
+
+TEST(VoronoiRegions, OfABox) {
+  const std::vector<VoronoiRegion> regions = voronoi_regions(voronoi_complex(make_box()).complex);
+  ASSERT_EQ(regions.size(), 6U);
+  for (std::int32_t k = 0; k < 6; ++k) {
+    const VoronoiRegion& region = regions[static_cast<std::size_t>(k)];
+    EXPECT_EQ(region.site, k);
+    EXPECT_NEAR(region.volume, 1.0 / 6, 1e-3) << "a pyramid";
+    EXPECT_NEAR(region.surface_area, 1, 1e-3);
+    ASSERT_EQ(region.neighbours.size(), 4U) << "the opposite one touches it in a point";
+    for (const VoronoiNeighbour& neighbour : region.neighbours) EXPECT_NEAR(neighbour.area, std::sqrt(0.125), 0.02);
+  }
+}
+
+/// Each triangle bounds two regions, from both sides: their volumes add up to that of the solid.
+TEST(VoronoiRegions, FillTheSolid) {
+  for (const TriangleMesh& mesh : {make_bracket(), test::turned(make_bracket()), test::box_with_void(), make_star(),
+                                   make_torus({.ring_segments = 12, .tube_segments = 8})}) {
+    const VoronoiComplex found = voronoi_complex(mesh);
+    const std::vector<VoronoiRegion> regions = voronoi_regions(found.complex);
+    const VoronoiReport& report = found.report;
+    EXPECT_EQ(regions.size(), report.faces + report.reflex_edges + report.reflex_vertices - report.thin_vertices);
+    double volume = 0;
+    double surface = 0;
+    for (const VoronoiRegion& region : regions) {
+      volume += region.volume;
+      surface += region.surface_area;
+    }
+    const SiteTable table(mesh);
+    const Orientation facts = orientation(mesh, table);
+    EXPECT_NEAR(volume, facts.signed_volume, 0.01 * facts.signed_volume);
+    double area = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      area += 0.5 * length(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+    }
+    EXPECT_NEAR(surface, area, 0.05 * area);
+    // Of regions thinner than a cube volumes are near 0, of whatever sign; none is turned inside out.
+    const double least = -0.01 * facts.signed_volume;
+    for (const VoronoiRegion& region : regions) EXPECT_GT(region.volume, least) << region.site;
+  }
+}
+
+TEST(VoronoiRegions, RefuseWhatHasNoSites) {
+  EXPECT_THROW((void)voronoi_regions(Complex{{{0, 0, 0}}, {}, {}, Columns(1), {}, {}}), InvalidOption);
 }
 
 TEST(VoronoiComplex, IsTheSameForAnyNumberOfThreads) {
