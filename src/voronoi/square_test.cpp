@@ -218,7 +218,7 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
     const LabelIndex other = candidate.label;
     const bool are_incident = labels_.are_incident(labels_[label].site, other);
     if (are_incident && !allowed.by_incident) continue;
-    const Polygon inside = clipped_by(part, 0, attained_between(other));
+    const Polygon inside = clipped_by(part, 2 * labels_.rounding(), attained_between(other));
     const std::optional<Bisector> plane = labels_.bisector(other, label);
     Polygon left;
     // Domains of labels next to each other meet in their borders alone.
