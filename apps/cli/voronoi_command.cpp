@@ -245,6 +245,7 @@ void run(const Arguments& a) {
   Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
   facts.update(to_json(found));
   facts.erase("seconds");  // the run's, below, hold them
+  facts["certified"] = mismatches.empty();
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
   facts["regions"] = r.options.part == VoronoiPart::all ? to_json(voronoi_regions(made.complex)) : Json(nullptr);

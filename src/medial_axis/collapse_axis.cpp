@@ -28,6 +28,7 @@ class AxisCollapser {
         theta_(theta),
         context_(context),
         angles_(walls.triangle_columns.get<float>(medial_columns::separation_angle)),
+        vertex_angles_(walls.vertex_columns.get<double>(medial_columns::separation_angle)),
         incidence_(ComplexView{walls.positions.size(), {}, walls.triangles}, context) {}
 
   Complex run() {
@@ -40,6 +41,12 @@ class AxisCollapser {
   [[nodiscard]] std::size_t edge_count() const { return incidence_.edges().size(); }
   void look() {
     if (++steps_ % steps_between_looks == 0) throw_if_cancelled(context_);
+  }
+
+  /// What both ends of an edge see: along a seam more than its triangles do.
+  [[nodiscard]] float own_angle(std::uint32_t edge) const {
+    const auto& [a, b] = incidence_.edges()[edge];
+    return static_cast<float>(std::min(vertex_angles_[a], vertex_angles_[b]));
   }
 
   /// The only triangle that is left at an edge; none where there are more, or no more.
@@ -60,7 +67,7 @@ class AxisCollapser {
     std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> line;
     const auto offer = [&](std::uint32_t edge) {
       const std::uint32_t t = only_triangle(edge);
-      if (t != none && angles_[t] <= theta_) line.emplace(angles_[t], edge);
+      if (t != none && angles_[t] <= theta_ && own_angle(edge) <= theta_) line.emplace(angles_[t], edge);
     };
     for (std::uint32_t e = 0; e < edge_count(); ++e) offer(e);
     while (!line.empty()) {
@@ -81,7 +88,7 @@ class AxisCollapser {
 
   /// The largest angle of a triangle that was at an edge.
   [[nodiscard]] float angle_of_edge(std::uint32_t edge) const {
-    float largest = 0;
+    float largest = own_angle(edge);
     for (const std::uint32_t t : incidence_.triangles_of_edge()[edge]) largest = std::max(largest, angles_[t]);
     return largest;
   }
@@ -160,6 +167,7 @@ class AxisCollapser {
   double theta_;
   const Context& context_;
   std::span<const float> angles_;
+  std::span<const double> vertex_angles_;
   Incidence incidence_;
   std::vector<bool> is_triangle_gone_, is_edge_gone_, is_vertex_gone_;
   std::vector<std::uint32_t> triangles_left_;  ///< of each edge

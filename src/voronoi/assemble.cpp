@@ -269,31 +269,50 @@ class Assembly {
     });
   }
 
+  /// A place for a vertex, with what it sees.
+  struct Settled {
+    Vec3d at;
+    WallPoint point;
+  };
+
+  /// Where some of a vertex's labels are equally close, or on the surface of them; nullopt where that is not on a wall.
+  [[nodiscard]] std::optional<Settled> settled(const Place& place, std::span<const LabelIndex> which) const {
+    const auto at = settle(labels_, which, !place.surface.empty(), place.start, place.box);
+    if (!at) return std::nullopt;
+    Settled out{*at, wall_point(labels_, tree_.cubes[place.cube].governors, *at)};
+    return is_on_wall(place, out.at, out.point) ? std::optional(out) : std::nullopt;
+  }
+
+  /// The best of places on walls between two labels: that with the largest angle, so that narrow sheets are not passed
+  /// over.
+  [[nodiscard]] std::optional<Settled> settled_between_two(const Place& place) const {
+    std::optional<Settled> best;
+    for (std::size_t i = 0; i < place.labels.size(); ++i) {
+      for (std::size_t k = i + 1; k < place.labels.size(); ++k) {
+        const auto found = settled(place, std::array{place.labels[i], place.labels[k]});
+        if (found && (!best || found->point.separation_angle > best->point.separation_angle)) best = found;
+      }
+    }
+    return best;
+  }
+
   /// Moves a vertex to the surface where it has a part in it, else to where all its labels are equally close, or two;
   /// where none of that is found nearby, to where a wall of it crosses an edge of the grid.
   void settle_one(Place& place, WallPoint& out) const {
-    const auto try_at = [&](const std::optional<Vec3d>& at) {
-      if (!at) return false;
-      const WallPoint found = wall_point(labels_, tree_.cubes[place.cube].governors, *at);
-      if (!is_on_wall(place, *at, found)) return false;
-      place.start = *at;
-      out = found;
-      return true;
-    };
-    const bool on_surface = !place.surface.empty();
     const bool is_point = place.box.low == place.box.high;
-    if (!is_point) {
-      const std::vector<LabelIndex>& which = on_surface ? place.surface : place.labels;
-      if (try_at(settle(labels_, which, on_surface, place.start, place.box))) return;
-      for (std::size_t i = 0; i < which.size(); ++i) {
-        if (on_surface && try_at(settle(labels_, std::array{which[i]}, true, place.start, place.box))) return;
-        for (std::size_t k = i + 1; k < which.size() && !on_surface; ++k) {
-          if (try_at(settle(labels_, std::array{which[i], which[k]}, false, place.start, place.box))) return;
-        }
+    std::optional<Settled> found;
+    if (!is_point && place.surface.empty()) {
+      found = settled(place, place.labels);
+      if (!found) found = settled_between_two(place);
+    } else if (!is_point) {
+      found = settled(place, place.surface);
+      for (std::size_t k = 0; k < place.surface.size() && !found; ++k) {
+        found = settled(place, std::array{place.surface[k]});
       }
     }
-    place.start = place.on_wall;
-    out = wall_point(labels_, tree_.cubes[place.cube].governors, place.start);
+    if (!found) found = {place.on_wall, wall_point(labels_, tree_.cubes[place.cube].governors, place.on_wall)};
+    place.start = found->at;
+    out = found->point;
   }
 
   /// Moves a vertex nearly to where its wall ends on the surface, if the way there is on walls, too.
