@@ -11,6 +11,7 @@
 
 #include "blum/complex/medial_columns.hpp"
 #include "blum/core/parallel.hpp"
+#include "voronoi/crossings.hpp"
 #include "voronoi/settle.hpp"
 #include "voronoi/wall_point.hpp"
 
@@ -45,7 +46,8 @@ class Assembly {
     settle_all();
     orient();
     find_angles();
-    return {finish(), largest_diagonal_};
+    std::vector<CellId> crossing = solid_.rule.is_all() ? std::vector<CellId>() : crossing_cubes();
+    return {finish(), largest_diagonal_, std::move(crossing)};
   }
 
  private:
@@ -166,6 +168,16 @@ class Assembly {
     return p + (q - p) * std::clamp(part, 0.0, 1.0);
   }
 
+  /// Whether a corner of the mesh is one of all labels of a vertex, or of other triangles of their faces.
+  [[nodiscard]] bool are_at(const Vec3d& corner, const Place& place) const {
+    const std::vector<LabelIndex>& near = tree_.cubes[place.cube].governors;
+    return std::all_of(place.labels.begin(), place.labels.end(), [&](LabelIndex label) {
+      return std::any_of(near.begin(), near.end(), [&](LabelIndex other) {
+        return labels_[other].site == labels_[label].site && labels_.has_corner(other, corner);
+      });
+    });
+  }
+
   void add_cube(std::size_t number) {
     const CubeCells& cells = cubes_[number];
     if (cells.component_count == 0) return;
@@ -196,14 +208,15 @@ class Assembly {
         if (component == outside) continue;
         triangles_.push_back(
             {vertex_of_event(square.events[k], id), first_of_square + component, first + square.component[component]});
-        add_sites(tree_.events[square.events[k]]);
+        add_sites(tree_.events[square.events[k]], id);
       }
     }
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {
       Place& of_component = places_[first + k];
       of_component.start *= 1.0 / of_component.parts;
-      // Rims of one wall go through its middle; those of several meet in a corner of the mesh, if there is one.
-      if (of_component.rims >= 3 && cells.vertices.size() == 1) {
+      // Rims of one wall go through its middle. Next to a corner of the mesh walls are a cone about it.
+      if (of_component.rims > 0 && cells.vertices.size() == 1 &&
+          are_at(solid_.mesh.vertices[cells.vertices[0]] - labels_.centre(), of_component)) {
         of_component.rim = solid_.mesh.vertices[cells.vertices[0]] - labels_.centre();
         of_component.rims = 1;
       } else if (of_component.labels.size() > 2) {
@@ -212,7 +225,30 @@ class Assembly {
     }
   }
 
-  void add_sites(const LineEvent& event) {
+  /// Walls lie in the solid, but their triangles may cut corners: where they cross the surface, cubes are too large.
+  [[nodiscard]] std::vector<CellId> crossing_cubes() const {
+    std::vector<std::uint8_t> is_crossing(triangles_.size(), 0);
+    parallel_for(context_, triangles_.size(), grain, {}, [&](const WorkRange& range) {
+      for (std::size_t t = range.begin; t < range.end; ++t) {
+        const auto& [a, b, c] = triangles_[t];
+        const std::array corners{places_[a].start + labels_.centre(), places_[b].start + labels_.centre(),
+                                 places_[c].start + labels_.centre()};
+        const std::vector<std::uint32_t>& near = tree_.cubes[cube_of_triangle_[t]].triangles;
+        is_crossing[t] = std::any_of(near.begin(), near.end(), [&](std::uint32_t u) {
+          return cross_each_other(corners, triangle_corners(solid_.mesh, u));
+        });
+      }
+    });
+    std::vector<CellId> out;
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      if (is_crossing[t] != 0) out.push_back(cube_of_triangle_[t]);
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+  void add_sites(const LineEvent& event, CellId cube) {
     const auto site = [&](LabelIndex label) {
       return label == outside ? -1 : static_cast<std::int32_t>(labels_[label].site);
     };
@@ -220,6 +256,7 @@ class Assembly {
     site_a_.push_back(low);
     site_b_.push_back(high);
     walls_.push_back({event.before, event.after});
+    cube_of_triangle_.push_back(cube);
   }
 
   /// Turns triangles so that their corners run counterclockwise as seen from the region of the larger site.
@@ -390,6 +427,7 @@ class Assembly {
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::int32_t> site_a_, site_b_;
   std::vector<std::array<LabelIndex, 2>> walls_;  ///< of triangles_
+  std::vector<CellId> cube_of_triangle_;
   std::vector<float> triangle_angle_;
   double largest_diagonal_ = 0;
 };

@@ -12,6 +12,8 @@ namespace blum::voronoi {
 struct Assembled {
   Complex complex;
   double largest_diagonal = 0;  ///< of cubes with a component, mesh units
+  /// Leaves in which triangles cross the surface, rising; looked for where a part is asked for.
+  std::vector<CellId> crossing_cubes;
 };
 
 /// A vertex for each component in a cube that passes, in a square without children and on a grid edge; a triangle for

@@ -1,6 +1,7 @@
 #include "voronoi/subdivision.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "blum/core/parallel.hpp"
 
@@ -22,27 +23,16 @@ class Subdivider {
         part_test_(solid, square_test_, surface_, out.tree),
         cube_test_(solid, surface_, out.tree) {}
 
-  void run() {
+  void run(const Refine& refine) {
     splitter_.add_root(options_.grid);
-    std::vector<CellId> cubes{0};
-    for (int depth = 0; !cubes.empty(); ++depth) {
-      const bool is_last = depth >= options_.most_depth || is_full();
-      std::vector<CellId> to_test;
-      std::vector<CellId> to_split;
-      for (const CellId cube : cubes) {
-        (!is_last && is_crowded(out_.tree.cubes[cube], depth) ? to_split : to_test).push_back(cube);
-      }
-      resolve_squares(to_test);
-      test(to_test, is_last, to_split);
-      std::sort(to_split.begin(), to_split.end());
-      splitter_.split_cubes(to_split, context_);
-      cubes.clear();
-      for (const CellId cube : to_split) {
-        for (CellId k = 0; k < 8; ++k) {
-          const CellId child = out_.tree.cubes[cube].children + k;
-          if (out_.tree.cubes[child].state != CubeState::trivial) cubes.push_back(child);
-        }
-      }
+    waiting_[0] = {0};
+    divide();
+    constexpr int most_rounds = 6;
+    for (int round = 0; round < most_rounds && !is_full(); ++round) {
+      const std::vector<CellId> cubes = refine(out_);
+      if (cubes.empty()) break;
+      split_leaves(cubes);
+      divide();
     }
     out_.lines = splitter_.counts();
     out_.contradictions = splitter_.contradictions();
@@ -50,6 +40,62 @@ class Subdivider {
   }
 
  private:
+  /// Divides the cubes that wait, the largest first.
+  void divide() {
+    while (!waiting_.empty()) {
+      const auto [depth, cubes] = *waiting_.begin();
+      waiting_.erase(waiting_.begin());
+      divide(depth, cubes);
+    }
+  }
+
+  /// @param cubes  all of one size.
+  void divide(int depth, const std::vector<CellId>& cubes) {
+    const bool is_last = depth >= options_.most_depth || is_full();
+    std::vector<CellId> to_test;
+    std::vector<CellId> to_split;
+    for (const CellId cube : cubes) {
+      (!is_last && is_crowded(out_.tree.cubes[cube], depth) ? to_split : to_test).push_back(cube);
+    }
+    resolve_squares(to_test);
+    test(to_test, is_last, to_split);
+    std::sort(to_split.begin(), to_split.end());
+    split(depth, to_split);
+  }
+
+  void split(int depth, const std::vector<CellId>& cubes) {
+    splitter_.split_cubes(cubes, context_);
+    for (const CellId cube : cubes) {
+      for (CellId k = 0; k < 8; ++k) {
+        const CellId child = out_.tree.cubes[cube].children + k;
+        if (out_.tree.cubes[child].state != CubeState::trivial) waiting_[depth + 1].push_back(child);
+      }
+    }
+  }
+
+  [[nodiscard]] int depth_of(CellId cube) const {
+    int depth = 0;
+    while (out_.tree.cubes[cube].length << depth < Lattice::most) ++depth;
+    return depth;
+  }
+
+  /// Splits leaves that pass, but are to be smaller.
+  void split_leaves(const std::vector<CellId>& cubes) {
+    std::map<int, std::vector<CellId>> by_depth;
+    std::vector<CellId> gone;
+    for (const CellId cube : cubes) {
+      if (depth_of(cube) >= options_.most_depth) continue;
+      by_depth[depth_of(cube)].push_back(cube);
+      gone.push_back(cube);
+    }
+    std::sort(gone.begin(), gone.end());
+    std::erase_if(out_.leaves, [&](CellId leaf) { return std::binary_search(gone.begin(), gone.end(), leaf); });
+    for (auto& [depth, of_depth] : by_depth) {
+      std::sort(of_depth.begin(), of_depth.end());
+      split(depth, of_depth);
+    }
+  }
+
   /// Whether the part that is asked for may meet a cube.
   [[nodiscard]] bool may_hold_some(const GridCube& cube) const {
     if (solid_.rule.is_all()) return true;
@@ -138,13 +184,15 @@ class Subdivider {
   SquareTest square_test_;
   PartSquareTest part_test_;
   CubeTest cube_test_;
+  std::map<int, std::vector<CellId>> waiting_;  ///< by depth
 };
 
 }  // namespace
 
-Subdivision subdivide(const VoronoiSolid& solid, const SubdivisionOptions& options, const Context& context) {
+Subdivision subdivide(const VoronoiSolid& solid, const SubdivisionOptions& options, const Context& context,
+                      const Refine& refine) {
   Subdivision out;
-  Subdivider(solid, options, out, context).run();
+  Subdivider(solid, options, out, context).run(refine);
   return out;
 }
 

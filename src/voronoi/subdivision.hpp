@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "blum/core/context.hpp"
+#include "blum/core/function_ref.hpp"
 #include "voronoi/cell_splitter.hpp"
 #include "voronoi/cube_test.hpp"
 #include "voronoi/part_square_test.hpp"
@@ -40,8 +41,16 @@ struct Subdivision {
   std::size_t governors = 0;  ///< sum over leaves
 };
 
-/// Splits a cube around the mesh until each leaf passes CubeTest, or is at the largest depth.
+/// Which leaves are to be smaller though they pass.
+using Refine = FunctionRef<std::vector<CellId>(const Subdivision&)>;
+
+struct RefineNothing {
+  std::vector<CellId> operator()(const Subdivision& /*cells*/) const { return {}; }
+};
+
+/// Splits a cube around the mesh until each leaf passes CubeTest, or is at the largest depth; and then those that
+/// `refine` asks for, six times at most.
 [[nodiscard]] Subdivision subdivide(const VoronoiSolid& solid, const SubdivisionOptions& options,
-                                    const Context& context);
+                                    const Context& context, const Refine& refine = RefineNothing{});
 
 }  // namespace blum::voronoi

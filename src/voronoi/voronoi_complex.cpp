@@ -156,7 +156,11 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   const auto divide = [&](int grid) {
     how.grid = grid;
     ++report.grids;
-    return subdivide(sited, how, context);
+    return subdivide(sited, how, context, [&](const Subdivision& cells) {
+      if (sited.rule.is_all()) return std::vector<CellId>();
+      const SurfaceInCells surface(mesh, table, cells.tree.lattice);
+      return assemble(cells, CubeTest(sited, surface, cells.tree), sited, context).crossing_cubes;
+    });
   };
   Subdivision cells = divide(0);
   for (int grid = 1; grid < options.grids && may_pass_elsewhere(cells); ++grid) {

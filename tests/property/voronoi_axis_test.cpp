@@ -14,6 +14,7 @@
 #include "blum/shapes/generators.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "support/mesh_places.hpp"
+#include "support/model_solids.hpp"
 
 namespace blum {
 namespace {
@@ -27,8 +28,28 @@ void PrintTo(const Case& of, std::ostream* out) {
   *out << of.name;
 }
 
+/// Teeth with narrow gaps: what lies in one cube belongs to two of them.
+TriangleMesh comb() {
+  std::vector<Point2> outline{{0, 0}};
+  constexpr int teeth = 4;
+  constexpr double gap = 0.1;
+  const double width = teeth + (teeth - 1) * gap;
+  outline.push_back({width, 0});
+  for (int k = teeth - 1; k >= 0; --k) {
+    const double left = k * (1 + gap);
+    outline.push_back({left + 1, 4});
+    outline.push_back({left, 4});
+    if (k == 0) break;
+    outline.push_back({left, 1});
+    outline.push_back({left - gap, 1});
+  }
+  return make_extrusion(outline, {}, {.thickness = 0.5});
+}
+
 std::vector<Case> cases() {
   return {{"box", make_box()},
+          {"bar", make_box({.size = {4, 1, 1}})},
+          {"comb", comb()},
           {"wedge", make_wedge()},
           {"star", make_star()},
           {"cylinder", make_cylinder({.sides = 12})},
@@ -47,7 +68,7 @@ TEST_P(Shapes, AreCertifiedFromTheAxisAlone) {
   const VoronoiComplex walls = voronoi_complex(mesh, {.part = VoronoiPart::medial_axis, .resolution = 8});
   ASSERT_TRUE(walls.report.certified);
   const double tolerance = 1e-3 * bounds(mesh).diagonal();
-  for (const double theta : {0.0, 30.0, 75.0, 130.0}) {
+  for (const double theta : {0.0, 30.0, 75.0, 95.0, 130.0}) {
     SCOPED_TRACE(theta);
     const Complex axis = collapse_axis(walls.complex, theta);
     EXPECT_TRUE(problem_of_medial(axis).empty());
@@ -63,6 +84,39 @@ TEST_P(Shapes, AreCertifiedFromTheAxisAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Solids, Shapes, testing::ValuesIn(cases()),
                          [](const auto& tested) { return tested.param.name; });
+
+/// Where all cubes pass, the numbers are right; a mesh that bounds no solid is refused.
+void expect_never_wrong(const test::NamedMesh& solid, std::size_t& certified, std::size_t& all) {
+  for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
+    SCOPED_TRACE(solid.name + ", " + std::string(to_string(part)));
+    VoronoiReport report;
+    try {
+      report = voronoi_complex(solid.mesh, {.part = part, .resolution = 1, .max_cubes = 10'000}).report;
+    } catch (const InvalidMesh&) {
+      return;
+    }
+    const bool all_pass = report.failing.empty() && report.undecided_lines == 0 && report.contradictions == 0;
+    EXPECT_EQ(report.certified, all_pass);
+    EXPECT_TRUE(!all_pass || report.found == report.expected);
+    ++all;
+    certified += report.certified ? 1U : 0U;
+  }
+}
+
+TEST(VoronoiSolids, ThinOnesAreNeverCertifiedWrongly) {
+  std::size_t certified = 0;
+  std::size_t all = 0;
+  for (const test::NamedMesh& solid : test::thin_solids()) expect_never_wrong(solid, certified, all);
+  EXPECT_GT(certified, all / 2);
+}
+
+/// Many sites tie there.
+TEST(VoronoiSolids, OnesOfWholeNumbersAreNeverCertifiedWrongly) {
+  std::size_t certified = 0;
+  std::size_t all = 0;
+  for (const test::NamedMesh& solid : test::whole_solids()) expect_never_wrong(solid, certified, all);
+  EXPECT_EQ(certified, all);
+}
 
 /// How far the vertices of triangles of one axis are from triangles of the other: the largest, and 95 % of them.
 std::array<double, 2> distances(const Complex& from, const Complex& to) {

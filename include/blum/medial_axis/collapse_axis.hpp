@@ -9,10 +9,11 @@ namespace blum {
 
 /// The part of a medial axis where two footprints are seen more than theta apart, and what homotopy needs to join it.
 ///
-/// Triangles of at most theta go by elementary collapses from free edges, the smallest angle first; then edges of no
-/// triangle from free ends, where no triangle there had more. So the homotopy type stays, and what a larger theta
-/// leaves is part of what a smaller one does. (The order of Liu, Chambers, Letscher, Ju 2010, for complexes of
-/// triangles; Sud 2006, 5.6.)
+/// Triangles of at most theta go by elementary collapses from free edges of at most theta, the smallest angle first;
+/// then edges of no triangle from free ends, where neither they nor a triangle there had more. The angle of an edge is
+/// the smaller one of its ends': along seams more than that of the triangles beside them. So the homotopy type stays,
+/// and what a larger theta leaves is part of what a smaller one does. (The order of Liu, Chambers, Letscher, Ju 2010,
+/// for complexes of triangles; Sud 2006, 5.6.)
 ///
 /// @param walls  triangles with the columns of voronoi_complex() for its part medial_axis: of vertices `radius`,
 ///               footprints, sites and `separation_angle`, of triangles `separation_angle`. Further ones stay. Edges

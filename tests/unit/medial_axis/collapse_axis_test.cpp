@@ -70,6 +70,30 @@ TEST(CollapseAxis, LeavesWhatHomotopyNeeds) {
   EXPECT_EQ(homology(curve.view()), (BettiNumbers{1, 1, 0}));
 }
 
+/// Along a seam vertices may see more than the triangles beside it: then it stays, as a curve.
+TEST(CollapseAxis, LeavesSeamsThatAreSeenAtMore) {
+  AxisRows axis;
+  for (int k = 0; k <= 4; ++k) {
+    for (const Vec3d& side : {Vec3d{0, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, -1, 1}, Vec3d{0, -1, -1}}) {
+      axis.vertices.emplace_back().position = Vec3d{static_cast<double>(k), 0, 0} + side;
+      axis.vertices.back().separation_angle = side.y == 0 ? 120 : 60;
+    }
+  }
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    for (const std::uint32_t side : {1U, 2U, 3U}) {
+      const std::uint32_t a = 4 * k;
+      axis.triangles.push_back({{a, a + 4, a + side}, 60, 0});
+      axis.triangles.push_back({{a + 4, a + 4 + side, a + side}, 60, 0});
+    }
+  }
+  axis.sheet_count = 1;
+  const Complex curve = collapse_axis(axis, 90);
+  EXPECT_TRUE(curve.triangles.empty());
+  EXPECT_EQ(curve.edges.size(), 4U);
+  EXPECT_EQ(triangles_at(axis, 50), 24U);
+  EXPECT_TRUE(collapse_axis(axis, 130).edges.empty());
+}
+
 /// A closed surface has no free edge.
 TEST(CollapseAxis, LeavesClosedSurfaces) {
   AxisRows axis;
