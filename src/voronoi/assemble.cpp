@@ -36,8 +36,9 @@ struct Place {
 
 class Assembly {
  public:
-  Assembly(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid, const Context& context)
-      : cells_(cells), tree_(cells.tree), test_(test), solid_(solid), labels_(solid.labels), context_(context) {}
+  Assembly(const CellTree& tree, std::span<const CellId> leaves, const CubeTest& test, const VoronoiSolid& solid,
+           const Context& context)
+      : tree_(tree), leaves_(leaves), test_(test), solid_(solid), labels_(solid.labels), context_(context) {}
 
   Assembled run() {
     analyse_cubes();
@@ -52,10 +53,10 @@ class Assembly {
 
  private:
   void analyse_cubes() {
-    cubes_.resize(cells_.leaves.size());
+    cubes_.resize(leaves_.size());
     parallel_for(context_, cubes_.size(), grain, "components", [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
-        const GridCube& cube = tree_.cubes[cells_.leaves[k]];
+        const GridCube& cube = tree_.cubes[leaves_[k]];
         if (cube.state == CubeState::passed) cubes_[k] = test_.run(cube);
       }
     });
@@ -181,7 +182,7 @@ class Assembly {
   void add_cube(std::size_t number) {
     const CubeCells& cells = cubes_[number];
     if (cells.component_count == 0) return;
-    const CellId id = cells_.leaves[number];
+    const CellId id = leaves_[number];
     const GridCube& cube = tree_.cubes[id];
     largest_diagonal_ = std::max(largest_diagonal_, std::numbers::sqrt3 * tree_.lattice.unit * cube.length);
     const auto first = static_cast<std::uint32_t>(places_.size());
@@ -323,9 +324,11 @@ class Assembly {
   /// The best of places on walls between two labels: that with the largest angle, so that narrow sheets are not passed
   /// over.
   [[nodiscard]] std::optional<Settled> settled_between_two(const Place& place) const {
+    constexpr std::size_t most = 10;  // of those where many meet
+    const std::size_t count = std::min(most, place.labels.size());
     std::optional<Settled> best;
-    for (std::size_t i = 0; i < place.labels.size(); ++i) {
-      for (std::size_t k = i + 1; k < place.labels.size(); ++k) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = i + 1; k < count; ++k) {
         const auto found = settled(place, std::array{place.labels[i], place.labels[k]});
         if (found && (!best || found->point.separation_angle > best->point.separation_angle)) best = found;
       }
@@ -413,8 +416,8 @@ class Assembly {
     for (std::size_t k = 0; k < points_.size(); ++k) angle[k] = points_[k].separation_angle;
   }
 
-  const Subdivision& cells_;
   const CellTree& tree_;
+  const std::span<const CellId> leaves_;
   const CubeTest& test_;
   const VoronoiSolid& solid_;
   const LabelGeometry& labels_;
@@ -434,8 +437,9 @@ class Assembly {
 
 }  // namespace
 
-Assembled assemble(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid, const Context& context) {
-  return Assembly(cells, test, solid, context).run();
+Assembled assemble(const CellTree& tree, std::span<const CellId> leaves, const CubeTest& test,
+                   const VoronoiSolid& solid, const Context& context) {
+  return Assembly(tree, leaves, test, solid, context).run();
 }
 
 }  // namespace blum::voronoi

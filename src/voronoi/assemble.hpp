@@ -1,10 +1,13 @@
 // Blum: the complex of components of walls in the cells of an octree. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
+#include "voronoi/cell_tree.hpp"
 #include "voronoi/cube_test.hpp"
-#include "voronoi/subdivision.hpp"
 #include "voronoi/voronoi_solid.hpp"
 
 namespace blum::voronoi {
@@ -19,7 +22,9 @@ struct Assembled {
 /// A vertex for each component in a cube that passes, in a square without children and on a grid edge; a triangle for
 /// each three of which one contains the next. Columns as VoronoiComplex says. Vertices settle on what they stand for:
 /// walls, seams, junctions, the surface.
-[[nodiscard]] Assembled assemble(const Subdivision& cells, const CubeTest& test, const VoronoiSolid& solid,
-                                 const Context& context);
+///
+/// @param leaves  all of them; or some, to see what they make.
+[[nodiscard]] Assembled assemble(const CellTree& tree, std::span<const CellId> leaves, const CubeTest& test,
+                                 const VoronoiSolid& solid, const Context& context);
 
 }  // namespace blum::voronoi

@@ -28,10 +28,12 @@ class Subdivider {
     waiting_[0] = {0};
     divide();
     constexpr int most_rounds = 6;
+    std::size_t seen = 0;
     for (int round = 0; round < most_rounds && !is_full(); ++round) {
-      const std::vector<CellId> cubes = refine(out_);
+      const std::vector<CellId> cubes = refine(out_.tree, std::span(out_.leaves).subspan(seen));
       if (cubes.empty()) break;
       split_leaves(cubes);
+      seen = out_.leaves.size();
       divide();
     }
     out_.lines = splitter_.counts();

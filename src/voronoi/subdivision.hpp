@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "blum/core/context.hpp"
@@ -41,11 +42,11 @@ struct Subdivision {
   std::size_t governors = 0;  ///< sum over leaves
 };
 
-/// Which leaves are to be smaller though they pass.
-using Refine = FunctionRef<std::vector<CellId>(const Subdivision&)>;
+/// Which of some leaves are to be smaller though they pass.
+using Refine = FunctionRef<std::vector<CellId>(const CellTree&, std::span<const CellId>)>;
 
 struct RefineNothing {
-  std::vector<CellId> operator()(const Subdivision& /*cells*/) const { return {}; }
+  std::vector<CellId> operator()(const CellTree& /*tree*/, std::span<const CellId> /*leaves*/) const { return {}; }
 };
 
 /// Splits a cube around the mesh until each leaf passes CubeTest, or is at the largest depth; and then those that

@@ -5,6 +5,7 @@
 #include <new>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -156,10 +157,10 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   const auto divide = [&](int grid) {
     how.grid = grid;
     ++report.grids;
-    return subdivide(sited, how, context, [&](const Subdivision& cells) {
+    return subdivide(sited, how, context, [&](const CellTree& tree, std::span<const CellId> leaves) {
       if (sited.rule.is_all()) return std::vector<CellId>();
-      const SurfaceInCells surface(mesh, table, cells.tree.lattice);
-      return assemble(cells, CubeTest(sited, surface, cells.tree), sited, context).crossing_cubes;
+      const SurfaceInCells surface(mesh, table, tree.lattice);
+      return assemble(tree, leaves, CubeTest(sited, surface, tree), sited, context).crossing_cubes;
     });
   };
   Subdivision cells = divide(0);
@@ -170,7 +171,7 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   timer.lap("cells");
   add_facts(cells, sited.labels, report);
   const SurfaceInCells surface(mesh, table, cells.tree.lattice);
-  Assembled made = assemble(cells, CubeTest(sited, surface, cells.tree), sited, context);
+  Assembled made = assemble(cells.tree, cells.leaves, CubeTest(sited, surface, cells.tree), sited, context);
   out.complex = std::move(made.complex);
   report.hausdorff_bound = made.largest_diagonal;
   timer.lap("complex");
