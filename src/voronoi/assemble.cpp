@@ -45,7 +45,6 @@ class Assembly {
     place_events();
     for (std::size_t k = 0; k < cubes_.size(); ++k) add_cube(k);
     settle_all();
-    orient();
     find_angles();
     std::vector<CellId> crossing = solid_.rule.is_all() ? std::vector<CellId>() : crossing_cubes();
     return {finish(), largest_diagonal_, std::move(crossing)};
@@ -64,12 +63,15 @@ class Assembly {
 
   void place_events() {
     at_event_.resize(tree_.events.size());
-    for (const GridEdge& edge : tree_.edges) {
+    edge_of_event_.resize(tree_.events.size(), no_cell);
+    for (CellId id = 0; id < tree_.edges.size(); ++id) {
+      const GridEdge& edge = tree_.edges[id];
       if (edge.children != no_cell) continue;
       const Vec3d low = tree_.lattice.at(edge.low);
       for (std::uint32_t k = edge.first_event; k < edge.last_event; ++k) {
         at_event_[k] = low;
         at_event_[k][edge.axis] = tree_.events[k].at;
+        edge_of_event_[k] = id;
         at_event_[k] -= labels_.centre();
       }
     }
@@ -207,8 +209,10 @@ class Assembly {
       for (std::size_t k = 0; k < square.events.size(); ++k) {
         const std::uint32_t component = square.component_of_event[k];
         if (component == outside) continue;
-        triangles_.push_back(
-            {vertex_of_event(square.events[k], id), first_of_square + component, first + square.component[component]});
+        std::array<std::uint32_t, 3> corners{vertex_of_event(square.events[k], id), first_of_square + component,
+                                             first + square.component[component]};
+        if (!faces_larger_site(square.events[k], tree_.squares[square.square], cube)) std::swap(corners[1], corners[2]);
+        triangles_.push_back(corners);
         add_sites(tree_.events[square.events[k]], id);
       }
     }
@@ -249,6 +253,22 @@ class Assembly {
     return out;
   }
 
+  /// Whether the corners on an edge of the grid, in a square at it and in a cube at that run counterclockwise as seen
+  /// from the region of the larger site: by where these cells lie, so that the triangles of a region are a closed
+  /// surface.
+  [[nodiscard]] bool faces_larger_site(std::uint32_t event, const GridSquare& square, const GridCube& cube) const {
+    const GridEdge& edge = tree_.edges[edge_of_event_[event]];
+    const std::size_t across = 3 - edge.axis - square.axis;  // from the edge into the square
+    bool is_along = next_axis(across) == square.axis;  // whether across, the square's axis, the edge's turn rightly
+    if (edge.low[across] != square.low[across]) is_along = !is_along;
+    if (square.low[square.axis] != cube.low[square.axis]) is_along = !is_along;
+    const LineEvent& at = tree_.events[event];
+    const std::uint32_t before = labels_.site_of(at.before);
+    const std::uint32_t after = labels_.site_of(at.after);
+    const bool is_after_larger = before == outside || (after != outside && after > before);
+    return is_along == is_after_larger;
+  }
+
   void add_sites(const LineEvent& event, CellId cube) {
     const auto site = [&](LabelIndex label) {
       return label == outside ? -1 : static_cast<std::int32_t>(labels_[label].site);
@@ -258,24 +278,6 @@ class Assembly {
     site_b_.push_back(high);
     walls_.push_back({event.before, event.after});
     cube_of_triangle_.push_back(cube);
-  }
-
-  /// Turns triangles so that their corners run counterclockwise as seen from the region of the larger site.
-  void orient() {
-    parallel_for(context_, triangles_.size(), grain, {}, [&](const WorkRange& range) {
-      for (std::size_t t = range.begin; t < range.end; ++t) {
-        auto& [a, b, c] = triangles_[t];
-        const Vec3d& p = places_[a].start;
-        const Vec3d normal = cross(places_[b].start - p, places_[c].start - p);
-        const Vec3d middle = (p + places_[b].start + places_[c].start) * (1.0 / 3);
-        LabelIndex first = walls_[t][0];
-        LabelIndex second = walls_[t][1];
-        const bool is_second_larger =
-            first == outside || (second != outside && labels_[second].site > labels_[first].site);
-        if (!is_second_larger) std::swap(first, second);
-        if (dot(normal, towards_second(labels_, first, second, middle)) < 0) std::swap(b, c);
-      }
-    });
   }
 
   /// The angle at which the middle of each triangle sees the planes, lines or points of both sites of its wall; 0 on
@@ -424,6 +426,7 @@ class Assembly {
   const Context& context_;
   std::vector<CubeCells> cubes_;
   std::vector<Vec3d> at_event_;
+  std::vector<CellId> edge_of_event_;
   std::vector<std::uint32_t> vertex_of_event_, vertex_of_square_;
   std::vector<Place> places_;
   std::vector<WallPoint> points_;  ///< of places_

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <vector>
 
 namespace blum::voronoi {
@@ -13,36 +12,6 @@ double separation_angle(const Vec3d& at, const Vec3d& first, const Vec3d& second
   const Vec3d a = first - at;
   const Vec3d b = second - at;
   return std::atan2(length(cross(a, b)), dot(a, b)) * (180 / std::numbers::pi);
-}
-
-namespace {
-
-/// The plane of a label's domain beyond which another one's lies; its normal points to the first one.
-std::optional<DomainPlane> plane_between(const LabelGeometry& geometry, LabelIndex label, LabelIndex other) {
-  for (const DomainPlane& plane : geometry.planes(label)) {
-    if (plane.beyond != outside && geometry[plane.beyond].site == geometry[other].site) return plane;
-  }
-  return std::nullopt;
-}
-
-/// Away from a label.
-Vec3d slope(const PlacedLabel& label, const Vec3d& at) {
-  if (label.kind == SiteKind::face) return label.direction;
-  const Vec3d away = at - label.foot(at);
-  const double distance = length(away);
-  return distance > 0 ? away / distance : away;
-}
-
-}  // namespace
-
-Vec3d towards_second(const LabelGeometry& geometry, LabelIndex first, LabelIndex second, const Vec3d& at) {
-  if (first == outside) return geometry[second].direction;
-  if (geometry.are_incident(geometry[first].site, second)) {
-    if (const auto plane = plane_between(geometry, second, first)) return plane->normal;
-    if (const auto plane = plane_between(geometry, first, second)) return -plane->normal;
-  }
-  if (const auto bisector = geometry.bisector(first, second)) return -bisector->normal;
-  return slope(geometry[first], at) - slope(geometry[second], at);
 }
 
 WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> among, const Vec3d& q) {

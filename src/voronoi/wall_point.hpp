@@ -22,10 +22,6 @@ struct WallPoint {
 /// Cost: linear in the labels, quadratic in those that are closest.
 [[nodiscard]] WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> among, const Vec3d& q);
 
-/// Across the wall between two labels at a point near it: to where the second one is closer.
-/// @param first  may be the outside.
-[[nodiscard]] Vec3d towards_second(const LabelGeometry& geometry, LabelIndex first, LabelIndex second, const Vec3d& at);
-
 /// The angle at a point between two others, degrees.
 [[nodiscard]] double separation_angle(const Vec3d& at, const Vec3d& first, const Vec3d& second);
 

@@ -8,12 +8,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "blum/core/random.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/closest_point.hpp"
 #include "blum/geometry/topology.hpp"
+#include "blum/geometry/winding_number.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 #include "support/labelled_solid.hpp"
@@ -21,6 +25,8 @@
 
 namespace blum {
 namespace {
+
+using test::LabelledSolid;
 
 TEST(VoronoiComplex, OfABox) {
   const VoronoiComplex found = voronoi_complex(make_box());
@@ -218,6 +224,74 @@ TEST(VoronoiRegions, FillTheSolid) {
     // Of regions thinner than a cube volumes are near 0, of whatever sign; none is turned inside out.
     const double least = -0.01 * facts.signed_volume;
     for (const VoronoiRegion& region : regions) EXPECT_GT(region.volume, least) << region.site;
+  }
+}
+
+/// How often the triangles of a site run around a point (van Oosterom, Strackee 1983).
+double turns_around(const Complex& complex, std::int32_t site, const Vec3d& q) {
+  const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
+  const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
+  double sum = 0;
+  for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
+    if (site_a[t] != site && site_b[t] != site) continue;
+    const Vec3d a = complex.positions[complex.triangles[t][0]] - q;
+    const Vec3d b = complex.positions[complex.triangles[t][1]] - q;
+    const Vec3d c = complex.positions[complex.triangles[t][2]] - q;
+    const double below =
+        length(a) * length(b) * length(c) + dot(a, b) * length(c) + dot(b, c) * length(a) + dot(c, a) * length(b);
+    const double angle = 2 * std::atan2(dot(a, cross(b, c)), below);
+    // Corners run counterclockwise as seen from the region of site_b.
+    sum += site_b[t] == site ? -angle : angle;
+  }
+  return sum / (4 * std::numbers::pi);
+}
+
+double distance_from(const LabelledSolid& solid, const voronoi::Label& label, const Vec3d& q) {
+  const auto vertex = [&](std::uint32_t v) { return solid.mesh.vertices[v]; };
+  switch (label.kind) {
+    case SiteKind::face:
+      return length(closest_point_on_triangle(q, triangle_corners(solid.mesh, label.index)) - q);
+    case SiteKind::edge: {
+      const Segment& ends = solid.table.edges()[label.index];
+      return length(closest_point_on_segment(q, vertex(ends[0]), vertex(ends[1])) - q);
+    }
+    default:
+      return length(vertex(label.index) - q);
+  }
+}
+
+/// Brute force over all sites at random points: what is closer than all others by more than the complex may be off is
+/// the region that the point lies in, as oriented triangles say.
+TEST(VoronoiRegions, HoldWhatIsClosest) {
+  for (const TriangleMesh& mesh : {make_box(), test::box_with_void(), make_cylinder({.sides = 6})}) {
+    const LabelledSolid solid(mesh);
+    const VoronoiComplex found = voronoi_complex(mesh, {.resolution = 40});
+    ASSERT_TRUE(found.report.certified);
+    const double off = found.report.hausdorff_bound;
+    const WindingNumber inside(mesh);
+    const Box3 box = bounds(mesh);
+    Random random(5);
+    std::size_t tested = 0;
+    for (int k = 0; k < 1000 && tested < 60; ++k) {
+      const Vec3d part = random.in_cube();
+      Vec3d q = box.lower;
+      for (std::size_t axis = 0; axis < 3; ++axis) q[axis] += part[axis] * box.size()[axis];
+      std::map<std::size_t, double> distances;
+      for (const voronoi::Label& label : solid.labels.all()) {
+        const double distance = distance_from(solid, label, q);
+        const auto [at, is_new] = distances.try_emplace(solid.labels.site_of(label), distance);
+        if (!is_new) at->second = std::min(at->second, distance);
+      }
+      const auto by_distance = [](const auto& a, const auto& b) { return a.second < b.second; };
+      const auto closest = *std::min_element(distances.begin(), distances.end(), by_distance);
+      distances.erase(closest.first);
+      const auto next = *std::min_element(distances.begin(), distances.end(), by_distance);
+      if (closest.second <= 2 * off || next.second <= closest.second + 2 * off) continue;
+      if (!inside.is_inside(q)) continue;
+      ++tested;
+      EXPECT_NEAR(turns_around(found.complex, static_cast<std::int32_t>(closest.first), q), 1, 1e-6);
+    }
+    EXPECT_GT(tested, 10U);
   }
 }
 
