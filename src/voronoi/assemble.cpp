@@ -235,6 +235,8 @@ class Assembly {
     std::vector<std::uint8_t> is_crossing(triangles_.size(), 0);
     parallel_for(context_, triangles_.size(), grain, {}, [&](const WorkRange& range) {
       for (std::size_t t = range.begin; t < range.end; ++t) {
+        constexpr float least = 1;  // degrees: between faces that are bent a little walls are of no account
+        if (triangle_angle_[t] < least) continue;
         const auto& [a, b, c] = triangles_[t];
         const std::array corners{places_[a].start + labels_.centre(), places_[b].start + labels_.centre(),
                                  places_[c].start + labels_.centre()};

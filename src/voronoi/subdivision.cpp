@@ -27,9 +27,10 @@ class Subdivider {
     splitter_.add_root(options_.grid);
     waiting_[0] = {0};
     divide();
+    out_.passed_at_first = out_.failing.empty();
     constexpr int most_rounds = 6;
     std::size_t seen = 0;
-    for (int round = 0; round < most_rounds && !is_full(); ++round) {
+    for (int round = 0; round < most_rounds && out_.failing.empty() && !is_full(); ++round) {
       const std::vector<CellId> cubes = refine(out_.tree, std::span(out_.leaves).subspan(seen));
       if (cubes.empty()) break;
       split_leaves(cubes);

@@ -36,7 +36,8 @@ struct Subdivision {
   CellTree tree;
   std::vector<CellId> leaves;  ///< cubes that meet the solid and have no children
   std::vector<FailingCube> failing;
-  std::size_t splits = 0;  ///< of cubes that did not pass
+  bool passed_at_first = false;  ///< whether none failed before leaves were refined
+  std::size_t splits = 0;        ///< of cubes that did not pass
   LineCounts lines;
   std::size_t contradictions = 0;
   std::size_t governors = 0;  ///< sum over leaves

@@ -157,11 +157,15 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   const auto divide = [&](int grid) {
     how.grid = grid;
     ++report.grids;
-    return subdivide(sited, how, context, [&](const CellTree& tree, std::span<const CellId> leaves) {
+    const auto crossing = [&](const CellTree& tree, std::span<const CellId> leaves) {
       if (sited.rule.is_all()) return std::vector<CellId>();
       const SurfaceInCells surface(mesh, table, tree.lattice);
       return assemble(tree, leaves, CubeTest(sited, surface, tree), sited, context).crossing_cubes;
-    });
+    };
+    Subdivision cells = subdivide(sited, how, context, crossing);
+    // What is proven comes before how well triangles keep inside.
+    if (cells.passed_at_first && !cells.failing.empty()) cells = subdivide(sited, how, context);
+    return cells;
   };
   Subdivision cells = divide(0);
   for (int grid = 1; grid < options.grids && may_pass_elsewhere(cells); ++grid) {
