@@ -34,8 +34,9 @@ void CellSplitter::add_root(int grid) {
   const Box3& box = labels_.box();
   const Vec3d size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
-  // Sides and halves must not fit to what shapes have: irrational parts, another one along each axis.
-  const Vec3d fractions{std::numbers::phi - 1, std::numbers::sqrt2 - 1, std::numbers::sqrt3 - 1};
+  // Sides and halves must not fit to what shapes have, nor to seams between their faces, which lie at square roots of
+  // numbers: transcendental parts, another one along each axis.
+  const Vec3d fractions{std::numbers::egamma, std::numbers::e - 2, std::numbers::inv_pi};
   Vec3d shift;
   for (std::size_t axis = 0; axis < 3; ++axis) shift[axis] = std::fmod(fractions[axis] * (grid + 1), 1.0) - 0.5;
   const double side = longest * side_of_root;

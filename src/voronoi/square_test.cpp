@@ -285,13 +285,18 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
   }
   constexpr std::size_t tries = 3;
   if (own.size() > tries) own.resize(tries);
-  return std::any_of(own.begin(), own.end(), [&](const BorderArc* arc) {
-    const Vec3d from = (arc->low + arc->high) * 0.5;
+  const auto is_centre = [&](const BorderArc* arc, const Vec3d& from) {
     return std::all_of(others.begin(), others.end(), [&](LabelIndex other) {
       if (labels_[other].site == site || stays_behind(arc->label, other, from, part)) return true;
       const Polygon of_other = in_domain(other, part);
       return returns_nowhere(arc->label, other, from, of_other) ||
              never_meet(arc->label, other, others, from, of_other);
+    });
+  };
+  constexpr std::array parts{0.5, 0.05, 0.95};
+  return std::any_of(parts.begin(), parts.end(), [&](double part_of_arc) {
+    return std::any_of(own.begin(), own.end(), [&](const BorderArc* arc) {
+      return is_centre(arc, arc->low + (arc->high - arc->low) * part_of_arc);
     });
   });
 }

@@ -103,7 +103,7 @@ std::size_t obstacles(const Subdivision& cells) {
 /// Whether another place of the grid may help: where little does not pass, or where this one was given up.
 bool may_pass_elsewhere(const Subdivision& cells) {
   constexpr std::size_t few = 16;
-  constexpr std::size_t share = 100;
+  constexpr std::size_t share = 10;
   const std::size_t count = obstacles(cells);
   return count > 0 && (count <= few || count * share <= cells.leaves.size() ||
                        cells.lines.undecided + cells.contradictions > Subdivision::most_undecided);
