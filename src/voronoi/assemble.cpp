@@ -40,17 +40,33 @@ class Assembly {
            const Context& context)
       : tree_(tree), leaves_(leaves), test_(test), solid_(solid), labels_(solid.labels), context_(context) {}
 
-  Assembled run() {
+  Assembled assembled() {
+    make_triangles();
+    return {finish(), largest_diagonal_};
+  }
+
+  /// Walls lie in the solid, but their triangles may cut corners: where they cross the surface, cubes are too large.
+  std::vector<CellId> crossing_cubes() {
+    make_triangles();
+    const std::vector<std::uint8_t> is_crossing = crossing_triangles();
+    std::vector<CellId> out;
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      if (is_crossing[t] != 0) out.push_back(cube_of_triangle_[t]);
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+ private:
+  void make_triangles() {
     analyse_cubes();
     place_events();
     for (std::size_t k = 0; k < cubes_.size(); ++k) add_cube(k);
     settle_all();
     find_angles();
-    std::vector<CellId> crossing = solid_.rule.is_all() ? std::vector<CellId>() : crossing_cubes();
-    return {finish(), largest_diagonal_, std::move(crossing)};
   }
 
- private:
   void analyse_cubes() {
     cubes_.resize(leaves_.size());
     parallel_for(context_, cubes_.size(), grain, "components", [&](const WorkRange& range) {
@@ -213,7 +229,9 @@ class Assembly {
                                              first + square.component[component]};
         if (!faces_larger_site(square.events[k], tree_.squares[square.square], cube)) std::swap(corners[1], corners[2]);
         triangles_.push_back(corners);
-        add_sites(tree_.events[square.events[k]], id);
+        const LineEvent& event = tree_.events[square.events[k]];
+        walls_.push_back({event.before, event.after});
+        cube_of_triangle_.push_back(id);
       }
     }
     for (std::uint32_t k = 0; k < cells.component_count; ++k) {
@@ -230,8 +248,7 @@ class Assembly {
     }
   }
 
-  /// Walls lie in the solid, but their triangles may cut corners: where they cross the surface, cubes are too large.
-  [[nodiscard]] std::vector<CellId> crossing_cubes() const {
+  [[nodiscard]] std::vector<std::uint8_t> crossing_triangles() const {
     std::vector<std::uint8_t> is_crossing(triangles_.size(), 0);
     parallel_for(context_, triangles_.size(), grain, {}, [&](const WorkRange& range) {
       for (std::size_t t = range.begin; t < range.end; ++t) {
@@ -246,13 +263,7 @@ class Assembly {
         });
       }
     });
-    std::vector<CellId> out;
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      if (is_crossing[t] != 0) out.push_back(cube_of_triangle_[t]);
-    }
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-    return out;
+    return is_crossing;
   }
 
   /// Whether the corners on an edge of the grid, in a square at it and in a cube at that run counterclockwise as seen
@@ -269,17 +280,6 @@ class Assembly {
     const std::uint32_t after = labels_.site_of(at.after);
     const bool is_after_larger = before == outside || (after != outside && after > before);
     return is_along == is_after_larger;
-  }
-
-  void add_sites(const LineEvent& event, CellId cube) {
-    const auto site = [&](LabelIndex label) {
-      return label == outside ? -1 : static_cast<std::int32_t>(labels_[label].site);
-    };
-    const auto [low, high] = std::minmax({site(event.before), site(event.after)});
-    site_a_.push_back(low);
-    site_b_.push_back(high);
-    walls_.push_back({event.before, event.after});
-    cube_of_triangle_.push_back(cube);
   }
 
   /// The angle at which the middle of each triangle sees the planes, lines or points of both sites of its wall; 0 on
@@ -321,7 +321,7 @@ class Assembly {
   [[nodiscard]] std::optional<Settled> settled(const Place& place, std::span<const LabelIndex> which) const {
     const auto at = settle(labels_, which, !place.surface.empty(), place.start, place.box);
     if (!at) return std::nullopt;
-    Settled out{*at, wall_point(labels_, tree_.cubes[place.cube].governors, *at)};
+    Settled out{*at, seen_from(place, *at)};
     return is_on_wall(place, out.at, out.point) ? std::optional(out) : std::nullopt;
   }
 
@@ -354,7 +354,7 @@ class Assembly {
         found = settled(place, std::array{place.surface[k]});
       }
     }
-    if (!found) found = {place.on_wall, wall_point(labels_, tree_.cubes[place.cube].governors, place.on_wall)};
+    if (!found) found = {place.on_wall, seen_from(place, place.on_wall)};
     place.start = found->at;
     out = found->point;
   }
@@ -364,10 +364,15 @@ class Assembly {
     constexpr double left = 0.02;  // of the way, so that edges do not touch the surface
     const Vec3d rim = place.rim * (1.0 / place.rims);
     const Vec3d at = rim + (place.start - rim) * left;
-    const WallPoint found = wall_point(labels_, tree_.cubes[place.cube].governors, at);
+    const WallPoint found = seen_from(place, at);
     if (!is_on_wall(place, at, found)) return;
     place.start = at;
     out = found;
+  }
+
+  /// What a vertex would see from a point.
+  [[nodiscard]] WallPoint seen_from(const Place& place, const Vec3d& at) const {
+    return wall_point(labels_, tree_.cubes[place.cube].governors, at);
   }
 
   /// How far points may be off walls and the surface, mesh units.
@@ -393,10 +398,22 @@ class Assembly {
     out.vertex_columns = Columns(out.positions.size());
     out.triangle_columns = Columns(out.triangles.size());
     add_vertex_columns(out.vertex_columns);
-    out.triangle_columns.add({"site_a", 1, std::move(site_a_)});
-    out.triangle_columns.add({"site_b", 1, std::move(site_b_)});
-    out.triangle_columns.add({std::string(medial_columns::separation_angle), 1, std::move(triangle_angle_)});
+    add_triangle_columns(out.triangle_columns);
     return out;
+  }
+
+  void add_triangle_columns(Columns& out) {
+    std::vector<std::int32_t> site_a, site_b;
+    for (const auto& [first, second] : walls_) {
+      // The outside becomes -1.
+      const auto [low, high] = std::minmax(
+          {static_cast<std::int32_t>(labels_.site_of(first)), static_cast<std::int32_t>(labels_.site_of(second))});
+      site_a.push_back(low);
+      site_b.push_back(high);
+    }
+    out.add({"site_a", 1, std::move(site_a)});
+    out.add({"site_b", 1, std::move(site_b)});
+    out.add({std::string(medial_columns::separation_angle), 1, std::move(triangle_angle_)});
   }
 
   void add_vertex_columns(Columns& out) const {
@@ -433,7 +450,6 @@ class Assembly {
   std::vector<Place> places_;
   std::vector<WallPoint> points_;  ///< of places_
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::int32_t> site_a_, site_b_;
   std::vector<std::array<LabelIndex, 2>> walls_;  ///< of triangles_
   std::vector<CellId> cube_of_triangle_;
   std::vector<float> triangle_angle_;
@@ -444,7 +460,12 @@ class Assembly {
 
 Assembled assemble(const CellTree& tree, std::span<const CellId> leaves, const CubeTest& test,
                    const VoronoiSolid& solid, const Context& context) {
-  return Assembly(tree, leaves, test, solid, context).run();
+  return Assembly(tree, leaves, test, solid, context).assembled();
+}
+
+std::vector<CellId> crossing_cubes(const CellTree& tree, std::span<const CellId> leaves, const CubeTest& test,
+                                   const VoronoiSolid& solid, const Context& context) {
+  return Assembly(tree, leaves, test, solid, context).crossing_cubes();
 }
 
 }  // namespace blum::voronoi

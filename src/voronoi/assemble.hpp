@@ -15,16 +15,17 @@ namespace blum::voronoi {
 struct Assembled {
   Complex complex;
   double largest_diagonal = 0;  ///< of cubes with a component, mesh units
-  /// Leaves in which triangles cross the surface, rising; looked for where a part is asked for.
-  std::vector<CellId> crossing_cubes;
 };
 
 /// A vertex for each component in a cube that passes, in a square without children and on a grid edge; a triangle for
 /// each three of which one contains the next. Columns as VoronoiComplex says. Vertices settle on what they stand for:
 /// walls, seams, junctions, the surface.
-///
-/// @param leaves  all of them; or some, to see what they make.
 [[nodiscard]] Assembled assemble(const CellTree& tree, std::span<const CellId> leaves, const CubeTest& test,
                                  const VoronoiSolid& solid, const Context& context);
+
+/// Those of some leaves, rising, in which the triangles of assemble() cross the surface.
+[[nodiscard]] std::vector<CellId> crossing_cubes(const CellTree& tree, std::span<const CellId> leaves,
+                                                 const CubeTest& test, const VoronoiSolid& solid,
+                                                 const Context& context);
 
 }  // namespace blum::voronoi

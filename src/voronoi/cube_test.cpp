@@ -22,19 +22,12 @@ class CubeAnalysis {
     CubeCells out;
     out.obstacle = find_obstacle();
     if (out.obstacle != VoronoiObstacle::none) return out;
-    std::map<std::uint32_t, std::uint32_t> number;
+    if (!t_.solid_.rule.is_all()) return part_of(count_components());
+    CubeNumbers numbers;
     for (const SquareOfCube& square : squares_) {
-      CubeCells::Square& made = out.squares.emplace_back();
-      made.square = square.id;
-      made.events = square.cells.events;
-      made.component_of_event = square.cells.component;
-      for (std::uint32_t k = 0; k < square.cells.component_count; ++k) {
-        const auto [at, is_new] = number.try_emplace(walls_.find(square.first_wall + k), out.component_count);
-        if (is_new) ++out.component_count;
-        made.component.push_back(at->second);
-      }
+      numbers.add(square, square.cells.component, square.first_wall, square.cells.component_count, walls_, out);
     }
-    return t_.solid_.rule.is_all() ? out : part_of(out.component_count);
+    return out;
   }
 
  private:
@@ -50,6 +43,14 @@ class CubeAnalysis {
     std::uint32_t face = 0;
     std::set<std::uint32_t> touched;
   };
+
+  [[nodiscard]] std::uint32_t count_components() {
+    std::set<std::uint32_t> sets;
+    for (const SquareOfCube& square : squares_) {
+      for (std::uint32_t k = 0; k < square.cells.component_count; ++k) sets.insert(walls_.find(square.first_wall + k));
+    }
+    return static_cast<std::uint32_t>(sets.size());
+  }
 
   /// The part that is asked for.
   [[nodiscard]] CubeCells part_of(std::uint32_t component_count) const {
@@ -564,6 +565,19 @@ class CubeAnalysis {
   std::uint32_t bodies_on_boundary_ = 0;
   std::uint32_t bodies_inside_ = 0;
 };
+
+void CubeNumbers::add(const SquareOfCube& square, std::vector<std::uint32_t> component_of_event, std::uint32_t first,
+                      std::uint32_t count, detail::UnionFind& joined, CubeCells& out) {
+  CubeCells::Square& made = out.squares.emplace_back();
+  made.square = square.id;
+  made.events = square.cells.events;
+  made.component_of_event = std::move(component_of_event);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto [at, is_new] = number_.try_emplace(joined.find(first + k), out.component_count);
+    if (is_new) ++out.component_count;
+    made.component.push_back(at->second);
+  }
+}
 
 CubeCells CubeTest::run(const GridCube& cube) const {
   return CubeAnalysis(*this, cube).run();

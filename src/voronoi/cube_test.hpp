@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
+#include "blum/core/union_find.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "voronoi/cell_tree.hpp"
 #include "voronoi/square_cells.hpp"
@@ -34,6 +36,18 @@ struct CubeCells {
   };
   std::vector<Square> squares;
   std::vector<std::uint32_t> vertices;  ///< of the mesh in the cube, where a part is asked for
+};
+
+/// Numbers components in a cube by the sets of which those in its squares are.
+class CubeNumbers {
+ public:
+  /// @param component_of_event  in the square, as CubeCells has it.  @param count  of components in the square, which
+  /// are `joined` from `first` on.
+  void add(const SquareOfCube& square, std::vector<std::uint32_t> component_of_event, std::uint32_t first,
+           std::uint32_t count, detail::UnionFind& joined, CubeCells& out);
+
+ private:
+  std::map<std::uint32_t, std::uint32_t> number_;  ///< of sets
 };
 
 /// Decides by what is on a cube's boundary whether all components of walls and surface in it are acyclic: which they

@@ -28,12 +28,8 @@ class PartOfSquare {
   }
 
  private:
-  [[nodiscard]] std::uint32_t piece_before(std::size_t event) const { return cells_.runs[event].piece; }
-  [[nodiscard]] std::uint32_t piece_behind(std::size_t event) const {
-    return cells_.runs[(event + 1) % cells_.runs.size()].piece;
-  }
   [[nodiscard]] bool is_dropped(std::size_t event) const {
-    return rule_.drops(cells_.pieces[piece_before(event)].site, cells_.pieces[piece_behind(event)].site);
+    return rule_.drops(cells_.site_before(event), cells_.site_behind(event));
   }
 
   void add_arc(std::uint32_t a, std::uint32_t b) { out_.arcs.push_back({std::min(a, b), std::max(a, b)}); }
@@ -44,7 +40,7 @@ class PartOfSquare {
       const auto at = std::find(cells_.events.begin(), cells_.events.end(), event);
       if (at == cells_.events.end()) return outside;
       const auto k = static_cast<std::size_t>(at - cells_.events.begin());
-      return cells_.pieces[piece_before(k)].site == outside ? piece_before(k) : piece_behind(k);
+      return cells_.site_before(k) == outside ? cells_.piece_before(k) : cells_.piece_behind(k);
     }
     const auto at = std::find_if(cells_.pieces.begin(), cells_.pieces.end(),
                                  [&](const SquareCells::Piece& piece) { return piece.site == site; });
@@ -53,7 +49,7 @@ class PartOfSquare {
 
   void find_arcs() {
     for (std::size_t k = 0; k < cells_.events.size(); ++k) {
-      if (is_dropped(k)) add_arc(piece_before(k), piece_behind(k));
+      if (is_dropped(k)) add_arc(cells_.piece_before(k), cells_.piece_behind(k));
     }
     for (const InnerArc& arc : square_.inner_arcs) {
       const std::uint32_t first = piece_of(arc.first, arc.event);
@@ -129,7 +125,7 @@ class PartOfSquare {
     for (std::uint32_t k = 0; k < cells_.events.size(); ++k) {
       if (is_dropped(k)) continue;
       kept.push_back(k);
-      class_before.push_back(classes.find(piece_before(k)));
+      class_before.push_back(classes.find(cells_.piece_before(k)));
     }
     const EventComponents components = join_events(class_before);
     for (std::size_t k = 0; k < kept.size(); ++k) out_.component[kept[k]] = components.of[k];

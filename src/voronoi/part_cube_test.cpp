@@ -53,8 +53,8 @@ void PartOfCube::join_events() {
   for (std::uint32_t s = 0; s < in_.squares.size(); ++s) {
     const SquareCells& cells = in_.squares[s].cells;
     for (std::size_t k = 0; k < cells.events.size(); ++k) {
-      const std::uint32_t before = cells.pieces[cells.runs[k].piece].site;
-      const std::uint32_t behind = cells.pieces[cells.runs[(k + 1) % cells.runs.size()].piece].site;
+      const std::uint32_t before = cells.site_before(k);
+      const std::uint32_t behind = cells.site_behind(k);
       const std::uint32_t of = parts_[s].component[k];
       all.push_back({cells.events[k],
                      s,
@@ -174,17 +174,9 @@ void PartOfCube::add_lines_and_points() {
 /// Numbers the components on the boundary.
 void PartOfCube::number_components(CubeCells& out) {
   out.vertices.assign(in_.vertices.begin(), in_.vertices.end());
-  std::map<std::uint32_t, std::uint32_t> number;
+  CubeNumbers numbers;
   for (std::uint32_t s = 0; s < in_.squares.size(); ++s) {
-    CubeCells::Square& made = out.squares.emplace_back();
-    made.square = in_.squares[s].id;
-    made.events = in_.squares[s].cells.events;
-    made.component_of_event = std::move(parts_[s].component);
-    for (std::uint32_t k = 0; k < parts_[s].component_count; ++k) {
-      const auto [at, is_new] = number.try_emplace(joined_.find(first_[s] + k), out.component_count);
-      if (is_new) ++out.component_count;
-      made.component.push_back(at->second);
-    }
+    numbers.add(in_.squares[s], std::move(parts_[s].component), first_[s], parts_[s].component_count, joined_, out);
   }
   for (const auto& [edge, s] : in_.piercings) {
     if (solid_.sites.turn[edge] == EdgeTurn::convex) out.squares[s].convex_edges.push_back(edge);

@@ -44,8 +44,8 @@ bool PartSquareTest::add_walls(const SquareCells& cells, GridSquare& square) con
   std::vector<std::array<std::uint32_t, 2>> touching;  // component, site
   std::vector<std::array<std::uint32_t, 2>> known;     // sites
   for (std::size_t k = 0; k < cells.events.size(); ++k) {
-    const std::uint32_t before = cells.pieces[cells.runs[k].piece].site;
-    const std::uint32_t behind = cells.pieces[cells.runs[(k + 1) % cells.runs.size()].piece].site;
+    const std::uint32_t before = cells.site_before(k);
+    const std::uint32_t behind = cells.site_behind(k);
     known.push_back({std::min(before, behind), std::max(before, behind)});
     for (const std::uint32_t site : {before, behind}) {
       if (site != outside) touching.push_back({cells.component[k], site});

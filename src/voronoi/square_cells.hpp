@@ -1,6 +1,7 @@
 // Blum: regions and walls in a square, from its border. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -46,6 +47,12 @@ struct SquareCells {
   std::vector<std::uint32_t> component;  ///< of each event
   std::uint32_t component_count = 0;
   std::vector<ArcOfRun> arcs;
+
+  /// The pieces on both sides of an event, by its number here, and their sites.
+  [[nodiscard]] std::uint32_t piece_before(std::size_t event) const { return runs[event].piece; }
+  [[nodiscard]] std::uint32_t piece_behind(std::size_t event) const { return runs[(event + 1) % runs.size()].piece; }
+  [[nodiscard]] std::uint32_t site_before(std::size_t event) const { return pieces[piece_before(event)].site; }
+  [[nodiscard]] std::uint32_t site_behind(std::size_t event) const { return pieces[piece_behind(event)].site; }
 };
 
 /// The components that events around a border belong to, where parts of the border that lie in one region are joined

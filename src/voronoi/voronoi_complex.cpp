@@ -160,7 +160,7 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
     const auto crossing = [&](const CellTree& tree, std::span<const CellId> leaves) {
       if (sited.rule.is_all()) return std::vector<CellId>();
       const SurfaceInCells surface(mesh, table, tree.lattice);
-      return assemble(tree, leaves, CubeTest(sited, surface, tree), sited, context).crossing_cubes;
+      return crossing_cubes(tree, leaves, CubeTest(sited, surface, tree), sited, context);
     };
     Subdivision cells = subdivide(sited, how, context, crossing);
     // What is proven comes before how well triangles keep inside.
