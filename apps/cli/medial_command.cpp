@@ -86,8 +86,7 @@ std::vector<double> parse_thetas(const std::string& text) {
   std::vector<double> thetas;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    const double theta = parse_non_negative("--theta", std::string_view(text).substr(begin, end - begin));
-    if (theta > 180) throw UsageError("--theta is " + rounded_text(theta) + " degrees, but must be 0 to 180");
+    const double theta = parse_angle("--theta", std::string_view(text).substr(begin, end - begin));
     if (std::find(thetas.begin(), thetas.end(), theta) != thetas.end()) {
       throw UsageError("--theta names " + rounded_text(theta) + " twice");
     }

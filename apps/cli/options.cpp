@@ -78,6 +78,12 @@ double parse_non_negative(std::string_view name, std::string_view text) {
   return value;
 }
 
+double parse_angle(std::string_view name, std::string_view text) {
+  const double value = parse_non_negative(name, text);
+  if (value <= 180) return value;
+  throw UsageError(std::string(name) + " is " + rounded_text(value) + " degrees, but must be 0 to 180");
+}
+
 namespace {
 
 /// The whole number that text as 1e6 or 2.5e3 stands for: one that doubles hold exactly.

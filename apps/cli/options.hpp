@@ -28,6 +28,8 @@ class UsageError : public std::runtime_error {
 [[nodiscard]] double parse_positive(std::string_view name, std::string_view text);
 /// >= 0.
 [[nodiscard]] double parse_non_negative(std::string_view name, std::string_view text);
+/// The same for angles: 0 to 180 degrees.
+[[nodiscard]] double parse_angle(std::string_view name, std::string_view text);
 [[nodiscard]] std::int64_t parse_integer(std::string_view name, std::string_view text, std::int64_t minimum,
                                          std::int64_t maximum);
 /// Whether a text reads as a number of any kind, "nan" and "-1e999" included.

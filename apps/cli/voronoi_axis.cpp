@@ -37,8 +37,7 @@ std::string VoronoiAxisTexts::given() const {
 
 VoronoiAxisOptions parse_axis_options(const VoronoiAxisTexts& texts) {
   VoronoiAxisOptions out;
-  if (texts.theta) out.theta = parse_non_negative("--theta", *texts.theta);
-  if (out.theta > 180) throw UsageError("--theta is " + rounded_text(out.theta) + " degrees, but must be 0 to 180");
+  if (texts.theta) out.theta = parse_angle("--theta", *texts.theta);
   if (texts.simplify) out.simplify = parse_non_negative("--simplify", *texts.simplify);
   out.graph = parse_graph(texts.graph);
   return out;

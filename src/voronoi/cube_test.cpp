@@ -164,7 +164,7 @@ class CubeAnalysis {
       if (region.exits) continue;
       const PlacedLabel& label = t_.labels_[of.label];
       if (label.kind == SiteKind::face) {
-        region.exits = label.direction[axis] * outwards < -1e-15;
+        region.exits = is_lower_side(square.side, label.direction);
       } else {
         const auto [low, high] = ends(arc);
         for (const Vec3d& q : {low, (low + high) * 0.5, high}) {
@@ -496,13 +496,12 @@ class CubeAnalysis {
 
   [[nodiscard]] LowerPart lower_part(std::uint32_t face) const {
     const Vec3d& normal = normal_of(face);
-    const auto is_lower = [&](std::uint32_t side) { return normal[side / 2] * (side % 2 == 1 ? 1 : -1) < -1e-15; };
     LowerPart out;
     for (const Square& square : squares_) {
-      if (is_lower(square.side)) add_square(square.cells, face, out);
+      if (is_lower_side(square.side, normal)) add_square(square.cells, face, out);
     }
     for (const auto& [edge, s] : piercings_) {
-      if (!is_lower(squares_[s].side) || t_.sites_.turn[edge] == EdgeTurn::flat) continue;
+      if (!is_lower_side(squares_[s].side, normal) || t_.sites_.turn[edge] == EdgeTurn::flat) continue;
       for (const std::uint32_t t : t_.sites_.triangles_of[edge]) out.ends += t_.sites_.face_of[t] == face ? 1 : 0;
     }
     return out;

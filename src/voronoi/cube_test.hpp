@@ -22,6 +22,11 @@ struct SquareOfCube {
   std::uint32_t first_piece = 0, first_wall = 0, first_body = 0;
 };
 
+/// Whether a way against a normal leaves a cube through a side of it at once. @param side  as SquareOfCube has it.
+[[nodiscard]] inline bool is_lower_side(std::uint32_t side, const Vec3d& normal) {
+  return normal[side / 2] * (side % 2 == 1 ? 1 : -1) < -1e-15;
+}
+
 /// The components of walls and surface, or of the part of them that is asked for, in a cube that passes.
 struct CubeCells {
   VoronoiObstacle obstacle = VoronoiObstacle::none;

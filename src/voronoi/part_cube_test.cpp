@@ -123,17 +123,13 @@ bool PartOfCube::is_any_wall_inside() const {
   return false;
 }
 
-bool PartOfCube::is_lower(std::uint32_t side, std::uint32_t face) const {
-  // Any of its triangles: the numbers of faces' labels are those of triangles.
-  const double outwards = side % 2 == 1 ? 1 : -1;
-  return solid_.labels[solid_.triangle_of_face[face]].direction[side / 2] * outwards < -1e-15;
-}
-
 /// Walls between a face and a reflex edge lie in a plane. On the way along the face's normal to the edge each point
 /// stays in them, until it comes to the edge or leaves the cube: so there are as many as parts of that.
 VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares) {
   const auto [face, site] = sites;
-  const auto is_low = [&, f = face](std::uint32_t s) { return is_lower(in_.squares[s].side, f); };
+  // That of any triangle of the face: labels have their numbers.
+  const Vec3d& normal = solid_.labels[solid_.triangle_of_face[face]].direction;
+  const auto is_low = [&](std::uint32_t s) { return is_lower_side(in_.squares[s].side, normal); };
   const std::uint32_t edge = solid_.sites.reflex_edges[site - solid_.sites.face_count];
   const auto count = static_cast<std::uint32_t>(squares.size());
   const auto rank = [&](std::uint32_t s) {

@@ -47,7 +47,6 @@ class PartOfCube {
   [[nodiscard]] VoronoiObstacle add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares);
   [[nodiscard]] bool is_any_wall_inside() const;
   void add_lines_and_points();
-  [[nodiscard]] bool is_lower(std::uint32_t side, std::uint32_t face) const;
   void number_components(CubeCells& out);
 
   const VoronoiSolid& solid_;
