@@ -102,7 +102,8 @@ class Assembly {
   }
 
   void add_labels(Place& place, const LineEvent& event) const {
-    for (const LabelIndex label : {event.before, event.after}) {
+    // Where a thin region lies in between, `at` is on its near side.
+    for (const LabelIndex label : {event.before, event.thin != outside ? event.thin : event.after}) {
       if (label != outside) add_label(place.labels, label);
     }
     if (const std::optional<LabelIndex> triangle = event.crossed()) add_label(place.surface, *triangle);

@@ -71,9 +71,8 @@ void CellSplitter::add_root(int grid) {
       tree_.squares.push_back(square);
     }
   }
-  const std::span<const LabelIndex> thin = labels_.thin_vertices();
   for (LabelIndex k = 0; k < labels_.count(); ++k) {
-    if (!std::binary_search(thin.begin(), thin.end(), k)) cube.governors.push_back(k);
+    if (!labels_.is_unseen(k)) cube.governors.push_back(k);
   }
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) cube.triangles.push_back(t);
   cube.governors_of_parent = cube.governors.size();
@@ -143,7 +142,29 @@ void CellSplitter::find_events(NewEdge& made, std::span<const LabelIndex> among,
     part.last = outside;
     (void)lines_.add_events(part, among, made.events);
   }
+  pass_over_thin(made.events);
   edge.last = made.events.empty() ? edge.first : made.events.back().after;
+  if (edge.last != outside && labels_.is_thin(edge.last)) contradictions_.fetch_add(1, std::memory_order_relaxed);
+}
+
+/// Thin regions are part of walls: the events at both ends of one become one.
+void CellSplitter::pass_over_thin(std::vector<LineEvent>& events) const {
+  std::size_t count = 0;
+  for (const LineEvent& event : events) {
+    const bool is_behind_thin =
+        count > 0 && events[count - 1].after != outside && labels_.is_thin(events[count - 1].after);
+    if (!is_behind_thin) {
+      events[count++] = event;
+      continue;
+    }
+    LineEvent& before = events[count - 1];
+    before.has_several = before.thin != outside;
+    if (!before.has_several) before.thin = before.after;
+    before.width = event.at - before.at;
+    before.error = std::max(before.error, event.error);
+    before.after = event.after;
+  }
+  events.resize(count);
 }
 
 CellSplitter::NewEdge CellSplitter::edge_between(std::size_t axis, const Node& low, std::uint32_t length,
@@ -168,7 +189,13 @@ void CellSplitter::store(CellId id, NewEdge& made) {
 bool CellSplitter::is_below(const GridEdge& edge, const LineEvent& event, const Node& node) const {
   const double at = tree_.lattice.at(edge.axis, node[edge.axis]);
   const double margin = 2 * event.error + labels_.rounding();
-  if (std::abs(event.at - at) > margin) return event.at < at;
+  if (event.upper() + margin < at) return true;
+  if (event.at - margin > at) return false;
+  if (event.thin != outside) {
+    // Nodes must not lie on walls.
+    contradictions_.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
   const Vec3d q = tree_.lattice.at(node);
   if (const std::optional<LabelIndex> triangle = event.crossed()) {
     const std::array<Vec3d, 3> p = triangle_corners(mesh_, *triangle);

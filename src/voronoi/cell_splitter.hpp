@@ -36,7 +36,7 @@ class CellSplitter {
   void split_cubes(std::span<const CellId> cubes, const Context& context);
 
   [[nodiscard]] LineCounts counts() const { return lines_.counts(); }
-  /// Nodes that two ways to them tell different sites of: 0 unless signs contradict each other.
+  /// Nodes in thin regions, or that two ways to them tell different sites of, as signs contradict each other.
   [[nodiscard]] std::size_t contradictions() const { return contradictions_.load(); }
 
  private:
@@ -51,6 +51,7 @@ class CellSplitter {
   [[nodiscard]] bool is_below(const GridEdge& edge, const LineEvent& event, const Node& node) const;
   /// Finds what is closest along an edge from what is at its lower end.
   void find_events(NewEdge& made, std::span<const LabelIndex> among, std::span<const std::uint32_t> triangles) const;
+  void pass_over_thin(std::vector<LineEvent>& events) const;
   [[nodiscard]] std::vector<std::uint32_t> crossed(const GridEdge& edge,
                                                    std::span<const std::uint32_t> triangles) const;
   [[nodiscard]] double crossing_at(const GridEdge& edge, std::uint32_t triangle) const;

@@ -54,7 +54,7 @@ class CubeAnalysis {
 
   /// The part that is asked for.
   [[nodiscard]] CubeCells part_of(std::uint32_t component_count) const {
-    CubeContents in{squares_, component_count, vertices_, edges_, piercings_, parts_.size(), false};
+    CubeContents in{cube_, squares_, component_count, vertices_, edges_, piercings_, parts_.size(), false};
     in.has_inner_face =
         std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part.second.touched.empty(); });
     CubeCells out;
@@ -181,7 +181,7 @@ class CubeAnalysis {
     double low = at[edge.axis];
     double high = t_.tree_.lattice.at(edge.high())[edge.axis];
     const std::uint32_t k = edge.first_event + arc.index;
-    if (arc.index > 0) low = t_.tree_.events[k - 1].at;
+    if (arc.index > 0) low = t_.tree_.events[k - 1].upper();
     if (k < edge.last_event) high = t_.tree_.events[k].at;
     Vec3d p = at;
     Vec3d q = at;

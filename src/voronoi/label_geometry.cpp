@@ -10,8 +10,9 @@
 namespace blum::voronoi {
 namespace {
 
-/// Whether all rays of a vertex's cone are one but for rounding.
-bool is_thin(const MeshView& mesh, const SiteTable& table, std::span<const std::uint32_t> edges, std::uint32_t v) {
+/// How far the rays of a vertex's cone, of length 1, are apart.
+double width_of_cone(const MeshView& mesh, const SiteTable& table, std::span<const std::uint32_t> edges,
+                     std::uint32_t v) {
   std::vector<Vec3d> ends;
   for (const std::uint32_t edge : edges) {
     const Segment& of_edge = table.edges()[edge];
@@ -25,8 +26,9 @@ bool is_thin(const MeshView& mesh, const SiteTable& table, std::span<const std::
       rays.push_back(unit_normal(mesh.vertices[v], ends[bounds[k]], next));
     }
   }
-  constexpr double thin = 1e-12;
-  return std::all_of(rays.begin(), rays.end(), [&](const Vec3d& ray) { return length(ray - rays[0]) < thin; });
+  double width = 0;
+  for (const Vec3d& ray : rays) width = std::max(width, length(ray - rays[0]));
+  return width;
 }
 
 }  // namespace
@@ -83,11 +85,10 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
     const Label& label = labels.all()[k];
     if (label.kind == SiteKind::edge) label_of_edge_[label.index] = k;
     if (label.kind != SiteKind::vertex) continue;
-    if (is_thin(mesh, table, edges.of(label.index), label.index)) {
-      thin_vertices_.push_back(k);
-    } else {
-      label_of_vertex_[label.index] = k;
-    }
+    const double width = width_of_cone(mesh, table, edges.of(label.index), label.index);
+    if (width < thin) thin_vertices_.push_back(k);
+    if (width < unseen) unseen_vertices_.push_back(k);
+    if (!(width < unseen)) label_of_vertex_[label.index] = k;
   }
   add_triangles(mesh, table, sites);
   add_edges(mesh, table, sites);

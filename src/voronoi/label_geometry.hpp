@@ -1,6 +1,7 @@
 // Blum: labels of a polyhedron in double, with bounds on rounding. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -137,7 +138,8 @@ class LabelGeometry {
     return site_if_any(label_of_edge_[edge]);
   }
   [[nodiscard]] std::optional<std::uint32_t> site_of_vertex(std::uint32_t v) const {
-    return site_if_any(label_of_vertex_[v]);
+    const LabelIndex label = label_of_vertex_[v];
+    return label == outside || is_thin(label) ? std::nullopt : site_if_any(label);
   }
   [[nodiscard]] std::span<const DomainPlane> planes(LabelIndex label) const {
     return std::span(planes_).subspan(labels_[label].first_plane,
@@ -173,9 +175,18 @@ class LabelGeometry {
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
   /// The same of two sites.
   [[nodiscard]] bool are_neighbours(std::uint32_t site, std::uint32_t other) const;
-  /// Vertices whose cones are thinner than 1e-12: dents by rounding in faces that are flat but for that. No grid in
-  /// double could meet their regions.
+  /// Vertices whose cones are thinner than this many radians: their regions count as part of walls.
+  static constexpr double thin = 1e-3;
   [[nodiscard]] std::span<const LabelIndex> thin_vertices() const { return thin_vertices_; }
+  [[nodiscard]] bool is_thin(LabelIndex label) const {
+    return std::binary_search(thin_vertices_.begin(), thin_vertices_.end(), label);
+  }
+  /// Thin vertices with cones below this are closest nowhere, as far as labels tell: dents by rounding in faces that
+  /// are flat but for that. No grid in double could meet their regions.
+  static constexpr double unseen = 1e-12;
+  [[nodiscard]] bool is_unseen(LabelIndex label) const {
+    return std::binary_search(unseen_vertices_.begin(), unseen_vertices_.end(), label);
+  }
 
  private:
   [[nodiscard]] std::optional<std::uint32_t> site_if_any(LabelIndex label) const {
@@ -195,11 +206,11 @@ class LabelGeometry {
   std::vector<PlacedLabel> labels_;
   std::vector<DomainPlane> planes_;
   std::vector<std::array<Vec3d, 3>> corners_;
-  std::vector<LabelIndex> thin_vertices_;  ///< rising
-  std::vector<Bisector> bisectors_;        ///< three for each triangle
+  std::vector<LabelIndex> thin_vertices_, unseen_vertices_;  ///< rising
+  std::vector<Bisector> bisectors_;                          ///< three for each triangle
   using ConvexPair = std::array<std::uint32_t, 3>;
   std::vector<ConvexPair> convex_pairs_;  ///< two faces that share a convex edge, and a bisector; sorted
-  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` where there is none, or a thin one
+  std::vector<LabelIndex> label_of_edge_, label_of_vertex_;  ///< `outside` where there is none, or an unseen one
   /// Pairs of sites of which one is an edge or vertex of the other, both ways round, sorted.
   std::vector<std::array<std::uint32_t, 2>> neighbours_;
 };

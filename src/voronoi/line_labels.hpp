@@ -20,6 +20,12 @@ struct LineEvent {
   double error = 0;             ///< how far that may be off
   LabelIndex before = outside;  ///< closest below it
   LabelIndex after = outside;   ///< closest above it
+  double width = 0;             ///< of thin regions between both, from `at` on
+  LabelIndex thin = outside;    ///< the first vertex that has one
+  bool has_several = false;     ///< whether others do, too
+
+  /// Where the region above begins.
+  [[nodiscard]] double upper() const { return at + width; }
 
   /// The triangle that the line crosses here, where it enters or leaves the solid.
   [[nodiscard]] std::optional<LabelIndex> crossed() const {

@@ -15,21 +15,59 @@ class PartOfSquare {
       : cells_(cells), square_(square), rule_(rule) {}
 
   PartSquare find() {
+    find_thin();
     find_arcs();
     detail::UnionFind classes(static_cast<std::uint32_t>(cells_.pieces.size()));
     for (const auto& [a, b] : out_.arcs) classes.join(a, b);
+    const std::size_t joins = join_across_thin(classes);
     if (rule_.is_medial()) find_corners();
     std::size_t class_count = 0;
     for (std::uint32_t k = 0; k < cells_.pieces.size(); ++k) class_count += classes.find(k) == k ? 1U : 0U;
     const std::size_t points = out_.corners.size() + (rule_.is_medial() ? square_.reflex_piercings : 0);
-    out_.is_told = out_.is_told && out_.arcs.size() + class_count == cells_.pieces.size() + points;
+    out_.is_told = out_.is_told && out_.arcs.size() + joins + class_count == cells_.pieces.size() + points;
     find_components(classes);
     return std::move(out_);
   }
 
  private:
+  [[nodiscard]] bool is_dropped_thin(std::size_t event) const {
+    return rule_.dropped_thin(cells_.thin[event]).has_value();
+  }
   [[nodiscard]] bool is_dropped(std::size_t event) const {
-    return rule_.drops(cells_.site_before(event), cells_.site_behind(event));
+    return is_dropped_thin(event) || rule_.drops(cells_.site_before(event), cells_.site_behind(event));
+  }
+
+  void find_thin() {
+    for (std::size_t k = 0; k < cells_.events.size(); ++k) {
+      const std::optional<std::uint32_t> v = rule_.dropped_thin(cells_.thin[k]);
+      if (!v) continue;
+      const auto at = std::find_if(out_.thin.begin(), out_.thin.end(),
+                                   [&](const ThinRegion& region) { return region.vertex == *v; });
+      if (at != out_.thin.end()) {
+        at->events.push_back(k);
+      } else {
+        out_.thin.push_back({*v, {k}});
+      }
+    }
+  }
+
+  /// Between two places on the border pieces around a thin region are joined by walls between faces and edges, and
+  /// across it all are. Returns how many arcs it stands for.
+  std::size_t join_across_thin(detail::UnionFind& classes) {
+    std::size_t joins = 0;
+    for (const ThinRegion& region : out_.thin) {
+      for (std::size_t k = 0; k < region.events.size(); ++k) {
+        const std::uint32_t before = cells_.piece_before(region.events[k]);
+        const std::uint32_t behind = cells_.piece_behind(region.events[k]);
+        if (k + 1 < region.events.size()) {
+          ++joins;
+          classes.join(before, behind);
+        } else if (classes.find(before) != classes.find(behind)) {
+          out_.is_told = false;
+        }
+      }
+    }
+    return joins;
   }
 
   void add_arc(std::uint32_t a, std::uint32_t b) { out_.arcs.push_back({std::min(a, b), std::max(a, b)}); }
@@ -49,7 +87,7 @@ class PartOfSquare {
 
   void find_arcs() {
     for (std::size_t k = 0; k < cells_.events.size(); ++k) {
-      if (is_dropped(k)) add_arc(cells_.piece_before(k), cells_.piece_behind(k));
+      if (is_dropped(k) && !is_dropped_thin(k)) add_arc(cells_.piece_before(k), cells_.piece_behind(k));
     }
     for (const InnerArc& arc : square_.inner_arcs) {
       const std::uint32_t first = piece_of(arc.first, arc.event);
@@ -87,9 +125,16 @@ class PartOfSquare {
       if (!rule_.is_edge(site)) continue;
       for (const auto& [edge, v] : rule_.thin_ends(site)) {
         // It is looked at from the first of its edges.
-        if (rule_.corner(v).edges.front() == site && is_surrounded(v)) out_.corners.push_back({outside, v});
+        if (rule_.corner(v).edges.front() == site && !reaches_border(v) && is_surrounded(v)) {
+          out_.corners.push_back({outside, v});
+        }
       }
     }
+  }
+
+  [[nodiscard]] bool reaches_border(std::uint32_t v) const {
+    return std::any_of(out_.thin.begin(), out_.thin.end(),
+                       [&](const ThinRegion& region) { return region.vertex == v; });
   }
 
   /// Whether pieces of all faces and edges of a vertex are joined around it.

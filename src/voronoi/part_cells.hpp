@@ -52,6 +52,12 @@ class PartRule {
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> thin_ends(std::uint32_t edge) const;
   /// The faces on both sides of an edge: sites.
   [[nodiscard]] std::array<std::uint32_t, 2> faces_of(std::uint32_t edge) const;
+  /// The vertex of the mesh whose thin region an event lies in, where that counts as a line that is dropped.
+  [[nodiscard]] std::optional<std::uint32_t> dropped_thin(LabelIndex thin) const {
+    if (!is_medial() || thin == outside) return std::nullopt;
+    const std::uint32_t v = vertex_of(labels_[thin].site);
+    return corners_[v].is_thin ? std::optional(v) : std::nullopt;
+  }
   /// By vertices of the mesh.
   [[nodiscard]] const ReflexCorner& corner(std::uint32_t v) const { return corners_[v]; }
 
@@ -70,18 +76,26 @@ class PartRule {
   std::vector<std::array<std::uint32_t, 2>> thin_ends_;  ///< edge, vertex: sorted
 };
 
+/// A thin region in a square that counts as a line, and meets the square's border.
+struct ThinRegion {
+  std::uint32_t vertex = 0;         ///< of the mesh
+  std::vector<std::size_t> events;  ///< of the border that lie in it, by their numbers in SquareCells
+};
+
 /// A part of the diagram in a resolved square.
 ///
 /// Pieces are joined across dropped walls. As each is connected and reaches the border, two of them have one arc in
 /// common at most: two would enclose a third piece. Where joined pieces go around something, it is a point around which
 /// all walls are dropped: where a reflex edge pierces the square, or the normal of a face at a vertex (`corners`); or
-/// it is a component of the part that lies strictly inside (then `is_told` is false).
+/// it is a component of the part that lies strictly inside (then `is_told` is false). A thin region that reaches the
+/// border in k places is convex, so it joins the k chains of pieces between these as k - 1 arcs would.
 struct PartSquare {
   std::vector<std::array<std::uint32_t, 2>> arcs;  ///< dropped: the pieces on both sides, the smaller one first
   std::vector<std::array<std::uint32_t, 2>>
       corners;                           ///< the site of a face, or `outside` of a thin vertex; a vertex of the mesh
   std::vector<std::uint32_t> component;  ///< of the part, of each event; `outside` of dropped ones
   std::uint32_t component_count = 0;
+  std::vector<ThinRegion> thin;  ///< that reach the border
   bool is_told = true;
 };
 

@@ -8,7 +8,8 @@ namespace blum::voronoi {
 VoronoiObstacle PartOfCube::find(CubeCells& out) {
   collect();
   join_events();
-  const VoronoiObstacle obstacle = add_dropped_walls();
+  VoronoiObstacle obstacle = add_dropped_walls();
+  if (obstacle == VoronoiObstacle::none) obstacle = add_thin_regions();
   if (obstacle != VoronoiObstacle::none) return obstacle;
   add_lines_and_points();
   const std::int64_t components = static_cast<std::int64_t>(in_.component_count) - euler_;
@@ -39,6 +40,10 @@ void PartOfCube::collect() {
     corners_.insert(parts_.back().corners.begin(), parts_.back().corners.end());
     euler_ += static_cast<std::int64_t>(parts_.back().corners.size());
     euler_ -= static_cast<std::int64_t>(parts_.back().arcs.size());
+    for (const ThinRegion& region : parts_.back().thin) {
+      euler_ += 1 - static_cast<std::int64_t>(region.events.size());
+      thin_.insert(region.vertex);
+    }
   }
   joined_.reset(count);
 }
@@ -109,7 +114,7 @@ bool PartOfCube::is_any_wall_inside() const {
   for (const std::uint32_t v : in_.vertices) {
     const ReflexCorner& corner = solid_.corners[v];
     if (corner.is_thin) {
-      if (!corners_.contains({outside, v})) return true;
+      if (!corners_.contains({outside, v}) && !thin_.contains(v)) return true;
       continue;
     }
     for (const std::uint32_t edge : corner.edges) {
@@ -152,6 +157,76 @@ VoronoiObstacle PartOfCube::add_edge_walls(const Pair& sites, const std::vector<
   if (found.empty()) return VoronoiObstacle::contradiction;
   euler_ += static_cast<std::int64_t>(found.size());
   return VoronoiObstacle::none;
+}
+
+/// Thin regions that count as lines and meet edges of the grid. One that ends in the cube at its vertex alone is
+/// convex: without the boundary its Euler number is 1 (0 without the vertex) less that of what it has on the boundary,
+/// which must be discs.
+VoronoiObstacle PartOfCube::add_thin_regions() {
+  for (const std::uint32_t v : thin_) {
+    const ThinOnBoundary met = thin_on_boundary(v);
+    if (met.euler != met.parts || may_end_inside(v)) return VoronoiObstacle::joins;
+    const bool has_vertex = std::binary_search(in_.vertices.begin(), in_.vertices.end(), v);
+    euler_ += (has_vertex ? 0 : 1) - met.euler;
+    corners_.erase({outside, v});  // not a line of its own
+  }
+  return VoronoiObstacle::none;
+}
+
+PartOfCube::ThinOnBoundary PartOfCube::thin_on_boundary(std::uint32_t v) const {
+  ThinOnBoundary out;
+  std::vector<Pair> events;  // of the tree, square
+  for (std::uint32_t s = 0; s < in_.squares.size(); ++s) {
+    const std::int64_t points = std::count(parts_[s].corners.begin(), parts_[s].corners.end(), Pair{outside, v});
+    out.euler += points;
+    out.parts += points;
+    for (const ThinRegion& region : parts_[s].thin) {
+      if (region.vertex != v) continue;
+      ++out.parts;
+      out.euler += 1 - static_cast<std::int64_t>(region.events.size());
+      for (const std::size_t k : region.events) events.push_back({in_.squares[s].cells.events[k], s});
+    }
+  }
+  std::sort(events.begin(), events.end());
+  detail::UnionFind squares(static_cast<std::uint32_t>(in_.squares.size()));
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    const bool is_known = k > 0 && events[k][0] == events[k - 1][0];
+    if (!is_known) ++out.euler;
+    if (is_known && squares.join(events[k][1], events[k - 1][1])) --out.parts;
+  }
+  return out;
+}
+
+/// Whether a thin region may have its far end in the cube: whether anything but what has its vertex for a corner may be
+/// closest along its axis, or as far beside it as it is wide.
+bool PartOfCube::may_end_inside(std::uint32_t v) const {
+  const Vec3d at = solid_.mesh.vertices[v] - solid_.labels.centre();
+  const Vec3d way = solid_.corners[v].rays[0][0];
+  const Vec3d low = tree_.lattice.at(in_.cube.low) - solid_.labels.centre();
+  const Vec3d high = tree_.lattice.at(in_.cube.high()) - solid_.labels.centre();
+  double first = 0;
+  double last = length(low - at) + length(high - low);
+  const double width = LabelGeometry::thin * last + 4 * solid_.labels.rounding();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double enters = (low[axis] - width - at[axis]) / way[axis];
+    double leaves = (high[axis] + width - at[axis]) / way[axis];
+    if (enters > leaves) std::swap(enters, leaves);
+    if (way[axis] == 0) continue;
+    first = std::max(first, enters);
+    last = std::min(last, leaves);
+  }
+  constexpr int samples = 16;
+  const double step = (last - first) / samples;
+  for (int k = 0; k < samples; ++k) {
+    const double reach = first + (k + 0.5) * step;
+    const Vec3d q = at + way * reach;
+    const double enough = reach + step + 2 * width;
+    const bool is_free = std::all_of(in_.cube.governors.begin(), in_.cube.governors.end(), [&](LabelIndex other) {
+      return solid_.labels.has_corner(other, at) || length(solid_.labels.closest_point(other, q) - q) > enough;
+    });
+    if (!is_free) return true;
+  }
+  return false;
 }
 
 /// Lines around which all walls are dropped: a reflex edge, the normal of a face at a reflex vertex. Each meets the

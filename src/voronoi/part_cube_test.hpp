@@ -17,6 +17,7 @@ namespace blum::voronoi {
 
 /// What is known of a cube in which all components of walls and surface are acyclic.
 struct CubeContents {
+  const GridCube& cube;
   std::span<const SquareOfCube> squares;
   std::uint32_t component_count = 0;                        ///< of walls and surface in the cube
   std::span<const std::uint32_t> vertices, edges;           ///< of the mesh that meet the cube, rising
@@ -46,6 +47,14 @@ class PartOfCube {
   [[nodiscard]] VoronoiObstacle add_dropped_walls();
   [[nodiscard]] VoronoiObstacle add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares);
   [[nodiscard]] bool is_any_wall_inside() const;
+  [[nodiscard]] VoronoiObstacle add_thin_regions();
+  /// What a thin region has on the boundary.
+  struct ThinOnBoundary {
+    std::int64_t euler = 0;
+    std::int64_t parts = 0;
+  };
+  [[nodiscard]] ThinOnBoundary thin_on_boundary(std::uint32_t v) const;
+  [[nodiscard]] bool may_end_inside(std::uint32_t v) const;
   void add_lines_and_points();
   void number_components(CubeCells& out);
 
@@ -58,6 +67,7 @@ class PartOfCube {
   WallsOnBoundary walls_;
   std::map<Pair, std::vector<Pair>> events_of_walls_;  ///< dropped events between two sites: both squares of each
   std::set<Pair> corners_;                             ///< face, vertex
+  std::set<std::uint32_t> thin_;                       ///< vertices with thin regions that meet edges of the grid
   std::int64_t euler_ = 0;                             ///< of what is dropped in the cube
 };
 

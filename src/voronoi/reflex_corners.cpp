@@ -51,13 +51,58 @@ std::optional<ReflexCorner> passing_corner(std::uint32_t v, std::span<const std:
   return out;
 }
 
-std::optional<ReflexCorner> thin_corner(std::span<const std::uint32_t> edges, const PolyhedronSites& sites,
-                                        const LabelGeometry& labels) {
+/// The dual cone of a vertex's edges.
+struct Cone {
+  std::vector<std::uint32_t> edges;  ///< that hold facets, in the order around it
+  std::vector<Vec3d> rays;           ///< of length 1; ray k lies between facets k and k + 1
+};
+
+Cone cone_at(std::uint32_t v, std::span<const std::uint32_t> edges, const MeshView& mesh, const SiteTable& table) {
+  std::vector<Vec3d> ends;
+  Vec3d against;
+  for (const std::uint32_t edge : edges) {
+    const Segment& of = table.edges()[edge];
+    ends.push_back(mesh.vertices[of[0] == v ? of[1] : of[0]]);
+    against -= unit(ends.back() - mesh.vertices[v]);
+  }
+  const std::vector<std::uint32_t> bounds = facets(mesh.vertices[v], ends);
+  Cone out;
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    const Vec3d normal = unit_normal(mesh.vertices[v], ends[bounds[k]], ends[bounds[(k + 1) % bounds.size()]]);
+    out.edges.push_back(edges[bounds[k]]);
+    out.rays.push_back(dot(normal, against) > 0 ? normal : -normal);
+  }
+  return out;
+}
+
+std::optional<ReflexCorner> thin_corner(const Cone& cone, std::span<const std::uint32_t> edges,
+                                        const PolyhedronSites& sites, const LabelGeometry& labels) {
   ReflexCorner out;
   out.is_thin = true;
+  out.rays.push_back({cone.rays.front(), cone.rays.front()});
   for (const std::uint32_t edge : edges) {
     if (sites.turn[edge] == EdgeTurn::convex) return std::nullopt;
     if (const std::optional<std::uint32_t> site = labels.site_of_edge(edge)) out.edges.push_back(*site);
+  }
+  return out;
+}
+
+ReflexCorner corner_of(const Cone& cone, const PolyhedronSites& sites, const LabelGeometry& labels) {
+  ReflexCorner out;
+  const std::size_t count = cone.edges.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t edge = cone.edges[k];
+    const std::uint32_t next = cone.edges[(k + 1) % count];
+    const std::optional<std::uint32_t> site = labels.site_of_edge(edge);
+    if (!site) continue;
+    out.edges.push_back(*site);
+    out.rays.push_back({cone.rays[(k + count - 1) % count], cone.rays[k]});
+    if (!labels.site_of_edge(next)) continue;
+    for (const std::uint32_t t : sites.triangles_of[edge]) {
+      for (const std::uint32_t u : sites.triangles_of[next]) {
+        if (sites.face_of[t] == sites.face_of[u]) out.faces.push_back(sites.face_of[t]);
+      }
+    }
   }
   return out;
 }
@@ -72,38 +117,11 @@ std::vector<ReflexCorner> reflex_corners(const MeshView& mesh, const SiteTable& 
     if (auto passing = passing_corner(v, edges_of.of(v), sites, labels)) out[v] = std::move(*passing);
   }
   for (const std::uint32_t v : sites.reflex_vertices) {
-    ReflexCorner& corner = out[v];
-    const std::span<const std::uint32_t> edges = edges_of.of(v);
-    if (!labels.site_of_vertex(v)) {
-      if (auto thin = thin_corner(edges, sites, labels)) corner = std::move(*thin);
-      continue;
-    }
-    std::vector<Vec3d> ends;
-    for (const std::uint32_t edge : edges) {
-      const Segment& of = table.edges()[edge];
-      ends.push_back(mesh.vertices[of[0] == v ? of[1] : of[0]]);
-    }
-    const std::vector<std::uint32_t> bounds = facets(mesh.vertices[v], ends);
-    Vec3d against;
-    for (const Vec3d& end : ends) against -= unit(end - mesh.vertices[v]);
-    const auto ray = [&](std::size_t k) {
-      const Vec3d normal =
-          unit_normal(mesh.vertices[v], ends[bounds[k % bounds.size()]], ends[bounds[(k + 1) % bounds.size()]]);
-      return dot(normal, against) > 0 ? normal : -normal;
-    };
-    for (std::size_t k = 0; k < bounds.size(); ++k) {
-      const std::uint32_t edge = edges[bounds[k]];
-      const std::uint32_t next = edges[bounds[(k + 1) % bounds.size()]];
-      const std::optional<std::uint32_t> site = labels.site_of_edge(edge);
-      if (!site) continue;
-      corner.edges.push_back(*site);
-      corner.rays.push_back({ray(k + bounds.size() - 1), ray(k)});
-      if (!labels.site_of_edge(next)) continue;
-      for (const std::uint32_t t : sites.triangles_of[edge]) {
-        for (const std::uint32_t u : sites.triangles_of[next]) {
-          if (sites.face_of[t] == sites.face_of[u]) corner.faces.push_back(sites.face_of[t]);
-        }
-      }
+    const Cone cone = cone_at(v, edges_of.of(v), mesh, table);
+    if (labels.site_of_vertex(v)) {
+      out[v] = corner_of(cone, sites, labels);
+    } else if (auto thin = thin_corner(cone, edges_of.of(v), sites, labels)) {
+      out[v] = std::move(*thin);
     }
   }
   return out;

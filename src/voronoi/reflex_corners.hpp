@@ -26,7 +26,7 @@ struct ReflexCorner {
   std::vector<std::array<Vec3d, 2>> rays;
   std::vector<std::uint32_t> faces;  ///< sites, of the normals
   bool is_passing = false;           ///< then there are two edges, and two faces
-  bool is_thin = false;              ///< then its edges are reflex or flat, the first ones are listed, and no faces
+  bool is_thin = false;  ///< then its edges are reflex or flat, the first ones are listed, no faces, and a ray twice
 
   /// Into how many parts the medial axis falls next to v: around v, walls that are kept are a forest, and Euler's
   /// formula counts its trees. None where all edges are reflex; more than one only meet in v.

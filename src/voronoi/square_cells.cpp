@@ -23,8 +23,10 @@ void follow_border(const CellTree& tree, const GridSquare& square, SquareCells& 
         out.arcs.push_back({{id, arc}, static_cast<std::uint32_t>(out.runs.size() - 1)});
         if (k == count) break;
         const std::uint32_t event = is_down ? edge.last_event - 1 - k : edge.first_event + k;
+        const LineEvent& at = tree.events[event];
         out.events.push_back(event);
-        out.runs.push_back({is_down ? tree.events[event].before : tree.events[event].after, 0, 0});
+        out.thin.push_back(at.has_several ? outside : at.thin);
+        out.runs.push_back({is_down ? at.before : at.after, 0, 0});
       }
     });
   }

@@ -41,6 +41,7 @@ struct SquareCells {
   };
 
   std::vector<std::uint32_t> events;  ///< around the border; event k lies between runs k and k + 1, the last and 0
+  std::vector<LabelIndex> thin;       ///< of each event, the vertex whose thin region alone it is in, if any
   std::vector<Run> runs;              ///< as many as events, but one where there is no event
   std::vector<Piece> pieces;
   std::uint32_t body_count = 0;

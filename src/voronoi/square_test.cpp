@@ -71,7 +71,8 @@ bool SquareTest::resolve(GridSquare& square) const {
   const Polygon whole = polygon(square);
   std::vector<LabelIndex> present;
   for (const LabelIndex label : square.governors) {
-    if (std::binary_search(sites.begin(), sites.end(), labels_[label].site)) {
+    // Thin regions are part of walls, wherever they are.
+    if (labels_.is_thin(label) || std::binary_search(sites.begin(), sites.end(), labels_[label].site)) {
       present.push_back(label);
       continue;
     }
@@ -112,7 +113,8 @@ std::vector<SquareTest::BorderArc> SquareTest::border(const GridSquare& square) 
       arc.high = point(event.at);
       arc.error = std::max(arc.error, event.error);
       out.push_back(arc);
-      arc = {event.after, arc.high, arc.high, event.error};
+      const Vec3d upper = point(event.upper());
+      arc = {event.after, upper, upper, event.error};
     }
     arc.high = point(tree_.lattice.at(edge.axis, edge.low[edge.axis] + edge.length));
     out.push_back(arc);
