@@ -8,11 +8,14 @@
 
 #include "blum/certificate/certificate.hpp"
 #include "blum/geometry/bvh.hpp"
+#include "blum/geometry/weld.hpp"
+#include "blum/io/mesh_io.hpp"
 #include "blum/medial_axis/collapse_axis.hpp"
 #include "blum/medial_axis/decimate.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
+#include "support/data.hpp"
 #include "support/mesh_places.hpp"
 #include "support/model_solids.hpp"
 
@@ -146,6 +149,22 @@ TEST(VoronoiAxis, IsNearThatOfTheGrid) {
   const auto [most_back, usual_back] = distances(voxels, exact);
   EXPECT_LE(std::max(most, most_back), 1.5 * side) << "rims, which go along triangles and voxels";
   EXPECT_LE(std::max(usual, usual_back), 0.05 * side);
+}
+
+/// Scanned parts, of triangles in 32 bits and of vertices with cones of any width.
+TEST(VoronoiSolids, OfScans) {
+  struct Part {
+    std::string file;
+    BettiNumbers solid;
+  };
+  for (const auto& [file, solid] : {Part{"meshes/3holes.off", {1, 3, 0}}, Part{"meshes/screwdriver.off", {1, 0, 0}}}) {
+    const auto path = test::data_file(file);
+    if (!path) GTEST_SKIP() << test::no_data(file);
+    const VoronoiReport report =
+        voronoi_complex(weld(read_mesh(*path)), {.part = VoronoiPart::medial_axis, .resolution = 1}).report;
+    EXPECT_TRUE(report.certified) << file;
+    EXPECT_EQ(report.found, solid) << file;
+  }
 }
 
 }  // namespace

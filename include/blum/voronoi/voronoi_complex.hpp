@@ -123,7 +123,8 @@ struct VoronoiReport {
   std::size_t faces = 0;            ///< sites
   std::size_t reflex_edges = 0;     ///< sites
   std::size_t reflex_vertices = 0;  ///< sites
-  /// Of these, vertices whose cones are thinner than 1e-12 (dents by rounding): their regions count as part of walls.
+  /// Of these, vertices whose cones are thinner than 1e-3, radians: their regions, that much narrower than long, count
+  /// as part of walls.
   std::size_t thin_vertices = 0;
   std::size_t grids = 0;            ///< places of the grid that were tried
   std::size_t cubes = 0;            ///< that meet the solid, and are not split
@@ -153,7 +154,7 @@ struct Description<VoronoiReport> {
       Member{"reflex_edges", &VoronoiReport::reflex_edges, "", "sites"},
       Member{"reflex_vertices", &VoronoiReport::reflex_vertices, "", "sites"},
       Member{"thin_vertices", &VoronoiReport::thin_vertices, "",
-             "reflex vertices whose cones are thinner than 1e-12: their regions count as part of walls"},
+             "reflex vertices whose cones are thinner than 1e-3: their regions count as part of walls"},
       Member{"grids", &VoronoiReport::grids, "", "places of the grid that were tried"},
       Member{"cubes", &VoronoiReport::cubes, "", "that meet the solid, and are not split"},
       Member{"squares", &VoronoiReport::squares, "", "and parts of squares"},

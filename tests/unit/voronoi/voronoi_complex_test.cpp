@@ -17,6 +17,7 @@
 #include "blum/geometry/bvh.hpp"
 #include "blum/geometry/closest_point.hpp"
 #include "blum/geometry/topology.hpp"
+#include "blum/geometry/weld.hpp"
 #include "blum/geometry/winding_number.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
@@ -130,6 +131,59 @@ TEST(VoronoiComplex, OfFacesBentByAnyAmount) {
       for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
         SCOPED_TRACE(std::to_string(by) + ", " + std::to_string(seed) + ", " + std::string(to_string(part)));
         expect_certified(voronoi_complex(mesh, {.part = part, .resolution = 1}).report);
+      }
+    }
+  }
+}
+
+/// A box of side 1 over n x n squares on each side, with dents and bumps in the upper one whose slope is about the
+/// given one: vertices with thin regions, many of them with reflex edges alone.
+TriangleMesh dented_box(std::uint32_t n, double slope, std::uint64_t seed) {
+  TriangleMesh mesh;
+  const auto add_side = [&](const Vec3d& origin, const Vec3d& along, const Vec3d& up) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (std::uint32_t j = 0; j <= n; ++j) {
+      for (std::uint32_t i = 0; i <= n; ++i)
+        mesh.vertices.push_back(origin + along * (1.0 * i / n) + up * (1.0 * j / n));
+    }
+    for (std::uint32_t j = 0; j < n; ++j) {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t p = first + j * (n + 1) + i;
+        mesh.triangles.push_back({p, p + 1, p + n + 2});
+        mesh.triangles.push_back({p, p + n + 2, p + n + 1});
+      }
+    }
+  };
+  const Vec3d x{1, 0, 0};
+  const Vec3d y{0, 1, 0};
+  const Vec3d z{0, 0, 1};
+  add_side({}, y, x);
+  add_side(z, x, y);
+  add_side({}, x, z);
+  add_side(y, z, x);
+  add_side({}, z, y);
+  add_side(x, y, z);
+  mesh = weld(mesh);
+  Random random(seed);
+  for (Vec3d& p : mesh.vertices) {
+    const bool is_within = p.z == 1 && std::max(std::abs(p.x - 0.5), std::abs(p.y - 0.5)) < 0.49;
+    if (is_within && random.uniform() < 0.6) p.z += slope / n * (random.uniform() - 0.7);
+  }
+  return mesh;
+}
+
+/// Regions of vertices that are too narrow for the grid count as parts of walls. On a fine grid its edges meet many of
+/// them: in squares and cubes the medial axis then has to do without parts of them.
+TEST(VoronoiComplex, OfShallowDents) {
+  for (const double slope : {3e-2, 3e-4, 1e-4, 1e-6, 1e-8, 1e-11, 1e-13}) {
+    for (const int resolution : {1, 16}) {
+      const TriangleMesh mesh = dented_box(4, slope, 2);
+      for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
+        SCOPED_TRACE(std::to_string(slope) + ", " + std::to_string(resolution) + ", " + std::string(to_string(part)));
+        const VoronoiReport report = voronoi_complex(mesh, {.part = part, .resolution = resolution}).report;
+        expect_certified(report);
+        EXPECT_GT(report.reflex_vertices, 2U);
+        EXPECT_EQ(report.thin_vertices == report.reflex_vertices, slope < 5e-4);
       }
     }
   }
