@@ -7,7 +7,7 @@ namespace blum::voronoi {
 
 VoronoiObstacle PartOfCube::find(CubeCells& out) {
   collect();
-  join_events();
+  if (!join_events()) return VoronoiObstacle::contradiction;
   VoronoiObstacle obstacle = add_dropped_walls();
   if (obstacle == VoronoiObstacle::none) obstacle = add_thin_regions();
   if (obstacle != VoronoiObstacle::none) return obstacle;
@@ -48,8 +48,9 @@ void PartOfCube::collect() {
   joined_.reset(count);
 }
 
-/// Joins components across edges of the grid, and counts dropped events.
-void PartOfCube::join_events() {
+/// Joins components across edges of the grid, and counts dropped events. False where squares tell different things of
+/// an event, as next to nodes of which different sites are told.
+bool PartOfCube::join_events() {
   struct AtEvent {
     std::uint32_t event, square, component;
     Pair sites;
@@ -72,6 +73,7 @@ void PartOfCube::join_events() {
   });
   for (std::size_t k = 1; k < all.size(); ++k) {
     if (all[k].event != all[k - 1].event) continue;
+    if ((all[k].component == outside) != (all[k - 1].component == outside)) return false;
     if (all[k].component != outside) {
       joined_.join(all[k].component, all[k - 1].component);
     } else {
@@ -79,6 +81,7 @@ void PartOfCube::join_events() {
       events_of_walls_[all[k].sites].push_back({all[k - 1].square, all[k].square});
     }
   }
+  return true;
 }
 
 VoronoiObstacle PartOfCube::add_dropped_walls() {

@@ -43,7 +43,7 @@ class PartOfCube {
   using WallsOnBoundary = std::map<Pair, std::vector<std::uint32_t>>;
 
   void collect();
-  void join_events();
+  [[nodiscard]] bool join_events();
   [[nodiscard]] VoronoiObstacle add_dropped_walls();
   [[nodiscard]] VoronoiObstacle add_edge_walls(const Pair& sites, const std::vector<std::uint32_t>& squares);
   [[nodiscard]] bool is_any_wall_inside() const;
