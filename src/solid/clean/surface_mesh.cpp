@@ -1,0 +1,124 @@
+#include "solid/clean/surface_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace blum::detail {
+namespace {
+
+/// The place of a vertex in a triangle.
+std::size_t place_of(const Triangle& triangle, std::uint32_t v) {
+  return triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2;
+}
+
+}  // namespace
+
+SurfaceMesh::SurfaceMesh(const MeshView& mesh)
+    : points_(mesh.vertices),
+      triangles_(mesh.triangles.begin(), mesh.triangles.end()),
+      at_(mesh.vertices.size()),
+      left_(mesh.triangles.size()) {
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    for (const std::uint32_t v : triangles_[t]) at_[v].push_back(t);
+  }
+}
+
+void SurfaceMesh::find_star(std::uint32_t v, Star& out) const {
+  const std::vector<std::uint32_t>& around = at_[v];
+  out.ring.clear();
+  out.triangles = around;
+  const auto next_of = [&](std::uint32_t t, std::size_t step) {
+    return triangles_[t][(place_of(triangles_[t], v) + step) % 3];
+  };
+  if (out.triangles.empty()) return;
+  std::sort(out.triangles.begin(), out.triangles.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return next_of(a, 1) < next_of(b, 1); });
+  std::vector<std::uint32_t> ordered;
+  ordered.reserve(around.size());
+  std::uint32_t corner = next_of(out.triangles.front(), 1);
+  for (std::size_t k = 0; k < around.size(); ++k) {
+    const auto at = std::lower_bound(out.triangles.begin(), out.triangles.end(), corner,
+                                     [&](std::uint32_t t, std::uint32_t wanted) { return next_of(t, 1) < wanted; });
+    out.ring.push_back(corner);
+    ordered.push_back(*at);
+    corner = next_of(*at, 2);
+  }
+  out.triangles.swap(ordered);
+}
+
+bool SurfaceMesh::has_edge(std::uint32_t a, std::uint32_t b) const {
+  const std::vector<std::uint32_t>& around = at_[a].size() < at_[b].size() ? at_[a] : at_[b];
+  const std::uint32_t wanted = at_[a].size() < at_[b].size() ? b : a;
+  return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
+    const Triangle& triangle = triangles_[t];
+    return triangle[0] == wanted || triangle[1] == wanted || triangle[2] == wanted;
+  });
+}
+
+EdgePair SurfaceMesh::opposite_edge(std::uint32_t t, std::size_t k) const {
+  EdgePair out;
+  out.left = t;
+  out.apex_left = triangles_[t][k];
+  out.a = triangles_[t][(k + 1) % 3];
+  out.b = triangles_[t][(k + 2) % 3];
+  for (const std::uint32_t other : at_[out.a]) {
+    const Triangle& triangle = triangles_[other];
+    const std::size_t place = place_of(triangle, out.a);
+    if (triangle[(place + 2) % 3] != out.b) continue;
+    out.right = other;
+    out.apex_right = triangle[(place + 1) % 3];
+    break;
+  }
+  return out;
+}
+
+bool SurfaceMesh::may_collapse(const Star& star, std::size_t onto) const {
+  const std::size_t count = star.ring.size();
+  const std::uint32_t w = star.ring[onto];
+  // Of the ring, only the corners next to w may be its neighbours already.
+  for (std::size_t step = 2; step + 1 < count; ++step) {
+    if (has_edge(star.ring[(onto + step) % count], w)) return false;
+  }
+  if (count > 3) return true;
+  // Where w has the triangle of the ring already, both are those of a tetrahedron.
+  return at_[w].size() > 3;
+}
+
+void SurfaceMesh::take_out(std::uint32_t v, std::uint32_t triangle) {
+  std::vector<std::uint32_t>& around = at_[v];
+  around.erase(std::find(around.begin(), around.end(), triangle));
+}
+
+void SurfaceMesh::collapse(std::uint32_t v, const Star& star, std::size_t onto) {
+  const std::size_t count = star.ring.size();
+  const std::uint32_t w = star.ring[onto];
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t t = star.triangles[k];
+    if (k == onto || (k + 1) % count == onto) {
+      take_out(w, t);
+      take_out(star.ring[k == onto ? (k + 1) % count : k], t);
+      triangles_[t] = {w, w, w};
+      --left_;
+    } else {
+      triangles_[t][place_of(triangles_[t], v)] = w;
+      at_[w].push_back(t);
+    }
+  }
+  at_[v].clear();
+}
+
+void SurfaceMesh::flip(const EdgePair& edge) {
+  take_out(edge.b, edge.left);
+  take_out(edge.a, edge.right);
+  at_[edge.apex_right].push_back(edge.left);
+  at_[edge.apex_left].push_back(edge.right);
+  triangles_[edge.left] = {edge.apex_left, edge.a, edge.apex_right};
+  triangles_[edge.right] = {edge.apex_right, edge.b, edge.apex_left};
+}
+
+double least_height(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
+  return longest > 0 ? length(cross(b - a, c - a)) / std::sqrt(longest) : 0;
+}
+
+}  // namespace blum::detail
