@@ -80,7 +80,7 @@ std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& 
   for (std::size_t turn = 0; turn < flat.size() && turn < 4 * given.size(); ++turn) {
     const std::uint32_t t = flat[turn];
     if (has_area(surface, t)) continue;
-    const EdgePair edge = surface.opposite_edge(t, middle_corner(surface.corners(t)));
+    const EdgePair edge = surface.opposite_edge(t, surface.triangle(t)[middle_corner(surface.corners(t))]);
     if (edge.apex_left == edge.apex_right || surface.has_edge(edge.apex_left, edge.apex_right)) continue;
     surface.flip(edge);
     ++flips;

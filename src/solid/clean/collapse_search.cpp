@@ -22,6 +22,8 @@ constexpr double negligible = 0.02;
 constexpr double cost_of_shape = 0.1;
 /// New triangles may be flatter than those before by this, where they are no needles.
 constexpr double flattening = 0.25;
+/// Triangles below the tolerance are needles where they are also this much longer than high.
+constexpr double slenderness = 10;
 /// The cosine of the angle that triangles turn by at most. Needles turn freely, but are not to lie on their neighbours.
 constexpr double least_cosine = 0.2;
 constexpr double least_cosine_of_needle = -0.5;
@@ -38,6 +40,11 @@ double cosine(const Vec3d& a, const Vec3d& b) {
 
 }  // namespace
 
+bool CollapseSearch::is_needle(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
+  const double height = least_height(a, b, c);
+  return height < tolerance_ && height * slenderness < longest_side(a, b, c);
+}
+
 void CollapseSearch::look_at_star(std::uint32_t v) {
   mesh_.find_star(v, star_);
   const std::size_t count = star_.ring.size();
@@ -49,7 +56,7 @@ void CollapseSearch::look_at_star(std::uint32_t v) {
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3d& a = around_[k];
     const Vec3d& b = around_[(k + 1) % count];
-    sides_[k] = {cross(a, b), least_height({}, a, b)};
+    sides_[k] = {cross(a, b), least_height({}, a, b), is_needle({}, a, b)};
     deviation_ = std::max(deviation_, deviations_[star_.triangles[k]]);
     least_height_ = std::min(least_height_, sides_[k].height);
   }
@@ -104,10 +111,8 @@ double CollapseSearch::bound(std::size_t onto, double budget) {
 
 /// @param side  of the ring: the triangle there turns to a normal.
 bool CollapseSearch::folds(std::uint32_t v, std::size_t side, const Vec3d& normal) const {
-  if (sides_[side].height >= tolerance_) return cosine(sides_[side].normal, normal) < least_cosine;
-  const std::uint32_t t = star_.triangles[side];
-  const Triangle& corners = mesh_.triangle(t);
-  const EdgePair edge = mesh_.opposite_edge(t, corners[0] == v ? 0 : corners[1] == v ? 1 : 2);
+  if (!sides_[side].is_needle) return cosine(sides_[side].normal, normal) < least_cosine;
+  const EdgePair edge = mesh_.opposite_edge(star_.triangles[side], v);
   const std::array<Vec3d, 3> beyond = mesh_.corners(edge.right);
   const Vec3d outer = cross(beyond[1] - beyond[0], beyond[2] - beyond[0]);
   const double found = cosine(outer, normal);
@@ -119,18 +124,20 @@ CollapseSearch::Shape CollapseSearch::shape(std::uint32_t v, std::size_t onto) c
   const Vec3d& w = around_[onto];
   Shape out{true, 1};
   double least = infinity;
+  bool makes_needle = false;
   for (std::size_t step = 1; step + 1 < count; ++step) {
     const std::size_t side = (onto + step) % count;
     const Vec3d& a = around_[side];
     const Vec3d& b = around_[(side + 1) % count];
     const Vec3d normal = cross(a - w, b - w);
-    const double longest = std::sqrt(std::max({squared_length(a - w), squared_length(b - a), squared_length(w - b)}));
+    const double longest = longest_side(w, a, b);
     const double height = longest > 0 ? length(normal) / longest : 0;
     if (!(height > 0) || folds(v, side, normal)) return {};
     least = std::min(least, height);
+    makes_needle = makes_needle || is_needle(w, a, b);
     out.quality = std::min(out.quality, height / longest * (2 / std::sqrt(3.0)));
   }
-  out.is_allowed = least >= least_height_ || (least >= tolerance_ && least >= flattening * least_height_);
+  out.is_allowed = least >= least_height_ || (!makes_needle && least >= flattening * least_height_);
   return out;
 }
 
@@ -163,7 +170,7 @@ EdgeFlip CollapseSearch::find_flip(std::uint32_t t) const {
     const auto opposite = [&](std::size_t of) { return squared_length(p[(of + 1) % 3] - p[(of + 2) % 3]); };
     if (opposite(k) > opposite(apex)) apex = k;
   }
-  out.edge = mesh_.opposite_edge(t, apex);
+  out.edge = mesh_.opposite_edge(t, mesh_.triangle(t)[apex]);
   const EdgePair& e = out.edge;
   const Vec3d& origin = mesh_.point(e.apex_left);
   const Vec3d a = mesh_.point(e.a) - origin;
@@ -178,7 +185,7 @@ EdgeFlip CollapseSearch::find_flip(std::uint32_t t) const {
   const double after = std::min(least_height({}, a, d), least_height(d, b, {}));
   if (!(after >= least_gain * before && after > 0)) return out;
   const Vec3d beyond = cross(a - b, d - b);
-  if (least_height(b, a, d) >= tolerance_ &&
+  if (!is_needle(b, a, d) &&
       (cosine(beyond, cross(a, d)) < least_cosine || cosine(beyond, cross(b - d, -d)) < least_cosine)) {
     return out;
   }

@@ -45,12 +45,14 @@ class CollapseSearch {
   struct Side {
     Vec3d normal;
     double height = 0;
+    bool is_needle = false;
   };
   struct Shape {
     bool is_allowed = false;
     double quality = 0;  ///< 1 where all triangles are equilateral
   };
 
+  [[nodiscard]] bool is_needle(const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
   void look_at_star(std::uint32_t v);
   void choose_targets();
   [[nodiscard]] double bound(std::size_t onto, double budget);

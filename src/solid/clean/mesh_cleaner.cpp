@@ -115,9 +115,18 @@ bool MeshCleaner::passes(std::uint32_t v, const Star& star, const Collapse& way)
   step_.old_triangles = star.triangles;
   step_.new_triangles.clear();
   step_.swept.clear();
-  for (std::size_t k = 1; k + 1 < count; ++k) {
-    const std::uint32_t a = star.ring[(way.onto + k) % count];
-    const std::uint32_t b = star.ring[(way.onto + k + 1) % count];
+  step_.border.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t side = (way.onto + k) % count;
+    const std::uint32_t a = star.ring[side];
+    const std::uint32_t b = star.ring[(side + 1) % count];
+    // Next to the target there is the apex of a new triangle further on.
+    const std::uint32_t new_apex = k == 0           ? star.ring[(side + 2) % count]
+                                   : k + 1 == count ? star.ring[(side + count - 1) % count]
+                                                    : way.target;
+    const std::uint32_t outer = mesh_.opposite_edge(star.triangles[side], v).apex_right;
+    step_.border.push_back({a, b, v, new_apex, outer});
+    if (k == 0 || k + 1 == count) continue;
     step_.new_triangles.push_back({way.target, a, b});
     step_.swept.push_back({v, way.target, a, b});
   }
@@ -145,6 +154,11 @@ void MeshCleaner::try_triangle(std::uint32_t t) {
   step_.old_triangles = {e.left, e.right};
   step_.new_triangles = {{e.apex_left, e.a, e.apex_right}, {e.apex_right, e.b, e.apex_left}};
   step_.swept = {{e.a, e.b, e.apex_left, e.apex_right}};
+  const auto outer = [&](std::uint32_t of, std::uint32_t corner) { return mesh_.opposite_edge(of, corner).apex_right; };
+  step_.border = {{e.apex_left, e.a, e.b, e.apex_right, outer(e.left, e.b)},
+                  {e.b, e.apex_left, e.a, e.apex_right, outer(e.left, e.a)},
+                  {e.a, e.apex_right, e.b, e.apex_left, outer(e.right, e.b)},
+                  {e.apex_right, e.b, e.a, e.apex_left, outer(e.right, e.a)}};
   if (check_.passes(step_)) flip(way);
 }
 

@@ -127,6 +127,17 @@ bool StepCheck::is_clear(const Triangle& triangle) const {
   });
 }
 
+/// Whether a triangle turns about an edge past the one on its other side: then the solid would be where it is not now.
+bool StepCheck::turns_over_a_neighbour(const BorderEdge& edge) const {
+  const Vec3d& a = mesh_.point(edge.a);
+  const Vec3d& b = mesh_.point(edge.b);
+  const Vec3d& from = mesh_.point(edge.old_apex);
+  const Vec3d& to = mesh_.point(edge.new_apex);
+  const Vec3d& outer = mesh_.point(edge.outer_apex);
+  const int way = orient3d(a, b, from, to);
+  return way != 0 && orient3d(a, b, from, outer) == way && orient3d(a, b, outer, to) == way;
+}
+
 bool StepCheck::jumps_over_a_shell(const SurfaceStep& step) const {
   if (shell_of_.empty()) return false;
   const std::uint32_t own = shell_of_[step.new_triangles.front()[0]];
@@ -152,6 +163,9 @@ bool StepCheck::passes(const SurfaceStep& step) {
   for (const std::uint32_t t : step.old_triangles) mark_[t] = current_;
   for (const Triangle& t : step.new_triangles) {
     if (has_no_area({mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2])})) return false;
+  }
+  for (const BorderEdge& edge : step.border) {
+    if (turns_over_a_neighbour(edge)) return false;
   }
   for (std::size_t i = 0; i < step.new_triangles.size(); ++i) {
     const ContactTriangle own = for_contact(mesh_, step.new_triangles[i]);

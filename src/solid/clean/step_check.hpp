@@ -13,12 +13,20 @@
 
 namespace blum::detail {
 
+/// An edge at the border of what changes: a triangle there gets another apex, and that on the other side stays.
+struct BorderEdge {
+  std::uint32_t a = 0, b = 0;
+  std::uint32_t old_apex = 0, new_apex = 0;
+  std::uint32_t outer_apex = 0;
+};
+
 /// A change of a surface: triangles that go, those that come, and tetrahedra between both: the volume that the surface
 /// sweeps is in these.
 struct SurfaceStep {
   std::vector<std::uint32_t> old_triangles;
   std::vector<Triangle> new_triangles;
   std::vector<std::array<std::uint32_t, 4>> swept;
+  std::vector<BorderEdge> border;
 };
 
 class StepCheck {
@@ -27,7 +35,8 @@ class StepCheck {
   StepCheck(const SurfaceMesh& mesh, const Context& context);
 
   /// Whether the new triangles have areas, neither cross nor touch each other or those that stay, beside the corners
-  /// and edges that they share, and no other shell lies between old and new ones. Exact.
+  /// and edges that they share, and neither another shell nor what is next to them lies between old and new ones, so
+  /// that inside and outside stay what they are. Exact.
   [[nodiscard]] bool passes(const SurfaceStep& step);
 
   /// Triangles of the mesh have changed, or gone.
@@ -36,6 +45,7 @@ class StepCheck {
  private:
   [[nodiscard]] Box3 box_of(std::uint32_t t) const;
   [[nodiscard]] bool is_clear(const Triangle& triangle) const;
+  [[nodiscard]] bool turns_over_a_neighbour(const BorderEdge& edge) const;
   [[nodiscard]] bool jumps_over_a_shell(const SurfaceStep& step) const;
 
   const SurfaceMesh& mesh_;

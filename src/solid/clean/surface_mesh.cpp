@@ -55,10 +55,11 @@ bool SurfaceMesh::has_edge(std::uint32_t a, std::uint32_t b) const {
   });
 }
 
-EdgePair SurfaceMesh::opposite_edge(std::uint32_t t, std::size_t k) const {
+EdgePair SurfaceMesh::opposite_edge(std::uint32_t t, std::uint32_t corner) const {
+  const std::size_t k = place_of(triangles_[t], corner);
   EdgePair out;
   out.left = t;
-  out.apex_left = triangles_[t][k];
+  out.apex_left = corner;
   out.a = triangles_[t][(k + 1) % 3];
   out.b = triangles_[t][(k + 2) % 3];
   for (const std::uint32_t other : at_[out.a]) {
@@ -116,9 +117,13 @@ void SurfaceMesh::flip(const EdgePair& edge) {
   triangles_[edge.right] = {edge.apex_right, edge.b, edge.apex_left};
 }
 
+double longest_side(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  return std::sqrt(std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)}));
+}
+
 double least_height(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
-  return longest > 0 ? length(cross(b - a, c - a)) / std::sqrt(longest) : 0;
+  const double longest = longest_side(a, b, c);
+  return longest > 0 ? length(cross(b - a, c - a)) / longest : 0;
 }
 
 }  // namespace blum::detail

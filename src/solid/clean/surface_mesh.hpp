@@ -44,8 +44,8 @@ class SurfaceMesh {
   /// @param out  is overwritten: its memory is used again.
   void find_star(std::uint32_t v, Star& out) const;
   [[nodiscard]] bool has_edge(std::uint32_t a, std::uint32_t b) const;
-  /// The side of a triangle that is opposite to its corner k.
-  [[nodiscard]] EdgePair opposite_edge(std::uint32_t t, std::size_t k) const;
+  /// The side of a triangle that is opposite to a corner of it.
+  [[nodiscard]] EdgePair opposite_edge(std::uint32_t t, std::uint32_t corner) const;
 
   /// Whether moving the middle of a star onto a corner of its ring leaves a surface that is homeomorphic to this one:
   /// the link condition.
@@ -65,6 +65,7 @@ class SurfaceMesh {
   std::size_t left_ = 0;
 };
 
+[[nodiscard]] double longest_side(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 /// The height of a triangle above its longest side; 0 where that is a point.
 [[nodiscard]] double least_height(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
