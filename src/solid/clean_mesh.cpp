@@ -177,11 +177,11 @@ void check_manifold(const MeshView& mesh, const Context& context) {
 
 }  // namespace
 
-CleanedMesh clean_mesh(const MeshView& mesh, const CleanOptions& options, const Context& context) {
+CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& context) {
   validate(mesh);
   if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it bounds no solid");
   const MeshView given{mesh.vertices, mesh.triangles, {}, {}};
-  check_tolerance(given, options.tolerance);
+  check_tolerance(given, tolerance);
   check_coordinates(given);
   check_manifold(given, context);
   CleanedMesh out;
@@ -194,7 +194,7 @@ CleanedMesh clean_mesh(const MeshView& mesh, const CleanOptions& options, const 
   if (!before.betti) throw InvalidMesh(before.problem);
   report.betti_before = *before.betti;
 
-  detail::MeshCleaner cleaner(surface, options.tolerance, context);
+  detail::MeshCleaner cleaner(surface, tolerance, context);
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     report.vertices_before += cleaner.mesh().triangles_at(v).empty() ? 0U : 1U;
   }
@@ -207,7 +207,7 @@ CleanedMesh clean_mesh(const MeshView& mesh, const CleanOptions& options, const 
   report.deviation = cleaner.deviation();
   report.smallest_height = smallest_height(out.mesh);
   const BoundaryCheck after = check_boundary(out.mesh, context);
-  if (!after.betti || *after.betti != *before.betti || report.deviation > options.tolerance) {
+  if (!after.betti || *after.betti != *before.betti || report.deviation > tolerance) {
     throw Error("cleaning a mesh: the result is not what it must be (" +
                 (after.betti ? "its solid has other Betti numbers" : after.problem) +
                 "), which is a mistake of Blum's: please report it, and use the mesh as it is");
