@@ -15,13 +15,13 @@
 #include "blum/geometry/triangle_contact.hpp"
 #include "blum/geometry/weld.hpp"
 #include "solid/clean/mesh_cleaner.hpp"
-#include "solid/clean/surface_mesh.hpp"
+#include "solid/clean/shrinking_surface.hpp"
 
 namespace blum {
 namespace {
 
 using detail::EdgePair;
-using detail::SurfaceMesh;
+using detail::ShrinkingSurface;
 
 void check_tolerance(const MeshView& mesh, double tolerance) {
   const double diagonal = bounds(mesh).diagonal();
@@ -48,7 +48,7 @@ void check_coordinates(const MeshView& mesh) {
   }
 }
 
-bool has_area(const SurfaceMesh& mesh, std::uint32_t t) {
+bool has_area(const ShrinkingSurface& mesh, std::uint32_t t) {
   return !detail::has_no_area(mesh.corners(t));
 }
 
@@ -75,7 +75,7 @@ std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& 
     if (detail::has_no_area(triangle_corners(mesh, t))) flat.push_back(t);
   }
   if (flat.empty()) return given;
-  SurfaceMesh surface(mesh);
+  ShrinkingSurface surface(mesh);
   // A flip may leave the next triangle without area, where there are many in a row; each ends with one less.
   for (std::size_t turn = 0; turn < flat.size() && turn < 4 * given.size(); ++turn) {
     const std::uint32_t t = flat[turn];
@@ -152,7 +152,7 @@ double smallest_height(const MeshView& mesh) {
 }
 
 /// The triangles that are left, and the vertices that they name, in their order.
-void take_result(const SurfaceMesh& from, std::span<const Vec3d> vertices, CleanedMesh& out) {
+void take_result(const ShrinkingSurface& from, std::span<const Vec3d> vertices, CleanedMesh& out) {
   std::vector<std::uint32_t> number(vertices.size(), 0);
   for (std::uint32_t v = 0; v < vertices.size(); ++v) {
     if (from.triangles_at(v).empty()) continue;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "blum/geometry/closest_point.hpp"
@@ -135,13 +136,13 @@ CollapseSearch::Shape CollapseSearch::shape(std::uint32_t v, std::size_t onto) c
     if (!(height > 0) || folds(v, side, normal)) return {};
     least = std::min(least, height);
     makes_needle = makes_needle || is_needle(w, a, b);
-    out.quality = std::min(out.quality, height / longest * (2 / std::sqrt(3.0)));
+    out.quality = std::min(out.quality, height / longest * (2 / std::numbers::sqrt3));
   }
   out.is_allowed = least >= least_height_ || (!makes_needle && least >= flattening * least_height_);
   return out;
 }
 
-std::span<const Collapse> CollapseSearch::find(std::uint32_t v) {
+std::span<const VertexCollapse> CollapseSearch::find(std::uint32_t v) {
   found_.clear();
   look_at_star(v);
   const double budget = tolerance_ - deviation_;
@@ -156,7 +157,7 @@ std::span<const Collapse> CollapseSearch::find(std::uint32_t v) {
     const double cost = deviation / tolerance_ + cost_of_shape * (1 - made.quality);
     found_.push_back({cost, deviation, star_.ring[onto], onto});
   }
-  std::sort(found_.begin(), found_.end(), [](const Collapse& a, const Collapse& b) {
+  std::sort(found_.begin(), found_.end(), [](const VertexCollapse& a, const VertexCollapse& b) {
     return a.cost != b.cost ? a.cost < b.cost : a.target < b.target;
   });
   return found_;

@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "solid/clean/surface_mesh.hpp"
+#include "solid/clean/shrinking_surface.hpp"
 
 namespace blum::detail {
 
 /// A way for a vertex to go.
-struct Collapse {
+struct VertexCollapse {
   double cost = 0;       ///< of two the one with the lower one is taken
   double deviation = 0;  ///< bound on how far the new triangles are from the mesh at first, and it from them
   std::uint32_t target = 0;
@@ -29,12 +29,12 @@ struct EdgeFlip {
 class CollapseSearch {
  public:
   /// @param deviations  of each triangle: how far it is from the mesh at first, at most, and that from it.
-  CollapseSearch(const SurfaceMesh& mesh, std::span<const double> deviations, double tolerance)
+  CollapseSearch(const ShrinkingSurface& mesh, std::span<const double> deviations, double tolerance)
       : mesh_(mesh), deviations_(deviations), tolerance_(tolerance) {}
 
   /// The ways that keep the bounds within the tolerance and make no worse triangles, by rising cost, then target.
   /// Neither the link condition nor contacts are looked at. The list and the star last until the next call.
-  [[nodiscard]] std::span<const Collapse> find(std::uint32_t v);
+  [[nodiscard]] std::span<const VertexCollapse> find(std::uint32_t v);
   [[nodiscard]] const Star& star() const { return star_; }
 
   /// The same of turning the longest side of a triangle.
@@ -60,7 +60,7 @@ class CollapseSearch {
   [[nodiscard]] Shape shape(std::uint32_t v, std::size_t onto) const;
   [[nodiscard]] bool folds(std::uint32_t v, std::size_t side, const Vec3d& normal) const;
 
-  const SurfaceMesh& mesh_;
+  const ShrinkingSurface& mesh_;
   std::span<const double> deviations_;
   double tolerance_;
   Star star_;
@@ -68,7 +68,7 @@ class CollapseSearch {
   std::vector<Vec3d> rotated_;  ///< the same from a target on
   std::vector<Side> sides_;
   std::vector<std::size_t> targets_;
-  std::vector<Collapse> found_;
+  std::vector<VertexCollapse> found_;
   double deviation_ = 0;     ///< the largest one of the star's triangles
   double least_height_ = 0;  ///< of these
 };

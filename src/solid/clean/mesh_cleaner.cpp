@@ -11,8 +11,12 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t looks_between_reports = 256;
 constexpr std::size_t vertices_per_range = 256;
+/// Vertices with more triangles are looked at again only when this part of them has changed: one look at the middle of
+/// a disc takes as long as its triangles are many, and each of these changes in turn.
+constexpr std::size_t many_triangles = 64;
+constexpr std::size_t part_to_change = 8;
 
-std::vector<double> heights_of(const SurfaceMesh& mesh) {
+std::vector<double> heights_of(const ShrinkingSurface& mesh) {
   std::vector<double> out(mesh.triangles().size());
   for (std::uint32_t t = 0; t < out.size(); ++t) {
     const std::array<Vec3d, 3> p = mesh.corners(t);
@@ -32,7 +36,8 @@ MeshCleaner::MeshCleaner(const MeshView& mesh, double tolerance, const Context& 
       heights_(heights_of(mesh_)),
       search_(mesh_, deviations_, tolerance),
       vertex_versions_(mesh.vertices.size(), 0),
-      triangle_versions_(mesh.triangles.size(), 0) {}
+      triangle_versions_(mesh.triangles.size(), 0),
+      changes_(mesh.vertices.size(), 0) {}
 
 double MeshCleaner::deviation() const {
   double most = 0;
@@ -47,7 +52,7 @@ void MeshCleaner::fill_line() {
   parallel_for(context_, costs.size(), vertices_per_range, "vertices", [&](const WorkRange& range) {
     CollapseSearch search(mesh_, deviations_, tolerance_);
     for (std::size_t k = range.begin; k < range.end; ++k) {
-      const std::span<const Collapse> ways = search.find(static_cast<std::uint32_t>(k));
+      const std::span<const VertexCollapse> ways = search.find(static_cast<std::uint32_t>(k));
       if (!ways.empty()) costs[k] = ways.front().cost;
     }
   });
@@ -61,12 +66,14 @@ void MeshCleaner::fill_line() {
 
 void MeshCleaner::run() {
   fill_line();
-  while (!line_.empty()) {
-    report_progress();
-    const Waiting first = line_.top();
-    line_.pop();
-    handle(first);
-  }
+  do {
+    while (!line_.empty()) {
+      report_progress();
+      const Waiting first = line_.top();
+      line_.pop();
+      handle(first);
+    }
+  } while (offer_postponed());
   if (context_.progress) context_.progress(1, "steps");
 }
 
@@ -96,20 +103,20 @@ bool MeshCleaner::comes_later(double cost, Kind kind, std::uint32_t index) const
 
 void MeshCleaner::try_vertex(std::uint32_t v) {
   if (mesh_.triangles_at(v).empty()) return;
-  const std::span<const Collapse> ways = search_.find(v);
+  const std::span<const VertexCollapse> ways = search_.find(v);
   if (ways.empty()) return;
   if (comes_later(ways.front().cost, Kind::collapse, v)) {
     line_.push({ways.front().cost, Kind::collapse, v, vertex_versions_[v]});
     return;
   }
-  for (const Collapse& way : ways) {
+  for (const VertexCollapse& way : ways) {
     if (!passes(v, search_.star(), way)) continue;
-    collapse(v, Collapse(way));
+    collapse(v, VertexCollapse(way));
     return;
   }
 }
 
-bool MeshCleaner::passes(std::uint32_t v, const Star& star, const Collapse& way) {
+bool MeshCleaner::passes(std::uint32_t v, const Star& star, const VertexCollapse& way) {
   if (!mesh_.may_collapse(star, way.onto)) return false;
   const std::size_t count = star.ring.size();
   step_.old_triangles = star.triangles;
@@ -133,7 +140,7 @@ bool MeshCleaner::passes(std::uint32_t v, const Star& star, const Collapse& way)
   return check_.passes(step_);
 }
 
-void MeshCleaner::collapse(std::uint32_t v, const Collapse& way) {
+void MeshCleaner::collapse(std::uint32_t v, const VertexCollapse& way) {
   const Star star = search_.star();
   mesh_.collapse(v, star, way.onto);
   ++vertex_versions_[v];
@@ -181,14 +188,32 @@ void MeshCleaner::refresh(std::span<const std::uint32_t> changed, std::span<cons
     const std::array<Vec3d, 3> p = mesh_.corners(t);
     heights_[t] = least_height(p[0], p[1], p[2]);
   }
-  for (const std::uint32_t v : corners) {
-    offer_vertex(v);
-    for (const std::uint32_t t : mesh_.triangles_at(v)) offer_triangle(t);
+  for (const std::uint32_t t : changed) offer_triangle(t);
+  for (const std::uint32_t v : corners) offer_changed(v);
+}
+
+bool MeshCleaner::has_many_triangles(std::uint32_t v) const {
+  return mesh_.triangles_at(v).size() > many_triangles;
+}
+
+/// A vertex some of whose triangles have changed, and its triangles.
+void MeshCleaner::offer_changed(std::uint32_t v) {
+  if (has_many_triangles(v) && ++changes_[v] * part_to_change < mesh_.triangles_at(v).size()) return;
+  offer_vertex(v);
+  for (const std::uint32_t t : mesh_.triangles_at(v)) offer_triangle(t);
+}
+
+/// @return  whether there were any.
+bool MeshCleaner::offer_postponed() {
+  for (std::uint32_t v = 0; v < changes_.size(); ++v) {
+    if (changes_[v] > 0 && !mesh_.triangles_at(v).empty()) offer_vertex(v);
   }
+  return !line_.empty();
 }
 
 /// With what it costs at least: how far its triangles have moved.
 void MeshCleaner::offer_vertex(std::uint32_t v) {
+  changes_[v] = 0;
   double most = 0;
   for (const std::uint32_t t : mesh_.triangles_at(v)) most = std::max(most, deviations_[t]);
   line_.push({most / tolerance_, Kind::collapse, v, ++vertex_versions_[v]});

@@ -11,8 +11,8 @@
 #include "blum/core/context.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "solid/clean/collapse_search.hpp"
+#include "solid/clean/shrinking_surface.hpp"
 #include "solid/clean/step_check.hpp"
-#include "solid/clean/surface_mesh.hpp"
 
 namespace blum::detail {
 
@@ -24,7 +24,7 @@ class MeshCleaner {
   /// @throws Cancelled.
   void run();
 
-  [[nodiscard]] const SurfaceMesh& mesh() const { return mesh_; }
+  [[nodiscard]] const ShrinkingSurface& mesh() const { return mesh_; }
   [[nodiscard]] std::size_t collapses() const { return collapses_; }
   [[nodiscard]] std::size_t flips() const { return flips_; }
   /// A bound on the Hausdorff distance between the mesh as it is and as it was given.
@@ -49,14 +49,17 @@ class MeshCleaner {
   void try_vertex(std::uint32_t v);
   void try_triangle(std::uint32_t t);
   [[nodiscard]] bool comes_later(double cost, Kind kind, std::uint32_t index) const;
-  [[nodiscard]] bool passes(std::uint32_t v, const Star& star, const Collapse& way);
-  void collapse(std::uint32_t v, const Collapse& way);
+  [[nodiscard]] bool passes(std::uint32_t v, const Star& star, const VertexCollapse& way);
+  void collapse(std::uint32_t v, const VertexCollapse& way);
   void flip(const EdgeFlip& way);
   void refresh(std::span<const std::uint32_t> changed, std::span<const std::uint32_t> corners);
+  [[nodiscard]] bool has_many_triangles(std::uint32_t v) const;
+  void offer_changed(std::uint32_t v);
+  bool offer_postponed();
   void offer_vertex(std::uint32_t v);
   void offer_triangle(std::uint32_t t);
 
-  SurfaceMesh mesh_;
+  ShrinkingSurface mesh_;
   double tolerance_;
   Context context_;
   StepCheck check_;
@@ -65,6 +68,7 @@ class MeshCleaner {
   CollapseSearch search_;
   std::vector<std::uint32_t> vertex_versions_;
   std::vector<std::uint32_t> triangle_versions_;
+  std::vector<std::uint32_t> changes_;  ///< of vertices with many triangles, since they were offered
   Line line_;
   SurfaceStep step_;
   std::size_t looks_ = 0;

@@ -15,7 +15,7 @@ double magnitude(const Vec3d& v) {
   return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
 }
 
-ContactTriangle for_contact(const SurfaceMesh& mesh, const Triangle& t) {
+ContactTriangle for_contact(const ShrinkingSurface& mesh, const Triangle& t) {
   return {{mesh.point(t[0]), mesh.point(t[1]), mesh.point(t[2])}, t};
 }
 
@@ -65,7 +65,7 @@ bool holds(const std::array<Vec3d, 4>& corners, const Vec3d& p) {
   return true;
 }
 
-std::vector<Box3> boxes_of(const SurfaceMesh& mesh) {
+std::vector<Box3> boxes_of(const ShrinkingSurface& mesh) {
   std::vector<Box3> out(mesh.triangles().size());
   for (std::uint32_t t = 0; t < out.size(); ++t) {
     if (mesh.is_gone(t)) continue;
@@ -75,7 +75,7 @@ std::vector<Box3> boxes_of(const SurfaceMesh& mesh) {
 }
 
 /// The shell of each vertex; empty where there is but one.
-std::vector<std::uint32_t> shells_of(const SurfaceMesh& mesh) {
+std::vector<std::uint32_t> shells_of(const ShrinkingSurface& mesh) {
   std::uint32_t vertices = 0;
   for (const Triangle& t : mesh.triangles()) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1});
   UnionFind joined(vertices);
@@ -93,7 +93,7 @@ std::vector<std::uint32_t> shells_of(const SurfaceMesh& mesh) {
 
 }  // namespace
 
-StepCheck::StepCheck(const SurfaceMesh& mesh, const Context& context)
+StepCheck::StepCheck(const ShrinkingSurface& mesh, const Context& context)
     : mesh_(mesh),
       context_(context),
       boxes_(boxes_of(mesh), context),

@@ -8,7 +8,7 @@
 
 #include "blum/core/context.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
-#include "solid/clean/surface_mesh.hpp"
+#include "solid/clean/shrinking_surface.hpp"
 #include "solid/clean/triangle_boxes.hpp"
 
 namespace blum::detail {
@@ -32,7 +32,7 @@ struct SurfaceStep {
 class StepCheck {
  public:
   /// @param mesh  must stay, and say what changes. @throws Cancelled.
-  StepCheck(const SurfaceMesh& mesh, const Context& context);
+  StepCheck(const ShrinkingSurface& mesh, const Context& context);
 
   /// Whether the new triangles have areas, neither cross nor touch each other or those that stay, beside the corners
   /// and edges that they share, and neither another shell nor what is next to them lies between old and new ones, so
@@ -48,7 +48,7 @@ class StepCheck {
   [[nodiscard]] bool turns_over_a_neighbour(const BorderEdge& edge) const;
   [[nodiscard]] bool jumps_over_a_shell(const SurfaceStep& step) const;
 
-  const SurfaceMesh& mesh_;
+  const ShrinkingSurface& mesh_;
   Context context_;
   TriangleBoxes boxes_;
   std::size_t triangles_at_build_;

@@ -222,7 +222,7 @@ TEST(CleanMesh, TurnsNothingInsideOut) {
   ASSERT_EQ(betti_of(mesh), (BettiNumbers{1, 0, 0}));
   for (const double tolerance : {0.05, 0.15, 0.3, 1.0}) static_cast<void>(cleaned(mesh, tolerance));
 
-  detail::SurfaceMesh surface(mesh);
+  detail::ShrinkingSurface surface(mesh);
   detail::StepCheck check(surface, {});
   detail::Star star;
   surface.find_star(6, star);

@@ -1,4 +1,4 @@
-#include "solid/clean/surface_mesh.hpp"
+#include "solid/clean/shrinking_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ std::size_t place_of(const Triangle& triangle, std::uint32_t v) {
 
 }  // namespace
 
-SurfaceMesh::SurfaceMesh(const MeshView& mesh)
+ShrinkingSurface::ShrinkingSurface(const MeshView& mesh)
     : points_(mesh.vertices),
       triangles_(mesh.triangles.begin(), mesh.triangles.end()),
       at_(mesh.vertices.size()),
@@ -23,7 +23,7 @@ SurfaceMesh::SurfaceMesh(const MeshView& mesh)
   }
 }
 
-void SurfaceMesh::find_star(std::uint32_t v, Star& out) const {
+void ShrinkingSurface::find_star(std::uint32_t v, Star& out) const {
   const std::vector<std::uint32_t>& around = at_[v];
   out.ring.clear();
   out.triangles = around;
@@ -46,7 +46,7 @@ void SurfaceMesh::find_star(std::uint32_t v, Star& out) const {
   out.triangles.swap(ordered);
 }
 
-bool SurfaceMesh::has_edge(std::uint32_t a, std::uint32_t b) const {
+bool ShrinkingSurface::has_edge(std::uint32_t a, std::uint32_t b) const {
   const std::vector<std::uint32_t>& around = at_[a].size() < at_[b].size() ? at_[a] : at_[b];
   const std::uint32_t wanted = at_[a].size() < at_[b].size() ? b : a;
   return std::any_of(around.begin(), around.end(), [&](std::uint32_t t) {
@@ -55,25 +55,27 @@ bool SurfaceMesh::has_edge(std::uint32_t a, std::uint32_t b) const {
   });
 }
 
-EdgePair SurfaceMesh::opposite_edge(std::uint32_t t, std::uint32_t corner) const {
+EdgePair ShrinkingSurface::opposite_edge(std::uint32_t t, std::uint32_t corner) const {
   const std::size_t k = place_of(triangles_[t], corner);
   EdgePair out;
   out.left = t;
   out.apex_left = corner;
   out.a = triangles_[t][(k + 1) % 3];
   out.b = triangles_[t][(k + 2) % 3];
-  for (const std::uint32_t other : at_[out.a]) {
+  // The triangle that has b and a in this order, among the fewer ones.
+  const bool at_a = at_[out.a].size() <= at_[out.b].size();
+  for (const std::uint32_t other : at_[at_a ? out.a : out.b]) {
     const Triangle& triangle = triangles_[other];
-    const std::size_t place = place_of(triangle, out.a);
-    if (triangle[(place + 2) % 3] != out.b) continue;
+    const std::size_t place = place_of(triangle, out.b);
+    if (triangle[place] != out.b || triangle[(place + 1) % 3] != out.a) continue;
     out.right = other;
-    out.apex_right = triangle[(place + 1) % 3];
+    out.apex_right = triangle[(place + 2) % 3];
     break;
   }
   return out;
 }
 
-bool SurfaceMesh::may_collapse(const Star& star, std::size_t onto) const {
+bool ShrinkingSurface::may_collapse(const Star& star, std::size_t onto) const {
   const std::size_t count = star.ring.size();
   const std::uint32_t w = star.ring[onto];
   // Of the ring, only the corners next to w may be its neighbours already.
@@ -85,12 +87,12 @@ bool SurfaceMesh::may_collapse(const Star& star, std::size_t onto) const {
   return at_[w].size() > 3;
 }
 
-void SurfaceMesh::take_out(std::uint32_t v, std::uint32_t triangle) {
+void ShrinkingSurface::take_out(std::uint32_t v, std::uint32_t triangle) {
   std::vector<std::uint32_t>& around = at_[v];
   around.erase(std::find(around.begin(), around.end(), triangle));
 }
 
-void SurfaceMesh::collapse(std::uint32_t v, const Star& star, std::size_t onto) {
+void ShrinkingSurface::collapse(std::uint32_t v, const Star& star, std::size_t onto) {
   const std::size_t count = star.ring.size();
   const std::uint32_t w = star.ring[onto];
   for (std::size_t k = 0; k < count; ++k) {
@@ -108,7 +110,7 @@ void SurfaceMesh::collapse(std::uint32_t v, const Star& star, std::size_t onto) 
   at_[v].clear();
 }
 
-void SurfaceMesh::flip(const EdgePair& edge) {
+void ShrinkingSurface::flip(const EdgePair& edge) {
   take_out(edge.b, edge.left);
   take_out(edge.a, edge.right);
   at_[edge.apex_right].push_back(edge.left);

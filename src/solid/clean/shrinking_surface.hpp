@@ -26,10 +26,10 @@ struct EdgePair {
 };
 
 /// A closed, oriented, manifold surface whose triangles keep their numbers while vertices go and edges turn.
-class SurfaceMesh {
+class ShrinkingSurface {
  public:
   /// @param mesh  closed, oriented and manifold; its vertices must stay where they are.
-  explicit SurfaceMesh(const MeshView& mesh);
+  explicit ShrinkingSurface(const MeshView& mesh);
 
   [[nodiscard]] const Vec3d& point(std::uint32_t v) const { return points_[v]; }
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
