@@ -34,15 +34,16 @@ void check_tolerance(const MeshView& mesh, double tolerance) {
 }
 
 void check_coordinates(const MeshView& mesh) {
-  constexpr double least = 1e-80;
-  constexpr double most = 1e100;
+  // Fourth powers of lengths are numbers, too, also of edges that are as short as can be.
+  constexpr double least = 1e-45;
+  constexpr double most = 1e45;
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double size = std::abs(mesh.vertices[v][axis]);
         if (size == 0 || (size >= least && size <= most)) continue;
         throw InvalidMesh("vertex " + std::to_string(v) + " has the coordinate " + exact_text(mesh.vertices[v][axis]) +
-                          "; cleaning is exact for magnitudes of 1e-80 to 1e100, and 0: scale or round the mesh");
+                          "; cleaning takes magnitudes of 1e-45 to 1e45, and 0: scale or round the mesh");
       }
     }
   }
@@ -169,6 +170,11 @@ void take_result(const ShrinkingSurface& from, std::span<const Vec3d> vertices, 
 
 /// What an edge must be for triangles to be turned at it: that of two triangles, with each vertex of one fan.
 void check_manifold(const MeshView& mesh, const Context& context) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (a != b && b != c && c != a) continue;
+    throw InvalidMesh("triangle " + std::to_string(t) + " names a vertex twice; welding the mesh leaves such out");
+  }
   const Topology facts = topology(mesh, SiteTable(mesh, context), context);
   if (facts.closed && facts.oriented && facts.manifold) return;
   throw InvalidMesh(

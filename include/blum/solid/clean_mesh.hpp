@@ -71,7 +71,8 @@ struct CleanedMesh {
 ///
 /// @param mesh       closed, facing outwards, manifold, without crossings, not touching itself: what voronoi_complex()
 ///                   takes. Triangles without area may be in it where a flip of their longest side takes them out.
-///                   Its segments, points and vertices that no triangle names are left out.
+///                   Its segments, points and vertices that no triangle names are left out. Coordinates of magnitude
+///                   1e-45 to 1e45, or 0.
 /// @param tolerance  the result is nowhere further from the mesh than this, nor the mesh from it: mesh units; at least
 ///                   1e-12 of the diagonal of the box around the mesh, and at most that diagonal.
 /// @return           the same for any number of threads.

@@ -12,10 +12,10 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// More corners are not compared pair by pair.
 constexpr std::size_t most_pairwise = 40;
-// Parts of the square of the extent. Areas in the plane are wrong by some 1e-15 of it.
+// Parts of the square of the extent. Areas in the plane are wrong by 2e-15 of it at most.
 constexpr double clear_area = 1e-12;  ///< of triangles that certainly turn to the left
 constexpr double clear_side = 1e-14;  ///< of points that certainly lie beside a line
-constexpr double steep_area = 1e-9;   ///< above, quotients of areas are right to 1e-6
+constexpr double steep_area = 1e-9;   ///< above, quotients of areas are right to 4e-6
 constexpr double quotient_error = 1e-5;
 constexpr double height_error = 1e-14;  ///< part of the extent
 

@@ -253,7 +253,7 @@ TEST(CleanMesh, ShrinksLargeShapesToSmallOnesWithTheirTopology) {
 TEST(CleanMesh, DoesNotDependOnWhereTheMeshIs) {
   const TriangleMesh mesh = make_subdivided(make_bracket(), 1);
   const CleanedMesh here = cleaned(mesh, 1e-5);
-  for (const double scale : {0x1p-60, 0x1p60}) {
+  for (const double scale : {0x1p-80, 0x1p-20, 0x1p140}) {
     const CleanedMesh there = cleaned(moved(mesh, scale), 1e-5 * scale);
     EXPECT_EQ(there.mesh.triangles, here.mesh.triangles) << scale;
   }
@@ -332,10 +332,13 @@ TEST(CleanMesh, RefusesWhatBoundsNoSolid) {
   TriangleMesh crossing = box_between({0, 0, 0}, {1, 1, 1});
   append(crossing, box_between({0.5, 0.5, 0.5}, {2, 2, 2}));
   EXPECT_NE(message_of(crossing, 0.01).find("crosses or touches itself"), std::string::npos);
+  TriangleMesh twice = make_box();
+  twice.triangles.push_back({0, 0, 1});
+  EXPECT_NE(message_of(twice, 0.01).find("names a vertex twice"), std::string::npos);
   TriangleMesh tiny = make_box();
-  tiny.vertices[0].x += 1e-90;
-  tiny.vertices[1].x = 1e-90;
-  EXPECT_NE(message_of(tiny, 0.01), "");
+  tiny.vertices[1].x = 1e-60;
+  EXPECT_NE(message_of(tiny, 0.01).find("1e-60"), std::string::npos);
+  EXPECT_NE(message_of(moved(make_box(), 1e50), 1e48).find("1e-45 to 1e45"), std::string::npos);
   EXPECT_NE(message_of({}, 0.01), "");
 }
 
