@@ -64,7 +64,7 @@ class CleanedShapes : public testing::TestWithParam<std::string> {};
 
 TEST_P(CleanedShapes, KeepTheirBounds) {
   const TriangleMesh shape = make_shape(GetParam());
-  constexpr std::size_t most = 10'000;
+  constexpr std::size_t most = 5000;
   if (shape.triangles.size() > 2 * most || !bounds_a_solid(shape)) return;
   const TriangleMesh mesh = fine(shape, most);
   const double size = bounds(mesh).diagonal();

@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t many_neighbours = 24;
 constexpr std::size_t targets_of_many = 12;
 /// Steps that move the surface less than this part of the tolerance are as good as each other.
-constexpr double negligible = 0.02;
+constexpr double negligible = 0.002;
 /// What the worst shape of new triangles costs, where 1 is all of the tolerance.
 constexpr double cost_of_shape = 0.1;
 /// New triangles may be flatter than those before by this, where they are no needles.
