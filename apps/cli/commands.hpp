@@ -32,15 +32,16 @@ void add_query_command(const CommandLine& line);
 void add_sample_command(const CommandLine& line);
 void add_surface_map_command(const CommandLine& line);
 void add_hausdorff_command(const CommandLine& line);
+void add_clean_command(const CommandLine& line);
 void add_voronoi_command(const CommandLine& line);
 void add_view_command(const CommandLine& line);
 
 /// All of them, in the order of the help. A new one is a file of its own, a line above and one here, and a test.
 inline constexpr std::array commands{
-    add_field_command,     add_slice_command,   add_make_command,        add_info_command,    add_formats_command,
-    add_medial_command,    add_verify_command,  add_reconstruct_command, add_surface_command, add_centreline_command,
-    add_proximity_command, add_ccd_command,     add_query_command,       add_sample_command,  add_surface_map_command,
-    add_hausdorff_command, add_voronoi_command, add_view_command};
+    add_field_command,     add_slice_command,  add_make_command,        add_info_command,    add_formats_command,
+    add_medial_command,    add_verify_command, add_reconstruct_command, add_surface_command, add_centreline_command,
+    add_proximity_command, add_ccd_command,    add_query_command,       add_sample_command,  add_surface_map_command,
+    add_hausdorff_command, add_clean_command,  add_voronoi_command,     add_view_command};
 
 /// An axis or a diagram that is not certified: exit status 3.
 class NotCertified : public std::runtime_error {

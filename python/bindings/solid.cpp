@@ -13,6 +13,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/core/parallel.hpp"
+#include "blum/solid/clean_mesh.hpp"
 #include "call.hpp"
 #include "images.hpp"
 #include "structs.hpp"
@@ -48,11 +49,26 @@ std::vector<std::uint8_t> inside(const Solid& solid, std::span<const Vec3d> poin
   return out;
 }
 
+/// (mesh, vertex_of, report).
+void bind_clean_mesh(nb::module_& m) {
+  bind_struct<CleanReport>(m);
+  m.def(
+      "clean_mesh",
+      [](const MeshArrays& mesh, double tolerance, int threads, nb::object progress) {
+        const MeshView view = mesh.view();
+        const CleanedMesh out = run({threads, std::move(progress)},
+                                    [&](const Context& context) { return clean_mesh(view, tolerance, context); });
+        return nb::make_tuple(arrays_of(out.mesh), handed_over<std::uint32_t>(out.vertex_of), to_python(out.report));
+      },
+      nb::arg("mesh"), nb::arg("tolerance"), nb::arg("threads"), nb::arg("progress").none());
+}
+
 }  // namespace
 
 void bind_solid(nb::module_& m) {
   bind_struct<SolidShell>(m);
   bind_struct<CrossingCounts>(m);
+  bind_clean_mesh(m);
   bind_options<CellularModelOptions>(m);
   bind_struct<CellularModelReport>(m);
   nb::class_<CellularModel>(m, "CellularModel")

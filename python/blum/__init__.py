@@ -13,6 +13,7 @@ from . import _structs, reference
 from ._axis_graph import axis_graph
 from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
 from ._certificate import solid_rule
+from ._clean import CleanedMesh, clean_mesh
 from ._closest import ClosestPointQuery, ClosestPoints, NearPrimitives, closest_points, winding_number
 from ._complex import Complex, homology
 from ._core import thread_count
@@ -98,6 +99,7 @@ __all__ = [
     "Centreline",
     "CentrelineBranch",
     "Centrelines",
+    "CleanedMesh",
     "ClosestPointQuery",
     "ClosestPoints",
     "Complex",
@@ -153,6 +155,7 @@ __all__ = [
     "ball_union_field",
     "centreline",
     "certify",
+    "clean_mesh",
     "close_features",
     "closest_points",
     "closest_primitives",

@@ -1,0 +1,121 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blum/core/phase_timer.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/solid/clean_mesh.hpp"
+#include "commands.hpp"
+#include "common_options.hpp"
+#include "described.hpp"
+#include "files.hpp"
+#include "medial_report.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "solid_input.hpp"
+#include "summary.hpp"
+
+namespace blum::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* examples = R"(Examples:
+  blum clean part.stl -o part.ply --tolerance 0.001              nowhere moved by more than a thousandth of a unit
+  blum clean part.stl -o clean.ply --tolerance 1e-4 --json -     with what was done, and the bound that holds
+  blum voronoi clean.ply -o diagram.vtp                          quicker than of part.stl)";
+
+struct Arguments {
+  std::string input;
+  std::string output;
+  std::string tolerance;
+  std::optional<std::string> weld, threads;
+  ReportOptions report;
+};
+
+CleanedMesh compute(const fs::path& path, const MeshView& mesh, double tolerance, const Context& context) {
+  try {
+    return clean_mesh(mesh, tolerance, context);
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh("'" + path.string() + "': " + error.what());
+  }
+}
+
+std::string change_text(std::size_t before, std::size_t after) {
+  return count_text(after) + " of " + count_text(before);
+}
+
+TextTable table_of(const CleanReport& done, double tolerance) {
+  TextTable table;
+  table.add("vertices", change_text(done.vertices_before, done.vertices));
+  table.add("triangles", change_text(done.triangles_before, done.triangles));
+  table.add("steps", plural(done.collapses, "collapse", "collapses") + ", " + plural(done.flips, "flip", "flips"));
+  table.add("deviation",
+            "at most " + rounded_text(done.deviation) + ", both ways; tolerance " + rounded_text(tolerance));
+  table.add("heights", "of triangles at least " + rounded_text(done.smallest_height) + ", before " +
+                           rounded_text(done.smallest_height_before));
+  table.add("topology", betti_text(done.betti) + ", as before; no crossings, checked exactly");
+  return table;
+}
+
+void run(const Arguments& a) {
+  const fs::path path = a.input;
+  const fs::path output = a.output;
+  check_extension("--output", output, file_extensions(FileContent::mesh, FileAccess::write));
+  const double tolerance = parse_positive("--tolerance", a.tolerance);
+  const std::optional<double> weld = parse_weld(a.weld);
+  const int threads = parse_threads(a.threads);
+  std::vector<fs::path> outputs = a.report.files();
+  outputs.push_back(output);
+  check_outputs(outputs, {path});
+  if (input_kind(path) != InputKind::mesh) throw FileError("'" + path.string() + "' is no mesh, which cleaning is for");
+  Progress progress(!a.report.quiet);
+  const Interrupt interrupt;
+  const Context context = make_context(threads, progress, interrupt);
+  Stopwatch watch;
+  const SolidInput input = load_solid(path, weld);
+  std::vector<std::string> warnings;
+  if (input.weld && input.weld->before != input.weld->after) warnings.push_back(weld_text(*input.weld));
+  std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  const CleanedMesh cleaned = compute(path, input.mesh.mesh, tolerance, context);
+  phases.push_back({"clean", watch.lap()});
+  write_mesh(output, cleaned.mesh);
+  phases.push_back({"write", watch.lap()});
+  progress.clear();
+  const PhaseSummary spent = summarize(phases);
+  Json facts = {{"input", input.json}, {"tolerance", tolerance}};
+  facts.update(to_json(cleaned.report));
+  Json json = answer_json("clean", facts);
+  add_run_facts(json, spent, context, warnings, Json::array({output.string()}));
+  TextTable table = table_of(cleaned.report, tolerance);
+  table.add("wrote", output.string());
+  table.add("time", spent.text);
+  report(a.report, json, input.text + table.text());
+  if (!a.report.quiet) warn(warnings);
+}
+
+}  // namespace
+
+void add_clean_command(const CommandLine& line) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command = line.app.add_subcommand(
+      "clean", "A closed mesh without needles and needless vertices, within a tolerance that is certain");
+  command->add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read))->required();
+  command->add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::write))
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--tolerance", a->tolerance,
+                   "The result is nowhere further from the mesh than TOL, nor the mesh from it; mesh units")
+      ->required()
+      ->type_name("TOL");
+  add_weld_option(*command, a->weld);
+  add_threads_option(*command, a->threads);
+  add_report_options(*command, a->report);
+  command->footer(examples);
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace blum::cli

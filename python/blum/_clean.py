@@ -1,0 +1,63 @@
+"""Closed meshes without needles and needless vertices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arguments import Real, integer, number
+from ._mesh import Mesh, as_mesh, mesh_of_arrays
+from ._progress import Progress, reporting
+from ._structs import CleanReport
+
+
+@dataclass(frozen=True, eq=False)
+class CleanedMesh:
+    """A cleaned mesh: what :func:`clean_mesh` returns."""
+
+    mesh: Mesh  #: its vertices are some of the input's, in their order
+    vertex_of: npt.NDArray[np.uint32]  #: of each vertex, in the input; rising
+    report: CleanReport  #: what was done, and the bound that holds
+
+
+def clean_mesh(
+    mesh: Any,
+    tolerance: Real,
+    *,
+    weld: Real | None = None,
+    threads: int = 0,
+    progress: Progress = False,
+) -> CleanedMesh:
+    """A closed mesh without needles and vertices that it can do without: what to do before :func:`voronoi_complex`.
+
+    Vertices are moved onto neighbours and edges of flat triangles are turned, one by one. The surface stays what it is
+    up to homeomorphism, no triangles cross or touch (in exact arithmetic), and the solid keeps its Betti numbers.
+
+    Parameters
+    ----------
+    mesh : mesh
+        As for :func:`distance_field`: closed, facing outwards, without crossings, not touching itself.
+    tolerance : float
+        The result is nowhere further from the mesh than this, nor the mesh from it, for certain; mesh units.
+    weld, threads, progress
+        As for :func:`distance_field`.
+
+    Raises
+    ------
+    InvalidMesh, InvalidOption (both ValueError), TypeError, KeyboardInterrupt
+
+    >>> import blum
+    >>> found = blum.clean_mesh(blum.subdivided(blum.generate("box"), 3), 1e-6)
+    >>> found.mesh, found.report.triangles_before, found.report.deviation < 1e-12
+    (Mesh(8 vertices, 12 triangles), 768, True)
+    """
+    given = as_mesh(mesh, weld=weld)
+    with reporting(progress) as report:
+        arrays, vertex_of, done = _core.clean_mesh(
+            given._arrays, number(tolerance, "tolerance"), integer(threads, "threads"), report
+        )
+    return CleanedMesh(mesh_of_arrays(arrays), vertex_of, done)

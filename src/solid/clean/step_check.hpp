@@ -1,0 +1,60 @@
+// Blum: whether new triangles of a surface keep clear of all others, exactly. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "blum/core/context.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "solid/clean/shrinking_surface.hpp"
+#include "solid/clean/triangle_boxes.hpp"
+
+namespace blum::detail {
+
+/// An edge at the border of what changes: a triangle there gets another apex, and that on the other side stays.
+struct BorderEdge {
+  std::uint32_t a = 0, b = 0;
+  std::uint32_t old_apex = 0, new_apex = 0;
+  std::uint32_t outer_apex = 0;
+};
+
+/// A change of a surface: triangles that go, those that come, and tetrahedra between both: the volume that the surface
+/// sweeps is in these.
+struct SurfaceStep {
+  std::vector<std::uint32_t> old_triangles;
+  std::vector<Triangle> new_triangles;
+  std::vector<std::array<std::uint32_t, 4>> swept;
+  std::vector<BorderEdge> border;
+};
+
+class StepCheck {
+ public:
+  /// @param mesh  must stay, and say what changes. @throws Cancelled.
+  StepCheck(const ShrinkingSurface& mesh, const Context& context);
+
+  /// Whether the new triangles have areas, neither cross nor touch each other or those that stay, beside the corners
+  /// and edges that they share, and neither another shell nor what is next to them lies between old and new ones, so
+  /// that inside and outside stay what they are. Exact.
+  [[nodiscard]] bool passes(const SurfaceStep& step);
+
+  /// Triangles of the mesh have changed, or gone.
+  void update(std::span<const std::uint32_t> triangles);
+
+ private:
+  [[nodiscard]] Box3 box_of(std::uint32_t t) const;
+  [[nodiscard]] bool is_clear(const Triangle& triangle) const;
+  [[nodiscard]] bool turns_over_a_neighbour(const BorderEdge& edge) const;
+  [[nodiscard]] bool jumps_over_a_shell(const SurfaceStep& step) const;
+
+  const ShrinkingSurface& mesh_;
+  Context context_;
+  TriangleBoxes boxes_;
+  std::size_t triangles_at_build_;
+  std::vector<std::uint32_t> shell_of_;  ///< of each vertex; empty where there is but one
+  std::vector<std::uint32_t> mark_;      ///< of triangles that go
+  std::uint32_t current_ = 0;
+};
+
+}  // namespace blum::detail

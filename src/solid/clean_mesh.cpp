@@ -1,0 +1,225 @@
+#include "blum/solid/clean_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "blum/core/error.hpp"
+#include "blum/core/exact_text.hpp"
+#include "blum/geometry/self_intersections.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/geometry/triangle_contact.hpp"
+#include "blum/geometry/weld.hpp"
+#include "solid/clean/mesh_cleaner.hpp"
+#include "solid/clean/shrinking_surface.hpp"
+
+namespace blum {
+namespace {
+
+using detail::EdgePair;
+using detail::ShrinkingSurface;
+
+void check_tolerance(const MeshView& mesh, double tolerance) {
+  const double diagonal = bounds(mesh).diagonal();
+  constexpr double least = 1e-12;
+  if (tolerance >= least * diagonal && tolerance <= diagonal && tolerance > 0) return;
+  throw InvalidOption(
+      "cleaning a mesh: the tolerance is above 0, at least 1e-12 of the diagonal of the box around the "
+      "mesh and at most that diagonal, which is " +
+      rounded_text(diagonal) + "; not " + exact_text(tolerance));
+}
+
+void check_coordinates(const MeshView& mesh) {
+  // Fourth powers of lengths are numbers, too, also of edges that are as short as can be.
+  constexpr double least = 1e-45;
+  constexpr double most = 1e45;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double size = std::abs(mesh.vertices[v][axis]);
+        if (size == 0 || (size >= least && size <= most)) continue;
+        throw InvalidMesh("vertex " + std::to_string(v) + " has the coordinate " + exact_text(mesh.vertices[v][axis]) +
+                          "; cleaning takes magnitudes of 1e-45 to 1e45, and 0: scale or round the mesh");
+      }
+    }
+  }
+}
+
+bool has_area(const ShrinkingSurface& mesh, std::uint32_t t) {
+  return !detail::has_no_area(mesh.corners(t));
+}
+
+/// The corner of a triangle without area that lies between the others, exactly.
+std::size_t middle_corner(const std::array<Vec3d, 3>& p) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d& a = p[(k + 1) % 3];
+    const Vec3d& b = p[(k + 2) % 3];
+    bool between = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      between = between && (std::min(a[axis], b[axis]) <= p[k][axis] && p[k][axis] <= std::max(a[axis], b[axis]));
+    }
+    if (between) return k;
+  }
+  return 0;
+}
+
+/// Turns the longest sides of triangles without area. As a set of points the surface stays the same.
+/// @return  the triangles; how many sides were turned is added to `flips`.
+std::vector<Triangle> without_flat_triangles(const MeshView& mesh, std::size_t& flips) {
+  std::vector<Triangle> given(mesh.triangles.begin(), mesh.triangles.end());
+  std::vector<std::uint32_t> flat;
+  for (std::uint32_t t = 0; t < given.size(); ++t) {
+    if (detail::has_no_area(triangle_corners(mesh, t))) flat.push_back(t);
+  }
+  if (flat.empty()) return given;
+  ShrinkingSurface surface(mesh);
+  // A flip may leave the next triangle without area, where there are many in a row; each ends with one less.
+  for (std::size_t turn = 0; turn < flat.size() && turn < 4 * given.size(); ++turn) {
+    const std::uint32_t t = flat[turn];
+    if (has_area(surface, t)) continue;
+    const EdgePair edge = surface.opposite_edge(t, surface.triangle(t)[middle_corner(surface.corners(t))]);
+    if (edge.apex_left == edge.apex_right || surface.has_edge(edge.apex_left, edge.apex_right)) continue;
+    surface.flip(edge);
+    ++flips;
+    for (const std::uint32_t changed : {edge.left, edge.right}) {
+      if (!has_area(surface, changed)) flat.push_back(changed);
+    }
+  }
+  std::copy(surface.triangles().begin(), surface.triangles().end(), given.begin());
+  return given;
+}
+
+/// Whether a mesh bounds a solid as voronoi_complex() takes them; what is wrong where it does not.
+struct BoundaryCheck {
+  std::optional<BettiNumbers> betti;
+  std::string problem;
+};
+
+std::string problem_of_places(const MeshView& mesh) {
+  const std::vector<std::uint32_t> places = weld_clusters(mesh.vertices);
+  std::vector<std::optional<std::uint32_t>> vertex_at(mesh.vertices.size());
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      std::optional<std::uint32_t>& known = vertex_at[places[v]];
+      if (!known) known = v;
+      if (*known == v) continue;
+      return "the mesh touches itself: vertices " + std::to_string(*known) + " and " + std::to_string(v) +
+             " lie in one place; weld it first";
+    }
+  }
+  return {};
+}
+
+std::string problem_of_triangles(const MeshView& mesh, const Context& context) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!detail::has_no_area(triangle_corners(mesh, t))) continue;
+    return "triangle " + std::to_string(t) + " has no area, and no flip of an edge takes it out";
+  }
+  const SelfIntersections crossings = find_self_intersections(mesh, 1, context);
+  if (crossings.pairs.empty()) return {};
+  return "the mesh crosses or touches itself: triangles " + std::to_string(crossings.pairs[0].first.value) + " and " +
+         std::to_string(crossings.pairs[0].second.value) + ", for one; blum.Solid and resolve_crossings() mend that";
+}
+
+std::optional<BettiNumbers> betti_of(const MeshView& mesh, const Context& context) {
+  return topology(mesh, SiteTable(mesh, context), context).betti;
+}
+
+BoundaryCheck check_boundary(const MeshView& mesh, const Context& context) {
+  BoundaryCheck out;
+  out.problem = problem_of_places(mesh);
+  if (out.problem.empty()) out.problem = problem_of_triangles(mesh, context);
+  if (!out.problem.empty()) return out;
+  out.betti = betti_of(mesh, context);
+  if (!out.betti) {
+    out.problem =
+        "the mesh bounds no solid: it must be closed, oriented, manifold and face outwards; `blum info` tells what is "
+        "not";
+  }
+  return out;
+}
+
+double smallest_height(const MeshView& mesh) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = triangle_corners(mesh, t);
+    least = std::min(least, detail::least_height(a, b, c));
+  }
+  return least;
+}
+
+/// The triangles that are left, and the vertices that they name, in their order.
+void take_result(const ShrinkingSurface& from, std::span<const Vec3d> vertices, CleanedMesh& out) {
+  std::vector<std::uint32_t> number(vertices.size(), 0);
+  for (std::uint32_t v = 0; v < vertices.size(); ++v) {
+    if (from.triangles_at(v).empty()) continue;
+    number[v] = static_cast<std::uint32_t>(out.vertex_of.size());
+    out.vertex_of.push_back(v);
+    out.mesh.vertices.push_back(vertices[v]);
+  }
+  for (std::uint32_t t = 0; t < from.triangles().size(); ++t) {
+    if (from.is_gone(t)) continue;
+    const auto& [a, b, c] = from.triangle(t);
+    out.mesh.triangles.push_back({number[a], number[b], number[c]});
+  }
+}
+
+/// What an edge must be for triangles to be turned at it: that of two triangles, with each vertex of one fan.
+void check_manifold(const MeshView& mesh, const Context& context) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (a != b && b != c && c != a) continue;
+    throw InvalidMesh("triangle " + std::to_string(t) + " names a vertex twice; welding the mesh leaves such out");
+  }
+  const Topology facts = topology(mesh, SiteTable(mesh, context), context);
+  if (facts.closed && facts.oriented && facts.manifold) return;
+  throw InvalidMesh(
+      "the mesh bounds no solid: it must be closed, oriented and manifold; `blum info` tells what is not");
+}
+
+}  // namespace
+
+CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& context) {
+  validate(mesh);
+  if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it bounds no solid");
+  const MeshView given{mesh.vertices, mesh.triangles, {}, {}};
+  check_tolerance(given, tolerance);
+  check_coordinates(given);
+  check_manifold(given, context);
+  CleanedMesh out;
+  CleanReport& report = out.report;
+  report.triangles_before = mesh.triangles.size();
+  report.smallest_height_before = smallest_height(given);
+  const std::vector<Triangle> triangles = without_flat_triangles(given, report.flips);
+  const MeshView surface{mesh.vertices, triangles, {}, {}};
+  const BoundaryCheck before = check_boundary(surface, context);
+  if (!before.betti) throw InvalidMesh(before.problem);
+  report.betti_before = *before.betti;
+
+  detail::MeshCleaner cleaner(surface, tolerance, context);
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    report.vertices_before += cleaner.mesh().triangles_at(v).empty() ? 0U : 1U;
+  }
+  cleaner.run();
+  take_result(cleaner.mesh(), mesh.vertices, out);
+  report.vertices = out.mesh.vertices.size();
+  report.triangles = out.mesh.triangles.size();
+  report.collapses = cleaner.collapses();
+  report.flips += cleaner.flips();
+  report.deviation = cleaner.deviation();
+  report.smallest_height = smallest_height(out.mesh);
+  const BoundaryCheck after = check_boundary(out.mesh, context);
+  if (!after.betti || *after.betti != *before.betti || report.deviation > tolerance) {
+    throw Error("cleaning a mesh: the result is not what it must be (" +
+                (after.betti ? "its solid has other Betti numbers" : after.problem) +
+                "), which is a mistake of Blum's: please report it, and use the mesh as it is");
+  }
+  report.betti = *after.betti;
+  return out;
+}
+
+}  // namespace blum
