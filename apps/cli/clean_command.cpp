@@ -7,11 +7,10 @@
 #include "blum/core/phase_timer.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "blum/solid/clean_mesh.hpp"
+#include "cleaning.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
-#include "described.hpp"
 #include "files.hpp"
-#include "medial_report.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "solid_input.hpp"
@@ -35,31 +34,6 @@ struct Arguments {
   ReportOptions report;
 };
 
-CleanedMesh compute(const fs::path& path, const MeshView& mesh, double tolerance, const Context& context) {
-  try {
-    return clean_mesh(mesh, tolerance, context);
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh("'" + path.string() + "': " + error.what());
-  }
-}
-
-std::string change_text(std::size_t before, std::size_t after) {
-  return count_text(after) + " of " + count_text(before);
-}
-
-TextTable table_of(const CleanReport& done, double tolerance) {
-  TextTable table;
-  table.add("vertices", change_text(done.vertices_before, done.vertices));
-  table.add("triangles", change_text(done.triangles_before, done.triangles));
-  table.add("steps", plural(done.collapses, "collapse", "collapses") + ", " + plural(done.flips, "flip", "flips"));
-  table.add("deviation",
-            "at most " + rounded_text(done.deviation) + ", both ways; tolerance " + rounded_text(tolerance));
-  table.add("heights", "of triangles at least " + rounded_text(done.smallest_height) + ", before " +
-                           rounded_text(done.smallest_height_before));
-  table.add("topology", betti_text(done.betti) + ", as before; no crossings, checked exactly");
-  return table;
-}
-
 void run(const Arguments& a) {
   const fs::path path = a.input;
   const fs::path output = a.output;
@@ -79,17 +53,18 @@ void run(const Arguments& a) {
   std::vector<std::string> warnings;
   if (input.weld && input.weld->before != input.weld->after) warnings.push_back(weld_text(*input.weld));
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  const CleanedMesh cleaned = compute(path, input.mesh.mesh, tolerance, context);
+  const CleanedMesh cleaned = clean_input(path, input.mesh.mesh, tolerance, context);
   phases.push_back({"clean", watch.lap()});
   write_mesh(output, cleaned.mesh);
   phases.push_back({"write", watch.lap()});
   progress.clear();
   const PhaseSummary spent = summarize(phases);
-  Json facts = {{"input", input.json}, {"tolerance", tolerance}};
-  facts.update(to_json(cleaned.report));
+  Json facts = {{"input", input.json}};
+  facts.update(cleaning_json(cleaned.report, tolerance));
   Json json = answer_json("clean", facts);
   add_run_facts(json, spent, context, warnings, Json::array({output.string()}));
-  TextTable table = table_of(cleaned.report, tolerance);
+  TextTable table;
+  add_cleaning(cleaned.report, tolerance, table);
   table.add("wrote", output.string());
   table.add("time", spent.text);
   report(a.report, json, input.text + table.text());

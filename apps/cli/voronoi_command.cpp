@@ -11,8 +11,11 @@
 #include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
 #include "blum/io/complex_io.hpp"
+#include "blum/io/mesh_io.hpp"
+#include "blum/solid/clean_mesh.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
+#include "cleaning.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "described.hpp"
@@ -36,13 +39,14 @@ constexpr const char* examples = R"(Examples:
   blum voronoi part.stl -o axis.vtp --medial --theta 60 --simplify 0.01    where these are 60 degrees apart; fewer triangles
   blum voronoi part.stl -o part.npz --resolution 32    smaller triangles: no cube above a 32nd of the box
   blum voronoi part.stl -o part.vtp --tolerance 0.1    nowhere more than 0.1 mesh units off the exact walls
+  blum voronoi scan.stl -o scan.vtp --clean 0.001 --cleaned clean.ply    of the mesh without needles, which is written, too
   blum voronoi part.stl --json -                   only the facts: sites, cubes, whether it can be certified
 
 Exit status 3: the complex could not be certified, and no file was written.)";
 
 struct Arguments {
   std::string input;
-  std::optional<std::string> output, weld, threads;
+  std::optional<std::string> output, clean, cleaned, weld, threads;
   OptionTexts<VoronoiOptions> options;
   bool walls = false;
   bool medial = false;
@@ -113,16 +117,6 @@ std::vector<std::string> mismatches_of(const VoronoiReport& report, const Vorono
   return all;
 }
 
-FileMetadata metadata_of(const Arguments& a, const fs::path& input, const std::optional<double>& weld,
-                         const VoronoiReport& report) {
-  FileMetadata out{{"content", a.walls ? "walls of a Voronoi diagram" : "Voronoi diagram"},
-                   {"blum_version", BLUM_VERSION},
-                   {"source", input.filename().string()},
-                   {"certified", report.certified ? "true" : "false"}};
-  if (weld) out.emplace_back("weld", exact_text(*weld));
-  return out;
-}
-
 /// Numbers of a complex, as JSON and as text.
 struct Counts {
   std::size_t vertices = 0;
@@ -160,8 +154,7 @@ std::string certificate_text(VoronoiPart part) {
   return subject_of(part) + " have the homology of the exact diagram's";
 }
 
-TextTable table_of(const VoronoiReport& report, VoronoiPart part, const Counts& counts) {
-  TextTable table;
+void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, TextTable& table) {
   table.add("sites", sites_text(report));
   table.add("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
                          plural(report.splits, "split", "splits") + "; " + rounded_text(report.governors) +
@@ -175,18 +168,34 @@ TextTable table_of(const VoronoiReport& report, VoronoiPart part, const Counts& 
   table.add("expected", betti_text(report.expected));
   table.add("found", betti_text(report.found));
   table.add("certified", report.certified ? "yes: " + certificate_text(part) : "NO");
-  return table;
 }
 
 struct Request {
   VoronoiOptions options;
   VoronoiAxisOptions axis;
+  std::optional<double> clean;  ///< mesh units
   std::optional<double> weld;
   int threads = 0;
 };
 
+/// What ids of triangles, edges and vertices in a file are of.
+fs::path source_of(const Arguments& a) {
+  return a.cleaned ? *a.cleaned : a.input;
+}
+
+FileMetadata metadata_of(const Arguments& a, const Request& r, const VoronoiReport& report) {
+  FileMetadata out{{"content", a.walls ? "walls of a Voronoi diagram" : "Voronoi diagram"},
+                   {"blum_version", BLUM_VERSION},
+                   {"source", source_of(a).filename().string()},
+                   {"certified", report.certified ? "true" : "false"}};
+  if (r.weld) out.emplace_back("weld", exact_text(*r.weld));
+  if (r.clean) out.emplace_back("clean", exact_text(*r.clean));
+  return out;
+}
+
 Request parse(const Arguments& a) {
-  Request r{a.options.read(), parse_axis_options(a.axis), parse_weld(a.weld), parse_threads(a.threads)};
+  Request r{a.options.read(), parse_axis_options(a.axis), {}, parse_weld(a.weld), parse_threads(a.threads)};
+  if (a.clean) r.clean = parse_positive("--clean", *a.clean);
   if (a.walls && a.medial) throw UsageError("--walls and --medial are two different parts of the diagram: give one");
   if (a.walls) r.options.part = VoronoiPart::walls;
   if (a.medial) r.options.part = VoronoiPart::medial_axis;
@@ -195,6 +204,13 @@ Request parse(const Arguments& a) {
   if (!of_axis.empty() && !a.output) throw UsageError(of_axis + " is for files: give --output, too");
   std::vector<fs::path> outputs = a.report.files();
   if (r.axis.graph) outputs.push_back(*r.axis.graph);
+  if (a.cleaned) {
+    if (!a.clean) throw UsageError("--cleaned is for what --clean makes: give a tolerance");
+    check_extension("--cleaned", *a.cleaned, file_extensions(FileContent::mesh, FileAccess::write));
+    outputs.emplace_back(*a.cleaned);
+  } else if (a.clean && a.medial && a.output) {
+    throw UsageError("a medial axis is verified against the mesh that it is of: give --cleaned FILE for that, too");
+  }
   if (a.output) {
     const FileAccess access = a.medial ? FileAccess::both : FileAccess::write;  // axes are read again
     check_extension("--output", *a.output, file_extensions(FileContent::complex, access));
@@ -206,6 +222,15 @@ Request parse(const Arguments& a) {
   return r;
 }
 
+/// Puts the cleaned mesh, where one is asked for, in the place of the one that was read, and writes it.
+std::optional<CleanReport> clean(const Arguments& a, const Request& r, SolidInput& input, const Context& context) {
+  if (!r.clean) return std::nullopt;
+  CleanedMesh cleaned = clean_input(a.input, input.mesh.mesh, *r.clean, context);
+  if (a.cleaned) write_mesh(*a.cleaned, cleaned.mesh);
+  input.mesh.mesh = std::move(cleaned.mesh);
+  return cleaned.report;
+}
+
 void run(const Arguments& a) {
   const Request r = parse(a);
   const fs::path path = a.input;
@@ -213,10 +238,12 @@ void run(const Arguments& a) {
   const Interrupt interrupt;
   const Context context = make_context(r.threads, progress, interrupt);
   Stopwatch watch;
-  const SolidInput input = read_mesh_input(path, r.weld);
+  SolidInput input = read_mesh_input(path, r.weld);
   std::vector<std::string> warnings;
   if (input.weld && input.weld->before != input.weld->after) warnings.push_back(weld_text(*input.weld));
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
+  const std::optional<CleanReport> cleaning = clean(a, r, input, context);
+  if (cleaning) phases.push_back({"clean", watch.lap()});
   VoronoiComplex made = compute(path, input.mesh.mesh, r.options, context);
   const VoronoiReport& found = made.report;
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
@@ -225,7 +252,8 @@ void run(const Arguments& a) {
   bool is_written = a.output && (mismatches.empty() || a.allow_uncertified);
   std::optional<VoronoiAxis> axis;
   if (is_written && a.medial) {
-    axis = make_voronoi_axis(made.complex, input, r.axis, path, r.weld, *a.output, context);
+    axis = make_voronoi_axis(made.complex, input, r.axis, source_of(a), a.cleaned ? std::nullopt : r.weld, *a.output,
+                             context);
     mismatches.insert(mismatches.end(), axis->mismatches.begin(), axis->mismatches.end());
     is_written = mismatches.empty() || a.allow_uncertified;
     if (is_written) {
@@ -236,13 +264,14 @@ void run(const Arguments& a) {
   } else if (is_written) {
     ComplexWriteOptions how;
     how.allow_loss = true;  // as the table of formats says
-    write_complex(*a.output, made.complex, metadata_of(a, path, r.weld, found), how, context);
+    write_complex(*a.output, made.complex, metadata_of(a, r, found), how, context);
     phases.push_back({"write", watch.lap()});
   }
   progress.clear();
   const Counts counts(made.complex);
   const PhaseSummary spent = summarize(phases);
   Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
+  facts["cleaning"] = cleaning ? cleaning_json(*cleaning, *r.clean) : Json(nullptr);
   facts.update(to_json(found));
   facts.erase("seconds");  // the run's, below, hold them
   facts["certified"] = mismatches.empty();
@@ -252,11 +281,15 @@ void run(const Arguments& a) {
   facts["axis"] = axis ? axis->json : Json(nullptr);
   Json json = answer_json("voronoi", facts);
   Json outputs = Json::array();
+  if (a.cleaned) outputs.push_back(*a.cleaned);
   if (is_written) outputs.push_back(*a.output);
   if (is_written && r.axis.graph) outputs.push_back(r.axis.graph->string());
   add_run_facts(json, spent, context, warnings, outputs);
-  TextTable table = table_of(found, r.options.part, counts);
+  TextTable table;
+  if (cleaning) add_cleaning(*cleaning, *r.clean, table);
+  add_facts(found, r.options.part, counts, table);
   if (axis) table.add(axis->table);
+  if (a.cleaned) table.add("wrote", *a.cleaned);
   if (is_written) table.add("wrote", *a.output);
   if (is_written && r.axis.graph) table.add("wrote", r.axis.graph->string());
   table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
@@ -279,6 +312,12 @@ void add_voronoi_command(const CommandLine& line) {
                     "The medial axis: of the walls those with two footprints, none between a face and its own edge");
   a->axis.add_to(*command);
   a->options.add_to(*command, {}, {"part"});
+  add_text_option(
+      *command, "--clean", a->clean, "TOL",
+      "Take needles and needless vertices out of the mesh first, as `blum clean` does: nowhere further than "
+      "TOL from it, mesh units");
+  add_text_option(*command, "--cleaned", a->cleaned, "FILE",
+                  "Write the mesh that --clean makes, which ids are then of");
   command->add_flag("--allow-uncertified", a->allow_uncertified, "Write the complex even where it is not certified");
   add_weld_option(*command, a->weld);
   add_threads_option(*command, a->threads);
