@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -12,10 +13,14 @@
 namespace blum::voronoi {
 namespace {
 
-/// The part of a convex polygon where a height is above -margin.
+/// The part of a convex polygon where a height is above -margin. Mostly that is all of it, or nothing.
 template <class Height>
-std::vector<Vec3d> clipped(const std::vector<Vec3d>& polygon, double margin, const Height& height) {
+std::vector<Vec3d> clipped(std::vector<Vec3d> polygon, double margin, const Height& height) {
+  const auto is_in = [&](const Vec3d& q) { return height(q) + margin >= 0; };
+  if (std::all_of(polygon.begin(), polygon.end(), is_in)) return polygon;
+  if (std::none_of(polygon.begin(), polygon.end(), is_in)) return {};
   std::vector<Vec3d> out;
+  out.reserve(polygon.size() + 1);
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec3d& p = polygon[k];
     const Vec3d& q = polygon[(k + 1) % polygon.size()];
@@ -30,7 +35,8 @@ std::vector<Vec3d> clipped(const std::vector<Vec3d>& polygon, double margin, con
 /// The part of it where heights over some planes are above -margin.
 std::vector<Vec3d> clipped_by(std::vector<Vec3d> polygon, double margin, std::span<const DomainPlane> planes) {
   for (const DomainPlane& plane : planes) {
-    polygon = clipped(polygon, margin, [&](const Vec3d& q) { return plane.height(q); });
+    polygon = clipped(std::move(polygon), margin, [&](const Vec3d& q) { return plane.height(q); });
+    if (polygon.empty()) break;
   }
   return polygon;
 }
@@ -287,13 +293,19 @@ bool SquareTest::is_star_shaped(std::uint32_t site, std::span<const BorderArc> a
   }
   constexpr std::size_t tries = 3;
   if (own.size() > tries) own.resize(tries);
+  std::vector<LabelIndex> own_labels;
+  std::copy_if(others.begin(), others.end(), std::back_inserter(own_labels),
+               [&](LabelIndex label) { return labels_[label].site == site; });
+  std::vector<std::optional<Polygon>> domains(others.size());  // in the part, where they are asked for
   const auto is_centre = [&](const BorderArc* arc, const Vec3d& from) {
-    return std::all_of(others.begin(), others.end(), [&](LabelIndex other) {
-      if (labels_[other].site == site || stays_behind(arc->label, other, from, part)) return true;
-      const Polygon of_other = in_domain(other, part);
-      return returns_nowhere(arc->label, other, from, of_other) ||
-             never_meet(arc->label, other, others, from, of_other);
-    });
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const LabelIndex other = others[k];
+      if (labels_[other].site == site || stays_behind(arc->label, other, from, part)) continue;
+      if (!domains[k]) domains[k] = in_domain(other, part);
+      if (returns_nowhere(arc->label, other, from, *domains[k])) continue;
+      if (!never_meet({arc->label, own_labels, others}, other, from, *domains[k])) return false;
+    }
+    return true;
   };
   constexpr std::array parts{0.5, 0.05, 0.95};
   return std::any_of(parts.begin(), parts.end(), [&](double part_of_arc) {
@@ -329,7 +341,7 @@ SquareTest::Polygon SquareTest::in_domain(LabelIndex label, Polygon part) const 
   const double margin = 2 * labels_.rounding();
   part = clipped_by(std::move(part), margin, labels_.planes(label));
   if (labels_[label].kind == SiteKind::face) {
-    part = clipped(part, margin, [&](const Vec3d& q) { return labels_[label].height(q); });
+    part = clipped(std::move(part), margin, [&](const Vec3d& q) { return labels_[label].height(q); });
   }
   return part;
 }
@@ -348,16 +360,15 @@ SquareTest::Polygon SquareTest::along_plane(LabelIndex label, const DomainPlane&
 /// point in common there: or one alone, over a corner that both have, where nothing is closer than what has this
 /// corner. There the diagram is a cone, in which regions are connected. Over both sides of a reflex edge regions part,
 /// too.
-bool SquareTest::never_meet(LabelIndex own, LabelIndex other, std::span<const LabelIndex> labels, const Vec3d& from,
+bool SquareTest::never_meet(const SiteInSquare& own, LabelIndex other, const Vec3d& from,
                             const Polygon& of_other) const {
-  const std::uint32_t site = labels_[own].site;
-  return std::all_of(labels.begin(), labels.end(), [&](LabelIndex label) {
-    if (labels_[label].site != site || labels_.share_reflex_edge(label, other)) return true;
+  return std::all_of(own.labels.begin(), own.labels.end(), [&](LabelIndex label) {
+    if (labels_.share_reflex_edge(label, other)) return true;
     const Polygon common = in_domain(label, of_other);
-    if (common.empty() || returns_nowhere(own, other, from, common)) return true;
+    if (common.empty() || returns_nowhere(own.on_border, other, from, common)) return true;
     const Allowance allowed{false, labels_.common_corner(label, other)};
     // Where they meet something else may be closer, except over a common corner.
-    return is_absent(other, labels, common, allowed, 0) || is_absent(label, labels, common, allowed, 0);
+    return is_absent(other, own.all, common, allowed, 0) || is_absent(label, own.all, common, allowed, 0);
   });
 }
 

@@ -69,7 +69,13 @@ class SquareTest {
   [[nodiscard]] bool returns_nowhere(LabelIndex label, LabelIndex other, const Vec3d& from,
                                      const Polygon& domain) const;
   [[nodiscard]] Polygon in_domain(LabelIndex label, Polygon part) const;
-  [[nodiscard]] bool never_meet(LabelIndex own, LabelIndex other, std::span<const LabelIndex> labels, const Vec3d& from,
+  /// A site on the border of a square.
+  struct SiteInSquare {
+    LabelIndex on_border = outside;      ///< one of its labels
+    std::span<const LabelIndex> labels;  ///< its own that may be in the square
+    std::span<const LabelIndex> all;     ///< those of all sites
+  };
+  [[nodiscard]] bool never_meet(const SiteInSquare& own, LabelIndex other, const Vec3d& from,
                                 const Polygon& of_other) const;
   [[nodiscard]] bool stays_behind(LabelIndex label, LabelIndex other, const Vec3d& from, const Polygon& square) const;
 

@@ -23,6 +23,8 @@ WallPoint wall_point(const LabelGeometry& geometry, std::span<const LabelIndex> 
   std::vector<Near> all;
   double least = std::numeric_limits<double>::infinity();
   for (const LabelIndex label : among) {
+    const double reach = least + 1e-9 * geometry.size();
+    if (geometry[label].squared_distance(q) > reach * reach) continue;  // no more than its distance
     const Vec3d point = geometry.closest_point(label, q);
     all.push_back({label, point, length(point - q)});
     least = std::min(least, all.back().distance);
