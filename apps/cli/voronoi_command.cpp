@@ -13,6 +13,7 @@
 #include "blum/io/complex_io.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "blum/solid/clean_mesh.hpp"
+#include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 #include "cleaning.hpp"
@@ -189,6 +190,7 @@ FileMetadata metadata_of(const Arguments& a, const Request& r, const VoronoiRepo
                    {"source", source_of(a).filename().string()},
                    {"certified", report.certified ? "true" : "false"}};
   if (r.weld) out.emplace_back("weld", exact_text(*r.weld));
+  if (!report.certified) out.emplace_back("failing_cubes", std::to_string(report.failing.size()));
   if (r.clean) out.emplace_back("clean", exact_text(*r.clean));
   return out;
 }
@@ -248,6 +250,7 @@ void run(const Arguments& a) {
   const VoronoiReport& found = made.report;
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
   static_cast<void>(watch.lap());
+  const Counts counts(made.complex);
   std::vector<std::string> mismatches = mismatches_of(found, r.options);
   bool is_written = a.output && (mismatches.empty() || a.allow_uncertified);
   std::optional<VoronoiAxis> axis;
@@ -264,11 +267,11 @@ void run(const Arguments& a) {
   } else if (is_written) {
     ComplexWriteOptions how;
     how.allow_loss = true;  // as the table of formats says
+    if (!mismatches.empty()) add_failing_cells(made.complex, found.failing);
     write_complex(*a.output, made.complex, metadata_of(a, r, found), how, context);
     phases.push_back({"write", watch.lap()});
   }
   progress.clear();
-  const Counts counts(made.complex);
   const PhaseSummary spent = summarize(phases);
   Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
   facts["cleaning"] = cleaning ? cleaning_json(*cleaning, *r.clean) : Json(nullptr);

@@ -1,6 +1,10 @@
 #include "blum/voronoi/voronoi_complex.hpp"
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <filesystem>
 #include <utility>
@@ -8,6 +12,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "blum/io/complex_io.hpp"
+#include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 #include "call.hpp"
 #include "structs.hpp"
@@ -38,6 +43,21 @@ void bind_voronoi(nb::module_& m) {
         return out;
       },
       nb::arg("complex"));
+  using Cell = std::tuple<std::array<double, 3>, std::array<double, 3>, std::string>;
+  m.def(
+      "with_failing_cells",
+      [](const Complex& complex, const std::vector<Cell>& cells) {
+        std::vector<FailingVoronoiCell> failing;
+        for (const auto& [low, high, obstacle] : cells) {
+          failing.push_back({{low[0], low[1], low[2]},
+                             {high[0], high[1], high[2]},
+                             parse_enum<VoronoiObstacle>("obstacle", obstacle)});
+        }
+        Complex out = complex;
+        add_failing_cells(out, failing);
+        return out;
+      },
+      nb::arg("complex"), nb::arg("cells"));
   m.def(
       "write_complex",
       [](const std::filesystem::path& path, const Complex& complex) {

@@ -100,6 +100,19 @@ class VoronoiComplex(Complex):
         origin = Origin(self._mesh, theta=angle, solid_rule="polyhedron")
         return MedialComplex._of(core, EVERYTHING, origin)
 
+    def with_failing_cells(self) -> Complex:
+        """This complex, with the sides of the cubes that do not pass as edges: where it may be wrong. Edges have a column
+        `obstacle`, numbers of 0 (none), 1 (square), 2 (tunnel), 3 (enclosed), 4 (face hole), 5 (handle), 6 (joins) and
+        7 (contradiction).
+
+        >>> import blum
+        >>> found = blum.voronoi_complex(blum.generate("gear"), depth=3)
+        >>> found.report.certified, len(found.with_failing_cells().edges) == 12 * len(found.report.failing)
+        (False, True)
+        """
+        cells = [(tuple(cell.low), tuple(cell.high), cell.obstacle) for cell in self.report.failing]
+        return Complex._from_core(_core.with_failing_cells(self._core, cells))
+
     def write(self, path: PathLike) -> None:
         """Writes .vtp, .ply, .obj (without columns), .npz or .glb; the file appears complete or not at all."""
         _core.write_complex(Path(os.fspath(path)), self._core)

@@ -38,6 +38,41 @@ def read_npz(path):
     }
 
 
+def rough_box():
+    """A box of side 1 over 6 x 6 squares on each side, turned, in 32 bits; in the upper side each square has a needle."""
+    n, vertices, triangles = 6, {}, []
+
+    def vertex(p):
+        return vertices.setdefault(tuple(p), len(vertices))
+
+    steps = np.arange(n + 1) / n
+    for axis in range(3):
+        for side in (0.0, 1.0):
+            for i in range(n):
+                for j in range(n):
+                    square = []
+                    for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                        p = np.zeros(3)
+                        p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3] = side, steps[i + a], steps[j + b]
+                        square.append(p)
+                    if side == 0.0:
+                        square.reverse()
+                    p, q, r, s = square
+                    if axis == 2 and side == 1.0:
+                        middle = (p + q) / 2 + (s - p) * 5e-6
+                        triangles += [(p, q, middle), (q, r, middle), (r, s, middle), (s, p, middle)]
+                    else:
+                        triangles += [(p, q, r), (p, r, s)]
+    triangles = [[vertex(p) for p in corners] for corners in triangles]
+    c, d = np.cos(0.4), np.sin(0.4)
+    turn = np.array([[c, -d, 0], [d, c, 0], [0, 0, 1]]) @ np.array([[1, 0, 0], [0, c, -d], [0, d, c]])
+    places = (np.array(list(vertices)) @ turn.T).astype(np.float32)
+    lines = ["OFF", f"{len(places)} {len(triangles)} 0"]
+    lines += [" ".join(f"{float(x):.9g}" for x in p) for p in places]
+    lines += ["3 " + " ".join(map(str, corners)) for corners in triangles]
+    return "\n".join(lines) + "\n"
+
+
 def read_ply(path):
     head, body = path.read_bytes().split(b"end_header\n", 1)
     lines = head.decode().splitlines()
@@ -260,7 +295,15 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(parts, tmp_pat
     out = tmp_path / "gear.npz"
     text, err = run("voronoi", parts / "gear.ply", "-o", out, *COARSE, "--allow-uncertified", status=3)
     assert "certified  NO" in text and "NOT certified" in err and "nothing was written" not in err
-    assert read_npz(out)["metadata"]["certified"] == "false"
+    written = read_npz(out)
+    assert written["metadata"]["certified"] == "false"
+    count = int(written["metadata"]["failing_cubes"])
+    columns = np.load(out)
+    edges, sites = columns["edges"], columns["site_0"]
+    assert count > 0 and edges.shape == (12 * count, 2) and set(columns["edge_obstacle"]) <= set(range(1, 8))
+    assert (sites[edges] == -1).all() and (sites[written["triangles"]] >= 0).all()
+    lengths = np.linalg.norm(written["vertices"][edges[:, 0]] - written["vertices"][edges[:, 1]], axis=1)
+    assert np.ptp(lengths) < 1e-9 * lengths.max()
 
 
 # ---- What is wrong ----
@@ -293,3 +336,32 @@ def test_help_has_examples():
     text, _ = run("voronoi", "--help")
     assert len(re.findall(r"^  blum voronoi ", text, re.MULTILINE)) >= 3 and "Exit status 3" in text
     assert "voronoi" in run("--help")[0]
+
+
+# ---- Cleaning ----
+
+
+def test_cleaned_meshes(tmp_path):
+    """A box whose sides are of many triangles, turned and rounded to 32 bits, with needles 1e-6 high: its diagram is
+    that of the twelve triangles that cleaning leaves."""
+    rough, clean, out = tmp_path / "rough.off", tmp_path / "clean.ply", tmp_path / "axis.vtp"
+    rough.write_text(rough_box())
+    found = run_json("voronoi", rough, "--clean", 1e-4, "--cleaned", clean)
+    assert found["certified"] and found["cleaning"]["tolerance"] == 1e-4
+    assert found["cleaning"]["deviation"] <= 1e-4 and found["cleaning"]["triangles"] < 30
+    assert found["cleaning"]["triangles_before"] > 300 and found["cleaning"]["smallest_height_before"] < 2e-6
+    assert found["outputs"] == [str(clean)] and found["cubes"] < 5000
+    run("voronoi", rough, "--clean", 1e-4, "--cleaned", clean, "--medial", "--theta", 40, "-o", out)
+    run("verify", clean, out)
+    assert str(clean.name).encode() in out.read_bytes()
+
+
+def test_options_of_cleaning(parts, tmp_path):
+    box, out, clean = parts / "box.ply", tmp_path / "o.vtp", tmp_path / "c.ply"
+    assert "--clean" in run("voronoi", box, "--clean", 0, status=2)[1]
+    assert "--cleaned" in run("voronoi", box, "--clean", 1e-3, "--cleaned", tmp_path / "c.vti", status=2)[1]
+    assert "tolerance" in run("voronoi", box, "--cleaned", clean, status=2)[1]
+    assert "--cleaned" in run("voronoi", box, "--clean", 1e-3, "--medial", "-o", out, status=2)[1]
+    assert "tolerance" in run("voronoi", box, "--clean", 100, "-o", out, status=2)[1]
+    run("voronoi", box, "--clean", 1e-3, "--cleaned", box, status=2)
+    assert names(tmp_path) == []

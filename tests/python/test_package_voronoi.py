@@ -32,6 +32,13 @@ def test_options_and_what_is_refused(box):
     assert coarse.report.cubes < fine.report.cubes and fine.report.certified
     failed = blum.voronoi_complex(blum.generate("gear"), resolution=1, depth=3)
     assert not failed.report.certified and failed.report.failing
+    shown = failed.with_failing_cells()
+    assert len(shown.edges) == len(shown.edge_columns["obstacle"]) == 12 * len(failed.report.failing)
+    assert len(failed.edges) == 0 and np.array_equal(shown.triangles, failed.triangles)
+    cell = failed.report.failing[0]
+    corners = shown.vertices[len(failed.vertices) :][:8]
+    assert np.array_equal(corners.min(axis=0), cell.low) and np.array_equal(corners.max(axis=0), cell.high)
+    assert shown.edge_columns["obstacle"][0] > 0
     with pytest.raises(blum.InvalidOption, match="depth"):
         blum.voronoi_complex(box, depth=0)
     with pytest.raises(TypeError):
