@@ -101,9 +101,9 @@ class VoronoiComplex(Complex):
         return MedialComplex._of(core, EVERYTHING, origin)
 
     def with_failing_cells(self) -> Complex:
-        """This complex, with the sides of the cubes that do not pass as edges: where it may be wrong. Edges have a column
-        `obstacle`, numbers of 0 (none), 1 (square), 2 (tunnel), 3 (enclosed), 4 (face hole), 5 (handle), 6 (joins) and
-        7 (contradiction).
+        """This complex, with the sides of the cubes that do not pass as edges: where it may be wrong. Edges have a
+        column `obstacle`: 1 (square), 2 (tunnel), 3 (enclosed), 4 (face hole), 5 (handle), 6 (joins) and 7
+        (contradiction).
 
         >>> import blum
         >>> found = blum.voronoi_complex(blum.generate("gear"), depth=3)
