@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -292,23 +294,20 @@ TEST(VoronoiRegions, FillTheSolid) {
   }
 }
 
-/// How often the triangles of a site run around a point (van Oosterom, Strackee 1983).
-double turns_around(const Complex& complex, std::int32_t site, const Vec3d& q) {
+/// How often the triangles of each site run around a point: how often a ray from there leaves its region, less how
+/// often it enters. Exact; nullopt where the ray meets an edge.
+std::optional<std::map<std::int32_t, int>> turns_around(const Complex& complex, const Bvh& triangles, const Ray& ray) {
   const auto site_a = complex.triangle_columns.get<std::int32_t>("site_a");
   const auto site_b = complex.triangle_columns.get<std::int32_t>("site_b");
-  double sum = 0;
-  for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-    if (site_a[t] != site && site_b[t] != site) continue;
-    const Vec3d a = complex.positions[complex.triangles[t][0]] - q;
-    const Vec3d b = complex.positions[complex.triangles[t][1]] - q;
-    const Vec3d c = complex.positions[complex.triangles[t][2]] - q;
-    const double below =
-        length(a) * length(b) * length(c) + dot(a, b) * length(c) + dot(b, c) * length(a) + dot(c, a) * length(b);
-    const double angle = 2 * std::atan2(dot(a, cross(b, c)), below);
-    // Corners run counterclockwise as seen from the region of site_b.
-    sum += site_b[t] == site ? -angle : angle;
+  std::map<std::int32_t, int> out;
+  for (const RayCrossing& crossing : triangles.crossings(ray)) {
+    if (crossing.on_border) return std::nullopt;
+    // Corners run counterclockwise as seen from the region of site_b, which a ray along the normal comes into.
+    out[site_a[crossing.triangle.value]] += crossing.side;
+    out[site_b[crossing.triangle.value]] -= crossing.side;
   }
-  return sum / (4 * std::numbers::pi);
+  std::erase_if(out, [](const auto& of_site) { return of_site.first < 0 || of_site.second == 0; });
+  return out;
 }
 
 double distance_from(const LabelledSolid& solid, const voronoi::Label& label, const Vec3d& q) {
@@ -325,38 +324,65 @@ double distance_from(const LabelledSolid& solid, const voronoi::Label& label, co
   }
 }
 
-/// Brute force over all sites at random points: what is closer than all others by more than the complex may be off is
-/// the region that the point lies in, as oriented triangles say.
+/// The site that is closest to a point by brute force, and how much further the next one is.
+struct Closest {
+  std::size_t site = 0;
+  double distance = 0;
+  double lead = 0;
+};
+
+Closest closest_site(const LabelledSolid& solid, const Vec3d& q) {
+  std::vector<double> distances(solid.labels.site_count(), std::numeric_limits<double>::infinity());
+  for (const voronoi::Label& label : solid.labels.all()) {
+    double& least = distances[solid.labels.site_of(label)];
+    least = std::min(least, distance_from(solid, label, q));
+  }
+  const auto closest = std::min_element(distances.begin(), distances.end());
+  const Closest out{static_cast<std::size_t>(closest - distances.begin()), *closest, 0};
+  *closest = std::numeric_limits<double>::infinity();
+  return {out.site, out.distance, *std::min_element(distances.begin(), distances.end()) - out.distance};
+}
+
+/// At 100,000 random points: what is closer than all others by more than the complex may be off, by brute force over
+/// all sites, is the region that the point lies in, as oriented triangles say, and the only one.
 TEST(VoronoiRegions, HoldWhatIsClosest) {
-  for (const TriangleMesh& mesh : {make_box(), test::box_with_void(), make_cylinder({.sides = 6})}) {
+  struct Tried {
+    TriangleMesh mesh;
+    std::size_t points = 0;
+  };
+  const std::vector<Tried> all{{make_box(), 40000},
+                               {test::box_with_void(), 50000},
+                               {make_void_cube({.frequency = 1}), 10000},
+                               {test::turned(make_cylinder({.sides = 6})), 50},
+                               {test::turned(make_wedge()), 50}};
+  for (const auto& [mesh, wanted] : all) {
     const LabelledSolid solid(mesh);
     const VoronoiComplex found = voronoi_complex(mesh, {.resolution = 40});
     ASSERT_TRUE(found.report.certified);
     const double off = found.report.hausdorff_bound;
     const WindingNumber inside(mesh);
+    const TriangleMesh triangles{found.complex.positions, found.complex.triangles, {}, {}};
+    const SiteTable table(triangles);
+    const Bvh bvh(triangles, table);
     const Box3 box = bounds(mesh);
     Random random(5);
     std::size_t tested = 0;
-    for (int k = 0; k < 1000 && tested < 60; ++k) {
+    std::size_t wrong = 0;
+    for (std::size_t k = 0; k < 40 * wanted && tested < wanted; ++k) {
       const Vec3d part = random.in_cube();
       Vec3d q = box.lower;
       for (std::size_t axis = 0; axis < 3; ++axis) q[axis] += part[axis] * box.size()[axis];
-      std::map<std::size_t, double> distances;
-      for (const voronoi::Label& label : solid.labels.all()) {
-        const double distance = distance_from(solid, label, q);
-        const auto [at, is_new] = distances.try_emplace(solid.labels.site_of(label), distance);
-        if (!is_new) at->second = std::min(at->second, distance);
-      }
-      const auto by_distance = [](const auto& a, const auto& b) { return a.second < b.second; };
-      const auto closest = *std::min_element(distances.begin(), distances.end(), by_distance);
-      distances.erase(closest.first);
-      const auto next = *std::min_element(distances.begin(), distances.end(), by_distance);
-      if (closest.second <= 2 * off || next.second <= closest.second + 2 * off) continue;
-      if (!inside.is_inside(q)) continue;
+      const Vec3d way = random.in_cube() - Vec3d{0.5, 0.5, 0.5};
+      const Closest closest = closest_site(solid, q);
+      if (closest.distance <= 2 * off || closest.lead <= 2 * off || !inside.is_inside(q)) continue;
+      const auto turns = turns_around(found.complex, bvh, {q, way});
+      if (!turns) continue;
       ++tested;
-      EXPECT_NEAR(turns_around(found.complex, static_cast<std::int32_t>(closest.first), q), 1, 1e-6);
+      const std::map<std::int32_t, int> expected{{static_cast<std::int32_t>(closest.site), 1}};
+      if (*turns != expected) ++wrong;
     }
-    EXPECT_GT(tested, 10U);
+    EXPECT_EQ(tested, wanted);
+    EXPECT_EQ(wrong, 0U);
   }
 }
 
