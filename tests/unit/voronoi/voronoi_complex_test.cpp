@@ -368,7 +368,7 @@ TEST(VoronoiRegions, HoldWhatIsClosest) {
     Random random(5);
     std::size_t tested = 0;
     std::size_t wrong = 0;
-    for (std::size_t k = 0; k < 40 * wanted + 20000 && tested < wanted; ++k) {
+    for (std::size_t k = 0; k < 40 * wanted + 40000 && tested < wanted; ++k) {
       const Vec3d part = random.in_cube();
       Vec3d q = box.lower;
       for (std::size_t axis = 0; axis < 3; ++axis) q[axis] += part[axis] * box.size()[axis];
