@@ -1,15 +1,26 @@
 // Voronoi complexes of polyhedra and their parts: cubes, and what one takes, over shapes of 12 to 2,000 triangles, as
-// made and turned; medial axes from them beside those of the grid.
+// made and turned; prisms beside CGAL's diagrams of their cross-sections; medial axes beside those of the grid.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "blum/core/random.hpp"
+#include "blum/geometry/sites.hpp"
 #include "blum/medial_axis/collapse_axis.hpp"
 #include "blum/medial_axis/medial_axis.hpp"
 #include "blum/shapes/generators.hpp"
 #include "blum/shapes/shape_catalog.hpp"
+#include "blum/voronoi/polyhedron_sites.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
+#include "peers/segment_voronoi.hpp"
 #include "support/measure.hpp"
 
 namespace blum::bench {
@@ -70,6 +81,87 @@ void axis_cases(const std::string& name, const TriangleMesh& mesh) {
   });
 }
 
+/// Counterclockwise around the origin, with reflex corners; no four sides or corners are equally far from a point.
+std::vector<Point2> random_polygon(std::size_t corners) {
+  Random random(7);
+  std::vector<Point2> out;
+  for (std::size_t k = 0; k < corners; ++k) {
+    const double angle =
+        2 * std::numbers::pi * (static_cast<double>(k) + 0.5 * random.uniform()) / static_cast<double>(corners);
+    const double radius = random.uniform(0.6, 1);
+    out.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return out;
+}
+
+/// Which sides and corners of a polygon have a wall in common in the middle half of a prism over it: numbered as
+/// SegmentVoronoiEdge has them.
+std::set<std::array<std::uint32_t, 2>> walls_of_prism(const TriangleMesh& mesh, const std::vector<Point2>& polygon,
+                                                      const Complex& walls, double height) {
+  const auto count = static_cast<std::uint32_t>(polygon.size());
+  const auto corner_at = [&](const Vec3d& p) {
+    const auto at = std::find(polygon.begin(), polygon.end(), Point2{p.x, p.y});
+    return static_cast<std::uint32_t>(at - polygon.begin());
+  };
+  const SiteTable table(mesh);
+  const PolyhedronSites sites = polyhedron_sites(mesh, table);
+  std::map<std::int32_t, std::uint32_t> number;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::set<std::uint32_t> corners;
+    for (const std::uint32_t v : mesh.triangles[t]) corners.insert(corner_at(mesh.vertices[v]));
+    if (corners.size() != 2) continue;
+    const bool is_last = *corners.begin() == 0 && *corners.rbegin() + 1 == count && count > 2;
+    number[static_cast<std::int32_t>(sites.face_of[t])] = is_last ? count - 1 : *corners.begin();
+  }
+  for (std::size_t k = 0; k < sites.reflex_edges.size(); ++k) {
+    const Segment& ends = table.edges()[sites.reflex_edges[k]];
+    number[static_cast<std::int32_t>(sites.face_count + k)] = count + corner_at(mesh.vertices[ends[0]]);
+  }
+  std::set<std::array<std::uint32_t, 2>> out;
+  const auto site_a = walls.triangle_columns.get<std::int32_t>("site_a");
+  const auto site_b = walls.triangle_columns.get<std::int32_t>("site_b");
+  for (std::size_t t = 0; t < walls.triangles.size(); ++t) {
+    double z = 0;
+    for (const std::uint32_t v : walls.triangles[t]) z += walls.positions[v].z / 3;
+    if (std::abs(z) > height / 4) continue;
+    const auto [low, high] = std::minmax({number.at(site_a[t]), number.at(site_b[t])});
+    out.insert({low, high});
+  }
+  return out;
+}
+
+/// The Voronoi diagram of a prism beside CGAL's of its cross-section. All pairs of sites that the prism's walls lie
+/// between are pairs of CGAL's, and all of CGAL's are there whose edges are longer than cubes.
+void prism_cases(std::size_t corners) {
+  const std::vector<Point2> polygon = random_polygon(corners);
+  constexpr double height = 4;
+  const TriangleMesh mesh = make_extrusion(polygon, {}, {.thickness = height});
+  const std::string name = "prism/" + std::to_string(corners);
+  add(name + "/blum", [=](benchmark::State& state) {
+    const VoronoiOptions options{.part = VoronoiPart::walls};
+    voronoi_case(state, mesh, options);
+    const auto peer = cgal_segment_voronoi(polygon);
+    if (!peer) return;
+    const VoronoiComplex walls = voronoi_complex(mesh, options);
+    const auto own = walls_of_prism(mesh, polygon, walls.complex, height);
+    std::set<std::array<std::uint32_t, 2>> theirs;
+    std::size_t missing = 0;
+    for (const SegmentVoronoiEdge& edge : peer->edges) {
+      theirs.insert(edge.sites);
+      if (edge.length > walls.report.hausdorff_bound && !own.contains(edge.sites)) ++missing;
+    }
+    const bool is_subset = std::includes(theirs.begin(), theirs.end(), own.begin(), own.end());
+    state.counters["walls"] = static_cast<double>(own.size());
+    state.counters["walls_of_cgal"] = static_cast<double>(theirs.size());
+    if (missing > 0 || !is_subset) state.SkipWithError("the cross-section differs from CGAL's diagram");
+  });
+  add(name + "/cgal-2d", [=](benchmark::State& state) {
+    const auto peer = cgal_segment_voronoi(polygon);
+    if (!peer) return state.SkipWithError("CGAL is not installed");
+    report(state, peer->times, static_cast<double>(polygon.size()));
+  });
+}
+
 const bool registered = [] {
   add_case("box", make_box());
   add_case("star", make_star());
@@ -88,6 +180,7 @@ const bool registered = [] {
     add_case("bracket/" + name, make_bracket(), {.part = part, .resolution = 1});
     add_case("menger-2/" + name, make_menger({.level = 2}), {.part = part, .resolution = 1});
   }
+  for (const std::size_t corners : {16U, 64U, 256U}) prism_cases(corners);
   axis_cases("bracket", make_bracket());
   axis_cases("gear", make_gear());
   return true;
