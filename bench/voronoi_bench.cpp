@@ -142,7 +142,7 @@ void prism_cases(std::size_t corners) {
     voronoi_case(state, mesh, options);
     const auto peer = cgal_segment_voronoi(polygon);
     if (!peer) return;
-    const VoronoiComplex walls = voronoi_complex(mesh, options);
+    const VoronoiComplex walls = voronoi_complex(mesh, {.part = VoronoiPart::walls, .resolution = 64});
     const auto own = walls_of_prism(mesh, polygon, walls.complex, height);
     std::set<std::array<std::uint32_t, 2>> theirs;
     std::size_t missing = 0;
