@@ -26,13 +26,14 @@ void VoronoiAxisTexts::add_to(CLI::App& command) {
                   "With --medial: keep where footprints are seen more than DEG apart (default 1), and what joins that");
   add_text_option(command, "--simplify", simplify, "TOL",
                   "With --medial: fewer triangles, at most TOL mesh units away (default 0: all)");
-  add_graph_option(command, graph, "With --medial: its sheets, seams, curves and junctions as a graph");
+  add_graph_option(command, graph,
+                   "Its regions, walls, seams and junctions as a graph (.json); with --medial its sheets, seams, "
+                   "curves and junctions");
 }
 
 std::string VoronoiAxisTexts::given() const {
   if (theta) return "--theta";
-  if (simplify) return "--simplify";
-  return graph ? "--graph" : "";
+  return simplify ? "--simplify" : "";
 }
 
 VoronoiAxisOptions parse_axis_options(const VoronoiAxisTexts& texts) {

@@ -19,12 +19,12 @@ class App;
 
 namespace blum::cli {
 
-/// --theta, --simplify and --graph, for --medial.
+/// --theta, --simplify and, for all parts, --graph.
 struct VoronoiAxisTexts {
   std::optional<std::string> theta, simplify, graph;
 
   void add_to(CLI::App& command);
-  /// The first one that is given; empty where none is.
+  /// The first one that is given and for medial axes alone; empty where none is.
   [[nodiscard]] std::string given() const;
 };
 

@@ -10,11 +10,13 @@
 
 #include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
+#include "blum/io/atomic_file.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "blum/solid/clean_mesh.hpp"
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
+#include "blum/voronoi/voronoi_graph.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 #include "cleaning.hpp"
 #include "commands.hpp"
@@ -158,8 +160,8 @@ std::string certificate_text(VoronoiPart part) {
 void add_facts(const VoronoiReport& report, VoronoiPart part, const Counts& counts, TextTable& table) {
   table.add("sites", sites_text(report));
   table.add("cubes", count_text(report.cubes) + ", with " + plural(report.squares, "square", "squares") + "; " +
-                         plural(report.splits, "split", "splits") + "; " + rounded_text(report.governors) +
-                         " labels in a cube, mean");
+                         plural(report.splits, "split", "splits") + ", the smallest " + std::to_string(report.depth) +
+                         " times; " + rounded_text(report.governors) + " labels in a cube, mean");
   table.add("lines", plural(report.lines, "part of a grid line", "parts of grid lines") + ", " +
                          count_text(report.exact_lines) + " by exact signs");
   table.add("complex", counts.text());
@@ -205,7 +207,11 @@ Request parse(const Arguments& a) {
   if (!of_axis.empty() && !a.medial) throw UsageError(of_axis + " is for medial axes: give --medial, too");
   if (!of_axis.empty() && !a.output) throw UsageError(of_axis + " is for files: give --output, too");
   std::vector<fs::path> outputs = a.report.files();
-  if (r.axis.graph) outputs.push_back(*r.axis.graph);
+  if (r.axis.graph) {
+    if (a.medial && !a.output) throw UsageError("--graph of a medial axis is for files: give --output, too");
+    if (!a.medial) check_extension("--graph", *r.axis.graph, {".json"});
+    outputs.push_back(*r.axis.graph);
+  }
   if (a.cleaned) {
     if (!a.clean) throw UsageError("--cleaned is for what --clean makes: give a tolerance");
     check_extension("--cleaned", *a.cleaned, file_extensions(FileContent::mesh, FileAccess::write));
@@ -222,6 +228,28 @@ Request parse(const Arguments& a) {
   }
   check_outputs(outputs, {a.input});
   return r;
+}
+
+/// The parts of the diagram, where a file of them is asked for. The same that Python's VoronoiComplex.graph() tells.
+std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, const VoronoiComplex& made,
+                                       const Context& context) {
+  if (a.medial || !r.axis.graph) return std::nullopt;
+  VoronoiGraph graph = voronoi_graph(made.complex, context);
+  Json json = {{"content", "graph of a Voronoi diagram"}};
+  for (const auto& [name, value] : metadata_of(a, r, made.report)) {
+    if (name != "content") json[name] = value;
+  }
+  json.update(to_json(graph));
+  AtomicFile file(*r.axis.graph);
+  file.write(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+  file.commit();
+  return graph;
+}
+
+std::string graph_text(const VoronoiGraph& graph) {
+  std::string text = graph.regions.empty() ? "" : plural(graph.regions.size(), "region", "regions") + ", ";
+  return text + plural(graph.walls.size(), "wall", "walls") + ", " + plural(graph.seams.size(), "seam", "seams") +
+         ", " + plural(graph.junctions.size(), "junction", "junctions");
 }
 
 /// Puts the cleaned mesh, where one is asked for, in the place of the one that was read, and writes it.
@@ -252,8 +280,12 @@ void run(const Arguments& a) {
   static_cast<void>(watch.lap());
   const Counts counts(made.complex);
   std::vector<std::string> mismatches = mismatches_of(found, r.options);
-  bool is_written = a.output && (mismatches.empty() || a.allow_uncertified);
+  const bool may_write = mismatches.empty() || a.allow_uncertified;
+  bool is_written = a.output && may_write;
   std::optional<VoronoiAxis> axis;
+  std::optional<VoronoiGraph> graph;
+  if (may_write) graph = make_graph(a, r, made, context);
+  if (graph) phases.push_back({"graph", watch.lap()});
   if (is_written && a.medial) {
     axis = make_voronoi_axis(made.complex, input, r.axis, source_of(a), a.cleaned ? std::nullopt : r.weld, *a.output,
                              context);
@@ -281,20 +313,26 @@ void run(const Arguments& a) {
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
   facts["regions"] = r.options.part == VoronoiPart::all ? to_json(voronoi_regions(made.complex)) : Json(nullptr);
+  facts["graph"] =
+      graph
+          ? Json{{"walls", graph->walls.size()}, {"seams", graph->seams.size()}, {"junctions", graph->junctions.size()}}
+          : Json(nullptr);
   facts["axis"] = axis ? axis->json : Json(nullptr);
   Json json = answer_json("voronoi", facts);
   Json outputs = Json::array();
   if (a.cleaned) outputs.push_back(*a.cleaned);
   if (is_written) outputs.push_back(*a.output);
-  if (is_written && r.axis.graph) outputs.push_back(r.axis.graph->string());
+  const bool is_graph_written = graph || (axis && is_written && r.axis.graph);
+  if (is_graph_written) outputs.push_back(r.axis.graph->string());
   add_run_facts(json, spent, context, warnings, outputs);
   TextTable table;
   if (cleaning) add_cleaning(*cleaning, *r.clean, table);
   add_facts(found, r.options.part, counts, table);
   if (axis) table.add(axis->table);
+  if (graph) table.add("graph", graph_text(*graph));
   if (a.cleaned) table.add("wrote", *a.cleaned);
   if (is_written) table.add("wrote", *a.output);
-  if (is_written && r.axis.graph) table.add("wrote", r.axis.graph->string());
+  if (is_graph_written) table.add("wrote", r.axis.graph->string());
   table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(a.report, json, input.text + table.text());
   if (!a.report.quiet) warn(warnings);

@@ -13,6 +13,7 @@
 #include "bindings.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/voronoi/failing_cells.hpp"
+#include "blum/voronoi/voronoi_graph.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
 #include "call.hpp"
 #include "structs.hpp"
@@ -41,6 +42,18 @@ void bind_voronoi(nb::module_& m) {
         nb::list out;
         for (const VoronoiRegion& region : voronoi_regions(complex)) out.append(to_python(region));
         return out;
+      },
+      nb::arg("complex"));
+  bind_struct<VoronoiWall>(m);
+  bind_struct<VoronoiSeam>(m);
+  bind_struct<VoronoiJunction>(m);
+  bind_struct<VoronoiGraph>(m);
+  m.def(
+      "voronoi_graph",
+      [](const Complex& complex) {
+        VoronoiGraph graph;
+        run_call({0, nb::none()}, [&](const Context& context) { graph = voronoi_graph(complex, context); });
+        return to_python(graph);
       },
       nb::arg("complex"));
   using Cell = std::tuple<std::array<double, 3>, std::array<double, 3>, std::string>;

@@ -16,7 +16,7 @@ from ._medial_complex import EVERYTHING, MedialComplex, Origin
 from ._mesh import Mesh, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import VoronoiOptions, VoronoiRegion, VoronoiReport
+from ._structs import VoronoiGraph, VoronoiOptions, VoronoiRegion, VoronoiReport
 
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
@@ -78,6 +78,18 @@ class VoronoiComplex(Complex):
         if self.part != "all":
             raise InvalidOption(f'regions have walls and surface: part="all", not "{self.part}"')
         found: list[VoronoiRegion] = _core.voronoi_regions(self._core)
+        return found
+
+    def graph(self) -> VoronoiGraph:
+        """Its regions (of `part="all"`), walls, seams and junctions, and which of them meet.
+
+        >>> import blum
+        >>> box = blum.Mesh(blum.generate("box").vertices * [1, 2, 3], blum.generate("box").triangles)
+        >>> graph = blum.voronoi_complex(box).graph()
+        >>> len(graph.regions), len(graph.walls), len(graph.seams), len(graph.junctions)
+        (6, 13, 12, 12)
+        """
+        found: VoronoiGraph = _core.voronoi_graph(self._core)
         return found
 
     def medial_axis(self, theta: Real = 1.0, *, threads: int = 0, progress: Progress = False) -> MedialComplex:

@@ -1,6 +1,7 @@
 #include "blum/voronoi/voronoi_complex.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <new>
 #include <numbers>
@@ -112,7 +113,15 @@ bool may_pass_elsewhere(const Subdivision& cells) {
 void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiReport& report) {
   report.thin_vertices = labels.thin_vertices().size();
   report.cubes = cells.leaves.size();
-  for (const GridSquare& square : cells.tree.squares) report.squares += square.children == no_cell ? 1U : 0U;
+  for (const GridSquare& square : cells.tree.squares) {
+    if (square.children != no_cell) continue;
+    ++report.squares;
+    if (square.state != SquareState::resolved) ++report.undecided_squares;
+  }
+  for (const CellId leaf : cells.leaves) {
+    const std::uint32_t length = cells.tree.cubes[leaf].length;
+    report.depth = std::max(report.depth, Lattice::depth + 1 - static_cast<int>(std::bit_width(length)));
+  }
   report.splits = cells.splits;
   if (report.cubes > 0) report.governors = static_cast<double>(cells.governors) / static_cast<double>(report.cubes);
   report.lines = cells.lines.parts;

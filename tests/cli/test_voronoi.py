@@ -237,7 +237,6 @@ def test_medial_axes_of_angles_in_every_format(parts, tmp_path, extension):
 def test_what_medial_axes_refuse(parts, tmp_path):
     box, out = parts / "box.ply", tmp_path / "out.vtp"
     assert "--medial" in run("voronoi", box, "-o", out, "--theta", 60, status=2)[1]
-    assert "--medial" in run("voronoi", box, "-o", out, "--graph", tmp_path / "g.json", "--walls", status=2)[1]
     assert "--output" in run("voronoi", box, "--medial", "--theta", 60, status=2)[1]
     for bad in ("-1", "181", "nan", "x"):
         run("voronoi", box, "-o", out, "--medial", "--theta", bad, status=2)
@@ -336,6 +335,27 @@ def test_help_has_examples():
     text, _ = run("voronoi", "--help")
     assert len(re.findall(r"^  blum voronoi ", text, re.MULTILINE)) >= 3 and "Exit status 3" in text
     assert "voronoi" in run("--help")[0]
+
+
+# ---- Graphs ----
+
+
+def test_graphs_of_diagrams(parts, tmp_path):
+    out = tmp_path / "graph.json"
+    found = run_json("voronoi", parts / "bracket.ply", "--graph", out)
+    assert found["outputs"] == [str(out)] and found["certified"]
+    graph = json.loads(out.read_text())
+    assert graph["content"] == "graph of a Voronoi diagram" and graph["source"] == "bracket.ply"
+    assert graph["regions"] == found["regions"]
+    assert {name: len(graph[name]) for name in ("walls", "seams", "junctions")} == found["graph"]
+    run("voronoi", parts / "gear.ply", *COARSE, "--graph", tmp_path / "gear.json", status=3)
+    assert names(tmp_path) == ["graph.json"]
+
+
+def test_options_of_graphs(parts, tmp_path):
+    box = parts / "box.ply"
+    assert "--graph" in run("voronoi", box, "--graph", tmp_path / "g.graphml", status=2)[1]
+    assert "--graph" in run("voronoi", box, "--medial", "--graph", tmp_path / "g.json", status=2)[1]
 
 
 # ---- Cleaning ----

@@ -86,3 +86,17 @@ def test_medial_axes(tmp_path):
         walls.medial_axis(60)
     with pytest.raises(blum.InvalidOption, match="theta"):
         found.medial_axis(200)
+
+
+def test_graphs(box):
+    found = blum.voronoi_complex(blum.Mesh(box.vertices * [1, 2, 3], box.triangles))
+    graph = found.graph()
+    assert [len(part) for part in (graph.regions, graph.walls, graph.seams, graph.junctions)] == [6, 13, 12, 12]
+    assert list(graph.regions) == found.regions()
+    for wall in graph.walls:
+        assert wall.site_a < wall.site_b and wall.area > 0
+        assert all({wall.site_a, wall.site_b} <= set(graph.seams[seam].sites) for seam in wall.seams)
+    for junction in graph.junctions:
+        assert np.array_equal(junction.position, found.vertices[junction.vertex])
+        assert len(junction.seams) in (1, 4)
+    assert not blum.voronoi_complex(box, part="walls").graph().regions

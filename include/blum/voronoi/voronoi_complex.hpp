@@ -113,9 +113,9 @@ struct Description<FailingVoronoiCell> {
 
 struct VoronoiReport {
   /// Whether every cube passes, all signs agree, and the Betti numbers found are those expected: then the homology of
-  /// the complex is proven to be that of the walls and the surface of the exact diagram.
+  /// the complex is proven to be that of the part of the exact diagram that was asked for.
   bool certified = false;
-  BettiNumbers expected{};  ///< of walls and surface: from the solid's own, holes of faces and regions
+  BettiNumbers expected{};  ///< of the part: from the solid's own, holes of faces and regions
   BettiNumbers found{};     ///< of the complex
   /// Where it is certified: each point of the complex has one of the exact part that is no further away than this, and
   /// each point of that one of the complex; mesh units. The largest diagonal of a cube that either is in.
@@ -126,15 +126,17 @@ struct VoronoiReport {
   /// Of these, vertices whose cones are thinner than 1e-3, radians: their regions, that much narrower than long, count
   /// as part of walls.
   std::size_t thin_vertices = 0;
-  std::size_t grids = 0;            ///< places of the grid that were tried
-  std::size_t cubes = 0;            ///< that meet the solid, and are not split
-  std::size_t squares = 0;          ///< and parts of squares
-  std::size_t splits = 0;           ///< cubes that were split because they did not pass
-  double governors = 0;             ///< labels that may be closest in a cube, mean
-  std::size_t lines = 0;            ///< parts of grid lines in the solid whose labels were found
-  std::size_t exact_lines = 0;      ///< of these, those where doubles did not tell
-  std::size_t undecided_lines = 0;  ///< of these, those where nothing did
-  std::size_t contradictions = 0;   ///< nodes of which different sites are told
+  std::size_t grids = 0;              ///< places of the grid that were tried
+  std::size_t cubes = 0;              ///< that meet the solid, and are not split
+  std::size_t squares = 0;            ///< and parts of squares
+  std::size_t undecided_squares = 0;  ///< of these, those whose borders do not tell what is inside
+  std::size_t splits = 0;             ///< cubes that were split because they did not pass
+  int depth = 0;                      ///< how often the smallest cube was split
+  double governors = 0;               ///< labels that may be closest in a cube, mean
+  std::size_t lines = 0;              ///< parts of grid lines in the solid whose labels were found
+  std::size_t exact_lines = 0;        ///< of these, those where doubles did not tell
+  std::size_t undecided_lines = 0;    ///< of these, those where nothing did
+  std::size_t contradictions = 0;     ///< nodes of which different sites are told
   std::vector<FailingVoronoiCell> failing;
   std::vector<PhaseTime> phases;  ///< seconds
 };
@@ -146,7 +148,8 @@ struct Description<VoronoiReport> {
   static constexpr std::tuple members{
       Member{"certified", &VoronoiReport::certified, "",
              "whether every cube passes and the Betti numbers are as expected: then the homology is proven"},
-      Member{"expected_betti", &VoronoiReport::expected, "", "components, tunnels, voids of walls and surface"},
+      Member{"expected_betti", &VoronoiReport::expected, "",
+             "components, tunnels, voids of the part that was asked for"},
       Member{"found_betti", &VoronoiReport::found, "", "of the complex"},
       Member{"hausdorff_bound", &VoronoiReport::hausdorff_bound, "mesh units",
              "where certified: how far complex and exact part are from each other at most"},
@@ -158,6 +161,9 @@ struct Description<VoronoiReport> {
       Member{"grids", &VoronoiReport::grids, "", "places of the grid that were tried"},
       Member{"cubes", &VoronoiReport::cubes, "", "that meet the solid, and are not split"},
       Member{"squares", &VoronoiReport::squares, "", "and parts of squares"},
+      Member{"undecided_squares", &VoronoiReport::undecided_squares, "",
+             "of these, those whose borders do not tell what is inside"},
+      Member{"depth", &VoronoiReport::depth, "", "how often the smallest cube was split"},
       Member{"splits", &VoronoiReport::splits, "", "cubes that were split because they did not pass"},
       Member{"governors", &VoronoiReport::governors, "", "labels that may be closest in a cube, mean"},
       Member{"lines", &VoronoiReport::lines, "", "parts of grid lines in the solid whose labels were found"},

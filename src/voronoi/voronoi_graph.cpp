@@ -1,0 +1,232 @@
+#include "blum/voronoi/voronoi_graph.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "blum/complex/incidence.hpp"
+#include "blum/core/sort_unique.hpp"
+#include "blum/core/union_find.hpp"
+
+namespace blum {
+namespace {
+
+constexpr std::uint32_t none = UINT32_MAX;
+
+using detail::sort_unique;
+
+class GraphBuilder {
+ public:
+  GraphBuilder(const Complex& complex, const Context& context)
+      : complex_(complex),
+        site_a_(complex.triangle_columns.get<std::int32_t>("site_a")),
+        site_b_(complex.triangle_columns.get<std::int32_t>("site_b")),
+        incidence_({complex.positions.size(), {}, complex.triangles}, context),
+        context_(context) {}
+
+  VoronoiGraph build() {
+    const bool has_surface = std::any_of(site_a_.begin(), site_a_.end(), [](std::int32_t site) { return site < 0; });
+    if (has_surface) out_.regions = voronoi_regions(complex_);
+    throw_if_cancelled(context_);
+    find_walls();
+    find_seams();
+    for (VoronoiWall& wall : out_.walls) sort_unique(wall.seams);
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] bool is_wall(std::size_t t) const { return site_a_[t] >= 0; }
+
+  void find_walls() {
+    const auto count = static_cast<std::uint32_t>(complex_.triangles.size());
+    detail::UnionFind joined(count);
+    // In a cube a wall may have triangles that only its vertex joins.
+    std::vector<std::pair<std::array<std::int32_t, 2>, std::uint32_t>> at;  // sites, triangle
+    for (std::size_t v = 0; v < complex_.positions.size(); ++v) {
+      at.clear();
+      for (const std::uint32_t t : incidence_.triangles_of_vertex()[v]) at.push_back({{site_a_[t], site_b_[t]}, t});
+      std::sort(at.begin(), at.end());
+      for (std::size_t k = 1; k < at.size(); ++k) {
+        if (at[k].first == at[k - 1].first) joined.join(at[k].second, at[k - 1].second);
+      }
+    }
+    wall_of_.assign(count, none);
+    std::vector<std::uint32_t> number(count, none);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (!is_wall(t)) continue;
+      std::uint32_t& wall = number[joined.find(t)];
+      if (wall == none) {
+        wall = static_cast<std::uint32_t>(out_.walls.size());
+        out_.walls.push_back({site_a_[t], site_b_[t], 0, {}});
+      }
+      wall_of_[t] = wall;
+      const auto& [a, b, c] = complex_.triangles[t];
+      const Vec3d& p = complex_.positions[a];
+      out_.walls[wall].area += 0.5 * length(cross(complex_.positions[b] - p, complex_.positions[c] - p));
+    }
+    throw_if_cancelled(context_);
+  }
+
+  [[nodiscard]] std::vector<std::int32_t> sites_of(std::span<const std::uint32_t> triangles) const {
+    std::vector<std::int32_t> out;
+    for (const std::uint32_t t : triangles) {
+      if (is_wall(t)) out.push_back(site_a_[t]);
+      out.push_back(site_b_[t]);
+    }
+    sort_unique(out);
+    return out;
+  }
+
+  /// Whether walls of three or more regions meet in an edge.
+  [[nodiscard]] bool is_seam(std::size_t e) const {
+    const std::span<const std::uint32_t> at = incidence_.triangles_of_edge()[e];
+    return at.size() > 2 && sites_of(at).size() > 2;
+  }
+
+  void find_seams() {
+    const std::vector<std::uint32_t> seam_of = find_chains();
+    throw_if_cancelled(context_);
+    join_junctions();
+    number_seams();
+    for (std::uint32_t e = 0; e < seam_of.size(); ++e) {
+      if (seam_of[e] != none) add_edge(e, chains_[seam_of[e]].number);
+    }
+    for (const Chain& chain : chains_) add_ends(chain);
+    for (VoronoiSeam& seam : out_.seams) {
+      sort_unique(seam.sites);
+      sort_unique(seam.walls);
+      sort_unique(seam.junctions);
+    }
+    for (VoronoiJunction& junction : out_.junctions) {
+      sort_unique(junction.sites);
+      sort_unique(junction.seams);
+    }
+  }
+
+  /// Edges of seams between vertices at which not just two of them meet.
+  struct Chain {
+    std::size_t edges = 0;
+    bool has_many_sites = false;      ///< four or more at each edge
+    std::vector<std::uint32_t> ends;  ///< vertices
+    std::uint32_t number = none;      ///< of the seam; none of those that are part of a junction
+  };
+
+  /// The chain of each edge; none of those that are on no seam.
+  std::vector<std::uint32_t> find_chains() {
+    const std::size_t count = incidence_.edges().size();
+    std::vector<std::uint8_t> is_on_seam(count, 0);
+    for (std::size_t e = 0; e < count; ++e) is_on_seam[e] = is_seam(e) ? 1 : 0;
+    detail::UnionFind joined(static_cast<std::uint32_t>(count));
+    is_end_.assign(complex_.positions.size(), 0);
+    for (std::uint32_t v = 0; v < complex_.positions.size(); ++v) {
+      std::vector<std::uint32_t> meeting;
+      for (const std::uint32_t e : incidence_.edges_of_vertex()[v]) {
+        if (is_on_seam[e] != 0) meeting.push_back(e);
+      }
+      if (meeting.size() == 2) joined.join(meeting[0], meeting[1]);
+      is_end_[v] = meeting.empty() || meeting.size() == 2 ? 0 : 1;
+    }
+    std::vector<std::uint32_t> out(count, none);
+    std::vector<std::uint32_t> number(count, none);
+    for (std::uint32_t e = 0; e < count; ++e) {
+      if (is_on_seam[e] == 0) continue;
+      std::uint32_t& chain = number[joined.find(e)];
+      if (chain == none) {
+        chain = static_cast<std::uint32_t>(chains_.size());
+        chains_.push_back({0, true, {}, none});
+      }
+      out[e] = chain;
+      Chain& own = chains_[chain];
+      ++own.edges;
+      own.has_many_sites = own.has_many_sites && sites_of(incidence_.triangles_of_edge()[e]).size() > 3;
+      for (const std::uint32_t v : incidence_.edges()[e]) {
+        if (is_end_[v] != 0) own.ends.push_back(v);
+      }
+    }
+    return out;
+  }
+
+  [[nodiscard]] static bool is_short(const Chain& chain) {
+    constexpr std::size_t few = 4;  // from a square into a cube, and on
+    return chain.has_many_sites && chain.edges <= few && chain.ends.size() == 2;
+  }
+
+  /// Around a point in which four or more regions meet the vertices of cells next to each other all see them: they are
+  /// one junction.
+  void join_junctions() {
+    detail::UnionFind joined(static_cast<std::uint32_t>(is_end_.size()));
+    for (const Chain& chain : chains_) {
+      if (is_short(chain)) joined.join(chain.ends[0], chain.ends[1]);
+    }
+    junction_of_.assign(is_end_.size(), none);
+    std::vector<std::uint32_t> number(is_end_.size(), none);
+    for (std::uint32_t v = 0; v < is_end_.size(); ++v) {
+      if (is_end_[v] == 0) continue;
+      std::uint32_t& junction = number[joined.find(v)];
+      const std::vector<std::int32_t> sites = sites_of(incidence_.triangles_of_vertex()[v]);
+      if (junction == none) {
+        junction = static_cast<std::uint32_t>(out_.junctions.size());
+        out_.junctions.push_back({v, {}, {}, {}});
+      }
+      junction_of_[v] = junction;
+      VoronoiJunction& own = out_.junctions[junction];
+      // Vertices of cubes have the most triangles, and lie where distances are equal, if that is in their cube.
+      const IndexRows& at = incidence_.triangles_of_vertex();
+      if (at[v].size() > at[own.vertex].size()) own.vertex = v;
+      own.position = complex_.positions[own.vertex];
+      own.sites.insert(own.sites.end(), sites.begin(), sites.end());
+    }
+  }
+
+  void number_seams() {
+    for (Chain& chain : chains_) {
+      const bool is_inside = is_short(chain) && junction_of_[chain.ends[0]] == junction_of_[chain.ends[1]];
+      if (is_inside) continue;
+      chain.number = static_cast<std::uint32_t>(out_.seams.size());
+      out_.seams.emplace_back();
+    }
+  }
+
+  void add_edge(std::uint32_t e, std::uint32_t number) {
+    if (number == none) return;
+    VoronoiSeam& seam = out_.seams[number];
+    const auto& [a, b] = incidence_.edges()[e];
+    seam.length += length(complex_.positions[a] - complex_.positions[b]);
+    const std::span<const std::uint32_t> at = incidence_.triangles_of_edge()[e];
+    for (const std::int32_t site : sites_of(at)) seam.sites.push_back(site);
+    for (const std::uint32_t t : at) {
+      if (!is_wall(t)) continue;
+      seam.walls.push_back(wall_of_[t]);
+      out_.walls[wall_of_[t]].seams.push_back(number);
+    }
+  }
+
+  void add_ends(const Chain& chain) {
+    if (chain.number == none) return;
+    for (const std::uint32_t v : chain.ends) {
+      out_.seams[chain.number].junctions.push_back(junction_of_[v]);
+      out_.junctions[junction_of_[v]].seams.push_back(chain.number);
+    }
+  }
+
+  const Complex& complex_;
+  std::span<const std::int32_t> site_a_, site_b_;
+  const Incidence incidence_;
+  const Context& context_;
+  std::vector<std::uint32_t> wall_of_;      ///< of each triangle
+  std::vector<std::uint8_t> is_end_;        ///< of each vertex, whether chains end there
+  std::vector<std::uint32_t> junction_of_;  ///< of each vertex at which some do
+  std::vector<Chain> chains_;
+  VoronoiGraph out_;
+};
+
+}  // namespace
+
+VoronoiGraph voronoi_graph(const Complex& complex, const Context& context) {
+  validate(complex);
+  return GraphBuilder(complex, context).build();
+}
+
+}  // namespace blum
