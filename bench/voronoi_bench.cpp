@@ -1,4 +1,4 @@
-// Voronoi complexes of polyhedra and their parts: cubes, and what one takes, over shapes of 12 to 2,000 triangles, as
+// Voronoi complexes of polyhedra and their parts: cubes, and what one takes, over shapes of 12 to 10,000 triangles, as
 // made and turned; prisms beside CGAL's diagrams of their cross-sections; medial axes beside those of the grid.
 #include <algorithm>
 #include <array>
@@ -173,6 +173,8 @@ const bool registered = [] {
   add_case("gear", make_gear());
   add_case("menger-1", make_menger({.level = 1}));
   add_case("menger-2", make_menger({.level = 2}));
+  add_case("menger-3", make_menger({.level = 3}), {.resolution = 1}, false);
+  add_case("gear-200", make_gear({.teeth = 200}), {.resolution = 1}, false);
   add_case("sphere-4", make_sphere({.frequency = 4}));
   add_case("bracket/resolution-64", make_bracket(), {.resolution = 64}, false);
   for (const VoronoiPart part : {VoronoiPart::walls, VoronoiPart::medial_axis}) {
