@@ -92,6 +92,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
                      {"kind", shown.content},
                      {"counts", counts_json(counts, file.has_labels)},
                      {"betti", to_json(betti)},
+                     {"certified", shown.certified.empty() ? Json(nullptr) : Json(shown.certified.starts_with("yes"))},
                      {"graph", graph_facts},
                      {"radius", has_radii ? Json::array({least, most}) : Json(nullptr)},
                      {"footprints", file.has_footprints},
@@ -112,6 +113,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
   table.add("file", path.string() + ": " + shown.content);
   table.add(shown.is_axis ? "axis" : "walls", shown.is_axis ? counts_text(counts, file.has_labels) : walls_text(shown));
   table.add("topology", betti_text(betti));
+  if (!shown.certified.empty()) table.add("certified", shown.certified);
   if (graph) table.add("graph", graph_line);
   table.add("radii", has_radii ? rounded_text(least) + " to " + rounded_text(most) : "none in the file");
   table.add("footprints", file.has_footprints ? "two at each vertex" : "none in the file");

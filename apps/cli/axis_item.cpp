@@ -80,6 +80,7 @@ void add_facts(Json& item, const ShownAxis& shown, const BettiNumbers& betti) {
   add(shown.is_axis ? "axis" : "walls",
       shown.is_axis ? counts_text(count(file.complex), file.has_labels) : walls_text(shown));
   add("topology", betti_text(betti));
+  if (!shown.certified.empty()) add("certified", shown.certified);
   if (file.has_radii && !file.complex.positions.empty()) {
     const MedialView axis(file.complex);
     const auto [least, most] = std::minmax_element(axis.radius.begin(), axis.radius.end());

@@ -21,6 +21,7 @@ struct ShownAxis {
   MedialFile file;      ///< of a diagram, walls between the same sites have one number as sheets
   std::string content;  ///< as metadata call it: "medial axis", "Voronoi diagram"
   bool is_axis = true;
+  std::string certified;  ///< of a diagram: "yes", what is known of how far it is off, or "NO"; empty where not known
 };
 /// read_axis(), and the same of files that `blum voronoi` wrote.
 [[nodiscard]] ShownAxis read_axis_or_walls(const std::filesystem::path& path);

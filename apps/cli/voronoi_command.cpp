@@ -84,17 +84,26 @@ std::string subject_of(VoronoiPart part) {
   return part == VoronoiPart::walls ? "walls" : "walls and surface";
 }
 
-/// Which options may let more cubes pass.
-std::string advice(const VoronoiOptions& options) {
-  const VoronoiOptions defaults;
-  std::vector<std::string> names;
-  if (options.depth < defaults.depth) names.emplace_back("--depth");
-  if (options.max_cubes < defaults.max_cubes) names.emplace_back("--max-cubes");
-  return names.empty() ? "" : "; a larger " + join_words(names, "or") + " may help";
+/// What may let more cubes pass.
+std::string advice(const VoronoiReport& report, const VoronoiOptions& options, bool is_cleaned) {
+  std::vector<std::string> all;
+  if (options.depth < VoronoiOptions{}.depth) all.emplace_back("a larger --depth may help");
+  if (report.stopped_at_max_cubes) {
+    all.push_back("it stopped at --max-cubes " + count_text(static_cast<std::size_t>(options.max_cubes)) +
+                  (options.tolerance || options.resolution > VoronoiOptions{}.resolution
+                       ? ", too few for so fine a --resolution or --tolerance"
+                       : ""));
+  }
+  if (!is_cleaned && options.depth == VoronoiOptions{}.depth) {
+    all.emplace_back("where coordinates are rounded, as in .stl files, --clean with a small tolerance may help");
+  }
+  std::string out;
+  for (const std::string& one : all) out += "; " + one;
+  return out;
 }
 
 /// Why a complex is not certified; nothing where it is.
-std::vector<std::string> mismatches_of(const VoronoiReport& report, const VoronoiOptions& options) {
+std::vector<std::string> mismatches_of(const VoronoiReport& report, const VoronoiOptions& options, bool is_cleaned) {
   std::vector<std::string> all;
   if (report.certified) return all;
   if (!report.failing.empty()) {
@@ -104,14 +113,15 @@ std::vector<std::string> mismatches_of(const VoronoiReport& report, const Vorono
                            : count_text(report.failing.size()) + " cubes do not pass, the first one";
     text += " from " + vector_text(first.low) + " to " + vector_text(first.high) + " (" +
             std::string(to_string(first.obstacle)) + ")";
-    all.push_back(text + advice(options));
+    all.push_back(text + advice(report, options, is_cleaned));
   }
   if (report.undecided_lines > 0) {
     all.push_back("of " + plural(report.undecided_lines, "part of a grid line", "parts of grid lines") +
                   " it is not known what is closest");
   }
   if (report.contradictions > 0) {
-    all.push_back("different sites are told of " + plural(report.contradictions, "node", "nodes"));
+    all.push_back("of " + plural(report.contradictions, "point", "points") +
+                  " of the grid it is not certain what is closest, at none of its places");
   }
   if (report.found != report.expected) {
     all.push_back("the complex has " + betti_text(report.found) + ", but " + subject_of(options.part) +
@@ -192,6 +202,7 @@ FileMetadata metadata_of(const Arguments& a, const Request& r, const VoronoiRepo
                    {"source", source_of(a).filename().string()},
                    {"certified", report.certified ? "true" : "false"}};
   if (r.weld) out.emplace_back("weld", exact_text(*r.weld));
+  if (report.certified) out.emplace_back("hausdorff_bound", exact_text(report.hausdorff_bound));
   if (!report.certified) out.emplace_back("failing_cubes", std::to_string(report.failing.size()));
   if (r.clean) out.emplace_back("clean", exact_text(*r.clean));
   return out;
@@ -279,7 +290,7 @@ void run(const Arguments& a) {
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
   static_cast<void>(watch.lap());
   const Counts counts(made.complex);
-  std::vector<std::string> mismatches = mismatches_of(found, r.options);
+  std::vector<std::string> mismatches = mismatches_of(found, r.options, r.clean.has_value());
   const bool may_write = mismatches.empty() || a.allow_uncertified;
   bool is_written = a.output && may_write;
   std::optional<VoronoiAxis> axis;

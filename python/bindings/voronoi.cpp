@@ -73,11 +73,14 @@ void bind_voronoi(nb::module_& m) {
       nb::arg("complex"), nb::arg("cells"));
   m.def(
       "write_complex",
-      [](const std::filesystem::path& path, const Complex& complex) {
+      [](const std::filesystem::path& path, const Complex& complex,
+         const std::vector<std::tuple<std::string, std::string>>& metadata) {
+        FileMetadata about;
+        for (const auto& [name, value] : metadata) about.emplace_back(name, value);
         run_call({0, nb::none()},
-                 [&](const Context& context) { write_complex(path, complex, {}, {.allow_loss = true}, context); });
+                 [&](const Context& context) { write_complex(path, complex, about, {.allow_loss = true}, context); });
       },
-      nb::arg("path"), nb::arg("complex"));
+      nb::arg("path"), nb::arg("complex"), nb::arg("metadata"));
 }
 
 }  // namespace blum::python

@@ -125,9 +125,30 @@ class VoronoiComplex(Complex):
         cells = [(tuple(cell.low), tuple(cell.high), cell.obstacle) for cell in self.report.failing]
         return Complex._from_core(_core.with_failing_cells(self._core, cells))
 
-    def write(self, path: PathLike) -> None:
-        """Writes .vtp, .ply, .obj (without columns), .npz or .glb; the file appears complete or not at all."""
-        _core.write_complex(Path(os.fspath(path)), self._core)
+    def write(self, path: PathLike, *, allow_uncertified: bool = False) -> None:
+        """Writes .vtp, .ply, .obj (without columns), .npz or .glb; the file appears complete or not at all.
+
+        A diagram that is not certified is refused unless `allow_uncertified` is set: parts of it may be missing or
+        wrong. Its file then says so, and has the cubes that do not pass as edges.
+        """
+        if not self.report.certified and not allow_uncertified:
+            raise InvalidOption(
+                "the diagram is not certified, so parts of it may be missing or wrong (report.failing, "
+                "with_failing_cells()): allow_uncertified=True writes it all the same"
+            )
+        name = "Voronoi diagram" if self.part == "all" else "walls of a Voronoi diagram"
+        certified = self.report.certified
+        metadata = [
+            ("content", name),
+            ("blum_version", _core.version),
+            ("certified", "true" if certified else "false"),
+        ]
+        if certified:
+            metadata.append(("hausdorff_bound", repr(self.report.hausdorff_bound)))
+        else:
+            metadata.append(("failing_cubes", str(len(self.report.failing))))
+        core = self._core if certified else self.with_failing_cells()._core
+        _core.write_complex(Path(os.fspath(path)), core, metadata)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (core_arguments(self), self.report, self.part, self._mesh)

@@ -125,21 +125,15 @@ std::string problem_of_triangles(const MeshView& mesh, const Context& context) {
          std::to_string(crossings.pairs[0].second.value) + ", for one; blum.Solid and resolve_crossings() mend that";
 }
 
-std::optional<BettiNumbers> betti_of(const MeshView& mesh, const Context& context) {
-  return topology(mesh, SiteTable(mesh, context), context).betti;
-}
-
 BoundaryCheck check_boundary(const MeshView& mesh, const Context& context) {
   BoundaryCheck out;
   out.problem = problem_of_places(mesh);
   if (out.problem.empty()) out.problem = problem_of_triangles(mesh, context);
   if (!out.problem.empty()) return out;
-  out.betti = betti_of(mesh, context);
-  if (!out.betti) {
-    out.problem =
-        "the mesh bounds no solid: it must be closed, oriented, manifold and face outwards; `blum info` tells what is "
-        "not";
-  }
+  const Topology facts = topology(mesh, SiteTable(mesh, context), context);
+  out.betti = facts.betti;
+  if (!out.betti) out.problem = problem_as_solid(facts);
+  if (!out.betti && out.problem.empty()) out.problem = "the mesh bounds no solid";
   return out;
 }
 
@@ -177,8 +171,7 @@ void check_manifold(const MeshView& mesh, const Context& context) {
   }
   const Topology facts = topology(mesh, SiteTable(mesh, context), context);
   if (facts.closed && facts.oriented && facts.manifold) return;
-  throw InvalidMesh(
-      "the mesh bounds no solid: it must be closed, oriented and manifold; `blum info` tells what is not");
+  throw InvalidMesh(problem_as_solid(facts));
 }
 
 }  // namespace

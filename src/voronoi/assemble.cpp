@@ -142,7 +142,8 @@ class Assembly {
       Place& of_component = places_[first + cells.component_of_event[k]];
       const LineEvent& event = tree_.events[cells.events[k]];
       of_component.start += at_event_[cells.events[k]];
-      if (of_component.parts == 0) of_component.on_wall = at_event_[cells.events[k]];
+      const bool is_first_on_surface = event.crossed() && of_component.surface.empty();
+      if (of_component.parts == 0 || is_first_on_surface) of_component.on_wall = at_event_[cells.events[k]];
       ++of_component.parts;
       add_labels(of_component, event);
     }
@@ -216,7 +217,8 @@ class Assembly {
         Place& of_component = places_[first + square.component[k]];
         const Place& part = places_[first_of_square + k];
         of_component.start += part.start;
-        if (of_component.parts == 0) of_component.on_wall = part.on_wall;
+        const bool is_first_on_surface = !part.surface.empty() && of_component.surface.empty();
+        if (of_component.parts == 0 || is_first_on_surface) of_component.on_wall = part.on_wall;
         ++of_component.parts;
         of_component.rim += part.rim;
         of_component.rims += part.rims;

@@ -54,7 +54,9 @@ class Subdivider {
 
   /// @param cubes  all of one size.
   void divide(int depth, const std::vector<CellId>& cubes) {
-    const bool is_last = depth >= options_.most_depth || is_full();
+    const bool has_room = out_.tree.cubes.size() + 8 * cubes.size() <= options_.most_cubes;
+    const bool is_last = depth >= options_.most_depth || !has_room || is_full();
+    if (!has_room && !cubes.empty()) out_.was_full = true;
     std::vector<CellId> to_test;
     std::vector<CellId> to_split;
     for (const CellId cube : cubes) {

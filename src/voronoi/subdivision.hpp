@@ -37,6 +37,7 @@ struct Subdivision {
   std::vector<CellId> leaves;  ///< cubes that meet the solid and have no children
   std::vector<FailingCube> failing;
   bool passed_at_first = false;  ///< whether none failed before leaves were refined
+  bool was_full = false;         ///< whether there were as many cubes as there may be
   std::size_t splits = 0;        ///< of cubes that did not pass
   LineCounts lines;
   std::size_t contradictions = 0;

@@ -66,18 +66,17 @@ void check_places(const MeshView& mesh) {
 /// The Betti numbers of the solid. @throws InvalidMesh
 BettiNumbers checked_betti(const MeshView& mesh, const SiteTable& table, const Context& context) {
   const Topology facts = topology(mesh, table, context);
-  if (!facts.betti) {
-    throw InvalidMesh(
-        "the mesh bounds no solid: it must be closed, oriented, manifold and face outwards; `blum info` tells what is "
-        "not");
-  }
+  const std::string problem = problem_as_solid(facts);
+  if (!problem.empty() && !(facts.closed && facts.oriented && facts.manifold)) throw InvalidMesh(problem);
   check_places(mesh);
   const SelfIntersections crossings = find_self_intersections(mesh, 1, context);
   if (!crossings.pairs.empty()) {
     throw InvalidMesh("the mesh crosses or touches itself: triangles " +
                       std::to_string(crossings.pairs[0].first.value) + " and " +
-                      std::to_string(crossings.pairs[0].second.value) + ", for one");
+                      std::to_string(crossings.pairs[0].second.value) +
+                      ", for one; resolve_crossings() mends that (blum.Solid in Python)");
   }
+  if (!facts.betti) throw InvalidMesh(problem.empty() ? "the mesh bounds no solid" : problem);
   return *facts.betti;
 }
 
@@ -123,6 +122,7 @@ void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiRep
     report.depth = std::max(report.depth, Lattice::depth + 1 - static_cast<int>(std::bit_width(length)));
   }
   report.splits = cells.splits;
+  report.stopped_at_max_cubes = cells.was_full && !cells.failing.empty();
   if (report.cubes > 0) report.governors = static_cast<double>(cells.governors) / static_cast<double>(report.cubes);
   report.lines = cells.lines.parts;
   report.exact_lines = cells.lines.exact + cells.lines.undecided;
@@ -204,7 +204,8 @@ VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& optio
   try {
     return compute(mesh, options, context);
   } catch (const std::bad_alloc&) {
-    throw OutOfMemory("a Voronoi complex of this mesh needs more memory than there is: allow fewer cubes (max_cubes)");
+    throw OutOfMemory(
+        "a Voronoi complex of this mesh needs more memory than there is: allow fewer cubes (max_cubes, --max-cubes)");
   }
 }
 

@@ -297,6 +297,7 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(parts, tmp_pat
     written = read_npz(out)
     assert written["metadata"]["certified"] == "false"
     count = int(written["metadata"]["failing_cubes"])
+    assert f"NO: {count} cubes" in run("info", out)[0]
     columns = np.load(out)
     edges, sites = columns["edges"], columns["site_0"]
     assert count > 0 and edges.shape == (12 * count, 2) and set(columns["edge_obstacle"]) <= set(range(1, 8))

@@ -1,5 +1,6 @@
 """Proves that the package makes Voronoi complexes as the library does, and what it refuses."""
 
+import json
 import pickle
 
 import numpy as np
@@ -32,6 +33,8 @@ def test_options_and_what_is_refused(box):
     assert coarse.report.cubes < fine.report.cubes and fine.report.certified
     failed = blum.voronoi_complex(blum.generate("gear"), resolution=1, depth=3)
     assert not failed.report.certified and failed.report.failing
+    with pytest.raises(blum.InvalidOption, match="allow_uncertified"):
+        failed.write("never.npz")
     shown = failed.with_failing_cells()
     assert len(shown.edges) == len(shown.edge_columns["obstacle"]) == 12 * len(failed.report.failing)
     assert len(failed.edges) == 0 and np.array_equal(shown.triangles, failed.triangles)
@@ -53,6 +56,14 @@ def test_files(box, tmp_path):
         found.write(tmp_path / f"walls.{extension}")
         assert (tmp_path / f"walls.{extension}").stat().st_size > 1000
     arrays = np.load(tmp_path / "walls.npz")
+    metadata = json.loads(str(arrays["metadata"]))
+    assert metadata["content"] == "Voronoi diagram" and metadata["certified"] == "true"
+    assert float(metadata["hausdorff_bound"]) == found.report.hausdorff_bound
+    failed = blum.voronoi_complex(blum.generate("gear"), resolution=1, depth=3)
+    failed.write(tmp_path / "failed.npz", allow_uncertified=True)
+    arrays_of_failed = np.load(tmp_path / "failed.npz")
+    assert json.loads(str(arrays_of_failed["metadata"]))["failing_cubes"] == str(len(failed.report.failing))
+    assert len(arrays_of_failed["edges"]) == 12 * len(failed.report.failing)
     assert np.array_equal(arrays["triangles"], found.triangles)
 
 

@@ -46,7 +46,8 @@ struct VoronoiOptions {
   int depth = 23;
   /// How many places of the grid are tried at most, 1 to 100: where few cubes fail, others may pass.
   int grids = 4;
-  /// With more cubes than this nothing is split any more, 1,000 to 100,000,000: what does not pass then is reported.
+  /// No more cubes than this, those that are split included, 1,000 to 100,000,000: what does not pass then is reported.
+  /// Each takes about 10 kB.
   std::int64_t max_cubes = 1'000'000;
 };
 
@@ -66,7 +67,8 @@ struct Description<VoronoiOptions> {
       Member{"grids", &VoronoiOptions::grids, "",
              "how many places of the grid are tried at most: where few cubes fail, others may pass",
              Range::between(1, 100)},
-      Member{"max_cubes", &VoronoiOptions::max_cubes, "", "with more cubes nothing is split any more",
+      Member{"max_cubes", &VoronoiOptions::max_cubes, "",
+             "no more cubes than this, those that are split included: about 10 kB each",
              Range::between(1000, 100'000'000)},
   };
 };
@@ -132,6 +134,7 @@ struct VoronoiReport {
   std::size_t undecided_squares = 0;  ///< of these, those whose borders do not tell what is inside
   std::size_t splits = 0;             ///< cubes that were split because they did not pass
   int depth = 0;                      ///< how often the smallest cube was split
+  bool stopped_at_max_cubes = false;  ///< whether more would have been split, but for VoronoiOptions::max_cubes
   double governors = 0;               ///< labels that may be closest in a cube, mean
   std::size_t lines = 0;              ///< parts of grid lines in the solid whose labels were found
   std::size_t exact_lines = 0;        ///< of these, those where doubles did not tell
@@ -165,6 +168,8 @@ struct Description<VoronoiReport> {
              "of these, those whose borders do not tell what is inside"},
       Member{"splits", &VoronoiReport::splits, "", "cubes that were split because they did not pass"},
       Member{"depth", &VoronoiReport::depth, "", "how often the smallest cube was split"},
+      Member{"stopped_at_max_cubes", &VoronoiReport::stopped_at_max_cubes, "",
+             "whether more would have been split, but for max_cubes"},
       Member{"governors", &VoronoiReport::governors, "", "labels that may be closest in a cube, mean"},
       Member{"lines", &VoronoiReport::lines, "", "parts of grid lines in the solid whose labels were found"},
       Member{"exact_lines", &VoronoiReport::exact_lines, "", "of these, those where doubles did not tell"},
