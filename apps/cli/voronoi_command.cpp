@@ -18,6 +18,7 @@
 #include "blum/voronoi/voronoi_complex.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
+#include "blum/voronoi/voronoi_sites.hpp"
 #include "cleaning.hpp"
 #include "commands.hpp"
 #include "common_options.hpp"
@@ -242,14 +243,15 @@ Request parse(const Arguments& a) {
 }
 
 /// The parts of the diagram, where a file of them is asked for. The same that Python's VoronoiComplex.graph() tells.
-std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, const VoronoiComplex& made,
-                                       const Context& context) {
+std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, const MeshView& mesh,
+                                       const VoronoiComplex& made, const Context& context) {
   if (a.medial || !r.axis.graph) return std::nullopt;
   VoronoiGraph graph = voronoi_graph(made.complex, context);
   Json json = {{"content", "graph of a Voronoi diagram"}};
   for (const auto& [name, value] : metadata_of(a, r, made.report)) {
     if (name != "content") json[name] = value;
   }
+  json["sites"] = to_json(voronoi_sites(mesh, context));
   json.update(to_json(graph));
   AtomicFile file(*r.axis.graph);
   file.write(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -295,7 +297,7 @@ void run(const Arguments& a) {
   bool is_written = a.output && may_write;
   std::optional<VoronoiAxis> axis;
   std::optional<VoronoiGraph> graph;
-  if (may_write) graph = make_graph(a, r, made, context);
+  if (may_write) graph = make_graph(a, r, input.mesh.mesh, made, context);
   if (graph) phases.push_back({"graph", watch.lap()});
   if (is_written && a.medial) {
     axis = make_voronoi_axis(made.complex, input, r.axis, source_of(a), a.cleaned ? std::nullopt : r.weld, *a.output,
@@ -323,6 +325,7 @@ void run(const Arguments& a) {
   facts["certified"] = mismatches.empty();
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
+  facts["sites"] = to_json(voronoi_sites(input.mesh.mesh, context));
   facts["regions"] = r.options.part == VoronoiPart::all ? to_json(voronoi_regions(made.complex)) : Json(nullptr);
   facts["graph"] =
       graph

@@ -15,6 +15,7 @@
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
+#include "blum/voronoi/voronoi_sites.hpp"
 #include "call.hpp"
 #include "structs.hpp"
 
@@ -44,6 +45,15 @@ void bind_voronoi(nb::module_& m) {
         return out;
       },
       nb::arg("complex"));
+  bind_struct<VoronoiSite>(m);
+  m.def(
+      "voronoi_sites",
+      [](const MeshArrays& mesh) {
+        nb::list out;
+        for (const VoronoiSite& site : voronoi_sites(mesh.view())) out.append(to_python(site));
+        return out;
+      },
+      nb::arg("mesh"));
   bind_struct<VoronoiWall>(m);
   bind_struct<VoronoiSeam>(m);
   bind_struct<VoronoiJunction>(m);

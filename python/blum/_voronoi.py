@@ -16,7 +16,7 @@ from ._medial_complex import EVERYTHING, MedialComplex, Origin
 from ._mesh import Mesh, as_mesh
 from ._options import takes
 from ._progress import Progress, reporting
-from ._structs import VoronoiGraph, VoronoiOptions, VoronoiRegion, VoronoiReport
+from ._structs import VoronoiGraph, VoronoiOptions, VoronoiRegion, VoronoiReport, VoronoiSite
 
 # A class that has a member `_core` cannot name the module in its annotations.
 _CoreComplex = _core.Complex
@@ -64,6 +64,18 @@ class VoronoiComplex(Complex):
     def separation_angle(self) -> FloatArray:
         """(n,): the angle between the footprints of each vertex, degrees."""
         found: FloatArray = self.vertex_columns["separation_angle"]
+        return found
+
+    def sites(self) -> list[VoronoiSite]:
+        """What each number of `triangle_sites` and of regions is of the mesh, each with `kind` ("face", "edge" or
+        "vertex"), `triangles` (of a face) and `vertices` (of an edge or a vertex).
+
+        >>> import blum
+        >>> found = blum.voronoi_complex(blum.generate("box")).sites()
+        >>> len(found), found[0].kind, len(found[0].triangles)
+        (6, 'face', 2)
+        """
+        found: list[VoronoiSite] = _core.voronoi_sites(self._mesh._arrays)
         return found
 
     def regions(self) -> list[VoronoiRegion]:

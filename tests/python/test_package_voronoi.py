@@ -99,6 +99,22 @@ def test_medial_axes(tmp_path):
         found.medial_axis(200)
 
 
+def test_sites():
+    """A bracket's faces lie in one plane each; its sites are as many as the report says."""
+    mesh = blum.generate("bracket")
+    found = blum.voronoi_complex(mesh)
+    sites = found.sites()
+    kinds = [site.kind for site in sites]
+    report = found.report
+    assert kinds == ["face"] * report.faces + ["edge"] * report.reflex_edges + ["vertex"] * report.reflex_vertices
+    assert sorted(t for site in sites for t in site.triangles) == list(range(len(mesh.triangles)))
+    for site in sites[: report.faces]:
+        corners = mesh.vertices[mesh.triangles[list(site.triangles)]].reshape(-1, 3)
+        assert np.linalg.svd(corners - corners.mean(axis=0))[1][2] < 1e-9
+    assert all(len(site.vertices) == 2 for site in sites if site.kind == "edge")
+    assert [region.site for region in found.regions()][-1] < len(sites)
+
+
 def test_graphs(box):
     found = blum.voronoi_complex(blum.Mesh(box.vertices * [1, 2, 3], box.triangles))
     graph = found.graph()
