@@ -37,7 +37,7 @@ struct Arguments {
 void run(const Arguments& a) {
   const fs::path path = a.input;
   const fs::path output = a.output;
-  check_extension("--output", output, file_extensions(FileContent::mesh, FileAccess::write));
+  check_extension("--output", output, file_extensions(FileContent::mesh, FileAccess::both));
   const double tolerance = parse_positive("--tolerance", a.tolerance);
   const std::optional<double> weld = parse_weld(a.weld);
   const int threads = parse_threads(a.threads);
@@ -57,6 +57,7 @@ void run(const Arguments& a) {
   phases.push_back({"clean", watch.lap()});
   write_mesh(output, cleaned.mesh);
   phases.push_back({"write", watch.lap()});
+  add_rounding_warning(output, cleaned.mesh, warnings);
   progress.clear();
   const PhaseSummary spent = summarize(phases);
   Json facts = {{"input", input.json}};
@@ -78,7 +79,7 @@ void add_clean_command(const CommandLine& line) {
   CLI::App* command = line.app.add_subcommand(
       "clean", "A closed mesh without needles and needless vertices, within a tolerance that is certain");
   command->add_option("INPUT", a->input, extensions_help({FileContent::mesh}, FileAccess::read))->required();
-  command->add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::write))
+  command->add_option("-o,--output", a->output, extensions_help({FileContent::mesh}, FileAccess::both))
       ->required()
       ->type_name("FILE");
   command

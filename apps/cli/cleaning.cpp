@@ -1,5 +1,6 @@
 #include "cleaning.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -40,6 +41,18 @@ Json cleaning_json(const CleanReport& done, double tolerance) {
   Json out = {{"tolerance", tolerance}};
   out.update(to_json(done));
   return out;
+}
+
+void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh,
+                          std::vector<std::string>& warnings) {
+  if (file.extension() != ".stl") return;
+  const auto is_single = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
+  const bool is_kept = std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                                   [&](const Vec3d& p) { return is_single(p.x) && is_single(p.y) && is_single(p.z); });
+  if (is_kept) return;
+  warnings.push_back("'" + file.string() +
+                     "' holds coordinates in single precision, so that what was checked need not hold of it: write "
+                     ".ply, .obj or .off");
 }
 
 }  // namespace blum::cli

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "blum/core/context.hpp"
 #include "blum/solid/clean_mesh.hpp"
@@ -20,5 +22,9 @@ void add_cleaning(const CleanReport& done, double tolerance, TextTable& table);
 
 /// The same as JSON.
 [[nodiscard]] Json cleaning_json(const CleanReport& done, double tolerance);
+
+/// Warns where a file that holds single precision does not hold a mesh as it was checked.
+void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh,
+                          std::vector<std::string>& warnings);
 
 }  // namespace blum::cli

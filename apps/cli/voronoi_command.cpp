@@ -226,7 +226,7 @@ Request parse(const Arguments& a) {
   }
   if (a.cleaned) {
     if (!a.clean) throw UsageError("--cleaned is for what --clean makes: give a tolerance");
-    check_extension("--cleaned", *a.cleaned, file_extensions(FileContent::mesh, FileAccess::write));
+    check_extension("--cleaned", *a.cleaned, file_extensions(FileContent::mesh, FileAccess::both));
     outputs.emplace_back(*a.cleaned);
   } else if (a.clean && a.medial && a.output) {
     throw UsageError("a medial axis is verified against the mesh that it is of: give --cleaned FILE for that, too");
@@ -287,6 +287,7 @@ void run(const Arguments& a) {
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const std::optional<CleanReport> cleaning = clean(a, r, input, context);
   if (cleaning) phases.push_back({"clean", watch.lap()});
+  if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
   VoronoiComplex made = compute(path, input.mesh.mesh, r.options, context);
   const VoronoiReport& found = made.report;
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
@@ -350,7 +351,10 @@ void run(const Arguments& a) {
   table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(a.report, json, input.text + table.text());
   if (!a.report.quiet) warn(warnings);
-  if (!mismatches.empty()) throw NotCertified(mismatches, is_written || !a.output ? "" : "; nothing was written");
+  if (!mismatches.empty())
+    throw NotCertified(mismatches, is_written || !a.output ? ""
+                                   : a.cleaned             ? "; of it nothing was written"
+                                                           : "; nothing was written");
 }
 
 }  // namespace

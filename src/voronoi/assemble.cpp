@@ -42,7 +42,11 @@ class Assembly {
 
   Assembled assembled() {
     make_triangles();
-    return {finish(), largest_diagonal_};
+    std::vector<FailingCube> lost;
+    for (std::size_t k = 0; k < cubes_.size(); ++k) {
+      if (cubes_[k].obstacle != VoronoiObstacle::none) lost.push_back({leaves_[k], cubes_[k].obstacle});
+    }
+    return {finish(), largest_diagonal_, std::move(lost)};
   }
 
   /// Walls lie in the solid, but their triangles may cut corners: where they cross the surface, cubes are too large.

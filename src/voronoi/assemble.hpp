@@ -14,7 +14,8 @@ namespace blum::voronoi {
 
 struct Assembled {
   Complex complex;
-  double largest_diagonal = 0;  ///< of cubes with a component, mesh units
+  double largest_diagonal = 0;    ///< of cubes with a component, mesh units
+  std::vector<FailingCube> lost;  ///< cubes that passed before, and do not: none, unless that was decided too early
 };
 
 /// A vertex for each component in a cube that passes, in a square without children and on a grid edge; a triangle for

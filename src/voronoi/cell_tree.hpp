@@ -100,6 +100,7 @@ struct GridCube {
   std::vector<LabelIndex> governors;
   std::vector<std::uint32_t> triangles;  ///< that may meet it
   std::size_t governors_of_parent = 0;
+  std::uint32_t tested_squares = 0;  ///< how many squares without children it had when it was tested
 
   /// The corner opposite to `low`.
   [[nodiscard]] Node high() const { return {low[0] + length, low[1] + length, low[2] + length}; }

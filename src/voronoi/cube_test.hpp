@@ -43,6 +43,12 @@ struct CubeCells {
   std::vector<std::uint32_t> vertices;  ///< of the mesh in the cube, where a part is asked for
 };
 
+/// A cube that does not pass, at the largest depth.
+struct FailingCube {
+  CellId cube = no_cell;
+  VoronoiObstacle obstacle = VoronoiObstacle::none;
+};
+
 /// Numbers components in a cube by the sets of which those in its squares are.
 class CubeNumbers {
  public:

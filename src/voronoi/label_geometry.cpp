@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "blum/geometry/closest_point.hpp"
 #include "voronoi/dual_cone.hpp"
@@ -95,6 +96,7 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
   add_vertices(mesh, table, sites, edges);
   for (LabelIndex k = 0; k < labels_.size(); ++k) labels_[k].site = labels.site_of(labels.all()[k]);
   add_neighbours(table, sites);
+  add_labels_at(table.vertex_count());
   for (std::uint32_t k = 0; k < bisectors_.size(); ++k) {
     if (bisectors_[k].other == outside) continue;
     convex_pairs_.push_back({labels_[k / 3].site, labels_[bisectors_[k].other].site, k});
@@ -120,6 +122,7 @@ void LabelGeometry::add_triangles(const MeshView& mesh, const SiteTable& table, 
     label.last_plane = static_cast<std::uint32_t>(planes_.size());
     labels_.push_back(label);
     corners_.push_back({p[0] - centre_, p[1] - centre_, p[2] - centre_});
+    vertices_.push_back(mesh.triangles[t]);
   }
   add_bisectors(sites);
 }
@@ -232,6 +235,7 @@ void LabelGeometry::add_edges(const MeshView& mesh, const SiteTable& table, cons
     label.last_plane = static_cast<std::uint32_t>(planes_.size());
     labels_.push_back(label);
     corners_.push_back({p[0] - centre_, p[1] - centre_, {}});
+    vertices_.push_back({ends[0], ends[1], 0});
   }
 }
 
@@ -249,6 +253,20 @@ void LabelGeometry::add_vertices(const MeshView& mesh, const SiteTable& table, c
     label.last_plane = static_cast<std::uint32_t>(planes_.size());
     labels_.push_back(label);
     corners_.push_back({at - centre_, {}, {}});
+    vertices_.push_back({v, 0, 0});
+  }
+}
+
+void LabelGeometry::add_labels_at(std::size_t vertex_count) {
+  first_at_.assign(vertex_count + 1, 0);
+  for (LabelIndex k = 0; k < labels_.size(); ++k) {
+    for (const std::uint32_t v : vertices(k)) ++first_at_[v + std::size_t{1}];
+  }
+  std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
+  labels_at_.resize(first_at_.back());
+  std::vector<std::uint32_t> next(first_at_.begin(), first_at_.end() - 1);
+  for (LabelIndex k = 0; k < labels_.size(); ++k) {
+    for (const std::uint32_t v : vertices(k)) labels_at_[next[v]++] = k;
   }
 }
 

@@ -170,6 +170,14 @@ class LabelGeometry {
   /// A corner that two labels have in common.
   [[nodiscard]] std::optional<Vec3d> common_corner(LabelIndex a, LabelIndex b) const;
   [[nodiscard]] bool has_corner(LabelIndex label, const Vec3d& corner) const;
+  /// The vertices of the mesh that are a label's corners, as corners() lists them.
+  [[nodiscard]] std::span<const std::uint32_t> vertices(LabelIndex label) const {
+    return std::span(vertices_[label]).first(corners(label).size());
+  }
+  /// All labels that have a vertex of the mesh for a corner, rising.
+  [[nodiscard]] std::span<const LabelIndex> labels_at(std::uint32_t v) const {
+    return std::span(labels_at_).subspan(first_at_[v], first_at_[v + 1] - first_at_[v]);
+  }
   /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
   /// only at planes of their domains.
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
@@ -197,6 +205,7 @@ class LabelGeometry {
   void add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
                     const EdgesOfVertices& edges);
   void add_bisectors(const PolyhedronSites& sites);
+  void add_labels_at(std::size_t vertex_count);
   void add_neighbours(const SiteTable& table, const PolyhedronSites& sites);
 
   Box3 box_;
@@ -206,6 +215,9 @@ class LabelGeometry {
   std::vector<PlacedLabel> labels_;
   std::vector<DomainPlane> planes_;
   std::vector<std::array<Vec3d, 3>> corners_;
+  std::vector<std::array<std::uint32_t, 3>> vertices_;
+  std::vector<std::uint32_t> first_at_;  ///< of each vertex, in labels_at_
+  std::vector<LabelIndex> labels_at_;
   std::vector<LabelIndex> thin_vertices_, unseen_vertices_;  ///< rising
   std::vector<Bisector> bisectors_;                          ///< three for each triangle
   using ConvexPair = std::array<std::uint32_t, 3>;

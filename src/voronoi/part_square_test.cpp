@@ -86,6 +86,7 @@ PartSquareTest::Answer PartSquareTest::have_wall(std::uint32_t low, std::uint32_
   std::size_t facet = 0;
   if (vertex) {
     corner = &rule_.corner(*vertex);
+    if (corner->is_thin) return Answer::unknown;  // its region has no runs but next to nodes in it, which contradict
     while (facet < corner->edges.size() && corner->edges[facet] != edge) ++facet;
     if (facet == corner->edges.size()) return Answer::no;
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "voronoi/governors.hpp"
+#include "voronoi/square_cells.hpp"
 #include "voronoi/surface_chains.hpp"
 
 namespace blum::voronoi {
@@ -76,19 +77,69 @@ bool SquareTest::resolve(GridSquare& square) const {
   sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
   const Polygon whole = polygon(square);
   std::vector<LabelIndex> present;
+  bool is_any_doubtful = false;
   for (const LabelIndex label : square.governors) {
     // Thin regions are part of walls, wherever they are.
     if (labels_.is_thin(label) || std::binary_search(sites.begin(), sites.end(), labels_[label].site)) {
       present.push_back(label);
       continue;
     }
-    if (!is_absent(label, square.governors, whole)) return false;
+    if (is_absent(label, square.governors, whole)) continue;
+    if (labels_[label].kind == SiteKind::vertex) return false;
+    present.push_back(label);
+    is_any_doubtful = true;
   }
-  const bool all_star_shaped = std::all_of(
-      sites.begin(), sites.end(), [&](std::uint32_t site) { return is_star_shaped(site, arcs, present, whole); });
-  if (!all_star_shaped) return false;
+  // Over one vertex all may be known at once.
+  const bool may_be_cone = square.chains.empty() && is_over_one_vertex(present, whole);
+  if (is_any_doubtful && !may_be_cone) return false;
+  for (const std::uint32_t site : sites) {
+    if (is_star_shaped(site, arcs, present, whole)) continue;
+    if (!may_be_cone || !has_one_run(site, square)) return false;
+  }
   square.state = SquareState::resolved;
   return true;
+}
+
+/// Whether all labels have one vertex for a corner, and feet in a square lie so near to it that the diagram there is
+/// that of the sectors and rays of which they are parts: a cone about the vertex. In it the region of a face or an edge
+/// retracts along ways to footprints to that sector or ray. So where the square does not meet the surface, none of
+/// these has a component strictly inside. (The region of the vertex itself may lie there.)
+bool SquareTest::is_over_one_vertex(std::span<const LabelIndex> present, const Polygon& whole) const {
+  if (present.empty()) return false;
+  const std::span<const std::uint32_t> corners = labels_.vertices(present.front());
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+    const auto has_v = [&](LabelIndex label) {
+      const std::span<const std::uint32_t> own = labels_.vertices(label);
+      return std::find(own.begin(), own.end(), v) != own.end();
+    };
+    const std::span<const LabelIndex> around = labels_.labels_at(v);
+    return std::all_of(present.begin(), present.end(), has_v) &&
+           std::all_of(around.begin(), around.end(), [&](LabelIndex label) { return is_near_corner(label, v, whole); });
+  });
+}
+
+/// Whether feet of a square on a label's plane or line are nearer to a corner of it than its other end or side.
+bool SquareTest::is_near_corner(LabelIndex label, std::uint32_t v, const Polygon& whole) const {
+  const std::span<const Vec3d> corners = labels_.corners(label);
+  if (corners.size() == 1) return true;
+  const std::span<const std::uint32_t> own = labels_.vertices(label);
+  const auto k = static_cast<std::size_t>(std::find(own.begin(), own.end(), v) - own.begin());
+  const Vec3d& at = corners[k];
+  double reach = length(corners[(k + 1) % corners.size()] - at);
+  if (corners.size() == 3) {
+    const Vec3d side = corners[(k + 2) % 3] - corners[(k + 1) % 3];
+    reach = length(cross(corners[(k + 1) % 3] - at, side)) / length(side);
+  }
+  const double margin = 64 * labels_.rounding();
+  return std::all_of(whole.begin(), whole.end(),
+                     [&](const Vec3d& q) { return length(labels_[label].foot(q) - at) + margin < reach * (1 - 1e-9); });
+}
+
+/// Whether a site has one run alone on a square's border.
+bool SquareTest::has_one_run(std::uint32_t site, const GridSquare& square) const {
+  const SquareCells cells = square_cells(tree_, labels_, square);
+  const auto is_own = [&](const SquareCells::Run& run) { return labels_.site_of(run.label) == site; };
+  return std::count_if(cells.runs.begin(), cells.runs.end(), is_own) == 1;
 }
 
 /// Whether a label is closest nowhere in a square, or next to a point over a corner of it alone, where it has no

@@ -50,6 +50,9 @@ class SquareTest {
   };
 
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const;
+  [[nodiscard]] bool is_over_one_vertex(std::span<const LabelIndex> present, const Polygon& whole) const;
+  [[nodiscard]] bool is_near_corner(LabelIndex label, std::uint32_t v, const Polygon& whole) const;
+  [[nodiscard]] bool has_one_run(std::uint32_t site, const GridSquare& square) const;
   [[nodiscard]] std::vector<BorderArc> border(const GridSquare& square) const;
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part,

@@ -26,7 +26,7 @@ class Subdivider {
   void run(const Refine& refine) {
     splitter_.add_root(options_.grid);
     waiting_[0] = {0};
-    divide();
+    divide_all();
     out_.passed_at_first = out_.failing.empty();
     constexpr int most_rounds = 6;
     std::size_t seen = 0;
@@ -35,7 +35,7 @@ class Subdivider {
       if (cubes.empty()) break;
       split_leaves(cubes);
       seen = out_.leaves.size();
-      divide();
+      if (divide_all()) seen = 0;
     }
     out_.lines = splitter_.counts();
     out_.contradictions = splitter_.contradictions();
@@ -43,6 +43,30 @@ class Subdivider {
   }
 
  private:
+  [[nodiscard]] std::uint32_t count_squares(const GridCube& cube) const {
+    std::uint32_t count = 0;
+    for (const CellId square : cube.squares) out_.tree.visit_leaf_squares(square, [&](CellId) { ++count; });
+    return count;
+  }
+
+  /// Divides the cubes that wait. What passes may have its squares split for a neighbour afterwards, which tells more
+  /// of its boundary: it is tested again. Returns whether that was so.
+  bool divide_all() {
+    divide();
+    for (bool is_any = false;; is_any = true) {
+      std::vector<CellId> changed;
+      for (const CellId leaf : out_.leaves) {
+        const GridCube& cube = out_.tree.cubes[leaf];
+        if (cube.state == CubeState::passed && count_squares(cube) != cube.tested_squares) changed.push_back(leaf);
+      }
+      if (changed.empty()) return is_any;
+      std::sort(changed.begin(), changed.end());
+      std::erase_if(out_.leaves, [&](CellId leaf) { return std::binary_search(changed.begin(), changed.end(), leaf); });
+      for (const CellId cube : changed) waiting_[depth_of(cube)].push_back(cube);
+      divide();
+    }
+  }
+
   /// Divides the cubes that wait, the largest first.
   void divide() {
     while (!waiting_.empty()) {
@@ -168,6 +192,7 @@ class Subdivider {
     for (std::size_t k = 0; k < cubes.size(); ++k) {
       GridCube& cube = out_.tree.cubes[cubes[k]];
       cube.state = obstacles[k] == VoronoiObstacle::none ? CubeState::passed : CubeState::failed;
+      cube.tested_squares = count_squares(cube);
       if (cube.state == CubeState::failed) {
         if (!is_last) {
           ++out_.splits;

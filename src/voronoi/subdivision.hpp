@@ -23,12 +23,6 @@ struct SubdivisionOptions {
   std::size_t most_cubes = 1'000'000;  ///< with more of them nothing is split any more
 };
 
-/// A cube that does not pass, at the largest depth.
-struct FailingCube {
-  CellId cube = no_cell;
-  VoronoiObstacle obstacle = VoronoiObstacle::none;
-};
-
 struct Subdivision {
   /// With more lines or nodes that are not certain nothing is split any more: the place of the grid is a bad one.
   static constexpr std::size_t most_undecided = 200;

@@ -109,6 +109,13 @@ bool may_pass_elsewhere(const Subdivision& cells) {
                        cells.lines.undecided + cells.contradictions > Subdivision::most_undecided);
 }
 
+void add_failing(std::span<const FailingCube> all, const CellTree& tree, VoronoiReport& report) {
+  for (const FailingCube& failing : all) {
+    const GridCube& cube = tree.cubes[failing.cube];
+    report.failing.push_back({tree.lattice.at(cube.low), tree.lattice.at(cube.high()), failing.obstacle});
+  }
+}
+
 void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiReport& report) {
   report.thin_vertices = labels.thin_vertices().size();
   report.cubes = cells.leaves.size();
@@ -128,10 +135,7 @@ void add_facts(const Subdivision& cells, const LabelGeometry& labels, VoronoiRep
   report.exact_lines = cells.lines.exact + cells.lines.undecided;
   report.undecided_lines = cells.lines.undecided;
   report.contradictions = cells.contradictions;
-  for (const FailingCube& failing : cells.failing) {
-    const GridCube& cube = cells.tree.cubes[failing.cube];
-    report.failing.push_back({cells.tree.lattice.at(cube.low), cells.tree.lattice.at(cube.high()), failing.obstacle});
-  }
+  add_failing(cells.failing, cells.tree, report);
 }
 
 /// Of the part that is asked for (docs/theory/voronoi.md). @param solid  Betti numbers.
@@ -187,6 +191,7 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   Assembled made = assemble(cells.tree, cells.leaves, CubeTest(sited, surface, cells.tree), sited, context);
   out.complex = std::move(made.complex);
   report.hausdorff_bound = made.largest_diagonal;
+  add_failing(made.lost, cells.tree, report);
   timer.lap("complex");
   report.found = homology(out.complex.view(), context);
   report.expected = expected_betti(sited, solid);

@@ -202,6 +202,54 @@ TEST(VoronoiComplex, OfShallowDentsOnAFineGrid) {
   EXPECT_EQ(report.thin_vertices, 7U);
 }
 
+/// Sides of many triangles, turned and rounded to 32 bits, as in .stl files: faces, edges and vertices that are bent by
+/// 1e-7 meet in lines over the vertices, of which each square knows enough by its border.
+TEST(VoronoiComplex, OfManyTrianglesInSinglePrecision) {
+  TriangleMesh mesh = test::turned(dented_box(6, 0, false, 1));
+  for (Vec3d& p : mesh.vertices) {
+    for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = static_cast<double>(static_cast<float>(p[axis]));
+  }
+  for (const VoronoiPart part : {VoronoiPart::all, VoronoiPart::walls, VoronoiPart::medial_axis}) {
+    const VoronoiReport report = voronoi_complex(mesh, {.part = part, .resolution = 1}).report;
+    expect_certified(report);
+    EXPECT_GT(report.faces, 200U);
+    EXPECT_LT(report.cubes, 20000U);
+  }
+}
+
+/// A cube may pass before a square of it is split for a neighbour. Here it did not pass any more with what that told,
+/// and the medial axis had two holes.
+TEST(VoronoiComplex, TestsCubesAgainWhoseSquaresAreSplit) {
+  const TriangleMesh mesh{{{-0.222702465, -1.480812526, 0.087165795},
+                           {-1.446244102, 0.390766112, 0.075364739},
+                           {1.143270779, -0.060162025, -0.969181359},
+                           {1.446244102, -0.390766112, -0.075364739},
+                           {-1.143270779, 0.060162025, 0.969181359},
+                           {-0.284959487, 0.450322214, 0.07018292},
+                           {0.363221234, -0.942334058, 0.087728284},
+                           {0.363090195, -0.942411033, 0.087744236},
+                           {0.362860048, -0.942443194, 0.087810352}},
+                          {{0, 1, 2},
+                           {0, 2, 3},
+                           {2, 1, 4},
+                           {2, 4, 5},
+                           {1, 0, 4},
+                           {0, 3, 6},
+                           {3, 4, 6},
+                           {0, 6, 7},
+                           {6, 4, 7},
+                           {0, 7, 8},
+                           {7, 4, 8},
+                           {8, 4, 0},
+                           {4, 3, 5},
+                           {3, 2, 5}},
+                          {},
+                          {}};
+  for (const int resolution : {1, 8}) {
+    expect_certified(voronoi_complex(mesh, {.part = VoronoiPart::medial_axis, .resolution = resolution}).report);
+  }
+}
+
 /// The first corner of each triangle lies on a grid edge, on the wall exactly but for rounding: it is as far from the
 /// surface as its radius says.
 TEST(VoronoiComplex, CrossesGridLinesOnWalls) {
