@@ -32,7 +32,7 @@ class Subdivider {
     std::size_t seen = 0;
     for (int round = 0; round < most_rounds && out_.failing.empty() && !is_full(); ++round) {
       const std::vector<CellId> cubes = refine(out_.tree, std::span(out_.leaves).subspan(seen));
-      if (cubes.empty()) break;
+      if (cubes.empty() || out_.tree.cubes.size() + 8 * cubes.size() > options_.most_cubes) break;
       split_leaves(cubes);
       seen = out_.leaves.size();
       if (divide_all()) seen = 0;
@@ -78,18 +78,25 @@ class Subdivider {
 
   /// @param cubes  all of one size.
   void divide(int depth, const std::vector<CellId>& cubes) {
-    const bool has_room = out_.tree.cubes.size() + 8 * cubes.size() <= options_.most_cubes;
-    const bool is_last = depth >= options_.most_depth || !has_room || is_full();
-    if (!has_room && !cubes.empty()) out_.was_full = true;
+    const bool is_last = depth >= options_.most_depth || is_full();
     std::vector<CellId> to_test;
     std::vector<CellId> to_split;
     for (const CellId cube : cubes) {
       (!is_last && is_crowded(out_.tree.cubes[cube], depth) ? to_split : to_test).push_back(cube);
     }
     resolve_squares(to_test);
+    const std::size_t splits = out_.splits;
     test(to_test, is_last, to_split);
     std::sort(to_split.begin(), to_split.end());
-    split(depth, to_split);
+    if (out_.tree.cubes.size() + 8 * to_split.size() <= options_.most_cubes) {
+      split(depth, to_split);
+      return;
+    }
+    out_.was_full = true;
+    out_.splits = splits;
+    resolve_squares(to_split);
+    std::vector<CellId> none;
+    test(to_split, true, none);
   }
 
   void split(int depth, const std::vector<CellId>& cubes) {
@@ -144,8 +151,7 @@ class Subdivider {
   /// Whether there are so many cells, or so many that are not certain, that no more are made.
   [[nodiscard]] bool is_full() const {
     constexpr std::size_t squares_per_cube = 16;
-    return out_.tree.cubes.size() > options_.most_cubes ||
-           out_.tree.squares.size() > squares_per_cube * options_.most_cubes ||
+    return out_.tree.squares.size() > squares_per_cube * options_.most_cubes ||
            splitter_.counts().undecided + splitter_.contradictions() > Subdivision::most_undecided;
   }
 
