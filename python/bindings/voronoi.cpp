@@ -61,9 +61,7 @@ void bind_voronoi(nb::module_& m) {
   m.def(
       "voronoi_graph",
       [](const Complex& complex) {
-        VoronoiGraph graph;
-        run_call({0, nb::none()}, [&](const Context& context) { graph = voronoi_graph(complex, context); });
-        return to_python(graph);
+        return result_of(run({0, nb::none()}, [&](const Context& context) { return voronoi_graph(complex, context); }));
       },
       nb::arg("complex"));
   using Cell = std::tuple<std::array<double, 3>, std::array<double, 3>, std::string>;

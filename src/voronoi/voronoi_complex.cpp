@@ -63,9 +63,9 @@ void check_places(const MeshView& mesh) {
   }
 }
 
-/// The Betti numbers of the solid. @throws InvalidMesh
-BettiNumbers checked_betti(const MeshView& mesh, const SiteTable& table, const Context& context) {
-  const Topology facts = topology(mesh, table, context);
+/// What the solid is, with its Betti numbers. @throws InvalidMesh
+Topology checked_solid(const MeshView& mesh, const SiteTable& table, const Context& context) {
+  Topology facts = topology(mesh, table, context);
   const std::string problem = problem_as_solid(facts);
   if (!problem.empty() && !(facts.closed && facts.oriented && facts.manifold)) throw InvalidMesh(problem);
   check_places(mesh);
@@ -77,7 +77,7 @@ BettiNumbers checked_betti(const MeshView& mesh, const SiteTable& table, const C
                       ", for one; resolve_crossings() mends that (blum.Solid in Python)");
   }
   if (!facts.betti) throw InvalidMesh(problem.empty() ? "the mesh bounds no solid" : problem);
-  return *facts.betti;
+  return facts;
 }
 
 /// How often a cube is split at least, so that its side is that of the box over the resolution, and its diagonal at
@@ -93,6 +93,20 @@ int least_depth(const VoronoiOptions& options, const Box3& box) {
   if (depth <= most) return depth;
   throw InvalidOption("Voronoi complex: a tolerance of " + exact_text(*options.tolerance) +
                       " is below a 2,000th of the box around the mesh");
+}
+
+/// Refuses what can not end well: with the surface, cubes of the size that is asked for fill the solid.
+/// @throws InvalidOption
+void check_count(const VoronoiOptions& options, int least_depth, const Box3& box, double volume) {
+  if (options.part != VoronoiPart::all) return;
+  const Vec3d size = box.size();
+  const double side = std::ldexp(CellSplitter::side_of_root * std::max({size.x, size.y, size.z}), -least_depth);
+  const double least = volume / (side * side * side);
+  if (least <= static_cast<double>(options.max_cubes)) return;
+  throw InvalidOption("Voronoi complex: the resolution or tolerance asks for at least " +
+                      std::to_string(static_cast<std::int64_t>(std::min(least, 1e18))) +
+                      " cubes, more than there may be (max_cubes, --max-cubes " + std::to_string(options.max_cubes) +
+                      "): a coarser one, walls alone, or more cubes");
 }
 
 /// What keeps an octree from passing.
@@ -156,7 +170,8 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   VoronoiReport& report = out.report;
   PhaseTimer timer(report.phases);
   const SiteTable table(mesh, context);
-  const BettiNumbers solid = checked_betti(mesh, table, context);
+  const Topology facts = checked_solid(mesh, table, context);
+  const BettiNumbers& solid = *facts.betti;
   timer.lap("checks");
   const VoronoiSolid sited(mesh, table, options.part, context);
   report.faces = sited.sites.face_count;
@@ -165,6 +180,7 @@ VoronoiComplex compute(const MeshView& mesh, const VoronoiOptions& options, cons
   timer.lap("sites");
   SubdivisionOptions how;
   how.least_depth = least_depth(options, sited.labels.box());
+  check_count(options, how.least_depth, sited.labels.box(), facts.signed_volume);
   how.most_depth = std::max(options.depth, how.least_depth);
   how.most_cubes = static_cast<std::size_t>(options.max_cubes);
   const auto divide = [&](int grid) {

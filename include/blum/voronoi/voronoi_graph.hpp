@@ -29,7 +29,7 @@ struct Description<VoronoiWall> {
   static constexpr std::tuple members{
       Member{"site_a", &VoronoiWall::site_a, "", "the region on one side: the smaller site"},
       Member{"site_b", &VoronoiWall::site_b, "", "the region on the other"},
-      Member{"area", &VoronoiWall::area, "square mesh units", ""},
+      Member{"area", &VoronoiWall::area, "square mesh units", "of its triangles"},
       Member{"seams", &VoronoiWall::seams, "", "along its border: places in the list of seams"},
   };
 };
@@ -48,7 +48,7 @@ struct Description<VoronoiSeam> {
   static constexpr std::string_view doc = "A line in which regions of three or more sites meet";
   static constexpr std::tuple members{
       Member{"sites", &VoronoiSeam::sites, "", "of the regions around it"},
-      Member{"length", &VoronoiSeam::length, "mesh units", ""},
+      Member{"length", &VoronoiSeam::length, "mesh units", "of its edges"},
       Member{"walls", &VoronoiSeam::walls, "", "that meet in it: places in the list of walls"},
       Member{"junctions", &VoronoiSeam::junctions, "", "at which it ends: places in the list of junctions"},
   };
@@ -68,7 +68,7 @@ struct Description<VoronoiJunction> {
   static constexpr std::string_view doc = "A point in which seams meet, or one ends";
   static constexpr std::tuple members{
       Member{"vertex", &VoronoiJunction::vertex, "", "of the complex"},
-      Member{"position", &VoronoiJunction::position, "mesh units", ""},
+      Member{"position", &VoronoiJunction::position, "mesh units", "of that vertex: near the point, in a cube at it"},
       Member{"sites", &VoronoiJunction::sites, "", "of the regions around it"},
       Member{"seams", &VoronoiJunction::seams, "", "that begin or end there: places in the list of seams"},
   };
