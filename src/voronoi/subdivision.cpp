@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "blum/core/parallel.hpp"
 
@@ -94,9 +95,10 @@ class Subdivider {
     }
     out_.was_full = true;
     out_.splits = splits;
-    resolve_squares(to_split);
+    const std::vector<CellId> last = std::move(to_split);
+    resolve_squares(last);
     std::vector<CellId> none;
-    test(to_split, true, none);
+    test(last, true, none);
   }
 
   void split(int depth, const std::vector<CellId>& cubes) {
