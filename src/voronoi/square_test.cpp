@@ -87,14 +87,19 @@ bool SquareTest::resolve(GridSquare& square) const {
     if (is_absent(label, square.governors, whole)) continue;
     if (labels_[label].kind == SiteKind::vertex) return false;
     present.push_back(label);
+    if (!square.chains.empty() || !is_over_one_vertex(present, whole)) return false;
     is_any_doubtful = true;
   }
   // Over one vertex all may be known at once.
-  const bool may_be_cone = square.chains.empty() && is_over_one_vertex(present, whole);
-  if (is_any_doubtful && !may_be_cone) return false;
+  std::optional<bool> is_cone;
+  const auto is_all_over_one_vertex = [&] {
+    if (!is_cone) is_cone = square.chains.empty() && is_over_one_vertex(present, whole);
+    return *is_cone;
+  };
+  if (is_any_doubtful && !is_all_over_one_vertex()) return false;
   for (const std::uint32_t site : sites) {
     if (is_star_shaped(site, arcs, present, whole)) continue;
-    if (!may_be_cone || !has_one_run(site, square)) return false;
+    if (!is_all_over_one_vertex() || !has_one_run(site, square)) return false;
   }
   square.state = SquareState::resolved;
   return true;

@@ -1,6 +1,7 @@
 #include "voronoi/subdivision.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -30,13 +31,17 @@ class Subdivider {
     divide_all();
     out_.passed_at_first = out_.failing.empty();
     constexpr int most_rounds = 6;
-    std::size_t seen = 0;
+    std::vector<CellId> seen;  // rising
     for (int round = 0; round < most_rounds && out_.failing.empty() && !is_full(); ++round) {
-      const std::vector<CellId> cubes = refine(out_.tree, std::span(out_.leaves).subspan(seen));
+      std::vector<CellId> all = out_.leaves;
+      std::sort(all.begin(), all.end());
+      std::vector<CellId> fresh;
+      std::set_difference(all.begin(), all.end(), seen.begin(), seen.end(), std::back_inserter(fresh));
+      seen = std::move(all);
+      const std::vector<CellId> cubes = refine(out_.tree, fresh);
       if (cubes.empty() || out_.tree.cubes.size() + 8 * cubes.size() > options_.most_cubes) break;
       split_leaves(cubes);
-      seen = out_.leaves.size();
-      if (divide_all()) seen = 0;
+      divide_all();
     }
     out_.lines = splitter_.counts();
     out_.contradictions = splitter_.contradictions();
@@ -51,16 +56,16 @@ class Subdivider {
   }
 
   /// Divides the cubes that wait. What passes may have its squares split for a neighbour afterwards, which tells more
-  /// of its boundary: it is tested again. Returns whether that was so.
-  bool divide_all() {
+  /// of its boundary: it is tested again.
+  void divide_all() {
     divide();
-    for (bool is_any = false;; is_any = true) {
+    for (;;) {
       std::vector<CellId> changed;
       for (const CellId leaf : out_.leaves) {
         const GridCube& cube = out_.tree.cubes[leaf];
         if (cube.state == CubeState::passed && count_squares(cube) != cube.tested_squares) changed.push_back(leaf);
       }
-      if (changed.empty()) return is_any;
+      if (changed.empty()) return;
       std::sort(changed.begin(), changed.end());
       std::erase_if(out_.leaves, [&](CellId leaf) { return std::binary_search(changed.begin(), changed.end(), leaf); });
       for (const CellId cube : changed) waiting_[depth_of(cube)].push_back(cube);
