@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <queue>
 #include <span>
 #include <string>
@@ -65,31 +66,51 @@ std::size_t vertex_rank(std::size_t vertex_count, const Incidence& incidence) {
   return joins;
 }
 
-/// Lists of numbers, one after the other.
-struct Lists {
-  std::vector<std::size_t> first{0};
-  std::vector<std::uint32_t> all;
-
-  [[nodiscard]] std::size_t count() const { return first.size() - 1; }
-  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t k) const {
-    return std::span(all).subspan(first[k], first[k + 1] - first[k]);
+/// Columns that are removed one by one, and the rows that only one of those that are left has.
+/// @tparam Columns  size(), and [k]: the rows of column k, none twice.
+template <class Columns>
+class Peeling {
+ public:
+  Peeling(const Columns& columns, std::size_t row_count) : columns_(columns), count_(row_count, 0), sum_(row_count, 0) {
+    for (std::uint32_t k = 0; k < columns.size(); ++k) {
+      for (const std::uint32_t row : columns[k]) {
+        ++count_[row];
+        sum_[row] += k;
+      }
+    }
+    for (std::uint32_t row = 0; row < row_count; ++row) {
+      if (count_[row] == 1) free_.push_back(row);
+    }
   }
-  void close() { first.push_back(all.size()); }
+
+  struct Free {
+    std::uint32_t row = 0;
+    std::uint32_t column = 0;  ///< the only one that has it
+  };
+  /// A row that one column has, if there is any.
+  std::optional<Free> next() {
+    while (!free_.empty()) {
+      const std::uint32_t row = free_.back();
+      free_.pop_back();
+      if (count_[row] == 1) return Free{row, static_cast<std::uint32_t>(sum_[row])};
+    }
+    return std::nullopt;
+  }
+  void remove(std::uint32_t column) {
+    for (const std::uint32_t row : columns_[column]) {
+      sum_[row] -= column;
+      if (--count_[row] == 1) free_.push_back(row);
+    }
+  }
+  /// Of the columns that are left, how many have a row.
+  [[nodiscard]] std::uint32_t count(std::uint32_t row) const { return count_[row]; }
+
+ private:
+  const Columns& columns_;
+  std::vector<std::uint32_t> count_;
+  std::vector<std::uint64_t> sum_;  ///< of the columns that have a row: the last one is the sum
+  std::vector<std::uint32_t> free_;
 };
-
-/// Rows and columns changed over. @param row_count  numbers are below this
-Lists transposed(const Lists& lists, std::size_t row_count) {
-  Lists out;
-  out.first.assign(row_count + 1, 0);
-  for (const std::uint32_t row : lists.all) ++out.first[row + std::size_t{1}];
-  std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
-  out.all.resize(lists.all.size());
-  std::vector<std::size_t> next(out.first.begin(), out.first.end() - 1);
-  for (std::size_t k = 0; k < lists.count(); ++k) {
-    for (const std::uint32_t row : lists[k]) out.all[next[row]++] = static_cast<std::uint32_t>(k);
-  }
-  return out;
-}
 
 /// A matrix over Z/2 and its rank: of the boundaries of surfaces, say, seams as rows.
 ///
@@ -100,7 +121,7 @@ Lists transposed(const Lists& lists, std::size_t row_count) {
 class SparseMatrix {
  public:
   /// @param columns  the rows of each, none twice.
-  SparseMatrix(const Lists& columns, std::size_t row_count, const Context& context)
+  SparseMatrix(const IndexRows& columns, std::size_t row_count, const Context& context)
       : context_(context), columns_(columns), key_(row_count, none) {}
 
   std::size_t rank() {
@@ -114,43 +135,24 @@ class SparseMatrix {
 
   /// Fills paired_ and key_; returns the columns set aside.
   std::vector<std::uint32_t> pair_up() {
-    std::vector<std::uint32_t> count(key_.size(), 0);
-    std::vector<std::uint64_t> sum(key_.size(), 0);  // of the columns that have a row: the last one is the sum
-    for (std::uint32_t f = 0; f < columns_.count(); ++f) {
-      for (const std::uint32_t e : columns_[f]) {
-        ++count[e];
-        sum[e] += f;
-      }
-    }
-    std::vector<std::uint32_t> free;
-    for (std::uint32_t e = 0; e < count.size(); ++e) {
-      if (count[e] == 1) free.push_back(e);
-    }
-    std::vector<bool> is_gone(columns_.count(), false);
-    const auto remove = [&](std::uint32_t f) {
-      is_gone[f] = true;
-      for (const std::uint32_t e : columns_[f]) {
-        --count[e];
-        sum[e] -= f;
-        if (count[e] == 1) free.push_back(e);
-      }
+    Peeling peeling(columns_, key_.size());
+    std::vector<bool> is_gone(columns_.size(), false);
+    const auto remove = [&](std::uint32_t column) {
+      is_gone[column] = true;
+      peeling.remove(column);
     };
     std::vector<std::uint32_t> set_aside;
-    for (std::uint32_t f = 0; f < columns_.count(); ++f) {
+    for (std::uint32_t k = 0; k < columns_.size(); ++k) {
       throw_now_and_then();
-      while (!free.empty()) {
-        const std::uint32_t e = free.back();
-        free.pop_back();
-        if (count[e] != 1) continue;
-        const auto last = static_cast<std::uint32_t>(sum[e]);
-        key_[e] = static_cast<std::uint32_t>(paired_.size());
-        paired_.push_back(last);
-        remove(last);
+      while (const auto free = peeling.next()) {
+        key_[free->row] = static_cast<std::uint32_t>(paired_.size());
+        paired_.push_back(free->column);
+        remove(free->column);
         throw_now_and_then();
       }
-      if (is_gone[f]) continue;
-      set_aside.push_back(f);
-      remove(f);
+      if (is_gone[k]) continue;
+      set_aside.push_back(k);
+      remove(k);
     }
     return set_aside;
   }
@@ -203,7 +205,7 @@ class SparseMatrix {
 
   const Context& context_;
   std::size_t steps_ = 0;
-  const Lists& columns_;
+  const IndexRows& columns_;
   std::vector<std::uint32_t> key_;                                       ///< of each row: its place in paired_
   std::vector<std::uint32_t> paired_;                                    ///< columns, in order of removal
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> rests_;  ///< by their first row
@@ -218,55 +220,41 @@ class SparseMatrix {
 class CyclesOfSheets {
  public:
   CyclesOfSheets(const Incidence& incidence, const Context& context)
-      : sides_(incidence.sides()), count_(incidence.edges().size(), 0), context_(context) {}
+      : sides_(incidence.sides()),
+        edge_count_(incidence.edges().size()),
+        left_(sides_, edge_count_),
+        context_(context) {}
 
   std::size_t dimension() {
     remove_open();
     const std::size_t sheet_count = join_sheets();
-    const Lists seams = distinct_seams();
-    const Lists columns = transposed(seams, sheet_count);
-    return sheet_count - SparseMatrix(columns, seams.count(), context_).rank();
+    const IndexRows seams = distinct_seams();
+    const IndexRows columns = detail::rows_of(seams.size(), sheet_count, [&](std::size_t k) { return seams[k]; });
+    return sheet_count - SparseMatrix(columns, seams.size(), context_).rank();
   }
 
  private:
   static constexpr std::uint32_t no_sheet = 0xffffffffU;
 
-  /// Removes triangles with an edge of their own, until there is none. Fills count_ and sheet_.
+  /// Removes triangles with an edge of their own, until there is none.
   void remove_open() {
-    std::vector<std::uint64_t> sum(count_.size(), 0);  // of the triangles at an edge: the last one is the sum
-    for (std::uint32_t t = 0; t < sides_.size(); ++t) {
-      for (const std::uint32_t e : sides_[t]) {
-        ++count_[e];
-        sum[e] += t;
-      }
-    }
-    std::vector<std::uint32_t> free;
-    for (std::uint32_t e = 0; e < count_.size(); ++e) {
-      if (count_[e] == 1) free.push_back(e);
-    }
     sheet_.assign(sides_.size(), 0);
-    for (std::size_t steps = 1; !free.empty(); ++steps) {
-      if (steps % 16384 == 0) throw_if_cancelled(context_);
-      const std::uint32_t own = free.back();
-      free.pop_back();
-      if (count_[own] != 1) continue;
-      const auto t = static_cast<std::uint32_t>(sum[own]);
-      sheet_[t] = no_sheet;
-      for (const std::uint32_t e : sides_[t]) {
-        sum[e] -= t;
-        if (--count_[e] == 1) free.push_back(e);
-      }
+    std::size_t steps = 0;
+    while (const auto free = left_.next()) {
+      if (++steps % 16384 == 0) throw_if_cancelled(context_);
+      sheet_[free->column] = no_sheet;
+      left_.remove(free->column);
     }
   }
 
   /// Numbers the sheets; returns how many there are.
   std::size_t join_sheets() {
     detail::UnionFind joined(static_cast<std::uint32_t>(sides_.size()));
-    std::vector<std::uint32_t> first(count_.size(), no_sheet);  // triangle at an edge
+    std::vector<std::uint32_t> first(edge_count_, no_sheet);  // triangle at an edge
     for (std::uint32_t t = 0; t < sides_.size(); ++t) {
       if (sheet_[t] == no_sheet) continue;
       for (const std::uint32_t e : sides_[t]) {
-        if (count_[e] != 2) continue;
+        if (left_.count(e) != 2) continue;
         if (first[e] == no_sheet) {
           first[e] = t;
         } else {
@@ -287,32 +275,33 @@ class CyclesOfSheets {
   }
 
   /// For each seam the sheets that end at it an odd number of times, rising; each list once.
-  Lists distinct_seams() {
+  IndexRows distinct_seams() {
     std::vector<std::array<std::uint32_t, 2>> ends;  // edge, sheet
     for (std::uint32_t t = 0; t < sides_.size(); ++t) {
       if (sheet_[t] == no_sheet) continue;
       for (const std::uint32_t e : sides_[t]) {
-        if (count_[e] > 2) ends.push_back({e, sheet_[t]});
+        if (left_.count(e) > 2) ends.push_back({e, sheet_[t]});
       }
     }
     std::sort(ends.begin(), ends.end());
     throw_if_cancelled(context_);
-    Lists all;
+    std::vector<std::size_t> first{0};
+    std::vector<std::uint32_t> sheets;
     for (std::size_t k = 0; k < ends.size();) {
       const std::uint32_t edge = ends[k][0];
       while (k < ends.size() && ends[k][0] == edge) {
         const std::uint32_t sheet = ends[k][1];
         std::size_t times = 0;
         for (; k < ends.size() && ends[k][0] == edge && ends[k][1] == sheet; ++k) ++times;
-        if (times % 2 == 1) all.all.push_back(sheet);
+        if (times % 2 == 1) sheets.push_back(sheet);
       }
-      if (all.all.size() > all.first.back()) all.close();
+      if (sheets.size() > first.back()) first.push_back(sheets.size());
     }
-    return distinct(all);
+    return distinct({std::move(first), std::move(sheets)});
   }
 
-  static Lists distinct(const Lists& lists) {
-    std::vector<std::uint32_t> order(lists.count());
+  static IndexRows distinct(const IndexRows& lists) {
+    std::vector<std::uint32_t> order(lists.size());
     std::iota(order.begin(), order.end(), 0U);
     const auto compare = [&](std::uint32_t a, std::uint32_t b) {
       return std::lexicographical_compare_three_way(lists[a].begin(), lists[a].end(), lists[b].begin(), lists[b].end());
@@ -321,18 +310,21 @@ class CyclesOfSheets {
       const auto compared = compare(a, b);
       return compared < 0 || (compared == 0 && a < b);
     });
-    Lists out;
+    std::vector<std::size_t> first{0};
+    std::vector<std::uint32_t> items;
     for (std::size_t k = 0; k < order.size(); ++k) {
       if (k > 0 && compare(order[k - 1], order[k]) == 0) continue;
-      out.all.insert(out.all.end(), lists[order[k]].begin(), lists[order[k]].end());
-      out.close();
+      items.insert(items.end(), lists[order[k]].begin(), lists[order[k]].end());
+      first.push_back(items.size());
     }
-    return out;
+    return {std::move(first), std::move(items)};
   }
 
-  std::span<const std::array<std::uint32_t, 3>> sides_;  ///< the edges of each triangle
-  std::vector<std::uint32_t> count_;                     ///< of triangles at each edge
-  std::vector<std::uint32_t> sheet_;                     ///< of each triangle
+  using Sides = std::span<const std::array<std::uint32_t, 3>>;
+  const Sides sides_;  ///< the edges of each triangle
+  const std::size_t edge_count_;
+  Peeling<Sides> left_;               ///< triangles, edges as rows
+  std::vector<std::uint32_t> sheet_;  ///< of each triangle
   const Context& context_;
 };
 

@@ -15,22 +15,6 @@ namespace {
 
 constexpr std::size_t vertices_per_range = 4096;
 
-/// For each of `count` cells the indices of the things that name it, rising.
-template <std::size_t n>
-IndexRows rows_of(std::span<const std::array<std::uint32_t, n>> things, std::size_t count) {
-  std::vector<std::size_t> first(count + 1, 0);
-  for (const auto& thing : things) {
-    for (const std::uint32_t cell : thing) ++first[cell + std::size_t{1}];
-  }
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::uint32_t> items(first.back());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    for (const std::uint32_t cell : things[i]) items[next[cell]++] = static_cast<std::uint32_t>(i);
-  }
-  return {std::move(first), std::move(items)};
-}
-
 /// Calls use(a, b, number) for the listed edges and then the sides of triangles, numbered through; a < b.
 template <class Use>
 void for_each_pair(const ComplexView& complex, const Use& use) {
@@ -115,8 +99,12 @@ Incidence::Incidence(const ComplexView& complex, const Context& context) {
   throw_if_cancelled(context);
   find_edges(complex, context);
   parallel_for(context, 2, 1, {}, [&](const WorkRange& range) {
-    if (range.begin == 0) edges_of_vertex_ = rows_of<2>(edges_, complex.vertex_count);
-    if (range.end == 2) triangles_of_vertex_ = rows_of<3>(complex.triangles, complex.vertex_count);
+    const auto rows_of = [&](const auto& cells) {
+      return detail::rows_of(cells.size(), complex.vertex_count,
+                             [&](std::size_t k) -> const auto& { return cells[k]; });
+    };
+    if (range.begin == 0) edges_of_vertex_ = rows_of(edges_);
+    if (range.end == 2) triangles_of_vertex_ = rows_of(complex.triangles);
   });
 }
 

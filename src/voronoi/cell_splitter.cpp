@@ -144,16 +144,14 @@ void CellSplitter::find_events(NewEdge& made, std::span<const LabelIndex> among,
   }
   pass_over_thin(made.events);
   edge.last = made.events.empty() ? edge.first : made.events.back().after;
-  if (edge.last != outside && labels_.is_thin(edge.last)) contradictions_.fetch_add(1, std::memory_order_relaxed);
+  if (labels_.is_thin(edge.last)) contradictions_.fetch_add(1, std::memory_order_relaxed);
 }
 
 /// Thin regions are part of walls: the events at both ends of one become one.
 void CellSplitter::pass_over_thin(std::vector<LineEvent>& events) const {
   std::size_t count = 0;
   for (const LineEvent& event : events) {
-    const bool is_behind_thin =
-        count > 0 && events[count - 1].after != outside && labels_.is_thin(events[count - 1].after);
-    if (!is_behind_thin) {
+    if (count == 0 || !labels_.is_thin(events[count - 1].after)) {
       events[count++] = event;
       continue;
     }

@@ -3,36 +3,30 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "blum/complex/index_rows.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
 
 namespace blum::voronoi {
 
 /// The edges of a SiteTable at each of its vertices, in rising order.
-class EdgesOfVertices {
- public:
-  explicit EdgesOfVertices(const SiteTable& sites) : first_(sites.vertex_count() + 1, 0) {
-    for (const Segment& ends : sites.edges()) {
-      for (const std::uint32_t v : ends) ++first_[v + 1];
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    edges_.resize(first_.back());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::uint32_t edge = 0; edge < sites.edge_count(); ++edge) {
-      for (const std::uint32_t v : sites.edges()[edge]) edges_[next[v]++] = edge;
-    }
-  }
+[[nodiscard]] inline IndexRows edges_of_vertices(const SiteTable& table) {
+  return detail::rows_of(table.edge_count(), table.vertex_count(),
+                         [&](std::size_t edge) -> const Segment& { return table.edges()[edge]; });
+}
 
-  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t v) const {
-    return std::span(edges_).subspan(first_[v], first_[v + 1] - first_[v]);
+/// Where edges at a vertex end.
+[[nodiscard]] inline std::vector<Vec3d> far_ends(const MeshView& mesh, const SiteTable& table, std::uint32_t v,
+                                                 std::span<const std::uint32_t> edges) {
+  std::vector<Vec3d> out;
+  for (const std::uint32_t edge : edges) {
+    const auto& [a, b] = table.edges()[edge];
+    out.push_back(mesh.vertices[a == v ? b : a]);
   }
-
- private:
-  /// Those of v are edges_[first_[v]] ... edges_[first_[v + 1] - 1].
-  std::vector<std::uint32_t> first_, edges_;
-};
+  return out;
+}
 
 }  // namespace blum::voronoi

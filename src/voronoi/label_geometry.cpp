@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "blum/geometry/closest_point.hpp"
 #include "voronoi/dual_cone.hpp"
@@ -14,11 +13,7 @@ namespace {
 /// How far the rays of a vertex's cone, of length 1, are apart.
 double width_of_cone(const MeshView& mesh, const SiteTable& table, std::span<const std::uint32_t> edges,
                      std::uint32_t v) {
-  std::vector<Vec3d> ends;
-  for (const std::uint32_t edge : edges) {
-    const Segment& of_edge = table.edges()[edge];
-    ends.push_back(mesh.vertices[of_edge[0] == v ? of_edge[1] : of_edge[0]]);
-  }
+  const std::vector<Vec3d> ends = far_ends(mesh, table, v, edges);
   const std::vector<std::uint32_t> bounds = dual_cone(mesh.vertices[v], ends);
   std::vector<Vec3d> rays;
   for (std::size_t k = 0; k < bounds.size(); ++k) {
@@ -81,12 +76,12 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
       rounding_(4e-15 * size_ + 1e-15 * box_.largest_coordinate()) {
   label_of_edge_.assign(table.edge_count(), outside);
   label_of_vertex_.assign(table.vertex_count(), outside);
-  const EdgesOfVertices edges(table);
+  const IndexRows edges = edges_of_vertices(table);
   for (LabelIndex k = 0; k < labels.all().size(); ++k) {
     const Label& label = labels.all()[k];
     if (label.kind == SiteKind::edge) label_of_edge_[label.index] = k;
     if (label.kind != SiteKind::vertex) continue;
-    const double width = width_of_cone(mesh, table, edges.of(label.index), label.index);
+    const double width = width_of_cone(mesh, table, edges[label.index], label.index);
     if (width < thin) thin_vertices_.push_back(k);
     if (width < unseen) unseen_vertices_.push_back(k);
     if (!(width < unseen)) label_of_vertex_[label.index] = k;
@@ -96,7 +91,8 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
   add_vertices(mesh, table, sites, edges);
   for (LabelIndex k = 0; k < labels_.size(); ++k) labels_[k].site = labels.site_of(labels.all()[k]);
   add_neighbours(table, sites);
-  add_labels_at(table.vertex_count());
+  labels_at_ = detail::rows_of(labels_.size(), table.vertex_count(),
+                               [&](std::size_t k) { return vertices(static_cast<LabelIndex>(k)); });
   for (std::uint32_t k = 0; k < bisectors_.size(); ++k) {
     if (bisectors_[k].other == outside) continue;
     convex_pairs_.push_back({labels_[k / 3].site, labels_[bisectors_[k].other].site, k});
@@ -240,33 +236,20 @@ void LabelGeometry::add_edges(const MeshView& mesh, const SiteTable& table, cons
 }
 
 void LabelGeometry::add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
-                                 const EdgesOfVertices& edges) {
+                                 const IndexRows& edges) {
   for (const std::uint32_t v : sites.reflex_vertices) {
     const Vec3d& at = mesh.vertices[v];
     PlacedLabel label{SiteKind::vertex, 0, at - centre_, {}, 0, 0};
     label.first_plane = static_cast<std::uint32_t>(planes_.size());
-    for (const std::uint32_t edge : edges.of(v)) {
-      const Segment& ends = table.edges()[edge];
-      const Vec3d inwards = unit(at - mesh.vertices[ends[0] == v ? ends[1] : ends[0]]);
-      planes_.push_back({inwards, dot(inwards, at - centre_), label_of_edge_[edge], outside});
+    const std::vector<Vec3d> ends = far_ends(mesh, table, v, edges[v]);
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const Vec3d inwards = unit(at - ends[k]);
+      planes_.push_back({inwards, dot(inwards, at - centre_), label_of_edge_[edges[v][k]], outside});
     }
     label.last_plane = static_cast<std::uint32_t>(planes_.size());
     labels_.push_back(label);
     corners_.push_back({at - centre_, {}, {}});
     vertices_.push_back({v, 0, 0});
-  }
-}
-
-void LabelGeometry::add_labels_at(std::size_t vertex_count) {
-  first_at_.assign(vertex_count + 1, 0);
-  for (LabelIndex k = 0; k < labels_.size(); ++k) {
-    for (const std::uint32_t v : vertices(k)) ++first_at_[v + std::size_t{1}];
-  }
-  std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
-  labels_at_.resize(first_at_.back());
-  std::vector<std::uint32_t> next(first_at_.begin(), first_at_.end() - 1);
-  for (LabelIndex k = 0; k < labels_.size(); ++k) {
-    for (const std::uint32_t v : vertices(k)) labels_at_[next[v]++] = k;
   }
 }
 

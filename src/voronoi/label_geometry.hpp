@@ -138,8 +138,7 @@ class LabelGeometry {
     return site_if_any(label_of_edge_[edge]);
   }
   [[nodiscard]] std::optional<std::uint32_t> site_of_vertex(std::uint32_t v) const {
-    const LabelIndex label = label_of_vertex_[v];
-    return label == outside || is_thin(label) ? std::nullopt : site_if_any(label);
+    return is_thin(label_of_vertex_[v]) ? std::nullopt : site_if_any(label_of_vertex_[v]);
   }
   [[nodiscard]] std::span<const DomainPlane> planes(LabelIndex label) const {
     return std::span(planes_).subspan(labels_[label].first_plane,
@@ -175,9 +174,7 @@ class LabelGeometry {
     return std::span(vertices_[label]).first(corners(label).size());
   }
   /// All labels that have a vertex of the mesh for a corner, rising.
-  [[nodiscard]] std::span<const LabelIndex> labels_at(std::uint32_t v) const {
-    return std::span(labels_at_).subspan(first_at_[v], first_at_[v + 1] - first_at_[v]);
-  }
+  [[nodiscard]] std::span<const LabelIndex> labels_at(std::uint32_t v) const { return labels_at_[v]; }
   /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
   /// only at planes of their domains.
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
@@ -186,6 +183,7 @@ class LabelGeometry {
   /// Vertices whose cones are thinner than this many radians: their regions count as part of walls.
   static constexpr double thin = 1e-3;
   [[nodiscard]] std::span<const LabelIndex> thin_vertices() const { return thin_vertices_; }
+  /// The outside is none.
   [[nodiscard]] bool is_thin(LabelIndex label) const {
     return std::binary_search(thin_vertices_.begin(), thin_vertices_.end(), label);
   }
@@ -202,10 +200,8 @@ class LabelGeometry {
   }
   void add_triangles(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
   void add_edges(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites);
-  void add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
-                    const EdgesOfVertices& edges);
+  void add_vertices(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites, const IndexRows& edges);
   void add_bisectors(const PolyhedronSites& sites);
-  void add_labels_at(std::size_t vertex_count);
   void add_neighbours(const SiteTable& table, const PolyhedronSites& sites);
 
   Box3 box_;
@@ -216,8 +212,7 @@ class LabelGeometry {
   std::vector<DomainPlane> planes_;
   std::vector<std::array<Vec3d, 3>> corners_;
   std::vector<std::array<std::uint32_t, 3>> vertices_;
-  std::vector<std::uint32_t> first_at_;  ///< of each vertex, in labels_at_
-  std::vector<LabelIndex> labels_at_;
+  IndexRows labels_at_;                                      ///< of each vertex
   std::vector<LabelIndex> thin_vertices_, unseen_vertices_;  ///< rising
   std::vector<Bisector> bisectors_;                          ///< three for each triangle
   using ConvexPair = std::array<std::uint32_t, 3>;

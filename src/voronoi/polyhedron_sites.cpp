@@ -82,11 +82,7 @@ bool is_reflex_vertex(const MeshView& mesh, const SiteTable& sites, const Polyhe
                       std::span<const std::uint32_t> edges) {
   const auto is_reflex = [&](std::uint32_t edge) { return found.turn[edge] == EdgeTurn::reflex; };
   if (std::none_of(edges.begin(), edges.end(), is_reflex)) return false;
-  std::vector<Vec3d> ends;
-  for (const std::uint32_t edge : edges) {
-    const auto& [a, b] = sites.edges()[edge];
-    ends.push_back(mesh.vertices[a == v ? b : a]);
-  }
+  const std::vector<Vec3d> ends = voronoi::far_ends(mesh, sites, v, edges);
   // Of its edges that bound the cone, flat ones tell nothing, and all others the same.
   for (const std::uint32_t k : voronoi::dual_cone(mesh.vertices[v], ends)) {
     if (found.turn[edges[k]] != EdgeTurn::flat) return found.turn[edges[k]] == EdgeTurn::reflex;
@@ -111,11 +107,11 @@ PolyhedronSites polyhedron_sites(const MeshView& mesh, const SiteTable& sites, c
   for (std::uint32_t edge = 0; edge < out.turn.size(); ++edge) {
     if (out.turn[edge] == EdgeTurn::reflex) out.reflex_edges.push_back(edge);
   }
-  const voronoi::EdgesOfVertices edges(sites);
+  const IndexRows edges = voronoi::edges_of_vertices(sites);
   out.reflex_vertices = detail::gather<std::uint32_t>(context, mesh.vertices.size(), vertices_per_range, "sites",
                                                       [&](std::size_t v, std::vector<std::uint32_t>& list) {
                                                         const auto vertex = static_cast<std::uint32_t>(v);
-                                                        if (is_reflex_vertex(mesh, sites, out, vertex, edges.of(v)))
+                                                        if (is_reflex_vertex(mesh, sites, out, vertex, edges[v]))
                                                           list.push_back(vertex);
                                                       });
   return out;

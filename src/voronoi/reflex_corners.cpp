@@ -58,13 +58,9 @@ struct Cone {
 };
 
 Cone cone_at(std::uint32_t v, std::span<const std::uint32_t> edges, const MeshView& mesh, const SiteTable& table) {
-  std::vector<Vec3d> ends;
+  const std::vector<Vec3d> ends = far_ends(mesh, table, v, edges);
   Vec3d against;
-  for (const std::uint32_t edge : edges) {
-    const Segment& of = table.edges()[edge];
-    ends.push_back(mesh.vertices[of[0] == v ? of[1] : of[0]]);
-    against -= unit(ends.back() - mesh.vertices[v]);
-  }
+  for (const Vec3d& end : ends) against -= unit(end - mesh.vertices[v]);
   const std::vector<std::uint32_t> bounds = facets(mesh.vertices[v], ends);
   Cone out;
   for (std::size_t k = 0; k < bounds.size(); ++k) {
@@ -112,15 +108,15 @@ ReflexCorner corner_of(const Cone& cone, const PolyhedronSites& sites, const Lab
 std::vector<ReflexCorner> reflex_corners(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites,
                                          const LabelGeometry& labels) {
   std::vector<ReflexCorner> out(table.vertex_count());
-  const EdgesOfVertices edges_of(table);
+  const IndexRows edges_of = edges_of_vertices(table);
   for (std::uint32_t v = 0; v < out.size(); ++v) {
-    if (auto passing = passing_corner(v, edges_of.of(v), sites, labels)) out[v] = std::move(*passing);
+    if (auto passing = passing_corner(v, edges_of[v], sites, labels)) out[v] = std::move(*passing);
   }
   for (const std::uint32_t v : sites.reflex_vertices) {
-    const Cone cone = cone_at(v, edges_of.of(v), mesh, table);
+    const Cone cone = cone_at(v, edges_of[v], mesh, table);
     if (labels.site_of_vertex(v)) {
       out[v] = corner_of(cone, sites, labels);
-    } else if (auto thin = thin_corner(cone, edges_of.of(v), sites, labels)) {
+    } else if (auto thin = thin_corner(cone, edges_of[v], sites, labels)) {
       out[v] = std::move(*thin);
     }
   }

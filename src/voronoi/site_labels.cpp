@@ -64,7 +64,7 @@ std::uint32_t rank_in(const std::vector<std::uint32_t>& list, std::uint32_t entr
 }  // namespace
 
 SiteLabels::SiteLabels(const MeshView& mesh, const SiteTable& table, const PolyhedronSites& sites)
-    : mesh_(mesh), table_(table), sites_(sites), edges_(table) {
+    : mesh_(mesh), table_(table), sites_(sites), edges_(edges_of_vertices(table)) {
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) all_.push_back({SiteKind::face, t});
   for (const std::uint32_t edge : sites.reflex_edges) all_.push_back({SiteKind::edge, edge});
   for (const std::uint32_t v : sites.reflex_vertices) all_.push_back({SiteKind::vertex, v});
@@ -126,7 +126,7 @@ bool SiteLabels::all_sides(const Label& label, const Vec3d& q, Visit visit) cons
     }
     return true;
   }
-  for (const std::uint32_t edge : edges_.of(label.index)) {
+  for (const std::uint32_t edge : edges_[label.index]) {
     if (!visit(-side_of_end(edge, table_.edges()[edge][0] == label.index ? 0 : 1, q))) return false;
   }
   return true;

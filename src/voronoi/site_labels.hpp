@@ -98,7 +98,7 @@ class SiteLabels {
   const SiteTable& table_;
   const PolyhedronSites& sites_;
   std::vector<Label> all_;
-  EdgesOfVertices edges_;
+  IndexRows edges_;  ///< of each vertex
   mutable std::atomic<std::size_t> asked_{0};
   mutable std::atomic<std::size_t> exact_{0};
 };

@@ -77,6 +77,8 @@ bool SquareTest::resolve(GridSquare& square) const {
   sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
   const Polygon whole = polygon(square);
   std::vector<LabelIndex> present;
+  // Over one vertex what single labels leave open may be known all at once.
+  const auto is_cone = [&] { return square.chains.empty() && is_over_one_vertex(present, whole); };
   bool is_any_doubtful = false;
   for (const LabelIndex label : square.governors) {
     // Thin regions are part of walls, wherever they are.
@@ -87,19 +89,15 @@ bool SquareTest::resolve(GridSquare& square) const {
     if (is_absent(label, square.governors, whole)) continue;
     if (labels_[label].kind == SiteKind::vertex) return false;
     present.push_back(label);
-    if (!square.chains.empty() || !is_over_one_vertex(present, whole)) return false;
+    if (!is_any_doubtful && !is_cone()) return false;
     is_any_doubtful = true;
   }
-  // Over one vertex all may be known at once.
-  std::optional<bool> is_cone;
-  const auto is_all_over_one_vertex = [&] {
-    if (!is_cone) is_cone = square.chains.empty() && is_over_one_vertex(present, whole);
-    return *is_cone;
-  };
-  if (is_any_doubtful && !is_all_over_one_vertex()) return false;
+  bool is_known_cone = is_any_doubtful && is_cone();
+  if (is_any_doubtful && !is_known_cone) return false;
   for (const std::uint32_t site : sites) {
     if (is_star_shaped(site, arcs, present, whole)) continue;
-    if (!is_all_over_one_vertex() || !has_one_run(site, square)) return false;
+    is_known_cone = is_known_cone || is_cone();
+    if (!is_known_cone || !has_one_run(site, square)) return false;
   }
   square.state = SquareState::resolved;
   return true;

@@ -86,24 +86,23 @@ class Subdivider {
   void divide(int depth, const std::vector<CellId>& cubes) {
     const bool is_last = depth >= options_.most_depth || is_full();
     std::vector<CellId> to_test;
-    std::vector<CellId> to_split;
+    std::vector<CellId> crowded;
     for (const CellId cube : cubes) {
-      (!is_last && is_crowded(out_.tree.cubes[cube], depth) ? to_split : to_test).push_back(cube);
+      (!is_last && is_crowded(out_.tree.cubes[cube], depth) ? crowded : to_test).push_back(cube);
     }
-    resolve_squares(to_test);
-    const std::size_t splits = out_.splits;
-    test(to_test, is_last, to_split);
-    std::sort(to_split.begin(), to_split.end());
-    if (out_.tree.cubes.size() + 8 * to_split.size() <= options_.most_cubes) {
-      split(depth, to_split);
+    std::vector<FailingCube> failed = test(to_test);
+    if (!is_last && out_.tree.cubes.size() + 8 * (crowded.size() + failed.size()) <= options_.most_cubes) {
+      out_.splits += failed.size();
+      for (const FailingCube& one : failed) crowded.push_back(one.cube);
+      std::sort(crowded.begin(), crowded.end());
+      split(depth, crowded);
       return;
     }
-    out_.was_full = true;
-    out_.splits = splits;
-    const std::vector<CellId> last = std::move(to_split);
-    resolve_squares(last);
-    std::vector<CellId> none;
-    test(last, true, none);
+    out_.was_full = out_.was_full || !is_last;
+    const std::vector<FailingCube> more = test(crowded);
+    failed.insert(failed.end(), more.begin(), more.end());
+    for (const FailingCube& one : failed) out_.leaves.push_back(one.cube);
+    out_.failing.insert(out_.failing.end(), failed.begin(), failed.end());
   }
 
   void split(int depth, const std::vector<CellId>& cubes) {
@@ -195,27 +194,28 @@ class Subdivider {
     }
   }
 
-  void test(const std::vector<CellId>& cubes, bool is_last, std::vector<CellId>& to_split) {
+  /// Adds cubes that pass to the leaves; returns the others.
+  std::vector<FailingCube> test(const std::vector<CellId>& cubes) {
+    resolve_squares(cubes);
     std::vector<VoronoiObstacle> obstacles(cubes.size());
     parallel_for(context_, cubes.size(), grain, {}, [&](const WorkRange& range) {
       for (std::size_t k = range.begin; k < range.end; ++k) {
         obstacles[k] = cube_test_.run(out_.tree.cubes[cubes[k]]).obstacle;
       }
     });
+    std::vector<FailingCube> failed;
     for (std::size_t k = 0; k < cubes.size(); ++k) {
       GridCube& cube = out_.tree.cubes[cubes[k]];
-      cube.state = obstacles[k] == VoronoiObstacle::none ? CubeState::passed : CubeState::failed;
       cube.tested_squares = count_squares(cube);
-      if (cube.state == CubeState::failed) {
-        if (!is_last) {
-          ++out_.splits;
-          to_split.push_back(cubes[k]);
-          continue;
-        }
-        out_.failing.push_back({cubes[k], obstacles[k]});
+      if (obstacles[k] == VoronoiObstacle::none) {
+        cube.state = CubeState::passed;
+        out_.leaves.push_back(cubes[k]);
+      } else {
+        cube.state = CubeState::failed;
+        failed.push_back({cubes[k], obstacles[k]});
       }
-      out_.leaves.push_back(cubes[k]);
     }
+    return failed;
   }
 
   const VoronoiSolid& solid_;

@@ -20,7 +20,7 @@ struct SubdivisionOptions {
   int least_depth = 0;                 ///< all cubes that meet the solid are split at least so often
   int most_depth = 16;                 ///< and at most so often
   int most_square_depth = 9;           ///< how often squares of a cube are split before the cube is
-  std::size_t most_cubes = 1'000'000;  ///< with more of them nothing is split any more
+  std::size_t most_cubes = 1'000'000;  ///< those that are split included
 };
 
 struct Subdivision {

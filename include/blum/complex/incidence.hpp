@@ -10,28 +10,11 @@
 #include <vector>
 
 #include "blum/complex/complex.hpp"
+#include "blum/complex/index_rows.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 
 namespace blum {
-
-/// A row of indices for each cell, all in one array.
-class IndexRows {
- public:
-  IndexRows() = default;
-  /// @param first  where the row of each cell begins, and the end: one more than there are cells.
-  IndexRows(std::vector<std::size_t> first, std::vector<std::uint32_t> items)
-      : first_(std::move(first)), items_(std::move(items)) {}
-
-  [[nodiscard]] std::size_t size() const { return first_.empty() ? 0 : first_.size() - 1; }
-  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t cell) const {
-    return std::span(items_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
-  }
-
- private:
-  std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> items_;
-};
 
 /// The edges of a complex, each once, and what touches what; a copy that does not need the complex again.
 class Incidence {
