@@ -92,7 +92,7 @@ void report_axis(const std::filesystem::path& path, const std::optional<std::fil
                      {"kind", shown.content},
                      {"counts", counts_json(counts, file.has_labels)},
                      {"betti", to_json(betti)},
-                     {"certified", shown.certified.empty() ? Json(nullptr) : Json(shown.certified.starts_with("yes"))},
+                     {"certified", or_null(shown.is_certified)},
                      {"graph", graph_facts},
                      {"radius", has_radii ? Json::array({least, most}) : Json(nullptr)},
                      {"footprints", file.has_footprints},

@@ -74,6 +74,7 @@ void add_cells(SceneBlob& blob, const MedialView& axis, const std::optional<Medi
 void add_facts(Json& item, const ShownAxis& shown, const BettiNumbers& betti) {
   const MedialFile& file = shown.file;
   const MedialMetadata& m = file.metadata;
+  item["content"] = shown.content;
   Json facts = Json::array();
   const auto add = [&](const char* label, const std::string& text) { facts.push_back(Json::array({label, text})); };
   if (!shown.is_axis) add("content", shown.content);

@@ -50,10 +50,9 @@ void run(const Arguments& a) {
   const Context context = make_context(threads, progress, interrupt);
   Stopwatch watch;
   const SolidInput input = load_solid(path, weld);
-  std::vector<std::string> warnings;
-  if (input.weld && input.weld->before != input.weld->after) warnings.push_back(weld_text(*input.weld));
+  std::vector<std::string> warnings = warnings_of(input);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  const CleanedMesh cleaned = clean_input(path, input.mesh.mesh, tolerance, context);
+  const CleanedMesh cleaned = of_file(path, [&] { return clean_mesh(input.mesh.mesh, tolerance, context); });
   phases.push_back({"clean", watch.lap()});
   write_mesh(output, cleaned.mesh);
   phases.push_back({"write", watch.lap()});

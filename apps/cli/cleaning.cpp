@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <string>
 
-#include "blum/core/error.hpp"
 #include "described.hpp"
 #include "medial_report.hpp"
 
@@ -16,15 +15,6 @@ std::string change_text(std::size_t before, std::size_t after) {
 }
 
 }  // namespace
-
-CleanedMesh clean_input(const std::filesystem::path& path, const MeshView& mesh, double tolerance,
-                        const Context& context) {
-  try {
-    return clean_mesh(mesh, tolerance, context);
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh("'" + path.string() + "': " + error.what());
-  }
-}
 
 void add_cleaning(const CleanReport& done, double tolerance, TextTable& table) {
   table.add("vertices", change_text(done.vertices_before, done.vertices));

@@ -537,7 +537,7 @@ void run(const Arguments& arguments) {
   MedialRun run;
   Stopwatch watch;
   const SolidInput input = load_solid(r.input, r.weld);
-  if (input.weld && input.weld->before != input.weld->after) run.warnings.push_back(weld_text(*input.weld));
+  for (const std::string& warning : warnings_of(input)) run.warnings.push_back(warning);
   run.phases.push_back({"read", watch.lap()});
   const std::vector<LabelSelection> selections = r.selections.all();
   for (std::size_t s = 0; s < selections.size(); ++s) {

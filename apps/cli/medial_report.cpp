@@ -116,15 +116,15 @@ std::string walls_text(const ShownAxis& shown) {
 namespace {
 
 /// What the metadata of a Voronoi diagram say of its certificate.
-std::string certified_text(const FileMetadata& metadata) {
+void add_certified(const FileMetadata& metadata, ShownAxis& out) {
   const std::string certified = text_of(metadata, "certified");
-  if (certified == "true") {
-    const std::string bound = text_of(metadata, "hausdorff_bound");
-    return bound.empty() ? "yes" : "yes; at most " + bound + " from the exact one, everywhere";
-  }
-  if (certified != "false") return "";
+  if (certified != "true" && certified != "false") return;
+  out.is_certified = certified == "true";
+  const std::string bound = text_of(metadata, "hausdorff_bound");
   const std::string cubes = text_of(metadata, "failing_cubes");
-  return cubes.empty() ? "NO" : "NO: " + cubes + " cubes did not pass";
+  out.certified = *out.is_certified ? "yes" : "NO";
+  if (!bound.empty()) out.certified += "; at most " + bound + " from the exact one, everywhere";
+  if (!cubes.empty()) out.certified += ": " + cubes + " cubes did not pass";
 }
 
 }  // namespace
@@ -140,7 +140,7 @@ ShownAxis read_axis_or_walls(const std::filesystem::path& path) {
       ShownAxis out;
       out.content = content;
       out.is_axis = false;
-      out.certified = certified_text(file.metadata);
+      add_certified(file.metadata, out);
       out.file.complex = std::move(file.complex);
       out.file.metadata.source = text_of(file.metadata, "source");
       out.file.has_radii = out.file.has_footprints = true;
@@ -150,7 +150,7 @@ ShownAxis read_axis_or_walls(const std::filesystem::path& path) {
       return out;
     }
   }
-  return {read_axis(path), "medial axis", true, ""};
+  return {read_axis(path), "medial axis", true, {}, ""};
 }
 
 Certificate certificate_of(const MedialFile& file, const SolidInput& input, const LabelSelection& selection,

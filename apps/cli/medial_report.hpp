@@ -21,7 +21,8 @@ struct ShownAxis {
   MedialFile file;      ///< of a diagram, walls between the same sites have one number as sheets
   std::string content;  ///< as metadata call it: "medial axis", "Voronoi diagram"
   bool is_axis = true;
-  std::string certified;  ///< of a diagram: "yes", what is known of how far it is off, or "NO"; empty where not known
+  std::optional<bool> is_certified;  ///< of a diagram, where the file says so
+  std::string certified;             ///< that in words, with what the file says of it; empty where it does not
 };
 /// read_axis(), and the same of files that `blum voronoi` wrote.
 [[nodiscard]] ShownAxis read_axis_or_walls(const std::filesystem::path& path);

@@ -54,4 +54,9 @@ Selections parse_selections(const std::vector<std::string>& labels, const std::o
   return out;
 }
 
+std::vector<std::string> warnings_of(const SolidInput& input) {
+  if (input.weld && input.weld->before != input.weld->after) return {weld_text(*input.weld)};
+  return {};
+}
+
 }  // namespace blum::cli

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "blum/core/error.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "files.hpp"
 #include "summary.hpp"
@@ -26,6 +27,19 @@ struct SolidInput {
 /// @param weld  for meshes.
 /// @throws FileError for fields and for what cannot be read; InvalidMesh, InvalidImage.
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
+
+/// What there is to say of an input: how many vertices were joined.
+[[nodiscard]] std::vector<std::string> warnings_of(const SolidInput& input);
+
+/// What make() makes of a file; of a mesh that it does not take, the error names the file. @throws InvalidMesh.
+template <class Make>
+[[nodiscard]] auto of_file(const std::filesystem::path& path, const Make& make) {
+  try {
+    return make();
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh("'" + path.string() + "': " + error.what());
+  }
+}
 
 /// What --label and --threshold select; all that is not 0 where neither is given. Checked against the kind of the
 /// input.

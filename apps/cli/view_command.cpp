@@ -67,12 +67,7 @@ void open_browser(const std::string& url) {
 }
 
 std::string kind_text(const Json& item) {
-  if (item["kind"] == "axis") {
-    for (const Json& fact : item["facts"]) {
-      if (fact[0] == "content") return fact[1].get<std::string>();
-    }
-    return "medial axis";
-  }
+  if (item["kind"] == "axis") return item["content"].get<std::string>();
   if (item["kind"] == "map") return "surface map";
   if (item["kind"] == "frames") return std::to_string(item["frames"].size()) + " frames";
   return item["kind"].get<std::string>();

@@ -70,15 +70,6 @@ SolidInput read_mesh_input(const fs::path& path, std::optional<double> weld) {
   return load_solid(path, weld);
 }
 
-VoronoiComplex compute(const fs::path& path, const MeshView& mesh, const VoronoiOptions& options,
-                       const Context& context) {
-  try {
-    return voronoi_complex(mesh, options, context);
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh("'" + path.string() + "': " + error.what());
-  }
-}
-
 /// What the complex is, in messages.
 std::string subject_of(VoronoiPart part) {
   if (part == VoronoiPart::medial_axis) return "the medial axis";
@@ -243,7 +234,7 @@ Request parse(const Arguments& a) {
 }
 
 /// The parts of the diagram, where a file of them is asked for. The same that Python's VoronoiComplex.graph() tells.
-std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, const MeshView& mesh,
+std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, const Json& sites,
                                        const VoronoiComplex& made, const Context& context) {
   if (a.medial || !r.axis.graph) return std::nullopt;
   VoronoiGraph graph = voronoi_graph(made.complex, context);
@@ -251,7 +242,7 @@ std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, con
   for (const auto& [name, value] : metadata_of(a, r, made.report)) {
     if (name != "content") json[name] = value;
   }
-  json["sites"] = to_json(voronoi_sites(mesh, context));
+  json["sites"] = sites;
   json.update(to_json(graph));
   AtomicFile file(*r.axis.graph);
   file.write(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -268,7 +259,7 @@ std::string graph_text(const VoronoiGraph& graph) {
 /// Puts the cleaned mesh, where one is asked for, in the place of the one that was read, and writes it.
 std::optional<CleanReport> clean(const Arguments& a, const Request& r, SolidInput& input, const Context& context) {
   if (!r.clean) return std::nullopt;
-  CleanedMesh cleaned = clean_input(a.input, input.mesh.mesh, *r.clean, context);
+  CleanedMesh cleaned = of_file(a.input, [&] { return clean_mesh(input.mesh.mesh, *r.clean, context); });
   if (a.cleaned) write_mesh(*a.cleaned, cleaned.mesh);
   input.mesh.mesh = std::move(cleaned.mesh);
   return cleaned.report;
@@ -282,23 +273,23 @@ void run(const Arguments& a) {
   const Context context = make_context(r.threads, progress, interrupt);
   Stopwatch watch;
   SolidInput input = read_mesh_input(path, r.weld);
-  std::vector<std::string> warnings;
-  if (input.weld && input.weld->before != input.weld->after) warnings.push_back(weld_text(*input.weld));
+  std::vector<std::string> warnings = warnings_of(input);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
   const std::optional<CleanReport> cleaning = clean(a, r, input, context);
   if (cleaning) phases.push_back({"clean", watch.lap()});
   if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
-  VoronoiComplex made = compute(path, input.mesh.mesh, r.options, context);
+  VoronoiComplex made = of_file(path, [&] { return voronoi_complex(input.mesh.mesh, r.options, context); });
   const VoronoiReport& found = made.report;
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
   static_cast<void>(watch.lap());
   const Counts counts(made.complex);
+  const Json sites = to_json(voronoi_sites(input.mesh.mesh, context));
   std::vector<std::string> mismatches = mismatches_of(found, r.options, r.clean.has_value());
   const bool may_write = mismatches.empty() || a.allow_uncertified;
   bool is_written = a.output && may_write;
   std::optional<VoronoiAxis> axis;
   std::optional<VoronoiGraph> graph;
-  if (may_write) graph = make_graph(a, r, input.mesh.mesh, made, context);
+  if (may_write) graph = make_graph(a, r, sites, made, context);
   if (graph) phases.push_back({"graph", watch.lap()});
   if (is_written && a.medial) {
     axis = make_voronoi_axis(made.complex, input, r.axis, source_of(a), a.cleaned ? std::nullopt : r.weld, *a.output,
@@ -326,8 +317,11 @@ void run(const Arguments& a) {
   facts["certified"] = mismatches.empty();
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
-  facts["sites"] = to_json(voronoi_sites(input.mesh.mesh, context));
-  facts["regions"] = r.options.part == VoronoiPart::all ? to_json(voronoi_regions(made.complex)) : Json(nullptr);
+  facts["sites"] = sites;
+  facts["regions"] = nullptr;
+  if (r.options.part == VoronoiPart::all) {
+    facts["regions"] = to_json(graph ? graph->regions : voronoi_regions(made.complex));
+  }
   facts["graph"] =
       graph
           ? Json{{"walls", graph->walls.size()}, {"seams", graph->seams.size()}, {"junctions", graph->junctions.size()}}
@@ -351,10 +345,10 @@ void run(const Arguments& a) {
   table.add("time", spent.text + ", " + bytes_text(static_cast<double>(peak_memory())) + " at most");
   report(a.report, json, input.text + table.text());
   if (!a.report.quiet) warn(warnings);
-  if (!mismatches.empty())
-    throw NotCertified(mismatches, is_written || !a.output ? ""
-                                   : a.cleaned             ? "; of it nothing was written"
-                                                           : "; nothing was written");
+  if (mismatches.empty()) return;
+  const bool is_any_missing = a.output && !is_written;
+  const std::string missing = a.cleaned ? "; of it nothing was written" : "; nothing was written";
+  throw NotCertified(mismatches, is_any_missing ? missing : "");
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/geometry/triangle_contact.hpp"
-#include "blum/geometry/weld.hpp"
 #include "solid/clean/mesh_cleaner.hpp"
 #include "solid/clean/shrinking_surface.hpp"
 
@@ -99,30 +98,12 @@ struct BoundaryCheck {
   std::string problem;
 };
 
-std::string problem_of_places(const MeshView& mesh) {
-  const std::vector<std::uint32_t> places = weld_clusters(mesh.vertices);
-  std::vector<std::optional<std::uint32_t>> vertex_at(mesh.vertices.size());
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) {
-      std::optional<std::uint32_t>& known = vertex_at[places[v]];
-      if (!known) known = v;
-      if (*known == v) continue;
-      return "the mesh touches itself: vertices " + std::to_string(*known) + " and " + std::to_string(v) +
-             " lie in one place; weld it first";
-    }
-  }
-  return {};
-}
-
 std::string problem_of_triangles(const MeshView& mesh, const Context& context) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!detail::has_no_area(triangle_corners(mesh, t))) continue;
     return "triangle " + std::to_string(t) + " has no area, and no flip of an edge takes it out";
   }
-  const SelfIntersections crossings = find_self_intersections(mesh, 1, context);
-  if (crossings.pairs.empty()) return {};
-  return "the mesh crosses or touches itself: triangles " + std::to_string(crossings.pairs[0].first.value) + " and " +
-         std::to_string(crossings.pairs[0].second.value) + ", for one; blum.Solid and resolve_crossings() mend that";
+  return problem_of_crossings(mesh, context);
 }
 
 BoundaryCheck check_boundary(const MeshView& mesh, const Context& context) {

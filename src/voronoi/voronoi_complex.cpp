@@ -16,7 +16,6 @@
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
-#include "blum/geometry/weld.hpp"
 #include "blum/voronoi/polyhedron_sites.hpp"
 #include "voronoi/assemble.hpp"
 #include "voronoi/subdivision.hpp"
@@ -41,21 +40,8 @@ void check(const VoronoiOptions& options) {
   }
 }
 
-/// @throws InvalidMesh where two vertices lie in one place, or the mesh so far from the origin that there is no room
-/// for
-///         a grid in double around it.
-void check_places(const MeshView& mesh) {
-  const std::vector<std::uint32_t> places = weld_clusters(mesh.vertices);
-  std::vector<std::optional<std::uint32_t>> vertex_at(mesh.vertices.size());
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) {
-      std::optional<std::uint32_t>& known = vertex_at[places[v]];
-      if (!known) known = v;
-      if (*known == v) continue;
-      throw InvalidMesh("the mesh touches itself: vertices " + std::to_string(*known) + " and " + std::to_string(v) +
-                        " lie in one place; weld it first");
-    }
-  }
+/// @throws InvalidMesh where the mesh lies so far from the origin that there is no room for a grid in double around it.
+void check_distance(const MeshView& mesh) {
   const Box3 box = bounds(mesh);
   constexpr double furthest = 1e8;
   if (box.largest_coordinate() > furthest * box.diagonal()) {
@@ -63,19 +49,18 @@ void check_places(const MeshView& mesh) {
   }
 }
 
+void throw_if_any(const std::string& problem) {
+  if (!problem.empty()) throw InvalidMesh(problem);
+}
+
 /// What the solid is, with its Betti numbers. @throws InvalidMesh
 Topology checked_solid(const MeshView& mesh, const SiteTable& table, const Context& context) {
   Topology facts = topology(mesh, table, context);
   const std::string problem = problem_as_solid(facts);
   if (!problem.empty() && !(facts.closed && facts.oriented && facts.manifold)) throw InvalidMesh(problem);
-  check_places(mesh);
-  const SelfIntersections crossings = find_self_intersections(mesh, 1, context);
-  if (!crossings.pairs.empty()) {
-    throw InvalidMesh("the mesh crosses or touches itself: triangles " +
-                      std::to_string(crossings.pairs[0].first.value) + " and " +
-                      std::to_string(crossings.pairs[0].second.value) +
-                      ", for one; resolve_crossings() mends that (blum.Solid in Python)");
-  }
+  throw_if_any(problem_of_places(mesh));
+  check_distance(mesh);
+  throw_if_any(problem_of_crossings(mesh, context));
   if (!facts.betti) throw InvalidMesh(problem.empty() ? "the mesh bounds no solid" : problem);
   return facts;
 }
