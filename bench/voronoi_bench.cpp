@@ -166,7 +166,7 @@ const bool registered = [] {
   add_case("box", make_box());
   add_case("star", make_star());
   for (const int sides : {16, 64, 256}) {
-    add_case("cylinder-" + std::to_string(sides), make_cylinder({.sides = sides}), {.resolution = 1}, sides < 256);
+    add_case("cylinder-" + std::to_string(sides), make_cylinder({.sides = sides}));
   }
   add_case("bracket", make_bracket());
   add_case("plate", make_plate());

@@ -46,7 +46,9 @@ Quadratic PlacedLabel::along(const Vec3d& q, std::size_t axis) const {
 }
 
 PolarDifference::PolarDifference(const LabelGeometry& labels, LabelIndex first, LabelIndex second)
-    : labels_(labels), first_(labels[first]), second_(labels[second]), corner_(labels.common_corner(first, second)) {}
+    : labels_(labels), first_(labels[first]), second_(labels[second]) {
+  if (const auto v = labels.common_vertex(first, second)) corner_ = labels.place(*v);
+}
 
 double PolarDifference::at(const Vec3d& q, const Vec3d& r) const {
   if (!corner_) return first_.polar(q, r) - second_.polar(q, r);
@@ -74,6 +76,7 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
       centre_(box_.center()),
       size_(box_.diagonal()),
       rounding_(4e-15 * size_ + 1e-15 * box_.largest_coordinate()) {
+  for (const Vec3d& p : mesh.vertices) places_.push_back(p - centre_);
   label_of_edge_.assign(table.edge_count(), outside);
   label_of_vertex_.assign(table.vertex_count(), outside);
   const IndexRows edges = edges_of_vertices(table);
@@ -199,9 +202,9 @@ bool LabelGeometry::has_corner(LabelIndex label, const Vec3d& corner) const {
   return std::find(own.begin(), own.end(), corner) != own.end();
 }
 
-std::optional<Vec3d> LabelGeometry::common_corner(LabelIndex a, LabelIndex b) const {
-  for (const Vec3d& corner : corners(a)) {
-    if (has_corner(b, corner)) return corner;
+std::optional<std::uint32_t> LabelGeometry::common_vertex(LabelIndex a, LabelIndex b) const {
+  for (const std::uint32_t v : vertices(a)) {
+    if (has_vertex(b, v)) return v;
   }
   return std::nullopt;
 }

@@ -166,13 +166,19 @@ class LabelGeometry {
   [[nodiscard]] Vec3d closest_point(LabelIndex label, const Vec3d& q) const;
   /// Whether two labels are triangles on both sides of a reflex edge.
   [[nodiscard]] bool share_reflex_edge(LabelIndex a, LabelIndex b) const;
-  /// A corner that two labels have in common.
-  [[nodiscard]] std::optional<Vec3d> common_corner(LabelIndex a, LabelIndex b) const;
+  /// A vertex of the mesh that two labels have for a corner.
+  [[nodiscard]] std::optional<std::uint32_t> common_vertex(LabelIndex a, LabelIndex b) const;
   [[nodiscard]] bool has_corner(LabelIndex label, const Vec3d& corner) const;
   /// The vertices of the mesh that are a label's corners, as corners() lists them.
   [[nodiscard]] std::span<const std::uint32_t> vertices(LabelIndex label) const {
     return std::span(vertices_[label]).first(corners(label).size());
   }
+  [[nodiscard]] bool has_vertex(LabelIndex label, std::uint32_t v) const {
+    const std::span<const std::uint32_t> own = vertices(label);
+    return std::find(own.begin(), own.end(), v) != own.end();
+  }
+  /// Where a vertex of the mesh is, relative to the centre.
+  [[nodiscard]] Vec3d place(std::uint32_t v) const { return places_[v]; }
   /// All labels that have a vertex of the mesh for a corner, rising.
   [[nodiscard]] std::span<const LabelIndex> labels_at(std::uint32_t v) const { return labels_at_[v]; }
   /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
@@ -212,6 +218,7 @@ class LabelGeometry {
   std::vector<DomainPlane> planes_;
   std::vector<std::array<Vec3d, 3>> corners_;
   std::vector<std::array<std::uint32_t, 3>> vertices_;
+  std::vector<Vec3d> places_;                                ///< of the mesh's vertices, relative to the centre
   IndexRows labels_at_;                                      ///< of each vertex
   std::vector<LabelIndex> thin_vertices_, unseen_vertices_;  ///< rising
   std::vector<Bisector> bisectors_;                          ///< three for each triangle

@@ -92,13 +92,14 @@ bool SquareTest::resolve(GridSquare& square) const {
     if (!is_any_doubtful && !is_cone()) return false;
     is_any_doubtful = true;
   }
-  bool is_known_cone = is_any_doubtful && is_cone();
+  // That takes time linear in the labels, and stars the square of it.
+  const bool is_known_cone = is_cone();
   if (is_any_doubtful && !is_known_cone) return false;
-  for (const std::uint32_t site : sites) {
-    if (is_star_shaped(site, arcs, present, whole)) continue;
-    is_known_cone = is_known_cone || is_cone();
-    if (!is_known_cone || !has_one_run(site, square)) return false;
-  }
+  const std::vector<std::uint32_t> single = is_known_cone ? sites_of_one_run(square) : std::vector<std::uint32_t>{};
+  const bool is_each_connected = std::all_of(sites.begin(), sites.end(), [&](std::uint32_t site) {
+    return std::binary_search(single.begin(), single.end(), site) || is_star_shaped(site, arcs, present, whole);
+  });
+  if (!is_each_connected) return false;
   square.state = SquareState::resolved;
   return true;
 }
@@ -138,11 +139,20 @@ bool SquareTest::is_near_corner(LabelIndex label, std::uint32_t v, const Polygon
                      [&](const Vec3d& q) { return length(labels_[label].foot(q) - at) + margin < reach * (1 - 1e-9); });
 }
 
-/// Whether a site has one run alone on a square's border.
-bool SquareTest::has_one_run(std::uint32_t site, const GridSquare& square) const {
-  const SquareCells cells = square_cells(tree_, labels_, square);
-  const auto is_own = [&](const SquareCells::Run& run) { return labels_.site_of(run.label) == site; };
-  return std::count_if(cells.runs.begin(), cells.runs.end(), is_own) == 1;
+/// The sites that have one run alone on a square's border, rising.
+std::vector<std::uint32_t> SquareTest::sites_of_one_run(const GridSquare& square) const {
+  std::vector<std::uint32_t> of_runs;
+  for (const SquareCells::Run& run : square_cells(tree_, labels_, square).runs) {
+    if (run.label != outside) of_runs.push_back(labels_[run.label].site);
+  }
+  std::sort(of_runs.begin(), of_runs.end());
+  std::vector<std::uint32_t> out;
+  for (auto first = of_runs.begin(); first != of_runs.end();) {
+    const auto last = std::upper_bound(first, of_runs.end(), *first);
+    if (last - first == 1) out.push_back(*first);
+    first = last;
+  }
+  return out;
 }
 
 /// Whether a label is closest nowhere in a square, or next to a point over a corner of it alone, where it has no
@@ -152,9 +162,9 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, co
   const bool by_incident = !is_thin(label, whole);
   if (is_absent(label, all, part, {by_incident, std::nullopt}, 0)) return true;
   if (labels_[label].kind == SiteKind::vertex) return false;
-  const std::span<const Vec3d> corners = labels_.corners(label);
+  const std::span<const std::uint32_t> corners = labels_.vertices(label);
   return std::any_of(corners.begin(), corners.end(),
-                     [&](const Vec3d& corner) { return is_absent(label, all, part, {by_incident, corner}, 0); });
+                     [&](std::uint32_t v) { return is_absent(label, all, part, {by_incident, v}, 0); });
 }
 
 std::vector<SquareTest::BorderArc> SquareTest::border(const GridSquare& square) const {
@@ -238,7 +248,7 @@ SquareTest::Polygon SquareTest::not_further(LabelIndex label, LabelIndex other, 
 bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part, const Allowance& allowed,
                            int depth) const {
   constexpr int most = 6;
-  if (part.empty() || (allowed.corner && is_at_corner(part, *allowed.corner, all))) return true;
+  if (part.empty() || (allowed.vertex && is_at_corner(part, *allowed.vertex, all))) return true;
   if (depth > most) return false;
   Vec3d middle;
   for (const Vec3d& p : part) middle += p;
@@ -420,20 +430,20 @@ bool SquareTest::never_meet(const SiteInSquare& own, LabelIndex other, const Vec
     if (labels_.share_reflex_edge(label, other)) return true;
     const Polygon common = in_domain(label, of_other);
     if (common.empty() || returns_nowhere(own.on_border, other, from, common)) return true;
-    const Allowance allowed{false, labels_.common_corner(label, other)};
+    const Allowance allowed{false, labels_.common_vertex(label, other)};
     // Where they meet something else may be closer, except over a common corner.
     return is_absent(other, own.all, common, allowed, 0) || is_absent(label, own.all, common, allowed, 0);
   });
 }
 
 /// Whether a part is next to one point alone, over a corner, where nothing is closer than what has this corner.
-bool SquareTest::is_at_corner(const Polygon& part, const Vec3d& corner, std::span<const LabelIndex> all) const {
+bool SquareTest::is_at_corner(const Polygon& part, std::uint32_t v, std::span<const LabelIndex> all) const {
   constexpr double small = 4096;
   if (extent(part) > small * labels_.rounding()) return false;
-  const double distance = length(part[0] - corner);
+  const double distance = length(part[0] - labels_.place(v));
   const double nearest = distance * distance + 4 * small * labels_.rounding_of_squares(distance);
   return std::all_of(all.begin(), all.end(), [&](LabelIndex label) {
-    return labels_.has_corner(label, corner) || labels_[label].squared_distance(part[0]) > nearest ||
+    return labels_.has_vertex(label, v) || labels_[label].squared_distance(part[0]) > nearest ||
            in_domain(label, part).empty();
   });
 }

@@ -45,21 +45,21 @@ class SquareTest {
 
   /// What may rule a label out beside labels that are closer.
   struct Allowance {
-    bool by_incident = false;     ///< the domain of a label next to it, which shares its border alone
-    std::optional<Vec3d> corner;  ///< a corner that it has, where what is left is next to a point over that
+    bool by_incident = false;             ///< the domain of a label next to it, which shares its border alone
+    std::optional<std::uint32_t> vertex;  ///< a corner that it has, where what is left is next to a point over that
   };
 
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, const Polygon& whole) const;
   [[nodiscard]] bool is_over_one_vertex(std::span<const LabelIndex> present, const Polygon& whole) const;
   [[nodiscard]] bool is_near_corner(LabelIndex label, std::uint32_t v, const Polygon& whole) const;
-  [[nodiscard]] bool has_one_run(std::uint32_t site, const GridSquare& square) const;
+  [[nodiscard]] std::vector<std::uint32_t> sites_of_one_run(const GridSquare& square) const;
   [[nodiscard]] std::vector<BorderArc> border(const GridSquare& square) const;
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part,
                                const Allowance& allowed, int depth) const;
   [[nodiscard]] std::vector<DomainPlane> attained_between(LabelIndex label) const;
   [[nodiscard]] bool is_attained(LabelIndex label, const Vec3d& q) const;
-  [[nodiscard]] bool is_at_corner(const Polygon& part, const Vec3d& corner, std::span<const LabelIndex> all) const;
+  [[nodiscard]] bool is_at_corner(const Polygon& part, std::uint32_t v, std::span<const LabelIndex> all) const;
   [[nodiscard]] bool is_thin(LabelIndex label, Polygon part) const;
   [[nodiscard]] bool is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all,
                                        Polygon part, const Allowance& allowed, int depth) const;
