@@ -233,10 +233,7 @@ void add_report(MedialRun& run, const MedialAxisReport& report, std::optional<do
   run.table.add("voxels", count_text(voxels) + " of side" + sides_text(report) +
                               (extra > 0 ? "; " + count_text(extra) + " cells of thinner parts beside them" : ""));
   if (const std::string text = asked ? refined_text(report, *asked) : ""; !text.empty()) run.table.add("refined", text);
-  if (report.reversed_shells > 0) {
-    run.warnings.push_back(plural(report.reversed_shells, "shell faces", "shells face") + " the wrong way and " +
-                           (report.reversed_shells == 1 ? "was" : "were") + " reversed");
-  }
+  if (report.reversed_shells > 0) run.warnings.push_back(reversed_shells_text(report.reversed_shells));
   if (report.rule == SolidRule::winding) run.warnings.push_back(report.reason + ", as voxels");
 }
 

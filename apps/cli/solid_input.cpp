@@ -1,10 +1,14 @@
 #include "solid_input.hpp"
 
+#include <utility>
+
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
+#include "blum/solid/oriented_mesh.hpp"
 #include "input_facts.hpp"
 #include "options.hpp"
 #include "progress.hpp"
+#include "summary.hpp"
 
 namespace blum::cli {
 
@@ -54,9 +58,28 @@ Selections parse_selections(const std::vector<std::string>& labels, const std::o
   return out;
 }
 
+void orient(SolidInput& input, const Context& context) {
+  OrientedMesh oriented = oriented_mesh(input.mesh.mesh, context);
+  input.mesh.mesh = std::move(oriented.mesh);
+  input.reversed_triangles = oriented.reversed_triangles;
+  input.reversed_shells = oriented.reversed_shells;
+}
+
 std::vector<std::string> warnings_of(const SolidInput& input) {
-  if (input.weld && input.weld->before != input.weld->after) return {weld_text(*input.weld)};
-  return {};
+  std::vector<std::string> all;
+  if (input.weld && input.weld->before != input.weld->after) all.push_back(weld_text(*input.weld));
+  if (input.reversed_triangles > 0) {
+    all.push_back(plural(input.reversed_triangles, "triangle faces", "triangles face") +
+                  " another way than most of the mesh around, and " + (input.reversed_triangles == 1 ? "was" : "were") +
+                  " reversed");
+  }
+  if (input.reversed_shells > 0) all.push_back(reversed_shells_text(input.reversed_shells));
+  return all;
+}
+
+std::string reversed_shells_text(std::size_t count) {
+  return plural(count, "shell faces", "shells face") + " the wrong way and " + (count == 1 ? "was" : "were") +
+         " reversed";
 }
 
 }  // namespace blum::cli

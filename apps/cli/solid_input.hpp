@@ -1,11 +1,13 @@
 // Blum: meshes and images as solids. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "blum/core/context.hpp"
 #include "blum/core/error.hpp"
 #include "blum/field/distance_transform.hpp"
 #include "files.hpp"
@@ -19,7 +21,8 @@ struct SolidInput {
   InputKind kind = InputKind::mesh;
   MeshFile mesh;
   VoxelImage image;
-  std::optional<WeldFacts> weld;  ///< where vertices within a tolerance above 0 were joined
+  std::optional<WeldFacts> weld;                            ///< where vertices within a tolerance above 0 were joined
+  std::size_t reversed_triangles = 0, reversed_shells = 0;  ///< by orient()
   Json json;
   std::string text;
 };
@@ -28,8 +31,13 @@ struct SolidInput {
 /// @throws FileError for fields and for what cannot be read; InvalidMesh, InvalidImage.
 [[nodiscard]] SolidInput load_solid(const std::filesystem::path& path, std::optional<double> weld);
 
-/// What there is to say of an input: how many vertices were joined.
+/// Turns the triangles of a mesh away from the solid. @throws InvalidMesh as oriented_mesh() does.
+void orient(SolidInput& input, const Context& context);
+
+/// What there is to say of an input: how many vertices were joined, and triangles reversed.
 [[nodiscard]] std::vector<std::string> warnings_of(const SolidInput& input);
+
+[[nodiscard]] std::string reversed_shells_text(std::size_t count);
 
 /// What make() makes of a file; of a mesh that it does not take, the error names the file. @throws InvalidMesh.
 template <class Make>

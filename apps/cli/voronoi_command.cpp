@@ -256,12 +256,18 @@ std::string graph_text(const VoronoiGraph& graph) {
          ", " + plural(graph.junctions.size(), "junction", "junctions");
 }
 
-/// Puts the cleaned mesh, where one is asked for, in the place of the one that was read, and writes it.
-std::optional<CleanReport> clean(const Arguments& a, const Request& r, SolidInput& input, const Context& context) {
-  if (!r.clean) return std::nullopt;
+/// Puts the mesh that faces outwards, cleaned where that is asked for, in the place of the one that was read; writes
+/// the cleaned one.
+std::optional<CleanReport> prepare(const Arguments& a, const Request& r, SolidInput& input, const Context& context) {
+  if (!r.clean) {
+    of_file(a.input, [&] { orient(input, context); });
+    return std::nullopt;
+  }
   CleanedMesh cleaned = of_file(a.input, [&] { return clean_mesh(input.mesh.mesh, *r.clean, context); });
   if (a.cleaned) write_mesh(*a.cleaned, cleaned.mesh);
   input.mesh.mesh = std::move(cleaned.mesh);
+  input.reversed_triangles = cleaned.report.reversed_triangles;
+  input.reversed_shells = cleaned.report.reversed_shells;
   return cleaned.report;
 }
 
@@ -273,10 +279,10 @@ void run(const Arguments& a) {
   const Context context = make_context(r.threads, progress, interrupt);
   Stopwatch watch;
   SolidInput input = read_mesh_input(path, r.weld);
-  std::vector<std::string> warnings = warnings_of(input);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  const std::optional<CleanReport> cleaning = clean(a, r, input, context);
-  if (cleaning) phases.push_back({"clean", watch.lap()});
+  const std::optional<CleanReport> cleaning = prepare(a, r, input, context);
+  phases.push_back({cleaning ? "clean" : "orient", watch.lap()});
+  std::vector<std::string> warnings = warnings_of(input);
   if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
   VoronoiComplex made = of_file(path, [&] { return voronoi_complex(input.mesh.mesh, r.options, context); });
   const VoronoiReport& found = made.report;
@@ -311,6 +317,8 @@ void run(const Arguments& a) {
   progress.clear();
   const PhaseSummary spent = summarize(phases);
   Json facts = {{"input", input.json}, {"options", to_json(r.options)}};
+  facts["reversed_triangles"] = input.reversed_triangles;
+  facts["reversed_shells"] = input.reversed_shells;
   facts["cleaning"] = cleaning ? cleaning_json(*cleaning, *r.clean) : Json(nullptr);
   facts.update(to_json(found));
   facts.erase("seconds");  // the run's, below, hold them

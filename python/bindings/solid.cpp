@@ -14,6 +14,7 @@
 #include "bindings.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/solid/clean_mesh.hpp"
+#include "blum/solid/oriented_mesh.hpp"
 #include "call.hpp"
 #include "images.hpp"
 #include "structs.hpp"
@@ -63,12 +64,26 @@ void bind_clean_mesh(nb::module_& m) {
       nb::arg("mesh"), nb::arg("tolerance"), nb::arg("threads"), nb::arg("progress").none());
 }
 
+/// (mesh, reversed_triangles, reversed_shells).
+void bind_oriented_mesh(nb::module_& m) {
+  m.def(
+      "oriented_mesh",
+      [](const MeshArrays& mesh, int threads, nb::object progress) {
+        const MeshView view = mesh.view();
+        const OrientedMesh out =
+            run({threads, std::move(progress)}, [&](const Context& context) { return oriented_mesh(view, context); });
+        return nb::make_tuple(arrays_of(out.mesh), out.reversed_triangles, out.reversed_shells);
+      },
+      nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none());
+}
+
 }  // namespace
 
 void bind_solid(nb::module_& m) {
   bind_struct<SolidShell>(m);
   bind_struct<CrossingCounts>(m);
   bind_clean_mesh(m);
+  bind_oriented_mesh(m);
   bind_options<CellularModelOptions>(m);
   bind_struct<CellularModelReport>(m);
   nb::class_<CellularModel>(m, "CellularModel")

@@ -13,7 +13,7 @@ from . import _structs, reference
 from ._axis_graph import axis_graph
 from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
 from ._certificate import solid_rule
-from ._clean import CleanedMesh, clean_mesh
+from ._clean import CleanedMesh, OrientedMesh, clean_mesh, oriented_mesh
 from ._closest import ClosestPointQuery, ClosestPoints, NearPrimitives, closest_points, winding_number
 from ._complex import Complex, homology
 from ._core import thread_count
@@ -129,6 +129,7 @@ __all__ = [
     "NearPrimitives",
     "NearSamples",
     "NestedComplex",
+    "OrientedMesh",
     "OutOfMemory",
     "Penetration",
     "Present",
@@ -177,6 +178,7 @@ __all__ = [
     "known_betti",
     "medial_axis",
     "noisy",
+    "oriented_mesh",
     "pseudonormals",
     "read_field",
     "read_image",

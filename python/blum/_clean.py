@@ -1,4 +1,4 @@
-"""Closed meshes without needles and needless vertices."""
+"""Closed meshes that face outwards, without needles and needless vertices."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ def clean_mesh(
     Parameters
     ----------
     mesh : mesh
-        As for :func:`distance_field`: closed, facing outwards, without crossings, not touching itself.
+        As for :func:`distance_field`: closed, without crossings, not touching itself. It may face any way, as for
+        :func:`oriented_mesh`.
     tolerance : float
         The result is nowhere further from the mesh than this, nor the mesh from it, for certain; mesh units.
     weld, threads, progress
@@ -61,3 +62,40 @@ def clean_mesh(
             given._arrays, number(tolerance, "tolerance"), integer(threads, "threads"), report
         )
     return CleanedMesh(mesh_of_arrays(arrays), vertex_of, done)
+
+
+@dataclass(frozen=True, eq=False)
+class OrientedMesh:
+    """A mesh that faces away from the solid: what :func:`oriented_mesh` returns."""
+
+    mesh: Mesh  #: the given one, but that the last two corners of some triangles have changed places
+    reversed_triangles: int  #: that faced another way than most of their shell
+    reversed_shells: int  #: that faced the solid, as a whole
+
+
+def oriented_mesh(mesh: Any, *, weld: Real | None = None, threads: int = 0, progress: Progress = False) -> OrientedMesh:
+    """The same triangles, in their order, turned such that all face away from the solid that they bound.
+
+    First those are turned that disagree with most of their shell, then shells that face the solid.
+
+    Parameters
+    ----------
+    mesh : mesh
+        As for :func:`distance_field`: closed and manifold.
+    weld, threads, progress
+        As for :func:`distance_field`.
+
+    Raises
+    ------
+    InvalidMesh (a ValueError), TypeError, KeyboardInterrupt
+
+    >>> import blum
+    >>> box = blum.generate("box")
+    >>> found = blum.oriented_mesh((box.vertices, box.triangles[:, ::-1]))
+    >>> found.reversed_shells, blum.topology(found.mesh).faces_outwards
+    (1, True)
+    """
+    given = as_mesh(mesh, weld=weld)
+    with reporting(progress) as report:
+        arrays, triangles, shells = _core.oriented_mesh(given._arrays, integer(threads, "threads"), report)
+    return OrientedMesh(mesh_of_arrays(arrays), triangles, shells)

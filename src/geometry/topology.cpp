@@ -287,7 +287,7 @@ std::string problem_as_solid(const Topology& facts) {
   }
   if (!facts.oriented) {
     return head + "is not oriented: at " + count(facts.inconsistent_edges, "edge", "edges") +
-           " both triangles run the same way";
+           " both triangles run the same way (oriented_mesh() turns them)";
   }
   if (!facts.manifold) {
     return head + "is not manifold: at " + count(facts.nonmanifold_vertices, "vertex", "vertices") +
@@ -295,7 +295,7 @@ std::string problem_as_solid(const Topology& facts) {
   }
   if (!facts.closed) return head + "is not closed";
   if (!facts.faces_outwards) {
-    return head + "does not face outwards: turn the triangles of its outer shells, or of its voids, around";
+    return head + "does not face outwards: shells of it, or of its voids, face the solid (oriented_mesh() turns them)";
   }
   return "";
 }

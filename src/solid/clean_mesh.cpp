@@ -13,6 +13,7 @@
 #include "blum/geometry/sites.hpp"
 #include "blum/geometry/topology.hpp"
 #include "blum/geometry/triangle_contact.hpp"
+#include "blum/solid/oriented_mesh.hpp"
 #include "solid/clean/mesh_cleaner.hpp"
 #include "solid/clean/shrinking_surface.hpp"
 
@@ -143,16 +144,12 @@ void take_result(const ShrinkingSurface& from, std::span<const Vec3d> vertices, 
   }
 }
 
-/// What an edge must be for triangles to be turned at it: that of two triangles, with each vertex of one fan.
-void check_manifold(const MeshView& mesh, const Context& context) {
+void check_corners(const MeshView& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
     if (a != b && b != c && c != a) continue;
     throw InvalidMesh("triangle " + std::to_string(t) + " names a vertex twice; welding the mesh leaves such out");
   }
-  const Topology facts = topology(mesh, SiteTable(mesh, context), context);
-  if (facts.closed && facts.oriented && facts.manifold) return;
-  throw InvalidMesh(problem_as_solid(facts));
 }
 
 }  // namespace
@@ -160,12 +157,16 @@ void check_manifold(const MeshView& mesh, const Context& context) {
 CleanedMesh clean_mesh(const MeshView& mesh, double tolerance, const Context& context) {
   validate(mesh);
   if (mesh.triangles.empty()) throw InvalidMesh("the mesh has no triangles, so it bounds no solid");
-  const MeshView given{mesh.vertices, mesh.triangles, {}, {}};
-  check_tolerance(given, tolerance);
-  check_coordinates(given);
-  check_manifold(given, context);
+  const MeshView all{mesh.vertices, mesh.triangles, {}, {}};
+  check_tolerance(all, tolerance);
+  check_coordinates(all);
+  check_corners(all);
+  const OrientedMesh oriented = oriented_mesh(all, context);
+  const MeshView given = oriented.mesh;
   CleanedMesh out;
   CleanReport& report = out.report;
+  report.reversed_triangles = oriented.reversed_triangles;
+  report.reversed_shells = oriented.reversed_shells;
   report.triangles_before = mesh.triangles.size();
   report.smallest_height_before = smallest_height(given);
   const std::vector<Triangle> triangles = without_flat_triangles(given, report.flips);

@@ -306,13 +306,28 @@ def test_what_is_not_certified_is_written_where_that_is_asked_for(parts, tmp_pat
     assert np.ptp(lengths) < 1e-9 * lengths.max()
 
 
+def test_what_faces_the_wrong_way_is_turned(solids, tmp_path):
+    found = run_json("voronoi", solids / "inverted.obj", warns=True)
+    assert found["certified"] and found["reversed_shells"] == 1 and found["reversed_triangles"] == 0
+    assert found["warnings"] == ["1 shell faces the wrong way and was reversed"]
+    run("make", "box", "-o", tmp_path / "box.obj")
+    text = (tmp_path / "box.obj").read_text()
+    first = re.search(r"^f (\d+) (\d+) (\d+)$", text, re.MULTILINE)
+    wrong = tmp_path / "wrong.obj"
+    wrong.write_text(text.replace(first[0], f"f {first[1]} {first[3]} {first[2]}", 1))
+    found = run_json("voronoi", wrong, warns=True)
+    assert found["certified"] and found["reversed_triangles"] == 1 and found["expected_betti"] == [1, 0, SITES]
+    cleaned = run_json("voronoi", wrong, "--clean", 0.001, warns=True)
+    assert cleaned["certified"] and cleaned["cleaning"]["reversed_triangles"] == cleaned["reversed_triangles"] == 1
+    assert cleaned["warnings"] == found["warnings"]
+
+
 # ---- What is wrong ----
 
 
 def test_meshes_that_bound_no_solid(solids, tmp_path):
-    for name, word in (("open.obj", "closed"), ("inverted.obj", "outwards")):
-        _, err = run("voronoi", solids / name, "-o", tmp_path / "o.vtp", status=1)
-        assert name in err and "bounds no solid" in err and word in err
+    _, err = run("voronoi", solids / "open.obj", "-o", tmp_path / "o.vtp", status=1)
+    assert "open.obj" in err and "bounds no solid" in err and "closed" in err
     _, err = run("voronoi", solids / "ball.nrrd", "-o", tmp_path / "o.vtp", status=1)
     assert "ball.nrrd" in err and "is no mesh" in err
     assert names(tmp_path) == []

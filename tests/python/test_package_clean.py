@@ -63,3 +63,18 @@ def test_what_is_wrong_is_said():
 def test_progress_is_told():
     code = "import blum; blum.clean_mesh(blum.subdivided(blum.generate('box'), 5), 1e-6, progress=True)"
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+def test_what_faces_the_wrong_way_is_turned():
+    part = blum.generate("bracket")
+    triangles = part.triangles.copy()
+    triangles[5] = triangles[5, ::-1]
+    found = blum.oriented_mesh((part.vertices, triangles[:, ::-1]))
+    assert (found.reversed_triangles, found.reversed_shells) == (1, 1)
+    assert found.mesh.triangles.shape == triangles.shape and blum.topology(found.mesh).betti == (1, 4, 0)
+    assert blum.voronoi_complex(found.mesh).report.certified
+    with pytest.raises(blum.InvalidMesh, match="oriented_mesh"):
+        blum.voronoi_complex((part.vertices, triangles))
+    assert blum.clean_mesh((part.vertices, triangles), 1e-6).report.reversed_triangles == 1
+    with pytest.raises(blum.InvalidMesh, match="not closed"):
+        blum.oriented_mesh((part.vertices, triangles[1:]))

@@ -20,8 +20,10 @@ struct CleanReport {
   std::size_t vertices = 0;         ///< of the result
   std::size_t triangles_before = 0;
   std::size_t triangles = 0;
-  std::size_t collapses = 0;  ///< vertices that were moved onto a neighbour
-  std::size_t flips = 0;      ///< edges that were turned
+  std::size_t reversed_triangles = 0;  ///< that faced another way than most of their shell
+  std::size_t reversed_shells = 0;     ///< that faced the solid
+  std::size_t collapses = 0;           ///< vertices that were moved onto a neighbour
+  std::size_t flips = 0;               ///< edges that were turned
   /// Each point of the result has one of the mesh that is no further away than this, and each point of the mesh one of
   /// the result: a bound, rounding included, of at most the tolerance. Mesh units.
   double deviation = 0;
@@ -40,6 +42,9 @@ struct Description<CleanReport> {
       Member{"vertices", &CleanReport::vertices, "", "of the result"},
       Member{"triangles_before", &CleanReport::triangles_before, "", "of the mesh"},
       Member{"triangles", &CleanReport::triangles, "", "of the result"},
+      Member{"reversed_triangles", &CleanReport::reversed_triangles, "",
+             "triangles that faced another way than most of their shell"},
+      Member{"reversed_shells", &CleanReport::reversed_shells, "", "shells that faced the solid"},
       Member{"collapses", &CleanReport::collapses, "", "vertices that were moved onto a neighbour"},
       Member{"flips", &CleanReport::flips, "", "edges that were turned"},
       Member{"deviation", &CleanReport::deviation, "mesh units",
@@ -69,10 +74,10 @@ struct CleanedMesh {
 /// and than those which they replace, are left out. In the end the whole result is checked anew. Vertices never move
 /// to new places. Method, and why the bound holds: docs/theory/solid.md.
 ///
-/// @param mesh       closed, facing outwards, manifold, without crossings, not touching itself: what voronoi_complex()
-///                   takes. Triangles without area may be in it where a flip of their longest side takes them out.
-///                   Its segments, points and vertices that no triangle names are left out. Coordinates of magnitude
-///                   1e-45 to 1e45, or 0.
+/// @param mesh       closed, manifold, without crossings, not touching itself: what voronoi_complex() takes, but that
+///                   it may face any way, as oriented_mesh() says. Triangles without area may be in it where a flip of
+///                   their longest side takes them out. Its segments, points and vertices that no triangle names are
+///                   left out. Coordinates of magnitude 1e-45 to 1e45, or 0.
 /// @param tolerance  the result is nowhere further from the mesh than this, nor the mesh from it: mesh units; at least
 ///                   1e-12 of the diagonal of the box around the mesh, and at most that diagonal.
 /// @return           the same for any number of threads.

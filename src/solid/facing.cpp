@@ -1,0 +1,118 @@
+#include "solid/facing.hpp"
+
+#include <array>
+#include <utility>
+
+#include "blum/core/union_find.hpp"
+
+namespace blum::detail {
+namespace {
+
+constexpr std::uint32_t nobody = 0xffffffffU;
+
+bool names_a_vertex_twice(const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// Reverses triangles of a closed manifold such that neighbours agree, by walking over its edges.
+class Reverser {
+ public:
+  Reverser(const MeshView& mesh, const SiteTable& sites)
+      : mesh_(mesh),
+        sites_(sites),
+        of_edge_(sites.edge_count(), {nobody, nobody}),
+        facing_(mesh.triangles.size(), 0),
+        triangles_(mesh.triangles.begin(), mesh.triangles.end()) {
+    for (std::uint32_t t = 0; t < facing_.size(); ++t) {
+      if (names_a_vertex_twice(mesh.triangles[t])) continue;
+      for (const EdgeId edge : sites.triangle_edges()[t]) {
+        auto& pair = of_edge_[edge.value];
+        pair[pair[0] == nobody ? 0 : 1] = t;
+      }
+    }
+  }
+
+  std::optional<std::vector<Triangle>> agreeing(std::size_t& count) {
+    for (std::uint32_t first = 0; first < facing_.size(); ++first) {
+      if (facing_[first] != 0 || names_a_vertex_twice(mesh_.triangles[first])) continue;
+      if (!agree_with(first)) return std::nullopt;
+    }
+    count = count_;
+    return std::move(triangles_);
+  }
+
+ private:
+  bool agree_with(std::uint32_t first) {
+    std::vector<std::uint32_t> shell{first};
+    facing_[first] = 1;
+    int sum = 0;
+    for (std::size_t next = 0; next < shell.size(); ++next) {
+      sum += facing_[shell[next]];
+      if (!tell_neighbours(shell[next], shell)) return false;
+    }
+    for (const std::uint32_t t : shell) {
+      if ((facing_[t] > 0) == (sum >= 0)) continue;
+      std::swap(triangles_[t][1], triangles_[t][2]);
+      ++count_;
+    }
+    return true;
+  }
+
+  /// Tells the neighbours of a triangle how they face; false where one was told otherwise.
+  bool tell_neighbours(std::uint32_t t, std::vector<std::uint32_t>& shell) {
+    for (const EdgeId edge : sites_.triangle_edges()[t]) {
+      const auto& pair = of_edge_[edge.value];
+      const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
+      if (other == nobody || other == t) continue;
+      const int wanted = rises(t, edge) != rises(other, edge) ? facing_[t] : -facing_[t];
+      if (facing_[other] == -wanted) return false;
+      if (facing_[other] == 0) shell.push_back(other);
+      facing_[other] = wanted;
+    }
+    return true;
+  }
+
+  /// Whether a triangle traverses an edge towards the larger vertex.
+  [[nodiscard]] bool rises(std::uint32_t t, EdgeId edge) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sites_.triangle_edges()[t][k] == edge) return mesh_.triangles[t][k] < mesh_.triangles[t][(k + 1) % 3];
+    }
+    return false;
+  }
+
+  const MeshView& mesh_;
+  const SiteTable& sites_;
+  std::vector<std::array<std::uint32_t, 2>> of_edge_;
+  std::vector<int> facing_;  ///< 1 or -1; 0 where it is not known
+  std::vector<Triangle> triangles_;
+  std::size_t count_ = 0;  ///< of those that were reversed
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> shell_of_triangles(const MeshView& mesh, const SiteTable& sites) {
+  UnionFind joined(mesh.triangles.size());
+  std::vector<std::uint32_t> first(sites.edge_count(), nobody);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (names_a_vertex_twice(mesh.triangles[t])) continue;
+    for (const EdgeId edge : sites.triangle_edges()[t]) {
+      if (first[edge.value] == nobody) first[edge.value] = t;
+      joined.join(first[edge.value], t);
+    }
+  }
+  std::vector<std::uint32_t> number(mesh.triangles.size(), no_shell);
+  std::uint32_t count = 0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (names_a_vertex_twice(mesh.triangles[t])) continue;
+    const std::uint32_t r = joined.find(t);
+    number[t] = r == t ? count++ : number[r];
+  }
+  return number;
+}
+
+std::optional<std::vector<Triangle>> agreeing_triangles(const MeshView& mesh, const SiteTable& sites,
+                                                        std::size_t& count) {
+  return Reverser(mesh, sites).agreeing(count);
+}
+
+}  // namespace blum::detail

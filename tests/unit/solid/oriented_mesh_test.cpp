@@ -1,0 +1,105 @@
+// Proves that triangles of closed meshes are turned away from the solid, whichever of them face the wrong way, and that
+// nothing else of the mesh changes; that what cannot be turned is refused.
+#include "blum/solid/oriented_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blum/core/error.hpp"
+#include "blum/core/random.hpp"
+#include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/shapes/shape_catalog.hpp"
+#include "support/mesh_places.hpp"
+#include "support/shape_names.hpp"
+
+namespace blum {
+namespace {
+
+class OrientedShapes : public testing::TestWithParam<std::string> {};
+
+// Of shells of many triangles fewer than half are reversed, and then some shells as a whole: what comes back is the
+// mesh that there was.
+TEST_P(OrientedShapes, AreWhatTheyWere) {
+  const TriangleMesh mesh = make_shape(GetParam());
+  const Topology facts = topology(mesh, SiteTable(mesh));
+  if (!facts.betti) {
+    EXPECT_TRUE(!(facts.closed && facts.manifold) || facts.oriented);
+    return;
+  }
+  Random random(3);
+  for (const double share : {0.0, 0.05, 0.2, 1.0}) {
+    TriangleMesh given = mesh;
+    std::size_t count = 0;
+    for (Triangle& t : given.triangles) {
+      if (!(random.uniform() < share)) continue;
+      std::swap(t[1], t[2]);
+      ++count;
+    }
+    const OrientedMesh out = oriented_mesh(given);
+    EXPECT_EQ(out.mesh.vertices, mesh.vertices);
+    EXPECT_EQ(topology(out.mesh, SiteTable(out.mesh)).betti, facts.betti);
+    EXPECT_EQ(out.mesh.triangles.size(), mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Triangle& own = out.mesh.triangles[t];
+      EXPECT_TRUE(own == mesh.triangles[t] || (own == Triangle{own[0], given.triangles[t][2], given.triangles[t][1]}));
+      EXPECT_EQ(own[0], given.triangles[t][0]);
+    }
+    const bool is_same_way = share == 0 || share == 1;
+    EXPECT_TRUE(!is_same_way || out.reversed_triangles == 0);
+    EXPECT_TRUE(!is_same_way || out.reversed_shells == (share == 1 ? facts.shells.size() : 0));
+    EXPECT_TRUE(share == 1 || out.reversed_shells > 0 || out.reversed_triangles == count);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalog, OrientedShapes, testing::ValuesIn(test::catalog_names()),
+                         [](const auto& name) { return test::test_name(name.param); });
+
+// A void faces the other way round than its body: the same triangles, turned, are the right ones.
+TEST(OrientedMesh, VoidsFaceTheirInside) {
+  TriangleMesh mesh = test::box_between({0, 0, 0}, {3, 3, 3});
+  append(mesh, test::box_between({1, 1, 1}, {2, 2, 2}));
+  EXPECT_FALSE(topology(mesh, SiteTable(mesh)).betti);
+  const OrientedMesh out = oriented_mesh(mesh);
+  EXPECT_EQ(out.reversed_shells, 1U);
+  EXPECT_EQ(topology(out.mesh, SiteTable(out.mesh)).betti, (std::array<std::int64_t, 3>{1, 0, 1}));
+}
+
+std::string message_of(const TriangleMesh& mesh) {
+  try {
+    static_cast<void>(oriented_mesh(mesh));
+  } catch (const InvalidMesh& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(OrientedMesh, RefusesWhatCannotBeTurned) {
+  TriangleMesh open = make_box();
+  open.triangles.pop_back();
+  EXPECT_NE(message_of(open).find("not closed"), std::string::npos);
+  TriangleMesh line;
+  line.vertices = {{0, 0, 0}, {1, 0, 0}};
+  line.segments = {{0, 1}};
+  EXPECT_NE(message_of(line).find("no triangles"), std::string::npos);
+  // The projective plane of six vertices: each edge has two triangles.
+  TriangleMesh projective;
+  Random random(1);
+  for (int k = 0; k < 6; ++k) projective.vertices.push_back(random.in_cube());
+  projective.triangles = {{0, 1, 4}, {0, 1, 5}, {0, 2, 3}, {0, 2, 5}, {0, 3, 4},
+                          {1, 2, 3}, {1, 2, 4}, {1, 3, 5}, {2, 4, 5}, {3, 4, 5}};
+  EXPECT_NE(message_of(projective).find("one side only"), std::string::npos);
+  TriangleMesh named = make_box();
+  named.triangles[0][0] = 99;
+  EXPECT_NE(message_of(named), "");
+}
+
+}  // namespace
+}  // namespace blum
