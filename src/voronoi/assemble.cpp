@@ -30,6 +30,7 @@ struct Place {
   Vec3d on_wall;                    ///< a place where walls of it cross an edge of the grid
   Vec3d rim;                        ///< sum of places on convex edges of the mesh at which walls of it end
   std::uint32_t rims = 0;           ///< how many there are
+  bool is_over_corner = false;      ///< whether its walls are a cone about a corner of the mesh, which the rim is then
   std::vector<LabelIndex> labels;   ///< one of each site
   std::vector<LabelIndex> surface;  ///< those of them whose own face is part of it
 };
@@ -249,6 +250,7 @@ class Assembly {
           are_at(solid_.mesh.vertices[cells.vertices[0]] - labels_.centre(), of_component)) {
         of_component.rim = solid_.mesh.vertices[cells.vertices[0]] - labels_.centre();
         of_component.rims = 1;
+        of_component.is_over_corner = true;
       } else if (of_component.labels.size() > 2) {
         of_component.rims = 0;
       }
@@ -347,6 +349,34 @@ class Assembly {
     return best;
   }
 
+  /// On a seam: of places where three labels are equally close, that where most are.
+  [[nodiscard]] std::optional<Settled> settled_on_seam(const Place& place) const {
+    constexpr std::size_t most = 10;
+    const std::size_t count = std::min(most, place.labels.size());
+    std::optional<Settled> best;
+    std::size_t best_count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i + 1; j < count; ++j) {
+        for (std::size_t k = j + 1; k < count; ++k) {
+          const auto found = settled(place, std::array{place.labels[i], place.labels[j], place.labels[k]});
+          if (!found) continue;
+          const std::size_t closest = sites_at(place, *found);
+          if (closest <= best_count) continue;
+          best = found;
+          best_count = closest;
+        }
+      }
+    }
+    return best_count > 2 ? best : std::nullopt;
+  }
+
+  /// How many of a vertex's sites are closest there.
+  [[nodiscard]] std::size_t sites_at(const Place& place, const Settled& found) const {
+    return static_cast<std::size_t>(std::count_if(place.labels.begin(), place.labels.end(), [&](LabelIndex label) {
+      return length(labels_.closest_point(label, found.at) - found.at) <= found.point.radius + near();
+    }));
+  }
+
   /// Moves a vertex to the surface where it has a part in it, else to where all its labels are equally close, or two;
   /// where none of that is found nearby, to where a wall of it crosses an edge of the grid.
   void settle_one(Place& place, WallPoint& out) const {
@@ -354,6 +384,8 @@ class Assembly {
     std::optional<Settled> found;
     if (!is_point && place.surface.empty()) {
       found = settled(place, place.labels);
+      // Sheets that meet in a corner meet on seams from there on: a vertex of one of them alone is off the others.
+      if (!found && place.is_over_corner) found = settled_on_seam(place);
       if (!found) found = settled_between_two(place);
     } else if (!is_point) {
       found = settled(place, place.surface);

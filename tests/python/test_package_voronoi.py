@@ -99,6 +99,15 @@ def test_medial_axes(tmp_path):
         found.medial_axis(200)
 
 
+def test_axes_at_corners_of_three_convex_and_three_reflex_edges():
+    """Walls that meet there are a cone about the corner: a vertex next to it lies on the seam of all of them."""
+    sponge = blum.generate("menger", level=2)
+    c, s = np.cos([0.3, 0.5]), np.sin([0.3, 0.5])
+    turn = np.array([[1, 0, 0], [0, c[1], -s[1]], [0, s[1], c[1]]]) @ [[c[0], -s[0], 0], [s[0], c[0], 0], [0, 0, 1]]
+    axis = blum.voronoi_complex((sponge.vertices @ turn.T, sponge.triangles), part="medial").medial_axis(1)
+    assert axis.certificate.holds and axis.homology() == (1, 81, 0), axis.certificate.mismatches
+
+
 def test_sites():
     """A bracket's faces lie in one plane each; its sites are as many as the report says."""
     mesh = blum.generate("bracket")
