@@ -13,6 +13,7 @@
 #include "blum/io/atomic_file.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "blum/io/voronoi_io.hpp"
 #include "blum/solid/clean_mesh.hpp"
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_complex.hpp"
@@ -189,13 +190,11 @@ fs::path source_of(const Arguments& a) {
 }
 
 FileMetadata metadata_of(const Arguments& a, const Request& r, const VoronoiReport& report) {
-  FileMetadata out{{"content", a.walls ? "walls of a Voronoi diagram" : "Voronoi diagram"},
-                   {"blum_version", BLUM_VERSION},
-                   {"source", source_of(a).filename().string()},
-                   {"certified", report.certified ? "true" : "false"}};
+  FileMetadata out =
+      voronoi_metadata(r.options.part, report.certified ? std::optional(report.hausdorff_bound) : std::nullopt,
+                       report.failing.size(), BLUM_VERSION);
+  out.emplace_back("source", source_of(a).filename().string());
   if (r.weld) out.emplace_back("weld", exact_text(*r.weld));
-  if (report.certified) out.emplace_back("hausdorff_bound", exact_text(report.hausdorff_bound));
-  if (!report.certified) out.emplace_back("failing_cubes", std::to_string(report.failing.size()));
   if (r.clean) out.emplace_back("clean", exact_text(*r.clean));
   return out;
 }

@@ -1,6 +1,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -8,9 +9,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "blum/io/complex_io.hpp"
 #include "blum/io/field_io.hpp"
 #include "blum/io/formats.hpp"
 #include "blum/io/image_io.hpp"
@@ -79,6 +82,33 @@ void bind_volumes(nb::module_& m) {
       nb::arg("threads"), nb::arg("progress").none());
 }
 
+nb::dict texts_of(const FileMetadata& metadata) {
+  nb::dict out;
+  for (const auto& [key, value] : metadata) out[nb::str(key.c_str(), key.size())] = value;
+  return out;
+}
+
+void bind_complex_files(nb::module_& m) {
+  m.def(
+      "read_complex",
+      [](const Path& path) {
+        ComplexFile file = run({0, nb::none()}, [&](const Context&) { return read_complex(path); });
+        nb::dict further;
+        for (NamedComplex& one : file.further) further[one.name.c_str()] = std::move(one.complex);
+        return nb::make_tuple(std::move(file.complex), texts_of(file.metadata), further);
+      },
+      nb::arg("path"));
+  m.def(
+      "write_complex",
+      [](const Path& path, const Complex& complex, const std::vector<std::pair<std::string, std::string>>& metadata,
+         bool allow_loss) {
+        run_call({0, nb::none()}, [&](const Context& context) {
+          write_complex(path, complex, metadata, {.allow_loss = allow_loss}, context);
+        });
+      },
+      nb::arg("path"), nb::arg("complex"), nb::arg("metadata"), nb::arg("allow_loss"));
+}
+
 /// Which attributes a file of an axis holds.
 nb::dict has_of(const MedialFile& file) {
   nb::dict out;
@@ -123,6 +153,7 @@ void bind_files(nb::module_& m) {
   bind_formats(m);
   bind_meshes(m);
   bind_volumes(m);
+  bind_complex_files(m);
   bind_medial_files(m);
 }
 

@@ -1,17 +1,18 @@
 #include "blum/voronoi/voronoi_complex.hpp"
 
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <filesystem>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "blum/io/complex_io.hpp"
+#include "blum/io/voronoi_io.hpp"
 #include "blum/voronoi/failing_cells.hpp"
 #include "blum/voronoi/voronoi_graph.hpp"
 #include "blum/voronoi/voronoi_regions.hpp"
@@ -80,15 +81,16 @@ void bind_voronoi(nb::module_& m) {
       },
       nb::arg("complex"), nb::arg("cells"));
   m.def(
-      "write_complex",
-      [](const std::filesystem::path& path, const Complex& complex,
-         const std::vector<std::tuple<std::string, std::string>>& metadata) {
-        FileMetadata about;
-        for (const auto& [name, value] : metadata) about.emplace_back(name, value);
-        run_call({0, nb::none()},
-                 [&](const Context& context) { write_complex(path, complex, about, {.allow_loss = true}, context); });
+      "voronoi_metadata",
+      [](const std::string& part, std::optional<double> hausdorff_bound, std::size_t failing_cubes) {
+        nb::dict out;
+        const auto of_part = parse_enum<VoronoiPart>("part", part);
+        for (const auto& [key, value] : voronoi_metadata(of_part, hausdorff_bound, failing_cubes, BLUM_VERSION)) {
+          out[key.c_str()] = value;
+        }
+        return out;
       },
-      nb::arg("path"), nb::arg("complex"), nb::arg("metadata"));
+      nb::arg("part"), nb::arg("hausdorff_bound").none(), nb::arg("failing_cubes"));
 }
 
 }  // namespace blum::python

@@ -15,6 +15,7 @@ from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
 from ._certificate import solid_rule
 from ._clean import CleanedMesh, OrientedMesh, clean_mesh, oriented_mesh
 from ._closest import ClosestPointQuery, ClosestPoints, NearPrimitives, closest_points, winding_number
+from ._complex_files import ComplexFile, read_complex, write_complex
 from ._complex import Complex, homology
 from ._core import thread_count
 from ._core import version as __version__
@@ -103,6 +104,7 @@ __all__ = [
     "ClosestPointQuery",
     "ClosestPoints",
     "Complex",
+    "ComplexFile",
     "ContinuousCollisions",
     "DeviceArray",
     "DeviceDistanceTransform",
@@ -180,6 +182,7 @@ __all__ = [
     "noisy",
     "oriented_mesh",
     "pseudonormals",
+    "read_complex",
     "read_field",
     "read_image",
     "read_medial",
@@ -210,5 +213,6 @@ __all__ = [
     "weld",
     "weld_clusters",
     "winding_number",
+    "write_complex",
 ]
 __all__ += _structs.__all__

@@ -138,7 +138,8 @@ class VoronoiComplex(Complex):
         return Complex._from_core(_core.with_failing_cells(self._core, cells))
 
     def write(self, path: PathLike, *, allow_uncertified: bool = False) -> None:
-        """Writes .vtp, .ply, .obj (without columns), .npz or .glb; the file appears complete or not at all.
+        """Writes .vtp, .ply, .obj (without columns), .npz or .glb; the file appears complete or not at all. All but
+        .glb are read by :func:`read_complex`.
 
         A diagram that is not certified is refused unless `allow_uncertified` is set: parts of it may be missing or
         wrong. Its file then says so, and has the cubes that do not pass as edges.
@@ -148,19 +149,11 @@ class VoronoiComplex(Complex):
                 "the diagram is not certified, so parts of it may be missing or wrong (report.failing, "
                 "with_failing_cells()): allow_uncertified=True writes it all the same"
             )
-        name = "Voronoi diagram" if self.part == "all" else "walls of a Voronoi diagram"
         certified = self.report.certified
-        metadata = [
-            ("content", name),
-            ("blum_version", _core.version),
-            ("certified", "true" if certified else "false"),
-        ]
-        if certified:
-            metadata.append(("hausdorff_bound", repr(self.report.hausdorff_bound)))
-        else:
-            metadata.append(("failing_cubes", str(len(self.report.failing))))
+        bound = self.report.hausdorff_bound if certified else None
+        metadata = _core.voronoi_metadata(self.part, bound, len(self.report.failing))
         core = self._core if certified else self.with_failing_cells()._core
-        _core.write_complex(Path(os.fspath(path)), core, metadata)
+        _core.write_complex(Path(os.fspath(path)), core, list(metadata.items()), True)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (core_arguments(self), self.report, self.part, self._mesh)

@@ -106,3 +106,50 @@ def test_copies_of_medial_axes_keep_all_columns_and_all_angles(tmp_path):
         assert np.array_equal(again.nested.edge_until, read.nested.edge_until)
     pytest.importorskip("pyvista")
     assert set(read.to_pyvista().point_data) == set(read.vertex_columns)
+
+
+@pytest.mark.parametrize("ending", ["vtp", "ply", "npz"])
+def test_files_give_back_what_was_written(ending, tmp_path):
+    made = sample()
+    about = {"made by": "hand", "Größe": "β ≤ 3"}
+    blum.write_complex(tmp_path / f"a.{ending}", made, metadata=about)
+    file = blum.read_complex(tmp_path / f"a.{ending}")
+    assert file.metadata == about and not file.further
+    assert np.array_equal(file.complex.vertices, made.vertices) and np.array_equal(file.complex.edges, made.edges)
+    assert np.array_equal(file.complex.triangles, made.triangles)
+    for kind in ("vertex_columns", "edge_columns", "triangle_columns"):
+        columns, read = getattr(made, kind), getattr(file.complex, kind)
+        assert set(columns) == set(read)
+        assert all(read[name].dtype == columns[name].dtype for name in columns)
+        assert all(np.array_equal(read[name], columns[name]) for name in columns)
+
+
+def test_files_that_cannot_be(tmp_path):
+    made = sample()
+    with pytest.raises(blum.InvalidOption, match="obj"):
+        blum.write_complex(tmp_path / "a.obj", made)
+    blum.write_complex(tmp_path / "a.obj", made, allow_loss=True)
+    assert np.array_equal(blum.read_complex(tmp_path / "a.obj").complex.triangles, made.triangles)
+    with pytest.raises(blum.InvalidOption, match="xyz"):
+        blum.write_complex(tmp_path / "a.xyz", made)
+    with pytest.raises(TypeError, match="complex"):
+        blum.write_complex(tmp_path / "a.vtp", made.vertices)
+    with pytest.raises(FileNotFoundError):
+        blum.read_complex(tmp_path / "none.vtp")
+    (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 and no more")
+    with pytest.raises(blum.FileError, match=r"bad\.npz"):
+        blum.read_complex(tmp_path / "bad.npz")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.obj", "bad.npz"]
+
+
+def test_diagrams_and_nested_axes_are_complexes_of_files(tmp_path):
+    found = blum.voronoi_complex(blum.generate("box"))
+    found.write(tmp_path / "box.vtp")
+    file = blum.read_complex(tmp_path / "box.vtp")
+    assert file.metadata["content"] == "Voronoi diagram" and file.metadata["certified"] == "true"
+    assert float(file.metadata["hausdorff_bound"]) == found.report.hausdorff_bound
+    assert np.array_equal(file.complex.triangle_columns["site_b"], found.triangle_sites[:, 1])
+    failed = blum.voronoi_complex(blum.generate("gear"), depth=3)
+    failed.write(tmp_path / "gear.vtp", allow_uncertified=True)
+    about = blum.read_complex(tmp_path / "gear.vtp").metadata
+    assert about["certified"] == "false" and int(about["failing_cubes"]) == len(failed.report.failing)
