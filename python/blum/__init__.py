@@ -15,8 +15,8 @@ from ._centreline import Centreline, CentrelineBranch, Centrelines, centreline
 from ._certificate import solid_rule
 from ._clean import CleanedMesh, OrientedMesh, clean_mesh, oriented_mesh
 from ._closest import ClosestPointQuery, ClosestPoints, NearPrimitives, closest_points, winding_number
-from ._complex_files import ComplexFile, read_complex, write_complex
 from ._complex import Complex, homology
+from ._complex_files import ComplexFile, read_complex, write_complex
 from ._core import thread_count
 from ._core import version as __version__
 from ._device import DeviceArray, DeviceDistanceTransform, DeviceField, DeviceFieldSolver, cuda_devices
