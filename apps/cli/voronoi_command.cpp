@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
-#include "blum/io/atomic_file.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "blum/io/voronoi_io.hpp"
@@ -211,7 +211,6 @@ Request parse(const Arguments& a) {
   std::vector<fs::path> outputs = a.report.files();
   if (r.axis.graph) {
     if (a.medial && !a.output) throw UsageError("--graph of a medial axis is for files: give --output, too");
-    if (!a.medial) check_extension("--graph", *r.axis.graph, {".json"});
     outputs.push_back(*r.axis.graph);
   }
   if (a.cleaned) {
@@ -233,19 +232,11 @@ Request parse(const Arguments& a) {
 }
 
 /// The parts of the diagram, where a file of them is asked for. The same that Python's VoronoiComplex.graph() tells.
-std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, const Json& sites,
+std::optional<VoronoiGraph> make_graph(const Arguments& a, const Request& r, std::span<const VoronoiSite> sites,
                                        const VoronoiComplex& made, const Context& context) {
   if (a.medial || !r.axis.graph) return std::nullopt;
   VoronoiGraph graph = voronoi_graph(made.complex, context);
-  Json json = {{"content", "graph of a Voronoi diagram"}};
-  for (const auto& [name, value] : metadata_of(a, r, made.report)) {
-    if (name != "content") json[name] = value;
-  }
-  json["sites"] = sites;
-  json.update(to_json(graph));
-  AtomicFile file(*r.axis.graph);
-  file.write(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
-  file.commit();
+  write_voronoi_graph(*r.axis.graph, graph, sites, metadata_of(a, r, made.report));
   return graph;
 }
 
@@ -288,7 +279,7 @@ void run(const Arguments& a) {
   phases.insert(phases.end(), found.phases.begin(), found.phases.end());
   static_cast<void>(watch.lap());
   const Counts counts(made.complex);
-  const Json sites = to_json(voronoi_sites(input.mesh.mesh, context));
+  const std::vector<VoronoiSite> sites = voronoi_sites(input.mesh.mesh, context);
   std::vector<std::string> mismatches = mismatches_of(found, r.options, r.clean.has_value());
   const bool may_write = mismatches.empty() || a.allow_uncertified;
   bool is_written = a.output && may_write;
@@ -324,7 +315,7 @@ void run(const Arguments& a) {
   facts["certified"] = mismatches.empty();
   facts["mismatches"] = mismatches;
   facts["complex"] = counts.json();
-  facts["sites"] = sites;
+  facts["sites"] = to_json(sites);
   facts["regions"] = nullptr;
   if (r.options.part == VoronoiPart::all) {
     facts["regions"] = to_json(graph ? graph->regions : voronoi_regions(made.complex));

@@ -1,11 +1,14 @@
 #include "blum/voronoi/voronoi_complex.hpp"
 
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -65,6 +68,16 @@ void bind_voronoi(nb::module_& m) {
         return result_of(run({0, nb::none()}, [&](const Context& context) { return voronoi_graph(complex, context); }));
       },
       nb::arg("complex"));
+  m.def(
+      "write_voronoi_graph",
+      [](const std::filesystem::path& path, const Complex& complex, const MeshArrays& mesh,
+         const std::vector<std::pair<std::string, std::string>>& metadata) {
+        const MeshView view = mesh.view();
+        run_call({0, nb::none()}, [&](const Context& context) {
+          write_voronoi_graph(path, voronoi_graph(complex, context), voronoi_sites(view, context), metadata);
+        });
+      },
+      nb::arg("path"), nb::arg("complex"), nb::arg("mesh"), nb::arg("metadata"));
   using Cell = std::tuple<std::array<double, 3>, std::array<double, 3>, std::string>;
   m.def(
       "with_failing_cells",

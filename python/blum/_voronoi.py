@@ -149,11 +149,19 @@ class VoronoiComplex(Complex):
                 "the diagram is not certified, so parts of it may be missing or wrong (report.failing, "
                 "with_failing_cells()): allow_uncertified=True writes it all the same"
             )
-        certified = self.report.certified
-        bound = self.report.hausdorff_bound if certified else None
-        metadata = _core.voronoi_metadata(self.part, bound, len(self.report.failing))
-        core = self._core if certified else self.with_failing_cells()._core
-        _core.write_complex(Path(os.fspath(path)), core, list(metadata.items()), True)
+        core = self._core if self.report.certified else self.with_failing_cells()._core
+        _core.write_complex(Path(os.fspath(path)), core, list(self._metadata().items()), True)
+
+    def write_graph(self, path: PathLike) -> None:
+        """Writes :meth:`graph` with the sites: all of it to .json, nodes and edges with numbers to .graphml, for
+        networkx, Gephi, igraph and yEd. The file appears complete or not at all, and says whether this is certified.
+        """
+        _core.write_voronoi_graph(Path(os.fspath(path)), self._core, self._mesh._arrays, list(self._metadata().items()))
+
+    def _metadata(self) -> dict[str, str]:
+        bound = self.report.hausdorff_bound if self.report.certified else None
+        found: dict[str, str] = _core.voronoi_metadata(self.part, bound, len(self.report.failing))
+        return found
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (core_arguments(self), self.report, self.part, self._mesh)

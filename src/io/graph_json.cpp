@@ -1,48 +1,11 @@
-#include <algorithm>
-#include <array>
-#include <concepts>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <type_traits>
-#include <vector>
+#include "io/graph_json.hpp"
 
-#include "blum/core/describe.hpp"
+#include <algorithm>
+
 #include "io/graph_files.hpp"
 
 namespace blum::graph_files {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-template <class T>
-struct ListOf : std::false_type {};
-template <class T>
-struct ListOf<std::vector<T>> : std::true_type {};
-template <class T, std::size_t count>
-struct ListOf<std::array<T, count>> : std::true_type {};
-
-template <class T>
-Json json_of(const T& value) {
-  if constexpr (DescribedStruct<T>) {
-    Json json = Json::object();
-    for_each_member<T>([&](const auto& member) { json[std::string(member.name)] = json_of(member.of(value)); });
-    return json;
-  } else if constexpr (DescribedEnum<T>) {
-    return to_string(value);
-  } else if constexpr (std::same_as<T, Vec3d>) {
-    return Json::array({value.x, value.y, value.z});
-  } else if constexpr (ListOf<T>::value) {
-    Json json = Json::array();
-    for (const auto& part : value) json.push_back(json_of(part));
-    return json;
-  } else if constexpr (requires { value.has_value(); }) {
-    return value ? json_of(*value) : Json(nullptr);
-  } else {
-    static_assert(std::is_arithmetic_v<T>);
-    return value;
-  }
-}
 
 /// Whether a value takes one line: numbers, lists of them and of such lists, objects of numbers and lists of these.
 bool is_flat(const Json& json, int depth = 0) {
@@ -75,15 +38,19 @@ void append(const Json& json, std::string& text, std::size_t indent) {
 
 }  // namespace
 
+std::string text_of(const Json& json) {
+  std::string text;
+  append(json, text, 0);
+  return text + "\n";
+}
+
 std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata) {
   Json json = {{"content", "graph of a medial axis"}};
   for (const auto& [name, value] : told(metadata)) {
     std::visit([&, &key = name](const auto& known) { json[key] = known; }, value);
   }
   json.update(json_of(graph));
-  std::string text;
-  append(json, text, 0);
-  return text + "\n";
+  return text_of(json);
 }
 
 }  // namespace blum::graph_files

@@ -1,17 +1,11 @@
-#include <algorithm>
+#include "io/graph_ml.hpp"
+
 #include <array>
-#include <concepts>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 #include <string_view>
-#include <type_traits>
-#include <vector>
 
-#include "blum/core/describe.hpp"
 #include "blum/core/exact_text.hpp"
-#include "io/graph_files.hpp"
 
 namespace blum::graph_files {
 namespace {
@@ -63,107 +57,6 @@ std::string text_of(const Attribute& attribute) {
       attribute.second);
 }
 
-/// The members of a struct that are values, as attributes; see write_graph().
-template <DescribedStruct T>
-void add_members(const T& whole, Attributes& out, const std::string& prefix = {}) {
-  for_each_member<T>([&](const auto& member) {
-    const auto& value = member.of(whole);
-    using Value = std::remove_cvref_t<decltype(value)>;
-    const std::string name = prefix + std::string(member.name);
-    if constexpr (DescribedStruct<Value>) {
-      add_members(value, out, name + "_");
-    } else if constexpr (DescribedEnum<Value>) {
-      out.emplace_back(name, std::string(to_string(value)));
-    } else if constexpr (std::same_as<Value, Vec3d>) {
-      for (std::size_t axis = 0; axis < 3; ++axis) out.emplace_back(name + "_" + "xyz"[axis], value[axis]);
-    } else if constexpr (std::same_as<Value, bool> || std::floating_point<Value>) {
-      out.emplace_back(name, value);
-    } else if constexpr (std::integral<Value>) {
-      out.emplace_back(name, static_cast<std::int64_t>(value));
-    }
-  });
-}
-
-struct Node {
-  std::string name;
-  Attributes attributes;
-};
-struct Edge {
-  std::string from, to;
-  Attributes attributes;
-};
-
-/// The graph as nodes and edges.
-class Flattened {
- public:
-  explicit Flattened(const AxisGraph& graph) {
-    add_nodes("sheet", graph.sheets, [&](std::size_t k) { return std::size_t{graph.sheets[k].sheet}; });
-    add_nodes("seam", graph.seams);
-    for (std::size_t k = 0; k < graph.curves.size(); ++k) {
-      if (graph.curves[k].closed) add_node("curve", k, graph.curves[k]);
-    }
-    add_nodes("junction", graph.junctions);
-    add_nodes("patch", graph.patches);
-    for (std::size_t k = 0; k < graph.curves.size(); ++k) add_curve(graph.curves[k], k);
-    for (const AxisSheet& sheet : graph.sheets) {
-      for (const std::uint32_t seam : sheet.seams)
-        add_incidence(numbered("sheet", sheet.sheet), numbered("seam", seam));
-    }
-    for (std::size_t j = 0; j < graph.junctions.size(); ++j) {
-      const std::set<std::uint32_t> seams(graph.junctions[j].seams.begin(), graph.junctions[j].seams.end());
-      for (const std::uint32_t s : seams) add_incidence(numbered("seam", s), numbered("junction", j));
-      for (const std::uint32_t s : graph.junctions[j].sheets) {
-        add_incidence(numbered("sheet", s), numbered("junction", j));
-      }
-    }
-    for (const AxisSheet& sheet : graph.sheets) add_walls(sheet);
-  }
-
-  std::vector<Node> nodes;
-  std::vector<Edge> edges;
-
- private:
-  static std::string numbered(const char* element, std::size_t number) { return element + std::to_string(number); }
-
-  template <class T>
-  void add_node(const char* element, std::size_t number, const T& part) {
-    Attributes attributes{{"element", std::string(element)}};
-    add_members(part, attributes);
-    nodes.push_back({numbered(element, number), std::move(attributes)});
-  }
-  template <class T>
-  void add_nodes(const char* element, const std::vector<T>& parts) {
-    add_nodes(element, parts, [](std::size_t k) { return k; });
-  }
-  template <class T, class Number>
-  void add_nodes(const char* element, const std::vector<T>& parts, const Number& number) {
-    for (std::size_t k = 0; k < parts.size(); ++k) add_node(element, number(k), parts[k]);
-  }
-  void add_curve(const AxisLine& curve, std::size_t number) {
-    if (!curve.junctions) return;
-    Attributes attributes{{"element", std::string("curve")}, {"curve", static_cast<std::int64_t>(number)}};
-    add_members(curve, attributes);
-    edges.push_back({numbered("junction", (*curve.junctions)[0]), numbered("junction", (*curve.junctions)[1]),
-                     std::move(attributes)});
-  }
-  void add_incidence(std::string from, std::string to) {
-    edges.push_back({std::move(from), std::move(to), {{"element", std::string("incidence")}}});
-  }
-  void add_walls(const AxisSheet& sheet) {
-    std::map<std::uint32_t, double> shares;
-    for (const AxisPatchPair& pair : sheet.patch_pairs) {
-      std::set<std::uint32_t> named(pair.first.begin(), pair.first.end());
-      named.insert(pair.second.begin(), pair.second.end());
-      for (const std::uint32_t patch : named) shares[patch] += pair.share;
-    }
-    for (const auto& [patch, share] : shares) {
-      edges.push_back({numbered("sheet", sheet.sheet),
-                       numbered("patch", patch),
-                       {{"element", std::string("wall")}, {"share", share}}});
-    }
-  }
-};
-
 /// The attributes of graph, nodes or edges, each declared where it first occurs.
 class Keys {
  public:
@@ -197,18 +90,15 @@ class Keys {
 
 }  // namespace
 
-std::string graphml_text(const AxisGraph& graph, const MedialMetadata& metadata) {
-  const Flattened flat(graph);
+std::string graphml_text(const char* id, const Attributes& whole, const FlatGraph& graph) {
   Keys of_graph("graph");
   Keys of_nodes("node");
   Keys of_edges("edge");
-  Attributes whole = told(metadata);
-  add_members(graph, whole);
   std::string body = of_graph.data(whole, "    ");
-  for (const Node& node : flat.nodes) {
+  for (const FlatGraph::Node& node : graph.nodes) {
     body += "    <node id=\"" + node.name + "\">\n" + of_nodes.data(node.attributes, "      ") + "    </node>\n";
   }
-  for (const Edge& edge : flat.edges) {
+  for (const FlatGraph::Edge& edge : graph.edges) {
     body += "    <edge source=\"" + edge.from + "\" target=\"" + edge.to + "\">\n" +
             of_edges.data(edge.attributes, "      ") + "    </edge>\n";
   }
@@ -217,8 +107,8 @@ std::string graphml_text(const AxisGraph& graph, const MedialMetadata& metadata)
          "         xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"\n"
          "         xsi:schemaLocation=\"http://graphml.graphdrawing.org/xmlns "
          "http://graphml.graphdrawing.org/xmlns/1.0/graphml.xsd\">\n" +
-         of_graph.declarations() + of_nodes.declarations() + of_edges.declarations() +
-         "  <graph id=\"axis\" edgedefault=\"undirected\">\n" + body + "  </graph>\n</graphml>\n";
+         of_graph.declarations() + of_nodes.declarations() + of_edges.declarations() + "  <graph id=\"" + id +
+         "\" edgedefault=\"undirected\">\n" + body + "  </graph>\n</graphml>\n";
 }
 
 }  // namespace blum::graph_files

@@ -366,13 +366,16 @@ def test_graphs_of_diagrams(parts, tmp_path):
     assert graph["content"] == "graph of a Voronoi diagram" and graph["source"] == "bracket.ply"
     assert graph["regions"] == found["regions"]
     assert {name: len(graph[name]) for name in ("walls", "seams", "junctions")} == found["graph"]
+    run("voronoi", parts / "bracket.ply", "--graph", tmp_path / "graph.graphml", "--quiet")
+    text = (tmp_path / "graph.graphml").read_text()
+    assert all(text.count(f'<node id="{part[:-1]}') == len(graph[part]) for part in ("walls", "seams", "junctions"))
     run("voronoi", parts / "gear.ply", *COARSE, "--graph", tmp_path / "gear.json", status=3)
-    assert names(tmp_path) == ["graph.json"]
+    assert names(tmp_path) == ["graph.graphml", "graph.json"]
 
 
 def test_options_of_graphs(parts, tmp_path):
     box = parts / "box.ply"
-    assert "--graph" in run("voronoi", box, "--graph", tmp_path / "g.graphml", status=2)[1]
+    assert "--graph" in run("voronoi", box, "--graph", tmp_path / "g.xml", status=2)[1]
     assert "--graph" in run("voronoi", box, "--medial", "--graph", tmp_path / "g.json", status=2)[1]
 
 

@@ -136,3 +136,31 @@ def test_graphs(box):
         assert np.array_equal(junction.position, found.vertices[junction.vertex])
         assert len(junction.seams) in (1, 4)
     assert not blum.voronoi_complex(box, part="walls").graph().regions
+
+
+def test_networkx_reads_graphs_of_diagrams(box, tmp_path):
+    networkx = pytest.importorskip("networkx")
+    found = blum.voronoi_complex(blum.generate("bracket"))
+    found.write_graph(tmp_path / "g.graphml")
+    graph, read = found.graph(), networkx.read_graphml(tmp_path / "g.graphml")
+    assert read.graph["content"] == "graph of a Voronoi diagram" and read.graph["certified"] == "true"
+    of = {node: data["element"] for node, data in read.nodes(data=True)}
+    for element, parts in (("wall", graph.walls), ("seam", graph.seams), ("junction", graph.junctions)):
+        assert list(of.values()).count(element) == len(parts)
+    regions = read.subgraph([node for node, element in of.items() if element == "region"])
+    assert all(read.nodes[f"region{k}"]["kind"] == site.kind for k, site in enumerate(found.sites()))
+    area = {
+        frozenset((f"region{region.site}", f"region{other.site}")): other.area
+        for region in graph.regions
+        for other in region.neighbours
+    }
+    assert {frozenset((a, b)): data["area"] for a, b, data in regions.edges(data=True)} == pytest.approx(area)
+    for k, wall in enumerate(graph.walls):
+        around = {f"region{wall.site_a}", f"region{wall.site_b}", *(f"seam{seam}" for seam in wall.seams)}
+        assert set(read[f"wall{k}"]) == around
+    for k, seam in enumerate(graph.seams):
+        assert {n for n in read[f"seam{k}"] if of[n] == "junction"} == {f"junction{j}" for j in seam.junctions}
+    blum.voronoi_complex(box, part="walls").write_graph(tmp_path / "walls.json")
+    assert json.loads((tmp_path / "walls.json").read_text())["regions"] == []
+    with pytest.raises(blum.InvalidOption, match=r"\.json, \.graphml"):
+        found.write_graph(tmp_path / "g.gml")

@@ -6,9 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "blum/core/error.hpp"
 #include "blum/io/graph_io.hpp"
+#include "blum/io/voronoi_io.hpp"
+#include "blum/shapes/generators.hpp"
 #include "io/vtk_xml.hpp"
 #include "unit/io/temporary_folder.hpp"
 
@@ -126,6 +129,30 @@ TEST_F(GraphFiles, GraphmlDeclaresWhatItUses) {
                                                                                  {"sheet4", "patch1"}}));
   EXPECT_EQ(of_curve["edge_length"], "1.5");
   EXPECT_EQ(of_curve["edge_closed"], "false");
+}
+
+TEST_F(GraphFiles, OfVoronoiDiagramsNameTheirSites) {
+  const VoronoiComplex box = voronoi_complex(make_box());
+  VoronoiGraph graph = voronoi_graph(box.complex);
+  const std::vector<VoronoiSite> sites = voronoi_sites(make_box());
+  const FileMetadata about = voronoi_metadata(VoronoiPart::all, box.report.hausdorff_bound, 0, "1.2.3");
+  write_voronoi_graph(folder_ / "g.json", graph, sites, about);
+  const json read = json::parse(test::file_content(folder_ / "g.json"));
+  EXPECT_EQ(read["content"], "graph of a Voronoi diagram");
+  EXPECT_EQ(read["certified"], "true");
+  EXPECT_EQ(read["sites"].size(), 6U);
+  EXPECT_EQ(read["sites"][0]["kind"], "face");
+  EXPECT_EQ(read["walls"].size(), graph.walls.size());
+  EXPECT_EQ(read["regions"][2]["neighbours"].size(), 4U);
+  write_voronoi_graph(folder_ / "g.graphml", graph, sites, about);
+  const std::string text = test::file_content(folder_ / "g.graphml");
+  for (const char* const part : {"<node id=\"region5\">", "target=\"wall0\"", ">neighbours<", ">1.2.3<"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+  const std::vector<VoronoiSite> fewer(sites.begin(), sites.end() - 1);
+  EXPECT_THROW(write_voronoi_graph(folder_ / "h.json", graph, fewer), InvalidOption);
+  EXPECT_THROW(write_voronoi_graph(folder_ / "h.gml", graph, sites), InvalidOption);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "h.json"));
 }
 
 TEST_F(GraphFiles, OtherExtensionsAreRefused) {
