@@ -94,8 +94,6 @@ LabelGeometry::LabelGeometry(const MeshView& mesh, const SiteTable& table, const
   add_vertices(mesh, table, sites, edges);
   for (LabelIndex k = 0; k < labels_.size(); ++k) labels_[k].site = labels.site_of(labels.all()[k]);
   add_neighbours(table, sites);
-  labels_at_ = detail::rows_of(labels_.size(), table.vertex_count(),
-                               [&](std::size_t k) { return vertices(static_cast<LabelIndex>(k)); });
   for (std::uint32_t k = 0; k < bisectors_.size(); ++k) {
     if (bisectors_[k].other == outside) continue;
     convex_pairs_.push_back({labels_[k / 3].site, labels_[bisectors_[k].other].site, k});
@@ -185,6 +183,14 @@ std::optional<Bisector> LabelGeometry::bisector(LabelIndex a, LabelIndex b) cons
     }
   }
   return std::nullopt;
+}
+
+std::optional<Bisector> LabelGeometry::bisector_behind(LabelIndex a, LabelIndex b) const {
+  const PlacedLabel& first = labels_[a];
+  const PlacedLabel& second = labels_[b];
+  if (first.kind != SiteKind::face || second.kind != SiteKind::face) return std::nullopt;
+  return Bisector{b, second.direction + first.direction,
+                  dot(second.direction, second.point) + dot(first.direction, first.point)};
 }
 
 bool LabelGeometry::share_reflex_edge(LabelIndex a, LabelIndex b) const {

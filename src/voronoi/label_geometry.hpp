@@ -153,6 +153,9 @@ class LabelGeometry {
   /// A plane that tells which of two labels is closer, where both domains hold a point: of two triangles, two vertices,
   /// or two edges with an end in common. Heights may be off by twice the rounding.
   [[nodiscard]] std::optional<Bisector> bisector(LabelIndex a, LabelIndex b) const;
+  /// The same of two triangles at points behind the first, where its distance is its height with the other sign;
+  /// nullopt where one is none.
+  [[nodiscard]] std::optional<Bisector> bisector_behind(LabelIndex a, LabelIndex b) const;
   /// Of a triangle, for each of its sides that is a convex edge; other.outside where it is not.
   [[nodiscard]] std::span<const Bisector, 3> bisectors(LabelIndex triangle) const {
     return std::span<const Bisector, 3>(bisectors_.data() + std::size_t{3} * triangle, 3);
@@ -179,8 +182,6 @@ class LabelGeometry {
   }
   /// Where a vertex of the mesh is, relative to the centre.
   [[nodiscard]] Vec3d place(std::uint32_t v) const { return places_[v]; }
-  /// All labels that have a vertex of the mesh for a corner, rising.
-  [[nodiscard]] std::span<const LabelIndex> labels_at(std::uint32_t v) const { return labels_at_[v]; }
   /// Whether a label is an edge or vertex of a site, or the site of it: what is closest changes from one to the other
   /// only at planes of their domains.
   [[nodiscard]] bool are_incident(std::uint32_t site, LabelIndex label) const;
@@ -219,7 +220,6 @@ class LabelGeometry {
   std::vector<std::array<Vec3d, 3>> corners_;
   std::vector<std::array<std::uint32_t, 3>> vertices_;
   std::vector<Vec3d> places_;                                ///< of the mesh's vertices, relative to the centre
-  IndexRows labels_at_;                                      ///< of each vertex
   std::vector<LabelIndex> thin_vertices_, unseen_vertices_;  ///< rising
   std::vector<Bisector> bisectors_;                          ///< three for each triangle
   using ConvexPair = std::array<std::uint32_t, 3>;

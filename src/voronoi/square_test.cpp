@@ -104,21 +104,18 @@ bool SquareTest::resolve(GridSquare& square) const {
   return true;
 }
 
-/// Whether all labels have one vertex for a corner, and feet in a square lie so near to it that the diagram there is
-/// that of the sectors and rays of which they are parts: a cone about the vertex. In it the region of a face or an edge
-/// retracts along ways to footprints to that sector or ray. So where the square does not meet the surface, none of
-/// these has a component strictly inside. (The region of the vertex itself may lie there.)
+/// Whether labels that are closest somewhere in a square, all of them, have one vertex for a corner, and feet so near
+/// to it that distances in the square are those from the sectors and rays of which they are parts: from a cone about
+/// the vertex. The region of a face or an edge retracts along ways to footprints to its sectors or ray. So where the
+/// square does not meet the surface, none of these has a component strictly inside. (The region of the vertex itself
+/// may lie there.)
 bool SquareTest::is_over_one_vertex(std::span<const LabelIndex> present, const Polygon& whole) const {
   if (present.empty()) return false;
   const std::span<const std::uint32_t> corners = labels_.vertices(present.front());
   return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
-    const auto has_v = [&](LabelIndex label) {
-      const std::span<const std::uint32_t> own = labels_.vertices(label);
-      return std::find(own.begin(), own.end(), v) != own.end();
-    };
-    const std::span<const LabelIndex> around = labels_.labels_at(v);
-    return std::all_of(present.begin(), present.end(), has_v) &&
-           std::all_of(around.begin(), around.end(), [&](LabelIndex label) { return is_near_corner(label, v, whole); });
+    return std::all_of(present.begin(), present.end(), [&](LabelIndex label) {
+      return labels_.has_vertex(label, v) && is_near_corner(label, v, whole);
+    });
   });
 }
 
@@ -280,7 +277,7 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   const double own = labels_[label].squared_distance(middle);
   for (const LabelIndex other : others) {
     const double squared = labels_[other].squared_distance(middle);
-    if (!(squared < own) || !is_attained(other, middle)) continue;
+    if (!(squared < own) || !is_attained(other, is_behind(other, middle), middle)) continue;
     candidates.push_back({!labels_.bisector(other, label), squared, other});
   }
   std::sort(candidates.begin(), candidates.end());
@@ -290,42 +287,54 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
     const LabelIndex other = candidate.label;
     const bool are_incident = labels_.are_incident(labels_[label].site, other);
     if (are_incident && !allowed.by_incident) continue;
-    const Polygon inside = clipped_by(part, 2 * labels_.rounding(), attained_between(other));
-    const std::optional<Bisector> plane = labels_.bisector(other, label);
+    const bool from_behind = is_behind(other, middle);
+    const std::vector<DomainPlane> planes = attained_between(other, from_behind);
+    const Polygon inside = clipped_by(part, 2 * labels_.rounding(), planes);
+    const std::optional<Bisector> plane =
+        from_behind ? labels_.bisector_behind(other, label) : labels_.bisector(other, label);
     Polygon left;
     // Domains of labels next to each other meet in their borders alone.
     if (!are_incident && !is_further(label, other, plane, inside)) {
+      if (from_behind && !plane) continue;
       left = not_further(label, other, plane, inside);
       if (left == inside) continue;
     }
     return is_absent(label, all, std::move(left), allowed, depth + 1) &&
-           is_absent_outside(label, other, all, std::move(part), allowed, depth);
+           is_absent_outside(label, planes, all, std::move(part), allowed, depth);
   }
   return false;
 }
 
 /// The planes between which the distance from a label's plane, line or point is that of a point of the surface: of a
-/// triangle on the solid's side alone, where its signed height is that distance.
-std::vector<DomainPlane> SquareTest::attained_between(LabelIndex label) const {
+/// triangle on one side alone, where its signed height is that distance, or less that.
+std::vector<DomainPlane> SquareTest::attained_between(LabelIndex label, bool from_behind) const {
   const std::span<const DomainPlane> ends = labels_.ends(label);
   std::vector<DomainPlane> out(ends.begin(), ends.end());
   const PlacedLabel& placed = labels_[label];
   if (placed.kind == SiteKind::face) {
-    out.push_back({placed.direction, dot(placed.direction, placed.point), outside, outside});
+    const Vec3d side = from_behind ? -placed.direction : placed.direction;
+    out.push_back({side, dot(side, placed.point), outside, outside});
   }
   return out;
 }
 
-bool SquareTest::is_attained(LabelIndex label, const Vec3d& q) const {
-  const std::vector<DomainPlane> planes = attained_between(label);
+bool SquareTest::is_attained(LabelIndex label, bool from_behind, const Vec3d& q) const {
+  const std::vector<DomainPlane> planes = attained_between(label, from_behind);
   return std::all_of(planes.begin(), planes.end(),
                      [&](const DomainPlane& plane) { return plane.height(q) >= -labels_.rounding(); });
 }
 
-/// Whether a label is closest nowhere in the part of a polygon outside of another one's domain.
-bool SquareTest::is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all, Polygon part,
-                                   const Allowance& allowed, int depth) const {
-  for (const DomainPlane& plane : attained_between(other)) {
+/// Whether a point lies behind a triangle, not on the solid's side. What is behind all of the surface is not in the
+/// solid; but to find that no other label is closest there, the distance from the triangle is enough.
+bool SquareTest::is_behind(LabelIndex label, const Vec3d& q) const {
+  return labels_[label].kind == SiteKind::face && labels_[label].height(q) < -labels_.rounding();
+}
+
+/// Whether a label is closest nowhere in the part of a polygon that is not between some planes.
+bool SquareTest::is_absent_outside(LabelIndex label, std::span<const DomainPlane> planes,
+                                   std::span<const LabelIndex> all, Polygon part, const Allowance& allowed,
+                                   int depth) const {
+  for (const DomainPlane& plane : planes) {
     // Slivers by rounding are shared with the part inside.
     const auto beyond = [&](const Vec3d& q) { return -plane.height(q); };
     const bool leaves =

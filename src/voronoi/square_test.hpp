@@ -57,12 +57,14 @@ class SquareTest {
   [[nodiscard]] Polygon polygon(const GridSquare& square) const;
   [[nodiscard]] bool is_absent(LabelIndex label, std::span<const LabelIndex> all, Polygon part,
                                const Allowance& allowed, int depth) const;
-  [[nodiscard]] std::vector<DomainPlane> attained_between(LabelIndex label) const;
-  [[nodiscard]] bool is_attained(LabelIndex label, const Vec3d& q) const;
+  [[nodiscard]] std::vector<DomainPlane> attained_between(LabelIndex label, bool from_behind) const;
+  [[nodiscard]] bool is_attained(LabelIndex label, bool from_behind, const Vec3d& q) const;
+  [[nodiscard]] bool is_behind(LabelIndex label, const Vec3d& q) const;
   [[nodiscard]] bool is_at_corner(const Polygon& part, std::uint32_t v, std::span<const LabelIndex> all) const;
   [[nodiscard]] bool is_thin(LabelIndex label, Polygon part) const;
-  [[nodiscard]] bool is_absent_outside(LabelIndex label, LabelIndex other, std::span<const LabelIndex> all,
-                                       Polygon part, const Allowance& allowed, int depth) const;
+  [[nodiscard]] bool is_absent_outside(LabelIndex label, std::span<const DomainPlane> planes,
+                                       std::span<const LabelIndex> all, Polygon part, const Allowance& allowed,
+                                       int depth) const;
   [[nodiscard]] Polygon not_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,
                                     const Polygon& part) const;
   [[nodiscard]] bool is_further(LabelIndex label, LabelIndex other, const std::optional<Bisector>& plane,

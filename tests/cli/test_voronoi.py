@@ -149,7 +149,7 @@ def test_a_box_is_certified(parts, tmp_path):
     assert found["expected_betti"] == found["found_betti"] == [1, 0, SITES]
     assert found["outputs"] == [str(out)] and names(tmp_path) == ["box.npz"]
     assert {"read", "cells", "complex", "homology", "write"} <= set(found["seconds"])
-    assert found["options"]["depth"] == 23 and found["options"]["part"] == "all"
+    assert found["options"]["depth"] == 24 and found["options"]["part"] == "all"
     counts = found["complex"]
     assert counts["triangles"] == counts["wall_triangles"] + counts["surface_triangles"]
     assert min(counts.values()) > 0

@@ -43,7 +43,7 @@ struct VoronoiOptions {
   /// Cubes that meet the solid have a diagonal of at most this, > 0, mesh units; what `resolution` asks for holds, too.
   std::optional<double> tolerance = {};
   /// How often cubes are split at most, 1 to 24.
-  int depth = 23;
+  int depth = 24;
   /// How many places of the grid are tried at most, 1 to 100: where few cubes fail, others may pass.
   int grids = 4;
   /// No more cubes than this, those that are split included, 1,000 to 100,000,000: what does not pass then is reported.
