@@ -22,7 +22,7 @@ SolidInput load_solid(const std::filesystem::path& path, std::optional<double> w
   if (input.kind == InputKind::mesh) {
     input.mesh = read_mesh_of_any_name(path, {weld});
     const MeshView mesh = input.mesh.mesh;
-    validate(mesh);
+    of_file(path, [&] { validate(mesh); });
     const SiteTable sites(mesh);
     const Orientation facts = orientation(mesh, sites);
     input.json = mesh_json(path, input.mesh, sites, facts);
@@ -70,7 +70,7 @@ std::vector<std::string> warnings_of(const SolidInput& input) {
   if (input.weld && input.weld->before != input.weld->after) all.push_back(weld_text(*input.weld));
   if (input.reversed_triangles > 0) {
     all.push_back(plural(input.reversed_triangles, "triangle faces", "triangles face") +
-                  " another way than most of the mesh around, and " + (input.reversed_triangles == 1 ? "was" : "were") +
+                  " another way than the others around, and " + (input.reversed_triangles == 1 ? "was" : "were") +
                   " reversed");
   }
   if (input.reversed_shells > 0) all.push_back(reversed_shells_text(input.reversed_shells));

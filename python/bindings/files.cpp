@@ -94,19 +94,22 @@ void bind_complex_files(nb::module_& m) {
       [](const Path& path) {
         ComplexFile file = run({0, nb::none()}, [&](const Context&) { return read_complex(path); });
         nb::dict further;
-        for (NamedComplex& one : file.further) further[one.name.c_str()] = std::move(one.complex);
+        for (NamedComplex& one : file.further)
+          further[nb::str(one.name.c_str(), one.name.size())] = std::move(one.complex);
         return nb::make_tuple(std::move(file.complex), texts_of(file.metadata), further);
       },
       nb::arg("path"));
   m.def(
       "write_complex",
       [](const Path& path, const Complex& complex, const std::vector<std::pair<std::string, std::string>>& metadata,
-         bool allow_loss) {
-        run_call({0, nb::none()}, [&](const Context& context) {
-          write_complex(path, complex, metadata, {.allow_loss = allow_loss}, context);
-        });
+         const std::vector<std::pair<std::string, const Complex*>>& further, bool allow_loss) {
+        ComplexWriteOptions how;
+        how.allow_loss = allow_loss;
+        for (const auto& [name, one] : further) how.further.push_back({name, one});
+        run_call({0, nb::none()},
+                 [&](const Context& context) { write_complex(path, complex, metadata, how, context); });
       },
-      nb::arg("path"), nb::arg("complex"), nb::arg("metadata"), nb::arg("allow_loss"));
+      nb::arg("path"), nb::arg("complex"), nb::arg("metadata"), nb::arg("further"), nb::arg("allow_loss"));
 }
 
 /// Which attributes a file of an axis holds.

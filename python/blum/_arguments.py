@@ -31,6 +31,15 @@ def existing_file(path: PathLike) -> Path:
     return file
 
 
+def text(value: Any, argument: str) -> str:
+    """A text as the library takes it: UTF-8, without bytes of 0."""
+    if not isinstance(value, str):
+        raise TypeError(f"{argument} must be a text, not {type(value).__name__}")
+    if "\0" in value or any("\ud800" <= character <= "\udfff" for character in value):
+        raise InvalidOption(f"{argument} is {value!r}, which UTF-8 cannot hold, or which has a 0 in it")
+    return value
+
+
 def is_on_device(value: Any) -> bool:
     """Whether an array says that it is in a CUDA device's memory."""
     try:

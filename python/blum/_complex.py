@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import FloatArray, IntArray, as_array, float_rows, indices, integer
+from ._arguments import FloatArray, IntArray, as_array, float_rows, indices, integer, text
 from ._errors import InvalidOption
 from ._mesh import Betti, betti_of
 from ._progress import Progress, reporting
@@ -160,16 +160,10 @@ def _arrays_of(columns: Mapping[str, Any], argument: str) -> dict[str, npt.NDArr
             if array.dtype == np.uint64 and array.size > 0 and int(array.max()) > np.iinfo(np.int64).max:
                 raise InvalidOption(f"{argument}[{name!r}] holds numbers above 2^63 - 1")
             array = array.astype(np.float64 if array.dtype.kind == "f" else np.int64)
-        out[_text(name, argument)] = np.ascontiguousarray(array.astype(array.dtype.newbyteorder("="), copy=False))
+        out[text(str(name), f"a name of {argument}")] = np.ascontiguousarray(
+            array.astype(array.dtype.newbyteorder("="), copy=False)
+        )
     return out
-
-
-def _text(name: Any, argument: str) -> str:
-    """The name of a column as the library takes it."""
-    text = str(name)
-    if "\0" in text or any("\ud800" <= character <= "\udfff" for character in text):
-        raise InvalidOption(f"{argument} has the name {text!r}, which UTF-8 cannot hold, or which has a 0 in it")
-    return text
 
 
 def homology(

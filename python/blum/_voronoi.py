@@ -150,7 +150,7 @@ class VoronoiComplex(Complex):
                 "with_failing_cells()): allow_uncertified=True writes it all the same"
             )
         core = self._core if self.report.certified else self.with_failing_cells()._core
-        _core.write_complex(Path(os.fspath(path)), core, list(self._metadata().items()), True)
+        _core.write_complex(Path(os.fspath(path)), core, list(self._metadata().items()), [], True)
 
     def write_graph(self, path: PathLike) -> None:
         """Writes :meth:`graph` with the sites: all of it to .json, nodes and edges with numbers to .graphml, for

@@ -142,13 +142,19 @@ class ComplexNpzReader {
     }
   }
 
-  static std::vector<std::string> further_names(const std::vector<std::string>& arrays) {
+  [[nodiscard]] std::vector<std::string> further_names(const std::vector<std::string>& arrays) const {
     std::vector<std::string> names;
     for (const std::string& array : arrays) {
       const auto begins = [&](std::string_view start) { return array.starts_with(start); };
       if (!array.ends_with(further_mark) || std::any_of(kinds.begin(), kinds.end(), begins)) continue;
       std::string name = array.substr(0, array.size() - further_mark.size());
-      if (!name.empty() && name.find('_') == std::string::npos) names.push_back(std::move(name));
+      if (name.empty() || name.find('_') != std::string::npos) continue;
+      check_name(name, "complex", where(array));
+      if (name.size() > max_file_name) {
+        fail(array.substr(0, max_file_name), "the name of a complex has more than " + std::to_string(max_file_name) +
+                                                 " characters; rename it in the program that wrote the file");
+      }
+      names.push_back(std::move(name));
     }
     return names;
   }

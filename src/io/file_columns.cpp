@@ -61,13 +61,16 @@ bool is_text(std::string_view text) {
 
 }  // namespace
 
+void check_name(std::string_view name, const char* what, const std::string& where) {
+  if (is_text(name)) return;
+  std::string place = where;
+  std::replace(place.begin(), place.end(), '\0', '?');  // which would end the message
+  throw FormatError(place + ": the name of the " + what + " " + in_quotes(name) +
+                    " is not UTF-8 text, or has a byte of 0; rename it in the program that wrote the file");
+}
+
 void add_column(Columns& columns, Column column, const std::string& where) {
-  if (!is_text(column.name)) {
-    std::string place = where;
-    std::replace(place.begin(), place.end(), '\0', '?');  // which would end the message
-    throw FormatError(place + ": the name of the column " + in_quotes(column.name) +
-                      " is not UTF-8 text, or has a byte of 0; rename it in the program that wrote the file");
-  }
+  check_name(column.name, "column", where);
   if (columns.size() == max_file_columns || column.components > max_file_columns) {
     throw FormatError(where + ": more than " + std::to_string(max_file_columns) + " columns, or numbers in a row");
   }

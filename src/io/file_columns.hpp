@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -23,6 +24,10 @@ namespace blum::complex_files {
 /// The numbers of a file in the smallest type that a column may have and that holds all of theirs.
 /// @throws FormatError with `where` for a uint64 beyond int64.
 [[nodiscard]] Column::Values widened(VoxelImage::Values values, const std::string& where);
+
+/// A name in a file as it can be shown everywhere. @throws FormatError with `where` for one that is not UTF-8 or has a
+/// byte of 0, saying that it is that of `what`.
+void check_name(std::string_view name, const char* what, const std::string& where);
 
 /// Adds a column that a file has. @throws FormatError with `where` for a name that is there twice or is no text, more
 /// than max_file_columns of them, components beyond it or none, or another count of rows.

@@ -1,6 +1,9 @@
 #include "blum/solid/oriented_mesh.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -10,6 +13,18 @@
 #include "solid/facing.hpp"
 
 namespace blum {
+namespace {
+
+/// Shells at odd depth bound voids of those around them, which are at even depth.
+void check_nesting(std::span<const Shell> shells) {
+  const bool is_nested = std::all_of(shells.begin(), shells.end(), [&](const Shell& shell) {
+    return shell.depth % 2 == 0 || (shell.parent >= 0 && shells[static_cast<std::size_t>(shell.parent)].depth % 2 == 0);
+  });
+  if (!is_nested)
+    throw InvalidMesh("the mesh bounds no solid: its shells do not lie in each other, they coincide or cross");
+}
+
+}  // namespace
 
 OrientedMesh oriented_mesh(const MeshView& mesh, const Context& context) {
   validate(mesh);
@@ -24,12 +39,16 @@ OrientedMesh oriented_mesh(const MeshView& mesh, const Context& context) {
   }
   if (mesh.triangles.empty() || !(facts.closed && facts.oriented && facts.manifold))
     throw InvalidMesh(problem_as_solid(facts));
+  check_nesting(facts.shells);
   if (facts.faces_outwards) return out;
   const std::vector<std::uint32_t> shells = detail::shell_of_triangles(out.mesh, sites);
   for (const Shell& shell : facts.shells) out.reversed_shells += shell.faces_outwards ? 0U : 1U;
   for (std::size_t t = 0; t < shells.size(); ++t) {
     if (shells[t] == detail::no_shell || facts.shells[shells[t]].faces_outwards) continue;
     std::swap(out.mesh.triangles[t][1], out.mesh.triangles[t][2]);
+  }
+  if (!topology(out.mesh, SiteTable(out.mesh, context), context).faces_outwards) {
+    throw InvalidMesh("the mesh bounds no solid: a shell of it encloses no volume, so that it faces nowhere");
   }
   return out;
 }

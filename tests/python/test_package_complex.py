@@ -115,6 +115,7 @@ def test_files_give_back_what_was_written(ending, tmp_path):
     blum.write_complex(tmp_path / f"a.{ending}", made, metadata=about)
     file = blum.read_complex(tmp_path / f"a.{ending}")
     assert file.metadata == about and not file.further
+    assert pickle.loads(pickle.dumps(file)).metadata == copy.deepcopy(file).metadata == about
     assert np.array_equal(file.complex.vertices, made.vertices) and np.array_equal(file.complex.edges, made.edges)
     assert np.array_equal(file.complex.triangles, made.triangles)
     for kind in ("vertex_columns", "edge_columns", "triangle_columns"):
@@ -142,7 +143,40 @@ def test_files_that_cannot_be(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.obj", "bad.npz"]
 
 
-def test_diagrams_and_nested_axes_are_complexes_of_files(tmp_path):
+def test_npz_files_hold_further_complexes(tmp_path):
+    made, other = sample(), blum.Complex([[0, 0, 0], [1, 2, 3]], edges=[[0, 1]])
+    blum.write_complex(tmp_path / "a.npz", made, further={"other": other, "more": made})
+    file = blum.read_complex(tmp_path / "a.npz")
+    assert sorted(file.further) == ["more", "other"]
+    assert np.array_equal(file.further["other"].vertices, other.vertices)
+    assert np.array_equal(file.further["more"].vertex_columns["weight"], made.vertex_columns["weight"])
+    with pytest.raises(blum.InvalidOption, match="npz"):
+        blum.write_complex(tmp_path / "a.vtp", made, further={"other": other})
+    data = (tmp_path / "a.npz").read_bytes()
+    for name in (b"oth\xff\xff", b"oth\0r"):
+        (tmp_path / "b.npz").write_bytes(data.replace(b"other_", name + b"_"))
+        with pytest.raises(blum.FormatError, match="name of the complex"):
+            blum.read_complex(tmp_path / "b.npz")
+
+
+def test_what_is_no_text_or_no_plain_complex_is_refused(tmp_path):
+    made, path = sample(), tmp_path / "a.vtp"
+    for metadata in (None, [("a", "b")], {"a": 1}, {1: "a"}):
+        with pytest.raises(TypeError, match="metadata"):
+            blum.write_complex(path, made, metadata=metadata)
+    for metadata in ({"a": "\ud800"}, {"a\0": "b"}, {"": "b"}):
+        with pytest.raises(blum.InvalidOption):
+            blum.write_complex(path, made, metadata=metadata)
+    diagram = blum.voronoi_complex(blum.generate("gear"), depth=3)
+    for special in (diagram, blum.medial_axis(blum.generate("box"), resolution=16).simplify(60)):
+        with pytest.raises(TypeError, match=r"write\(\)"):
+            blum.write_complex(path, special)
+        with pytest.raises(TypeError, match="further"):
+            blum.write_complex(tmp_path / "a.npz", made, further={"other": special})
+    blum.write_complex(path, diagram.with_failing_cells(), metadata={"certified": "false"})
+
+
+def test_diagrams_are_complexes_of_files(tmp_path):
     found = blum.voronoi_complex(blum.generate("box"))
     found.write(tmp_path / "box.vtp")
     file = blum.read_complex(tmp_path / "box.vtp")
