@@ -420,13 +420,26 @@ class Assembly {
   /// Whether a point is as far from two labels, or on the surface, and in the solid.
   [[nodiscard]] bool is_on_wall(const Place& place, const Vec3d& at, const WallPoint& found) const {
     if (!place.surface.empty()) return found.radius <= near();
-    if (!(found.separation_angle > 0)) return false;
-    return std::all_of(found.labels.begin(), found.labels.end(), [&](LabelIndex label) {
-      if (labels_[label].kind == SiteKind::face) return labels_[label].height(at) > -near();
-      const std::span<const DomainPlane> planes = labels_.planes(label);
-      return std::all_of(planes.begin(), planes.end(),
-                         [&](const DomainPlane& plane) { return plane.height(at) > -near(); });
+    return found.separation_angle > 0 && is_seen_from_inside(place, at, found, 0) &&
+           is_seen_from_inside(place, at, found, 1);
+  }
+
+  /// Of the surface a point inside sees feet of perpendiculars in faces, and points of reflex edges and vertices.
+  [[nodiscard]] bool is_seen_from_inside(const Place& place, const Vec3d& at, const WallPoint& found,
+                                         std::size_t which) const {
+    if (is_in_domain(found.labels[which], at, found.radius)) return true;
+    const std::vector<LabelIndex>& governors = tree_.cubes[place.cube].governors;
+    return std::any_of(governors.begin(), governors.end(), [&](LabelIndex other) {
+      return length(labels_.closest_point(other, at) - found.footprints[which]) <= near() &&
+             is_in_domain(other, at, found.radius);
     });
+  }
+
+  [[nodiscard]] bool is_in_domain(LabelIndex label, const Vec3d& at, double distance) const {
+    if (labels_[label].kind == SiteKind::face) return labels_[label].height(at) > distance - near();
+    const std::span<const DomainPlane> planes = labels_.planes(label);
+    return std::all_of(planes.begin(), planes.end(),
+                       [&](const DomainPlane& plane) { return plane.height(at) > -near(); });
   }
 
   Complex finish() {
