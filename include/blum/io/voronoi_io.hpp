@@ -16,8 +16,8 @@
 namespace blum {
 
 /// What write_complex() is told of a Voronoi diagram: `content` ("Voronoi diagram", or "walls of a Voronoi diagram"
-/// without the surface), `blum_version`, `certified`, and then `hausdorff_bound` (mesh units), else `failing_cubes`, how
-/// many do not pass.
+/// without the surface), `blum_version`, `certified`, and then `hausdorff_bound` (mesh units), else `failing_cubes`,
+/// how many do not pass.
 /// @param hausdorff_bound  of VoronoiReport; nullopt where the complex is not certified.
 [[nodiscard]] FileMetadata voronoi_metadata(VoronoiPart part, std::optional<double> hausdorff_bound,
                                             std::size_t failing_cubes, std::string_view version);
