@@ -56,6 +56,7 @@ void run(const Arguments& a) {
   input.reversed_triangles = cleaned.report.reversed_triangles;
   input.reversed_shells = cleaned.report.reversed_shells;
   std::vector<std::string> warnings = warnings_of(input);
+  add_left_out_warning(input.mesh.mesh, warnings);
   write_mesh(output, cleaned.mesh);
   phases.push_back({"write", watch.lap()});
   add_rounding_warning(output, cleaned.mesh, warnings);

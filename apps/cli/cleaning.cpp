@@ -33,6 +33,12 @@ Json cleaning_json(const CleanReport& done, double tolerance) {
   return out;
 }
 
+void add_left_out_warning(const MeshView& mesh, std::vector<std::string>& warnings) {
+  if (mesh.segments.empty() && mesh.points.empty()) return;
+  warnings.push_back(plural(mesh.segments.size(), "segment", "segments") + " and " +
+                     plural(mesh.points.size(), "point", "points") + " beside the triangles were left out");
+}
+
 void add_rounding_warning(const std::filesystem::path& file, const TriangleMesh& mesh,
                           std::vector<std::string>& warnings) {
   if (file.extension() != ".stl") return;

@@ -248,13 +248,15 @@ std::string graph_text(const VoronoiGraph& graph) {
 
 /// Puts the mesh that faces outwards, cleaned where that is asked for, in the place of the one that was read; writes
 /// the cleaned one.
-std::optional<CleanReport> prepare(const Arguments& a, const Request& r, SolidInput& input, const Context& context) {
+std::optional<CleanReport> prepare(const Arguments& a, const Request& r, SolidInput& input,
+                                   std::vector<std::string>& warnings, const Context& context) {
   if (!r.clean) {
     of_file(a.input, [&] { orient(input, context); });
     return std::nullopt;
   }
   CleanedMesh cleaned = of_file(a.input, [&] { return clean_mesh(input.mesh.mesh, *r.clean, context); });
   if (a.cleaned) write_mesh(*a.cleaned, cleaned.mesh);
+  add_left_out_warning(input.mesh.mesh, warnings);
   input.mesh.mesh = std::move(cleaned.mesh);
   input.reversed_triangles = cleaned.report.reversed_triangles;
   input.reversed_shells = cleaned.report.reversed_shells;
@@ -270,9 +272,11 @@ void run(const Arguments& a) {
   Stopwatch watch;
   SolidInput input = read_mesh_input(path, r.weld);
   std::vector<PhaseTime> phases{{"read", watch.lap()}};
-  const std::optional<CleanReport> cleaning = prepare(a, r, input, context);
+  std::vector<std::string> left_out;
+  const std::optional<CleanReport> cleaning = prepare(a, r, input, left_out, context);
   phases.push_back({cleaning ? "clean" : "orient", watch.lap()});
   std::vector<std::string> warnings = warnings_of(input);
+  warnings.insert(warnings.end(), left_out.begin(), left_out.end());
   if (a.cleaned) add_rounding_warning(*a.cleaned, input.mesh.mesh, warnings);
   VoronoiComplex made = of_file(path, [&] { return voronoi_complex(input.mesh.mesh, r.options, context); });
   const VoronoiReport& found = made.report;

@@ -286,7 +286,9 @@ bool SquareTest::is_absent(LabelIndex label, std::span<const LabelIndex> all, Po
   for (const Candidate& candidate : candidates) {
     const LabelIndex other = candidate.label;
     const bool are_incident = labels_.are_incident(labels_[label].site, other);
-    if (are_incident && !allowed.by_incident) continue;
+    // What is between a face's sides is not in its edges' domains; the other way round nothing is known.
+    const bool is_part_of_it = labels_[other].kind < labels_[label].kind;
+    if (are_incident && (!allowed.by_incident || is_part_of_it)) continue;
     const bool from_behind = is_behind(other, middle);
     const std::vector<DomainPlane> planes = attained_between(other, from_behind);
     const Polygon inside = clipped_by(part, 2 * labels_.rounding(), planes);

@@ -55,6 +55,9 @@ void throw_if_any(const std::string& problem) {
 
 /// What the solid is, with its Betti numbers. @throws InvalidMesh
 Topology checked_solid(const MeshView& mesh, const SiteTable& table, const Context& context) {
+  if (!mesh.segments.empty() || !mesh.points.empty()) {
+    throw InvalidMesh("the mesh has segments or points beside its triangles, which bound no solid: leave them out");
+  }
   Topology facts = topology(mesh, table, context);
   const std::string problem = problem_as_solid(facts);
   if (!problem.empty() && !(facts.closed && facts.oriented && facts.manifold)) throw InvalidMesh(problem);

@@ -1,6 +1,7 @@
-"""Closed solids that are hard for Voronoi diagrams, by seed: cones over polygons with any mix of convex and reflex
-edges at one corner, the same cut out of blocks, saddles, terrains, faces of one plane that are apart, thin wedges; as made,
-turned, in single precision, tiny, far from the origin."""
+"""Closed solids that are hard for Voronoi diagrams, by seed.
+
+Cones over polygons with any mix of convex and reflex edges at one corner, the same cut out of blocks, saddles,
+terrains, faces of one plane that are apart, thin wedges; as made, turned, in single precision, tiny, far off."""
 
 from __future__ import annotations
 

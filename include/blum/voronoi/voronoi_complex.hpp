@@ -205,10 +205,9 @@ struct VoronoiComplex {
 ///
 /// Where the report says that it is not certified, parts are missing from the complex or may be wrong.
 ///
-/// @param mesh  closed, facing outwards, without crossings, not touching itself; coordinates of magnitude 1e-45 to
-/// 1e45,
-///              or 0, and at most 1e8 times its size from the origin. Triangles are taken as they are given: faces bent
-///              by rounding are several sites.
+/// @param mesh  closed, facing outwards (see oriented_mesh()), without crossings, not touching itself, without segments
+///              and points; coordinates of magnitude 1e-45 to 1e45, or 0, and at most 1e8 times its size from the
+///              origin. Triangles are taken as they are given: faces bent by rounding are several sites.
 /// @throws InvalidMesh where the mesh does not bound a solid; InvalidOption; Cancelled; OutOfMemory.
 /// Cost: about 0.1 ms and 10 kB per cube on one core; thousands to tens of thousands of cubes for 1,000 triangles.
 [[nodiscard]] VoronoiComplex voronoi_complex(const MeshView& mesh, const VoronoiOptions& options = {},
