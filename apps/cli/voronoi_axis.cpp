@@ -27,8 +27,8 @@ void VoronoiAxisTexts::add_to(CLI::App& command) {
   add_text_option(command, "--simplify", simplify, "TOL",
                   "With --medial: fewer triangles, at most TOL mesh units away (default 0: all)");
   add_graph_option(command, graph,
-                   "Its regions, walls, seams and junctions as a graph (.json); with --medial its sheets, seams, "
-                   "curves and junctions");
+                   "Its regions, walls, seams and junctions as a graph; with --medial its sheets, seams, curves and "
+                   "junctions");
 }
 
 std::string VoronoiAxisTexts::given() const {

@@ -43,6 +43,12 @@ void check(const VoronoiOptions& options) {
 /// @throws InvalidMesh where the mesh lies so far from the origin that there is no room for a grid in double around it.
 void check_distance(const MeshView& mesh) {
   const Box3 box = bounds(mesh);
+  constexpr double smallest = 1e-45;  // what magnitudes exact signs are for
+  constexpr double largest = 1e45;
+  if (!(box.diagonal() >= smallest && box.largest_coordinate() <= largest)) {
+    throw InvalidMesh("the mesh has a size of " + exact_text(box.diagonal()) + " and coordinates up to " +
+                      exact_text(box.largest_coordinate()) + "; Voronoi diagrams take 1e-45 to 1e45: scale it");
+  }
   constexpr double furthest = 1e8;
   if (box.largest_coordinate() > furthest * box.diagonal()) {
     throw InvalidMesh("the mesh lies more than 1e8 times its size from the origin: move it there first");

@@ -108,6 +108,12 @@ def test_axes_at_corners_of_three_convex_and_three_reflex_edges():
     assert axis.certificate.holds and axis.homology() == (1, 81, 0), axis.certificate.mismatches
 
 
+@pytest.mark.parametrize("size", [1e-120, 1e-75, 1e60, 1e120])
+def test_sizes_that_exact_signs_are_not_for(box, size):
+    with pytest.raises(blum.InvalidMesh, match="1e-45 to 1e45"):
+        blum.voronoi_complex(blum.Mesh(box.vertices * size, box.triangles))
+
+
 def test_sites():
     """A bracket's faces lie in one plane each; its sites are as many as the report says."""
     mesh = blum.generate("bracket")
