@@ -94,9 +94,9 @@ void add_proximity_command(const CommandLine& line) {
       *command, "-o,--output", a->output, "FILE",
       "The pairs: .npz (object, primitive, distance, point, feature), .csv, .json, .vtp (lines between "
       "closest points); of continuous .npz (vertex_face, edge_edge, vertex_face_time, edge_edge_time; with --to "
-      "vertex_face_object, edge_edge_object), .csv, .json. Of penetration the deepest point of each part and the "
-      "closest one to it, with the depth as a "
-      "negative distance. Without it the pairs are counted");
+      "vertex_face_object, edge_edge_object), .csv, .json, .vtp (the vertices, edges and faces where they meet). Of "
+      "penetration the deepest point of each part and the closest one to it, with the depth as a negative distance; "
+      "depth_bound, direction, area, volume. Without it the pairs are counted");
   add_text_option(*command, "--limit", a->limit, "N",
                   "Write at most N pairs, of --frames of each frame; all are counted (default: all)");
   add_weld_option(*command, a->weld);

@@ -52,7 +52,8 @@ void write(const ProximityArguments& a, const Answer& answer, const Context& con
                               {"tolerance", exact_text(answer.options.tolerance)},
                               {"min_separation", exact_text(answer.options.min_separation)}};
   const bool is_all = found.vertex_face.size() + found.edge_edge.size() <= answer.limit;
-  write_collisions(*a.output, is_all ? found : first_of(found, answer.limit), answer.mesh.start, metadata, context);
+  const MeshMotion mesh(answer.mesh.start, answer.mesh.end);
+  write_collisions(*a.output, is_all ? found : first_of(found, answer.limit), mesh, metadata, context);
 }
 
 Json json_of(const ProximityArguments& a, const Answer& answer) {

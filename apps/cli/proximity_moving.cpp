@@ -197,8 +197,8 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
 }
 
 void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
-  std::vector<MeshView> objects;
-  for (const MovingMesh& mesh : answer.meshes) objects.emplace_back(mesh.start);
+  std::vector<MeshMotion> objects;
+  for (const MovingMesh& mesh : answer.meshes) objects.emplace_back(mesh.start, mesh.end);
   const bool is_all = summary_of(answer.found).count() <= answer.limit;
   write_collisions(*a.output, is_all ? answer.found : first_of(answer.found, answer.limit), objects,
                    metadata_of(a, answer), context);

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,24 @@ PrimitivePair pair_of(const ScenePenetration& penetration) {
   if (!part.is_first_deep) {
     std::swap(out.first, out.second);
     std::swap(out.between.first_point, out.between.second_point);
+  }
+  return out;
+}
+
+Columns columns_of(std::span<const ScenePenetration> penetrations) {
+  Columns out(penetrations.size());
+  const std::span<double> bound = out.add<double>("depth_bound");
+  const std::span<double> direction = out.add<double>("direction", 3);
+  const std::span<double> area = out.add<double>("area", 2);
+  const std::span<double> volume = out.add<double>("volume");
+  const std::span<std::int32_t> deep_object = out.add<std::int32_t>("deep_object");
+  for (std::size_t n = 0; n < penetrations.size(); ++n) {
+    const Penetration& part = penetrations[n].part;
+    bound[n] = part.depth_bound;
+    for (std::size_t axis = 0; axis < 3; ++axis) direction[3 * n + axis] = part.direction[axis];
+    std::copy(part.area.begin(), part.area.end(), &area[2 * n]);
+    volume[n] = part.volume;
+    deep_object[n] = (part.is_first_deep ? penetrations[n].first : penetrations[n].second).to_file();
   }
   return out;
 }

@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "blum/complex/columns.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/proximity/continuous_collisions.hpp"
@@ -77,6 +79,9 @@ struct ScenePenetration {
 
 /// A part as a pair: of the points that are told of it, with the depth as a negative distance.
 [[nodiscard]] PrimitivePair pair_of(const ScenePenetration& penetration);
+
+/// What files of pairs tell of parts beside their pairs: depth_bound, direction, area, volume, deep_object.
+[[nodiscard]] Columns columns_of(std::span<const ScenePenetration> penetrations);
 
 [[nodiscard]] Json json_of(const ScenePenetration& penetration);
 

@@ -263,6 +263,14 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
   return table.text();
 }
 
+void write(const ProximityArguments& a, const Answer& answer, const Context& context) {
+  const std::span<const PrimitivePair> pairs = answer.found.pairs;
+  const std::size_t count = std::min(pairs.size(), answer.limit);
+  const std::span<const ScenePenetration> parts = answer.parts;
+  const Columns more = a.query == "penetration" ? columns_of(parts.first(count)) : Columns();
+  write_proximity_pairs(*a.output, pairs.first(count), answer.views(), metadata_of(a, answer), more, context);
+}
+
 }  // namespace
 
 void run_scene_query(const ProximityArguments& a) {
@@ -295,9 +303,7 @@ void run_scene_query(const ProximityArguments& a) {
   phases.insert(phases.end(), answer.found.report.phases.begin(), answer.found.report.phases.end());
   static_cast<void>(watch.lap());
   if (a.output) {
-    const std::span<const PrimitivePair> pairs = answer.found.pairs;
-    write_proximity_pairs(*a.output, pairs.first(std::min(pairs.size(), answer.limit)), answer.views(),
-                          metadata_of(a, answer), context);
+    write(a, answer, context);
     phases.push_back({"write", watch.lap()});
   }
   progress.clear();

@@ -6,10 +6,12 @@
 #include <string_view>
 #include <utility>
 
+#include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "blum/io/collision_io.hpp"
+#include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
 #include "io/field_sink.hpp"
 #include "io/json.hpp"
@@ -54,7 +56,13 @@ struct Contents {
 
 Contents contents_of(const ContinuousCollisions& collisions, const MeshView& mesh) {
   Contents out;
-  for (const VertexFaceCollision& one : collisions.vertex_face) out.add(one, mesh);
+  for (const VertexFaceCollision& one : collisions.vertex_face) {
+    if (one.face.value >= mesh.triangles.size()) {
+      throw InvalidOption("a collision is of face " + std::to_string(one.face.value) + " of a mesh that has " +
+                          std::to_string(mesh.triangles.size()) + "; give the mesh that the collisions were found on");
+    }
+    out.add(one, mesh);
+  }
   for (const EdgeEdgeCollision& one : collisions.edge_edge) out.add(one);
   return out;
 }
@@ -62,10 +70,10 @@ Contents contents_of(const ContinuousCollisions& collisions, const MeshView& mes
 /// The objects of a scene, asked strictly.
 class Objects {
  public:
-  explicit Objects(std::span<const MeshView> meshes) : meshes_(meshes) {}
+  explicit Objects(std::span<const MeshMotion> meshes) : meshes_(meshes) {}
 
   [[nodiscard]] const MeshView& mesh(ObjectId object) const {
-    if (object.value < meshes_.size()) return meshes_[object.value];
+    if (object.value < meshes_.size()) return meshes_[object.value].start;
     throw InvalidOption("a collision is of object " + std::to_string(object.value) + ", but meshes of " +
                         std::to_string(meshes_.size()) + " objects are given; give one for each object");
   }
@@ -79,10 +87,10 @@ class Objects {
   }
 
  private:
-  std::span<const MeshView> meshes_;
+  std::span<const MeshMotion> meshes_;
 };
 
-Contents contents_of(const SceneCollisions& collisions, std::span<const MeshView> meshes) {
+Contents contents_of(const SceneCollisions& collisions, std::span<const MeshMotion> meshes) {
   const Objects objects(meshes);
   Contents out;
   out.is_scene = true;
@@ -183,21 +191,124 @@ void write_json(const std::filesystem::path& path, const Contents& contents, con
   file.finish();
 }
 
+/// Where a vertex is at a time from 0 to 1.
+Vec3d position_at(const MeshMotion& mesh, std::uint32_t vertex, double time) {
+  const std::span<const Vec3d> start = mesh.start.vertices;
+  if (vertex >= start.size()) {
+    throw InvalidOption("a collision is of vertex " + std::to_string(vertex) + " of a mesh that has " +
+                        std::to_string(start.size()) + "; give the mesh that the collisions were found on");
+  }
+  if (mesh.end.empty()) return start[vertex];
+  if (mesh.end.size() != start.size()) {
+    throw InvalidOption("a mesh has " + std::to_string(start.size()) + " vertices at the start, but " +
+                        std::to_string(mesh.end.size()) + " at the end; give as many, or none where it rests");
+  }
+  return start[vertex] * (1 - time) + mesh.end[vertex] * time;
+}
+
+/// The features of pairs where they meet, as vertices, lines and triangles.
+class Features {
+ public:
+  Features(const Contents& contents, std::span<const MeshMotion> objects)
+      : contents_(contents), objects_(objects), faces_(contents.faces.size()) {
+    const std::size_t rows = rows_of(contents);
+    complex_.positions.reserve(4 * rows);
+    complex_.vertex_columns = Columns(4 * rows);
+    complex_.edge_columns = Columns(2 * (rows - faces_));
+    complex_.triangle_columns = Columns(faces_);
+    of_vertices_.add_to(complex_.vertex_columns);
+    of_edges_.add_to(complex_.edge_columns);
+    of_triangles_.add_to(complex_.triangle_columns);
+    vertex_ = complex_.vertex_columns.add<std::int32_t>("vertex");
+    if (contents.is_scene) object_ = complex_.vertex_columns.add<std::int32_t>("object");
+    face_ = complex_.triangle_columns.add<std::int32_t>("face");
+  }
+
+  /// @throws InvalidOption for vertices that are not there; Cancelled.
+  Complex found(const Context& context) && {
+    for (const Kind* kind : contents_.kinds()) {
+      for (std::size_t n = 0; n < kind->times.size(); ++n) {
+        if (n % 65536 == 0) throw_if_cancelled(context);
+        add_vertices(*kind, n);
+        if (is_of_faces(*kind)) {
+          add_face(n);
+        } else {
+          add_edges(n, kind->times[n]);
+        }
+      }
+    }
+    return std::move(complex_);
+  }
+
+ private:
+  /// What each row tells of its pair.
+  struct OfPair {
+    std::span<std::int32_t> pair;
+    std::span<double> time;
+
+    void add_to(Columns& columns) {
+      pair = columns.add<std::int32_t>("pair");
+      time = columns.add<double>("time");
+    }
+    void set(std::size_t row, std::size_t number, double at) const {
+      pair[row] = static_cast<std::int32_t>(number);
+      time[row] = at;
+    }
+  };
+
+  [[nodiscard]] bool is_of_faces(const Kind& kind) const { return &kind == &contents_.vertex_face; }
+
+  void add_vertices(const Kind& kind, std::size_t n) {
+    const std::size_t count_of_first = is_of_faces(kind) ? 1 : 2;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint32_t object = contents_.is_scene ? kind.objects[n][k < count_of_first ? 0 : 1] : 0;
+      const std::size_t row = complex_.positions.size();
+      complex_.positions.push_back(position_at(objects_[object], kind.vertices[n][k], kind.times[n]));
+      of_vertices_.set(row, row / 4, kind.times[n]);
+      vertex_[row] = static_cast<std::int32_t>(kind.vertices[n][k]);
+      if (!object_.empty()) object_[row] = static_cast<std::int32_t>(object);
+    }
+  }
+  void add_face(std::size_t n) {
+    const auto end = static_cast<std::uint32_t>(complex_.positions.size());
+    complex_.triangles.push_back({end - 3, end - 2, end - 1});
+    of_triangles_.set(n, n, contents_.vertex_face.times[n]);
+    face_[n] = static_cast<std::int32_t>(contents_.faces[n]);
+  }
+  void add_edges(std::size_t n, double time) {
+    const auto end = static_cast<std::uint32_t>(complex_.positions.size());
+    for (const std::uint32_t start : {end - 4, end - 2}) {
+      of_edges_.set(complex_.edges.size(), faces_ + n, time);
+      complex_.edges.push_back({start, start + 1});
+    }
+  }
+
+  const Contents& contents_;
+  std::span<const MeshMotion> objects_;
+  std::size_t faces_;
+  Complex complex_;
+  OfPair of_vertices_, of_edges_, of_triangles_;
+  std::span<std::int32_t> vertex_, object_, face_;
+};
+
 /// @throws InvalidOption for an extension that is not known.
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = file_extension(path);
   const auto& known = collision_extensions();
   if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
   throw InvalidOption("'" + path.string() +
-                      "': collisions are written to .npz, .csv, .json files; use one of these extensions");
+                      "': collisions are written to .npz, .csv, .json, .vtp files; use one of these extensions");
 }
 
 void write(const std::filesystem::path& path, const std::string& extension, const Contents& contents,
-           const FileMetadata& metadata, const Context& context) {
+           std::span<const MeshMotion> objects, const FileMetadata& metadata, const Context& context) {
   if (extension == ".npz") {
     write_npz(path, contents, metadata, context);
   } else if (extension == ".csv") {
     write_csv(path, contents, context);
+  } else if (extension == ".vtp") {
+    throw_if_cancelled(context);
+    write_complex(path, Features(contents, objects).found(context), metadata, {}, context);
   } else {
     write_json(path, contents, metadata, context);
   }
@@ -206,20 +317,20 @@ void write(const std::filesystem::path& path, const std::string& extension, cons
 }  // namespace
 
 const std::vector<std::string>& collision_extensions() {
-  static const std::vector<std::string> extensions{".npz", ".csv", ".json"};
+  static const std::vector<std::string> extensions{".npz", ".csv", ".json", ".vtp"};
   return extensions;
 }
 
-void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshView& mesh,
+void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshMotion& mesh,
                       const FileMetadata& metadata, const Context& context) {
   const std::string extension = extension_of(path);
-  write(path, extension, contents_of(collisions, mesh), metadata, context);
+  write(path, extension, contents_of(collisions, mesh.start), std::span(&mesh, 1), metadata, context);
 }
 
 void write_collisions(const std::filesystem::path& path, const SceneCollisions& collisions,
-                      std::span<const MeshView> objects, const FileMetadata& metadata, const Context& context) {
+                      std::span<const MeshMotion> objects, const FileMetadata& metadata, const Context& context) {
   const std::string extension = extension_of(path);
-  write(path, extension, contents_of(collisions, objects), metadata, context);
+  write(path, extension, contents_of(collisions, objects), objects, metadata, context);
 }
 
 }  // namespace blum

@@ -3,8 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <variant>
+#include <vector>
 
+#include "blum/complex/columns.hpp"
 #include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
 #include "blum/core/exact_text.hpp"
@@ -27,9 +31,12 @@ using Two = std::array<T, 2>;
 /// Pairs, column by column.
 class PairColumns {
  public:
-  /// All are kept by reference. @throws InvalidOption where a pair is not of the objects; Cancelled.
-  PairColumns(std::span<const PrimitivePair> pairs, std::span<const MeshView> objects, const Context& context)
-      : pairs_(pairs), objects_(objects), context_(context) {
+  /// All are kept by reference. @throws InvalidOption where a pair is not of the objects, or `more` not of the pairs;
+  /// Cancelled.
+  PairColumns(std::span<const PrimitivePair> pairs, std::span<const MeshView> objects, const Columns& more,
+              const Context& context)
+      : pairs_(pairs), objects_(objects), more_(more), context_(context) {
+    check(more);
     for_each([&](std::size_t n) {
       check(pairs_[n].first_object, pairs_[n].first);
       check(pairs_[n].second_object, pairs_[n].second);
@@ -53,6 +60,9 @@ class PairColumns {
             feature_vertices(corners(pair.second_object, pair.second), pair.between.second_feature)};
   }
 
+  /// What is told beside that.
+  [[nodiscard]] const Columns& more() const { return more_; }
+
   /// Calls visit(n) for each pair. @throws Cancelled.
   template <class Visit>
   void for_each(const Visit& visit) const {
@@ -71,6 +81,16 @@ class PairColumns {
   }
 
  private:
+  void check(const Columns& more) const {
+    if (!more.empty() && more.rows() != pairs_.size()) {
+      throw InvalidOption("further columns have " + std::to_string(more.rows()) + " rows, but there are " +
+                          std::to_string(pairs_.size()) + " pairs; give a row for each");
+    }
+    for (const Column& column : more) {
+      if (std::find(own_names.begin(), own_names.end(), column.name) == own_names.end()) continue;
+      throw InvalidOption("a further column is named '" + column.name + "', as one that files of pairs have anyway");
+    }
+  }
   void check(ObjectId object, std::uint32_t primitive) const {
     if (object.value >= objects_.size()) {
       throw InvalidOption("a pair is of object " + std::to_string(object.value) + ", but meshes of " +
@@ -86,8 +106,12 @@ class PairColumns {
     return primitive_vertices(objects_[object.value], primitive);
   }
 
+  static constexpr std::array<std::string_view, 6> own_names{"object", "primitive", "distance",
+                                                             "point",  "feature",   "metadata"};
+
   std::span<const PrimitivePair> pairs_;
   std::span<const MeshView> objects_;
+  const Columns& more_;
   const Context& context_;
 };
 
@@ -97,10 +121,30 @@ constexpr std::array<std::string_view, 2> typed_keys{"within", "self"};
 /// Bytes of a pair in .npz.
 constexpr std::size_t row_size = 8 * sizeof(std::int32_t) + 7 * sizeof(double) + 2 * sizeof(std::int32_t);
 
+/// Calls visit(vector of numbers) for those of a column.
+template <class Visit>
+void visit_numbers(const Column& column, const Visit& visit) {
+  std::visit(visit, column.values);
+}
+
+std::size_t number_size(const Column& column) {
+  std::size_t size = 0;
+  visit_numbers(column, [&]<class T>(const std::vector<T>&) { size = sizeof(T); });
+  return size * column.components;
+}
+
+/// NumPy's name of a column's type.
+std::string dtype_of(const Column& column) {
+  const std::string_view type = column.type_name();
+  return std::string(1, type.front()) + (type.ends_with("64") ? "8" : "4");
+}
+
 void write_npz(const std::filesystem::path& path, const PairColumns& pairs, const FileMetadata& metadata,
                const Context& context) {
   AtomicFile file(path);
-  volume_io::FieldSink sink(row_size * pairs.size(), context);
+  std::size_t size = row_size;
+  for (const Column& column : pairs.more()) size += number_size(column);
+  volume_io::FieldSink sink(size * pairs.size(), context);
   volume_io::NpzWriter npz(file, sink, context);
   const auto add = [&]<class Row>(const char* name, const char* type, std::vector<std::uint64_t> shape,
                                   const std::vector<Row>& rows) {
@@ -113,16 +157,50 @@ void write_npz(const std::filesystem::path& path, const PairColumns& pairs, cons
   add("distance", "f8", {}, pairs.all(&PairColumns::distance));
   add("point", "f8", {2, 3}, pairs.all(&PairColumns::point));
   add("feature", "i4", {2, 3}, pairs.all(&PairColumns::feature));
+  for (const Column& column : pairs.more()) {
+    std::vector<std::uint64_t> shape{pairs.size()};
+    if (column.components > 1) shape.push_back(column.components);
+    visit_numbers(column, [&]<class T>(const std::vector<T>& numbers) {
+      npz.add(column.name, dtype_of(column), shape, std::span<const T>(numbers));
+    });
+  }
   if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
   npz.finish();
   file.commit();
+}
+
+/// The numbers of a row of a column.
+std::vector<std::string> texts_of(const Column& column, std::size_t row) {
+  std::vector<std::string> out;
+  visit_numbers(column, [&](const auto& numbers) {
+    for (std::size_t k = row * column.components; k < (row + 1) * column.components; ++k) {
+      if constexpr (std::is_floating_point_v<std::decay_t<decltype(numbers[k])>>) {
+        out.push_back(exact_text(numbers[k]));
+      } else {
+        out.push_back(std::to_string(numbers[k]));
+      }
+    }
+  });
+  return out;
+}
+
+/// The names of further columns in .csv.
+std::string names_of(const Columns& more) {
+  std::string out;
+  for (const Column& column : more) {
+    for (std::size_t k = 0; k < column.components; ++k) {
+      out += ',' + column.name + (column.components > 1 ? '_' + std::to_string(k) : "");
+    }
+  }
+  return out;
 }
 
 void write_csv(const std::filesystem::path& path, const PairColumns& pairs, const Context& context) {
   RowWriter rows(path, pairs.size(), context);
   rows.text(
       "first_object,first_primitive,second_object,second_primitive,distance,first_x,first_y,first_z,second_x,second_y,"
-      "second_z,first_feature_0,first_feature_1,first_feature_2,second_feature_0,second_feature_1,second_feature_2\n");
+      "second_z,first_feature_0,first_feature_1,first_feature_2,second_feature_0,second_feature_1,second_feature_2");
+  rows.text(names_of(pairs.more()) + '\n');
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     const auto object = pairs.object(n);
     const auto primitive = pairs.primitive(n);
@@ -134,12 +212,18 @@ void write_csv(const std::filesystem::path& path, const PairColumns& pairs, cons
     for (const auto& feature : pairs.feature(n)) {
       for (const std::int32_t vertex : feature) row += ',' + std::to_string(vertex);
     }
+    for (const Column& column : pairs.more()) {
+      for (const std::string& number : texts_of(column, n)) row += ',' + number;
+    }
     rows.text(row + '\n');
     rows.end_row();
   }
   rows.finish();
 }
 
+const std::string& json_text(const std::string& text) {
+  return text;
+}
 std::string json_text(std::int32_t value) {
   return std::to_string(value);
 }
@@ -156,12 +240,23 @@ std::string json_text(const std::array<T, count>& values) {
   return text + ']';
 }
 
+/// One number as itself, more as a list; null for those that JSON has no numbers for.
+std::string json_text(std::vector<std::string> numbers) {
+  for (std::string& number : numbers) {
+    if (number.find_first_of("in") != std::string::npos) number = "null";  // inf, -inf, nan
+  }
+  if (numbers.size() == 1) return numbers.front();
+  std::string text;
+  for (const std::string& number : numbers) text += (text.empty() ? "[" : ", ") + number;
+  return text + ']';
+}
+
 void write_json(const std::filesystem::path& path, const PairColumns& pairs, const FileMetadata& metadata,
                 const Context& context) {
-  RowWriter rows(path, 5 * pairs.size(), context);
+  RowWriter rows(path, (5 + pairs.more().size()) * pairs.size(), context);
   rows.text("{\"metadata\": " + volume_io::to_typed_json(metadata, typed_keys));
-  const auto add = [&](const char* name, const auto& row_of) {
-    rows.text(",\n\"" + std::string(name) + "\": [");
+  const auto add = [&](const std::string& name, const auto& row_of) {
+    rows.text(",\n\"" + name + "\": [");
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       rows.text((n == 0 ? "\n" : ",\n") + json_text(row_of(n)));
       rows.end_row();
@@ -173,6 +268,9 @@ void write_json(const std::filesystem::path& path, const PairColumns& pairs, con
   add("distance", [&](std::size_t n) { return pairs.distance(n); });
   add("point", [&](std::size_t n) { return pairs.point(n); });
   add("feature", [&](std::size_t n) { return pairs.feature(n); });
+  for (const Column& column : pairs.more()) {
+    add(column.name, [&](std::size_t n) { return json_text(texts_of(column, n)); });
+  }
   rows.text("}\n");
   rows.finish();
 }
@@ -199,6 +297,7 @@ void write_vtp(const std::filesystem::path& path, const PairColumns& pairs, cons
       std::copy(vertices.begin(), vertices.end(), &feature[6 * n + 3 * side]);
     }
   });
+  for (const Column& column : pairs.more()) lines.edge_columns.add(column);
   lines.vertex_columns = Columns(lines.positions.size());
   write_complex(path, lines, metadata, {}, context);
 }
@@ -211,14 +310,15 @@ const std::vector<std::string>& proximity_extensions() {
 }
 
 void write_proximity_pairs(const std::filesystem::path& path, std::span<const PrimitivePair> pairs,
-                           std::span<const MeshView> objects, const FileMetadata& metadata, const Context& context) {
+                           std::span<const MeshView> objects, const FileMetadata& metadata, const Columns& more,
+                           const Context& context) {
   const std::string extension = file_extension(path);
   const auto& known = proximity_extensions();
   if (std::find(known.begin(), known.end(), extension) == known.end()) {
     throw InvalidOption("'" + path.string() +
                         "': close pairs are written to .npz, .csv, .json, .vtp files; use one of these extensions");
   }
-  const PairColumns columns(pairs, objects, context);
+  const PairColumns columns(pairs, objects, more, context);
   throw_if_cancelled(context);
   if (extension == ".npz") {
     write_npz(path, columns, metadata, context);

@@ -163,7 +163,7 @@ def test_what_is_no_motion_is_refused(frames):
         ([start, end, "-o", out], 2, "give --self"),
         ([start, "--self", "-o", out], 2, "takes two files"),
         ([start, end, "--self", "-o", frames / "p.txt"], 2, "the extension must be .npz"),
-        ([start, end, "--self", "-o", frames / "p.vtp"], 2, "the extension must be .npz"),
+        ([start, end, "--self", "-o", frames / "p.obj"], 2, "the extension must be .npz"),
         ([start, end, "--self", "-o", start], 2, ""),
         ([start, end, "--self", "-o", out, "--tolerance", "2"], 2, "tolerance"),
         ([start, end, "--self", "-o", out, "--within", "2"], 2, "--min-separation says how close"),

@@ -129,6 +129,29 @@ def test_every_format_holds_what_python_says(folder, tmp_path, start, end, optio
     assert [metadata[f"end_{k}"] for k in range(len(start))] == end
 
 
+def test_features_are_drawn_where_they_meet(folder, tmp_path):
+    """The ball falls by 4 onto the plate, which rests: of each pair vertex and face, or both edges, have a point in
+    common in the file, as planes or lines that meet do."""
+    wanted, _ = python_answer(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"])
+    continuous(folder, ["ball1.ply", "plate.ply"], ["ball2.ply", "plate.ply"], tmp_path / "p.vtp")
+    drawn = blum.read_complex(tmp_path / "p.vtp").complex
+    faces, edges = len(wanted["vertex_face"]), len(wanted["edge_edge"])
+    assert drawn.vertex_columns["vertex"].reshape(-1, 4).tolist() == [
+        *wanted["vertex_face"].tolist(),
+        *wanted["edge_edge"].tolist(),
+    ]
+    assert drawn.triangle_columns["time"].tolist() == wanted["vertex_face_time"].tolist()
+    assert drawn.edge_columns["time"].tolist() == np.repeat(wanted["edge_edge_time"], 2).tolist()
+    points = drawn.vertices.reshape(-1, 4, 3)
+    assert len(points) == faces + edges
+    # Of a vertex and a face, or two edges, that have a point in common, all four points are in one plane. A time is at
+    # most 1e-6 early, in which the ball falls by 4e-6.
+    a, b, c, d = points.transpose(1, 0, 2)
+    normal = np.cross(np.where(np.arange(len(points))[:, None] < faces, c - b, b - a), d - c)
+    height = np.abs(((c - a) * normal).sum(1)) / np.linalg.norm(normal, axis=1)
+    assert height.max() < 4.1e-6
+
+
 @pytest.mark.parametrize(("start", "end", "options"), SCENES)
 def test_the_summary_tells_each_pair_of_objects(folder, tmp_path, start, end, options):
     answer = continuous(folder, start, end, tmp_path / "p.npz", *options_of(options))
@@ -250,8 +273,8 @@ def test_what_is_no_motion_is_refused(folder, tmp_path):
         ([tmp_path / "far.obj", "--self", "-o", out, "--to", plate], 1, "far.obj': a coordinate is beyond 1e70"),
         ([*two, fallen, tmp_path / "absent.ply"], 1, "absent.ply"),
         ([ball, "-o", out, "--to", fallen], 2, "give --self, or the files of more objects"),
-        ([*two, fallen, plate, "-o", tmp_path / "p.vtp"], 2, ""),
-        ([ball, plate, "-o", tmp_path / "p.vtp", "--to", fallen, plate], 2, "the extension must be .npz, .csv or .json"),
+        ([*two, fallen, plate, "-o", tmp_path / "p.obj"], 2, ""),
+        ([ball, plate, "-o", tmp_path / "p.obj", "--to", fallen, plate], 2, "must be .npz, .csv, .json or .vtp"),
         ([ball, plate, "-o", fallen, "--to", fallen, plate], 2, ""),
         ([*two, fallen, plate, "--within", "1"], 2, "--min-separation says how close"),
         ([*two, fallen, plate, "--culling", "bvh"], 2, "--culling is not for --query continuous"),

@@ -47,6 +47,8 @@ def test_tells_what_solids_have_in_common(folder):
     with np.load(folder / "parts.npz") as file:
         assert file["distance"].tolist() == [-part["depth"]]
         assert np.linalg.norm(file["point"][0, 0] - file["point"][0, 1]) == pytest.approx(part["depth"])
+        for name in ("depth_bound", "direction", "area", "volume", "deep_object"):
+            assert file[name].tolist() == [part[name]]
     scene = blum.ProximityScene()
     scene.add(folder / "box.ply")
     scene.add(folder / "ball.ply")

@@ -34,6 +34,17 @@ struct ImpactQueries {
 /// The same from memory; `name` stands for the file in messages.
 [[nodiscard]] ImpactQueries read_impact_queries(std::span<const std::byte> data, std::string_view name = "questions");
 
+/// A mesh whose vertices move along straight lines, from time 0 to time 1.
+struct MeshMotion {
+  MeshView start;
+  std::span<const Vec3d> end;  ///< the vertices at time 1; none: it rests
+
+  // NOLINTNEXTLINE(google-explicit-constructor): a mesh is one that rests
+  MeshMotion(const MeshView& mesh, std::span<const Vec3d> vertices = {}) : start(mesh), end(vertices) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): as above
+  MeshMotion(const TriangleMesh& mesh, std::span<const Vec3d> vertices = {}) : start(mesh), end(vertices) {}
+};
+
 /// Writes the collisions of a mesh; the format goes by the extension.
 ///
 ///   .npz   `vertex_face` [n, 4]: the vertex, then the corners of the face; `vertex_face_time` [n]; `face` [n]: the
@@ -43,27 +54,31 @@ struct ImpactQueries {
 ///          number of the face (of edge_edge nothing).
 ///   .json  an object with the metadata (self, tolerance, min_separation as true, false and numbers) and the same
 ///          lists.
+///   .vtp   VTK poly data: the features of each pair where they are at its time: a face as a triangle, edges as lines,
+///          the vertex that a face meets as one that nothing else names. Point data: pair (vertex_face from 0 on, then
+///          edge_edge), time, vertex; cell data: pair, time, of triangles also face. read_complex() reads them, too.
 ///
 /// A file appears under its name only when it is complete.
-/// @param mesh  whose collisions they are.
-/// @throws InvalidOption for another extension; FileError; Cancelled.
-void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshView& mesh,
+/// @param mesh  whose collisions they are; its end is for .vtp alone.
+/// @throws InvalidOption for another extension, and for faces or (.vtp) vertices that are not there; FileError;
+/// Cancelled.
+void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshMotion& mesh,
                       const FileMetadata& metadata = {}, const Context& context = {});
 
 /// Writes what of the objects of a scene collides: as above, with the objects.
 ///
-///   .npz   also `vertex_face_object` [n, 2]: the object of the vertex, then that of the face; `edge_edge_object` [m,
-///   2]:
-///          the object of one edge, then that of the other. Indices are those of the meshes of these objects.
+///   .npz   also `vertex_face_object` [n, 2]: the object of the vertex, then that of the face; `edge_edge_object`
+///          [m, 2]: the object of one edge, then that of the other. Indices are those of the meshes of these objects.
 ///   .csv   kind, first_object, second_object, a, b, c, d, time, face.
 ///   .json  the same lists.
+///   .vtp   also object, as point data.
 ///
 /// Pairs come by rising (first, second) object; of these first the vertices of the first object, then those of the
 /// second one.
-/// @param objects  the meshes of the scene, by object.
-/// @throws InvalidOption also for collisions of objects or faces that are not there.
+/// @param objects  the meshes of the scene, by object, for .vtp placed as they are in it.
+/// @throws InvalidOption also for collisions of objects that are not there.
 void write_collisions(const std::filesystem::path& path, const SceneCollisions& collisions,
-                      std::span<const MeshView> objects, const FileMetadata& metadata = {},
+                      std::span<const MeshMotion> objects, const FileMetadata& metadata = {},
                       const Context& context = {});
 
 /// The extensions that write_collisions() knows.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "blum/complex/columns.hpp"
 #include "blum/core/context.hpp"
 #include "blum/geometry/triangle_mesh.hpp"
 #include "blum/io/file_metadata.hpp"
@@ -26,11 +27,14 @@ namespace blum {
 ///
 /// A file appears under its name only when it is complete.
 /// @param objects  the meshes of the scene, by object.
-/// @throws InvalidOption for another extension, and for pairs of objects or primitives that are not there; FileError;
-/// Cancelled.
+/// @param more     further numbers of each pair, written behind those above: arrays of .npz, columns of .csv (of more
+///                 than one component name_0, name_1, ...), lists of .json, cell data of .vtp. Empty, or with a row for
+///                 each pair.
+/// @throws InvalidOption for another extension, for pairs of objects or primitives that are not there, and for another
+/// count of rows or a name above in `more`; FileError; Cancelled.
 void write_proximity_pairs(const std::filesystem::path& path, std::span<const PrimitivePair> pairs,
                            std::span<const MeshView> objects, const FileMetadata& metadata = {},
-                           const Context& context = {});
+                           const Columns& more = {}, const Context& context = {});
 
 /// The extensions that write_proximity_pairs() knows.
 [[nodiscard]] const std::vector<std::string>& proximity_extensions();

@@ -14,6 +14,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/io/collision_io.hpp"
+#include "blum/io/complex_io.hpp"
 #include "io/byte_source.hpp"
 #include "io/npz.hpp"
 #include "unit/io/temporary_folder.hpp"
@@ -23,6 +24,9 @@ namespace {
 
 const TriangleMesh first{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {3, 2, 1}}, {}, {}};
 const TriangleMesh second{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{2, 0, 1}}, {}, {}};
+
+/// Where the second one goes: down by one, through the first.
+const std::vector<Vec3d> lowered{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
 class CollisionFiles : public testing::Test {
  protected:
@@ -36,7 +40,7 @@ class CollisionFiles : public testing::Test {
     return folder_ / name;
   }
 
-  std::array<MeshView, 2> meshes_{first, second};
+  std::array<MeshMotion, 2> meshes_{MeshMotion(first), MeshMotion(second, lowered)};
   SceneCollisions found_;
   test::TemporaryFolder folder_;
 };
@@ -75,6 +79,32 @@ TEST_F(CollisionFiles, RowsAndListsHoldTheSame) {
       "edge_edge_time": [0.125]})"));
 }
 
+TEST_F(CollisionFiles, FeaturesAreDrawnWhereTheyMeet) {
+  const ComplexFile file = read_complex(written("c.vtp"));
+  const Complex& all = file.complex;
+  ASSERT_EQ(all.positions.size(), 16U);
+  ASSERT_EQ(all.triangles.size(), 3U);
+  ASSERT_EQ(all.edges.size(), 2U);
+  // Of the second pair, at time .25, the face has come down by as much; its vertex rests.
+  EXPECT_EQ(all.positions[4], (Vec3d{1, 1, 0}));
+  EXPECT_EQ(all.triangles[1], (std::array<std::uint32_t, 3>{5, 6, 7}));
+  EXPECT_EQ(all.positions[5], (Vec3d{0, 1, 0.75}));
+  // Of the last one, an edge of each.
+  EXPECT_EQ(all.edges[0], (std::array<std::uint32_t, 2>{12, 13}));
+  EXPECT_EQ(all.positions[13], (Vec3d{1, 0, 0}));
+  EXPECT_EQ(all.positions[14], (Vec3d{1, 0, 0.875}));
+  const auto numbers = [](std::span<const std::int32_t> values) { return std::vector(values.begin(), values.end()); };
+  EXPECT_EQ(numbers(all.vertex_columns.get<std::int32_t>("object")),
+            (std::vector{0, 0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1}));
+  EXPECT_EQ(all.vertex_columns.get<std::int32_t>("vertex")[8], 2);
+  EXPECT_EQ(numbers(all.edge_columns.get<std::int32_t>("pair")), (std::vector{3, 3}));
+  EXPECT_EQ(all.edge_columns.get<double>("time")[1], 0.125);
+  EXPECT_EQ(numbers(all.triangle_columns.get<std::int32_t>("pair")), (std::vector{0, 1, 2}));
+  EXPECT_EQ(all.triangle_columns.get<double>("time")[2], 0.75);
+  EXPECT_EQ(numbers(all.triangle_columns.get<std::int32_t>("face")), (std::vector{0, 0, 1}));
+  EXPECT_EQ(file.metadata, (FileMetadata{{"source", "test"}}));
+}
+
 TEST_F(CollisionFiles, OfOneMeshNameNoObject) {
   ContinuousCollisions alone;
   alone.vertex_face = found_.objects[0].vertex_face;
@@ -86,6 +116,10 @@ TEST_F(CollisionFiles, OfOneMeshNameNoObject) {
   EXPECT_EQ(nlohmann::json::parse(test::file_content(folder_ / "c.json")),
             nlohmann::json::parse(R"({"metadata": {}, "vertex_face": [[3, 0, 1, 2]], "vertex_face_time": [0.5],
       "edge_edge": [[0, 1, 2, 3]], "edge_edge_time": [1], "face": [0]})"));
+  write_collisions(folder_ / "c.vtp", alone, first);
+  const Complex all = read_complex(folder_ / "c.vtp").complex;
+  EXPECT_EQ(all.vertex_columns.find("object"), nullptr);
+  EXPECT_EQ(all.positions[7], (Vec3d{1, 1, 0}));
 }
 
 TEST_F(CollisionFiles, TheEarliestTimeIsThatOfAllKinds) {
@@ -98,7 +132,7 @@ TEST_F(CollisionFiles, TheEarliestTimeIsThatOfAllKinds) {
 }
 
 TEST_F(CollisionFiles, WhatIsNotOfTheMeshesIsRefused) {
-  const auto refused = [&](const char* name, std::span<const MeshView> meshes, const std::string& reason) {
+  const auto refused = [&](const char* name, std::span<const MeshMotion> meshes, const std::string& reason) {
     try {
       write_collisions(folder_ / name, found_, meshes);
       ADD_FAILURE() << "it was written";
@@ -106,10 +140,19 @@ TEST_F(CollisionFiles, WhatIsNotOfTheMeshesIsRefused) {
       EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
     }
   };
-  refused("c.vtp", meshes_, "use one of these extensions");
+  refused("c.obj", meshes_, "use one of these extensions");
   refused("c.npz", std::span(meshes_).first(1), "a collision is of object 1, but meshes of 1 objects are given");
   found_.objects[1].vertex_face[0].face = TriangleId(1);
   refused("c.csv", meshes_, "a collision is of face 1 of object 1, whose mesh has 1");
+  found_.objects[1].vertex_face[0].face = TriangleId(0);
+  found_.objects[1].vertex_face[0].vertex = 4;
+  refused("c.vtp", meshes_, "a collision is of vertex 4 of a mesh that has 4");
+  found_.objects[1].vertex_face[0].vertex = 3;
+  meshes_[1].end = meshes_[1].end.first(2);
+  refused("c.vtp", meshes_, "a mesh has 3 vertices at the start, but 2 at the end");
+  ContinuousCollisions alone;
+  alone.vertex_face.push_back({3, TriangleId(2), 0.5});
+  EXPECT_THROW(write_collisions(folder_ / "c.npz", alone, first), InvalidOption);
   EXPECT_EQ(folder_.entries(), 0);
 }
 
@@ -124,7 +167,7 @@ TEST_F(CollisionFiles, ACancelledFileLeavesTheOldOne) {
     EXPECT_THROW(write_collisions(path, found_, meshes_, {}, context), Cancelled);
     EXPECT_EQ(test::file_content(path), "old");
   }
-  EXPECT_EQ(folder_.entries(), 3);
+  EXPECT_EQ(folder_.entries(), 4);
 }
 
 }  // namespace

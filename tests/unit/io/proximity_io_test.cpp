@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stop_token>
@@ -108,6 +109,38 @@ TEST_F(ProximityFiles, LinesAreAComplex) {
   EXPECT_EQ(file.metadata, (FileMetadata{{"source", "test"}}));
 }
 
+TEST_F(ProximityFiles, FurtherColumnsAreInAllFormats) {
+  Columns more(pairs_.size());
+  more.add<double>("depth_bound", 1, 0.5)[3] = std::numeric_limits<double>::infinity();
+  more.add<std::int32_t>("two", 2)[7] = -8;
+  const auto put = [&](const char* name) {
+    write_proximity_pairs(folder_ / name, pairs_, meshes_, {}, more);
+    return folder_ / name;
+  };
+  const volume_io::FileSource source(put("p.npz"));
+  volume_io::NpzReader npz(source);
+  EXPECT_EQ(array_of<double>(npz, "depth_bound", {4})[0], 0.5);
+  EXPECT_EQ(array_of<std::int32_t>(npz, "two", {4, 2})[7], -8);
+  const auto json = nlohmann::json::parse(test::file_content(put("p.json")));
+  EXPECT_EQ(json["depth_bound"], nlohmann::json::parse("[0.5, 0.5, 0.5, null]"));
+  EXPECT_EQ(json["two"][3], nlohmann::json::parse("[0, -8]"));
+  const std::string rows = test::file_content(put("p.csv"));
+  EXPECT_NE(rows.find("second_feature_2,depth_bound,two_0,two_1\n"), std::string::npos) << rows;
+  EXPECT_TRUE(rows.ends_with(",inf,0,-8\n")) << rows;
+  const Complex lines = read_complex(put("p.vtp")).complex;
+  EXPECT_EQ(lines.edge_columns.get<std::int32_t>("two", 2)[7], -8);
+}
+
+TEST_F(ProximityFiles, FurtherColumnsThatAreNotOfThePairsAreRefused) {
+  Columns three(3);
+  three.add<double>("depth_bound");
+  EXPECT_THROW(write_proximity_pairs(folder_ / "p.csv", pairs_, meshes_, {}, three), InvalidOption);
+  Columns same(pairs_.size());
+  same.add<double>("distance");
+  EXPECT_THROW(write_proximity_pairs(folder_ / "p.csv", pairs_, meshes_, {}, same), InvalidOption);
+  EXPECT_EQ(folder_.entries(), 0);
+}
+
 TEST_F(ProximityFiles, NoPairsAreAFileToo) {
   pairs_.clear();
   for (const std::string& extension : proximity_extensions()) {
@@ -139,7 +172,7 @@ TEST_F(ProximityFiles, ACancelledFileLeavesTheOldOne) {
   for (const std::string& extension : proximity_extensions()) {
     const std::filesystem::path path = folder_ / ("p" + extension);
     test::put_file(path, "old");
-    EXPECT_THROW(write_proximity_pairs(path, pairs_, meshes_, {}, context), Cancelled);
+    EXPECT_THROW(write_proximity_pairs(path, pairs_, meshes_, {}, {}, context), Cancelled);
     EXPECT_EQ(test::file_content(path), "old");
   }
   EXPECT_EQ(folder_.entries(), 4);
