@@ -51,7 +51,11 @@ std::array<double, 3> weights_of(const std::array<Vec3d, 3>& corners, const Vec3
 std::optional<Vec3d> gradient(const Vec3d& query, const ClosestPoint& found) {
   const double rounding = 1e-13 * (length(query) + length(found.point));
   if (!(std::abs(found.distance) > rounding) || !std::isfinite(found.distance)) return std::nullopt;
-  return (query - found.point) / found.distance + Vec3d{};  // no -0
+  // By its own length: next to the surface rounding takes more from the point than from the distance.
+  const Vec3d away = (query - found.point) / std::abs(found.distance);
+  const double size = length(away);
+  if (!(size > 0)) return std::nullopt;
+  return away / std::copysign(size, found.distance) + Vec3d{};  // no -0
 }
 
 std::optional<std::array<double, 3>> barycentric(const MeshView& mesh, const ClosestPoint& found) {

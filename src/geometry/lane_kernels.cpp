@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #ifdef BLUM_HIGHWAY
 #undef HWY_DISABLED_TARGETS
@@ -22,6 +23,7 @@
 #include "blum/geometry/orient3d.hpp"
 #include "geometry/box_tree.hpp"
 #include "geometry/moving_block.hpp"
+#include "geometry/near_angle.hpp"
 #include "geometry/primitive_block.hpp"
 #include "geometry/triangle_group.hpp"
 #include "geometry/winding_tree.hpp"
@@ -373,10 +375,31 @@ void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double
   }
 }
 
+/// Where sine and cosine together are smaller than this part of their terms, rounding may take half of their digits.
+constexpr double near_edges = 1e-5;
+
+/// Computes the angles of such triangles anew.
+inline void look_closely(const TriangleBlock& block, const Vec3d& query, double (&cosine)[lanes], double (&sine)[lanes],
+                         const double (&largest)[lanes]) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    if (!(std::abs(cosine[i]) + std::abs(sine[i]) < near_edges * largest[i])) continue;
+    const auto corner = [&](std::size_t k) {
+      return Vec3d{block.corner[k][0][i], block.corner[k][1][i], block.corner[k][2][i]};
+    };
+    const HalfAngle found = half_solid_angle_nearby({corner(0), corner(1), corner(2)}, query);
+    cosine[i] = found.cosine;
+    sine[i] = found.sine;
+  }
+}
+
 template <bool is_watched>
 inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngleSum& sum,
                        [[maybe_unused]] double* watched) {
   const auto& p = block.corner;
+  alignas(64) double cosine[lanes];  // of half the angle, and the sine, but for a factor
+  alignas(64) double sine[lanes];
+  alignas(64) double largest[lanes];  // what they are made of
+  alignas(64) double is_near[lanes];  // 1 where both are a small rest of that
   for (std::size_t i = 0; i < lanes; ++i) {
     const double ax = p[0][0][i] - query.x, ay = p[0][1][i] - query.y, az = p[0][2][i] - query.z;
     const double bx = p[1][0][i] - query.x, by = p[1][1][i] - query.y, bz = p[1][2][i] - query.z;
@@ -390,10 +413,17 @@ inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngl
     const double y = ax * (uy * vz - uz * vy) + ay * (uz * vx - ux * vz) + az * (ux * vy - uy * vx);
     const double x = la * lb * lc + (ax * bx + ay * by + az * bz) * lc + (bx * cx + by * cy + bz * cz) * la +
                      (cx * ax + cy * ay + cz * az) * lb;
-    const double size = std::abs(x) + std::abs(y);
+    cosine[i] = x;
+    sine[i] = y;
+    largest[i] = la * lb * lc;
+    is_near[i] = std::abs(x) + std::abs(y) < near_edges * largest[i] ? 1.0 : 0.0;
+  }
+  if (std::accumulate(is_near, is_near + lanes, 0.0) > 0) look_closely(block, query, cosine, sine, largest);
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double size = std::abs(cosine[i]) + std::abs(sine[i]);
     const double inverse = 1 / size;
-    const double zx = size > 0 ? x * inverse : 1.0;
-    const double zy = size > 0 ? y * inverse : 0.0;
+    const double zx = size > 0 ? cosine[i] * inverse : 1.0;
+    const double zy = size > 0 ? sine[i] * inverse : 0.0;
     const double px = sum.re[i] * zx - sum.im[i] * zy;
     const double py = sum.re[i] * zy + sum.im[i] * zx;
     const double up = sum.im[i] >= 0 ? 1.0 : 0.0;
@@ -405,7 +435,7 @@ inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngl
     const double magnitude = 1 / (std::abs(px) + std::abs(py));
     sum.re[i] = px * magnitude;
     sum.im[i] = py * magnitude;
-    if constexpr (is_watched) watched[i] += la * lb * lc * inverse;
+    if constexpr (is_watched) watched[i] += largest[i] * inverse;
   }
 }
 

@@ -135,6 +135,22 @@ Pieces pieces_of(const MeshView& mesh, double scale, double size, const Context&
   return out;
 }
 
+/// A sum of many numbers that keeps what each addition rounds off (Neumaier 1974), so that millions of terms cost no
+/// digits.
+class LongSum {
+ public:
+  void add(double term) {
+    const double next = sum_ + term;
+    rest_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
+    sum_ = next;
+  }
+  [[nodiscard]] double value() const { return sum_ + rest_; }
+
+ private:
+  double sum_ = 0;
+  double rest_ = 0;
+};
+
 /// Values below which lie the percents of the area.
 std::array<double, 7> percentiles(const std::vector<double>& values, const std::vector<double>& weights, double sum) {
   std::vector<std::uint32_t> order(values.size());
@@ -174,9 +190,9 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
 
   SurfaceDeviation out;
   std::vector<double> values(found.size());
-  double sum = 0;
-  double mean = 0;
-  double square = 0;
+  LongSum areas;
+  LongSum mean;
+  LongSum square;
   double magnitude = 0;
   double largest = 0;
   double mean_move = 0;
@@ -186,9 +202,9 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   for (std::size_t k = 0; k < found.size(); ++k) {
     values[k] = found[k].distance;
     const double value = values[k] * scale;
-    sum += pieces.area[k];
-    mean += pieces.area[k] * value;
-    square += pieces.area[k] * value * value;
+    areas.add(pieces.area[k]);
+    mean.add(pieces.area[k] * value);
+    square.add(pieces.area[k] * value * value);
     magnitude += pieces.area[k] * std::abs(value);
     largest = std::max(largest, std::abs(value));
     mean_move += pieces.area[k] * std::sqrt(pieces.mean_square[k]);
@@ -196,12 +212,13 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
     out.smallest = std::min(out.smallest, values[k]);
     out.largest = std::max(out.largest, values[k]);
   }
-  out.mean = mean / sum / scale;
+  const double sum = areas.value();
+  out.mean = mean.value() / sum / scale;
   const double rounding = 4e-15 * (bounds(mesh).largest_coordinate() * scale + largest);
   // A sign that changes off the other mesh may be another one in the rest of a piece.
   const bool may_jump = query.sign_may_jump();
   out.mean_error = (mean_move / sum + rounding + (may_jump ? 2 * magnitude / sum : 0)) / scale;
-  out.rms = std::sqrt(square / sum) / scale;
+  out.rms = std::sqrt(square.value() / sum) / scale;
   out.rms_error = (std::sqrt(square_move / sum) + rounding) / scale;
   out.percentiles = percentiles(values, pieces.area, sum);
   out.percentile_error = (pieces.largest_radius + rounding + (may_jump ? 2 * largest : 0)) / scale;

@@ -91,7 +91,7 @@ class ClosestPointQuery {
   ///               result has no site).
   /// @return       a distance within about 1e-15 of exact, relative to the extent of mesh and query together. Of
   ///               several sites at the same computed distance the one with the smallest id. A query on the surface is
-  ///               not inside.
+  ///               not inside; of an open mesh, where its computed distance is not 0 but for rounding, it may be.
   [[nodiscard]] ClosestPoint nearest(const Vec3d& query) const;
 
   /// Many queries, threaded. The same results as nearest(), bit for bit, for any number of threads. Where there are as

@@ -91,6 +91,29 @@ TEST(ClosestPoints, FarPlacesAreOutside) {
   }
 }
 
+TEST(ClosestPoints, HaveGradientsOfLengthOneNextToTheSurface) {
+  const TriangleMesh mesh = make_torus();
+  const ClosestPointQuery query(mesh);
+  for (const double off : {1e-2, 1e-6, 1e-9, 1e-11}) {
+    std::size_t told = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += 37) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      const Vec3d area = cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
+      const Vec3d normal = area / length(area);
+      const Vec3d middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+      for (const double side : {-1.0, 1.0}) {
+        const Vec3d place = middle + normal * (side * off);
+        const std::optional<Vec3d> found = gradient(place, query.nearest(place));
+        if (!found) continue;
+        ++told;
+        EXPECT_NEAR(length(*found), 1, 1e-14) << off;
+        EXPECT_GT(dot(*found, normal), 0.99) << off;
+      }
+    }
+    EXPECT_GT(told, 300U) << off;
+  }
+}
+
 TEST(ClosestPoints, TellFeaturesApart) {
   const TriangleMesh cube = make_box({});
   const SiteTable sites(cube);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "blum/field/reference.hpp"
 #include "blum/shapes/generators.hpp"
@@ -176,6 +177,57 @@ TEST(WindingNumber, GivesTheSideOfBoxesOnlyWhereItIsTheSame) {
   }
   // Across the mouth of half a sphere w passes 1/2: no box there has a side.
   EXPECT_FALSE(WindingNumber(bowl(0.0)).uniform_side({{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.6}}));
+}
+
+/// A unit box, one edge of whose lid is closed by a triangle without area: its middle vertex lies on the edge of the
+/// wall.
+TriangleMesh box_with_filler(bool is_open) {
+  TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k) {
+    mesh.vertices.push_back({static_cast<double>(k & 1), static_cast<double>(k >> 1 & 1), static_cast<double>(k >> 2)});
+  }
+  mesh.vertices.push_back({0.5, 0, 1});
+  mesh.triangles = {{0, 1, 8}, {0, 8, 4}, {1, 5, 8}, {4, 8, 5}, {4, 5, 6}, {5, 7, 6}, {2, 6, 3},
+                    {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}, {0, 2, 1}, {1, 2, 3}};
+  if (is_open) mesh.triangles.resize(12);
+  return mesh;
+}
+
+/// Seen from next to a triangle without area, or of as little as rounding leaves it, its solid angle is a quotient of
+/// nothing but rounding, unless it is computed with more digits. It was told as a whole turn.
+TEST(WindingNumber, OfTrianglesWithoutAreaIsNothing) {
+  for (const bool is_turned : {false, true}) {
+    TriangleMesh closed = box_with_filler(false);
+    TriangleMesh open = box_with_filler(true);
+    if (is_turned) {
+      closed = test::turned(closed);
+      open = test::turned(open);
+    }
+    TriangleMesh bare = open;
+    bare.triangles.erase(bare.triangles.begin() + 3);
+    const WindingNumber of_closed(closed);
+    const WindingNumber of_open(open);
+    const WindingNumber of_bare(bare);
+    Random random(7);
+    for (const double off : {1e-3, 1e-6, 1e-8, 3e-9, 1e-9, 1e-10, 1e-11}) {
+      for (int k = 0; k < 300; ++k) {
+        const double along = 0.1 + 0.8 * random.uniform();
+        const double angle = 2 * std::numbers::pi * random.uniform();
+        const Vec3d offset{0, off * std::cos(angle), off * std::sin(angle)};
+        // Nearer to a plane than this rounding of the turned box decides.
+        if (std::min(std::abs(offset.y), std::abs(offset.z)) < 4e-16) continue;
+        const Vec3d place = Vec3d{along, 0, 1} + offset;
+        const Vec3d query = is_turned ? test::turned(place) : place;
+        const bool is_inside = offset.y > 0 && offset.z < 0;
+        const double sliver = is_turned ? 1e-16 / off : 0;  // what the turned one may truly take of the view
+        EXPECT_EQ(of_closed.value(query, 1e-6).value, is_inside ? 1 : 0) << off;
+        const double expected = of_bare(query);
+        EXPECT_NEAR(of_open(query), expected, sliver + 1e-11) << off;
+        EXPECT_NEAR(expected, is_inside ? 0.95 : -0.05, 0.04) << off;
+        EXPECT_EQ(of_open.decide(query, off).is_inside, is_inside) << off;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -47,6 +47,19 @@ TEST(SurfaceDeviation, KnowsItsErrors) {
   EXPECT_EQ(fine.sign_rule, SignRule::normals);
 }
 
+/// Sums of millions of terms lose no digits: of equal distances the mean is that distance.
+TEST(SurfaceDeviation, OfEqualDistancesIsExactForManyPieces) {
+  const double size = 0x1p-60;
+  const TriangleMesh tiny{{{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}}, {}, {}};
+  for (const double height : {0.1, 1.2389276531804048}) {
+    const TriangleMesh point{{{0, 0, height}}, {}, {}, {0}};
+    const SurfaceDeviation found = surface_deviation(tiny, point, {.pieces = 1'000'000});
+    EXPECT_LE(std::abs(found.mean - height), found.mean_error);
+    EXPECT_LE(std::abs(found.rms - height), found.rms_error);
+    EXPECT_LT(found.mean_error, 1e-14);
+  }
+}
+
 /// By winding numbers of open meshes signs may change within pieces.
 TEST(SurfaceDeviation, KnowsItsErrorsWhereSignsJump) {
   TriangleMesh bowl = make_sphere();
