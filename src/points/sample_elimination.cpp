@@ -15,8 +15,11 @@ namespace {
 
 constexpr std::size_t grain = 4096;
 constexpr double steepness = 8;       // of a neighbour's weight, as Yuksel has it
-constexpr double floor_share = 0.65;  // distances below that part of what is expected weigh no more
+constexpr double floor_share = 0.65;  // below that part of what is expected distances count less
 constexpr double floor_power = 1.5;
+/// How much they still count; Yuksel's count nothing. Where the two sides of a thin plate are closer than points, all
+/// have neighbours below the floor, and those at nearly no distance are to go first.
+constexpr double below_floor = 0.3;
 
 /// Points in cells of a grid as wide as the distance at which they are neighbours.
 class Cells {
@@ -86,8 +89,9 @@ class Weight {
   Weight(double width, double share)
       : width_(width), floor_(width * (1 - std::pow(share, floor_power)) * floor_share) {}
   double operator()(double squared) const {
-    const double distance = std::max(std::sqrt(squared), floor_);
-    return std::pow(1 - distance / width_, steepness);
+    const double distance = std::sqrt(squared);
+    const double counted = distance < floor_ ? floor_ - below_floor * (floor_ - distance) : distance;
+    return std::pow(1 - counted / width_, steepness);
   }
 
  private:

@@ -74,7 +74,8 @@ class ThicknessSearch {
                              const Hint& hint = {{}, TriangleId::none()}) const {
     const auto [a, b, c] = triangle_corners(mesh_, triangle.value);
     const Vec3d scaled = given * scale_;
-    const Vec3d point = scaled + ((a + b + c) / 3.0 - scaled) * towards_centroid;
+    const bool is_at_border = least_weight({a, b, c}, scaled) < towards_centroid;
+    const Vec3d point = is_at_border ? scaled + ((a + b + c) / 3.0 - scaled) * towards_centroid : scaled;
     Thickness out{nothing, given, TriangleId::none()};
     if (normals_[triangle.value] == Vec3d{}) return out;
     const bool is_ray = options_.kind == ThicknessKind::ray;
@@ -86,6 +87,18 @@ class ThicknessSearch {
   }
 
  private:
+  /// The smallest barycentric coordinate of a point of a triangle: 0 at its border.
+  [[nodiscard]] static double least_weight(const std::array<Vec3d, 3>& corners, const Vec3d& point) {
+    const auto& [a, b, c] = corners;
+    const Vec3d across = cross(b - a, c - a);
+    const double whole = squared_length(across);
+    if (!(whole > 0)) return 0;
+    const auto weight = [&](const Vec3d& from, const Vec3d& to) {
+      return dot(cross(from - point, to - point), across) / whole;
+    };
+    return std::min({weight(a, b), weight(b, c), weight(c, a)});
+  }
+
   /// The mean of the normals of triangles at a corner that are turned by less than the separation from the triangle's
   /// own, by their angles there.
   [[nodiscard]] Vec3d corner_normal(std::uint32_t triangle, std::size_t corner) const {

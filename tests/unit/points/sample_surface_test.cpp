@@ -91,6 +91,17 @@ TEST(SampleSurface, IsTheSameForAnyThreadsAndOtherForOtherSeeds) {
   EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
 }
 
+/// Both sides of a plate thinner than points are apart count as one: no two points come to lie on each other.
+TEST(SampleSurface, OfBlueNoiseKeepsItsDistanceOnThinPlates) {
+  for (const double thin : {0.1, 0.05, 0.03, 0.01}) {
+    const TriangleMesh plate = make_box({.size = {4, 3, thin}});
+    const double area = 2 * (12 + 7 * thin);
+    const double lattice = std::sqrt(2 * area / (std::sqrt(3.0) * 2000));
+    const auto even = nearest_others(sample_surface(plate, 2000, {.blue_noise = true}).points);
+    EXPECT_GT(*std::min_element(even.begin(), even.end()), lattice * 0.3) << thin;
+  }
+}
+
 /// A lattice of triangles is the most even there is: its points lie sqrt(2 area / (sqrt(3) count)) apart.
 TEST(SampleSurface, OfBlueNoiseKeepsItsDistance) {
   const TriangleMesh mesh = make_sphere({.frequency = 10});

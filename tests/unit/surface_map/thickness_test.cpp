@@ -49,6 +49,17 @@ TEST(RayThickness, OnBorders) {
   }
 }
 
+/// Points inside of triangles are asked where they are: of a prism between y = 0 and y = 1 - x / 3.
+TEST(RayThickness, InsideOfFacesIsExact) {
+  const TriangleMesh prism{{{0, 0, 0}, {3, 0, 0}, {0, 1, 0}, {0, 0, 2}, {3, 0, 2}, {0, 1, 2}},
+                           {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}},
+                           {},
+                           {}};
+  for (const Vec3d& p : {Vec3d{2.5, 0, 0.7}, Vec3d{2.5, 0, 0.3}, Vec3d{1.5, 0, 0.2}, Vec3d{2.9, 0, 1.9}}) {
+    EXPECT_NEAR(thickness(prism, std::vector<Vec3d>{p})[0].thickness, 1 - p.x / 3, 4e-16);
+  }
+}
+
 TEST(BallThickness, OfPlatesIsThatOrTwiceTheWayToAnEdge) {
   const Vec3d size{5, 3, 0.25};
   const TriangleMesh plate = test::box_between({0, 0, 0}, size);
@@ -162,8 +173,7 @@ TEST(BallThickness, AgreesWithBruteForce) {
     const std::vector<Thickness> found =
         thickness(mesh, samples.points, {.kind = ThicknessKind::ball, .separation = separation});
     for (std::size_t k = 0; k < found.size(); ++k) {
-      const auto [a, b, c] = triangle_corners(mesh, samples.triangles[k].value);
-      const Vec3d p = samples.points[k] + ((a + b + c) / 3.0 - samples.points[k]) * 1e-7;
+      const Vec3d& p = samples.points[k];
       const double cosine = std::cos(separation * std::numbers::pi / 180);
       const Vec3d n = slow_smooth_normal(mesh, samples.triangles[k].value, p, cosine);
       double radius = 100;
