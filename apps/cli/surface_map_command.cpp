@@ -265,7 +265,8 @@ void add_surface_map_command(const CommandLine& line) {
   add_text_option(*command, "--within", a->within, "D", "Look for nothing further than this, in mesh units");
   add_text_option(*command, "--sign", a->sign, "SIGN",
                   "How signs are found: auto, normals, winding or none (default none); negative inside of OTHER");
-  add_text_option(*command, "--range", a->range, "LOW,HIGH", "Of the colours (default: that of the map)");
+  add_text_option(*command, "--range", a->range, "LOW,HIGH",
+                  "Of the colours (default: that of the map, of distances with 0)");
   command->add_option("--units", a->units, "Of the mesh, such as mm, for the bar of colours and metadata")
       ->type_name("TEXT");
   add_weld_option(*command, a->weld);

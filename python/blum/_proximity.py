@@ -35,7 +35,7 @@ class ContinuousCollisions:
         return earliest_of(self.vertex_face_time, self.edge_edge_time)
 
     def __repr__(self) -> str:
-        return f"ContinuousCollisions({len(self.vertex_face)} vertex_face, {len(self.edge_edge)} edge_edge)"
+        return f"ContinuousCollisions({len(self.vertex_face):,} vertex_face, {len(self.edge_edge):,} edge_edge)"
 
 
 @takes("ImpactOptions")

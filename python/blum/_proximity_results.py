@@ -115,4 +115,4 @@ class SceneCollisions:
         return earliest_of(self.vertex_face_time, self.edge_edge_time)
 
     def __repr__(self) -> str:
-        return f"SceneCollisions({len(self.vertex_face)} vertex_face, {len(self.edge_edge)} edge_edge)"
+        return f"SceneCollisions({len(self.vertex_face):,} vertex_face, {len(self.edge_edge):,} edge_edge)"

@@ -256,7 +256,8 @@ class ProximityScene:
         **options: Unpack[PenetrationOptions],
     ) -> float:
         """The distance of two solids where they are apart, 0 where they touch, less the largest depth where they have
-        more in common.
+        more in common. The depth is that of :meth:`penetration`, how far points of one surface lie in the other solid,
+        and not the least way apart that GJK with EPA tells of convex shapes.
 
         Parameters
         ----------
@@ -283,7 +284,7 @@ class ProximityScene:
         Parameters
         ----------
         motions : dict
-            For each object that moves where it is at the end: vertices (n, 3) before its transform, or
+            For each object that moves where it is at the end: vertices (n, 3) before its transform, a transform, or
             ``{"vertices": ..., "transform": ...}`` with either or both, as :meth:`update` takes them. In place of
             vertices also what stands for the mesh at the end, with as many.
         **options
@@ -454,8 +455,15 @@ def _motions_of(motions: Any) -> list[tuple[Any, Any]]:
     )
 
 
+def _is_place(end: Any) -> bool:
+    """Whether it is a transform: a matrix of four columns, or a rotation and a translation."""
+    if isinstance(end, tuple) and len(end) == 2:
+        return np.shape(end[0]) == (3, 3) and np.shape(end[1]) == (3,)
+    return isinstance(end, np.ndarray) and end.shape in ((3, 4), (4, 4))
+
+
 def _motion(which: Any, end: Any) -> tuple[int, FloatArray | None, FloatArray | None]:
-    given = end if isinstance(end, dict) else {"vertices": end}
+    given = end if isinstance(end, dict) else {"transform" if _is_place(end) else "vertices": end}
     if unknown := set(given) - {"vertices", "transform"}:
         raise InvalidOption(f"motions[{which}] has {sorted(unknown)}, but takes 'vertices' and 'transform'")
     vertices, transform = given.get("vertices"), given.get("transform")

@@ -299,6 +299,10 @@ class Thickness:
     opposite: FloatArray  #: (..., 3): where the ray leaves, or the ball touches; else the point itself
     triangle: IntArray  #: that this point lies on; -1 where there is nothing
 
+    def __repr__(self) -> str:
+        points = self.thickness.size
+        return f"Thickness({points:,} {'point' if points == 1 else 'points'})"
+
 
 @takes("ThicknessOptions")
 def thickness(

@@ -129,6 +129,12 @@ Field read_field_npz(const ByteSource& source, const std::filesystem::path&) {
   if (npz.has("vertex_distance")) {
     throw FormatError(source.name() + ": it holds a surface map (array 'vertex_distance'), not a field");
   }
+  if (npz.has("primitive")) {
+    throw FormatError(source.name() + ": it holds pairs of primitives (array 'primitive'), not a field");
+  }
+  if (npz.has("vertex_face")) {
+    throw FormatError(source.name() + ": it holds collisions (array 'vertex_face'), not a field");
+  }
   if (npz.has("points")) throw FormatError(source.name() + ": it holds points (array 'points'), not a field");
   Field field;
   field.distance = npz.read("distance", [&](ByteStream& stream, const NpyHeader& header) {

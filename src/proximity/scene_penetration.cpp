@@ -86,8 +86,8 @@ void check_is_closed(const MeshView& surface, ObjectId id) {
                       " its triangles lie side by side, but share no vertices; weld it, which merges equal vertices");
   }
   throw InvalidMesh(name_of(id) + " is not closed, or its triangles do not all face the same way: at " + edges +
-                    " they do not meet in opposite directions; close its holes, turn triangles to face outwards, or "
-                    "weld its vertices within a tolerance");
+                    " they do not meet in opposite directions; close its holes, turn triangles to face outwards "
+                    "(oriented_mesh() does), or weld its vertices within a tolerance");
 }
 
 /// Adds the surface of a solid; without what lies in it twice, where it crosses itself.

@@ -121,6 +121,15 @@ def test_every_format_holds_what_python_says(objects, tmp_path, query, options, 
     assert metadata["self"] == ("true" if "--self" in options else "false")
 
 
+def test_pairs_are_no_field(objects, tmp_path):
+    pairs = tmp_path / "p.npz"
+    run("proximity", *objects, "--query", "collide", "--within", "1", "-o", pairs)
+    for command in (["info", pairs], ["view", pairs, "-o", tmp_path / "page.html"]):
+        assert "it holds pairs of primitives" in run(*command, status=1)[1]
+    run("proximity", objects[0], "--self", "--to", objects[0], "--query", "continuous", "-o", pairs)
+    assert "it holds collisions" in run("info", pairs, status=1)[1]
+
+
 @pytest.mark.parametrize("extension", READERS)
 def test_no_pairs_are_a_file_too(objects, tmp_path, extension):
     output = tmp_path / f"p.{extension}"

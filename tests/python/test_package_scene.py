@@ -474,6 +474,10 @@ def test_continuous_collisions_of_objects():
     assert scene.separation(0, 1).distance == 2
     assert scene.continuous({}).earliest is None
     assert scene.continuous({1: {"transform": (IDENTITY, [0, 0, -1.5])}}, min_separation=0.6).earliest is not None
+    matrix = np.eye(4)
+    matrix[2, 3] = -1.5
+    for place in [(IDENTITY, [0, 0, -1.5]), matrix, matrix[:3]]:  # as update() takes them
+        assert scene.continuous({1: place}).earliest == scene.continuous({1: {"transform": place}}).earliest
 
 
 def test_motions_and_penetrations_say_what_was_wrong():
