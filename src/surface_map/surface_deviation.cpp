@@ -151,6 +151,18 @@ class LongSum {
   double rest_ = 0;
 };
 
+/// @param largest  magnitude of the values, which no square of a smaller one leaves the range of numbers beside.
+double root_mean_square(const std::vector<double>& values, const std::vector<double>& weights, double largest,
+                        double weight) {
+  if (!(largest > 0)) return 0;
+  LongSum square;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double part = values[k] / largest;
+    square.add(weights[k] * part * part);
+  }
+  return largest * std::sqrt(square.value() / weight);
+}
+
 /// Values below which lie the percents of the area.
 std::array<double, 7> percentiles(const std::vector<double>& values, const std::vector<double>& weights, double sum) {
   std::vector<std::uint32_t> order(values.size());
@@ -192,7 +204,6 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   std::vector<double> values(found.size());
   LongSum areas;
   LongSum mean;
-  LongSum square;
   double magnitude = 0;
   double largest = 0;
   double mean_move = 0;
@@ -204,7 +215,6 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
     const double value = values[k] * scale;
     areas.add(pieces.area[k]);
     mean.add(pieces.area[k] * value);
-    square.add(pieces.area[k] * value * value);
     magnitude += pieces.area[k] * std::abs(value);
     largest = std::max(largest, std::abs(value));
     mean_move += pieces.area[k] * std::sqrt(pieces.mean_square[k]);
@@ -218,7 +228,7 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   // A sign that changes off the other mesh may be another one in the rest of a piece.
   const bool may_jump = query.sign_may_jump();
   out.mean_error = (mean_move / sum + rounding + (may_jump ? 2 * magnitude / sum : 0)) / scale;
-  out.rms = std::sqrt(square.value() / sum) / scale;
+  out.rms = root_mean_square(values, pieces.area, largest / scale, sum);
   out.rms_error = (std::sqrt(square_move / sum) + rounding) / scale;
   out.percentiles = percentiles(values, pieces.area, sum);
   out.percentile_error = (pieces.largest_radius + rounding + (may_jump ? 2 * largest : 0)) / scale;

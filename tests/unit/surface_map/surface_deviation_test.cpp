@@ -60,6 +60,17 @@ TEST(SurfaceDeviation, OfEqualDistancesIsExactForManyPieces) {
   }
 }
 
+TEST(SurfaceDeviation, OfWhatIsVeryFarIsFinite) {
+  const double size = 1e-140;
+  const TriangleMesh tiny{{{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}}, {}, {}};
+  for (const double far : {1e10, 1e30, 1e99}) {
+    const TriangleMesh point{{{0, 0, far}}, {}, {}, {0}};
+    const SurfaceDeviation found = surface_deviation(tiny, point, {.pieces = 10});
+    EXPECT_NEAR(found.rms / far, 1, 1e-15);
+    EXPECT_NEAR(found.mean / far, 1, 1e-15);
+  }
+}
+
 /// By winding numbers of open meshes signs may change within pieces.
 TEST(SurfaceDeviation, KnowsItsErrorsWhereSignsJump) {
   TriangleMesh bowl = make_sphere();
