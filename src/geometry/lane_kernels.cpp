@@ -379,10 +379,10 @@ void add_clusters_beyond(const MultipoleBlock& block, const Vec3d& query, double
 constexpr double near_edges = 1e-5;
 
 /// Computes the angles of such triangles anew.
-inline void look_closely(const TriangleBlock& block, const Vec3d& query, double (&cosine)[lanes], double (&sine)[lanes],
-                         const double (&largest)[lanes]) {
+inline void look_closely(const TriangleBlock& block, const Vec3d& query, const double (&is_near)[lanes],
+                         double (&cosine)[lanes], double (&sine)[lanes]) {
   for (std::size_t i = 0; i < lanes; ++i) {
-    if (!(std::abs(cosine[i]) + std::abs(sine[i]) < near_edges * largest[i])) continue;
+    if (is_near[i] == 0) continue;
     const auto corner = [&](std::size_t k) {
       return Vec3d{block.corner[k][0][i], block.corner[k][1][i], block.corner[k][2][i]};
     };
@@ -416,9 +416,12 @@ inline void add_angles(const TriangleBlock& block, const Vec3d& query, SolidAngl
     cosine[i] = x;
     sine[i] = y;
     largest[i] = la * lb * lc;
-    is_near[i] = std::abs(x) + std::abs(y) < near_edges * largest[i] ? 1.0 : 0.0;
+    // What the sine is made of, which two corners that are both close make no smaller.
+    const double edges =
+        (std::abs(ux) + std::abs(uy) + std::abs(uz)) * (std::abs(vx) + std::abs(vy) + std::abs(vz)) * la;
+    is_near[i] = std::abs(x) + std::abs(y) < near_edges * std::max(largest[i], edges) ? 1.0 : 0.0;
   }
-  if (std::accumulate(is_near, is_near + lanes, 0.0) > 0) look_closely(block, query, cosine, sine, largest);
+  if (std::accumulate(is_near, is_near + lanes, 0.0) > 0) look_closely(block, query, is_near, cosine, sine);
   for (std::size_t i = 0; i < lanes; ++i) {
     const double size = std::abs(cosine[i]) + std::abs(sine[i]);
     const double inverse = 1 / size;

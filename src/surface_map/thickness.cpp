@@ -44,7 +44,7 @@ class ThicknessSearch {
       : options_(options),
         scale_(scale_to_one(bounds(solid).largest_coordinate())),
         vertices_(solid.vertices.begin(), solid.vertices.end()),
-        cosine_(std::cos(options.separation * std::numbers::pi / 180)),
+        cosine_(std::cos(options.separation * std::numbers::pi / 180) + 1e-15),
         mesh_(solid) {
     for (Vec3d& v : vertices_) v *= scale_;
     mesh_.vertices = vertices_;
@@ -185,7 +185,7 @@ class ThicknessSearch {
   ThicknessOptions options_;
   double scale_ = 1;
   std::vector<Vec3d> vertices_;
-  double cosine_ = 1;
+  double cosine_ = 1;  ///< of the separation, and what rounding makes of the product of two normals
   MeshView mesh_;
   std::optional<surface::FacingSurface> surface_;
   std::vector<Vec3d> normals_;  ///< of triangles, of length 1; 0 where they have no area

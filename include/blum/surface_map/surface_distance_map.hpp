@@ -69,7 +69,8 @@ struct Description<SurfaceMapOptions> {
 struct SurfaceMap {
   std::shared_ptr<const SurfaceAtlas> atlas;  ///< shared by the maps of a SurfaceMapper; never null
   SurfaceQuantity quantity = SurfaceQuantity::distance;
-  /// Mesh units. Infinite where there is nothing (within max_distance); not a number of texels of no triangle.
+  /// Mesh units, up to 3e38 as all that is float here. Infinite where there is nothing (within max_distance); not a
+  /// number of texels of no triangle.
   Buffer<float> distance;
   /// From the point of the surface to the closest point, mesh units (of ray_thickness to the far side, of
   /// ball_thickness to where the ball touches again); zeros where there is none.

@@ -69,7 +69,8 @@ struct Thickness {
 /// @param points  finite; each stands for the point of the surface that is closest to it and, on edges and at vertices,
 ///                for the smallest triangle there. Where a point lies on the border of its triangle, a place next to it
 ///                inside is taken, a ten-millionth of the triangle's size away.
-/// @return        one entry per point; exact but for rounding. The same for any number of threads.
+/// @return        one entry per point; exact but for rounding. Of balls infinite beyond eight diagonals of the solid.
+/// The same for any number of threads.
 /// @throws InvalidMesh, InvalidOption, Cancelled. Cost: about 1 us (ray) and 5 to 30 us (ball) per point and core;
 /// balls that touch much of the surface at once, as of spheres, take far more.
 /// Method: docs/theory/surface-maps.md; balls shrink as in Ma, Bae, Choi, "3D medial axis point approximation using

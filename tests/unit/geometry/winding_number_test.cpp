@@ -230,5 +230,32 @@ TEST(WindingNumber, OfTrianglesWithoutAreaIsNothing) {
   }
 }
 
+/// Next to a corner that a triangle names twice, and to the short side of a needle, all terms are small but the error
+/// of the sine was not.
+TEST(WindingNumber, NextToShortSidesIsThatOfTheRest) {
+  for (const double side : {0.0, 1e-13, 1e-10, 1e-8, 1e-6}) {
+    TriangleMesh plain = box_with_filler(true);
+    plain.triangles.erase(plain.triangles.begin() + 3);
+    TriangleMesh mesh = plain;
+    // Needles in the plane of the lid and of a wall, of which the one goes there and the other back.
+    mesh.vertices.push_back({1, side, 1});
+    const auto tip = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    mesh.triangles.push_back({4, 5, side > 0 ? tip : 5});
+    mesh.triangles.push_back({5, 4, side > 0 ? tip : 5});
+    mesh = test::turned(mesh);
+    plain = test::turned(plain);
+    const WindingNumber with(mesh);
+    const WindingNumber without(plain);
+    Random random(9);
+    for (const double off : {1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
+      for (int k = 0; k < 200; ++k) {
+        const Vec3d place = Vec3d{1, 0, 1} + random.in_ball() * off;
+        const Vec3d query = test::turned(place);
+        EXPECT_NEAR(with(query), without(query), 1e-9 + 1e-15 / off) << side << " " << off;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace blum
