@@ -39,8 +39,9 @@ struct Piece {
 
 void check(const HausdorffOptions& options) {
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
-    throw InvalidOption("tolerance is " + exact_text(*options.tolerance) + ", but must be above 0");
+    throw InvalidOption("tolerance is " + exact_text(*options.tolerance) + ", but must be a number above 0");
   }
+  if (options.max_points < 1) throw InvalidOption("max_points is 0, but must be at least 1");
 }
 
 /// Hierarchies find nothing beyond 1e150 times the size of their mesh.

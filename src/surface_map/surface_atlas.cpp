@@ -148,11 +148,10 @@ std::array<TexturePlace, 3> chart_in(const Rectangle& r, std::size_t which, std:
 }
 
 [[noreturn]] void throw_too_large(double texel, const std::vector<Legs>& legs) {
-  double fits = texel;
-  for (int step = 0; step < 200 && texel_count(legs, fits) > 0.98 * most_a_side * most_a_side; ++step) fits *= 1.1;
   double longest = 0;
   for (const Legs& one : legs) longest = std::max({longest, one.length[0], one.length[1]});
-  fits = std::max(fits, longest / (most_a_side - 32));
+  double fits = std::max(texel, longest / (most_a_side - 32));
+  for (int step = 0; step < 200 && texel_count(legs, fits) > 0.98 * most_a_side * most_a_side; ++step) fits *= 1.1;
   throw InvalidOption("texels of " + exact_text(texel) + " make a texture of more than " + std::to_string(most_a_side) +
                       " x " + std::to_string(most_a_side) + " of them; from about " + exact_text(fits) +
                       " on it is small enough");

@@ -33,7 +33,7 @@ struct Description<HausdorffOptions> {
              "how wide the interval may be; else a ten-thousandth of the diagonal of the box around both meshes",
              Range::positive()},
       Member{"max_points", &HausdorffOptions::max_points, "",
-             "the search stops, with a wider interval, after so many points of a mesh"},
+             "the search stops, with a wider interval, after so many points of a mesh", Range::between(1, 1e15)},
   };
 };
 
