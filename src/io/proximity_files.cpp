@@ -221,7 +221,7 @@ void write_csv(const std::filesystem::path& path, const PairColumns& pairs, cons
   rows.finish();
 }
 
-const std::string& json_text(const std::string& text) {
+std::string json_text(std::string text) {
   return text;
 }
 std::string json_text(std::int32_t value) {

@@ -53,7 +53,7 @@ const std::vector<std::int32_t> objects{0, 0, 0, 1, 0, 1, 1, 0};
 const std::vector<std::int32_t> primitives{0, 1, 1, 0, 2, 0, 0, 1};
 
 template <class T>
-std::vector<T> array_of(volume_io::NpzReader& npz, const std::string& name, std::vector<std::uint64_t> shape) {
+std::vector<T> array_of(volume_io::NpzReader& npz, const std::string& name, const std::vector<std::uint64_t>& shape) {
   return npz.read(name, [&](volume_io::ByteStream& stream, const volume_io::NpyHeader& header) {
     EXPECT_EQ(header.shape, shape) << name;
     return std::get<std::vector<T>>(read_npy_values(stream, header));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "blum/core/error.hpp"
@@ -96,7 +97,7 @@ TEST(SampleSurface, OfBlueNoiseKeepsItsDistanceOnThinPlates) {
   for (const double thin : {0.1, 0.05, 0.03, 0.01}) {
     const TriangleMesh plate = make_box({.size = {4, 3, thin}});
     const double area = 2 * (12 + 7 * thin);
-    const double lattice = std::sqrt(2 * area / (std::sqrt(3.0) * 2000));
+    const double lattice = std::sqrt(2 * area / (std::numbers::sqrt3 * 2000));
     const auto even = nearest_others(sample_surface(plate, 2000, {.blue_noise = true}).points);
     EXPECT_GT(*std::min_element(even.begin(), even.end()), lattice * 0.3) << thin;
   }
@@ -108,7 +109,7 @@ TEST(SampleSurface, OfBlueNoiseKeepsItsDistance) {
   double area = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) area += area_of(mesh, t);
   constexpr std::size_t count = 1500;
-  const double most = std::sqrt(2 * area / (std::sqrt(3.0) * count));
+  const double most = std::sqrt(2 * area / (std::numbers::sqrt3 * count));
   const auto even = nearest_others(sample_surface(mesh, count, {.blue_noise = true}).points);
   const auto random = nearest_others(sample_surface(mesh, count).points);
   EXPECT_GT(*std::min_element(even.begin(), even.end()), 0.6 * most);
