@@ -2,80 +2,43 @@
 
 #include <cmath>
 
+#include "geometry/double2.hpp"
+
 namespace blum {
 namespace {
 
-/// The sum of two doubles that do not overlap: 106 bits (Dekker 1971).
-struct TwoDoubles {
-  double high = 0;
-  double low = 0;
-};
+using detail::Double2;
+using detail::product;
+using detail::Row;
+using detail::row;
+using detail::sum;
 
-/// For |a| >= |b|.
-TwoDoubles quick_sum(double a, double b) {
-  const double sum = a + b;
-  return {sum, b - (sum - a)};
+Double2 dot(const Row& a, const Row& b) {
+  return sum(sum(product(a[0], b[0]), product(a[1], b[1])), product(a[2], b[2]));
 }
 
-/// Exact (Knuth).
-TwoDoubles exact_sum(double a, double b) {
-  const double sum = a + b;
-  const double of_b = sum - a;
-  return {sum, (a - (sum - of_b)) + (b - of_b)};
-}
-
-TwoDoubles operator+(const TwoDoubles& a, const TwoDoubles& b) {
-  TwoDoubles sum = exact_sum(a.high, b.high);
-  const TwoDoubles rest = exact_sum(a.low, b.low);
-  sum = quick_sum(sum.high, sum.low + rest.high);
-  return quick_sum(sum.high, sum.low + rest.low);
-}
-
-TwoDoubles operator-(const TwoDoubles& a, const TwoDoubles& b) {
-  return a + TwoDoubles{-b.high, -b.low};
-}
-
-TwoDoubles operator*(const TwoDoubles& a, const TwoDoubles& b) {
-  const double product = a.high * b.high;
-  const double rest = std::fma(a.high, b.high, -product);
-  return quick_sum(product, rest + (a.high * b.low + a.low * b.high));
-}
-
-TwoDoubles root(const TwoDoubles& a) {
-  if (!(a.high > 0)) return {};
-  const double rough = std::sqrt(a.high);
-  const TwoDoubles rest = a - TwoDoubles{rough, 0} * TwoDoubles{rough, 0};
-  return quick_sum(rough, rest.high / (2 * rough));
-}
-
-using Vector = std::array<TwoDoubles, 3>;
-
-Vector difference(const Vec3d& a, const Vec3d& b) {
-  return {exact_sum(a.x, -b.x), exact_sum(a.y, -b.y), exact_sum(a.z, -b.z)};
-}
-
-TwoDoubles dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+Double2 length(const Row& a) {
+  const Double2 squared = dot(a, a);
+  if (!(squared.high > 0)) return {};
+  const double rough = std::sqrt(squared.high);
+  const Double2 all = product({rough, 0}, {rough, 0});
+  const Double2 rest = sum(squared, {-all.high, -all.low});
+  return detail::quick_sum(rough, rest.high / (2 * rough));
 }
 
 }  // namespace
 
 HalfAngle half_solid_angle_nearby(const std::array<Vec3d, 3>& corners, const Vec3d& point) {
-  const Vector a = difference(corners[0], point);
-  const Vector b = difference(corners[1], point);
-  const Vector c = difference(corners[2], point);
-  const TwoDoubles length_a = root(dot(a, a));
-  const TwoDoubles length_b = root(dot(b, b));
-  const TwoDoubles length_c = root(dot(c, c));
-  const Vector normal = cross(difference(corners[1], corners[0]), difference(corners[2], corners[0]));
-  const TwoDoubles sine = dot(a, normal);
-  const TwoDoubles cosine =
-      length_a * length_b * length_c + dot(a, b) * length_c + dot(b, c) * length_a + dot(c, a) * length_b;
-  return {cosine.high, sine.high};
+  const Row a = row(corners[0], point);
+  const Row b = row(corners[1], point);
+  const Row c = row(corners[2], point);
+  const Double2 length_a = length(a);
+  const Double2 length_b = length(b);
+  const Double2 length_c = length(c);
+  const Double2 all = product(product(length_a, length_b), length_c);
+  const Double2 ab_and_bc = sum(product(dot(a, b), length_c), product(dot(b, c), length_a));
+  const Double2 cosine = sum(sum(all, ab_and_bc), product(dot(c, a), length_b));
+  return {cosine.high, determinant(a, row(corners[1], corners[0]), row(corners[2], corners[0]))};
 }
 
 }  // namespace blum

@@ -1,63 +1,13 @@
 #include "blum/geometry/orient3d.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 
+#include "geometry/double2.hpp"
 #include "geometry/expansion.hpp"
 
 namespace blum::detail {
 namespace {
-
-/// A number as the sum of a double and what it was rounded by.
-struct Double2 {
-  double high = 0;
-  double low = 0;
-};
-
-Double2 quick_sum(double large, double small) {
-  const double sum = large + small;
-  return {sum, small - (sum - large)};
-}
-
-/// Exact.
-Double2 difference(double x, double y) {
-  const double high = x - y;
-  const double from_y = x - high;
-  return {high, (x - (high + from_y)) + (from_y - y)};
-}
-
-/// Within 2^-103 of the exact product, relatively.
-Double2 product(const Double2& x, const Double2& y) {
-  const double high = x.high * y.high;
-  return quick_sum(high, std::fma(x.high, y.high, -high) + (x.high * y.low + x.low * y.high));
-}
-
-/// Within 2^-103 of the sum of magnitudes.
-Double2 sum(const Double2& x, const Double2& y) {
-  const double high = x.high + y.high;
-  const double from_y = high - x.high;
-  const double error = (x.high - (high - from_y)) + (y.high - from_y);
-  return quick_sum(high, error + (x.low + y.low));
-}
-
-Double2 minor(const Double2& a, const Double2& b, const Double2& c, const Double2& d) {
-  const Double2 left = product(b, c);
-  return sum(product(a, d), {-left.high, -left.low});
-}
-
-using Row = std::array<Double2, 3>;
-
-Row row(const Vec3d& p, const Vec3d& q) {
-  return {difference(p.x, q.x), difference(p.y, q.y), difference(p.z, q.z)};
-}
-
-double determinant(const Row& u, const Row& v, const Row& w) {
-  const Double2 x = product(u[0], minor(v[1], v[2], w[1], w[2]));
-  const Double2 y = product(u[1], minor(v[2], v[0], w[2], w[0]));
-  const Double2 z = product(u[2], minor(v[0], v[1], w[0], w[1]));
-  return sum(sum(x, y), z).high;
-}
 
 bool is_rounded(const Row& row) {
   return row[0].low != 0 || row[1].low != 0 || row[2].low != 0;

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,13 +55,18 @@ struct Contents {
   [[nodiscard]] std::array<const Kind*, 2> kinds() const { return {&vertex_face, &edge_edge}; }
 };
 
+/// @param object  whose mesh it is, of a scene. @throws InvalidOption where the mesh has no such face.
+void check_face(const MeshView& mesh, TriangleId face, std::optional<ObjectId> object = {}) {
+  if (face.value < mesh.triangles.size()) return;
+  throw InvalidOption("a collision is of face " + std::to_string(face.value) +
+                      (object ? " of object " + std::to_string(object->value) : "") + ", whose mesh has " +
+                      std::to_string(mesh.triangles.size()) + "; give the meshes that the collisions were found on");
+}
+
 Contents contents_of(const ContinuousCollisions& collisions, const MeshView& mesh) {
   Contents out;
   for (const VertexFaceCollision& one : collisions.vertex_face) {
-    if (one.face.value >= mesh.triangles.size()) {
-      throw InvalidOption("a collision is of face " + std::to_string(one.face.value) + " of a mesh that has " +
-                          std::to_string(mesh.triangles.size()) + "; give the mesh that the collisions were found on");
-    }
+    check_face(mesh, one.face);
     out.add(one, mesh);
   }
   for (const EdgeEdgeCollision& one : collisions.edge_edge) out.add(one);
@@ -77,14 +83,6 @@ class Objects {
     throw InvalidOption("a collision is of object " + std::to_string(object.value) + ", but meshes of " +
                         std::to_string(meshes_.size()) + " objects are given; give one for each object");
   }
-  /// The mesh of a face.
-  [[nodiscard]] const MeshView& mesh(ObjectId object, TriangleId face) const {
-    const MeshView& out = mesh(object);
-    if (face.value < out.triangles.size()) return out;
-    throw InvalidOption("a collision is of face " + std::to_string(face.value) + " of object " +
-                        std::to_string(object.value) + ", whose mesh has " + std::to_string(out.triangles.size()) +
-                        "; give the meshes that the collisions were found on");
-  }
 
  private:
   std::span<const MeshMotion> meshes_;
@@ -95,8 +93,11 @@ Contents contents_of(const SceneCollisions& collisions, std::span<const MeshMoti
   Contents out;
   out.is_scene = true;
   const auto add_faces = [&](ObjectId vertices, ObjectId faces, const std::vector<VertexFaceCollision>& all) {
+    if (all.empty()) return;
+    const MeshView& mesh = objects.mesh(faces);
     for (const VertexFaceCollision& one : all) {
-      out.add(one, objects.mesh(faces, one.face));
+      check_face(mesh, one.face, faces);
+      out.add(one, mesh);
       out.vertex_face.objects.push_back({vertices.value, faces.value});
     }
   };

@@ -46,25 +46,16 @@ class ComplexNpzWriter {
     const std::span<const Vec3d> positions(complex.positions);
     npz_.add(prefix + "vertices", "f8", {positions.size(), 3}, positions);
     for (const Column& column : complex.vertex_columns) {
-      add(prefix + (is_plain(column.name, further_) ? "" : "vertex_") + column.name, column);
+      write_column(npz_, prefix + (is_plain(column.name, further_) ? "" : "vertex_") + column.name, column);
     }
     add_cells(prefix + "edges", complex.edges);
-    for (const Column& column : complex.edge_columns) add(prefix + "edge_" + column.name, column);
+    for (const Column& column : complex.edge_columns) write_column(npz_, prefix + "edge_" + column.name, column);
     add_cells(prefix + "triangles", complex.triangles);
-    for (const Column& column : complex.triangle_columns) add(prefix + "triangle_" + column.name, column);
+    for (const Column& column : complex.triangle_columns)
+      write_column(npz_, prefix + "triangle_" + column.name, column);
   }
 
  private:
-  void add(const std::string& array, const Column& column) {
-    std::vector<std::uint64_t> shape{column.rows()};
-    if (column.components > 1) shape.push_back(column.components);
-    std::visit(
-        [&]<class T>(const std::vector<T>& values) {
-          npz_.add(array, volume_io::npy_dtype(scalar_type(column)), shape, std::span<const T>(values));
-        },
-        column.values);
-  }
-
   template <std::size_t n>
   void add_cells(const std::string& array, const std::vector<std::array<std::uint32_t, n>>& cells) {
     std::vector<std::int32_t> corners;

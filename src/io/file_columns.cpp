@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "blum/io/complex_io.hpp"
+#include "io/npz.hpp"
 #include "io/text_cursor.hpp"
 
 namespace blum::complex_files {
@@ -16,6 +17,16 @@ volume_io::ScalarType scalar_type(const Column& column) {
   constexpr std::array types{ScalarType::f64, ScalarType::f32, ScalarType::i64, ScalarType::i32};
   static_assert(types.size() == std::variant_size_v<Column::Values>);
   return types[column.values.index()];
+}
+
+void write_column(volume_io::NpzWriter& npz, const std::string& array, const Column& column) {
+  std::vector<std::uint64_t> shape{column.rows()};
+  if (column.components > 1) shape.push_back(column.components);
+  std::visit(
+      [&]<class T>(const std::vector<T>& values) {
+        npz.add(array, volume_io::npy_dtype(scalar_type(column)), shape, std::span<const T>(values));
+      },
+      column.values);
 }
 
 Column::Values widened(VoxelImage::Values values, const std::string& where) {

@@ -16,10 +16,17 @@
 #include "blum/grid/voxel_image.hpp"
 #include "io/scalar_type.hpp"
 
+namespace blum::volume_io {
+class NpzWriter;
+}
+
 namespace blum::complex_files {
 
 /// The type that files hold a column's numbers in.
 [[nodiscard]] volume_io::ScalarType scalar_type(const Column& column);
+
+/// Adds an array of a column: one number for each row, or as many as it has components.
+void write_column(volume_io::NpzWriter& npz, const std::string& array, const Column& column);
 
 /// The numbers of a file in the smallest type that a column may have and that holds all of theirs.
 /// @throws FormatError with `where` for a uint64 beyond int64.

@@ -159,16 +159,7 @@ void write_npz(const std::filesystem::path& path, const Complex& points, const F
   volume_io::FieldSink sink(bytes, context);
   volume_io::NpzWriter npz(file, sink, context);
   npz.add("points", "f8", {count, 3}, std::span<const Vec3d>(points.positions));
-  for (const Column& column : points.vertex_columns) {
-    std::vector<std::uint64_t> shape{count};
-    if (column.components > 1) shape.push_back(column.components);
-    std::visit(
-        [&]<class T>(const std::vector<T>& values) {
-          npz.add(column.name, volume_io::npy_dtype(complex_files::scalar_type(column)), shape,
-                  std::span<const T>(values));
-        },
-        column.values);
-  }
+  for (const Column& column : points.vertex_columns) complex_files::write_column(npz, column.name, column);
   if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
   npz.finish();
   file.commit();

@@ -18,6 +18,7 @@
 #include "blum/io/formats.hpp"
 #include "blum/io/proximity_io.hpp"
 #include "io/field_sink.hpp"
+#include "io/file_columns.hpp"
 #include "io/json.hpp"
 #include "io/npz.hpp"
 #include "io/row_writer.hpp"
@@ -121,29 +122,13 @@ constexpr std::array<std::string_view, 2> typed_keys{"within", "self"};
 /// Bytes of a pair in .npz.
 constexpr std::size_t row_size = 8 * sizeof(std::int32_t) + 7 * sizeof(double) + 2 * sizeof(std::int32_t);
 
-/// Calls visit(vector of numbers) for those of a column.
-template <class Visit>
-void visit_numbers(const Column& column, const Visit& visit) {
-  std::visit(visit, column.values);
-}
-
-std::size_t number_size(const Column& column) {
-  std::size_t size = 0;
-  visit_numbers(column, [&]<class T>(const std::vector<T>&) { size = sizeof(T); });
-  return size * column.components;
-}
-
-/// NumPy's name of a column's type.
-std::string dtype_of(const Column& column) {
-  const std::string_view type = column.type_name();
-  return std::string(1, type.front()) + (type.ends_with("64") ? "8" : "4");
-}
-
 void write_npz(const std::filesystem::path& path, const PairColumns& pairs, const FileMetadata& metadata,
                const Context& context) {
   AtomicFile file(path);
   std::size_t size = row_size;
-  for (const Column& column : pairs.more()) size += number_size(column);
+  for (const Column& column : pairs.more()) {
+    size += volume_io::scalar_size(complex_files::scalar_type(column)) * column.components;
+  }
   volume_io::FieldSink sink(size * pairs.size(), context);
   volume_io::NpzWriter npz(file, sink, context);
   const auto add = [&]<class Row>(const char* name, const char* type, std::vector<std::uint64_t> shape,
@@ -157,13 +142,7 @@ void write_npz(const std::filesystem::path& path, const PairColumns& pairs, cons
   add("distance", "f8", {}, pairs.all(&PairColumns::distance));
   add("point", "f8", {2, 3}, pairs.all(&PairColumns::point));
   add("feature", "i4", {2, 3}, pairs.all(&PairColumns::feature));
-  for (const Column& column : pairs.more()) {
-    std::vector<std::uint64_t> shape{pairs.size()};
-    if (column.components > 1) shape.push_back(column.components);
-    visit_numbers(column, [&]<class T>(const std::vector<T>& numbers) {
-      npz.add(column.name, dtype_of(column), shape, std::span<const T>(numbers));
-    });
-  }
+  for (const Column& column : pairs.more()) complex_files::write_column(npz, column.name, column);
   if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
   npz.finish();
   file.commit();
@@ -172,7 +151,7 @@ void write_npz(const std::filesystem::path& path, const PairColumns& pairs, cons
 /// The numbers of a row of a column.
 std::vector<std::string> texts_of(const Column& column, std::size_t row) {
   std::vector<std::string> out;
-  visit_numbers(column, [&](const auto& numbers) {
+  const auto add = [&](const auto& numbers) {
     for (std::size_t k = row * column.components; k < (row + 1) * column.components; ++k) {
       if constexpr (std::is_floating_point_v<std::decay_t<decltype(numbers[k])>>) {
         out.push_back(exact_text(numbers[k]));
@@ -180,7 +159,8 @@ std::vector<std::string> texts_of(const Column& column, std::size_t row) {
         out.push_back(std::to_string(numbers[k]));
       }
     }
-  });
+  };
+  std::visit(add, column.values);
   return out;
 }
 
@@ -221,9 +201,6 @@ void write_csv(const std::filesystem::path& path, const PairColumns& pairs, cons
   rows.finish();
 }
 
-std::string json_text(std::string text) {
-  return text;
-}
 std::string json_text(std::int32_t value) {
   return std::to_string(value);
 }
@@ -269,7 +246,7 @@ void write_json(const std::filesystem::path& path, const PairColumns& pairs, con
   add("point", [&](std::size_t n) { return pairs.point(n); });
   add("feature", [&](std::size_t n) { return pairs.feature(n); });
   for (const Column& column : pairs.more()) {
-    add(column.name, [&](std::size_t n) { return json_text(texts_of(column, n)); });
+    add(column.name, [&](std::size_t n) { return texts_of(column, n); });
   }
   rows.text("}\n");
   rows.finish();

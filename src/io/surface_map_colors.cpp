@@ -135,8 +135,10 @@ ColorScale color_scale_of(const SurfaceMap& map, const SurfaceMapWriteOptions& o
   }
   const auto range = finite_range(map).value_or(std::pair{0.0, 0.0});
   // Distances are seen from 0; a thickness is no distance from anything, and walls differ by little.
-  const bool is_thickness = map.error.empty() && range.first < range.second;
-  const double lowest = is_signed(map) ? std::min(range.first, 0.0) : is_thickness ? range.first : 0;
+  const bool is_thickness =
+      map.quantity == SurfaceQuantity::ray_thickness || map.quantity == SurfaceQuantity::ball_thickness;
+  double lowest = is_signed(map) ? std::min(range.first, 0.0) : 0.0;
+  if (is_thickness && range.first < range.second) lowest = range.first;
   return scale(lowest, range.second > lowest ? range.second : lowest + 1);
 }
 

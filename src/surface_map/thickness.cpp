@@ -1,6 +1,7 @@
 #include "blum/surface_map/thickness.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -74,7 +75,8 @@ class ThicknessSearch {
                              const Hint& hint = {{}, TriangleId::none()}) const {
     const auto [a, b, c] = triangle_corners(mesh_, triangle.value);
     const Vec3d scaled = given * scale_;
-    const bool is_at_border = least_weight({a, b, c}, scaled) < towards_centroid;
+    const auto weights = weights_of({a, b, c}, scaled);
+    const bool is_at_border = !weights || *std::min_element(weights->begin(), weights->end()) < towards_centroid;
     const Vec3d point = is_at_border ? scaled + ((a + b + c) / 3.0 - scaled) * towards_centroid : scaled;
     Thickness out{nothing, given, TriangleId::none()};
     if (normals_[triangle.value] == Vec3d{}) return out;
@@ -87,16 +89,16 @@ class ThicknessSearch {
   }
 
  private:
-  /// The smallest barycentric coordinate of a point of a triangle: 0 at its border.
-  [[nodiscard]] static double least_weight(const std::array<Vec3d, 3>& corners, const Vec3d& point) {
+  /// Barycentric coordinates of a point; nullopt of triangles without area.
+  [[nodiscard]] static std::optional<std::array<double, 3>> weights_of(const std::array<Vec3d, 3>& corners,
+                                                                       const Vec3d& point) {
     const auto& [a, b, c] = corners;
     const Vec3d across = cross(b - a, c - a);
     const double whole = squared_length(across);
-    if (!(whole > 0)) return 0;
-    const auto weight = [&](const Vec3d& from, const Vec3d& to) {
-      return dot(cross(from - point, to - point), across) / whole;
-    };
-    return std::min({weight(a, b), weight(b, c), weight(c, a)});
+    if (!(whole > 0)) return std::nullopt;
+    const double second = dot(cross(point - a, c - a), across) / whole;
+    const double third = dot(cross(b - a, point - a), across) / whole;
+    return std::array{1 - second - third, second, third};
   }
 
   /// The mean of the normals of triangles at a corner that are turned by less than the separation from the triangle's
@@ -119,12 +121,10 @@ class ThicknessSearch {
 
   /// Of the smooth surface that a mesh approximates: between those of the corners.
   [[nodiscard]] Vec3d smooth_normal(const Vec3d& point, std::uint32_t triangle) const {
-    const auto [a, b, c] = triangle_corners(mesh_, triangle);
-    const Vec3d across = cross(b - a, c - a);
-    const double whole = squared_length(across);
-    if (!(whole > 0)) return normals_[triangle];
-    const double second = std::clamp(dot(cross(point - a, c - a), across) / whole, 0.0, 1.0);
-    const double third = std::clamp(dot(cross(b - a, point - a), across) / whole, 0.0, 1.0 - second);
+    const auto weights = weights_of(triangle_corners(mesh_, triangle), point);
+    if (!weights) return normals_[triangle];
+    const double second = std::clamp((*weights)[1], 0.0, 1.0);
+    const double third = std::clamp((*weights)[2], 0.0, 1.0 - second);
     const Vec3d mean = corner_normal(triangle, 0) * (1 - second - third) + corner_normal(triangle, 1) * second +
                        corner_normal(triangle, 2) * third;
     const double size = length(mean);
