@@ -47,7 +47,9 @@ def main() -> int:
             name, _, anchor = urllib.parse.unquote(link).partition("#")
             target = (page.parent / name).resolve() if name else page
             problem = None
-            if not target.exists():
+            if not name:
+                problem = f"needs the page's name ({page.name}#{anchor}): Doxygen knows no headings by their words alone"
+            elif not target.exists():
                 problem = "is not there"
             elif not target.is_relative_to(PROJECT):
                 problem = "is outside of the project"
