@@ -17,6 +17,7 @@
 #include "blum/surface_map/hausdorff_distance.hpp"
 #include "blum/surface_map/surface_deviation.hpp"
 #include "blum/surface_map/surface_distance_map.hpp"
+#include "blum/surface_map/surface_map_statistics.hpp"
 #include "blum/surface_map/thickness.hpp"
 #include "call.hpp"
 #include "columns.hpp"
@@ -72,6 +73,21 @@ void bind_maps(nb::module_& m) {
         });
       },
       nb::arg("path"), nb::arg("mesh"), nb::arg("map"), nb::arg("metadata"), nb::arg("range").none(), nb::arg("units"));
+  m.def(
+      "read_surface_map",
+      [](const std::filesystem::path& path) {
+        SurfaceMapFile file = run({0, nb::none()}, [&](const Context&) { return read_surface_map(path); });
+        nb::tuple mesh = arrays_of(std::move(file.mesh));
+        return nb::make_tuple(std::move(mesh), dict_of(std::move(file.map)));
+      },
+      nb::arg("path"));
+  m.def(
+      "surface_map_statistics",
+      [](const MeshArrays& mesh, const SurfaceMap& map) {
+        const MeshView view = mesh.view();
+        return result_of(run({0, nb::none()}, [&](const Context&) { return surface_map_statistics(view, map); }));
+      },
+      nb::arg("mesh"), nb::arg("map"));
   m.def(
       "surface_distance_map",
       [](const MeshArrays& target, const MeshArrays& other, const nb::dict& given, int threads, nb::object progress) {
@@ -184,6 +200,7 @@ void bind_surface_map(nb::module_& m) {
   bind_options<DeviationOptions>(m);
   bind_struct<HausdorffDistance>(m);
   bind_struct<SurfaceDeviation>(m);
+  bind_struct<SurfaceMapStatistics>(m);
   bind_maps(m);
   bind_mapper(m);
   bind_comparison(m, "hausdorff_distance", "a", "b", hausdorff_distance);

@@ -19,12 +19,13 @@ from ._arguments import (
     PathLike,
     Real,
     as_array,
+    existing_file,
     float_rows,
     integer,
     number,
     points_and_shape,
 )
-from ._mesh import Mesh, Sites, as_mesh
+from ._mesh import Mesh, Sites, as_mesh, mesh_of_arrays
 from ._options import takes
 from ._progress import Progress, reporting
 from ._structs import (
@@ -34,6 +35,7 @@ from ._structs import (
     HausdorffOptions,
     SurfaceDeviation,
     SurfaceMapOptions,
+    SurfaceMapStatistics,
     ThicknessOptions,
 )
 
@@ -95,6 +97,17 @@ class SurfaceMap:
         metadata = [("tool", "blum")]
         _core.write_surface_map(Path(os.fspath(path)), self.mesh._arrays, self._handle, metadata, ends, units)
 
+    def statistics(self) -> SurfaceMapStatistics:
+        """Mean, root mean square and percentiles of the values, by area.
+
+        >>> import blum
+        >>> thick = blum.thickness_map(blum.generate("box", size_z=0.5), texel=0.05).statistics()
+        >>> round(thick.percentiles[0], 6), round(thick.percentiles[6], 6), round(thick.mean, 6)
+        (0.5, 1.0, 0.75)
+        """
+        found: SurfaceMapStatistics = _core.surface_map_statistics(self.mesh._arrays, self._handle)
+        return found
+
     @cached_property
     def object(self) -> IntArray:
         """(h, w): which of the other meshes is closest, in their order; -1 where there is nothing."""
@@ -105,6 +118,25 @@ class SurfaceMap:
             vertices = Sites(_joined(self._others)).vertices(self.site[known])[:, 0]
             out[known] = np.searchsorted(ends, vertices, side="right")
         return out
+
+
+def read_surface_map(path: PathLike) -> SurfaceMap:
+    """Reads the map, and the mesh that it is of, from an .npz file that :meth:`SurfaceMap.write` or ``blum surface-map``
+    wrote: the same numbers, bit by bit. Which of several other meshes is closest is not in the file.
+
+    Raises
+    ------
+    FileNotFoundError, FileError, FormatError
+
+    >>> import blum, tempfile, os
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     blum.thickness_map(blum.generate("box"), texel=0.1).write(os.path.join(folder, "box.npz"))
+    ...     again = blum.read_surface_map(os.path.join(folder, "box.npz"))
+    >>> again.quantity, again.mesh
+    ('ray-thickness', Mesh(8 vertices, 12 triangles))
+    """
+    mesh, found = _core.read_surface_map(existing_file(path))
+    return SurfaceMap(**found, mesh=mesh_of_arrays(mesh))
 
 
 @takes("SurfaceMapOptions")

@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include "blum/core/parallel.hpp"
 #include "blum/core/scale.hpp"
 #include "blum/field/closest_points.hpp"
+#include "surface_map/weighted_statistics.hpp"
 
 namespace blum {
 namespace {
+
+using surface::LongSum;
 
 constexpr std::size_t triangles_per_range = 256;
 /// So many have about 100 gigabytes.
@@ -135,51 +137,6 @@ Pieces pieces_of(const MeshView& mesh, double scale, double size, const Context&
   return out;
 }
 
-/// A sum of many numbers that keeps what each addition rounds off (Neumaier 1974), so that millions of terms cost no
-/// digits.
-class LongSum {
- public:
-  void add(double term) {
-    const double next = sum_ + term;
-    rest_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
-    sum_ = next;
-  }
-  [[nodiscard]] double value() const { return sum_ + rest_; }
-
- private:
-  double sum_ = 0;
-  double rest_ = 0;
-};
-
-/// @param largest  magnitude of the values, which no square of a smaller one leaves the range of numbers beside.
-double root_mean_square(const std::vector<double>& values, const std::vector<double>& weights, double largest,
-                        double weight) {
-  if (!(largest > 0)) return 0;
-  LongSum square;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double part = values[k] / largest;
-    square.add(weights[k] * part * part);
-  }
-  return largest * std::sqrt(square.value() / weight);
-}
-
-/// Values below which lie the percents of the area.
-std::array<double, 7> percentiles(const std::vector<double>& values, const std::vector<double>& weights, double sum) {
-  std::vector<std::uint32_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return values[a] != values[b] ? values[a] < values[b] : a < b; });
-  std::array<double, 7> out{};
-  std::size_t next = 0;
-  double below = 0;
-  for (const std::uint32_t k : order) {
-    below += weights[k];
-    while (next < out.size() && below >= sum * SurfaceDeviation::percents[next] / 100) out[next++] = values[k];
-  }
-  while (next < out.size()) out[next++] = values[order.back()];
-  return out;
-}
-
 }  // namespace
 
 SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, const DeviationOptions& options,
@@ -228,9 +185,9 @@ SurfaceDeviation surface_deviation(const MeshView& mesh, const MeshView& other, 
   // A sign that changes off the other mesh may be another one in the rest of a piece.
   const bool may_jump = query.sign_may_jump();
   out.mean_error = (mean_move / sum + rounding + (may_jump ? 2 * magnitude / sum : 0)) / scale;
-  out.rms = root_mean_square(values, pieces.area, largest / scale, sum);
+  out.rms = surface::root_mean_square(values, pieces.area, largest / scale, sum);
   out.rms_error = (std::sqrt(square_move / sum) + rounding) / scale;
-  out.percentiles = percentiles(values, pieces.area, sum);
+  out.percentiles = surface::percentiles(values, pieces.area, sum, SurfaceDeviation::percents);
   out.percentile_error = (pieces.largest_radius + rounding + (may_jump ? 2 * largest : 0)) / scale;
   out.area = extent.area / scale / scale;
   out.pieces = found.size();

@@ -89,3 +89,30 @@ def test_what_is_wrong_is_said(shapes, tmp_path):
         assert said in run("surface-map", *words, status=2)[1], words
     assert "16384" in run("surface-map", plate, sphere, "-o", out, "--texel", 1e-9, status=2)[1]
     assert not out.exists()
+
+
+def test_values_by_area(shapes, tmp_path):
+    found = run_json("surface-map", shapes / "plate.ply", "-o", tmp_path / "ray.npz", "--thickness", "ray")
+    by_area = found["by_area"]
+    area, thin = 2 * (12 + 2 + 1.5), 2 * 12
+    assert np.isclose(by_area["area"], area) and np.isclose(by_area["measured_area"], area)
+    assert np.isclose(by_area["mean"], (thin * 0.5 + 2 * 2 * 3 + 2 * 1.5 * 4) / area)
+    assert np.allclose(by_area["percentiles"][:5], 0.5) and np.allclose(by_area["percentiles"][5:], 4)
+    text, _ = run("surface-map", shapes / "plate.ply", "-o", tmp_path / "ray.npz", "--thickness", "ray")
+    assert "of the area  1 % below 0.5, 5 % below 0.5" in text and "by area" in text
+
+
+def test_meshes_without_an_inside_are_warned_of(shapes, tmp_path):
+    corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+    def box(name, faces):
+        lines = [f"v {x} {y} {z}" for x, y, z in corners] + ["f " + " ".join(str(v + 1) for v in face) for face in faces]
+        (tmp_path / name).write_text("\n".join(lines) + "\n")
+        words = ("surface-map", tmp_path / name, "-o", tmp_path / "map.npz", "--thickness", "ray", "--texel", 0.1)
+        return run_json(*words, warns=True)["warnings"]
+
+    assert run_json("surface-map", shapes / "plate.ply", "-o", tmp_path / "m.npz", "--thickness", "ray")["warnings"] == []
+    assert "the mesh is open (4 edges" in box("open.obj", quads[:-1])[0]
+    assert "face different ways (4 edges)" in box("turned.obj", [*quads[:-1], quads[-1][::-1]])[0]
+    assert "face into the solid" in box("inwards.obj", [quad[::-1] for quad in quads])[0]

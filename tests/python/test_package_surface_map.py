@@ -166,3 +166,38 @@ def test_what_is_wrong_is_said(organic):
         blum.surface_distance_map(organic, organic, texels=3)
     with pytest.raises(blum.InvalidMesh):
         blum.hausdorff_distance(organic, blum.Mesh([[np.nan, 0, 0]], points=[0]))
+
+
+@pytest.mark.parametrize("kind", ["distance", "self", "thickness"])
+def test_maps_are_read_as_they_were_written(tmp_path, kind):
+    part, other = blum.generate("torus"), blum.generate("box")
+    if kind == "distance":
+        map = blum.surface_distance_map(part, other, texel=0.1, sign="auto")
+    elif kind == "self":
+        map = blum.self_distance_map(part, texel=0.1, max_distance=0.2)
+    else:
+        map = blum.thickness_map(part, texel=0.1)
+    map.write(tmp_path / "map.npz", units="mm")
+    again = blum.read_surface_map(tmp_path / "map.npz")
+    assert (again.quantity, again.sign_rule, again.sign_reason) == (map.quantity, map.sign_rule, map.sign_reason)
+    for name in ("distance", "vector", "site", "triangle", "corners", "vertex_distance", "faces"):
+        assert np.array_equal(getattr(again, name), getattr(map, name), equal_nan=name != "site"), name
+    assert (again.error is None) == (map.error is None) and (
+        map.error is None or np.array_equal(again.error, map.error)
+    )
+    assert np.array_equal(again.mesh.vertices, part.vertices) and np.array_equal(again.mesh.triangles, part.triangles)
+    assert again.statistics() == map.statistics()
+    again.write(tmp_path / "again.glb")
+    with pytest.raises(blum.FormatError, match="holds no surface map"):
+        blum.distance_field(part, resolution=8).write(tmp_path / "field.npz")
+        blum.read_surface_map(tmp_path / "field.npz")
+
+
+def test_statistics_are_by_area():
+    plate = blum.generate("box", size_x=4, size_y=3, size_z=0.5)
+    thick = blum.thickness_map(plate, texel=0.05).statistics()
+    assert thick.area == pytest.approx(31) and thick.measured_area == thick.area
+    assert thick.mean == pytest.approx((24 * 0.5 + 4 * 3 + 3 * 4) / 31)
+    assert thick.percentiles[3] == pytest.approx(0.5) and thick.percentiles[6] == pytest.approx(4)
+    near = blum.surface_distance_map(plate, blum.generate("sphere"), texel=0.1, max_distance=0.1).statistics()
+    assert 0 < near.measured_area < near.area and near.largest <= np.float32(0.1)

@@ -1,0 +1,55 @@
+// Blum: what the values of a surface map are over its area. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <tuple>
+
+#include "blum/core/describe.hpp"
+#include "blum/core/error.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
+#include "blum/surface_map/surface_deviation.hpp"
+#include "blum/surface_map/surface_distance_map.hpp"
+
+namespace blum {
+
+/// The values of a surface map by area: each texel of a triangle stands for an equal part of the triangle's area.
+/// Texels without a value (infinite) count for `area` and `measured_area` alone. These are estimates; for distances to
+/// another mesh surface_deviation() has errors that are certain.
+struct SurfaceMapStatistics {
+  static constexpr std::array<double, 7> percents = SurfaceDeviation::percents;
+
+  double mean = 0;  ///< mesh units; signed where the map is
+  double rms = 0;   ///< root of the mean square
+  double smallest = 0;
+  double largest = 0;
+  std::array<double, 7> percentiles{};  ///< so many percent of the measured area are below: see `percents`
+  double area = 0;                      ///< of the triangles that have texels, square mesh units
+  double measured_area = 0;             ///< the part of it whose texels have a value
+};
+
+template <>
+struct Description<SurfaceMapStatistics> {
+  static constexpr std::string_view name = "SurfaceMapStatistics";
+  static constexpr std::string_view doc = "The values of a surface map, by area";
+  static constexpr std::tuple members{
+      Member{"mean", &SurfaceMapStatistics::mean, "mesh units", "signed where the map is"},
+      Member{"rms", &SurfaceMapStatistics::rms, "mesh units", "root of the mean square"},
+      Member{"smallest", &SurfaceMapStatistics::smallest, "mesh units", "of the texels"},
+      Member{"largest", &SurfaceMapStatistics::largest, "mesh units", "of the texels"},
+      Member{"percentiles", &SurfaceMapStatistics::percentiles, "mesh units",
+             "1, 5, 25, 50, 75, 95 and 99 percent of the measured area are below"},
+      Member{"area", &SurfaceMapStatistics::area, "square mesh units", "of the triangles that have texels"},
+      Member{"measured_area", &SurfaceMapStatistics::measured_area, "square mesh units",
+             "the part of it whose texels have a value"},
+  };
+};
+
+/// Mean, root mean square and percentiles of a map, such as which part of a surface is thinner than a limit.
+///
+/// @param mesh  that the map is of.
+/// @return      zeros where no texel with a value is of a triangle with an area.
+/// @throws InvalidMesh where mesh and map do not fit, OutOfMemory. Cost: sorting the texels, about 0.1 us each.
+[[nodiscard]] SurfaceMapStatistics surface_map_statistics(const MeshView& mesh, const SurfaceMap& map);
+
+}  // namespace blum

@@ -1,0 +1,38 @@
+// Blum: means and percentiles of values that stand for parts of an area. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+
+namespace blum::surface {
+
+/// A sum of many numbers that keeps what each addition rounds off (Neumaier 1974), so that millions of terms cost no
+/// digits.
+class LongSum {
+ public:
+  void add(double term) {
+    const double next = sum_ + term;
+    rest_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
+    sum_ = next;
+  }
+  [[nodiscard]] double value() const { return sum_ + rest_; }
+
+ private:
+  double sum_ = 0;
+  double rest_ = 0;
+};
+
+/// @param largest  magnitude of the values, which no square of a smaller one leaves the range of numbers beside.
+/// @param sum      of the weights, > 0.
+[[nodiscard]] double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest,
+                                      double sum);
+
+/// The values below which lie so many percent of the weight.
+/// @param values    one or more, fewer than 2^32.
+/// @param sum       of the weights, > 0.
+/// @param percents  in rising order. Cost: O(values log values).
+[[nodiscard]] std::array<double, 7> percentiles(std::span<const double> values, std::span<const double> weights,
+                                                double sum, const std::array<double, 7>& percents);
+
+}  // namespace blum::surface

@@ -1,0 +1,101 @@
+// What the values of a map are by area: known means and percentiles, texels of different sizes, maps without values,
+// maps that are not of the mesh.
+#include "blum/surface_map/surface_map_statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "blum/core/error.hpp"
+#include "blum/shapes/generators.hpp"
+#include "blum/surface_map/thickness.hpp"
+
+namespace blum {
+namespace {
+
+const TriangleMesh slope{{{0, 0, 0}, {2, 0, 1}, {2, 3, 1}, {0, 3, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
+const TriangleMesh plane{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}, {}};
+
+/// Over a slope the distance from a plane runs evenly from 0 to 1.
+TEST(SurfaceMapStatistics, OfASlope) {
+  const SurfaceMapStatistics found = surface_map_statistics(slope, surface_distance_map(slope, plane, {.texel = 0.01}));
+  EXPECT_NEAR(found.area, 3 * std::sqrt(5.0), 1e-12);
+  EXPECT_NEAR(found.measured_area, found.area, 1e-12);
+  EXPECT_NEAR(found.mean, 0.5, 0.002);
+  EXPECT_NEAR(found.rms, std::sqrt(1.0 / 3), 0.002);
+  EXPECT_LT(found.smallest, 0.01);
+  EXPECT_GT(found.largest, 0.99);
+  for (std::size_t k = 0; k < found.percentiles.size(); ++k) {
+    EXPECT_NEAR(found.percentiles[k], SurfaceMapStatistics::percents[k] / 100, 0.005);
+  }
+}
+
+/// A box of 1 x 1 x 1/4 is 1/4 thick over two thirds of its area, and 1 over the rest, however it is cut.
+TEST(SurfaceMapStatistics, AreThoseOfAreasWhateverTheSizeOfTriangles) {
+  const TriangleMesh box = make_box({.size = {1, 1, 0.25}});
+  const SurfaceMapStatistics coarse = surface_map_statistics(box, thickness_map(box, {.texel = 0.02}));
+  EXPECT_NEAR(coarse.area, 3, 1e-12);
+  EXPECT_NEAR(coarse.mean, (2 * 0.25 + 1) / 3, 1e-6);
+  EXPECT_NEAR(coarse.percentiles[3], 0.25, 1e-6);
+  EXPECT_NEAR(coarse.percentiles[4], 1, 1e-6);
+  // One triangle in three, and other texels.
+  TriangleMesh split = box;
+  const Triangle t = split.triangles[0];
+  const auto middle = static_cast<std::uint32_t>(split.vertices.size());
+  split.vertices.push_back((box.vertices[t[0]] + box.vertices[t[1]] + box.vertices[t[2]]) / 3.0);
+  split.triangles[0] = {t[0], t[1], middle};
+  split.triangles.push_back({t[1], t[2], middle});
+  split.triangles.push_back({t[2], t[0], middle});
+  const SurfaceMapStatistics other = surface_map_statistics(split, thickness_map(split, {.texel = 0.01}));
+  EXPECT_NEAR(other.area, coarse.area, 1e-12);
+  EXPECT_NEAR(other.mean, coarse.mean, 1e-6);
+  EXPECT_NEAR(other.rms, coarse.rms, 1e-6);
+}
+
+TEST(SurfaceMapStatistics, CountOnlyWhatHasAValue) {
+  const SurfaceMap map = surface_distance_map(slope, plane, {.texel = 0.02, .max_distance = 0.5});
+  const SurfaceMapStatistics found = surface_map_statistics(slope, map);
+  EXPECT_NEAR(found.measured_area / found.area, 0.5, 0.02);
+  EXPECT_NEAR(found.mean, 0.25, 0.01);
+  EXPECT_LE(found.largest, 0.5F);
+  const TriangleMesh far{{{0, 0, 100}}, {}, {}, {0}};
+  const SurfaceMapStatistics none =
+      surface_map_statistics(slope, surface_distance_map(slope, far, {.texel = 0.1, .max_distance = 1}));
+  EXPECT_EQ(none.measured_area, 0);
+  EXPECT_EQ(none.mean, 0);
+  EXPECT_NEAR(none.area, 3 * std::sqrt(5.0), 1e-12);
+}
+
+/// Neither areas nor squares leave the range of numbers where the values are within it.
+TEST(SurfaceMapStatistics, OfHugeAndTinyMeshes) {
+  for (const double size : {1e-30, 1e30}) {
+    TriangleMesh mesh = slope;
+    TriangleMesh other = plane;
+    for (Vec3d& v : mesh.vertices) v *= size;
+    for (Vec3d& v : other.vertices) v *= size;
+    const SurfaceMapStatistics found =
+        surface_map_statistics(mesh, surface_distance_map(mesh, other, {.texel = 0.05 * size}));
+    EXPECT_NEAR(found.mean / size, 0.5, 0.01);
+    EXPECT_NEAR(found.rms / size, std::sqrt(1.0 / 3), 0.01);
+    EXPECT_NEAR(found.area / size / size, 3 * std::sqrt(5.0), 1e-9);
+  }
+}
+
+TEST(SurfaceMapStatistics, RefuseMapsOfOtherMeshes) {
+  SurfaceMap map = surface_distance_map(slope, plane, {.texel = 0.5});
+  EXPECT_THROW(static_cast<void>(surface_map_statistics(make_box(), map)), InvalidMesh);
+  auto atlas = std::make_shared<SurfaceAtlas>(surface_atlas(slope, 0.5));
+  for (TriangleId& triangle : atlas->triangle) {
+    if (triangle.has_value()) triangle = TriangleId(7);
+  }
+  map.atlas = atlas;
+  EXPECT_THROW(static_cast<void>(surface_map_statistics(slope, map)), InvalidMesh);
+  map.atlas = nullptr;
+  EXPECT_THROW(static_cast<void>(surface_map_statistics(slope, map)), InvalidMesh);
+}
+
+}  // namespace
+}  // namespace blum
