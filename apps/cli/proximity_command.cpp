@@ -23,6 +23,8 @@ constexpr const char* examples = R"(Examples:
                                          all pairs of triangles that meet
   blum proximity a.ply b.ply --query collide --within 0.01 -o pairs.npz
                                          all pairs no further apart than 0.01
+  blum proximity a.ply b.ply c.ply --query signed
+                                         one number for each two solids: how far apart, or less how deep in each other
   blum proximity a.ply b.ply --query penetration --json -
                                          what they have in common, part by part: depth, direction, area, volume, curves
   blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.npz
@@ -38,15 +40,16 @@ struct Query {
   const char* name;
   void (*run)(const ProximityArguments&);
 };
-constexpr std::array queries{Query{"separation", run_scene_query}, Query{"nbody", run_scene_query},
-                             Query{"collide", run_scene_query}, Query{"penetration", run_scene_query},
-                             Query{"continuous", run_continuous_query}};
+constexpr std::array queries{Query{"separation", run_scene_query},  Query{"signed", run_scene_query},
+                             Query{"nbody", run_scene_query},       Query{"collide", run_scene_query},
+                             Query{"penetration", run_scene_query}, Query{"continuous", run_continuous_query}};
 
 void run(const ProximityArguments& a) {
   const auto* const query =
       std::find_if(queries.begin(), queries.end(), [&](const Query& one) { return a.query == one.name; });
   if (query == queries.end()) {
-    throw UsageError("--query is '" + a.query + "', but must be separation, nbody, collide, penetration or continuous");
+    throw UsageError("--query is '" + a.query +
+                     "', but must be separation, signed, nbody, collide, penetration or continuous");
   }
   if (!a.ends.empty() && a.ends.front().starts_with('-')) {
     throw UsageError("--to names no file: '" + a.ends.front() + "' follows it; name one for each SCENE");
@@ -54,6 +57,7 @@ void run(const ProximityArguments& a) {
   if (a.skip_changed && !(a.frames && a.query == "continuous")) {
     throw UsageError("--skip-changed is for --frames with --query continuous alone");
   }
+  if (a.frames && a.query == "signed") throw UsageError("--query signed is for several objects, not for --frames");
   if (!a.ends.empty() && a.query != "continuous") throw UsageError("--to is for --query continuous alone");
   (a.frames ? run_frames : query->run)(a);
 }
@@ -70,7 +74,8 @@ void add_proximity_command(const CommandLine& line) {
       ->required();
   command
       ->add_option("--query", a->query,
-                   "separation: the closest pair of each two objects (default); nbody: for each primitive (triangle, "
+                   "separation: the closest pair of each two objects (default); signed: the same of solids, where they "
+                   "lie in each other less how deep; nbody: for each primitive (triangle, "
                    "segment or point) the closest one; collide: all pairs that meet; penetration: what solids have in "
                    "common, and how deep they lie in each other; continuous: what of a mesh, or with --to of objects, "
                    "meets between two frames")
@@ -100,8 +105,8 @@ void add_proximity_command(const CommandLine& line) {
   add_text_option(*command, "--limit", a->limit, "N",
                   "Write at most N pairs, of --frames of each frame; all are counted (default: all)");
   add_weld_option(*command, a->weld);
-  a->culling.add_to(*command, "separation, nbody, collide: ");
-  a->penetration.add_to(*command, "penetration: ");
+  a->culling.add_to(*command, "separation, signed, nbody, collide: ");
+  a->penetration.add_to(*command, "penetration, signed: ");
   a->impact.add_to(*command, "continuous: ");
   add_threads_option(*command, a->threads);
   add_report_options(*command, a->report);

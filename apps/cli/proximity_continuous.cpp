@@ -134,7 +134,7 @@ void check_continuous_options(const ProximityArguments& a) {
     throw UsageError(names.front() + " is not for --query continuous");
   }
   if (const auto names = a.penetration.given(); !names.empty()) {
-    throw UsageError(names.front() + " is for --query penetration alone");
+    throw UsageError(names.front() + " is for --query penetration and signed alone");
   }
   if (a.output) check_extension("--output", *a.output, collision_extensions());
 }

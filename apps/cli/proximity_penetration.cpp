@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +24,13 @@ void add_phases(const std::vector<PhaseTime>& from, std::vector<PhaseTime>& to) 
       at->seconds += one.seconds;
     }
   }
+}
+
+bool overlap(const Box3& a, const Box3& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (a.lower[axis] > b.upper[axis] || b.lower[axis] > a.upper[axis]) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -52,6 +61,22 @@ PrimitivePair pair_of(const ScenePenetration& penetration) {
   if (!part.is_first_deep) {
     std::swap(out.first, out.second);
     std::swap(out.between.first_point, out.between.second_point);
+  }
+  return out;
+}
+
+ProximityPairs signed_separations(const ProximityScene& scene, std::span<const MeshView> meshes,
+                                  const PenetrationOptions& options, const Context& context) {
+  std::vector<Box3> boxes;
+  for (const MeshView& mesh : meshes) boxes.push_back(bounds(mesh));
+  ProximityPairs out = scene.separation(std::numeric_limits<double>::infinity(), context);
+  for (PrimitivePair& pair : out.pairs) {
+    const ObjectId a = pair.first_object;
+    const ObjectId b = pair.second_object;
+    if (!overlap(boxes[a.value], boxes[b.value])) continue;
+    const Penetrations found = scene.penetration(a, b, options, context);
+    if (!found.parts.empty()) pair = pair_of({a, b, found.parts.front()});
+    add_phases(found.phases, out.report.phases);
   }
   return out;
 }

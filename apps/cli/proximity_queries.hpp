@@ -32,8 +32,8 @@ struct ProximityArguments {
   std::optional<std::string> output;
   std::optional<std::string> threads;
   OptionTexts<ImpactOptions> impact;            ///< of continuous collisions alone
-  OptionTexts<SceneOptions> culling;            ///< of separation, nbody and collide
-  OptionTexts<PenetrationOptions> penetration;  ///< of penetration alone
+  OptionTexts<SceneOptions> culling;            ///< of separation, signed, nbody and collide
+  OptionTexts<PenetrationOptions> penetration;  ///< of penetration and signed alone
   ReportOptions report;
 };
 
@@ -59,7 +59,7 @@ struct MovingMesh {
 /// What is asked of options by --query continuous, whatever moves. @throws UsageError.
 void check_continuous_options(const ProximityArguments& a);
 
-/// --query separation, nbody, collide or penetration: each file is an object.
+/// --query separation, signed, nbody, collide or penetration: each file is an object.
 void run_scene_query(const ProximityArguments& a);
 
 /// Any query with --frames: the files are those of one object, one after the other.
@@ -79,6 +79,11 @@ struct ScenePenetration {
 
 /// A part as a pair: of the points that are told of it, with the depth as a negative distance.
 [[nodiscard]] PrimitivePair pair_of(const ScenePenetration& penetration);
+
+/// For each two objects (and with self those that are asked for themselves) the closest pair or, of solids that lie in
+/// each other, the deepest part as pair_of() tells it. @param meshes  of the objects. @throws as ProximityScene.
+[[nodiscard]] ProximityPairs signed_separations(const ProximityScene& scene, std::span<const MeshView> meshes,
+                                                const PenetrationOptions& options, const Context& context);
 
 /// What files of pairs tell of parts beside their pairs: depth_bound, direction, area, volume, deep_object.
 [[nodiscard]] Columns columns_of(std::span<const ScenePenetration> penetrations);

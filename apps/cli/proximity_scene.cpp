@@ -37,10 +37,11 @@ void check(const ProximityArguments& a) {
   if (const auto names = a.impact.given(); !names.empty()) {
     throw UsageError(names.front() + " is for --query continuous alone");
   }
-  if (const auto names = a.penetration.given(); !is_penetration && !names.empty()) {
-    throw UsageError(names.front() + " is for --query penetration alone");
+  const bool is_signed = a.query == "signed";
+  if (const auto names = a.penetration.given(); !is_penetration && !is_signed && !names.empty()) {
+    throw UsageError(names.front() + " is for --query penetration and signed alone");
   }
-  if (is_penetration && a.within) throw UsageError("--within is not for --query penetration");
+  if ((is_penetration || is_signed) && a.within) throw UsageError("--within is not for --query " + a.query);
   if (const auto names = a.culling.given(); is_penetration && !names.empty()) {
     throw UsageError(names.front() + " is not for --query penetration");
   }
@@ -104,6 +105,14 @@ void ask_penetration(const ProximityScene& scene, const ProximityArguments& a, c
   }
   answer.found.report.object_pairs = scene.size() * (scene.size() - 1) / 2 + (a.self ? scene.size() : 0);
   for (const ScenePenetration& part : answer.parts) answer.found.pairs.push_back(pair_of(part));
+}
+
+void ask_signed(const ProximityScene& scene, const ProximityArguments& a, const Context& context, Answer& answer) {
+  try {
+    answer.found = signed_separations(scene, answer.views(), a.penetration.read(), context);
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh(with_names(error.what(), a.scene));
+  }
 }
 
 ProximityPairs ask(const ProximityScene& scene, const std::string& query, std::optional<double> within,
@@ -182,6 +191,10 @@ double largest(const std::vector<TriangleMesh>& meshes) {
 
 std::string distance_text(const PrimitivePair& pair, double size) {
   const TriangleDistance& between = pair.between;
+  if (between.distance < 0) {
+    return rounded_text(between.distance) + ": they overlap, from " + point_text(between.first_point, size) + " to " +
+           point_text(between.second_point, size);
+  }
   if (between.distance == 0) return "they meet, near " + point_text(between.first_point, size);
   return rounded_text(between.distance) + ", from " + point_text(between.first_point, size) + " to " +
          point_text(between.second_point, size);
@@ -249,7 +262,7 @@ std::string text_of(const ProximityArguments& a, const Answer& answer) {
   table.add("pairs", pairs_text(a, answer) + (a.output ? limit_text(answer.found.pairs.size(), answer.limit) : ""));
   if (a.query == "penetration") {
     add_penetrations(answer, table);
-  } else if (a.query == "separation") {
+  } else if (a.query == "separation" || a.query == "signed") {
     add_separations(answer, table);
   } else if (const PrimitivePair* closest = answer.closest(); closest != nullptr) {
     table.add("closest", object_text(answer, *closest) + ": " + distance_text(*closest, largest(answer.meshes)));
@@ -297,6 +310,8 @@ void run_scene_query(const ProximityArguments& a) {
   phases.push_back({"build", watch.lap()});
   if (a.query == "penetration") {
     ask_penetration(scene, a, context, answer);
+  } else if (a.query == "signed") {
+    ask_signed(scene, a, context, answer);
   } else {
     answer.found = ask(scene, a.query, answer.within, context);
   }

@@ -82,6 +82,30 @@ def test_says_what_was_wrong_with_solids(folder, tmp_path):
     assert "--depth-tolerance" in run("proximity", *two, "--depth-tolerance", "0.1", status=2)[1]
 
 
+def test_signed_is_one_number_for_each_two_solids(folder, tmp_path):
+    ball = blum.read_mesh(folder / "ball.ply")
+    blum.Mesh(ball.vertices + [5, 0, 0], ball.triangles).write(tmp_path / "far.ply")
+    blum.Mesh(ball.vertices * 0.1, ball.triangles).write(tmp_path / "swallowed.ply")
+    files = [folder / "box.ply", folder / "ball.ply", tmp_path / "far.ply", tmp_path / "swallowed.ply"]
+    out = tmp_path / "pairs.npz"
+    answer = run_json("proximity", *files, "--query", "signed", "-o", out)
+    scene = blum.ProximityScene()
+    for file in files:
+        scene.add(blum.read_mesh(file))
+    with np.load(out) as held:
+        assert held["object"].tolist() == [[a, b] for a in range(4) for b in range(a + 1, 4)]
+        for (a, b), distance, (p, q) in zip(held["object"], held["distance"], held["point"], strict=True):
+            assert distance == scene.signed_separation(int(a), int(b)), (a, b)
+            assert np.isclose(np.linalg.norm(p - q), abs(distance))
+        overlapping = {tuple(pair) for pair in held["object"][held["distance"] < 0].tolist()}
+    assert overlapping == {(0, 1), (0, 3)}
+    assert answer["min_distance"] == answer["closest"]["distance"] < 0 and answer["pairs"] == 6
+    text, _ = run("proximity", *files, "--query", "signed")
+    assert text.count("they overlap, from") == 2
+    for more in (["--within", 1], ["--frames", "--self"], ["--to", *files]):
+        assert more[0] in run("proximity", *files, "--query", "signed", *more, status=2)[1]
+
+
 @pytest.mark.parametrize("query", ["separation", "nbody", "collide", "continuous", "penetration"])
 def test_tells_of_each_frame_for_the_viewer(folder, query):
     out = folder / f"{query}.json"

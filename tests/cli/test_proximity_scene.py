@@ -193,7 +193,7 @@ def test_what_makes_no_sense_is_refused(objects, tmp_path):
     for arguments, status, message in [
         ([torus], 2, "give --self, or the files of more objects"),
         ([torus, "--query", "nbody", "-o", out], 2, "give --self"),
-        ([torus, moved, "--query", "near"], 2, "must be separation, nbody, collide, penetration or continuous"),
+        ([torus, moved, "--query", "near"], 2, "must be separation, signed, nbody, collide, penetration or continuous"),
         ([torus, moved, "--within", "-0.5"], 2, "--within '-0.5': must not be negative"),
         ([torus, moved, "--within", "nan"], 2, "--within 'nan'"),
         ([torus, moved, "--within", "inf"], 2, "--within 'inf'"),
