@@ -58,9 +58,9 @@ double number_in(const std::string& option, const std::string& text, const Range
 }
 
 std::int64_t integer_in(const std::string& option, const std::string& text, const Range& range) {
-  constexpr double widest = 1e9;
-  return parse_integer(option, text, static_cast<std::int64_t>(std::max(range.least, -widest)),
-                       static_cast<std::int64_t>(std::min(range.most, widest)));
+  constexpr double widest = 1e9;  // where nothing else is said
+  return parse_integer(option, text, static_cast<std::int64_t>(std::isfinite(range.least) ? range.least : -widest),
+                       static_cast<std::int64_t>(std::isfinite(range.most) ? range.most : widest));
 }
 
 double length_in(const std::string& option, const std::string& text, const Range& range, std::optional<double> step) {

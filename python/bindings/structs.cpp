@@ -41,8 +41,10 @@ double number_from(nb::handle value, const std::string& name) {
   return nb::cast<double>(nb::module_::import_("blum._arguments").attr("number")(value, name));
 }
 
-std::int64_t integer_from(nb::handle value, const std::string& name, int bits) {
-  return nb::cast<std::int64_t>(nb::module_::import_("blum._arguments").attr("integer")(value, name, bits));
+std::int64_t integer_from(nb::handle value, const std::string& name, int bits, bool is_unsigned) {
+  // Of 64 bits without a sign those of 63 are taken, which are enough for seeds and counts.
+  const char* kind = is_unsigned ? "natural" : "integer";
+  return nb::cast<std::int64_t>(nb::module_::import_("blum._arguments").attr(kind)(value, name, bits));
 }
 
 bool truth_from(nb::handle value, const std::string& name) {

@@ -39,7 +39,7 @@ namespace nb = nanobind;
 [[nodiscard]] GridSpec grid_from(nb::handle grid, const std::string& name);
 /// Numbers as blum._arguments reads them, which raises errors that name them.
 [[nodiscard]] double number_from(nb::handle value, const std::string& name);
-[[nodiscard]] std::int64_t integer_from(nb::handle value, const std::string& name, int bits);
+[[nodiscard]] std::int64_t integer_from(nb::handle value, const std::string& name, int bits, bool is_unsigned);
 [[nodiscard]] bool truth_from(nb::handle value, const std::string& name);
 /// A word; what is no string stands as Python shows it.
 [[nodiscard]] std::string word_from(nb::handle value);
@@ -152,7 +152,7 @@ template <class T>
   } else if constexpr (std::same_as<T, bool>) {
     return truth_from(value, name);
   } else if constexpr (std::integral<T>) {
-    return static_cast<T>(integer_from(value, name, 8 * sizeof(T)));
+    return static_cast<T>(integer_from(value, name, 8 * sizeof(T), std::unsigned_integral<T>));
   } else if constexpr (std::floating_point<T>) {
     return static_cast<T>(number_from(value, name));
   } else if constexpr (std::same_as<T, GridSpec>) {

@@ -175,6 +175,13 @@ def integer(value: Any, name: str, bits: int = 32) -> int:
     return int(value)
 
 
+def natural(value: Any, name: str, bits: int = 32) -> int:
+    """An integer of 0 or more that fits the library's bits, of 64 bits at most 2^63 - 1."""
+    if isinstance(value, (int, np.integer)) and int(value) < 0 and not isinstance(value, bool):
+        raise InvalidOption(f"{name} is {int(value)}, but must be 0 or more")
+    return integer(value, name, min(bits + 1, 64))
+
+
 def truth(value: Any, name: str) -> bool:
     """True or False of Python or NumPy: nothing else, as the word 'no' would count as true."""
     if not isinstance(value, (bool, np.bool_)):

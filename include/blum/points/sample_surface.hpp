@@ -30,7 +30,7 @@ struct Description<SampleOptions> {
   static constexpr std::string_view name = "SampleOptions";
   static constexpr std::string_view doc = "How points of a surface are chosen";
   static constexpr std::tuple members{
-      Member{"seed", &SampleOptions::seed, "", "another number gives other points"},
+      Member{"seed", &SampleOptions::seed, "", "another number gives other points", Range::between(0, 0x1p62)},
       Member{"blue_noise", &SampleOptions::blue_noise, "",
              "points keep their distance from each other; takes 30 times as long"},
   };
@@ -75,7 +75,7 @@ struct Description<NearSampleOptions> {
       Member{"in_box", &NearSampleOptions::in_box, "part of all",
              "points that are uniform in the box, made a tenth larger, instead of near the surface",
              Range::between(0, 1)},
-      Member{"seed", &NearSampleOptions::seed, "", "another number gives other points"},
+      Member{"seed", &NearSampleOptions::seed, "", "another number gives other points", Range::between(0, 0x1p62)},
       Member{"sign", &NearSampleOptions::sign, "", "how signs are found, as for closest points"},
   };
 };
