@@ -73,12 +73,8 @@ void add_side(TextTable& table, const std::string& label, const Side& side) {
   const auto with_error = [](double value, double error) { return rounded_text(value) + " +- " + rounded_text(error); };
   table.add("", "mean " + with_error(by_area.mean, by_area.mean_error) + ", rms " +
                     with_error(by_area.rms, by_area.rms_error));
-  std::string percents = "of the area";
-  for (std::size_t k = 0; k < by_area.percentiles.size(); ++k) {
-    percents += (k == 0 ? " " : ", ") + rounded_text(SurfaceDeviation::percents[k]) + " % below " +
-                rounded_text(by_area.percentiles[k]);
-  }
-  table.add("", percents + " (+- " + rounded_text(by_area.percentile_error) + ")");
+  table.add("", "of the area " + percentiles_text(SurfaceDeviation::percents, by_area.percentiles) + " (+- " +
+                    rounded_text(by_area.percentile_error) + ")");
 }
 
 /// The witnesses as a segment for each direction.

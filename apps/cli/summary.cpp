@@ -40,6 +40,14 @@ std::string plural(std::uint64_t count, std::string_view one, std::string_view m
   return count_text(count) + " " + std::string(count == 1 ? one : many);
 }
 
+std::string percentiles_text(std::span<const double> percents, std::span<const double> values) {
+  std::string out;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    out += (k == 0 ? "" : ", ") + rounded_text(percents[k]) + " % below " + rounded_text(values[k]);
+  }
+  return out;
+}
+
 std::string TextTable::text() const {
   std::size_t width = 0;
   for (const auto& [label, content] : rows_) width = std::max(width, label.size());

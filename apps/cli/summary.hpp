@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,8 @@ class Stopwatch {
 [[nodiscard]] std::string size_text(const GridSpec& grid);
 /// "1 edge", "2 edges".
 [[nodiscard]] std::string plural(std::uint64_t count, std::string_view one, std::string_view many);
+/// "1 % below 0.2, 5 % below 0.3, ...".
+[[nodiscard]] std::string percentiles_text(std::span<const double> percents, std::span<const double> values);
 
 /// How long the phases of a run took; those of one name are added.
 struct PhaseSummary {

@@ -181,16 +181,6 @@ std::vector<std::string> thickness_warnings(const MeshView& solid) {
   return {};
 }
 
-/// "1 % below 0.2, 5 % below 0.3, ...".
-std::string percentiles_text(const SurfaceMapStatistics& by_area) {
-  std::string out;
-  for (std::size_t k = 0; k < by_area.percentiles.size(); ++k) {
-    out += (k == 0 ? "" : ", ") + rounded_text(SurfaceMapStatistics::percents[k]) + " % below " +
-           rounded_text(by_area.percentiles[k]);
-  }
-  return out;
-}
-
 void run(const Arguments& a) {
   const Request asked = read(a);
   const std::optional<double> weld = parse_weld(a.weld);
@@ -265,7 +255,7 @@ void run(const Arguments& a) {
   if (!facts.largest.is_null()) table.add("largest", place_text(facts.largest));
   if (by_area.measured_area > 0) {
     table.add("mean", rounded_text(by_area.mean) + ", rms " + rounded_text(by_area.rms) + ", by area");
-    table.add("of the area", percentiles_text(by_area));
+    table.add("of the area", percentiles_text(SurfaceMapStatistics::percents, by_area.percentiles));
   }
   if (map.sign_rule != SignRule::none) {
     table.add("sign", std::string(to_string(map.sign_rule)) + ": " + map.sign_reason);
