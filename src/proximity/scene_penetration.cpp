@@ -13,8 +13,8 @@
 #include "blum/geometry/resolve_crossings.hpp"
 #include "blum/geometry/self_intersections.hpp"
 #include "blum/geometry/sites.hpp"
+#include "blum/geometry/topology.hpp"
 #include "blum/geometry/weld.hpp"
-#include "blum/geometry/winding_number.hpp"
 #include "proximity/deepest_point.hpp"
 #include "proximity/overlap.hpp"
 
@@ -90,7 +90,13 @@ void check_is_closed(const MeshView& surface, ObjectId id) {
                     "(oriented_mesh() does), or weld its vertices within a tolerance");
 }
 
-/// Adds the surface of a solid; without what lies in it twice, where it crosses itself.
+/// Whether a surface winds once around all points of its solid, and not around others: nothing crosses or touches, and
+/// shells in each other face in turns.
+bool winds_once(const MeshView& surface, const Context& context) {
+  return orientation(surface, SiteTable(surface)).outward && !SelfIntersectionSearch().finds_any(surface, context);
+}
+
+/// Adds the surface of a solid; without what lies in it twice, so that what two surfaces wind around twice is in both.
 void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Context& context, Surfaces& out) {
   TriangleMesh surface{object.positions(), object.mesh().triangles};
   if (surface.triangles.empty()) throw InvalidMesh(name_of(id) + " has no triangles, so nothing can lie in it");
@@ -99,7 +105,7 @@ void add_surface(const SceneObject& object, ObjectId id, bool is_self, const Con
   }
   std::vector<std::uint32_t> triangle(surface.triangles.size());
   for (std::uint32_t t = 0; t < triangle.size(); ++t) triangle[t] = t;
-  if (!is_self && SelfIntersectionSearch().finds_any(surface, context)) {
+  if (!is_self && !winds_once(surface, context)) {
     ResolvedMesh resolved = resolve_crossings(surface, {}, context);
     if (!resolved.is_resolved()) {
       check_is_closed(surface, id);
@@ -207,6 +213,12 @@ class Body {
   std::vector<std::uint32_t> triangles_;
 };
 
+/// Not of length 1.
+Vec3d normal_of(const TriangleMesh& mesh, std::uint32_t triangle) {
+  const auto [a, b, c] = triangle_corners(mesh, triangle);
+  return cross(b - a, c - a);
+}
+
 /// Whether a vector comes before its opposite.
 bool is_backward(const Vec3d& v) {
   if (v.x != 0) return v.x < 0;
@@ -216,43 +228,35 @@ bool is_backward(const Vec3d& v) {
 
 /// Where both surfaces are one, each part of the border could be either's; solids that are the same would all be the
 /// first one's surface, with nothing of the other to be deep in. There the border is shared out as if the first solid
-/// were moved by next to nothing along x, and by still less along y and z: what faces backward becomes the first's.
-void share_out_common_faces(const Surfaces& surfaces, const std::map<std::uint32_t, std::vector<std::uint32_t>>& bodies,
-                            Overlap& overlap) {
-  std::array<TriangleMesh, 2> mesh;
-  std::array<SiteTable, 2> sites;
-  std::array<std::optional<Bvh>, 2> bvh;
-  const auto first = surfaces.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(surfaces.of_first);
-  for (std::size_t k = 0; k < 2; ++k) mesh[k].vertices = surfaces.mesh.vertices;
-  mesh[0].triangles.assign(surfaces.mesh.triangles.begin(), first);
-  mesh[1].triangles.assign(first, surfaces.mesh.triangles.end());
+/// were moved by next to nothing along x, and by still less along y and z: what faces backward becomes the first's. Of
+/// one object that meets itself, the first is what comes first in it.
+/// @return  the triangles that have got some of the border.
+std::set<std::uint32_t> share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& overlap) {
+  std::set<std::uint32_t> out;
+  if (overlap.source.empty()) return out;
+  const Bvh bvh(surfaces.mesh, SiteTable(surfaces.mesh));
   const double rounding = 1e-14 * bounds(surfaces.mesh).largest_coordinate();
-  for (const auto& [body, triangles] : bodies) {
-    for (const std::uint32_t t : triangles) {
-      const std::uint32_t source = overlap.source[t];
-      const std::size_t other = surfaces.is_of_first(source) ? 1 : 0;
-      const auto [a, b, c] = triangle_corners(surfaces.mesh, source);
-      const Vec3d normal = cross(b - a, c - a);
-      if (is_backward(normal) == (other == 1)) continue;
-      if (!bvh[other]) {
-        sites[other] = SiteTable(mesh[other]);
-        bvh[other].emplace(mesh[other], sites[other]);
-      }
-      const auto [p, q, r] = triangle_corners(overlap.mesh, t);
-      const std::optional<NearestSite> near = bvh[other]->nearest((p + q + r) / 3, rounding);
-      if (!near || sites[other].site(near->site).kind != SiteKind::face) continue;
-      const std::uint32_t twin = sites[other].triangle(near->site).value;
-      const auto [u, v, w] = triangle_corners(mesh[other], twin);
-      const Vec3d twin_normal = cross(v - u, w - u);
-      const double along = dot(normal, twin_normal);
-      if (!(along > 0.999999 * length(normal) * length(twin_normal))) continue;
-      overlap.source[t] = twin + static_cast<std::uint32_t>(other == 1 ? surfaces.of_first : 0);
-    }
+  for (std::uint32_t t = 0; t < overlap.source.size(); ++t) {
+    const std::uint32_t source = overlap.source[t];
+    const Vec3d normal = normal_of(surfaces.mesh, source);
+    const bool becomes_first = is_backward(normal);
+    const auto may_have_it = [&](std::uint32_t other) {
+      if (becomes_first ? other >= source : other <= source) return false;
+      if (!is_self && surfaces.is_of_first(other) == surfaces.is_of_first(source)) return false;
+      const Vec3d its_normal = normal_of(surfaces.mesh, other);
+      return dot(normal, its_normal) > 0.999999 * length(normal) * length(its_normal);
+    };
+    const auto [p, q, r] = triangle_corners(overlap.mesh, t);
+    const std::optional<NearestPrimitive> twin = bvh.nearest_wanted((p + q + r) / 3, may_have_it, rounding);
+    if (twin) out.insert(overlap.source[t] = twin->primitive);
   }
+  return out;
 }
 
 /// Which triangles of an overlap belong together: those of one object, or of one part of an object that meets itself.
-std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self) {
+/// @param shared_out  triangles that coincide with others of the object, and have some of what was these others'.
+std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self,
+                                     const std::set<std::uint32_t>& shared_out) {
   if (!is_self) {
     std::vector<std::uint32_t> out;
     for (const std::uint32_t s : overlap.source) out.push_back(surfaces.is_of_first(s) ? 0 : 1);
@@ -260,6 +264,7 @@ std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& ov
   }
   const std::vector<std::uint32_t> cluster = weld_clusters(surfaces.mesh.vertices);
   return patches_of(overlap, [&](std::uint32_t a, std::uint32_t b) {
+    if (shared_out.contains(a) != shared_out.contains(b)) return false;
     for (const std::uint32_t v : surfaces.mesh.triangles[a]) {
       for (const std::uint32_t w : surfaces.mesh.triangles[b]) {
         if (cluster[v] == cluster[w]) return true;
@@ -267,30 +272,6 @@ std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& ov
     }
     return false;
   });
-}
-
-/// Takes away parts that lie twice in one object alone, one shell in another.
-void keep_common(const Surfaces& surfaces, const Overlap& overlap, const Context& context,
-                 std::map<std::uint32_t, std::vector<std::uint32_t>>& bodies) {
-  std::array<std::optional<WindingNumber>, 2> winding;
-  for (auto at = bodies.begin(); at != bodies.end();) {
-    const std::vector<std::uint32_t>& triangles = at->second;
-    const bool is_first = surfaces.is_of_first(overlap.source[triangles.front()]);
-    const auto is_other = [&](std::uint32_t t) { return surfaces.is_of_first(overlap.source[t]) != is_first; };
-    bool is_common = std::any_of(triangles.begin(), triangles.end(), is_other);
-    if (!is_common) {
-      std::optional<WindingNumber>& other = winding[is_first ? 1 : 0];
-      if (!other) {
-        const std::span<const Triangle> all = surfaces.mesh.triangles;
-        other.emplace(
-            MeshView{surfaces.mesh.vertices, is_first ? all.subspan(surfaces.of_first) : all.first(surfaces.of_first)},
-            context);
-      }
-      const auto [a, b, c] = triangle_corners(overlap.mesh, triangles.front());
-      is_common = other->is_inside((a + b + c) / 3);
-    }
-    at = is_common ? std::next(at) : bodies.erase(at);
-  }
 }
 
 }  // namespace
@@ -311,17 +292,13 @@ Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second,
     check_is_closed(a.mesh(), first);
     check_is_closed(b.mesh(), second);
     throw InvalidMesh("what " + (is_self ? "parts of " + name_of(first) : name_of(first) + " and " + name_of(second)) +
-                      " have in common cannot be told: " + overlap.obstacle +
-                      "; penetration is that of closed surfaces that face outwards");
+                      " have in common cannot be told: " + overlap.obstacle);
   }
   timer.lap("overlap");
   std::map<std::uint32_t, std::vector<std::uint32_t>> bodies;
   for (std::uint32_t t = 0; t < overlap.body_of.size(); ++t) bodies[overlap.body_of[t]].push_back(t);
-  if (!is_self) {
-    keep_common(surfaces, overlap, context, bodies);
-    share_out_common_faces(surfaces, bodies, overlap);
-  }
-  const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self);
+  const std::set<std::uint32_t> shared_out = share_out_common_faces(surfaces, is_self, overlap);
+  const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self, shared_out);
   for (const auto& [body, triangles] : bodies) {
     throw_if_cancelled(context);
     out.parts.push_back(Body(surfaces, overlap, labels, triangles).measure(options.depth_tolerance, context));

@@ -19,6 +19,10 @@ namespace blum::detail {
 namespace {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
+/// Thousands of times what a crossing's place is off by, in a mesh of size 1.
+constexpr double margin = 1e-12;
+/// Rays pass through the insides of facets that are at least so high.
+constexpr double least_height = 100 * margin;
 
 /// A facet at an edge.
 struct Side {
@@ -58,12 +62,12 @@ void for_each_edge(std::span<const Side> sides, const Use& use) {
 
 class Windings {
  public:
-  Windings(const CrossedMesh& mesh, const CutMesh& cut, int least_winding, const Context& context)
+  Windings(const CrossedMesh& mesh, const CutMesh& cut, const WindingRule& rule, const Context& context)
       : mesh_(mesh),
         space_(cut.space),
         facets_(cut.facets),
         sheet_of_(cut.sheet_of),
-        least_(least_winding),
+        rule_(rule),
         context_(context),
         sides_(sorted_sides(cut.facets)),
         patches_(cut.facets.size()) {}
@@ -139,9 +143,10 @@ class Windings {
     for (std::uint32_t p = 0; p < facets_.size(); ++p) {
       if (largest[p].empty()) continue;
       throw_if_cancelled(context_);
-      const auto [facet, winding] = winding_by_ray(largest[p]);
-      std::vector<std::uint32_t> next{patches_.find(facet)};
-      front_[next.front()] = winding;
+      const auto known = winding_by_ray(largest[p]);
+      if (!known) continue;
+      std::vector<std::uint32_t> next{patches_.find(known->first)};
+      front_[next.front()] = known->second;
       while (!next.empty()) {
         const std::uint32_t own = next.back();
         next.pop_back();
@@ -185,31 +190,41 @@ class Windings {
     if (list.size() > most) list.pop_back();
   }
 
-  std::pair<std::uint32_t, std::int64_t> winding_by_ray(const std::vector<std::uint32_t>& candidates) {
+  /// A facet of a part, and the winding number in front of it; nullopt of thin parts that are left out.
+  /// @param candidates  the part's largest facets.
+  std::optional<std::pair<std::uint32_t, std::int64_t>> winding_by_ray(const std::vector<std::uint32_t>& candidates) {
     constexpr int attempts = 32;
     for (const std::uint32_t f : candidates) {
       Random random(f);
       for (int k = 0; k < attempts; ++k) {
-        if (const auto winding = front_along_ray(f, random)) return {f, *winding};
+        if (const auto winding = front_along_ray(f, random)) return std::pair(f, *winding);
       }
     }
+    const auto is_thin = [&](std::uint32_t f) { return height(f) <= least_height; };
+    if (rule_.leaves_out_thin_parts && std::all_of(candidates.begin(), candidates.end(), is_thin)) return std::nullopt;
     throw Unresolved("a part of it is too small to tell whether it lies inside of others");
+  }
+
+  /// Above its longest side.
+  [[nodiscard]] double height(std::uint32_t f) const {
+    const auto& [a, b, c] = facets_[f].corners;
+    const Vec3d u = space_.rounded(b) - space_.rounded(a);
+    const Vec3d v = space_.rounded(c) - space_.rounded(a);
+    const double longest = std::max({length(u), length(v), length(u - v)});
+    return longest > 0 ? length(cross(u, v)) / longest : 0;
   }
 
   /// The winding number in front of a facet from what a ray crosses that passes through it; nullopt where rounding
   /// could change it.
   std::optional<std::int64_t> front_along_ray(std::uint32_t f, Random& random) {
     if (!bvh_) bvh_.emplace(MeshView{mesh_.vertices, mesh_.triangles}, SiteTable({mesh_.vertices, mesh_.triangles}));
-    // Thousands of times what a crossing's place is off by, in a mesh of size 1.
-    constexpr double margin = 1e-12;
     const auto& [i, j, k] = facets_[f].corners;
     const Vec3d a = space_.rounded(i);
     const Vec3d u = space_.rounded(j) - a;
     const Vec3d v = space_.rounded(k) - a;
     const Vec3d normal = cross(u, v);
     const double twice_area = length(normal);
-    const double longest = std::max({length(u), length(v), length(u - v)});
-    if (!(twice_area > 100 * margin * longest)) return std::nullopt;
+    if (!(height(f) > least_height)) return std::nullopt;
     const Vec3d up = normal / twice_area;
     const Vec3d direction = up + random.in_ball() * 0.3;
     const double s = 0.1 + 0.4 * random.uniform();
@@ -218,29 +233,56 @@ class Windings {
     const Vec3d origin = a + u * s + v * t - direction * back;
     std::optional<double> own;
     bool is_certain = true;
-    std::vector<std::pair<double, std::int64_t>> others;
+    std::vector<RayCrossing> others;
     constexpr double no_limit = std::numeric_limits<double>::infinity();
     bvh_->for_each_crossing({origin, direction}, no_limit, [&](const RayCrossing& crossing) {
       is_certain = is_certain && !crossing.on_border;
       if (sheet_of_[crossing.triangle.value] == facets_[f].sheet) {
         own = crossing.t;
       } else {
-        others.emplace_back(crossing.t, crossing.side);
+        others.push_back(crossing);
       }
       return is_certain ? no_limit : -1;
     });
     if (!own || !is_certain || std::abs(*own - back) > margin) return std::nullopt;
     std::int64_t winding = 0;
-    for (const auto& [at, side] : others) {
-      if (std::abs(at - *own) < margin) return std::nullopt;
-      if (at > *own) winding += side;
+    for (const RayCrossing& other : others) {
+      std::optional<bool> is_ahead = other.t > *own;
+      if (std::abs(other.t - *own) < margin) is_ahead = lies_ahead(f, other);
+      if (!is_ahead) return std::nullopt;
+      if (*is_ahead) winding += other.side;
     }
     return winding;
   }
 
+  /// Whether a ray that passes through the inside of a facet crosses a triangle behind it, exactly; nullopt where the
+  /// facet has corners on both sides of the triangle's plane, or all in it.
+  [[nodiscard]] std::optional<bool> lies_ahead(std::uint32_t f, const RayCrossing& other) {
+    const Cut plane{mesh_.triangles[other.triangle.value], -1};
+    const auto& corners = facets_[f].corners;
+    const bool has_made = !std::all_of(corners.begin(), corners.end(), [&](PointId p) { return space_.is_vertex(p); });
+    if (has_made && !is_in_a_pair(other.triangle)) return std::nullopt;  // its corners are not exact in this space
+    int side = 0;
+    for (const PointId p : corners) {
+      const int own = space_.side(plane, p);
+      if (own * side < 0) return std::nullopt;
+      if (own != 0) side = own;
+    }
+    if (side == 0) return std::nullopt;
+    return side == -other.side;
+  }
+
+  [[nodiscard]] bool is_in_a_pair(TriangleId triangle) {
+    if (is_in_pair_.empty()) {
+      is_in_pair_.assign(mesh_.triangles.size(), false);
+      for (const TrianglePair& pair : mesh_.pairs) is_in_pair_[pair.first.value] = is_in_pair_[pair.second.value] = true;
+    }
+    return is_in_pair_[triangle.value];
+  }
+
   [[nodiscard]] bool is_kept(std::uint32_t f) {
-    const std::int64_t front = *front_[patches_.find(f)];
-    return front < least_ && front + facets_[f].times >= least_;
+    const std::optional<std::int64_t>& front = front_[patches_.find(f)];
+    return front && *front < rule_.least && *front + facets_[f].times >= rule_.least;
   }
 
   /// Two facets that are neighbours around the solid: one that falls to the lower end of their edge, one that rises.
@@ -342,7 +384,7 @@ class Windings {
   const ExactSpace& space_;
   const std::vector<Facet>& facets_;
   const std::vector<std::uint32_t>& sheet_of_;
-  std::int64_t least_;
+  const WindingRule& rule_;
   const Context& context_;
   std::vector<Side> sides_;
   UnionFind patches_;                                         ///< facets that are joined over edges of two
@@ -351,12 +393,14 @@ class Windings {
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>
       parts_of_;  ///< triangles of facets at edges where parts touch
   std::optional<Bvh> bvh_;
+  std::vector<bool> is_in_pair_;  ///< of triangles; filled when it is asked for
 };
 
 }  // namespace
 
-Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, int least_winding, const Context& context) {
-  return Windings(mesh, cut, least_winding, context).boundary();
+Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, const WindingRule& rule,
+                            const Context& context) {
+  return Windings(mesh, cut, rule, context).boundary();
 }
 
 }  // namespace blum::detail
