@@ -467,11 +467,12 @@ def _motion(which: Any, end: Any) -> tuple[int, FloatArray | None, FloatArray | 
     if unknown := set(given) - {"vertices", "transform"}:
         raise InvalidOption(f"motions[{which}] has {sorted(unknown)}, but takes 'vertices' and 'transform'")
     vertices, transform = given.get("vertices"), given.get("transform")
-    if vertices is not None and len(vertices) == 0:
+    moved = None if vertices is None else end_vertices(vertices, f"motions[{which}]")
+    if moved is not None and len(moved) == 0:
         raise InvalidMesh(f"motions[{which}] has no vertices; an object that rests is left out of the motions")
     return (
         _object(which, "motions"),
-        None if vertices is None else end_vertices(vertices, f"motions[{which}]"),
+        moved,
         None if transform is None else _place(transform),
     )
 

@@ -53,8 +53,8 @@ struct Surface {
 
 class Search {
  public:
-  Search(std::span<const DeepPatch> patches, double tolerance, const Context& context)
-      : patches_(patches), tolerance_(tolerance), context_(context) {
+  Search(std::span<const DeepPatch> patches, double known, double tolerance, const Context& context)
+      : patches_(patches), known_(known), tolerance_(tolerance), context_(context) {
     for (const DeepPatch& patch : patches) {
       const Box3 box = bounds(patch.surface);
       rounding_ = std::max(rounding_, 1e-14 * (length(box.lower) + length(box.upper)));
@@ -82,7 +82,9 @@ class Search {
   }
 
  private:
-  [[nodiscard]] bool is_done(double bound) const { return bound <= best_.distance * (1 + tolerance_) + rounding_; }
+  [[nodiscard]] bool is_done(double bound) const {
+    return bound <= std::max(best_.distance, known_) * (1 + tolerance_) + rounding_;
+  }
 
   Sample sample(const Vec3d& point, const Part& part) {
     const Surface& surface = surfaces_[part.patch];
@@ -199,6 +201,7 @@ class Search {
 
   std::span<const DeepPatch> patches_;
   std::vector<Surface> surfaces_;
+  double known_;
   double tolerance_;
   const Context& context_;
   double rounding_ = 0;  ///< more than distances may be off
@@ -211,8 +214,8 @@ class Search {
 
 }  // namespace
 
-DeepestPoint deepest_point(std::span<const DeepPatch> patches, double tolerance, const Context& context) {
-  return Search(patches, tolerance, context).run();
+DeepestPoint deepest_point(std::span<const DeepPatch> patches, double known, double tolerance, const Context& context) {
+  return Search(patches, known, tolerance, context).run();
 }
 
 }  // namespace blum::detail

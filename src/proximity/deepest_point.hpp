@@ -33,8 +33,11 @@ struct DeepestPoint {
 /// The point of patches that is furthest from the surface that its patch lies in, by branch and bound (Guthe and others
 /// 2005): the distance from a fixed triangle is convex, so over a part of a triangle it is largest at a corner, and the
 /// distance from a surface is no larger than that from any of its triangles.
+/// @param known      a depth that another point is known to have: patches that are nowhere deeper are not looked at
+///                   closely.
 /// @param tolerance  how much larger than the distance told the bound may be, as a part of it; unless 200,000 points
 /// are not enough for that: then the bound says how far they went. @throws Cancelled.
-[[nodiscard]] DeepestPoint deepest_point(std::span<const DeepPatch> patches, double tolerance, const Context& context);
+[[nodiscard]] DeepestPoint deepest_point(std::span<const DeepPatch> patches, double known, double tolerance,
+                                         const Context& context);
 
 }  // namespace blum::detail

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "blum/core/error.hpp"
@@ -148,25 +150,73 @@ class Body {
       out.area[surfaces_.is_of_first(overlap_.source[t]) ? 0 : 1] += length(normal) / 2;
       out.volume += dot(normal, a - origin) / 6;
     }
+    out.volume = std::max(out.volume, 0.0);  // of thin parts less than rounding
   }
 
+  /// Triangles of one label, by it, and how far a point of them can be from the others at most.
+  struct Group {
+    std::uint32_t label = 0;
+    double reach = 0;  ///< infinite where they do not hang together with others
+  };
+
+  /// Two sides are looked at together. What meets itself may have thousands: these are looked at one after the other,
+  /// the largest first, and those that are smaller than the depth found are not.
   void measure_depth(double tolerance, const Context& context, Penetration& out) const {
-    std::set<std::uint32_t> labels;
-    for (const std::uint32_t t : triangles_) labels.insert(labels_[t]);
+    constexpr std::size_t few = 8;
+    std::vector<Group> groups = groups_of_labels();
+    const std::size_t at_once = groups.size() <= few ? few : 1;
+    if (at_once == 1) {
+      std::sort(groups.begin(), groups.end(), [](const Group& x, const Group& y) {
+        return std::pair(-x.reach, x.label) < std::pair(-y.reach, y.label);
+      });
+    }
+    for (std::size_t begin = 0; begin < groups.size(); begin += at_once) {
+      throw_if_cancelled(context);
+      if (at_once == 1 && groups[begin].reach <= out.depth) break;
+      const std::size_t count = std::min(at_once, groups.size() - begin);
+      measure_groups(std::span(groups).subspan(begin, count), tolerance, context, out);
+    }
+  }
+
+  /// In the order of labels.
+  [[nodiscard]] std::vector<Group> groups_of_labels() const {
+    std::map<std::uint32_t, Box3> boxes;
+    for (const std::uint32_t t : triangles_) {
+      for (const Vec3d& corner : triangle_corners(overlap_.mesh, t)) boxes[labels_[t]].extend(corner);
+    }
+    std::set<std::uint32_t> bordering;
+    for (const auto& [edge, sides] : triangles_at_edges(overlap_.mesh, triangles_)) {
+      for (const std::uint32_t t : sides) {
+        if (labels_[t] == labels_[sides[0]]) continue;
+        bordering.insert(labels_[t]);
+        bordering.insert(labels_[sides[0]]);
+      }
+    }
+    std::vector<Group> out;
+    for (const auto& [label, box] : boxes) {
+      const double reach =
+          bordering.contains(label) ? length(box.upper - box.lower) : std::numeric_limits<double>::infinity();
+      out.push_back({label, reach});
+    }
+    return out;
+  }
+
+  void measure_groups(std::span<const Group> groups, double tolerance, const Context& context, Penetration& out) const {
     std::vector<DeepPatch> patches;
     std::vector<Sources> sources;
-    for (const std::uint32_t label : labels) {
+    for (const Group& group : groups) {
       Sources from;
-      DeepPatch patch = patch_of(label, from);
+      DeepPatch patch = patch_of(group.label, from);
       if (patch.surface.triangles.empty()) continue;
       patches.push_back(std::move(patch));
       sources.push_back(std::move(from));
     }
     if (patches.empty()) return;
-    const DeepestPoint found = deepest_point(patches, tolerance, context);
+    const DeepestPoint found = deepest_point(patches, out.depth, tolerance, context);
+    out.depth_bound = std::max(out.depth_bound, found.bound);
+    if (found.distance < out.depth) return;
     const std::uint32_t deep = sources[found.patch].patch[found.triangle];
     out.depth = found.distance;
-    out.depth_bound = found.bound;
     out.deep_point = found.point;
     out.surface_point = found.closest;
     out.is_first_deep = surfaces_.is_of_first(deep);

@@ -473,6 +473,9 @@ def test_continuous_collisions_of_objects():
     # The scene was not changed; and what does not move does not meet.
     assert scene.separation(0, 1).distance == 2
     assert scene.continuous({}).earliest is None
+    for empty in ([], np.zeros((0, 3)), {"vertices": []}):
+        with pytest.raises(blum.InvalidMesh, match="has no vertices"):
+            scene.continuous({1: empty})
     assert scene.continuous({1: {"transform": (IDENTITY, [0, 0, -1.5])}}, min_separation=0.6).earliest is not None
     matrix = np.eye(4)
     matrix[2, 3] = -1.5

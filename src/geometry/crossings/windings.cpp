@@ -275,7 +275,8 @@ class Windings {
   [[nodiscard]] bool is_in_a_pair(TriangleId triangle) {
     if (is_in_pair_.empty()) {
       is_in_pair_.assign(mesh_.triangles.size(), false);
-      for (const TrianglePair& pair : mesh_.pairs) is_in_pair_[pair.first.value] = is_in_pair_[pair.second.value] = true;
+      for (const TrianglePair& pair : mesh_.pairs)
+        is_in_pair_[pair.first.value] = is_in_pair_[pair.second.value] = true;
     }
     return is_in_pair_[triangle.value];
   }

@@ -264,6 +264,25 @@ TEST(ResolveCrossings, WindingsOfTwoAndMoreAreWhatIsCommon) {
   EXPECT_FALSE(none.is_resolved());
 }
 
+/// Sides 1e-16 from each other, which cross: no ray tells which of them comes first, but exact sides of planes do.
+TEST(ResolveCrossings, SidesThatLieNextToEachOther) {
+  const TriangleMesh cylinder = make_cylinder();
+  const double volume = topology(cylinder).signed_volume;
+  for (const int steps : {1, 2, 4, 6, 8, 22}) {
+    const double angle = steps * 2 * std::acos(-1.0) / 48;
+    TriangleMesh mesh = cylinder;
+    for (Vec3d& p : mesh.vertices) {
+      p = {std::cos(angle) * p.x - std::sin(angle) * p.y, std::sin(angle) * p.x + std::cos(angle) * p.y, p.z};
+    }
+    append(mesh, cylinder, {});
+    for (const int least_winding : {1, 2}) {
+      const ResolvedMesh found = resolve_crossings(mesh, {.most_rounds = 0, .least_winding = least_winding});
+      EXPECT_EQ(found.obstacle, "") << steps;
+      EXPECT_NEAR(topology(found.mesh).signed_volume, volume, 1e-12) << steps;
+    }
+  }
+}
+
 TEST(ResolveCrossings, AllThatIsTooMuchIsRefused) {
   TriangleMesh mesh = make_sphere({.frequency = 6});
   append(mesh, make_sphere({.frequency = 6}), {0.5, 0.1, 0.05});
