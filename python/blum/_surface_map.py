@@ -121,8 +121,9 @@ class SurfaceMap:
 
 
 def read_surface_map(path: PathLike) -> SurfaceMap:
-    """Reads the map, and the mesh that it is of, from an .npz file that :meth:`SurfaceMap.write` or ``blum surface-map``
-    wrote: the same numbers, bit by bit. Which of several other meshes is closest is not in the file.
+    """Reads a map, and the mesh that it is of, from an .npz file of :meth:`SurfaceMap.write` or ``blum surface-map``.
+
+    The numbers are the same, bit by bit. Which of several other meshes is closest is not in the file.
 
     Raises
     ------
