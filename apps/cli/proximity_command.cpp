@@ -24,7 +24,7 @@ constexpr const char* examples = R"(Examples:
   blum proximity a.ply b.ply --query collide --within 0.01 -o pairs.npz
                                          all pairs no further apart than 0.01
   blum proximity a.ply b.ply c.ply --query signed
-                                         one number for each two solids: how far apart, or less how deep in each other
+                                         how far each two solids are apart, or minus the depth where they overlap
   blum proximity a.ply b.ply --query penetration --json -
                                          what they have in common, part by part: depth, direction, area, volume, curves
   blum proximity cloth1.ply cloth2.ply --query continuous --self -o pairs.npz
@@ -73,12 +73,13 @@ void add_proximity_command(const CommandLine& line) {
                        extensions_help({FileContent::mesh}, FileAccess::read))
       ->required();
   command
-      ->add_option("--query", a->query,
-                   "separation: the closest pair of each two objects (default); signed: the same of solids, where they "
-                   "lie in each other less how deep; nbody: for each primitive (triangle, "
-                   "segment or point) the closest one; collide: all pairs that meet; penetration: what solids have in "
-                   "common, and how deep they lie in each other; continuous: what of a mesh, or with --to of objects, "
-                   "meets between two frames")
+      ->add_option(
+          "--query", a->query,
+          "separation: the closest pair of each two objects (default); signed: the same of solids, or minus the "
+          "depth where they overlap; nbody: for each primitive (triangle, "
+          "segment or point) the closest one; collide: all pairs that meet; penetration: what solids have in "
+          "common, and how deep they lie in each other; continuous: what of a mesh, or with --to of objects, "
+          "meets between two frames")
       ->type_name("QUERY");
   command
       ->add_option("--to", a->ends,

@@ -173,10 +173,14 @@ std::vector<std::string> thickness_warnings(const MeshView& solid) {
   }
   if (found.inconsistent_edges > 0) {
     return {"triangles face different ways (" + edges(found.inconsistent_edges) +
-            "): where they face inwards, thickness is measured outside of the solid; `blum clean` turns them"};
+            "): where they face inwards, thickness is measured outside of the solid"};
   }
   if (found.closed && !found.outward) {
-    return {"triangles face into the solid, so that thickness is measured outside of it; `blum clean` turns them"};
+    return {
+        found.signed_volume < 0
+            ? "triangles face into the solid, so that thickness is measured outside of it; turn them around"
+            : "shells lie in or cross each other and face the same way, or have no volume: thickness may be that of "
+              "one of them alone"};
   }
   return {};
 }

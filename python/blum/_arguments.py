@@ -177,7 +177,7 @@ def integer(value: Any, name: str, bits: int = 32) -> int:
 
 def natural(value: Any, name: str, bits: int = 32) -> int:
     """An integer of 0 or more that fits the library's bits, of 64 bits at most 2^63 - 1."""
-    if isinstance(value, (int, np.integer)) and int(value) < 0 and not isinstance(value, bool):
+    if isinstance(value, (int, np.integer)) and int(value) < 0:
         raise InvalidOption(f"{name} is {int(value)}, but must be 0 or more")
     return integer(value, name, min(bits + 1, 64))
 

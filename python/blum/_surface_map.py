@@ -66,7 +66,7 @@ class SurfaceMap:
     seconds: dict[str, float]  #: where time went
     mesh: Mesh  #: that the map is of
     _handle: Any = None
-    _others: tuple[Mesh, ...] = ()
+    _others: tuple[Mesh, ...] | None = ()
 
     def __repr__(self) -> str:
         height, width = self.distance.shape
@@ -110,7 +110,9 @@ class SurfaceMap:
 
     @cached_property
     def object(self) -> IntArray:
-        """(h, w): which of the other meshes is closest, in their order; -1 where there is nothing."""
+        """(h, w): which of the other meshes is closest, in their order; -1 where there is nothing. Files do not tell."""
+        if self._others is None:
+            raise ValueError("files of maps do not tell which of the other meshes is closest")
         out = np.where(self.site >= 0, 0, -1).astype(np.int32)
         if len(self._others) > 1:
             ends = np.cumsum([len(other.vertices) for other in self._others])
@@ -137,7 +139,7 @@ def read_surface_map(path: PathLike) -> SurfaceMap:
     ('ray-thickness', Mesh(8 vertices, 12 triangles))
     """
     mesh, found = _core.read_surface_map(existing_file(path))
-    return SurfaceMap(**found, mesh=mesh_of_arrays(mesh))
+    return SurfaceMap(**found, mesh=mesh_of_arrays(mesh), _others=None)
 
 
 @takes("SurfaceMapOptions")

@@ -166,8 +166,7 @@ ResolvedMesh resolved_once(const MeshView& mesh, const ResolveOptions& options, 
   }
   const detail::CrossedMesh crossed{welded.vertices, welded.triangles, welded.is_flat, found.pairs};
   const detail::CutMesh cut = detail::cut_triangles(crossed, context);
-  const detail::Boundary boundary =
-      detail::boundary_of_inside(crossed, cut, {options.least_winding, options.most_rounds == 0}, context);
+  const detail::Boundary boundary = detail::boundary_of_inside(crossed, cut, options.least_winding, context);
   if (boundary.triangles.empty()) {
     out.has_inside = false;
     out.obstacle = "no point has a winding number above " + std::to_string(options.least_winding - 1) +

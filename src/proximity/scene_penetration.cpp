@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -150,7 +151,9 @@ class Body {
       out.area[surfaces_.is_of_first(overlap_.source[t]) ? 0 : 1] += length(normal) / 2;
       out.volume += dot(normal, a - origin) / 6;
     }
-    out.volume = std::max(out.volume, 0.0);  // of thin parts less than rounding
+    // Rounding may make that of thin parts slightly negative.
+    const double rounding = 1e-12 * bounds(overlap_.mesh).largest_coordinate() * (out.area[0] + out.area[1]);
+    if (out.volume < 0 && out.volume > -rounding) out.volume = 0;
   }
 
   /// Triangles of one label, by it, and how far a point of them can be from the others at most.
@@ -159,8 +162,8 @@ class Body {
     double reach = 0;  ///< infinite where they do not hang together with others
   };
 
-  /// Two sides are looked at together. What meets itself may have thousands: these are looked at one after the other,
-  /// the largest first, and those that are smaller than the depth found are not.
+  /// A few sides, as those of two solids, are looked at together. What meets itself may have thousands: these are
+  /// looked at one after the other, the largest first, and those that are smaller than the depth found are not.
   void measure_depth(double tolerance, const Context& context, Penetration& out) const {
     constexpr std::size_t few = 8;
     std::vector<Group> groups = groups_of_labels();
@@ -214,7 +217,7 @@ class Body {
     if (patches.empty()) return;
     const DeepestPoint found = deepest_point(patches, out.depth, tolerance, context);
     out.depth_bound = std::max(out.depth_bound, found.bound);
-    if (found.distance < out.depth) return;
+    if (out.depth > 0 && found.distance <= out.depth) return;
     const std::uint32_t deep = sources[found.patch].patch[found.triangle];
     out.depth = found.distance;
     out.deep_point = found.point;
@@ -279,11 +282,9 @@ bool is_backward(const Vec3d& v) {
 /// Where both surfaces are one, each part of the border could be either's; solids that are the same would all be the
 /// first one's surface, with nothing of the other to be deep in. There the border is shared out as if the first solid
 /// were moved by next to nothing along x, and by still less along y and z: what faces backward becomes the first's. Of
-/// one object that meets itself, the first is what comes first in it.
-/// @return  the triangles that have got some of the border.
-std::set<std::uint32_t> share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& overlap) {
-  std::set<std::uint32_t> out;
-  if (overlap.source.empty()) return out;
+/// one object that meets itself, the first of two triangles that coincide is that with the smaller index.
+void share_out_common_faces(const Surfaces& surfaces, bool is_self, Overlap& overlap) {
+  if (overlap.source.empty()) return;
   const Bvh bvh(surfaces.mesh, SiteTable(surfaces.mesh));
   const double rounding = 1e-14 * bounds(surfaces.mesh).largest_coordinate();
   for (std::uint32_t t = 0; t < overlap.source.size(); ++t) {
@@ -298,23 +299,22 @@ std::set<std::uint32_t> share_out_common_faces(const Surfaces& surfaces, bool is
     };
     const auto [p, q, r] = triangle_corners(overlap.mesh, t);
     const std::optional<NearestPrimitive> twin = bvh.nearest_wanted((p + q + r) / 3, may_have_it, rounding);
-    if (twin) out.insert(overlap.source[t] = twin->primitive);
+    if (twin) overlap.source[t] = twin->primitive;
   }
-  return out;
 }
 
 /// Which triangles of an overlap belong together: those of one object, or of one part of an object that meets itself.
-/// @param shared_out  triangles that coincide with others of the object, and have some of what was these others'.
-std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self,
-                                     const std::set<std::uint32_t>& shared_out) {
+/// Parts hang together over common vertices; where triangles have vertices of their own, over places.
+std::vector<std::uint32_t> labels_of(const Surfaces& surfaces, const Overlap& overlap, bool is_self) {
   if (!is_self) {
     std::vector<std::uint32_t> out;
     for (const std::uint32_t s : overlap.source) out.push_back(surfaces.is_of_first(s) ? 0 : 1);
     return out;
   }
-  const std::vector<std::uint32_t> cluster = weld_clusters(surfaces.mesh.vertices);
+  std::vector<std::uint32_t> cluster(surfaces.mesh.vertices.size());
+  std::iota(cluster.begin(), cluster.end(), 0U);
+  if (open_edges(surfaces.mesh) > 0) cluster = weld_clusters(surfaces.mesh.vertices);
   return patches_of(overlap, [&](std::uint32_t a, std::uint32_t b) {
-    if (shared_out.contains(a) != shared_out.contains(b)) return false;
     for (const std::uint32_t v : surfaces.mesh.triangles[a]) {
       for (const std::uint32_t w : surfaces.mesh.triangles[b]) {
         if (cluster[v] == cluster[w]) return true;
@@ -347,8 +347,8 @@ Penetrations penetrations(ObjectId first, const SceneObject& a, ObjectId second,
   timer.lap("overlap");
   std::map<std::uint32_t, std::vector<std::uint32_t>> bodies;
   for (std::uint32_t t = 0; t < overlap.body_of.size(); ++t) bodies[overlap.body_of[t]].push_back(t);
-  const std::set<std::uint32_t> shared_out = share_out_common_faces(surfaces, is_self, overlap);
-  const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self, shared_out);
+  share_out_common_faces(surfaces, is_self, overlap);
+  const std::vector<std::uint32_t> labels = labels_of(surfaces, overlap, is_self);
   for (const auto& [body, triangles] : bodies) {
     throw_if_cancelled(context);
     out.parts.push_back(Body(surfaces, overlap, labels, triangles).measure(options.depth_tolerance, context));

@@ -23,7 +23,7 @@ class LongSum {
   double rest_ = 0;
 };
 
-/// @param largest  magnitude of the values, which no square of a smaller one leaves the range of numbers beside.
+/// @param largest  magnitude of the values; they are divided by it, so that squares neither overflow nor underflow.
 /// @param sum      of the weights, > 0.
 [[nodiscard]] double root_mean_square(std::span<const double> values, std::span<const double> weights, double largest,
                                       double sum);

@@ -116,3 +116,12 @@ def test_meshes_without_an_inside_are_warned_of(shapes, tmp_path):
     assert "the mesh is open (4 edges" in box("open.obj", quads[:-1])[0]
     assert "face different ways (4 edges)" in box("turned.obj", [*quads[:-1], quads[-1][::-1]])[0]
     assert "face into the solid" in box("inwards.obj", [quad[::-1] for quad in quads])[0]
+    corners += [(0.25 + x / 2, 0.25 + y / 2, 0.25 + z / 2) for x, y, z in corners]
+    inner = [tuple(v + 8 for v in quad) for quad in quads]
+    assert "lie in or cross each other" in box("nested.obj", quads + inner)[0]
+    hollow = [quad[::-1] for quad in inner]
+    words = ("surface-map", tmp_path / "hollow.obj", "-o", tmp_path / "map.npz", "--thickness", "ray", "--texel", 0.1)
+    lines = [f"v {x} {y} {z}" for x, y, z in corners]
+    lines += ["f " + " ".join(str(v + 1) for v in face) for face in quads + hollow]
+    (tmp_path / "hollow.obj").write_text("\n".join(lines) + "\n")
+    assert run_json(*words)["warnings"] == []

@@ -18,8 +18,7 @@ struct ResolveOptions {
   /// More pairs of triangles that cross or touch are not looked at.
   std::size_t most_pairs = 100000;
   /// A mesh whose new vertices, rounded, make triangles cross anew is resolved again, this often at most. With 0 the
-  /// result is not checked: its parts and how they meet are exact, but triangles may cross by roundings; and closed
-  /// parts that are thinner than 1e-10 of the mesh's size may be left out.
+  /// result is not checked: its parts and how they meet are exact, but triangles may cross by roundings.
   int most_rounds = 6;
   /// Points are inside where the mesh winds around them this often or more: with 2, what lies in two parts of it.
   int least_winding = 1;

@@ -197,7 +197,7 @@ class ProximityScene {
   [[nodiscard]] Penetrations penetration(ObjectId first, ObjectId second, const PenetrationOptions& options = {},
                                          const Context& context = {}) const;
 
-  /// The distance of two solids where they are apart; 0 where they touch; less the largest depth where they have more
+  /// The distance of two solids where they are apart; 0 where they touch; minus the largest depth where they have more
   /// in common. Mesh units. As penetration(); surfaces whose boxes are apart may be open. Infinite of an object with
   /// itself that has no two primitives without a common vertex.
   [[nodiscard]] double signed_separation(ObjectId first, ObjectId second, const PenetrationOptions& options = {},

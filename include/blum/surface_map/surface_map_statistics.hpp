@@ -13,9 +13,9 @@
 
 namespace blum {
 
-/// The values of a surface map by area: each texel of a triangle stands for an equal part of the triangle's area.
-/// Texels without a value (infinite) count for `area` and `measured_area` alone. These are estimates; for distances to
-/// another mesh surface_deviation() has errors that are certain.
+/// The values of a surface map by area: each texel stands for the part of its triangle that lies in it. Texels without
+/// a value (infinite) count for `area` alone. These are estimates; for distances to another mesh surface_deviation()
+/// has errors that are certain.
 struct SurfaceMapStatistics {
   static constexpr std::array<double, 7> percents = SurfaceDeviation::percents;
 
@@ -49,7 +49,7 @@ struct Description<SurfaceMapStatistics> {
 ///
 /// @param mesh  that the map is of.
 /// @return      zeros where no texel with a value is of a triangle with an area.
-/// @throws InvalidMesh where mesh and map do not fit, OutOfMemory. Cost: sorting the texels, about 0.1 us each.
+/// @throws InvalidMesh where mesh and map do not fit, OutOfMemory. Cost: about 0.3 us for each texel.
 [[nodiscard]] SurfaceMapStatistics surface_map_statistics(const MeshView& mesh, const SurfaceMap& map);
 
 }  // namespace blum

@@ -65,7 +65,7 @@ class Cutter {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (mesh_.is_flat[t] != 0 || sheet_of_[t] != nobody) continue;
       sheet_of_[t] = static_cast<std::uint32_t>(sheets_.size() + t);
-      facets_.push_back({mesh_.triangles[t], 1, t, sheet_of_[t], true});
+      facets_.push_back({mesh_.triangles[t], 1, t, sheet_of_[t]});
     }
     return count;
   }
@@ -261,8 +261,10 @@ class Cutter {
       }
     }
     for (const std::array<PointId, 3>& corners : triangles) {
-      Facet facet{corners, 0, nobody, s, true};
-      bool source_is_up = true;
+      Facet facet{corners, 0, nobody, s};
+      // The first members that face up, and down.
+      std::uint32_t up = nobody;
+      std::uint32_t down = nobody;
       for (std::size_t m = 0; m < members.size(); ++m) {
         const bool is_in = std::all_of(corners.begin(), corners.end(), [&](PointId p) {
           const auto at = std::lower_bound(sheet.points.begin(), sheet.points.end(), p);
@@ -270,15 +272,13 @@ class Cutter {
         });
         if (!is_in) continue;
         facet.times += members[m].turn;
-        if (facet.source != nobody) continue;
-        facet.source = sheet.members[m];
-        source_is_up = members[m].turn > 0;
+        std::uint32_t& first = members[m].turn > 0 ? up : down;
+        if (first == nobody) first = sheet.members[m];
       }
       if (facet.times == 0) continue;
-      const bool is_up = facet.times > 0;
-      if (!is_up) std::swap(facet.corners[1], facet.corners[2]);
+      facet.source = facet.times > 0 ? up : down;
+      if (facet.times < 0) std::swap(facet.corners[1], facet.corners[2]);
       facet.times = std::abs(facet.times);
-      facet.faces_as_source = is_up == source_is_up;
       facets_.push_back(facet);
     }
   }

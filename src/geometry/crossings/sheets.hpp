@@ -28,9 +28,8 @@ class Unresolved : public std::runtime_error {
 struct Facet {
   std::array<PointId, 3> corners{};
   std::int32_t times = 1;    ///< how often the input has it, those that face the other way counted off; > 0
-  std::uint32_t source = 0;  ///< triangle of the input that it lies in
+  std::uint32_t source = 0;  ///< triangle of the input that it lies in, and faces as
   std::uint32_t sheet = 0;   ///< the same for facets in one plane that were cut together
-  bool faces_as_source = true;
 };
 
 /// Triangles of a mesh without corners at one place, and pairs of them that cross or touch.

@@ -19,10 +19,9 @@ namespace blum::detail {
 namespace {
 
 constexpr std::uint32_t nobody = 0xffffffffU;
-/// Thousands of times what a crossing's place is off by, in a mesh of size 1.
+/// Thousands of times what the place of a crossing is off by, of a ray that is not along the triangle, in a mesh of
+/// size 1.
 constexpr double margin = 1e-12;
-/// Rays pass through the insides of facets that are at least so high.
-constexpr double least_height = 100 * margin;
 
 /// A facet at an edge.
 struct Side {
@@ -62,12 +61,12 @@ void for_each_edge(std::span<const Side> sides, const Use& use) {
 
 class Windings {
  public:
-  Windings(const CrossedMesh& mesh, const CutMesh& cut, const WindingRule& rule, const Context& context)
+  Windings(const CrossedMesh& mesh, const CutMesh& cut, int least_winding, const Context& context)
       : mesh_(mesh),
         space_(cut.space),
         facets_(cut.facets),
         sheet_of_(cut.sheet_of),
-        rule_(rule),
+        least_(least_winding),
         context_(context),
         sides_(sorted_sides(cut.facets)),
         patches_(cut.facets.size()) {}
@@ -102,7 +101,7 @@ class Windings {
     const PointId tip = facets_[other.facet()].corners[(other.corner % 3 + 2) % 3];
     const Cut plane{mesh_.triangles[facet.source], -1};
     const int side = space_.side(plane, tip);
-    return (facet.faces_as_source ? side : -side) * (of.rises ? 1 : -1);
+    return of.rises ? side : -side;
   }
 
   /// Sorts facets counter-clockwise around their edge.
@@ -143,10 +142,9 @@ class Windings {
     for (std::uint32_t p = 0; p < facets_.size(); ++p) {
       if (largest[p].empty()) continue;
       throw_if_cancelled(context_);
-      const auto known = winding_by_ray(largest[p]);
-      if (!known) continue;
-      std::vector<std::uint32_t> next{patches_.find(known->first)};
-      front_[next.front()] = known->second;
+      const auto [facet, winding] = winding_by_ray(largest[p]);
+      std::vector<std::uint32_t> next{patches_.find(facet)};
+      front_[next.front()] = winding;
       while (!next.empty()) {
         const std::uint32_t own = next.back();
         next.pop_back();
@@ -190,28 +188,17 @@ class Windings {
     if (list.size() > most) list.pop_back();
   }
 
-  /// A facet of a part, and the winding number in front of it; nullopt of thin parts that are left out.
+  /// A facet of a part, and the winding number in front of it.
   /// @param candidates  the part's largest facets.
-  std::optional<std::pair<std::uint32_t, std::int64_t>> winding_by_ray(const std::vector<std::uint32_t>& candidates) {
+  std::pair<std::uint32_t, std::int64_t> winding_by_ray(const std::vector<std::uint32_t>& candidates) {
     constexpr int attempts = 32;
     for (const std::uint32_t f : candidates) {
       Random random(f);
       for (int k = 0; k < attempts; ++k) {
-        if (const auto winding = front_along_ray(f, random)) return std::pair(f, *winding);
+        if (const auto winding = front_along_ray(f, random)) return {f, *winding};
       }
     }
-    const auto is_thin = [&](std::uint32_t f) { return height(f) <= least_height; };
-    if (rule_.leaves_out_thin_parts && std::all_of(candidates.begin(), candidates.end(), is_thin)) return std::nullopt;
     throw Unresolved("a part of it is too small to tell whether it lies inside of others");
-  }
-
-  /// Above its longest side.
-  [[nodiscard]] double height(std::uint32_t f) const {
-    const auto& [a, b, c] = facets_[f].corners;
-    const Vec3d u = space_.rounded(b) - space_.rounded(a);
-    const Vec3d v = space_.rounded(c) - space_.rounded(a);
-    const double longest = std::max({length(u), length(v), length(u - v)});
-    return longest > 0 ? length(cross(u, v)) / longest : 0;
   }
 
   /// The winding number in front of a facet from what a ray crosses that passes through it; nullopt where rounding
@@ -224,7 +211,8 @@ class Windings {
     const Vec3d v = space_.rounded(k) - a;
     const Vec3d normal = cross(u, v);
     const double twice_area = length(normal);
-    if (!(height(f) > least_height)) return std::nullopt;
+    const double longest = std::max({length(u), length(v), length(u - v)});
+    if (!(twice_area > 100 * margin * longest)) return std::nullopt;
     const Vec3d up = normal / twice_area;
     const Vec3d direction = up + random.in_ball() * 0.3;
     const double s = 0.1 + 0.4 * random.uniform();
@@ -247,8 +235,8 @@ class Windings {
     if (!own || !is_certain || std::abs(*own - back) > margin) return std::nullopt;
     std::int64_t winding = 0;
     for (const RayCrossing& other : others) {
-      std::optional<bool> is_ahead = other.t > *own;
-      if (std::abs(other.t - *own) < margin) is_ahead = lies_ahead(f, other);
+      std::optional<bool> is_ahead = lies_ahead(f, other);
+      if (!is_ahead && std::abs(other.t - *own) > margin) is_ahead = other.t > *own;
       if (!is_ahead) return std::nullopt;
       if (*is_ahead) winding += other.side;
     }
@@ -282,8 +270,8 @@ class Windings {
   }
 
   [[nodiscard]] bool is_kept(std::uint32_t f) {
-    const std::optional<std::int64_t>& front = front_[patches_.find(f)];
-    return front && *front < rule_.least && *front + facets_[f].times >= rule_.least;
+    const std::int64_t front = *front_[patches_.find(f)];
+    return front < least_ && front + facets_[f].times >= least_;
   }
 
   /// Two facets that are neighbours around the solid: one that falls to the lower end of their edge, one that rises.
@@ -385,7 +373,7 @@ class Windings {
   const ExactSpace& space_;
   const std::vector<Facet>& facets_;
   const std::vector<std::uint32_t>& sheet_of_;
-  const WindingRule& rule_;
+  std::int64_t least_;
   const Context& context_;
   std::vector<Side> sides_;
   UnionFind patches_;                                         ///< facets that are joined over edges of two
@@ -399,9 +387,8 @@ class Windings {
 
 }  // namespace
 
-Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, const WindingRule& rule,
-                            const Context& context) {
-  return Windings(mesh, cut, rule, context).boundary();
+Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, int least_winding, const Context& context) {
+  return Windings(mesh, cut, least_winding, context).boundary();
 }
 
 }  // namespace blum::detail

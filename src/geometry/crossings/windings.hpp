@@ -21,15 +21,9 @@ struct Boundary {
   std::size_t touching_edges = 0;        ///< edges along which parts only touch
 };
 
-struct WindingRule {
-  int least = 1;  ///< winding number of what is inside
-  /// Whether closed parts that are too thin for any ray to tell where they lie (1e-10 of the mesh's size) are left out,
-  /// instead of being an error.
-  bool leaves_out_thin_parts = false;
-};
-
+/// @param least_winding  number of what is inside.
 /// @throws Unresolved where facets do not fit together, Cancelled.
-[[nodiscard]] Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, const WindingRule& rule,
+[[nodiscard]] Boundary boundary_of_inside(const CrossedMesh& mesh, const CutMesh& cut, int least_winding,
                                           const Context& context);
 
 }  // namespace blum::detail

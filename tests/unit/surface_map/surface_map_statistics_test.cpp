@@ -55,6 +55,21 @@ TEST(SurfaceMapStatistics, AreThoseOfAreasWhateverTheSizeOfTriangles) {
   EXPECT_NEAR(other.rms, coarse.rms, 1e-6);
 }
 
+/// Texels on the border of a triangle, whose squares are mostly outside, count by what of them is inside: over a
+/// triangle that rises from a side to a corner, the area above a height falls with its square.
+TEST(SurfaceMapStatistics, OfOneTriangleIsNotDrawnToItsBorder) {
+  const TriangleMesh triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}}, {{0, 1, 2}}, {}, {}};
+  for (const double texel : {0.01, 0.05, 0.1}) {
+    const SurfaceMapStatistics found =
+        surface_map_statistics(triangle, surface_distance_map(triangle, plane, {.texel = texel}));
+    EXPECT_NEAR(found.mean, 1.0 / 3, texel * texel) << texel;
+    EXPECT_NEAR(found.rms, std::sqrt(1.0 / 6), texel * texel) << texel;
+    for (std::size_t k = 0; k < found.percentiles.size(); ++k) {
+      EXPECT_NEAR(found.percentiles[k], 1 - std::sqrt(1 - SurfaceMapStatistics::percents[k] / 100), texel) << texel;
+    }
+  }
+}
+
 TEST(SurfaceMapStatistics, CountOnlyWhatHasAValue) {
   const SurfaceMap map = surface_distance_map(slope, plane, {.texel = 0.02, .max_distance = 0.5});
   const SurfaceMapStatistics found = surface_map_statistics(slope, map);
