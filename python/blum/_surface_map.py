@@ -110,7 +110,7 @@ class SurfaceMap:
 
     @cached_property
     def object(self) -> IntArray:
-        """(h, w): which of the other meshes is closest, in their order; -1 where there is nothing. Files do not tell."""
+        """(h, w): which of the other meshes is closest, in their order; -1 where there is nothing; not of files."""
         if self._others is None:
             raise ValueError("files of maps do not tell which of the other meshes is closest")
         out = np.where(self.site >= 0, 0, -1).astype(np.int32)

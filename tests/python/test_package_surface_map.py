@@ -189,7 +189,7 @@ def test_maps_are_read_as_they_were_written(tmp_path, kind):
     assert again.statistics() == map.statistics()
     again.write(tmp_path / "again.glb")
     with pytest.raises(ValueError, match="do not tell which"):
-        again.object
+        _ = again.object
     with pytest.raises(blum.FormatError, match="holds no surface map"):
         blum.distance_field(part, resolution=8).write(tmp_path / "field.npz")
         blum.read_surface_map(tmp_path / "field.npz")
