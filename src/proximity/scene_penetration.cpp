@@ -156,33 +156,29 @@ class Body {
     if (out.volume < 0 && out.volume > -rounding) out.volume = 0;
   }
 
-  /// Triangles of one label, by it, and how far a point of them can be from the others at most.
-  struct Group {
-    std::uint32_t label = 0;
-    double reach = 0;  ///< infinite where they do not hang together with others
-  };
-
   /// A few sides, as those of two solids, are looked at together. What meets itself may have thousands: these are
   /// looked at one after the other, the largest first, and those that are smaller than the depth found are not.
   void measure_depth(double tolerance, const Context& context, Penetration& out) const {
     constexpr std::size_t few = 8;
-    std::vector<Group> groups = groups_of_labels();
-    const std::size_t at_once = groups.size() <= few ? few : 1;
-    if (at_once == 1) {
-      std::sort(groups.begin(), groups.end(), [](const Group& x, const Group& y) {
-        return std::pair(-x.reach, x.label) < std::pair(-y.reach, y.label);
-      });
-    }
-    for (std::size_t begin = 0; begin < groups.size(); begin += at_once) {
+    std::set<std::uint32_t> known;
+    for (const std::uint32_t t : triangles_) known.insert(labels_[t]);
+    const std::vector<std::uint32_t> labels(known.begin(), known.end());
+    if (labels.size() <= few) return measure_labels(labels, tolerance, context, out);
+    for (const Reach& one : reaches()) {
       throw_if_cancelled(context);
-      if (at_once == 1 && groups[begin].reach <= out.depth) break;
-      const std::size_t count = std::min(at_once, groups.size() - begin);
-      measure_groups(std::span(groups).subspan(begin, count), tolerance, context, out);
+      if (one.reach <= out.depth) return;
+      measure_labels({&one.label, 1}, tolerance, context, out);
     }
   }
 
-  /// In the order of labels.
-  [[nodiscard]] std::vector<Group> groups_of_labels() const {
+  /// How far a point of the triangles of a label can be from the others at most.
+  struct Reach {
+    std::uint32_t label = 0;
+    double reach = 0;  ///< infinite where they do not hang together with others
+  };
+
+  /// The largest first.
+  [[nodiscard]] std::vector<Reach> reaches() const {
     std::map<std::uint32_t, Box3> boxes;
     for (const std::uint32_t t : triangles_) {
       for (const Vec3d& corner : triangle_corners(overlap_.mesh, t)) boxes[labels_[t]].extend(corner);
@@ -195,21 +191,23 @@ class Body {
         bordering.insert(labels_[sides[0]]);
       }
     }
-    std::vector<Group> out;
+    std::vector<Reach> out;
     for (const auto& [label, box] : boxes) {
-      const double reach =
-          bordering.contains(label) ? length(box.upper - box.lower) : std::numeric_limits<double>::infinity();
-      out.push_back({label, reach});
+      out.push_back({label, bordering.contains(label) ? box.diagonal() : std::numeric_limits<double>::infinity()});
     }
+    std::sort(out.begin(), out.end(), [](const Reach& x, const Reach& y) {
+      return std::pair(-x.reach, x.label) < std::pair(-y.reach, y.label);
+    });
     return out;
   }
 
-  void measure_groups(std::span<const Group> groups, double tolerance, const Context& context, Penetration& out) const {
+  void measure_labels(std::span<const std::uint32_t> labels, double tolerance, const Context& context,
+                      Penetration& out) const {
     std::vector<DeepPatch> patches;
     std::vector<Sources> sources;
-    for (const Group& group : groups) {
+    for (const std::uint32_t label : labels) {
       Sources from;
-      DeepPatch patch = patch_of(group.label, from);
+      DeepPatch patch = patch_of(label, from);
       if (patch.surface.triangles.empty()) continue;
       patches.push_back(std::move(patch));
       sources.push_back(std::move(from));

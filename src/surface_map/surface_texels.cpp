@@ -4,58 +4,28 @@
 #include <string>
 #include <vector>
 
-#include "blum/core/inline_list.hpp"
 #include "blum/core/parallel.hpp"
 #include "blum/surface_map/surface_atlas.hpp"
 #include "surface_map/chart.hpp"
+#include "surface_map/chart_part.hpp"
 
 namespace blum {
 namespace {
 
 using surface::Chart;
 using surface::ChartCorners;
+using surface::ChartPart;
+using surface::check_fits;
 using surface::middle_of;
+using surface::part_around;
 using surface::ScaledCharts;
 
 constexpr std::size_t texels_per_range = 1 << 14;
 
-void check(const MeshView& mesh, const SurfaceAtlas& atlas) {
-  validate(mesh);
-  if (mesh.triangles.size() == atlas.corners.size()) return;
-  throw InvalidMesh("the mesh has " + std::to_string(mesh.triangles.size()) + " triangles, but its atlas " +
-                    std::to_string(atlas.corners.size()));
-}
-
-/// A convex polygon in a texture.
-using Polygon = InlineList<TexturePlace, 12>;
-
-/// What is left on one side of a line along an axis.
-template <class Coordinate>
-Polygon clipped(const Polygon& in, const Coordinate& coordinate, double limit, double sign) {
-  Polygon out;
-  for (std::size_t k = 0; k < in.size(); ++k) {
-    const TexturePlace& a = in.data()[k];
-    const TexturePlace& b = in.data()[(k + 1) % in.size()];
-    const double of_a = sign * (limit - coordinate(a));
-    const double of_b = sign * (limit - coordinate(b));
-    if (of_a >= 0) out.push_back(a);
-    if ((of_a > 0 && of_b < 0) || (of_a < 0 && of_b > 0)) {
-      const double t = of_a / (of_a - of_b);
-      out.push_back({a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t});
-    }
-  }
-  return out;
-}
-
 /// How far the points of a chart that look at a texel may be from a point: the chart is cut to the square of two texels
 /// a side around the texel's middle, and the furthest of what is left is a corner.
 double furthest_reader(const Chart& chart, const ChartCorners& places, const TexturePlace& middle, const Vec3d& point) {
-  Polygon left;
-  for (const TexturePlace& at : places) left.push_back(at);
-  for (const double sign : {-1.0, 1.0}) {
-    left = clipped(left, [](const TexturePlace& p) { return p.x; }, middle.x + sign, sign);
-    left = clipped(left, [](const TexturePlace& p) { return p.y; }, middle.y + sign, sign);
-  }
+  const ChartPart left = part_around(places, middle, 1);
   double furthest = 0;
   for (std::size_t k = 0; k < left.size(); ++k) {
     furthest = std::max(furthest, length(chart.in_plane(left.data()[k]) - point));
@@ -90,7 +60,7 @@ Vec3d surface_point(const MeshView& mesh, const SurfaceAtlas& atlas, std::size_t
 }
 
 SurfaceTexels surface_texels(const MeshView& mesh, const SurfaceAtlas& atlas, const Context& context) {
-  check(mesh, atlas);
+  check_fits(mesh, atlas);
   const std::size_t ranges = (atlas.size() + texels_per_range - 1) / texels_per_range;
   std::vector<std::size_t> first(ranges + 1, 0);
   parallel_for(context, atlas.size(), texels_per_range, "", [&](const WorkRange& range) {
@@ -118,7 +88,7 @@ SurfaceTexels surface_texels(const MeshView& mesh, const SurfaceAtlas& atlas, co
 }
 
 std::vector<double> texel_reaches(const MeshView& mesh, const SurfaceAtlas& atlas, const Context& context) {
-  check(mesh, atlas);
+  check_fits(mesh, atlas);
   const ScaledCharts charts{mesh, atlas};
   std::vector<double> out(mesh.triangles.size());
   parallel_for(context, out.size(), 256, "", [&](const WorkRange& range) {

@@ -16,14 +16,13 @@
 #include "blum/proximity/penetration.hpp"
 #include "blum/proximity/scene.hpp"
 #include "blum/shapes/generators.hpp"
+#include "support/mesh_places.hpp"
 
 namespace blum {
 namespace {
 
-TriangleMesh moved(TriangleMesh mesh, const Vec3d& by) {
-  for (Vec3d& p : mesh.vertices) p += by;
-  return mesh;
-}
+using test::box_between;
+using test::moved;
 
 TriangleMesh turned_about_z(TriangleMesh mesh, double degrees) {
   const double angle = degrees * std::numbers::pi / 180;
@@ -34,14 +33,12 @@ TriangleMesh turned_about_z(TriangleMesh mesh, double degrees) {
 }
 
 TriangleMesh both(TriangleMesh a, const TriangleMesh& b) {
-  const auto base = static_cast<std::uint32_t>(a.vertices.size());
-  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const auto& [i, j, k] : b.triangles) a.triangles.push_back({base + i, base + j, base + k});
+  append(a, b);
   return a;
 }
 
 TriangleMesh cube(double half, const Vec3d& at = {}) {
-  return moved(make_box({.size = {2 * half, 2 * half, 2 * half}}), at);
+  return moved(make_box({.size = {2 * half, 2 * half, 2 * half}}), 1, at);
 }
 
 struct Answer {
@@ -72,7 +69,8 @@ Answer answer(const TriangleMesh& a, const TriangleMesh& b) {
 /// Cells of a grid of 3 x 3 x 3.
 using Cells = std::bitset<27>;
 bool holds(const Cells& cells, int x, int y, int z) {
-  return std::min({x, y, z}) >= 0 && std::max({x, y, z}) < 3 && cells[static_cast<std::size_t>(x + 3 * y + 9 * z)];
+  const int cell = x + 3 * y + 9 * z;
+  return std::min({x, y, z}) >= 0 && std::max({x, y, z}) < 3 && cells[static_cast<std::size_t>(cell)];
 }
 
 /// The boundary of cells of a size, whose lattice begins at a place: coordinates are rounded, the same way for all.
@@ -135,7 +133,7 @@ TEST(HostilePenetration, OfEqualSolidsIsNeverNothing) {
     const TriangleMesh box = cube(0.5, at);
     EXPECT_NEAR(answer(box, box).separation, -1, 1e-12);
     EXPECT_NEAR(answer(box, box).volume, 1, 1e-9);
-    const TriangleMesh torus = moved(make_torus(), at);
+    const TriangleMesh torus = moved(make_torus(), 1, at);
     EXPECT_NEAR(answer(torus, torus).separation, answer(make_torus(), make_torus()).separation, 1e-9);
   }
   Random random(6);
@@ -185,13 +183,10 @@ TEST(HostilePenetration, OfEqualShellsOfOneObjectIsNotNothing) {
 /// What two solids have in common is the same where both are one object that is asked of itself, in any order: also
 /// where only parts of their faces coincide.
 TEST(HostilePenetration, OfOneObjectIsThatOfItsTwoSolids) {
-  const auto between = [](const Vec3d& lower, const Vec3d& upper) {
-    return moved(make_box({.size = upper - lower}), (lower + upper) * 0.5);
-  };
   const std::vector<Point2> outline{{-1, -20}, {1, -20}, {1, 0}, {10, 0}, {10, 20}, {-1, 20}};
   const TriangleMesh bent = make_extrusion(outline, {}, {.thickness = 20});
-  for (const TriangleMesh& other : {between({-1, -1, -1}, {1, 8, 1}), between({-1, -9, -1}, {1, 8, 1}),
-                                    between({-2, -9, -1}, {1, 8, 1}), between({0.1, -9, -1}, {1, 8, 11})}) {
+  for (const TriangleMesh& other : {box_between({-1, -1, -1}, {1, 8, 1}), box_between({-1, -9, -1}, {1, 8, 1}),
+                                    box_between({-2, -9, -1}, {1, 8, 1}), box_between({0.1, -9, -1}, {1, 8, 11})}) {
     for (const bool is_first : {true, false}) {
       const TriangleMesh& a = is_first ? bent : other;
       const TriangleMesh& b = is_first ? other : bent;

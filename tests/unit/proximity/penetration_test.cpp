@@ -28,9 +28,7 @@ TriangleMesh moved(TriangleMesh mesh, const Vec3d& by) {
 }
 
 TriangleMesh both(TriangleMesh a, const TriangleMesh& b) {
-  const auto base = static_cast<std::uint32_t>(a.vertices.size());
-  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const auto& [i, j, k] : b.triangles) a.triangles.push_back({base + i, base + j, base + k});
+  append(a, b);
   return a;
 }
 
