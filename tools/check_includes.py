@@ -9,6 +9,7 @@
 - Public headers name nothing but the standard library and Blum.
 - One file starts threads (src/core/parallel.cpp); SIMD is in src/field/cpu and src/geometry/*_kernels.cpp; compression is in src/io.
 - field/cpu and field/cuda do not see each other; CUDA is in src/field/cuda.
+- No call of debug_dump() is left behind: its header is for tests, and for a while in other files while they are debugged.
 """
 
 import pathlib
@@ -49,6 +50,8 @@ SHARED = {
     },
 }
 
+DEBUG_DUMP = "include/blum/core/debug_dump.hpp"
+
 STANDARD = re.compile(r"[a-z_]+")  # <vector>, <stop_token>: no dot, no slash
 SYSTEM = re.compile(r"(sys/\w+|unistd|fcntl|linux/\w+|sched|dlfcn)\.h")  # what the C++ standard library lacks; sources only
 STARTS_THREADS = {"thread", "future", "execution", "pthread.h", "omp.h"}
@@ -85,6 +88,8 @@ def blum_rule(source: pathlib.PurePosixPath, target: pathlib.PurePosixPath) -> s
     """Why `source` may not include the project's file `target`; None where it may."""
     top = source.parts[0]
     public = target.parts[0] == "include"
+    if str(target) == DEBUG_DUMP and top != "tests" and str(source) != "src/core/debug_dump.cpp":
+        return "debug_dump() is for debugging: take the call out (CONTRIBUTING.md, Debugging)"
     if top == "bench" and str(target) == "src/field/cpu/tile_kernel.hpp":
         return None  # to time one instruction set against another
     if top in ("apps", "examples", "python"):
