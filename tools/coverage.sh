@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `make coverage`: the share of lines that the tests labelled fast run, of each layer and in all (g++ --coverage, gcov).
-#   tools/coverage.sh [LAYER ...]   these layers alone, by their own tests, test_LAYER: minutes instead of an hour
+#   tools/coverage.sh [LAYER ...]   these layers alone, by their own tests, test_LAYER: much sooner
 # Figures for people: nothing fails where they are low. What no test runs is in build/coverage/missed.txt.
 set -euo pipefail
 cd "$(dirname "$0")/.."

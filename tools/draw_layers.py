@@ -126,11 +126,11 @@ class Drawing:
         start, goal = self.anchor_guess(upper, lower), self.middle(lower)
         for choice in itertools.product(*(range(len(self.gaps(row))) for row in between)):
             x, way = start, 0.0
-            for row, gap in zip(between, choice):
+            for row, gap in zip(between, choice, strict=True):
                 way, x = way + abs(self.gaps(row)[gap] - x), self.gaps(row)[gap]
             way += abs(goal - x)
             if way < best[0] - 1e-9:
-                best = way, list(zip(between, choice))
+                best = way, list(zip(between, choice, strict=True))
         return best[1]
 
     def anchor_guess(self, upper: str, lower: str) -> float:
@@ -150,7 +150,9 @@ class Drawing:
                 steps.append((row, x, self.gaps(next_row)[gap]))
                 x, row = self.gaps(next_row)[gap], next_row
             steps.append((row, x, self.middle(lower)))
-            total += sum(abs(a - b) for _, a, b in steps[-(self.level[upper] - self.level[lower]) :]) * math.sqrt(weight)
+            total += sum(abs(a - b) for _, a, b in steps[-(self.level[upper] - self.level[lower]) :]) * math.sqrt(
+                weight
+            )
         for (row, a, b), (other, c, d) in itertools.combinations(steps, 2):
             if row == other and (a - c) * (b - d) < -1e-9:
                 total += 60
@@ -185,8 +187,8 @@ class Drawing:
         for name in self.level:
             down = sorted((pair for pair in routes if pair[0] == name), key=lambda pair: (aims[pair][0], pair))
             up = sorted((pair for pair in routes if pair[1] == name), key=lambda pair: (aims[pair][1], pair))
-            leaves.update(zip(down, self.spread(name, [aims[pair][0] for pair in down])))
-            reaches.update(zip(up, self.spread(name, [aims[pair][1] for pair in up])))
+            leaves.update(zip(down, self.spread(name, [aims[pair][0] for pair in down]), strict=True))
+            reaches.update(zip(up, self.spread(name, [aims[pair][1] for pair in up]), strict=True))
         lanes = self.lanes(routes, leaves, reaches)
         result = []
         for (upper, lower), route in sorted(routes.items()):
@@ -199,20 +201,18 @@ class Drawing:
         return result
 
     def spread(self, name: str, aims: list[float]) -> list[float]:
-        """Places along a side of a room, in the order of where the arrows go: below their aims, as far as there is room."""
+        """Places along a side of a room for arrows with these aims, which rise: evenly; along a wide room below their
+        aims, where these are not too close to each other."""
         half = self.room_width(self.level[name]) / 2 - 14
         low, high = self.middle(name) - half, self.middle(name) + half
+        step = 2 * half / max(len(aims), 1)
         if half < WIDTH / 4:
-            step = 2 * half / max(len(aims), 1)
             return [low + (i + 0.5) * step for i in range(len(aims))]
-        apart = min(26.0, 2 * half / max(len(aims), 1))
+        apart = min(26.0, step)
         places = [min(max(aim, low), high) for aim in aims]
         for i in range(1, len(places)):
             places[i] = max(places[i], places[i - 1] + apart)
-        shift = max(0.0, places[-1] - high) if places else 0.0
-        for i in reversed(range(len(places))):
-            places[i] = min(places[i], high - (len(places) - 1 - i) * apart) if shift else places[i]
-        return places
+        return [min(place, high - (len(places) - 1 - i) * apart) for i, place in enumerate(places)]
 
     def lanes(self, routes: dict, leaves: dict, reaches: dict) -> dict:
         """How far beside the middle of a gap each arrow passes it: those that come from the left on the left."""
@@ -347,8 +347,9 @@ def check(text: str) -> int:
     page = PAGE.read_text(encoding="utf-8")
     rows = re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)
     known = layers()
-    problems += [f"{PAGE.relative_to(PROJECT)} has no row of the layer {name}" for name in known if name not in rows]
-    problems += [f"{PAGE.relative_to(PROJECT)} has a row of {name}, which is no layer" for name in rows if name not in known]
+    shown = PAGE.relative_to(PROJECT)
+    problems += [f"{shown} has no row of the layer {name}" for name in known if name not in rows]
+    problems += [f"{shown} has a row of {name}, which is no layer" for name in rows if name not in known]
     for problem in problems:
         print(f"draw_layers: {problem}")
     print(f"draw_layers: {len(known)} layers, {len(problems)} problems")
