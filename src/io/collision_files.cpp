@@ -9,15 +9,10 @@
 
 #include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
-#include "blum/core/exact_text.hpp"
-#include "blum/io/atomic_file.hpp"
 #include "blum/io/collision_io.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
-#include "io/field_sink.hpp"
-#include "io/json.hpp"
-#include "io/npz.hpp"
-#include "io/row_writer.hpp"
+#include "io/table_files.hpp"
 
 namespace blum {
 namespace {
@@ -116,31 +111,35 @@ Contents contents_of(const SceneCollisions& collisions, std::span<const MeshMoti
 /// Metadata that are numbers, true or false in .json.
 constexpr std::array<std::string_view, 3> typed_keys{"self", "tolerance", "min_separation"};
 
-void write_npz(const std::filesystem::path& path, const Contents& contents, const FileMetadata& metadata,
-               const Context& context) {
-  AtomicFile file(path);
-  const std::size_t more = contents.is_scene ? sizeof(Two) : 0;
-  const std::size_t bytes =
-      (28 + more) * contents.vertex_face.times.size() + (24 + more) * contents.edge_edge.times.size();
-  volume_io::FieldSink sink(bytes, context);
-  volume_io::NpzWriter npz(file, sink, context);
-  for (const Kind* kind : contents.kinds()) {
-    const std::uint64_t rows = kind->times.size();
-    npz.add(kind->name, "i4", {rows, 4}, std::span<const Four>(kind->vertices));
-    npz.add(kind->name + "_time", "f8", {rows}, std::span<const double>(kind->times));
-    if (contents.is_scene) npz.add(kind->name + "_object", "i4", {rows, 2}, std::span<const Two>(kind->objects));
-  }
-  npz.add("face", "i4", {contents.faces.size()}, std::span<const std::uint32_t>(contents.faces));
-  if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
-  npz.finish();
-  file.commit();
+using tables::column_of;
+using tables::made_column;
+using tables::Table;
+using tables::TableColumn;
+
+template <std::size_t count>
+TableColumn index_column(const std::string& name, const std::vector<std::array<std::uint32_t, count>>& rows) {
+  const std::span numbers(reinterpret_cast<const std::uint32_t*>(rows.data()), count * rows.size());
+  return column_of(name, {count}, numbers);
 }
 
-/// Numbers with something between them.
-template <std::size_t count>
-std::string joined(const std::array<std::uint32_t, count>& values, const char* between) {
-  std::string out;
-  for (const std::uint32_t value : values) out += (out.empty() ? "" : between) + std::to_string(value);
+TableColumn time_column(const Kind& kind) {
+  return column_of(kind.name + "_time", {}, std::span<const double>(kind.times));
+}
+
+/// What comes first behind the vertices of a kind.
+enum class Order : std::uint8_t { times_first, objects_first };
+
+/// A table for each kind, and one of the numbers of faces.
+std::array<Table, 3> lists_of(const Contents& contents, Order order) {
+  std::array<Table, 3> out;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Kind& kind = *contents.kinds()[k];
+    out[k] = {kind.times.size(), {index_column(kind.name, kind.vertices), time_column(kind)}};
+    if (!contents.is_scene) continue;
+    out[k].columns.insert(out[k].columns.end() - (order == Order::objects_first ? 1 : 0),
+                          index_column(kind.name + "_object", kind.objects));
+  }
+  out[2] = {contents.faces.size(), {column_of("face", {}, std::span<const std::uint32_t>(contents.faces))}};
   return out;
 }
 
@@ -148,48 +147,37 @@ std::size_t rows_of(const Contents& contents) {
   return contents.vertex_face.times.size() + contents.edge_edge.times.size();
 }
 
-void write_csv(const std::filesystem::path& path, const Contents& contents, const Context& context) {
-  RowWriter file(path, rows_of(contents), context);
-  file.text(contents.is_scene ? "kind,first_object,second_object,a,b,c,d,time,face\n" : "kind,a,b,c,d,time,face\n");
-  for (const Kind* kind : contents.kinds()) {
-    for (std::size_t n = 0; n < kind->times.size(); ++n) {
-      const std::string face = kind == &contents.vertex_face ? std::to_string(contents.faces[n]) : "";
-      const std::string objects = contents.is_scene ? joined(kind->objects[n], ",") + ',' : "";
-      file.text(kind->name + ',' + objects + joined(kind->vertices[n], ",") + ',' + exact_text(kind->times[n]) + ',' +
-                face + '\n');
-      file.end_row();
-    }
+/// A row for each collision: those of vertices with faces, then those of edges.
+Table rows_of_text(const Contents& contents) {
+  using Indices = std::span<std::uint32_t>;
+  const std::size_t faces = contents.faces.size();
+  const auto at = [&contents, faces](std::size_t row) {
+    return row < faces ? std::pair(&contents.vertex_face, row) : std::pair(&contents.edge_edge, row - faces);
+  };
+  const auto kind = [at](std::size_t row, std::span<std::string> out) { out[0] = at(row).first->name; };
+  const auto objects = [at](std::size_t row, Indices out) {
+    const auto [of, n] = at(row);
+    std::ranges::copy(of->objects[n], out.begin());
+  };
+  const auto vertices = [at](std::size_t row, Indices out) {
+    const auto [of, n] = at(row);
+    std::ranges::copy(of->vertices[n], out.begin());
+  };
+  const auto time = [at](std::size_t row, std::span<double> out) {
+    const auto [of, n] = at(row);
+    out[0] = of->times[n];
+  };
+  const auto face = [&contents, faces](std::size_t row, std::span<std::string> out) {
+    out[0] = row < faces ? std::to_string(contents.faces[row]) : "";
+  };
+  Table table{rows_of(contents), {made_column<std::string>("kind", {}, kind)}};
+  if (contents.is_scene) {
+    table.columns.push_back(made_column<std::uint32_t>("objects", {2}, objects, {"first_object", "second_object"}));
   }
-  file.finish();
-}
-
-template <std::size_t count>
-void write_list(RowWriter& file, const std::string& name, const std::vector<std::array<std::uint32_t, count>>& rows) {
-  file.text(",\n\"" + name + "\": [");
-  for (std::size_t n = 0; n < rows.size(); ++n) file.text((n == 0 ? "\n[" : ",\n[") + joined(rows[n], ", ") + ']');
-  file.text("]");
-}
-
-void write_json(const std::filesystem::path& path, const Contents& contents, const FileMetadata& metadata,
-                const Context& context) {
-  RowWriter file(path, rows_of(contents), context);
-  file.text("{\"metadata\": " + volume_io::to_typed_json(metadata, typed_keys));
-  for (const Kind* kind : contents.kinds()) {
-    write_list(file, kind->name, kind->vertices);
-    if (contents.is_scene) write_list(file, kind->name + "_object", kind->objects);
-    file.text(",\n\"" + kind->name + "_time\": [");
-    for (std::size_t n = 0; n < kind->times.size(); ++n) {
-      file.text((n == 0 ? "" : ", ") + exact_text(kind->times[n]));
-      file.end_row();
-    }
-    file.text("]");
-  }
-  file.text(",\n\"face\": [");
-  for (std::size_t n = 0; n < contents.faces.size(); ++n) {
-    file.text((n == 0 ? "" : ", ") + std::to_string(contents.faces[n]));
-  }
-  file.text("]}\n");
-  file.finish();
+  table.columns.push_back(made_column<std::uint32_t>("vertices", {4}, vertices, {"a", "b", "c", "d"}));
+  table.columns.push_back(made_column<double>("time", {}, time));
+  table.columns.push_back(made_column<std::string>("face", {}, face));
+  return table;
 }
 
 /// Where a vertex is at a time from 0 to 1.
@@ -304,14 +292,14 @@ std::string extension_of(const std::filesystem::path& path) {
 void write(const std::filesystem::path& path, const std::string& extension, const Contents& contents,
            std::span<const MeshMotion> objects, const FileMetadata& metadata, const Context& context) {
   if (extension == ".npz") {
-    write_npz(path, contents, metadata, context);
+    tables::write_npz(path, lists_of(contents, Order::times_first), metadata, context);
   } else if (extension == ".csv") {
-    write_csv(path, contents, context);
+    tables::write_csv(path, rows_of_text(contents), context);
   } else if (extension == ".vtp") {
     throw_if_cancelled(context);
     write_complex(path, Features(contents, objects).found(context), metadata, {}, context);
   } else {
-    write_json(path, contents, metadata, context);
+    tables::write_json(path, lists_of(contents, Order::objects_first), metadata, {typed_keys, true}, context);
   }
 }
 

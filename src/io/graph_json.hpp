@@ -41,7 +41,7 @@ Json json_of(const T& value) {
   } else if constexpr (requires { value.has_value(); }) {
     return value ? json_of(*value) : Json(nullptr);
   } else {
-    static_assert(std::is_arithmetic_v<T>);
+    static_assert(std::is_arithmetic_v<T> || std::same_as<T, std::string>);
     return value;
   }
 }

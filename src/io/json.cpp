@@ -61,6 +61,10 @@ class FlatObject final : public nlohmann::json_sax<json> {
 
 }  // namespace
 
+std::string json_text(const std::string& text) {
+  return json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 std::string valid_utf8(const std::string& text) {
   return json::parse(json_string(text)).get<std::string>();
 }

@@ -16,6 +16,9 @@ namespace blum::volume_io {
 /// The same where the values of some keys are numbers, true or false: those that read as such.
 [[nodiscard]] std::string to_typed_json(const FileMetadata& metadata, std::span<const std::string_view> typed);
 
+/// A text in quotes, as JSON has it; bytes that are not UTF-8 become U+FFFD.
+[[nodiscard]] std::string json_text(const std::string& text);
+
 /// The same text; bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string valid_utf8(const std::string& text);
 

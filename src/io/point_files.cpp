@@ -3,23 +3,22 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "blum/core/error.hpp"
-#include "blum/io/atomic_file.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "blum/io/point_io.hpp"
 #include "io/byte_source.hpp"
 #include "io/complex_ply_names.hpp"
-#include "io/field_sink.hpp"
-#include "io/file_columns.hpp"
-#include "io/json.hpp"
 #include "io/npy.hpp"
 #include "io/npz.hpp"
-#include "io/row_writer.hpp"
+#include "io/table_files.hpp"
 #include "io/text_cursor.hpp"
 #include "io/text_scan.hpp"
 #include "io/whole_file.hpp"
@@ -143,53 +142,30 @@ class RowReader {
   std::size_t line_ = 0;
 };
 
-/// An array `points`, one for each column, and the metadata.
+/// The coordinates as `points`, then the columns, which in .csv have the names of PLY's properties.
+tables::Table table_of(const Complex& points) {
+  const std::vector<std::string> axes{"x", "y", "z"};
+  const auto names = complex_files::property_names(points.vertex_columns, "vertex", axes).properties;
+  tables::Table table{points.positions.size(), {tables::column_of("points", points.positions, axes)}};
+  auto name = names.begin();
+  for (const Column& column : points.vertex_columns) {
+    const auto end = name + static_cast<std::ptrdiff_t>(column.components);
+    table.columns.push_back(tables::column_of(column, {name, end}));
+    name = end;
+  }
+  return table;
+}
+
 void write_npz(const std::filesystem::path& path, const Complex& points, const FileMetadata& metadata,
                const Context& context) {
-  const std::size_t count = points.positions.size();
-  std::uint64_t bytes = 3 * sizeof(double) * count;
   for (const Column& column : points.vertex_columns) {
     if (column.name == "points" || column.name == "metadata") {
       throw InvalidOption(quoted(path) + ": a column is called '" + column.name +
                           "', which is what else is in the file");
     }
-    bytes += sizeof(double) * column.components * count;
   }
-  AtomicFile file(path);
-  volume_io::FieldSink sink(bytes, context);
-  volume_io::NpzWriter npz(file, sink, context);
-  npz.add("points", "f8", {count, 3}, std::span<const Vec3d>(points.positions));
-  for (const Column& column : points.vertex_columns) complex_files::write_column(npz, column.name, column);
-  if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
-  npz.finish();
-  file.commit();
-}
-
-void write_csv(const std::filesystem::path& path, const Complex& points, const Context& context) {
-  RowWriter rows(path, points.positions.size(), context);
-  rows.text("x,y,z");
-  const auto names = complex_files::property_names(points.vertex_columns, "vertex", {"x", "y", "z"}).properties;
-  for (const std::string& name : names) rows.text("," + name);
-  rows.text("\n");
-  const auto number = [&](auto value, bool is_first) {
-    std::array<char, 40> digits{};
-    const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-    if (!is_first) rows.text(",");
-    rows.text({digits.data(), static_cast<std::size_t>(result.ptr - digits.data())});
-  };
-  for (std::size_t k = 0; k < points.positions.size(); ++k) {
-    for (std::size_t axis = 0; axis < 3; ++axis) number(points.positions[k][axis], axis == 0);
-    for (const Column& column : points.vertex_columns) {
-      std::visit(
-          [&](const auto& values) {
-            for (std::size_t c = 0; c < column.components; ++c) number(values[k * column.components + c], false);
-          },
-          column.values);
-    }
-    rows.text("\n");
-    rows.end_row();
-  }
-  rows.finish();
+  const tables::Table table = table_of(points);
+  tables::write_npz(path, std::span(&table, 1), metadata, context);
 }
 
 }  // namespace
@@ -238,7 +214,7 @@ void write_points(const std::filesystem::path& path, const Complex& points, cons
   if (!points.edges.empty() || !points.triangles.empty()) {
     throw InvalidMesh("points have edges or triangles: write them with write_complex()");
   }
-  if (extension == ".csv") return write_csv(path, points, context);
+  if (extension == ".csv") return tables::write_csv(path, table_of(points), context);
   FileMetadata told = metadata;
   const auto is_content = [](const auto& pair) { return pair.first == "content"; };
   if (std::none_of(told.begin(), told.end(), is_content)) told.insert(told.begin(), {"content", "points"});

@@ -2,26 +2,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
-#include <type_traits>
-#include <utility>
-#include <variant>
 #include <vector>
 
 #include "blum/complex/columns.hpp"
 #include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
-#include "blum/core/exact_text.hpp"
 #include "blum/geometry/primitives.hpp"
-#include "blum/io/atomic_file.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
 #include "blum/io/proximity_io.hpp"
-#include "io/field_sink.hpp"
-#include "io/file_columns.hpp"
-#include "io/json.hpp"
-#include "io/npz.hpp"
-#include "io/row_writer.hpp"
+#include "io/table_files.hpp"
 
 namespace blum {
 namespace {
@@ -73,13 +65,6 @@ class PairColumns {
       visit(n);
     }
   }
-  /// All rows of one column.
-  template <class Row>
-  [[nodiscard]] std::vector<Row> all(Row (PairColumns::*row)(std::size_t) const) const {
-    std::vector<Row> rows(size());
-    for_each([&](std::size_t n) { rows[n] = (this->*row)(n); });
-    return rows;
-  }
 
  private:
   void check(const Columns& more) const {
@@ -119,137 +104,65 @@ class PairColumns {
 /// Metadata that are numbers, true or false in .json.
 constexpr std::array<std::string_view, 2> typed_keys{"within", "self"};
 
-/// Bytes of a pair in .npz.
-constexpr std::size_t row_size = 8 * sizeof(std::int32_t) + 7 * sizeof(double) + 2 * sizeof(std::int32_t);
+using tables::made_column;
+using tables::TableColumn;
 
-void write_npz(const std::filesystem::path& path, const PairColumns& pairs, const FileMetadata& metadata,
-               const Context& context) {
-  AtomicFile file(path);
-  std::size_t size = row_size;
-  for (const Column& column : pairs.more()) {
-    size += volume_io::scalar_size(complex_files::scalar_type(column)) * column.components;
-  }
-  volume_io::FieldSink sink(size * pairs.size(), context);
-  volume_io::NpzWriter npz(file, sink, context);
-  const auto add = [&]<class Row>(const char* name, const char* type, std::vector<std::uint64_t> shape,
-                                  const std::vector<Row>& rows) {
-    shape.insert(shape.begin(), rows.size());
-    npz.add(name, type, shape, std::span<const Row>(rows));
+/// The numbers of x, y and z, and those of the vertices of a feature, in .csv.
+const std::vector<std::string> point_names{"first_x", "first_y", "first_z", "second_x", "second_y", "second_z"};
+const std::vector<std::string> feature_names{"first_feature_0",  "first_feature_1",  "first_feature_2",
+                                             "second_feature_0", "second_feature_1", "second_feature_2"};
+
+/// What each pair is between, an array for each fact.
+std::vector<TableColumn> id_columns(const PairColumns& pairs) {
+  const auto object = [&](std::size_t n, std::span<std::int32_t> out) {
+    std::ranges::copy(pairs.object(n), out.begin());
   };
-  // One column after the other, so that one at a time is in memory.
-  add("object", "i4", {2}, pairs.all(&PairColumns::object));
-  add("primitive", "i4", {2}, pairs.all(&PairColumns::primitive));
-  add("distance", "f8", {}, pairs.all(&PairColumns::distance));
-  add("point", "f8", {2, 3}, pairs.all(&PairColumns::point));
-  add("feature", "i4", {2, 3}, pairs.all(&PairColumns::feature));
-  for (const Column& column : pairs.more()) complex_files::write_column(npz, column.name, column);
-  if (!metadata.empty()) npz.add_text("metadata", volume_io::to_json(metadata));
-  npz.finish();
-  file.commit();
+  const auto primitive = [&](std::size_t n, std::span<std::int32_t> out) {
+    std::ranges::copy(pairs.primitive(n), out.begin());
+  };
+  return {made_column<std::int32_t>("object", {2}, object), made_column<std::int32_t>("primitive", {2}, primitive)};
 }
 
-/// The numbers of a row of a column.
-std::vector<std::string> texts_of(const Column& column, std::size_t row) {
-  std::vector<std::string> out;
-  const auto add = [&](const auto& numbers) {
-    for (std::size_t k = row * column.components; k < (row + 1) * column.components; ++k) {
-      if constexpr (std::is_floating_point_v<std::decay_t<decltype(numbers[k])>>) {
-        out.push_back(exact_text(numbers[k]));
-      } else {
-        out.push_back(std::to_string(numbers[k]));
-      }
+/// The same in one, side by side.
+TableColumn ids_by_side(const PairColumns& pairs) {
+  const auto make = [&](std::size_t n, std::span<std::int32_t> out) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      out[2 * side] = pairs.object(n)[side];
+      out[2 * side + 1] = pairs.primitive(n)[side];
     }
   };
-  std::visit(add, column.values);
-  return out;
+  return made_column<std::int32_t>("ids", {4}, make,
+                                   {"first_object", "first_primitive", "second_object", "second_primitive"});
 }
 
-/// The names of further columns in .csv.
-std::string names_of(const Columns& more) {
-  std::string out;
-  for (const Column& column : more) {
-    for (std::size_t k = 0; k < column.components; ++k) {
-      out += ',' + column.name + (column.components > 1 ? '_' + std::to_string(k) : "");
-    }
-  }
-  return out;
-}
-
-void write_csv(const std::filesystem::path& path, const PairColumns& pairs, const Context& context) {
-  RowWriter rows(path, pairs.size(), context);
-  rows.text(
-      "first_object,first_primitive,second_object,second_primitive,distance,first_x,first_y,first_z,second_x,second_y,"
-      "second_z,first_feature_0,first_feature_1,first_feature_2,second_feature_0,second_feature_1,second_feature_2");
-  rows.text(names_of(pairs.more()) + '\n');
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    const auto object = pairs.object(n);
-    const auto primitive = pairs.primitive(n);
-    std::string row = std::to_string(object[0]) + ',' + std::to_string(primitive[0]) + ',' + std::to_string(object[1]) +
-                      ',' + std::to_string(primitive[1]) + ',' + exact_text(pairs.distance(n));
-    for (const Vec3d& p : pairs.point(n)) {
-      for (std::size_t axis = 0; axis < 3; ++axis) row += ',' + exact_text(p[axis]);
-    }
-    for (const auto& feature : pairs.feature(n)) {
-      for (const std::int32_t vertex : feature) row += ',' + std::to_string(vertex);
-    }
-    for (const Column& column : pairs.more()) {
-      for (const std::string& number : texts_of(column, n)) row += ',' + number;
-    }
-    rows.text(row + '\n');
-    rows.end_row();
-  }
-  rows.finish();
-}
-
-std::string json_text(std::int32_t value) {
-  return std::to_string(value);
-}
-std::string json_text(double value) {
-  return exact_text(value);
-}
-std::string json_text(const Vec3d& v) {
-  return '[' + exact_text(v.x) + ", " + exact_text(v.y) + ", " + exact_text(v.z) + ']';
-}
-template <class T, std::size_t count>
-std::string json_text(const std::array<T, count>& values) {
-  std::string text;
-  for (const T& value : values) text += (text.empty() ? "[" : ", ") + json_text(value);
-  return text + ']';
-}
-
-/// One number as itself, more as a list; null for those that JSON has no numbers for.
-std::string json_text(std::vector<std::string> numbers) {
-  for (std::string& number : numbers) {
-    if (number.find_first_of("in") != std::string::npos) number = "null";  // inf, -inf, nan
-  }
-  if (numbers.size() == 1) return numbers.front();
-  std::string text;
-  for (const std::string& number : numbers) text += (text.empty() ? "[" : ", ") + number;
-  return text + ']';
-}
-
-void write_json(const std::filesystem::path& path, const PairColumns& pairs, const FileMetadata& metadata,
-                const Context& context) {
-  RowWriter rows(path, (5 + pairs.more().size()) * pairs.size(), context);
-  rows.text("{\"metadata\": " + volume_io::to_typed_json(metadata, typed_keys));
-  const auto add = [&](const std::string& name, const auto& row_of) {
-    rows.text(",\n\"" + name + "\": [");
-    for (std::size_t n = 0; n < pairs.size(); ++n) {
-      rows.text((n == 0 ? "\n" : ",\n") + json_text(row_of(n)));
-      rows.end_row();
-    }
-    rows.text("]");
+/// Where each pair is closest, and what is told beside that.
+void add_places(const PairColumns& pairs, std::vector<TableColumn>& columns) {
+  const auto distance = [&](std::size_t n, std::span<double> out) { out[0] = pairs.distance(n); };
+  const auto point = [&](std::size_t n, std::span<double> out) {
+    for (std::size_t k = 0; k < 6; ++k) out[k] = pairs.point(n)[k / 3][k % 3];
   };
-  add("object", [&](std::size_t n) { return pairs.object(n); });
-  add("primitive", [&](std::size_t n) { return pairs.primitive(n); });
-  add("distance", [&](std::size_t n) { return pairs.distance(n); });
-  add("point", [&](std::size_t n) { return pairs.point(n); });
-  add("feature", [&](std::size_t n) { return pairs.feature(n); });
-  for (const Column& column : pairs.more()) {
-    add(column.name, [&](std::size_t n) { return texts_of(column, n); });
-  }
-  rows.text("}\n");
-  rows.finish();
+  const auto feature = [&](std::size_t n, std::span<std::int32_t> out) {
+    const auto sides = pairs.feature(n);
+    for (std::size_t k = 0; k < 6; ++k) out[k] = sides[k / 3][k % 3];
+  };
+  columns.push_back(made_column<double>("distance", {}, distance));
+  columns.push_back(made_column<double>("point", {2, 3}, point, point_names));
+  columns.push_back(made_column<std::int32_t>("feature", {2, 3}, feature, feature_names));
+  for (const Column& column : pairs.more()) columns.push_back(tables::column_of(column));
+}
+
+/// A column for each fact.
+tables::Table facts(const PairColumns& pairs) {
+  tables::Table table{pairs.size(), id_columns(pairs)};
+  add_places(pairs, table.columns);
+  return table;
+}
+
+/// Columns as rows of text have them: first what is of one side, then of the other.
+tables::Table rows_of_text(const PairColumns& pairs) {
+  tables::Table table{pairs.size(), {ids_by_side(pairs)}};
+  add_places(pairs, table.columns);
+  return table;
 }
 
 void write_vtp(const std::filesystem::path& path, const PairColumns& pairs, const FileMetadata& metadata,
@@ -298,11 +211,13 @@ void write_proximity_pairs(const std::filesystem::path& path, std::span<const Pr
   const PairColumns columns(pairs, objects, more, context);
   throw_if_cancelled(context);
   if (extension == ".npz") {
-    write_npz(path, columns, metadata, context);
+    const tables::Table table = facts(columns);
+    tables::write_npz(path, std::span(&table, 1), metadata, context);
   } else if (extension == ".csv") {
-    write_csv(path, columns, context);
+    tables::write_csv(path, rows_of_text(columns), context);
   } else if (extension == ".json") {
-    write_json(path, columns, metadata, context);
+    const tables::Table table = facts(columns);
+    tables::write_json(path, std::span(&table, 1), metadata, {typed_keys}, context);
   } else {
     write_vtp(path, columns, metadata, context);
   }

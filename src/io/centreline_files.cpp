@@ -1,52 +1,94 @@
-#include "centreline_files.hpp"
+#include "blum/io/centreline_io.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "blum/core/exact_text.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "blum/io/complex_io.hpp"
-#include "files.hpp"
+#include "blum/io/formats.hpp"
+#include "io/graph_json.hpp"
+#include "io/table_files.hpp"
 
-namespace blum::cli {
+namespace blum {
 namespace {
 
-constexpr std::string_view csv_head =
-    "label,branch,first_node,last_node,first_kind,last_kind,length,mean_radius,min_radius,points\n";
+/// A branch of the centreline of a label.
+struct BranchRow {
+  const Centreline* line = nullptr;
+  std::size_t branch = 0;
 
-std::string label_text(const Centreline& line) {
-  return line.label ? std::to_string(*line.label) : std::string();
-}
-
-std::string_view kind_text(const Centreline& line, std::int32_t node) {
-  return node < 0 ? std::string_view("closed") : to_string(line.nodes[static_cast<std::size_t>(node)].kind);
-}
-
-void write_csv(AtomicFile& file, const Centrelines& lines) {
-  file.write(csv_head);
-  for (const Centreline& line : lines.labels) {
-    for (std::size_t b = 0; b < line.branches.size(); ++b) {
-      const CentrelineBranch& branch = line.branches[b];
-      std::string row = label_text(line) + ',' + std::to_string(b);
-      for (const std::int32_t node : branch.nodes) row += ',' + (node < 0 ? std::string() : std::to_string(node));
-      for (const std::int32_t node : branch.nodes) row += ',' + std::string(kind_text(line, node));
-      for (const double value : {branch.length, branch.mean_radius, branch.min_radius}) row += ',' + exact_text(value);
-      file.write(row + ',' + std::to_string(branch.points.size()) + '\n');
-    }
+  [[nodiscard]] const CentrelineBranch& operator*() const { return line->branches[branch]; }
+  [[nodiscard]] std::string_view kind(std::int32_t node) const {
+    return node < 0 ? std::string_view("closed") : to_string(line->nodes[static_cast<std::size_t>(node)].kind);
   }
+};
+
+std::vector<BranchRow> rows_of(const Centrelines& lines) {
+  std::vector<BranchRow> rows;
+  for (const Centreline& line : lines.labels) {
+    for (std::size_t b = 0; b < line.branches.size(); ++b) rows.push_back({&line, b});
+  }
+  return rows;
 }
 
-void write_json(AtomicFile& file, const Centrelines& lines, const Json& head) {
+void write_csv(const std::filesystem::path& path, const Centrelines& lines, const Context& context) {
+  using tables::made_column;
+  using Texts = std::span<std::string>;
+  const std::vector<BranchRow> rows = rows_of(lines);
+  const auto label = [&](std::size_t row, Texts out) {
+    const std::optional<std::int64_t>& of_line = rows[row].line->label;
+    out[0] = of_line ? std::to_string(*of_line) : "";
+  };
+  const auto branch = [&](std::size_t row, std::span<std::int64_t> out) {
+    out[0] = static_cast<std::int64_t>(rows[row].branch);
+  };
+  const auto nodes = [&](std::size_t row, Texts out) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::int32_t node = (*rows[row]).nodes[k];
+      out[k] = node < 0 ? "" : std::to_string(node);
+      out[2 + k] = rows[row].kind(node);
+    }
+  };
+  const auto lengths = [&](std::size_t row, std::span<double> out) {
+    const CentrelineBranch& of = *rows[row];
+    std::ranges::copy(std::array{of.length, of.mean_radius, of.min_radius}, out.begin());
+  };
+  const auto points = [&](std::size_t row, std::span<std::int64_t> out) {
+    out[0] = static_cast<std::int64_t>((*rows[row]).points.size());
+  };
+  const tables::Table table{
+      rows.size(),
+      {made_column<std::string>("label", {}, label), made_column<std::int64_t>("branch", {}, branch),
+       made_column<std::string>("nodes", {4}, nodes, {"first_node", "last_node", "first_kind", "last_kind"}),
+       made_column<double>("lengths", {3}, lengths, {"length", "mean_radius", "min_radius"}),
+       made_column<std::int64_t>("points", {}, points)}};
+  tables::write_csv(path, table, context);
+}
+
+/// A JSON object without its end, so that a member can follow.
+std::string opened(std::string_view object) {
+  if (object.empty()) return "{";
+  object = object.substr(0, object.rfind('}'));
+  object = object.substr(0, object.find_last_not_of(" \n") + 1);
+  return std::string(object) + (object == "{" ? "" : ",");
+}
+
+void write_json(const std::filesystem::path& path, const Centrelines& lines, const std::string& head) {
   // Label by label, so that the text of one is in memory, and not of all.
-  std::string text = head.dump(1);
-  text.resize(text.rfind('\n'));
-  file.write(text + ",\n \"labels\": [");
+  AtomicFile file(path);
+  file.write(opened(head) + "\n \"labels\": [");
   for (std::size_t l = 0; l < lines.labels.size(); ++l) {
-    file.write((l == 0 ? "\n  " : ",\n  ") + to_json(lines.labels[l]).dump());
+    file.write((l == 0 ? "\n  " : ",\n  ") + graph_files::json_of(lines.labels[l]).dump());
   }
   file.write(lines.labels.empty() ? "]\n}\n" : "\n ]\n}\n");
+  file.commit();
 }
 
 /// Writes the points of a centreline from its nodes outwards, each with the line of the point before it.
@@ -119,37 +161,31 @@ class SwcWriter {
   std::int64_t lines_ = 0;
 };
 
-void write_swc(AtomicFile& file, const Centrelines& lines) {
-  file.write("# n type x y z radius parent; written by Blum " BLUM_VERSION "\n");
+void write_swc(const std::filesystem::path& path, const Centrelines& lines, const std::string& version) {
+  AtomicFile file(path);
+  file.write("# n type x y z radius parent; written by Blum" + (version.empty() ? "" : " " + version) + "\n");
   SwcWriter writer(file);
   for (const Centreline& line : lines.labels) {
     if (line.label) file.write("# label " + std::to_string(*line.label) + '\n');
     writer.write(line);
   }
+  file.commit();
 }
 
 }  // namespace
 
-std::vector<std::string> centreline_extensions() {
-  return {".json", ".csv", ".swc", ".vtp", ".ply", ".npz"};
-}
-
-void write_centrelines(const std::filesystem::path& path, const Centrelines& lines, const Json& head,
+void write_centrelines(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& info,
                        const Context& context) {
   const std::string extension = file_extension(path);
-  if (extension == ".vtp" || extension == ".ply" || extension == ".npz") {
-    write_complex(path, complex_of(lines), {{"content", "centreline"}}, {}, context);
-    return;
-  }
-  AtomicFile file(path);
   if (extension == ".csv") {
-    write_csv(file, lines);
+    write_csv(path, lines, context);
   } else if (extension == ".swc") {
-    write_swc(file, lines);
+    write_swc(path, lines, info.version);
+  } else if (extension == ".json") {
+    write_json(path, lines, info.head);
   } else {
-    write_json(file, lines, head);
+    write_complex(path, complex_of(lines), {{"content", "centreline"}}, {}, context);
   }
-  file.commit();
 }
 
-}  // namespace blum::cli
+}  // namespace blum
