@@ -160,7 +160,7 @@ void add_lines(TextTable& table, const Centrelines& lines) {
 void run(const Arguments& a) {
   const fs::path input = a.image;
   const fs::path output = a.output;
-  check_extension("--output", output, {".json", ".csv", ".swc", ".vtp", ".ply", ".npz"});
+  check_extension("--output", output, file_extensions(FileContent::centreline, FileAccess::write));
   const auto labels = labels_of(a.labels);
   LabelSelection::exclude_both(!a.labels.empty(), a.threshold.has_value(), "--");
   CentrelineOptions options = a.options.read();

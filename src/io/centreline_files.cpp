@@ -13,6 +13,7 @@
 #include "blum/io/atomic_file.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
+#include "io/format_table.hpp"
 #include "io/graph_json.hpp"
 #include "io/table_files.hpp"
 
@@ -38,7 +39,8 @@ std::vector<BranchRow> rows_of(const Centrelines& lines) {
   return rows;
 }
 
-void write_csv(const std::filesystem::path& path, const Centrelines& lines, const Context& context) {
+void write_csv(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& /*info*/,
+               const Context& context) {
   using tables::made_column;
   using Texts = std::span<std::string>;
   const std::vector<BranchRow> rows = rows_of(lines);
@@ -80,10 +82,11 @@ std::string opened(std::string_view object) {
   return std::string(object) + (object == "{" ? "" : ",");
 }
 
-void write_json(const std::filesystem::path& path, const Centrelines& lines, const std::string& head) {
+void write_json(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& info,
+                const Context& /*context*/) {
   // Label by label, so that the text of one is in memory, and not of all.
   AtomicFile file(path);
-  file.write(opened(head) + "\n \"labels\": [");
+  file.write(opened(info.head) + "\n \"labels\": [");
   for (std::size_t l = 0; l < lines.labels.size(); ++l) {
     file.write((l == 0 ? "\n  " : ",\n  ") + graph_files::json_of(lines.labels[l]).dump());
   }
@@ -161,9 +164,10 @@ class SwcWriter {
   std::int64_t lines_ = 0;
 };
 
-void write_swc(const std::filesystem::path& path, const Centrelines& lines, const std::string& version) {
+void write_swc(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& info,
+               const Context& /*context*/) {
   AtomicFile file(path);
-  file.write("# n type x y z radius parent; written by Blum" + (version.empty() ? "" : " " + version) + "\n");
+  file.write("# n type x y z radius parent; written by Blum" + (info.version.empty() ? "" : " " + info.version) + "\n");
   SwcWriter writer(file);
   for (const Centreline& line : lines.labels) {
     if (line.label) file.write("# label " + std::to_string(*line.label) + '\n');
@@ -172,20 +176,21 @@ void write_swc(const std::filesystem::path& path, const Centrelines& lines, cons
   file.commit();
 }
 
+void write_as_complex(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& /*info*/,
+                      const Context& context) {
+  write_complex(path, complex_of(lines), {{"content", "centreline"}}, {}, context);
+}
+
 }  // namespace
 
 void write_centrelines(const std::filesystem::path& path, const Centrelines& lines, const CentrelineFileInfo& info,
                        const Context& context) {
-  const std::string extension = file_extension(path);
-  if (extension == ".csv") {
-    write_csv(path, lines, context);
-  } else if (extension == ".swc") {
-    write_swc(path, lines, info.version);
-  } else if (extension == ".json") {
-    write_json(path, lines, info.head);
-  } else {
-    write_complex(path, complex_of(lines), {{"content", "centreline"}}, {}, context);
-  }
+  formats::code_of(CentrelineFormat::of(path, FileAccess::write)).write(path, lines, info, context);
 }
+
+constinit const formats::CentrelineCode formats::centreline_json{write_json};
+constinit const formats::CentrelineCode formats::centreline_csv{write_csv};
+constinit const formats::CentrelineCode formats::centreline_swc{write_swc};
+constinit const formats::CentrelineCode formats::centreline_as_complex{write_as_complex};
 
 }  // namespace blum

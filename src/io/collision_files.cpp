@@ -10,8 +10,8 @@
 #include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
 #include "blum/io/collision_io.hpp"
-#include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
+#include "io/format_table.hpp"
 #include "io/table_files.hpp"
 
 namespace blum {
@@ -130,16 +130,18 @@ TableColumn time_column(const Kind& kind) {
 enum class Order : std::uint8_t { times_first, objects_first };
 
 /// A table for each kind, and one of the numbers of faces.
-std::array<Table, 3> lists_of(const Contents& contents, Order order) {
-  std::array<Table, 3> out;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const Kind& kind = *contents.kinds()[k];
-    out[k] = {kind.times.size(), {index_column(kind.name, kind.vertices), time_column(kind)}};
-    if (!contents.is_scene) continue;
-    out[k].columns.insert(out[k].columns.end() - (order == Order::objects_first ? 1 : 0),
-                          index_column(kind.name + "_object", kind.objects));
+std::vector<Table> lists_of(const Contents& contents, Order order) {
+  std::vector<Table> out;
+  for (const Kind* one : contents.kinds()) {
+    const Kind& kind = *one;
+    std::vector<TableColumn> columns{index_column(kind.name, kind.vertices), time_column(kind)};
+    if (contents.is_scene) {
+      columns.insert(columns.end() - (order == Order::objects_first ? 1 : 0),
+                     index_column(kind.name + "_object", kind.objects));
+    }
+    out.push_back({kind.times.size(), std::move(columns)});
   }
-  out[2] = {contents.faces.size(), {column_of("face", {}, std::span<const std::uint32_t>(contents.faces))}};
+  out.push_back({contents.faces.size(), {column_of("face", {}, std::span<const std::uint32_t>(contents.faces))}});
   return out;
 }
 
@@ -280,46 +282,34 @@ class Features {
   std::span<std::int32_t> vertex_, object_, face_;
 };
 
-/// @throws InvalidOption for an extension that is not known.
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = file_extension(path);
-  const auto& known = collision_extensions();
-  if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
-  throw InvalidOption("'" + path.string() +
-                      "': collisions are written to .npz, .csv, .json, .vtp files; use one of these extensions");
-}
-
-void write(const std::filesystem::path& path, const std::string& extension, const Contents& contents,
+void write(const std::filesystem::path& path, CollisionFormat format, const Contents& contents,
            std::span<const MeshMotion> objects, const FileMetadata& metadata, const Context& context) {
-  if (extension == ".npz") {
-    tables::write_npz(path, lists_of(contents, Order::times_first), metadata, context);
-  } else if (extension == ".csv") {
-    tables::write_csv(path, rows_of_text(contents), context);
-  } else if (extension == ".vtp") {
+  const auto shapes = [&] {
     throw_if_cancelled(context);
-    write_complex(path, Features(contents, objects).found(context), metadata, {}, context);
-  } else {
-    tables::write_json(path, lists_of(contents, Order::objects_first), metadata, {typed_keys, true}, context);
-  }
+    return Features(contents, objects).found(context);
+  };
+  const tables::RowFile file{[&] { return lists_of(contents, Order::times_first); },
+                             [&] { return lists_of(contents, Order::objects_first); },
+                             [&] { return rows_of_text(contents); },
+                             shapes,
+                             metadata,
+                             typed_keys,
+                             true};
+  formats::code_of(format).write(path, file, context);
 }
 
 }  // namespace
 
-const std::vector<std::string>& collision_extensions() {
-  static const std::vector<std::string> extensions{".npz", ".csv", ".json", ".vtp"};
-  return extensions;
-}
-
 void write_collisions(const std::filesystem::path& path, const ContinuousCollisions& collisions, const MeshMotion& mesh,
                       const FileMetadata& metadata, const Context& context) {
-  const std::string extension = extension_of(path);
-  write(path, extension, contents_of(collisions, mesh.start), std::span(&mesh, 1), metadata, context);
+  const auto format = CollisionFormat::of(path, FileAccess::write);
+  write(path, format, contents_of(collisions, mesh.start), std::span(&mesh, 1), metadata, context);
 }
 
 void write_collisions(const std::filesystem::path& path, const SceneCollisions& collisions,
                       std::span<const MeshMotion> objects, const FileMetadata& metadata, const Context& context) {
-  const std::string extension = extension_of(path);
-  write(path, extension, contents_of(collisions, objects), objects, metadata, context);
+  const auto format = CollisionFormat::of(path, FileAccess::write);
+  write(path, format, contents_of(collisions, objects), objects, metadata, context);
 }
 
 }  // namespace blum

@@ -128,6 +128,16 @@ ComplexFile read_complex(const std::filesystem::path& path) {
   });
 }
 
+bool may_hold_columns(const std::filesystem::path& path) {
+  const auto format = ComplexFormat::by_name(path);
+  return format && formats::code_of(*format).holds_columns;
+}
+
+bool may_hold_further(const std::filesystem::path& path) {
+  const auto format = ComplexFormat::by_name(path);
+  return format && formats::code_of(*format).holds_further;
+}
+
 ComplexFile read_complex(std::span<const std::byte> bytes, ComplexFormat format, const std::string& name) {
   const formats::ComplexCode& code = formats::code_of(format);
   if (code.read == nullptr && code.read_text == nullptr) {

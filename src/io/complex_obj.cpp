@@ -64,8 +64,12 @@ ComplexFile read_obj(std::string_view text, std::string_view name) {
 
 namespace blum::formats {
 
-constinit const ComplexCode complex_obj{
-    nullptr, complex_files::read_obj, complex_files::write_obj, {.holds_this = complex_files::never_tells}, false,
-    false};
+constinit const ComplexCode complex_obj{nullptr,
+                                        complex_files::read_obj,
+                                        complex_files::write_obj,
+                                        {.holds_this = complex_files::never_tells},
+                                        false,
+                                        false,
+                                        false};
 
 }  // namespace blum::formats

@@ -1,13 +1,12 @@
 #include "blum/io/extended_io.hpp"
 
-#include <algorithm>
-#include <string_view>
+#include <string>
 
-#include "blum/core/describe.hpp"
 #include "blum/core/exact_text.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
 #include "blum/io/mesh_io.hpp"
+#include "io/format_table.hpp"
 
 namespace blum {
 namespace {
@@ -30,30 +29,31 @@ FileMetadata pairs_of(const MedialMetadata& metadata) {
   return pairs;
 }
 
-}  // namespace
-
-const std::vector<std::string>& extended_extensions() {
-  static const std::vector<std::string> extensions{".vtp", ".ply", ".obj", ".npz", ".stl"};
-  return extensions;
+void write_as_complex(const std::filesystem::path& path, const Complex& surface, const FileMetadata& metadata,
+                      const Context& context) {
+  ComplexWriteOptions options;
+  options.allow_loss = true;
+  write_complex(path, surface, metadata, options, context);
 }
 
-void write_extended(const std::filesystem::path& path, const Complex& surface, const MedialMetadata& metadata,
-                    const Context& context) {
-  const std::string extension = file_extension(path);
-  const auto& known = extended_extensions();
-  if (std::find(known.begin(), known.end(), extension) == known.end()) {
-    const std::vector<std::string_view> names(known.begin(), known.end());
-    throw InvalidOption("'" + path.string() + "': extended axes are written to " + join_words(names, "or") +
-                        " files; use one of these extensions");
-  }
-  if (extension == ".stl" && surface.triangles.empty()) {
+void write_stl(const std::filesystem::path& path, const Complex& surface, const FileMetadata& /*metadata*/,
+               const Context& /*context*/) {
+  if (surface.triangles.empty()) {
     throw InvalidOption("'" + path.string() +
                         "': the axis has no triangles, which is all that .stl files hold; use another extension");
   }
-  if (extension == ".stl") return write_mesh(path, MeshView{surface.positions, surface.triangles});
-  ComplexWriteOptions options;
-  options.allow_loss = true;
-  write_complex(path, surface, pairs_of(metadata), options, context);
+  write_mesh(path, MeshView{surface.positions, surface.triangles});
 }
+
+}  // namespace
+
+void write_extended(const std::filesystem::path& path, const Complex& surface, const MedialMetadata& metadata,
+                    const Context& context) {
+  const auto format = ExtendedAxisFormat::of(path, FileAccess::write);
+  formats::code_of(format).write(path, surface, pairs_of(metadata), context);
+}
+
+constinit const formats::ExtendedAxisCode formats::extended_as_complex{write_as_complex};
+constinit const formats::ExtendedAxisCode formats::extended_stl{write_stl};
 
 }  // namespace blum

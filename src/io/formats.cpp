@@ -71,8 +71,8 @@ const std::vector<FileFormat>& file_formats() {
   static const std::vector<FileFormat> all = [] {
     std::vector<FileFormat> out;
     for (const formats::Row& row : formats::table) {
-      out.push_back({static_cast<FileContent>(row.code.index()), std::string(row.name), words_of(row.extensions),
-                     words_of(row.written), std::string(row.holds), std::string(row.opens_in)});
+      out.push_back({row.content, std::string(row.name), words_of(row.extensions), words_of(row.written),
+                     std::string(row.holds), std::string(row.opens_in)});
     }
     return out;
   }();
@@ -95,10 +95,15 @@ std::optional<FormatOf<content>> FormatOf<content>::by_head(std::string_view hea
 }
 
 template <FileContent content>
-FormatOf<content> FormatOf<content>::of(const std::filesystem::path& path, FileAccess access) {
+FormatOf<content> FormatOf<content>::of(const std::filesystem::path& path, FileAccess access, std::string_view what) {
   if (const auto row = find_extension(content, file_extension(path), access)) return FormatOf(*row);
-  constexpr std::array<std::string_view, 4> plural{"meshes", "images", "fields", "complexes, medial axes among them,"};
-  throw InvalidOption("'" + path.string() + "': " + std::string(plural[static_cast<std::size_t>(content)]) + " are " +
+  constexpr std::array<std::string_view, 11> plural{
+      "meshes", "images",      "fields",       "complexes, medial axes among them,",
+      "points", "close pairs", "collisions",   "surface maps",
+      "graphs", "centrelines", "extended axes"};
+  static_assert(plural.size() == Description<FileContent>::values.size());
+  if (what.empty()) what = plural[static_cast<std::size_t>(content)];
+  throw InvalidOption("'" + path.string() + "': " + std::string(what) + " are " +
                       (access == FileAccess::read    ? "read from "
                        : access == FileAccess::write ? "written to "
                                                      : "written to and read from ") +
@@ -109,6 +114,13 @@ template class FormatOf<FileContent::mesh>;
 template class FormatOf<FileContent::image>;
 template class FormatOf<FileContent::field>;
 template class FormatOf<FileContent::complex>;
+template class FormatOf<FileContent::points>;
+template class FormatOf<FileContent::pairs>;
+template class FormatOf<FileContent::collisions>;
+template class FormatOf<FileContent::surface_map>;
+template class FormatOf<FileContent::graph>;
+template class FormatOf<FileContent::centreline>;
+template class FormatOf<FileContent::extended_axis>;
 
 std::string file_extension(const std::filesystem::path& path) {
   std::string last = volume_io::lower_case(path.extension().string());

@@ -1,10 +1,13 @@
 // Blum: the texts of files of graphs. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "blum/io/medial_io.hpp"
 #include "blum/medial_axis/axis_graph.hpp"
+#include "blum/voronoi/voronoi_graph.hpp"
+#include "blum/voronoi/voronoi_sites.hpp"
 #include "io/graph_ml.hpp"
 
 namespace blum::graph_files {
@@ -15,5 +18,9 @@ namespace blum::graph_files {
 /// Each the whole content of a file.
 [[nodiscard]] std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata);
 [[nodiscard]] std::string graphml_text(const AxisGraph& graph, const MedialMetadata& metadata);
+[[nodiscard]] std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
+                                    const FileMetadata& metadata);
+[[nodiscard]] std::string graphml_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
+                                       const FileMetadata& metadata);
 
 }  // namespace blum::graph_files

@@ -4,6 +4,7 @@
 
 #include "blum/io/atomic_file.hpp"
 #include "blum/io/formats.hpp"
+#include "io/format_table.hpp"
 #include "io/graph_files.hpp"
 
 namespace blum {
@@ -30,16 +31,18 @@ Attributes told(const MedialMetadata& metadata) {
 }  // namespace graph_files
 
 void write_graph(const std::filesystem::path& path, const AxisGraph& graph, const MedialMetadata& metadata) {
-  const std::string extension = file_extension(path);
-  if (extension != ".json" && extension != ".graphml") {
-    throw InvalidOption("'" + path.string() +
-                        "': graphs of medial axes are written to .json, .graphml files; use one of these extensions");
-  }
-  const std::string text =
-      extension == ".json" ? graph_files::json_text(graph, metadata) : graph_files::graphml_text(graph, metadata);
+  const auto format = GraphFormat::of(path, FileAccess::write, "graphs of medial axes");
+  const std::string text = formats::code_of(format).text_of_axis(graph, metadata);
   AtomicFile file(path);
   file.write(text);
   file.commit();
 }
+
+namespace formats {
+
+constinit const GraphCode graph_json{graph_files::json_text, graph_files::json_text};
+constinit const GraphCode graph_graphml{graph_files::graphml_text, graph_files::graphml_text};
+
+}  // namespace formats
 
 }  // namespace blum

@@ -132,6 +132,14 @@ void write_medial(const std::filesystem::path& path, const Complex& complex, con
   write(path, complex, &nested, least_theta, metadata, context);
 }
 
+std::vector<std::string> extensions_with_radii() {
+  std::vector<std::string> out;
+  for (const std::string& extension : file_extensions(FileContent::complex, FileAccess::read)) {
+    if (formats::code_of(ComplexFormat(extension)).holds_radii) out.push_back(extension);
+  }
+  return out;
+}
+
 MedialFile read_medial(const std::filesystem::path& path) {
   return checked(path.string(), [&] { return as_axis(read_complex(path), path.string()); });
 }

@@ -16,6 +16,7 @@
 #include "blum/io/point_io.hpp"
 #include "io/byte_source.hpp"
 #include "io/complex_ply_names.hpp"
+#include "io/format_table.hpp"
 #include "io/npy.hpp"
 #include "io/npz.hpp"
 #include "io/table_files.hpp"
@@ -28,12 +29,6 @@ namespace {
 
 std::string quoted(const std::filesystem::path& path) {
   return "'" + path.string() + "'";
-}
-
-void refuse_extension(const std::filesystem::path& path, const std::vector<std::string>& known, const char* how) {
-  std::string all;
-  for (const std::string& extension : known) all += (all.empty() ? "" : " ") + extension;
-  throw InvalidOption(quoted(path) + ": points are " + how + " " + all + " files; use one of these extensions");
 }
 
 /// @param name  of the file, for messages.
@@ -170,15 +165,12 @@ void write_npz(const std::filesystem::path& path, const Complex& points, const F
 
 }  // namespace
 
-const std::vector<std::string>& readable_point_extensions() {
-  static const std::vector<std::string> all{".npy", ".npz", ".csv", ".xyz", ".txt",
-                                            ".ply", ".vtp", ".obj", ".off", ".stl"};
-  return all;
-}
-
-const std::vector<std::string>& written_point_extensions() {
-  static const std::vector<std::string> all{".npz", ".ply", ".vtp", ".csv"};
-  return all;
+std::vector<std::string> cloud_extensions() {
+  std::vector<std::string> out;
+  for (const std::string& extension : file_extensions(FileContent::points, FileAccess::read)) {
+    if (formats::code_of(PointFormat(extension)).is_cloud) out.push_back(extension);
+  }
+  return out;
 }
 
 std::vector<Vec3d> read_point_rows(std::span<const std::byte> text, const std::string& name) {
@@ -186,40 +178,53 @@ std::vector<Vec3d> read_point_rows(std::span<const std::byte> text, const std::s
 }
 
 std::vector<Vec3d> read_points(const std::filesystem::path& path) {
-  const std::string extension = file_extension(path);
-  const auto& known = readable_point_extensions();
-  if (std::find(known.begin(), known.end(), extension) == known.end()) refuse_extension(path, known, "read from");
-  std::vector<Vec3d> points;
-  if (extension == ".npy") {
-    points = read_npy(path);
-  } else if (extension == ".npz") {
-    points = read_npz(path);
-  } else if (extension == ".csv" || extension == ".xyz" || extension == ".txt") {
-    points = read_point_rows(read_whole_file(path).span(), quoted(path));
-  } else if (extension == ".ply" || extension == ".vtp") {
-    points = read_complex(path).complex.positions;
-  } else {
-    points = read_mesh(path).vertices;
-  }
+  std::vector<Vec3d> points = formats::code_of(PointFormat::of(path)).read(path);
   check_finite(points, quoted(path));
   return points;
 }
 
 void write_points(const std::filesystem::path& path, const Complex& points, const FileMetadata& metadata,
                   const Context& context) {
-  const auto& known = written_point_extensions();
-  const std::string extension = file_extension(path);
-  if (std::find(known.begin(), known.end(), extension) == known.end()) refuse_extension(path, known, "written to");
+  const auto format = PointFormat::of(path, FileAccess::write);
   validate(points);
   if (!points.edges.empty() || !points.triangles.empty()) {
     throw InvalidMesh("points have edges or triangles: write them with write_complex()");
   }
-  if (extension == ".csv") return tables::write_csv(path, table_of(points), context);
   FileMetadata told = metadata;
   const auto is_content = [](const auto& pair) { return pair.first == "content"; };
   if (std::none_of(told.begin(), told.end(), is_content)) told.insert(told.begin(), {"content", "points"});
-  if (extension == ".npz") return write_npz(path, points, told, context);
-  write_complex(path, points, told, {}, context);
+  formats::code_of(format).write(path, points, told, context);
 }
 
+namespace formats {
+namespace {
+
+std::vector<Vec3d> read_text(const fs::path& path) {
+  return read_point_rows(read_whole_file(path).span(), quoted(path));
+}
+std::vector<Vec3d> read_positions(const fs::path& path) {
+  return read_complex(path).complex.positions;
+}
+std::vector<Vec3d> read_vertices(const fs::path& path) {
+  return read_mesh(path).vertices;
+}
+
+void write_csv(const fs::path& path, const Complex& points, const FileMetadata& /*metadata*/, const Context& context) {
+  tables::write_csv(path, table_of(points), context);
+}
+void write_as_complex(const fs::path& path, const Complex& points, const FileMetadata& metadata,
+                      const Context& context) {
+  write_complex(path, points, metadata, {}, context);
+}
+
+}  // namespace
+
+constinit const PointCode points_npy{read_npy, nullptr, true};
+constinit const PointCode points_npz{read_npz, write_npz, true};
+constinit const PointCode points_text{read_text, write_csv, true};
+// A .vtp may hold polygons, whose area would be lost.
+constinit const PointCode points_as_complex{read_positions, write_as_complex};
+constinit const PointCode points_of_mesh{read_vertices, nullptr};
+
+}  // namespace formats
 }  // namespace blum

@@ -10,9 +10,9 @@
 #include "blum/complex/complex.hpp"
 #include "blum/core/error.hpp"
 #include "blum/geometry/primitives.hpp"
-#include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
 #include "blum/io/proximity_io.hpp"
+#include "io/format_table.hpp"
 #include "io/table_files.hpp"
 
 namespace blum {
@@ -165,8 +165,8 @@ tables::Table rows_of_text(const PairColumns& pairs) {
   return table;
 }
 
-void write_vtp(const std::filesystem::path& path, const PairColumns& pairs, const FileMetadata& metadata,
-               const Context& context) {
+/// A line for each pair.
+Complex lines_of(const PairColumns& pairs) {
   Complex lines;
   lines.positions.reserve(2 * pairs.size());
   lines.edges.reserve(pairs.size());
@@ -189,38 +189,21 @@ void write_vtp(const std::filesystem::path& path, const PairColumns& pairs, cons
   });
   for (const Column& column : pairs.more()) lines.edge_columns.add(column);
   lines.vertex_columns = Columns(lines.positions.size());
-  write_complex(path, lines, metadata, {}, context);
+  return lines;
 }
 
 }  // namespace
 
-const std::vector<std::string>& proximity_extensions() {
-  static const std::vector<std::string> extensions{".npz", ".csv", ".json", ".vtp"};
-  return extensions;
-}
-
 void write_proximity_pairs(const std::filesystem::path& path, std::span<const PrimitivePair> pairs,
                            std::span<const MeshView> objects, const FileMetadata& metadata, const Columns& more,
                            const Context& context) {
-  const std::string extension = file_extension(path);
-  const auto& known = proximity_extensions();
-  if (std::find(known.begin(), known.end(), extension) == known.end()) {
-    throw InvalidOption("'" + path.string() +
-                        "': close pairs are written to .npz, .csv, .json, .vtp files; use one of these extensions");
-  }
+  const PairFormat format = PairFormat::of(path, FileAccess::write);
   const PairColumns columns(pairs, objects, more, context);
   throw_if_cancelled(context);
-  if (extension == ".npz") {
-    const tables::Table table = facts(columns);
-    tables::write_npz(path, std::span(&table, 1), metadata, context);
-  } else if (extension == ".csv") {
-    tables::write_csv(path, rows_of_text(columns), context);
-  } else if (extension == ".json") {
-    const tables::Table table = facts(columns);
-    tables::write_json(path, std::span(&table, 1), metadata, {typed_keys}, context);
-  } else {
-    write_vtp(path, columns, metadata, context);
-  }
+  const auto arrays = [&] { return std::vector{facts(columns)}; };
+  const tables::RowFile file{
+      arrays, arrays, [&] { return rows_of_text(columns); }, [&] { return lines_of(columns); }, metadata, typed_keys};
+  formats::code_of(format).write(path, file, context);
 }
 
 }  // namespace blum

@@ -9,6 +9,7 @@
 #include "blum/core/exact_text.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
+#include "io/format_table.hpp"
 #include "io/surface_map_files.hpp"
 
 namespace blum {
@@ -98,20 +99,9 @@ void write_columns(const Request& request) {
 
 }  // namespace surface_map_files
 
-const std::vector<std::string>& surface_map_extensions() {
-  static const std::vector<std::string> extensions{".npz", ".png", ".glb", ".ply", ".vtp"};
-  return extensions;
-}
-
 void write_surface_map(const std::filesystem::path& path, const MeshView& mesh, const SurfaceMap& map,
                        const FileMetadata& metadata, const SurfaceMapWriteOptions& options, const Context& context) {
-  const std::string extension = file_extension(path);
-  const auto& known = surface_map_extensions();
-  if (std::find(known.begin(), known.end(), extension) == known.end()) {
-    throw InvalidOption(
-        "'" + path.string() +
-        "': surface maps are written to .npz, .png, .glb, .ply, .vtp files; use one of these extensions");
-  }
+  const auto format = SurfaceMapFormat::of(path, FileAccess::write);
   surface_map_files::check(map);
   check_of(mesh, map);
   check_metadata(metadata);
@@ -119,19 +109,18 @@ void write_surface_map(const std::filesystem::path& path, const MeshView& mesh, 
   throw_if_cancelled(context);
   try {
     const FileMetadata all = all_metadata(map, metadata, options);
-    const Request request{path, mesh, map, all, options, context};
-    if (extension == ".npz") {
-      surface_map_files::write_npz(request);
-    } else if (extension == ".png") {
-      surface_map_files::write_picture(request);
-    } else if (extension == ".glb") {
-      surface_map_files::write_glb(request);
-    } else {
-      surface_map_files::write_columns(request);
-    }
+    formats::code_of(format).write({path, mesh, map, all, options, context});
   } catch (const std::bad_alloc&) {
     throw OutOfMemory("not enough memory to write '" + path.string() + "'");
   }
 }
 
+namespace formats {
+
+constinit const SurfaceMapCode surface_map_npz{surface_map_files::write_npz};
+constinit const SurfaceMapCode surface_map_png{surface_map_files::write_picture};
+constinit const SurfaceMapCode surface_map_glb{surface_map_files::write_glb};
+constinit const SurfaceMapCode surface_map_as_complex{surface_map_files::write_columns};
+
+}  // namespace formats
 }  // namespace blum

@@ -10,6 +10,7 @@
 #include "blum/core/error.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "io/field_sink.hpp"
+#include "io/format_table.hpp"
 #include "io/json.hpp"
 #include "io/npz.hpp"
 #include "io/row_writer.hpp"
@@ -232,3 +233,31 @@ void write_json(const std::filesystem::path& path, std::span<const Table> tables
 }
 
 }  // namespace blum::tables
+
+namespace blum::formats {
+namespace {
+
+void write_arrays(const fs::path& path, const tables::RowFile& file, const Context& context) {
+  tables::write_npz(path, file.arrays(), file.metadata, context);
+}
+
+void write_rows(const fs::path& path, const tables::RowFile& file, const Context& context) {
+  tables::write_csv(path, file.rows(), context);
+}
+
+void write_lists(const fs::path& path, const tables::RowFile& file, const Context& context) {
+  tables::write_json(path, file.lists(), file.metadata, {file.typed_keys, file.has_dense_lists}, context);
+}
+
+void write_shapes(const fs::path& path, const tables::RowFile& file, const Context& context) {
+  write_complex(path, file.shapes(), file.metadata, {}, context);
+}
+
+}  // namespace
+
+constinit const RowCode rows_npz{write_arrays};
+constinit const RowCode rows_csv{write_rows};
+constinit const RowCode rows_json{write_lists};
+constinit const RowCode rows_as_complex{write_shapes};
+
+}  // namespace blum::formats

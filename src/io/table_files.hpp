@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "blum/complex/columns.hpp"
+#include "blum/complex/complex.hpp"
 #include "blum/core/context.hpp"
 #include "blum/core/vec3.hpp"
 #include "blum/io/file_metadata.hpp"
@@ -63,6 +64,17 @@ template <class T, class Make>
                                       std::vector<std::string> names = {}) {
   return {std::move(name), std::move(shape), Cells<T>{{}, std::move(make)}, std::move(names)};
 }
+
+/// What files of rows are written from. Each is asked for by the formats that need it.
+struct RowFile {
+  std::function<std::vector<Table>()> arrays;  ///< a column for each fact
+  std::function<std::vector<Table>()> lists;   ///< the same, in the order of .json
+  std::function<Table()> rows;                 ///< of text
+  std::function<Complex()> shapes;             ///< what can be drawn of the rows, with columns
+  const FileMetadata& metadata;
+  std::span<const std::string_view> typed_keys = {};  ///< of metadata that are numbers, true or false in .json
+  bool has_dense_lists = false;                       ///< as JsonStyle::is_dense
+};
 
 /// How lists of .json files look.
 struct JsonStyle {

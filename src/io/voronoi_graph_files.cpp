@@ -1,17 +1,17 @@
 #include <string>
-#include <utility>
 
 #include "blum/core/error.hpp"
 #include "blum/io/atomic_file.hpp"
 #include "blum/io/formats.hpp"
 #include "blum/io/voronoi_io.hpp"
+#include "io/format_table.hpp"
+#include "io/graph_files.hpp"
 #include "io/graph_json.hpp"
 #include "io/graph_ml.hpp"
 
 namespace blum {
 namespace {
 
-using graph_files::Attributes;
 using graph_files::FlatGraph;
 
 constexpr const char* content = "graph of a Voronoi diagram";
@@ -22,14 +22,6 @@ void add_told(const FileMetadata& metadata, const Add& add) {
   for (const auto& [key, value] : metadata) {
     if (key != "content") add(key, value);
   }
-}
-
-std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites, const FileMetadata& metadata) {
-  graph_files::Json json = {{"content", content}};
-  add_told(metadata, [&](const std::string& key, const std::string& value) { json[key] = value; });
-  json["sites"] = graph_files::json_of(std::vector<VoronoiSite>(sites.begin(), sites.end()));
-  json.update(graph_files::json_of(graph));
-  return graph_files::text_of(json);
 }
 
 /// A node for each site, which is that of its region, and for each wall, seam and junction.
@@ -79,19 +71,28 @@ void write_voronoi_graph(const std::filesystem::path& path, const VoronoiGraph& 
     if (is_known(wall.site_a) && is_known(wall.site_b)) continue;
     throw InvalidOption("graph of a Voronoi diagram: it names sites that are not listed");
   }
-  const std::string extension = file_extension(path);
-  if (extension != ".json" && extension != ".graphml") {
-    throw InvalidOption("'" + path.string() +
-                        "': graphs of Voronoi diagrams are written to .json, .graphml files; use one of these "
-                        "extensions");
-  }
-  Attributes whole{{"content", std::string(content)}};
-  add_told(metadata, [&](const std::string& key, const std::string& value) { whole.emplace_back(key, value); });
-  const std::string text = extension == ".json" ? json_text(graph, sites, metadata)
-                                                : graphml_text("diagram", whole, flattened(graph, sites));
+  const auto format = GraphFormat::of(path, FileAccess::write, "graphs of Voronoi diagrams");
+  const std::string text = formats::code_of(format).text_of_diagram(graph, sites, metadata);
   AtomicFile file(path);
   file.write(text);
   file.commit();
 }
 
+namespace graph_files {
+
+std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites, const FileMetadata& metadata) {
+  Json json = {{"content", content}};
+  add_told(metadata, [&](const std::string& key, const std::string& value) { json[key] = value; });
+  json["sites"] = json_of(std::vector<VoronoiSite>(sites.begin(), sites.end()));
+  json.update(json_of(graph));
+  return text_of(json);
+}
+
+std::string graphml_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites, const FileMetadata& metadata) {
+  Attributes whole{{"content", std::string(content)}};
+  add_told(metadata, [&](const std::string& key, const std::string& value) { whole.emplace_back(key, value); });
+  return graphml_text("diagram", whole, flattened(graph, sites));
+}
+
+}  // namespace graph_files
 }  // namespace blum
