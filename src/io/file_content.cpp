@@ -10,9 +10,9 @@
 #include <system_error>
 
 #include "blum/io/image_io.hpp"
-#include "io/field_files.hpp"
+#include "io/bytes/whole_file.hpp"
+#include "io/field/field_files.hpp"
 #include "io/format_table.hpp"
-#include "io/whole_file.hpp"
 
 namespace blum {
 namespace {

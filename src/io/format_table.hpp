@@ -22,7 +22,7 @@
 #include "blum/io/image_io.hpp"
 #include "blum/io/medial_io.hpp"
 #include "blum/io/mesh_io.hpp"
-#include "io/byte_source.hpp"
+#include "io/bytes/byte_source.hpp"
 
 namespace blum {
 

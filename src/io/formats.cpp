@@ -7,7 +7,7 @@
 
 #include "blum/core/error.hpp"
 #include "io/format_table.hpp"
-#include "io/text_scan.hpp"
+#include "io/text/text_scan.hpp"
 
 namespace blum {
 namespace {

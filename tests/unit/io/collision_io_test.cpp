@@ -16,8 +16,8 @@
 #include "blum/io/collision_io.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
-#include "io/byte_source.hpp"
-#include "io/npz.hpp"
+#include "io/archive/npz.hpp"
+#include "io/bytes/byte_source.hpp"
 #include "unit/io/temporary_folder.hpp"
 
 namespace blum {

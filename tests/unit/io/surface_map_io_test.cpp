@@ -11,8 +11,8 @@
 
 #include "blum/io/complex_io.hpp"
 #include "blum/io/field_io.hpp"
-#include "io/json.hpp"
-#include "io/npz.hpp"
+#include "io/archive/npz.hpp"
+#include "io/text/json.hpp"
 #include "support/surface_map_sample.hpp"
 #include "unit/io/glb_bytes.hpp"
 #include "unit/io/png_bytes.hpp"

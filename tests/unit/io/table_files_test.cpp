@@ -1,6 +1,6 @@
 // Proves that tables are the same rows in all formats, whether their values are there or made, and what their texts
 // look like.
-#include "io/table_files.hpp"
+#include "io/table/table_files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@
 
 #include "blum/core/error.hpp"
 #include "blum/io/centreline_io.hpp"
-#include "io/byte_source.hpp"
-#include "io/npz.hpp"
+#include "io/archive/npz.hpp"
+#include "io/bytes/byte_source.hpp"
 #include "unit/io/temporary_folder.hpp"
 
 namespace blum {

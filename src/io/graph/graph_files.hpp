@@ -1,0 +1,26 @@
+// Blum: the texts of files of graphs. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "blum/io/medial_io.hpp"
+#include "blum/medial_axis/axis_graph.hpp"
+#include "blum/voronoi/voronoi_graph.hpp"
+#include "blum/voronoi/voronoi_sites.hpp"
+#include "io/graph/graph_ml.hpp"
+
+namespace blum::graph_files {
+
+/// What graphs tell of the axis that they are of; what is not known is left out.
+[[nodiscard]] Attributes told(const MedialMetadata& metadata);
+
+/// Each the whole content of a file.
+[[nodiscard]] std::string json_text(const AxisGraph& graph, const MedialMetadata& metadata);
+[[nodiscard]] std::string graphml_text(const AxisGraph& graph, const MedialMetadata& metadata);
+[[nodiscard]] std::string json_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
+                                    const FileMetadata& metadata);
+[[nodiscard]] std::string graphml_text(const VoronoiGraph& graph, std::span<const VoronoiSite> sites,
+                                       const FileMetadata& metadata);
+
+}  // namespace blum::graph_files
