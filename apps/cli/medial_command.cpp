@@ -13,6 +13,7 @@
 #include "blum/core/parallel.hpp"
 #include "blum/field/smooth_surface.hpp"
 #include "blum/io/certified_axis.hpp"
+#include "blum/io/complex_io.hpp"
 #include "blum/io/draft.hpp"
 #include "blum/io/extended_io.hpp"
 #include "blum/io/graph_io.hpp"
