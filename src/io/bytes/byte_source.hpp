@@ -1,4 +1,4 @@
-// Blum: bytes of files and memory, plain or compressed. SPDX-License-Identifier: Apache-2.0
+// Blum: where the bytes of files come from. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,8 @@
 #include <memory>
 #include <span>
 #include <string>
+
+#include "blum/core/buffer.hpp"
 
 namespace blum::volume_io {
 
@@ -119,3 +121,18 @@ class InflateStream final : public ByteStream {
 };
 
 }  // namespace blum::volume_io
+
+namespace blum {
+
+/// The content of a file.
+struct FileBytes {
+  Buffer<std::byte> storage = {};
+  std::size_t size = 0;  ///< the storage may be larger
+  [[nodiscard]] std::span<const std::byte> span() const { return storage.span().first(size); }
+};
+
+/// The bytes of a file, or of a pipe until it ends.
+/// @throws FileError when it cannot be read or is a directory; OutOfMemory.
+[[nodiscard]] FileBytes read_whole_file(const std::filesystem::path& path);
+
+}  // namespace blum

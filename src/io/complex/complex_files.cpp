@@ -1,13 +1,16 @@
-#include "io/complex/file_columns.hpp"
+#include "io/complex/complex_files.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
+#include "blum/core/error.hpp"
 #include "blum/io/complex_io.hpp"
-#include "io/archive/npz.hpp"
+#include "io/archive/numpy.hpp"
 #include "io/text/text_cursor.hpp"
 
 namespace blum::complex_files {
@@ -109,6 +112,103 @@ Columns repeated(const Columns& columns, std::span<const std::uint32_t> counts, 
   for (std::size_t i = 0; i < counts.size(); ++i)
     sources.insert(sources.end(), counts[i], static_cast<std::uint32_t>(i));
   return columns.pick(sources);
+}
+
+namespace {
+
+template <class Use>
+void for_each_side(const ComplexView& complex, EdgeSet::Of which, Use use) {
+  const auto add = [&](std::uint32_t a, std::uint32_t b) { use(std::min(a, b), std::max(a, b)); };
+  if (which == EdgeSet::Of::edges_and_triangles) {
+    for (const auto& edge : complex.edges) add(edge[0], edge[1]);
+  }
+  for (const auto& triangle : complex.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) add(triangle[i], triangle[(i + 1) % 3]);
+  }
+}
+
+}  // namespace
+
+EdgeSet::EdgeSet(const ComplexView& complex, Of which, const Context& context) : begin_(complex.vertex_count + 1, 0) {
+  for_each_side(complex, which, [&](std::uint32_t a, std::uint32_t /*b*/) { ++begin_[a + std::size_t{1}]; });
+  throw_if_cancelled(context);
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  others_.resize(begin_.back());
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  for_each_side(complex, which, [&](std::uint32_t a, std::uint32_t b) { others_[next[a]++] = b; });
+  throw_if_cancelled(context);
+  sort_and_merge();
+}
+
+void EdgeSet::sort_and_merge() {
+  std::size_t kept = 0;
+  std::size_t from = 0;
+  for (std::size_t a = 0; a + 1 < begin_.size(); ++a) {
+    const auto first = others_.begin() + static_cast<std::ptrdiff_t>(from);
+    const auto last = others_.begin() + static_cast<std::ptrdiff_t>(begin_[a + 1]);
+    std::sort(first, last);
+    const auto end = std::unique(first, last);
+    std::copy(first, end, others_.begin() + static_cast<std::ptrdiff_t>(kept));
+    kept += static_cast<std::size_t>(end - first);
+    from = begin_[a + 1];
+    begin_[a + 1] = kept;
+  }
+  others_.resize(kept);
+}
+
+bool EdgeSet::contains(const std::array<std::uint32_t, 2>& edge) const {
+  const auto [low, high] = std::minmax(edge[0], edge[1]);
+  return std::binary_search(others_.begin() + static_cast<std::ptrdiff_t>(begin_[low]),
+                            others_.begin() + static_cast<std::ptrdiff_t>(begin_[low + std::size_t{1}]), high);
+}
+
+std::vector<std::uint32_t> isolated_vertices(const ComplexView& complex) {
+  std::vector<bool> used(complex.vertex_count, false);
+  for (const auto& edge : complex.edges) {
+    for (const std::uint32_t v : edge) used[v] = true;
+  }
+  for (const auto& triangle : complex.triangles) {
+    for (const std::uint32_t v : triangle) used[v] = true;
+  }
+  std::vector<std::uint32_t> out;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) out.push_back(static_cast<std::uint32_t>(v));
+  }
+  return out;
+}
+
+namespace {
+
+/// The names of columns but one, for messages.
+std::string names_of(const Columns& columns, std::string_view kept) {
+  std::string names;
+  for (const Column& column : columns) {
+    if (column.name != kept) names += (names.empty() ? "" : ", ") + column.name;
+  }
+  return names;
+}
+
+}  // namespace
+
+void refuse_loss(const std::filesystem::path& path, std::string_view format, const Complex& complex,
+                 const FileMetadata& metadata, const ComplexWriteOptions& options, std::string_view kept) {
+  if (options.allow_loss) return;
+  std::string lost;
+  const auto lose = [&](const std::string& what) { lost += (lost.empty() ? "" : "; ") + what; };
+  const auto lose_columns = [&](const char* of, const Columns& columns, std::string_view but) {
+    if (const std::string names = names_of(columns, but); !names.empty()) {
+      lose(std::string("columns of ") + of + " (" + names + ")");
+    }
+  };
+  lose_columns("vertices", complex.vertex_columns, kept);
+  lose_columns("edges", complex.edge_columns, {});
+  lose_columns("triangles", complex.triangle_columns, {});
+  if (!metadata.empty()) lose("metadata");
+  if (lost.empty()) return;
+  const std::string also = kept.empty() ? std::string() : ", the column '" + std::string(kept) + "' of vertices";
+  throw InvalidOption("'" + path.string() + "': " + std::string(format) + " files hold positions, edges and triangles" +
+                      also + " only, so that these would be lost: " + lost +
+                      "; write .vtp, .ply or .npz, or allow the loss");
 }
 
 }  // namespace blum::complex_files

@@ -9,7 +9,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
-#include "io/bytes/whole_file.hpp"
+#include "io/bytes/byte_source.hpp"
 #include "io/format_table.hpp"
 
 namespace blum {

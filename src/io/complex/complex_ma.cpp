@@ -9,7 +9,6 @@
 
 #include "blum/core/error.hpp"
 #include "io/complex/complex_files.hpp"
-#include "io/complex/edge_set.hpp"
 #include "io/format_table.hpp"
 #include "io/text/row_writer.hpp"
 #include "io/text/text_cursor.hpp"

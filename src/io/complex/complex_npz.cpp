@@ -11,9 +11,8 @@
 
 #include "blum/core/error.hpp"
 #include "blum/core/ids.hpp"
-#include "io/archive/npz.hpp"
+#include "io/archive/numpy.hpp"
 #include "io/complex/complex_files.hpp"
-#include "io/complex/file_columns.hpp"
 #include "io/format_table.hpp"
 #include "io/text/json.hpp"
 

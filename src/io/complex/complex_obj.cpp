@@ -5,7 +5,6 @@
 
 #include "blum/io/mesh_io.hpp"
 #include "io/complex/complex_files.hpp"
-#include "io/complex/edge_set.hpp"
 #include "io/format_table.hpp"
 #include "io/mesh/mesh_builder.hpp"
 #include "io/text/row_writer.hpp"

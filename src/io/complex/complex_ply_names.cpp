@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "io/text/text_scan.hpp"
+#include "io/text/text_cursor.hpp"
 
 namespace blum::complex_files {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "blum/complex/columns.hpp"
-#include "io/text/ply_header.hpp"
+#include "io/text/ply.hpp"
 
 namespace blum::complex_files {
 

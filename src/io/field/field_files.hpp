@@ -1,4 +1,4 @@
-// Blum: the field formats, one by one. SPDX-License-Identifier: Apache-2.0
+// Blum: what readers and writers of fields share. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@
 #include "blum/io/field_io.hpp"
 #include "io/bytes/byte_source.hpp"
 #include "io/bytes/scalar_type.hpp"
+#include "io/text/json.hpp"
 
 namespace blum::volume_io {
 
@@ -70,5 +71,17 @@ using ReadValues = std::function<void(std::span<std::byte> bytes)>;
 [[nodiscard]] Buffer<SiteId> read_sites(ScalarType type, std::uint64_t count, const ReadValues& read,
                                         const std::string& name);
 [[nodiscard]] Buffer<SiteId> to_sites(const VoxelImage::Values& values, const std::string& name);
+
+/// Numbers are in their shortest exact form.
+using Metadata = FileMetadata;
+
+/// What site ids number, for people who read the file.
+[[nodiscard]] std::string site_sentence(SiteIds ids);
+
+[[nodiscard]] Metadata field_metadata(const Field& field, const FieldFileInfo& info);
+
+/// Sets the band, sign rule and kind of site values of a field as its metadata say; unknown keys are left alone.
+/// @throws FormatError with `name` when a known key has a value that it cannot have.
+void apply_metadata(const Metadata& metadata, const std::string& name, Field& field);
 
 }  // namespace blum::volume_io

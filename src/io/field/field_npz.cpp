@@ -6,12 +6,11 @@
 
 #include "blum/core/error.hpp"
 #include "blum/io/atomic_file.hpp"
-#include "io/archive/npz.hpp"
-#include "io/bytes/field_sink.hpp"
+#include "io/archive/numpy.hpp"
 #include "io/field/field_files.hpp"
-#include "io/field/field_metadata.hpp"
 #include "io/format_table.hpp"
-#include "io/image/image_geometry.hpp"
+#include "io/image/image_files.hpp"
+#include "io/text/row_writer.hpp"
 
 namespace blum::volume_io {
 namespace {

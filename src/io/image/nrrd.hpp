@@ -12,7 +12,7 @@
 #include "blum/grid/voxel_image.hpp"
 #include "io/bytes/byte_source.hpp"
 #include "io/bytes/scalar_type.hpp"
-#include "io/field/field_metadata.hpp"
+#include "io/field/field_files.hpp"
 
 namespace blum::volume_io {
 

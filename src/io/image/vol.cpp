@@ -8,8 +8,7 @@
 #include "io/bytes/scalar_type.hpp"
 #include "io/format_table.hpp"
 #include "io/image/image_files.hpp"
-#include "io/image/image_geometry.hpp"
-#include "io/text/text_scan.hpp"
+#include "io/text/text_cursor.hpp"
 
 namespace blum::volume_io {
 namespace {

@@ -1,14 +1,16 @@
-// Blum: what the mesh readers share. SPDX-License-Identifier: Apache-2.0
+// Blum: what readers and writers of meshes share. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "blum/core/ids.hpp"
+#include "blum/geometry/triangle_mesh.hpp"
 #include "blum/io/mesh_io.hpp"
 
 namespace blum {
@@ -86,5 +88,11 @@ bool cut_polygon(std::span<const Vec3d> vertices, std::span<const std::uint32_t>
 /// file, which takes about a second. Usual polygons need a few dozen a corner, whatever their size.
 inline constexpr std::int64_t polygon_work_per_corner = 500;
 inline constexpr std::int64_t polygon_work = 200'000'000;
+
+/// @throws FileError saying that files of this format hold no such thing.
+[[noreturn]] void cannot_hold(const std::filesystem::path& path, std::string_view format, std::string_view what);
+
+/// Refuses points, unless the mesh is a cloud of all its vertices, which a file without faces stands for.
+void refuse_points(const std::filesystem::path& path, std::string_view format, const MeshView& mesh);
 
 }  // namespace blum

@@ -11,7 +11,7 @@
 #include "blum/core/error.hpp"
 #include "blum/geometry/weld.hpp"
 #include "blum/io/formats.hpp"
-#include "io/bytes/whole_file.hpp"
+#include "io/bytes/byte_source.hpp"
 #include "io/format_table.hpp"
 #include "io/mesh/mesh_builder.hpp"
 

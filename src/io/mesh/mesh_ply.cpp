@@ -4,9 +4,7 @@
 
 #include "io/format_table.hpp"
 #include "io/mesh/mesh_builder.hpp"
-#include "io/mesh/mesh_write.hpp"
-#include "io/text/ply_header.hpp"
-#include "io/text/ply_values.hpp"
+#include "io/text/ply.hpp"
 #include "io/text/row_writer.hpp"
 #include "io/text/text_cursor.hpp"
 

@@ -3,7 +3,6 @@
 
 #include "io/format_table.hpp"
 #include "io/mesh/mesh_builder.hpp"
-#include "io/mesh/mesh_write.hpp"
 #include "io/text/row_writer.hpp"
 #include "io/text/text_cursor.hpp"
 

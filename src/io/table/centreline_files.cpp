@@ -14,7 +14,7 @@
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
 #include "io/format_table.hpp"
-#include "io/graph/graph_json.hpp"
+#include "io/graph/graph_files.hpp"
 #include "io/table/table_files.hpp"
 
 namespace blum {

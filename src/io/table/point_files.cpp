@@ -14,15 +14,12 @@
 #include "blum/io/formats.hpp"
 #include "blum/io/mesh_io.hpp"
 #include "blum/io/point_io.hpp"
-#include "io/archive/npy.hpp"
-#include "io/archive/npz.hpp"
+#include "io/archive/numpy.hpp"
 #include "io/bytes/byte_source.hpp"
-#include "io/bytes/whole_file.hpp"
 #include "io/complex/complex_ply_names.hpp"
 #include "io/format_table.hpp"
 #include "io/table/table_files.hpp"
 #include "io/text/text_cursor.hpp"
-#include "io/text/text_scan.hpp"
 
 namespace blum {
 namespace {

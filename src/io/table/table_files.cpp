@@ -9,8 +9,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/io/atomic_file.hpp"
-#include "io/archive/npz.hpp"
-#include "io/bytes/field_sink.hpp"
+#include "io/archive/numpy.hpp"
 #include "io/format_table.hpp"
 #include "io/text/json.hpp"
 #include "io/text/row_writer.hpp"

@@ -1,10 +1,9 @@
-#include "io/text/ply_header.hpp"
+#include "io/text/ply.hpp"
 
 #include <array>
 #include <utility>
 
 #include "io/text/text_cursor.hpp"
-#include "io/text/text_scan.hpp"
 
 namespace blum {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "blum/core/error.hpp"
-#include "io/text/text_scan.hpp"
+#include "io/text/text_cursor.hpp"
 
 namespace blum::volume_io {
 namespace {

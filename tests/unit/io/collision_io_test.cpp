@@ -16,7 +16,7 @@
 #include "blum/io/collision_io.hpp"
 #include "blum/io/complex_io.hpp"
 #include "blum/io/formats.hpp"
-#include "io/archive/npz.hpp"
+#include "io/archive/numpy.hpp"
 #include "io/bytes/byte_source.hpp"
 #include "unit/io/temporary_folder.hpp"
 

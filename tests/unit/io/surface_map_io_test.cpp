@@ -11,7 +11,7 @@
 
 #include "blum/io/complex_io.hpp"
 #include "blum/io/field_io.hpp"
-#include "io/archive/npz.hpp"
+#include "io/archive/numpy.hpp"
 #include "io/text/json.hpp"
 #include "support/surface_map_sample.hpp"
 #include "unit/io/glb_bytes.hpp"

@@ -16,7 +16,7 @@
 
 #include "blum/core/error.hpp"
 #include "blum/io/centreline_io.hpp"
-#include "io/archive/npz.hpp"
+#include "io/archive/numpy.hpp"
 #include "io/bytes/byte_source.hpp"
 #include "unit/io/temporary_folder.hpp"
 
