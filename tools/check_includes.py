@@ -7,7 +7,7 @@
   tests and benchmarks may look inside.
 - A layer sees no other layer than CMake lets it link, and may see all of those that CMakeLists.txt names for it.
 - Public headers name nothing but the standard library and Blum.
-- One file starts threads (src/core/parallel.cpp); SIMD is in src/field/cpu and src/geometry/*_kernels.cpp; compression is in src/io.
+- One file starts threads (src/core/parallel.cpp); SIMD is in src/field/cpu and src/geometry/bvh/*_kernels.cpp; compression is in src/io.
 - field/cpu and field/cuda do not see each other; CUDA is in src/field/cuda.
 - No call of debug_dump() is left behind: its header is for tests, and for a while in other files while they are debugged.
 """
@@ -70,8 +70,8 @@ def third_party_rule(source: str, name: str) -> str | None:
         allowed = source == "src/core/parallel.cpp" or (source == "src/core/context.cpp" and name == "thread")
         return None if allowed else "only src/core/parallel.cpp starts threads"
     if name.startswith("hwy/"):
-        allowed = source.startswith("src/field/cpu/") or re.fullmatch(r"src/geometry/\w+_kernels\.cpp", source)
-        return None if allowed else "SIMD belongs in src/field/cpu and src/geometry/*_kernels.cpp"
+        allowed = source.startswith("src/field/cpu/") or re.fullmatch(r"src/geometry/bvh/\w+_kernels\.cpp", source)
+        return None if allowed else "SIMD belongs in src/field/cpu and src/geometry/bvh/*_kernels.cpp"
     if name == "cuda_runtime.h" or name.startswith(("cub/", "thrust/")):
         return None if source.startswith("src/field/cuda/") else "CUDA belongs in src/field/cuda"
     if name in ("zlib.h", "png.h", "tiny_gltf.h", "nlohmann/json.hpp"):
